@@ -1,0 +1,1 @@
+//! Unsteady thin-aerofoil aerodynamics of a section with a trailing-edge flap.

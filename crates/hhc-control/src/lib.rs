@@ -1,0 +1,1 @@
+//! Higher harmonic control on an abstract plant: cost, T matrix, feedback controller.

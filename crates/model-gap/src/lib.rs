@@ -1,0 +1,1 @@
+//! Measured against simulated: experiments, splits by experiment and measures of misfit.

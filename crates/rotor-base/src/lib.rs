@@ -1,0 +1,23 @@
+//! Azimuth grids, harmonics, quadrature, frames and nondimensional groups shared by every crate of
+//! rotor-hhc.
+//!
+//! This is floor 0 of the house: it knows no blade, no actuator and no file.
+//!
+//! # Conventions
+//! - azimuth `psi` is zero with the blade over the tail (aft) and grows in the sense of rotation,
+//!   counter-clockwise seen from above;
+//! - hub axes: X aft, Y starboard (`psi = 90 deg`), Z up, right-handed;
+//! - rotating blade axes: x outboard, y toward the leading edge, z up;
+//! - a harmonic is written `c cos(n psi) + s sin(n psi) = A cos(n psi - phase)`.
+
+mod error;
+mod frames;
+mod harmonics;
+mod quadrature;
+mod scales;
+
+pub use error::BaseError;
+pub use frames::rotating_to_fixed;
+pub use harmonics::{Harmonic, HarmonicSeries, uniform_azimuths_rad, wrap_degrees};
+pub use quadrature::{LagrangeBasis, QuadratureRule, gauss_legendre, gauss_lobatto_nodes};
+pub use scales::RotorScales;

@@ -1,0 +1,1 @@
+//! Aeroelastic coupling: periodic blade response, force-summation blade loads, hub loads.

@@ -1,0 +1,1 @@
+//! Rotor inflow models behind one trait: uniform (Glauert) and Drees.

@@ -1,0 +1,1 @@
+//! Case files, data files, studies and the hhc command of rotor-hhc.

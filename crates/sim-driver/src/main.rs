@@ -1,0 +1,2 @@
+//! The `hhc` command.
+fn main() {}

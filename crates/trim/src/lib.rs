@@ -1,0 +1,1 @@
+//! Rotor and vehicle equilibrium over the aeroelastic response.

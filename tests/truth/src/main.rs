@@ -1,0 +1,2 @@
+//! Writes the synthetic bench records.
+fn main() {}

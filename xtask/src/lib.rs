@@ -1,0 +1,1 @@
+//! Project chores: layer check, tidy check, validation page, regression sweeps.
