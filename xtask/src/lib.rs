@@ -1,1 +1,28 @@
-//! Project chores: layer check, tidy check, validation page, regression sweeps.
+//! Project chores behind `cargo xtask`: layer rule, tidiness, validation page, regression sweep.
+//!
+//! | chore | does | module |
+//! |---|---|---|
+//! | `layers` | checks that crates depend on strictly lower floors only | [`layers`] |
+//! | `tidy` | checks the rules of the house that a text can break | [`tidy`] |
+//! | `validate` | runs every check against theory and published data, writes the page of the book | [`validate`] |
+//! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
+//! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
+//!
+//! Exit codes: 0 done, 1 physics or numerics failed, 2 bad input or broken rule, 3 a comparison
+//! failed.
+
+#![expect(
+    clippy::disallowed_methods,
+    reason = "xtask and sim-driver are where files and the environment are known"
+)]
+
+pub mod ci;
+mod error;
+pub mod files;
+pub mod layers;
+pub mod regress;
+pub mod tidy;
+pub mod validate;
+pub mod workspace;
+
+pub use error::XtaskError;

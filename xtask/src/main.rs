@@ -1,2 +1,117 @@
-//! Project chores.
-fn main() {}
+//! `cargo xtask`: the chores of the project.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use xtask::{XtaskError, ci, files, layers, regress, tidy, validate, workspace};
+
+/// Chores of the project.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Subcommand)]
+enum Chore {
+    /// Check that crates depend on strictly lower floors only
+    Layers,
+    /// Check the rules of the house that a text can break
+    Tidy,
+    /// Run every check against theory and published data, and write docs/src/validation.md
+    Validate {
+        /// Only the checks with this text in id or area; the page is left alone
+        #[arg(long, default_value = "", conflicts_with = "check")]
+        filter: String,
+        /// Write nothing; fail if the page does not say what the checks say
+        #[arg(long)]
+        check: bool,
+    },
+    /// Compare a sweep of the whole program with its golden values
+    Regress {
+        /// Rewrite the goldens of the cases that differ
+        #[arg(long)]
+        bless: bool,
+        /// Only some cases, for example mu=0.30,n=3
+        #[arg(long, default_value = "")]
+        filter: String,
+        /// Folder of the goldens
+        #[arg(long, value_name = "DIR")]
+        golden: Option<PathBuf>,
+    },
+    /// Run .ci/run: everything a change must pass
+    Ci,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let root = workspace::root();
+    match run(arguments.chore, &root) {
+        Ok(code) => code,
+        Err(error) => {
+            say(&mut std::io::stderr(), &format!("error: {error}\n"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
+    match chore {
+        Chore::Layers => {
+            let members = workspace::members(root)?;
+            let faults = layers::check(&members);
+            let summary = format!("{} members, {} faults\n", members.len(), faults.len());
+            Ok(verdict(&faults, &summary))
+        }
+        Chore::Tidy => {
+            let tree = tidy::Tree::load(root)?;
+            let findings = tidy::check(&tree, &workspace::members(root)?, &validate::ids());
+            let summary = format!("{} texts, {} faults\n", tree.texts.len(), findings.len());
+            Ok(verdict(&findings, &summary))
+        }
+        Chore::Validate { filter, check } => validation(root, &filter, check),
+        Chore::Regress { bless, filter, golden } => {
+            let folder = golden.unwrap_or_else(|| root.join("fixtures/golden"));
+            let mode = if bless { regress::Mode::Bless } else { regress::Mode::Compare };
+            let filter = regress::Filter::parse(&filter)?;
+            let report = regress::run(&folder, mode, &filter, regress::sweep_point)?;
+            say(&mut std::io::stdout(), &report.text());
+            Ok(ExitCode::from(report.exit_code()))
+        }
+        Chore::Ci => ci::run(root),
+    }
+}
+
+/// Prints faults and summary; a broken rule is bad input.
+fn verdict<F: std::fmt::Display>(faults: &[F], summary: &str) -> ExitCode {
+    let lines: Vec<String> = faults.iter().map(|fault| format!("{fault}\n")).collect();
+    say(&mut std::io::stdout(), &(lines.concat() + summary));
+    if faults.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) }
+}
+
+fn validation(root: &Path, filter: &str, check: bool) -> Result<ExitCode, XtaskError> {
+    let rows = validate::run(filter)?;
+    let mut text = validate::text(&rows);
+    let page = root.join("docs/src/validation.md");
+    let mut failed = rows.iter().any(|row| !row.passes());
+    if check {
+        let stale = validate::stale_lines(&files::read(&page)?, &rows);
+        for line in &stale {
+            text.push_str(&format!("stale page, {line}\n"));
+        }
+        failed |= !stale.is_empty();
+    } else if filter.is_empty() {
+        files::write_atomically(&page, &validate::render(&rows))?;
+        text.push_str(&format!("written: {}\n", page.display()));
+    }
+    say(&mut std::io::stdout(), &text);
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+/// Writes text; a reader that has gone away is no reason to fail.
+fn say(stream: &mut impl Write, text: &str) {
+    let _ = stream.write_all(text.as_bytes());
+}

@@ -1,1 +1,42 @@
-//! Rotor inflow models behind one trait: uniform (Glauert) and Drees.
+//! Rotor inflow models behind one trait.
+//!
+//! Every model maps the state of flight and the loading of the rotor to the induced part of the
+//! inflow over the disk. What is here is linear over the disk: prescribed, uniform (Glauert's
+//! momentum theory) and Drees.
+//!
+//! ```text
+//! lambda(psi, r) = mu tan(alpha_s) + lambda_i(psi, r),       positive down through the disk
+//! ```
+//!
+//! # Example
+//! ```
+//! use rotor_wake::{FlightState, InflowModel, LinearInflow, RotorLoading};
+//!
+//! let flight = FlightState { advance_ratio: 0.30, shaft_tilt_rad: 5.0_f64.to_radians() };
+//! let loading = RotorLoading::from_thrust_coefficient(0.0049);
+//! let inflow = LinearInflow::Drees.induced(&flight, &loading)?;
+//!
+//! let over_the_tail = inflow.at(0.0, 0.8);
+//! let over_the_nose = inflow.at(std::f64::consts::PI, 0.8);
+//! assert!(over_the_tail > over_the_nose); // the wake sweeps aft
+//! # Ok::<(), rotor_wake::WakeError>(())
+//! ```
+//!
+//! # Conventions
+//! Velocities are divided by the tip speed `Omega R`, radial stations by `R`; azimuth is zero with
+//! the blade over the tail and grows with rotation, counter-clockwise seen from above.
+
+mod error;
+mod inflow;
+mod linear;
+mod momentum;
+
+pub use error::WakeError;
+pub use inflow::{FlightState, InducedInflow, InflowModel, RotorLoading};
+pub use linear::{LinearInflow, drees_factors};
+pub use momentum::{VORTEX_RING_TRANSPORT, momentum_inflow, momentum_residual, wake_skew_rad};
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

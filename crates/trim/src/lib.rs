@@ -1,1 +1,14 @@
 //! Rotor and vehicle equilibrium over the aeroelastic response.
+
+mod error;
+mod solve;
+mod vehicle;
+
+pub use error::TrimError;
+pub use solve::{TrimSettings, TrimSolution, TrimTarget, trim};
+pub use vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

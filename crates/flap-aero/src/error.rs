@@ -1,0 +1,66 @@
+//! Errors of the section aerodynamics.
+
+/// What can be wrong with a question to the section aerodynamics.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AeroError {
+    /// A Mach number outside the subsonic linear theory.
+    #[error(
+        "Mach number {mach}: the attached-flow models are subsonic linear theory, defined from 0 \
+         to {limit}; lower the speed or limit the local Mach number"
+    )]
+    MachOutOfRange {
+        /// The value found.
+        mach: f64,
+        /// Largest value accepted.
+        limit: f64,
+    },
+    /// A flap chord ratio that is no flap.
+    #[error(
+        "flap chord ratio {ratio}: expected 0 (no flap) or more, and less than 1 chord; 0.15 to \
+         0.25 is usual on a rotor blade"
+    )]
+    FlapChordOutOfRange {
+        /// The value found.
+        ratio: f64,
+    },
+    /// A hinge that is not on the chord.
+    #[error(
+        "hinge position {semichords} semichords aft of mid-chord: expected -1 (leading edge) to 1 \
+         (trailing edge)"
+    )]
+    HingeOutOfRange {
+        /// The value found.
+        semichords: f64,
+    },
+    /// A compressible flow was asked of the incompressible model.
+    #[error(
+        "the incompressible model holds at Mach 0 only, got Mach {mach}; set the Mach number to 0 \
+         or choose the Hariharan-Leishman model"
+    )]
+    CompressibleFlow {
+        /// The Mach number asked for.
+        mach: f64,
+    },
+    /// A state was used with coefficients of another structure.
+    #[error(
+        "the section state has {state} lag states, the coefficients have {coefficients} lag \
+         channels; start the state from the coefficients it is used with"
+    )]
+    StateMismatch {
+        /// Lag states of the state.
+        state: usize,
+        /// Lag channels of the coefficients.
+        coefficients: usize,
+    },
+    /// An input of a time step is not a number, or the step goes backward.
+    #[error("{quantity} is {value}: expected {expected}; find where the section's motion lost it")]
+    BadInput {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it should have been.
+        expected: &'static str,
+    },
+}

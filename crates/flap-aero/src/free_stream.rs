@@ -1,0 +1,113 @@
+//! Loads of a section whose free stream varies in time: velocities in, loads per length out.
+
+use crate::{AeroError, SectionCoefficients};
+
+/// The stream a section sees, in any consistent units (rotor units: length `R`, time `1/Omega`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeStream {
+    /// Air density.
+    pub density: f64,
+    /// Semichord `b = c/2`, positive.
+    pub semichord: f64,
+    /// Chordwise velocity `U` from leading to trailing edge; negative in reverse flow.
+    pub speed: f64,
+}
+
+impl FreeStream {
+    /// Semichords travelled per unit of time, `|U| / b`.
+    pub fn semichord_rate(&self) -> f64 {
+        self.speed.abs() / self.semichord
+    }
+}
+
+/// Aerodynamic loads of a section per length of span, in the units of the [`FreeStream`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SectionLoads {
+    /// Lift, up +.
+    pub lift: f64,
+    /// Moment about the quarter chord, nose-up +.
+    pub moment: f64,
+    /// Hinge moment, positive in the sense of the flap angle.
+    pub hinge: f64,
+}
+
+/// Loads per length of a section in a stream that may vary.
+///
+/// ```text
+/// w = U m = [U alpha, theta_dot c, U delta, delta_dot c]        velocities, x the lags of w
+/// L = (1/2) rho c   [ |U| (direct w + sum output x) + b rate dw/dt ]_Cn
+/// M = (1/2) rho c^2 [ |U| (direct w + sum output x) + b rate dw/dt ]_Cm,     H with Ch
+/// ```
+/// | argument | symbol | unit |
+/// |---|---|---|
+/// | `section` | coefficients at the local Mach number | - |
+/// | `stream` | `rho`, `b = c/2`, `U` | consistent |
+/// | `velocities` | `w`, order of [`Mode`](crate::Mode) | velocity |
+/// | `velocity_rates` | `dw/dt` | velocity / time |
+/// | `lags` | `x`, velocities, order of the section's lags; see [`lag_rates`] | velocity |
+///
+/// For a constant `U` these are the coefficients times `rho U^2 c / 2` and `rho U^2 c^2 / 2`.
+///
+/// Assumes, for a varying `U`: the shape of the downwash is what the aerofoil sees now, so velocity
+/// inputs, not angles, are what is lagged and differentiated (`d(U delta)/dt` holds `U_dot delta`);
+/// the wake is convected at the local `|U|`, its own unevenness is left out. In reverse flow
+/// the section is taken as it is with the flow from ahead: lift follows the normal velocity, an
+/// angle's share `U delta` turns sign, and the aerodynamic centre stays at the quarter chord of the
+/// geometric nose. Not modelled: the blunt-edge flow of real reverse flow.
+///
+/// # Errors
+/// [`AeroError::StateMismatch`] unless there is one entry in `lags` per lag of the section.
+pub fn section_loads(
+    section: &SectionCoefficients,
+    stream: &FreeStream,
+    velocities: &[f64; 4],
+    velocity_rates: &[f64; 4],
+    lags: &[f64],
+) -> Result<SectionLoads, AeroError> {
+    section.check_lags(lags.len())?;
+    let dot = |row: &[f64; 4], v: &[f64; 4]| -> f64 { row.iter().zip(v).map(|(a, b)| a * b).sum() };
+    let speed = stream.speed.abs();
+    let mut circulating = section.direct.each_ref().map(|row| dot(row, velocities));
+    for (lag, x) in section.lags.iter().zip(lags) {
+        for (sum, weight) in circulating.iter_mut().zip(lag.output) {
+            *sum += weight * x;
+        }
+    }
+    let [lift, moment, hinge] = std::array::from_fn(|o| {
+        speed * circulating[o] + stream.semichord * dot(&section.rate[o], velocity_rates)
+    });
+    let chord = 2.0 * stream.semichord;
+    let force = 0.5 * stream.density * chord;
+    Ok(SectionLoads {
+        lift: force * lift,
+        moment: force * chord * moment,
+        hinge: force * chord * hinge,
+    })
+}
+
+/// Rates of the lags of velocity inputs, written to `rates`.
+///
+/// ```text
+/// dx/dt = (|U| / b) pole (input . w - x)
+/// ```
+/// `lags` and `rates` have one entry per lag of the section, in its order. At `U = 0` the lags
+/// stand still.
+///
+/// # Errors
+/// [`AeroError::StateMismatch`] if `lags` or `rates` has another length; nothing is written then.
+pub fn lag_rates(
+    section: &SectionCoefficients,
+    stream: &FreeStream,
+    velocities: &[f64; 4],
+    lags: &[f64],
+    rates: &mut [f64],
+) -> Result<(), AeroError> {
+    section.check_lags(lags.len())?;
+    section.check_lags(rates.len())?;
+    let pace = stream.semichord_rate();
+    for ((lag, x), rate) in section.lags.iter().zip(lags).zip(rates) {
+        let drive: f64 = lag.input.iter().zip(velocities).map(|(a, w)| a * w).sum();
+        *rate = pace * lag.pole * (drive - x);
+    }
+    Ok(())
+}

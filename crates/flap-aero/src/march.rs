@@ -1,0 +1,314 @@
+//! Time marching of a section: recurrence exact for inputs that change linearly over a step.
+
+use crate::decay::{Decay, LANES, Lanes, decay};
+use crate::{AeroError, SectionCoefficients};
+
+/// Inputs of a section at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SectionInputs {
+    /// `m = [alpha, q, delta, q_delta]`, in the order of [`Mode`](crate::Mode).
+    pub modes: [f64; 4],
+    /// `dm/dS`, per semichord travelled. Used by models with apparent mass only.
+    pub rates: [f64; 4],
+}
+
+/// Four lags side by side; a block that is not full ends with lags of no weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Block {
+    pole: Lanes,
+    /// `[input][lag]`
+    input: [Lanes; 4],
+    /// `[output][lag]`
+    output: [Lanes; 3],
+}
+
+/// Section coefficients laid out for marching.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarchingSection {
+    direct: [[f64; 4]; 3],
+    rate: [[f64; 4]; 3],
+    blocks: Vec<Block>,
+    lags: usize,
+}
+
+impl MarchingSection {
+    /// Lays out the coefficients of a section.
+    pub fn new(section: &SectionCoefficients) -> Self {
+        let blocks = section
+            .lags
+            .chunks(LANES)
+            .map(|lags| {
+                let mut block = Block {
+                    pole: [1.0; LANES],
+                    input: [[0.0; LANES]; 4],
+                    output: [[0.0; LANES]; 3],
+                };
+                for (lane, lag) in lags.iter().enumerate() {
+                    block.pole[lane] = lag.pole;
+                    for (row, weight) in block.input.iter_mut().zip(lag.input) {
+                        row[lane] = weight;
+                    }
+                    for (row, weight) in block.output.iter_mut().zip(lag.output) {
+                        row[lane] = weight;
+                    }
+                }
+                block
+            })
+            .collect();
+        Self {
+            direct: section.direct,
+            rate: section.rate,
+            blocks,
+            lags: section.lags.len(),
+        }
+    }
+
+    /// The loads without the lags' share.
+    #[inline]
+    fn loads_at_once(&self, inputs: &SectionInputs) -> [f64; 3] {
+        let dot = |row: &[f64; 4], m: &[f64; 4]| {
+            row[0] * m[0] + row[1] * m[1] + row[2] * m[2] + row[3] * m[3]
+        };
+        std::array::from_fn(|o| {
+            dot(&self.direct[o], &inputs.modes) + dot(&self.rate[o], &inputs.rates)
+        })
+    }
+}
+
+impl Block {
+    /// What each lag follows.
+    #[inline]
+    fn drive(&self, modes: &[f64; 4]) -> Lanes {
+        std::array::from_fn(|lane| {
+            self.input[0][lane] * modes[0]
+                + self.input[1][lane] * modes[1]
+                + self.input[2][lane] * modes[2]
+                + self.input[3][lane] * modes[3]
+        })
+    }
+
+    #[inline]
+    fn decay(&self, semichords: f64) -> Decay {
+        decay(&self.pole.map(|pole| pole * semichords))
+    }
+}
+
+/// Decay factors of a step, for steps that are taken many times over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepFactors {
+    blocks: Vec<Decay>,
+    lags: usize,
+}
+
+impl StepFactors {
+    /// Factors of a step of `semichords` with these coefficients.
+    ///
+    /// # Errors
+    /// [`AeroError::BadInput`] if the step is negative or not finite.
+    pub fn new(section: &MarchingSection, semichords: f64) -> Result<Self, AeroError> {
+        check_step(semichords)?;
+        let blocks = section
+            .blocks
+            .iter()
+            .map(|block| block.decay(semichords))
+            .collect();
+        Ok(Self {
+            blocks,
+            lags: section.lags,
+        })
+    }
+}
+
+/// Lag states of a section on its way through time.
+///
+/// ```text
+/// x1 = u1 - (u1 - u0) g + (x0 - u0) e^(-z),     z = pole dS,   g = (1 - e^(-z)) / z,   u = input . m
+/// ```
+/// The solution of `dx/dS = pole (u - x)` for a `u` that runs straight from `u0` to `u1`: exact on a
+/// ramp, second order otherwise, and stable for any step however stiff the lag.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectionState {
+    states: Vec<Lanes>,
+    drives: Vec<Lanes>,
+    lags: usize,
+}
+
+impl SectionState {
+    /// A section at rest, all inputs zero since ever.
+    pub fn at_rest(section: &MarchingSection) -> Self {
+        Self::settled(section, &[0.0; 4])
+    }
+
+    /// A section whose inputs have been held for ever.
+    pub fn settled(section: &MarchingSection, modes: &[f64; 4]) -> Self {
+        let drives: Vec<Lanes> = section
+            .blocks
+            .iter()
+            .map(|block| block.drive(modes))
+            .collect();
+        Self {
+            states: drives.clone(),
+            drives,
+            lags: section.lags,
+        }
+    }
+
+    /// The lag states, in the order of [`SectionCoefficients::lags`].
+    pub fn states(&self) -> &[f64] {
+        &self.states.as_flattened()[..self.lags]
+    }
+
+    /// Jumps to other inputs in no time: the lag states stay, the next ramp starts from here.
+    ///
+    /// # Errors
+    /// [`AeroError::StateMismatch`] if the state belongs to coefficients of another structure.
+    pub fn jump(&mut self, section: &MarchingSection, modes: &[f64; 4]) -> Result<(), AeroError> {
+        self.check(section)?;
+        for (drive, block) in self.drives.iter_mut().zip(&section.blocks) {
+            *drive = block.drive(modes);
+        }
+        Ok(())
+    }
+
+    /// Advances by `semichords`, over which the inputs run straight to `inputs`, and returns
+    /// `[Cn, Cm, Ch]` at the end.
+    ///
+    /// The section may change from step to step with the Mach number (same model and flap).
+    ///
+    /// # Errors
+    /// [`AeroError::StateMismatch`] if the state belongs to coefficients of another structure;
+    /// [`AeroError::BadInput`] if the step is negative, or a number is not finite; the state is
+    /// then unchanged.
+    #[inline]
+    pub fn step(
+        &mut self,
+        section: &MarchingSection,
+        inputs: &SectionInputs,
+        semichords: f64,
+    ) -> Result<[f64; 3], AeroError> {
+        self.check(section)?;
+        check_step(semichords)?;
+        check_inputs(inputs)?;
+        let decays = section.blocks.iter().map(|block| block.decay(semichords));
+        Ok(self.advance(section, inputs, decays))
+    }
+
+    /// [`step`](Self::step) with factors computed beforehand, for steps of constant length.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    #[inline]
+    pub fn step_with(
+        &mut self,
+        section: &MarchingSection,
+        inputs: &SectionInputs,
+        factors: &StepFactors,
+    ) -> Result<[f64; 3], AeroError> {
+        self.check(section)?;
+        check_lags(factors.lags, section.lags)?;
+        check_inputs(inputs)?;
+        Ok(self.advance(section, inputs, factors.blocks.iter().copied()))
+    }
+
+    /// `[Cn, Cm, Ch]` of these inputs with the lag states as they are.
+    ///
+    /// # Errors
+    /// [`AeroError::StateMismatch`] if the state belongs to coefficients of another structure.
+    pub fn loads(
+        &self,
+        section: &MarchingSection,
+        inputs: &SectionInputs,
+    ) -> Result<[f64; 3], AeroError> {
+        self.check(section)?;
+        let mut sums = [[0.0; LANES]; 3];
+        for (block, state) in section.blocks.iter().zip(&self.states) {
+            add(&mut sums, block, state);
+        }
+        Ok(total(section.loads_at_once(inputs), &sums))
+    }
+
+    #[inline]
+    fn advance(
+        &mut self,
+        section: &MarchingSection,
+        inputs: &SectionInputs,
+        decays: impl Iterator<Item = Decay>,
+    ) -> [f64; 3] {
+        let mut sums = [[0.0; LANES]; 3];
+        for (((block, Decay { gone, mean }), state), drive) in section
+            .blocks
+            .iter()
+            .zip(decays)
+            .zip(&mut self.states)
+            .zip(&mut self.drives)
+        {
+            let target = block.drive(&inputs.modes);
+            for lane in 0..LANES {
+                let behind = state[lane] - drive[lane];
+                state[lane] = target[lane] - (target[lane] - drive[lane]) * mean[lane]
+                    + (behind - behind * gone[lane]);
+            }
+            *drive = target;
+            add(&mut sums, block, state);
+        }
+        total(section.loads_at_once(inputs), &sums)
+    }
+
+    fn check(&self, section: &MarchingSection) -> Result<(), AeroError> {
+        check_lags(self.lags, section.lags)
+    }
+}
+
+/// Adds a block's share of the loads, lag by lag.
+#[inline]
+fn add(sums: &mut [Lanes; 3], block: &Block, state: &Lanes) {
+    for (sum, weights) in sums.iter_mut().zip(&block.output) {
+        for lane in 0..LANES {
+            sum[lane] += weights[lane] * state[lane];
+        }
+    }
+}
+
+/// The loads at once and those of the lags.
+#[inline]
+fn total(at_once: [f64; 3], sums: &[Lanes; 3]) -> [f64; 3] {
+    std::array::from_fn(|o| at_once[o] + sums[o].iter().sum::<f64>())
+}
+
+fn check_lags(state: usize, coefficients: usize) -> Result<(), AeroError> {
+    if state == coefficients {
+        return Ok(());
+    }
+    Err(AeroError::StateMismatch {
+        state,
+        coefficients,
+    })
+}
+
+fn check_step(semichords: f64) -> Result<(), AeroError> {
+    if semichords.is_finite() && semichords >= 0.0 {
+        return Ok(());
+    }
+    Err(AeroError::BadInput {
+        quantity: "step, semichords",
+        value: semichords,
+        expected: "a finite number, 0 or more",
+    })
+}
+
+#[inline]
+fn check_inputs(inputs: &SectionInputs) -> Result<(), AeroError> {
+    let all = inputs.modes.iter().chain(&inputs.rates);
+    // a sum of finite numbers times zero is zero; anything else is not
+    if all.clone().map(|value| value * 0.0).sum::<f64>() == 0.0 {
+        return Ok(());
+    }
+    Err(AeroError::BadInput {
+        quantity: "input of the section (alpha, q, delta, q_delta or a rate of them)",
+        value: all
+            .copied()
+            .find(|value| !value.is_finite())
+            .unwrap_or(f64::NAN),
+        expected: "a finite number",
+    })
+}

@@ -1,0 +1,156 @@
+//! The control law, eq. (10).
+
+use crate::{ControlError, LoadWeights, TMatrix, error};
+use nalgebra::{DMatrix, DVector, SVD};
+
+/// The control that minimises the cost predicted by eq. (8) from one measurement.
+///
+/// ```text
+/// u* = (T' W_Z T + rho I)^-1 T' W_Z (T u - Z)
+///    = V diag(s_k / (s_k^2 + rho)) U' W_Z^(1/2) (T u - Z),      W_Z^(1/2) T = U diag(s_k) V'
+/// ```
+/// The second line is what is computed: one singular value decomposition serves every `rho`, and
+/// the normal matrix, whose condition number is squared, is never formed. For `rho = 0` singular
+/// values at rounding level are left out, which gives the optimum of least voltage.
+///
+/// Source: eq. (10), from eq. (7)-(9).
+/// Differs from source: the printed sign and grouping are garbled; this is what (7)-(9) give.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeedbackLaw {
+    t: DMatrix<f64>,
+    load_weights: Vec<f64>,
+    left: DMatrix<f64>,
+    singular_values: Vec<f64>,
+    right_transposed: DMatrix<f64>,
+}
+
+const SVD_ITERATIONS: usize = 10_000;
+
+impl FeedbackLaw {
+    /// The law of one T matrix (1/V) and load weights.
+    ///
+    /// # Errors
+    /// [`ControlError::NoAuthority`] for a zero weighted T, [`ControlError::SingularValues`] if its
+    /// decomposition fails, and what [`LoadWeights::diagonal`] refuses.
+    pub fn new(t: &TMatrix, load_weights: &LoadWeights) -> Result<Self, ControlError> {
+        let load_weights = load_weights.diagonal(t.loads())?;
+        let t = t.as_matrix().clone();
+        let mut weighted = t.clone();
+        for (mut row, weight) in weighted.row_iter_mut().zip(&load_weights) {
+            row *= weight.sqrt();
+        }
+        // Loads in rotor units per volt are of order 1e-6: the decomposition is made at order 1.
+        let size = weighted.amax();
+        if size == 0.0 {
+            return Err(ControlError::NoAuthority);
+        }
+        weighted /= size;
+        let (rows, columns) = weighted.shape();
+        let failed = ControlError::SingularValues { rows, columns, iterations: SVD_ITERATIONS };
+        let svd = SVD::try_new(weighted, true, true, f64::EPSILON, SVD_ITERATIONS)
+            .ok_or_else(|| failed.clone())?;
+        let (Some(left), Some(right_transposed)) = (svd.u, svd.v_t) else { return Err(failed) };
+        let singular_values = svd.singular_values.iter().map(|s| s * size).collect();
+        Ok(Self { t, load_weights, left, singular_values, right_transposed })
+    }
+
+    /// The optimal control `u*` (volt) as seen from one measurement.
+    ///
+    /// | argument | symbol | unit | range |
+    /// |---|---|---|---|
+    /// | `rho` | `rho` | 1/V^2 | >= 0 |
+    /// | `control_volt` | `u` | volt | as measured |
+    /// | `hub_loads` | `Z` | nondimensional | measured at `u` |
+    ///
+    /// # Errors
+    /// Vectors of the wrong length or not finite, a negative `rho`.
+    pub fn optimum_volt(
+        &self,
+        rho: f64,
+        control_volt: &[f64],
+        hub_loads: &[f64],
+    ) -> Result<Vec<f64>, ControlError> {
+        error::check_not_negative("control weight rho (1/V^2)", rho)?;
+        let target = self.modal_target(control_volt, hub_loads)?;
+        Ok(self.optimum_of(rho, &target))
+    }
+
+    /// Singular values of `W_Z^(1/2) T`, largest first, 1/V: the authority of each independent
+    /// combination of controls. Their squares are the scale of `rho`.
+    pub fn singular_values(&self) -> &[f64] {
+        &self.singular_values
+    }
+
+    /// Largest over smallest singular value; infinite if some combination of controls has no effect.
+    pub fn condition_number(&self) -> f64 {
+        match (self.singular_values.first(), self.singular_values.last()) {
+            (Some(largest), Some(smallest)) => largest / smallest,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Diagonal of `W_Z`.
+    pub fn load_weights(&self) -> &[f64] {
+        &self.load_weights
+    }
+
+    /// Number of loads and of controls.
+    pub(crate) fn shape(&self) -> (usize, usize) {
+        self.t.shape()
+    }
+
+    /// `U' W_Z^(1/2) (T u - Z)`.
+    pub(crate) fn modal_target(
+        &self,
+        control_volt: &[f64],
+        hub_loads: &[f64],
+    ) -> Result<DVector<f64>, ControlError> {
+        let (loads, controls) = self.shape();
+        error::check_vector("control vector (volt)", control_volt, controls)?;
+        error::check_vector("measured hub loads", hub_loads, loads)?;
+        let mut target = &self.t * DVector::from_column_slice(control_volt);
+        for ((value, load), weight) in target.iter_mut().zip(hub_loads).zip(&self.load_weights) {
+            *value = (*value - load) * weight.sqrt();
+        }
+        Ok(self.left.tr_mul(&target))
+    }
+
+    /// The optimum for a modal target, volt.
+    pub(crate) fn optimum_of(&self, rho: f64, target: &DVector<f64>) -> Vec<f64> {
+        let scaled = DVector::from_iterator(
+            target.len(),
+            target.iter().zip(self.gains(rho)).map(|(value, gain)| value * gain),
+        );
+        self.right_transposed.tr_mul(&scaled).iter().copied().collect()
+    }
+
+    /// Euclidean norm of the optimum, volt; never grows with `rho`.
+    pub(crate) fn optimum_norm(&self, rho: f64, target: &DVector<f64>) -> f64 {
+        target.iter().zip(self.gains(rho)).map(|(v, g)| (v * g).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Square of the largest singular value, 1/V^2: the scale of `rho`.
+    pub(crate) fn largest_authority(&self) -> f64 {
+        self.singular_values.first().map_or(0.0, |s| s * s)
+    }
+
+    /// The `rho` for which the optimum has a given norm (volt), to about 1 part in 1000; the nearest
+    /// end of 32 decades about [`Self::largest_authority`] if none has.
+    pub(crate) fn effort_for_norm(&self, norm_volt: f64, target: &DVector<f64>) -> f64 {
+        let middle = self.largest_authority().ln();
+        let (mut low, mut high) = (middle - 37.0, middle + 37.0);
+        while high - low > 1e-3 {
+            let x = f64::midpoint(low, high);
+            if self.optimum_norm(x.exp(), target) > norm_volt { low = x } else { high = x }
+        }
+        f64::midpoint(low, high).exp()
+    }
+
+    /// `s_k / (s_k^2 + rho)`, volt per unit of load.
+    fn gains(&self, rho: f64) -> impl Iterator<Item = f64> {
+        let largest = self.singular_values.first().copied().unwrap_or_default();
+        let size = self.t.nrows().max(self.t.ncols()) as f64;
+        let floor = largest * f64::EPSILON * size;
+        self.singular_values.iter().map(move |&s| if s > floor { s / (s * s + rho) } else { 0.0 })
+    }
+}

@@ -1,0 +1,235 @@
+//! The errors of this crate.
+
+use crate::identify::QpStatus;
+
+/// What can go wrong with an actuator model, its simulation or its identification.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PreisachError {
+    // ---- rejected input ----
+    /// A quantity that must be positive and finite is not.
+    #[error("{quantity} is {value}, expected a positive finite number")]
+    NotPositive {
+        /// Name of the quantity, with its unit.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// A number is NaN or infinite.
+    #[error("{quantity} at index {index} is {value}, expected a finite number")]
+    NotFinite {
+        /// Name of the quantity, with its unit.
+        quantity: &'static str,
+        /// Place in the array handed over (0 for a single number).
+        index: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// A voltage range is empty or not finite.
+    #[error(
+        "voltage range {lowest_volt} V to {highest_volt} V is empty or not finite; give the lower limit first"
+    )]
+    EmptyVoltageRange {
+        /// Lower limit, V.
+        lowest_volt: f64,
+        /// Upper limit, V.
+        highest_volt: f64,
+    },
+    /// A count is too small to mean anything.
+    #[error("{quantity} is {value}, expected at least {least}")]
+    TooFew {
+        /// What was counted.
+        quantity: &'static str,
+        /// The number found.
+        value: usize,
+        /// The smallest number that works.
+        least: usize,
+    },
+    /// The number of levels of the rate maps does not divide the number of levels of the memory.
+    #[error("rate_levels {rate_levels} does not divide levels {levels}; choose a divisor")]
+    LevelsDoNotDivide {
+        /// Levels of the rate maps.
+        rate_levels: usize,
+        /// Levels of the memory.
+        levels: usize,
+    },
+    /// A table of node values does not have the triangular shape its grid asks for.
+    #[error("{map}: play {play} has {found} nodes, a grid of {levels} levels needs {expected}")]
+    NodeCount {
+        /// Which of the three maps.
+        map: &'static str,
+        /// Index of the play, 0 being the reversible part.
+        play: usize,
+        /// Nodes found.
+        found: usize,
+        /// Nodes needed.
+        expected: usize,
+        /// Levels of the grid.
+        levels: usize,
+    },
+    /// The static map falls somewhere, that is, the density mu0 is negative there.
+    #[error(
+        "static map of play {play} falls by {fall_deg} deg at node {node}: the density mu0 must not be negative"
+    )]
+    NegativeDensity {
+        /// Index of the play.
+        play: usize,
+        /// Index of the node after which the map falls.
+        node: usize,
+        /// How much it falls, deg.
+        fall_deg: f64,
+    },
+    /// A well-posed model is asked for, but G1 is not negative in some reachable state.
+    #[error(
+        "G1 reaches {largest_g1_s} s in a reachable state; a well-posed model needs G1 < 0 everywhere, so raise tau0 or use the Literal form"
+    )]
+    NotWellPosed {
+        /// Largest G1 over all reachable states, s.
+        largest_g1_s: f64,
+    },
+    /// A well-posed model folds below the output rate it claims to cover.
+    #[error(
+        "2 |G2| d exceeds |G1| by {excess_s} s in a reachable state at the output rate d = {rate_deg_s} deg/s; scale G2 down or lower unfolded_rate_deg_s"
+    )]
+    FoldsTooEarly {
+        /// By how much, s.
+        excess_s: f64,
+        /// The output rate claimed to be covered, deg/s.
+        rate_deg_s: f64,
+    },
+    /// A memory was made for another grid.
+    #[error("the memory has {found} plays, the model {expected}; start a memory from this model")]
+    MemoryMismatch {
+        /// Plays in the memory.
+        found: usize,
+        /// Plays in the model.
+        expected: usize,
+    },
+    /// A sampled voltage leaves the actuator's range.
+    #[error(
+        "sample {index}: {voltage_volt} V is outside the actuator's range of {lowest_volt} V to {highest_volt} V"
+    )]
+    VoltageOutOfRange {
+        /// Index of the sample.
+        index: usize,
+        /// The voltage, V.
+        voltage_volt: f64,
+        /// Lower limit, V.
+        lowest_volt: f64,
+        /// Upper limit, V.
+        highest_volt: f64,
+    },
+    /// A periodic command leaves the actuator's range.
+    #[error(
+        "the command reaches {voltage_volt} V at azimuth {azimuth_deg} deg, outside the actuator's range of {lowest_volt} V to {highest_volt} V; lower the harmonics or move the bias"
+    )]
+    CommandOutOfRange {
+        /// Azimuth of the largest excess, deg.
+        azimuth_deg: f64,
+        /// The voltage there, V.
+        voltage_volt: f64,
+        /// Lower limit, V.
+        lowest_volt: f64,
+        /// Upper limit, V.
+        highest_volt: f64,
+    },
+    /// Values from the base crate were refused.
+    #[error(transparent)]
+    Base(#[from] rotor_base::BaseError),
+
+    // ---- records that cannot be used ----
+    /// Two columns of a record differ in length.
+    #[error("record {id}: {voltages} voltages but {outputs} outputs")]
+    UnequalColumns {
+        /// The record.
+        id: String,
+        /// Number of voltages.
+        voltages: usize,
+        /// Number of outputs.
+        outputs: usize,
+    },
+    /// A value in a record cannot be used.
+    #[error("record {id}, sample {index}: {problem} ({value})")]
+    BadRecord {
+        /// The record.
+        id: String,
+        /// Index of the sample.
+        index: usize,
+        /// What is wrong with it.
+        problem: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// No record can train a part of the model.
+    #[error("no training record for {part}; {remedy}")]
+    NoTrainingRecord {
+        /// The part of the model.
+        part: &'static str,
+        /// What to record or mark for training.
+        remedy: &'static str,
+    },
+
+    // ---- numerical failure ----
+    /// The output became infinite or NaN: the model has left its domain.
+    #[error(
+        "the output diverged at sample {index} (last finite output {last_output_deg} deg, {bad_steps} steps with G1 >= 0 or a fold before); the Literal form is not well posed there, use WellPosed"
+    )]
+    Diverged {
+        /// Index of the first sample that is not finite.
+        index: usize,
+        /// Last finite output, deg.
+        last_output_deg: f64,
+        /// Steps before it with G1 >= 0 or a negative discriminant.
+        bad_steps: usize,
+    },
+    /// The orbit did not close.
+    #[error(
+        "the orbit has not closed after {revolutions} revolutions: it still moves by {closure_deg:e} deg per revolution, allowed {allowed_deg:e} deg; allow more revolutions"
+    )]
+    OrbitNotClosed {
+        /// Revolutions marched.
+        revolutions: usize,
+        /// Largest change over the last revolution, deg.
+        closure_deg: f64,
+        /// Allowed change, deg.
+        allowed_deg: f64,
+    },
+    /// No bias inside the voltage range makes the mean flap angle zero.
+    #[error(
+        "no bias gives a zero mean flap angle: it is still {mean_at_limit_deg} deg at {limit_volt} V, the last mean this command fits the range with; lower the harmonics"
+    )]
+    BiasOutsideRange {
+        /// Last mean voltage the command allows, V.
+        limit_volt: f64,
+        /// Mean flap angle there, deg.
+        mean_at_limit_deg: f64,
+    },
+    /// The bias search ran out of iterations.
+    #[error(
+        "bias search stopped after {iterations} iterations at {bias_volt} V with a mean flap angle of {mean_deg} deg, allowed {allowed_deg} deg"
+    )]
+    BiasNotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Last bias, V.
+        bias_volt: f64,
+        /// Mean flap angle at it, deg.
+        mean_deg: f64,
+        /// Allowed mean, deg.
+        allowed_deg: f64,
+    },
+    /// The quadratic program of an identification stage was not solved.
+    #[error(
+        "{stage}: the quadratic program ended as {status:?} after {iterations} iterations with primal residual {primal_residual:e}; check the scaling of the records"
+    )]
+    QuadraticProgram {
+        /// The stage.
+        stage: &'static str,
+        /// How the solver ended.
+        status: QpStatus,
+        /// Iterations done.
+        iterations: u32,
+        /// Primal residual, relative.
+        primal_residual: f64,
+    },
+}

@@ -1,0 +1,82 @@
+//! Fourier series of steady cycles: averages the cycles, and is the only thing differentiated.
+
+use crate::PreisachError;
+use nalgebra::{DMatrix, DVector};
+use rotor_base::{Harmonic, HarmonicSeries};
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// A Fourier series fitted to samples over whole periods.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FourierFit {
+    /// The series about `phase(i)`.
+    pub(super) series: HarmonicSeries,
+    /// Cycles per sample.
+    cycles_per_sample: f64,
+    /// Standard deviation of what the series leaves: noise, and whatever does not repeat.
+    pub(super) noise: f64,
+}
+
+impl FourierFit {
+    /// Phase of a sample, rad.
+    fn phase_rad(&self, index: usize) -> f64 {
+        TAU * (self.cycles_per_sample * index as f64).fract()
+    }
+
+    /// Value at a sample, and its time derivative per sample.
+    pub(super) fn value_and_rate(&self, index: usize) -> (f64, f64) {
+        let [value, rate, _] = self.series.value_and_rates(self.phase_rad(index));
+        (value, rate * TAU * self.cycles_per_sample)
+    }
+}
+
+/// Least squares fit of mean and `count` harmonics to the samples of a range.
+///
+/// # Errors
+/// [`PreisachError::TooFew`] if the samples cannot carry the harmonics.
+pub(super) fn fit(
+    values: &[f64],
+    range: Range<usize>,
+    cycles_per_sample: f64,
+    count: usize,
+) -> Result<FourierFit, PreisachError> {
+    let unknowns = 2 * count + 1;
+    let too_few = PreisachError::TooFew {
+        quantity: "samples of steady cycles",
+        value: range.len(),
+        least: unknowns,
+    };
+    let mut normal = DMatrix::zeros(unknowns, unknowns);
+    let mut right = DVector::zeros(unknowns);
+    let mut result = FourierFit {
+        series: HarmonicSeries::zero(count),
+        cycles_per_sample,
+        noise: 0.0,
+    };
+    let mut row = DVector::zeros(unknowns);
+    for index in range.clone() {
+        let (sin1, cos1) = result.phase_rad(index).sin_cos();
+        let (mut s, mut c) = (sin1, cos1);
+        row[0] = 1.0;
+        for n in 0..count {
+            row[2 * n + 1] = c;
+            row[2 * n + 2] = s;
+            (c, s) = (c * cos1 - s * sin1, s * cos1 + c * sin1);
+        }
+        normal.ger(1.0, &row, &row, 1.0);
+        right.axpy(values[index], &row, 1.0);
+    }
+    let Some(factor) = (range.len() >= unknowns).then(|| normal.cholesky()).flatten() else {
+        return Err(too_few);
+    };
+    let solution = factor.solve(&right);
+    result.series.mean = solution[0];
+    for (n, h) in result.series.harmonics.iter_mut().enumerate() {
+        *h = Harmonic { cosine: solution[2 * n + 1], sine: solution[2 * n + 2] };
+    }
+    let left: f64 =
+        range.clone().map(|i| (values[i] - result.value_and_rate(i).0).powi(2)).sum();
+    let freedom = (range.len() - unknowns).max(1);
+    result.noise = (left / freedom as f64).sqrt();
+    Ok(result)
+}

@@ -1,0 +1,323 @@
+//! Bench records and what their command tells about them.
+
+use crate::{PreisachError, VoltageRange};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Whether a record trains the model or tests it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RecordUse {
+    /// The identification may look at it.
+    Train,
+    /// Kept aside; only the finished model is compared with it.
+    HeldOut,
+}
+
+/// One bench record: equally spaced samples of command and output.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BenchRecord {
+    /// Name, used in reports and messages.
+    pub id: String,
+    /// Time between samples, s.
+    pub time_step_s: f64,
+    /// Command, V.
+    pub voltage_volt: Vec<f64>,
+    /// Measured output as equivalent flap angle, deg: displacement times the bench gain.
+    pub output_deg: Vec<f64>,
+    /// Training or test; none leaves it to [`SplitRule`].
+    pub record_use: Option<RecordUse>,
+    /// Frequency of the command's period, Hz; none has it found from the command.
+    pub base_frequency_hz: Option<f64>,
+}
+
+/// The fewest samples a record may have.
+const FEWEST_SAMPLES: usize = 16;
+
+impl BenchRecord {
+    /// Checks lengths, numbers and range.
+    ///
+    /// # Errors
+    /// [`PreisachError::UnequalColumns`], [`PreisachError::TooFew`],
+    /// [`PreisachError::NotPositive`], [`PreisachError::BadRecord`].
+    pub fn check(&self, range: VoltageRange) -> Result<(), PreisachError> {
+        let (voltages, outputs) = (self.voltage_volt.len(), self.output_deg.len());
+        if voltages != outputs {
+            return Err(PreisachError::UnequalColumns { id: self.id.clone(), voltages, outputs });
+        }
+        if voltages < FEWEST_SAMPLES {
+            return Err(PreisachError::TooFew {
+                quantity: "samples of a record",
+                value: voltages,
+                least: FEWEST_SAMPLES,
+            });
+        }
+        crate::actuator::check_positive("time_step_s", self.time_step_s)?;
+        let bad = |index: usize, problem: &'static str, value: f64| {
+            Err(PreisachError::BadRecord { id: self.id.clone(), index, problem, value })
+        };
+        let tolerance = crate::actuator::SAMPLE_TOLERANCE * range.span_volt();
+        for (index, (&u, &y)) in self.voltage_volt.iter().zip(&self.output_deg).enumerate() {
+            if !u.is_finite() {
+                return bad(index, "the voltage is not a finite number", u);
+            }
+            if !y.is_finite() {
+                return bad(index, "the output is not a finite number", y);
+            }
+            if range.excess_volt(u) > tolerance {
+                return bad(index, "the voltage is outside the actuator's range", u);
+            }
+        }
+        if spread(&self.output_deg) == 0.0 {
+            return bad(0, "the output never changes", self.output_deg[0]);
+        }
+        Ok(())
+    }
+
+    /// What the command does.
+    pub fn drive(&self) -> Drive {
+        Drive::of(self)
+    }
+}
+
+/// Standard deviation.
+pub(super) fn spread(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+/// The shape of a command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Waveform {
+    /// The voltage never changes.
+    Constant,
+    /// Periodic, one harmonic carries nearly all of it (sine or triangle).
+    SingleHarmonic,
+    /// Periodic, several harmonics.
+    Mix,
+    /// Not periodic: reversal curves, steps, fewer than two periods.
+    Transient,
+}
+
+/// What a command does, found from its samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// Its shape.
+    pub waveform: Waveform,
+    /// Frequency of its period, Hz; for a transient the mean slope over four amplitudes, which is
+    /// the frequency of a triangle of the same speed; 0 for a constant.
+    pub base_hz: f64,
+    /// The strongest harmonic of the period; 1 for a transient.
+    pub strongest_harmonic: usize,
+    /// Half peak to peak, V.
+    pub amplitude_volt: f64,
+    /// Middle between the extremes, V.
+    pub middle_volt: f64,
+    /// Samples of whole steady periods, the start-up period left out; empty unless periodic.
+    pub steady: Range<usize>,
+}
+
+/// Share of the power one harmonic must carry to count as the only one.
+const SINGLE_SHARE: f64 = 0.95;
+/// Mismatch between periods that still counts as periodic, as a share of the amplitude.
+const PERIODIC_MISMATCH: f64 = 0.02;
+
+impl Drive {
+    fn of(record: &BenchRecord) -> Self {
+        let u = &record.voltage_volt;
+        let (low, high) =
+            u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        let mut drive = Self {
+            waveform: Waveform::Constant,
+            base_hz: 0.0,
+            strongest_harmonic: 1,
+            amplitude_volt: 0.5 * (high - low),
+            middle_volt: 0.5 * (high + low),
+            steady: 0..0,
+        };
+        if drive.amplitude_volt <= 0.0 {
+            return drive;
+        }
+        let period = match record.base_frequency_hz {
+            Some(hz) => Some(1.0 / (hz * record.time_step_s)),
+            None => find_period(u, &drive),
+        };
+        let steady = period.and_then(|p| steady_samples(u, p, drive.amplitude_volt).map(|s| (p, s)));
+        if let Some((samples, steady)) = steady {
+            drive.base_hz = 1.0 / (samples * record.time_step_s);
+            drive.steady = steady;
+            drive.find_harmonics(record);
+        } else {
+            let moving: f64 = u.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+            let moves = u.windows(2).filter(|pair| pair[1] != pair[0]).count().max(1);
+            let speed = moving / (moves as f64 * record.time_step_s);
+            drive.waveform = Waveform::Transient;
+            drive.base_hz = speed / (4.0 * drive.amplitude_volt);
+        }
+        drive
+    }
+
+    fn find_harmonics(&mut self, record: &BenchRecord) {
+        let count = 8.min(self.harmonics_within(record.time_step_s, 8));
+        let Ok(fit) = super::fourier::fit(
+            &record.voltage_volt,
+            self.steady.clone(),
+            self.base_hz * record.time_step_s,
+            count,
+        ) else {
+            self.waveform = Waveform::Mix;
+            return;
+        };
+        let powers: Vec<f64> =
+            fit.series.harmonics.iter().map(|h| h.amplitude().powi(2)).collect();
+        let total: f64 = powers.iter().sum();
+        let (index, power) = powers
+            .iter()
+            .copied()
+            .enumerate()
+            .fold((0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+        self.strongest_harmonic = index + 1;
+        self.waveform =
+            if power >= SINGLE_SHARE * total { Waveform::SingleHarmonic } else { Waveform::Mix };
+    }
+
+    /// Frequency of the strongest harmonic, Hz.
+    pub fn strongest_hz(&self) -> f64 {
+        self.base_hz * self.strongest_harmonic as f64
+    }
+
+    /// Whether it repeats.
+    pub fn is_periodic(&self) -> bool {
+        matches!(self.waveform, Waveform::SingleHarmonic | Waveform::Mix)
+    }
+
+    /// The number of harmonics of the period, at most `wanted`, that stay below 0.4 times the
+    /// sampling frequency.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positive and held below `wanted`"
+    )]
+    pub(super) fn harmonics_within(&self, time_step_s: f64, wanted: usize) -> usize {
+        let most = (0.4 / (self.base_hz * time_step_s)).floor().min(wanted as f64);
+        (most as usize).max(1)
+    }
+}
+
+/// Period in samples, from upward crossings of the middle level; none if nothing repeats.
+fn find_period(u: &[f64], drive: &Drive) -> Option<f64> {
+    // the later part of the record: rests and fade-ins come first
+    let first = u.len() * 2 / 5;
+    let band = 0.1 * drive.amplitude_volt;
+    let mut armed = false;
+    let mut crossings = Vec::new();
+    for i in first..u.len() - 1 {
+        let (a, b) = (u[i] - drive.middle_volt, u[i + 1] - drive.middle_volt);
+        armed |= a < -band;
+        if armed && a < 0.0 && b >= 0.0 {
+            crossings.push(i as f64 + a / (a - b));
+            armed = false;
+        }
+    }
+    // a period may hold several crossings
+    (1..=12.min(crossings.len().saturating_sub(1))).find_map(|per_period| {
+        let periods = (crossings.len() - 1) / per_period;
+        let last = crossings.len() - 1;
+        let period =
+            (crossings[last] - crossings[last - periods * per_period]) / periods as f64;
+        let repeats = mismatch(u, first, period)? <= PERIODIC_MISMATCH * drive.amplitude_volt;
+        repeats.then_some(period)
+    })
+}
+
+/// Root mean square of `u(i + period) - u(i)` from `first` on; none if less than half a period is
+/// left to compare.
+fn mismatch(u: &[f64], first: usize, period: f64) -> Option<f64> {
+    let pairs: Vec<f64> = (first..u.len()).map_while(|i| later(u, i, period)).collect();
+    if (pairs.len() as f64) < 0.5 * period {
+        return None;
+    }
+    let sum: f64 = pairs.iter().enumerate().map(|(k, v)| (v - u[first + k]).powi(2)).sum();
+    Some((sum / pairs.len() as f64).sqrt())
+}
+
+/// `u` a period after sample `index`, by linear interpolation.
+fn later(u: &[f64], index: usize, period: f64) -> Option<f64> {
+    let (whole, part) = crate::play_map::split(period);
+    let a = u.get(index + whole)?;
+    let b = if part > 0.0 { u.get(index + whole + 1)? } else { a };
+    Some(a + part * (b - a))
+}
+
+/// The last whole periods of a record over which the command repeats, the first one left out if
+/// there are at least two.
+fn steady_samples(u: &[f64], period: f64, amplitude: f64) -> Option<Range<usize>> {
+    let allowed = 3.0 * PERIODIC_MISMATCH * amplitude;
+    let last_pair = (0..u.len()).rev().find(|&i| later(u, i, period).is_some())?;
+    let repeats = |i: usize| later(u, i, period).is_some_and(|v| (v - u[i]).abs() <= allowed);
+    let begin = (0..=last_pair).rev().take_while(|&i| repeats(i)).last()?;
+    let (periods, _) = crate::play_map::split((u.len() - begin) as f64 / period + 1e-6);
+    let used = if periods >= 2 { periods - 1 } else { periods };
+    if used == 0 {
+        return None;
+    }
+    let (samples, _) = crate::play_map::split(used as f64 * period + 0.5);
+    Some(u.len() - samples..u.len())
+}
+
+/// Which records train and which test, where the data set does not say.
+///
+/// Trained: everything quasi-static, and single-harmonic records at `trained_hz` whose amplitude is
+/// the largest or the smallest of that frequency. Everything else is held out: by experiment, never
+/// by sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SplitRule {
+    /// Up to this frequency a record is quasi-static, Hz.
+    pub quasi_static_hz: f64,
+    /// Frequencies to train at, Hz.
+    pub trained_hz: Vec<f64>,
+}
+
+impl Default for SplitRule {
+    /// Quasi-static to 0.5 Hz; trained at 1 and 10 Hz, the paper's choice.
+    fn default() -> Self {
+        Self { quasi_static_hz: 0.5, trained_hz: vec![1.0, 10.0] }
+    }
+}
+
+impl SplitRule {
+    /// Whether a command is quasi-static.
+    pub fn is_quasi_static(&self, drive: &Drive) -> bool {
+        drive.strongest_hz() <= self.quasi_static_hz
+    }
+
+    /// The use of every record, in order; what a record says itself goes first.
+    pub fn uses(&self, records: &[BenchRecord], drives: &[Drive]) -> Vec<RecordUse> {
+        let near = |drive: &Drive, hz: f64| {
+            drive.waveform == Waveform::SingleHarmonic
+                && (drive.strongest_hz() / hz - 1.0).abs() <= 0.05
+        };
+        records
+            .iter()
+            .zip(drives)
+            .map(|(record, drive)| {
+                if let Some(given) = record.record_use {
+                    return given;
+                }
+                let extreme = self.trained_hz.iter().any(|&hz| {
+                    let amplitudes = drives.iter().filter(|d| near(d, hz)).map(|d| d.amplitude_volt);
+                    let (low, high) = amplitudes
+                        .fold((f64::INFINITY, 0.0_f64), |(l, h), a| (l.min(a), h.max(a)));
+                    let own = drive.amplitude_volt;
+                    near(drive, hz) && (own <= 1.02 * low || own >= 0.98 * high)
+                });
+                if extreme || (self.is_quasi_static(drive) && drive.waveform != Waveform::Constant) {
+                    RecordUse::Train
+                } else {
+                    RecordUse::HeldOut
+                }
+            })
+            .collect()
+    }
+}

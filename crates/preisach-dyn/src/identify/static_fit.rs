@@ -1,0 +1,137 @@
+//! The static map `G0` from quasi-static records, by constrained least squares.
+
+use super::program::{LeastSquaresProgram, Row};
+use super::{Prepared, Settings};
+use crate::play_map::split;
+use crate::{PlayMap, PreisachError, PreisachGrid};
+
+/// Samples used of one record at most; denser records are thinned.
+const MOST_SAMPLES: usize = 4000;
+
+/// `G0` of the density `mu0 >= 0` that fits targets in the least squares sense.
+///
+/// ```text
+/// min  sum_records mean_i (offset + sum_jk v_jk N_jk(x_i) - target_i)^2 / spread^2 / records
+///      + smoothness * cells * sum_neighbours (m_a - m_b)^2 / spread^2
+/// m_jk = v_j,k+1 - v_jk >= 0,   v_j0 = 0
+/// ```
+/// `N_jk` are the hat functions of the knots. Neighbouring cells share a side in the
+/// (alpha, beta) plane; the reversible part, which sits on the diagonal, is smoothed along it.
+/// A cell no record crosses takes what its neighbours have.
+///
+/// `targets_deg` has one row per record, one value per sample.
+pub(super) fn fit(
+    grid: &PreisachGrid,
+    records: &[&Prepared],
+    targets_deg: &[Vec<f64>],
+    settings: &Settings,
+) -> Result<PlayMap, PreisachError> {
+    let unknowns = Unknowns::new(grid);
+    let mut program = LeastSquaresProgram::new(unknowns.count);
+    let spread = targets_deg.iter().map(|t| super::record::spread(t)).fold(0.0, f64::max);
+    let share = 1.0 / (records.len() as f64 * spread * spread);
+    let mut row = Row::new();
+    for (record, targets) in records.iter().zip(targets_deg) {
+        let stride = targets.len().div_ceil(MOST_SAMPLES).max(1);
+        let weight = share / targets.len().div_ceil(stride) as f64;
+        for (index, &target) in targets.iter().enumerate().step_by(stride) {
+            unknowns.hats(record.cells(index), &mut row);
+            program.add(&row, target, weight);
+        }
+    }
+    let cells = unknowns.count - 1;
+    let penalty = settings.static_smoothness * cells as f64 / (spread * spread);
+    for j in 0..grid.levels() {
+        for k in 0..grid.levels() - j {
+            program.at_least(unknowns.rise(j, k, 1.0), 0.0);
+            let neighbours = match j {
+                0 => [Some((0, k + 1)), None],
+                _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
+            };
+            for (j2, k2) in neighbours.into_iter().flatten() {
+                if j2 < grid.levels() && k2 < grid.levels() - j2 {
+                    let mut difference = unknowns.rise(j, k, 1.0);
+                    difference.extend(unknowns.rise(j2, k2, -1.0));
+                    program.add(&merged(difference), 0.0, penalty);
+                }
+            }
+        }
+    }
+    let solution = program.solve("static map")?;
+    let nodes = (0..grid.levels())
+        .map(|j| {
+            // the solver meets the bounds to its tolerance only: no density below zero is kept
+            let mut value = 0.0_f64;
+            let mut nodes = vec![value];
+            for k in 1..grid.knots(j) {
+                value = value.max(solution[unknowns.node(j, k)]);
+                nodes.push(value);
+            }
+            nodes
+        })
+        .collect();
+    Ok(PlayMap { constant: solution[0], nodes })
+}
+
+/// Sums entries of the same column; columns ascend.
+pub(super) fn merged(mut row: Row) -> Row {
+    row.sort_by_key(|entry| entry.0);
+    let mut result: Row = Vec::with_capacity(row.len());
+    for (column, value) in row {
+        match result.last_mut() {
+            Some(last) if last.0 == column => last.1 += value,
+            _ => result.push((column, value)),
+        }
+    }
+    result
+}
+
+/// Numbering of the unknowns: the offset, then `v_jk` for `k >= 1`, play by play.
+struct Unknowns {
+    starts: Vec<usize>,
+    count: usize,
+}
+
+impl Unknowns {
+    fn new(grid: &PreisachGrid) -> Self {
+        let mut count = 1;
+        let starts = (0..grid.levels())
+            .map(|j| {
+                let start = count;
+                count += grid.levels() - j;
+                start
+            })
+            .collect();
+        Self { starts, count }
+    }
+
+    /// Number of `v_jk`, `k >= 1`.
+    fn node(&self, j: usize, k: usize) -> usize {
+        self.starts[j] + k - 1
+    }
+
+    /// `scale (v_j,k+1 - v_jk)` as a row.
+    fn rise(&self, j: usize, k: usize, scale: f64) -> Row {
+        let mut row = Row::new();
+        if k > 0 {
+            row.push((self.node(j, k), -scale));
+        }
+        row.push((self.node(j, k + 1), scale));
+        row
+    }
+
+    /// The row of the offset and all hat functions in a memory state.
+    fn hats(&self, cells: &[f64], row: &mut Row) {
+        row.clear();
+        row.push((0, 1.0));
+        for (j, &x) in cells.iter().enumerate() {
+            let (k, t) = split(x);
+            if k > 0 {
+                row.push((self.node(j, k), 1.0 - t));
+            }
+            if t > 0.0 {
+                row.push((self.node(j, k + 1), t));
+            }
+        }
+    }
+}

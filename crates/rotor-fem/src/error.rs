@@ -1,0 +1,143 @@
+//! What can go wrong in building and solving the blade and its orbit.
+
+use crate::ModeKind;
+
+/// Failures of the blade finite elements.
+///
+/// Solver failures of the periodic orbit carry the caller's own error and live in
+/// [`PeriodicError`](crate::PeriodicError).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FemError {
+    /// A blade property has a forbidden value.
+    #[error(
+        "blade property {field} is {value} at station {station} (r/R): expected {expected}; correct \
+         the value of {field} at that station"
+    )]
+    Property {
+        /// Name of the field.
+        field: &'static str,
+        /// Radial station r/R of the value.
+        station: f64,
+        /// The value found, in rotor units.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A number that describes the whole blade is out of range.
+    #[error("{field} is {value}: expected {expected}")]
+    Parameter {
+        /// Name of the field.
+        field: &'static str,
+        /// The value found, in rotor units or rad.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// The stations of a table do not grow.
+    #[error(
+        "stations of {field} do not grow: station {index} is at {station} (r/R) after {previous}; \
+         sort the table and remove repeated stations"
+    )]
+    StationOrder {
+        /// Name of the table's field.
+        field: &'static str,
+        /// Index of the offending station, from 0.
+        index: usize,
+        /// Its position r/R.
+        station: f64,
+        /// The position before it.
+        previous: f64,
+    },
+    /// A table does not cover the blade.
+    #[error(
+        "table of {field} covers {from} to {to} (r/R) and the blade reaches from {root} to 1: extend \
+         the table to both ends"
+    )]
+    TableGap {
+        /// Name of the table's field.
+        field: &'static str,
+        /// First station r/R.
+        from: f64,
+        /// Last station r/R.
+        to: f64,
+        /// Blade root r/R.
+        root: f64,
+    },
+    /// Stations and values of a table do not match in number.
+    #[error(
+        "table of {field} has {stations} stations and {values} values: expected {expected} values"
+    )]
+    TableLength {
+        /// Name of the table's field.
+        field: &'static str,
+        /// Number of stations.
+        stations: usize,
+        /// Number of values.
+        values: usize,
+        /// Number of values expected.
+        expected: usize,
+    },
+    /// The number of blade elements is out of range.
+    #[error("{found} blade elements asked for: expected 1 to {most}")]
+    ElementCount {
+        /// Number asked for.
+        found: usize,
+        /// Largest number allowed.
+        most: usize,
+    },
+    /// A station lies off the blade.
+    #[error("station {station} (r/R) lies outside the rotor radius: expected 0 to 1")]
+    Station {
+        /// The station r/R.
+        station: f64,
+    },
+    /// The mesh in time is not usable.
+    #[error("time elements: {name} is {found}, expected {least} to {most}")]
+    TimeMesh {
+        /// Name of the argument.
+        name: &'static str,
+        /// Value found.
+        found: usize,
+        /// Least value allowed.
+        least: usize,
+        /// Largest value allowed.
+        most: usize,
+    },
+    /// A setting of the orbit solver is not usable.
+    #[error("orbit solver setting {name} is {value}: expected {expected}")]
+    SolverSetting {
+        /// Name of the setting.
+        name: &'static str,
+        /// Value found.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// More modes asked for than the mesh has.
+    #[error("{wanted} {kind} modes asked for, {available} found: use more blade elements")]
+    TooFewModes {
+        /// Kind of mode.
+        kind: ModeKind,
+        /// Number asked for.
+        wanted: usize,
+        /// Number found.
+        available: usize,
+    },
+    /// The blade diverges statically: a stiffness eigenvalue is not positive.
+    #[error(
+        "the rotating blade is not statically stable: its lowest squared frequency is \
+         {squared_frequency:e} (nominal rotor speed squared); check the precone of a hinged \
+         blade, k_m1 against k_m2, and the stiffnesses"
+    )]
+    NotStable {
+        /// Lowest squared frequency in units of the nominal rotor speed squared.
+        squared_frequency: f64,
+    },
+    /// An eigenvalue solution did not converge.
+    #[error("the eigenvalue solution of size {size} did not converge: check the blade's properties")]
+    Eigen {
+        /// Order of the eigenproblem.
+        size: usize,
+    },
+}

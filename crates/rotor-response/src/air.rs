@@ -1,0 +1,130 @@
+//! Air velocities and section loads at the stations.
+//!
+//! ```text
+//! U_T = x + mu sin psi + v' + v_x mu cos psi          tangential, from leading to trailing edge
+//! U_P = lambda + w' + (w_x + bp) mu cos psi           down through the blade
+//! om  = th' + w_x + bp                                pitch rate of the section
+//! ```
+//! and the four section inputs as velocities: `U_T th - U_P`, `c om`, `U_T delta`, `c delta'`.
+//! The lift is normal to the local flow: a lift per tangential speed `L/|U_T|` gives
+//! `F_z = L`, `F_y = -sgn(U_T) (L/|U_T|) U_P`, which stays finite where the tangential speed vanishes.
+//!
+//! Source: Johnson, Helicopter Theory (1980), chapter 5, for the velocities; section loads by
+//! `flap-aero`.
+
+use crate::blade::ResponseBlade;
+use crate::motion::{Motion, RootPitch};
+use flap_aero::SectionCoefficients;
+
+/// Angle of one trailing-edge flap with its azimuth derivatives (rad).
+pub(crate) type FlapAngle = [f64; 3];
+
+/// Air seen by one section at one azimuth; speeds in tip speed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct SectionFlow {
+    pub(crate) u_t: f64,
+    pub(crate) u_p: f64,
+    /// `[U alpha, c om, U delta, c delta']`.
+    pub(crate) input: [f64; 4],
+    /// Azimuth derivative of the inputs.
+    pub(crate) input_rate: [f64; 4],
+}
+
+/// Azimuth, free stream and pitch at one azimuth point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct AirPoint {
+    pub(crate) sin: f64,
+    pub(crate) cos: f64,
+    pub(crate) advance_ratio: f64,
+    pub(crate) pitch: RootPitch,
+}
+
+/// Flow at station `i` for a total inflow `lambda` (down positive, tip speed).
+pub(crate) fn section_flow(
+    blade: &ResponseBlade,
+    chord: f64,
+    motion: &Motion,
+    point: &AirPoint,
+    (i, lambda): (usize, f64),
+    delta: FlapAngle,
+) -> SectionFlow {
+    let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
+    let (mu_sin, mu_cos) = (point.advance_ratio * point.sin, point.advance_ratio * point.cos);
+    let theta = point.pitch.angle + blade.twist[i] + phi.value[i];
+    let theta_rate = point.pitch.rate + phi.rate[i];
+    let u_t = blade.grid.x()[i] + mu_sin + v.rate[i] + v.slope[i] * mu_cos;
+    let u_p = lambda + w.rate[i] + (w.slope[i] + blade.precone) * mu_cos;
+    let om = theta_rate + w.slope[i] + blade.precone;
+    let u_t_rate =
+        mu_cos + v.acceleration[i] + v.slope_rate[i] * mu_cos - v.slope[i] * mu_sin;
+    let u_p_rate = w.acceleration[i] + w.slope_rate[i] * mu_cos
+        - (w.slope[i] + blade.precone) * mu_sin;
+    let om_rate = point.pitch.acceleration + phi.acceleration[i] + w.slope_rate[i];
+    SectionFlow {
+        u_t,
+        u_p,
+        input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
+        input_rate: [
+            u_t_rate * theta + u_t * theta_rate - u_p_rate,
+            chord * om_rate,
+            u_t_rate * delta[0] + u_t * delta[1],
+            chord * delta[2],
+        ],
+    }
+}
+
+/// Loads of one section per length, rotor units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct SectionLoads {
+    pub(crate) fz: f64,
+    pub(crate) fy: f64,
+    pub(crate) moment: f64,
+    pub(crate) hinge: f64,
+}
+
+/// What turns coefficients into loads: `rho c R/m0`, chord `c/R`, profile drag coefficient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct AirScales {
+    pub(crate) density_chord: f64,
+    pub(crate) chord: f64,
+    pub(crate) drag: f64,
+}
+
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+}
+
+/// Section loads from the flow, the coefficients and the lag part of the three outputs
+/// (lift, moment, hinge moment, as velocities).
+pub(crate) fn section_loads(
+    scales: AirScales,
+    flow: &SectionFlow,
+    coefficients: &SectionCoefficients,
+    lag: [f64; 3],
+) -> SectionLoads {
+    let speed = flow.u_t.abs();
+    let half = 0.5 * scales.density_chord;
+    let semichord = 0.5 * scales.chord;
+    let steady = |k: usize| dot(&coefficients.direct[k], &flow.input) + lag[k];
+    let rate = |k: usize| semichord * dot(&coefficients.rate[k], &flow.input_rate);
+    let lift_per_speed = half * steady(0);
+    let moment = |k: usize| half * scales.chord * (speed * steady(k) + rate(k));
+    SectionLoads {
+        fz: speed * lift_per_speed + half * rate(0),
+        fy: -flow.u_t.signum() * lift_per_speed * flow.u_p - half * scales.drag * speed * flow.u_t,
+        moment: moment(1),
+        hinge: moment(2),
+    }
+}
+
+/// The lag part of the outputs when every lag state has settled on its input.
+pub(crate) fn settled_lag(coefficients: &SectionCoefficients, input: &[f64; 4]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    for channel in &coefficients.lags {
+        let drive = dot(&channel.input, input);
+        for (o, gain) in out.iter_mut().zip(channel.output) {
+            *o += gain * drive;
+        }
+    }
+    out
+}

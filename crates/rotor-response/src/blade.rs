@@ -1,0 +1,236 @@
+//! The aeroelastic blade: what it is made of, and its values at the spanwise stations.
+
+use crate::{Discretisation, ResponseError, RotorModel, SpanGrid};
+use nalgebra::DMatrix;
+use rotor_fem::{BladeProperties, ModeCount, ModeKind, uncoupled_modes};
+
+/// Which nonlinear structural and inertial terms the modal equations carry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Couplings {
+    /// Small deflections: tension of the undeformed blade, no lag-axial Coriolis term, bending in
+    /// flap and lag apart, propeller moment linearised in the pitch angle.
+    Linear,
+    /// Second order: tension with the Coriolis part, foreshortening rate in the lag equation,
+    /// flap-lag coupling through the pitch angle, torsion driven by `(EI_z - EI_y) kappa_z kappa_y`.
+    Full,
+}
+
+/// A trailing-edge flap that is part of the blade.
+///
+/// Lengths in radius R or chord as named; the hinge is at the flap's leading edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrailingEdgeFlap {
+    /// Inboard edge, radius R.
+    pub start: f64,
+    /// Outboard edge, radius R.
+    pub end: f64,
+    /// Flap chord over blade chord, 0.05 to 0.5.
+    pub chord_fraction: f64,
+    /// Flap mass per length over the reference mass per length `m0` (already contained in the
+    /// blade's mass).
+    pub mass_fraction: f64,
+    /// Distance of the flap's centre of gravity behind its hinge over the flap chord.
+    pub cg_fraction: f64,
+}
+
+/// Inertia of a flap per length in rotor units: mass `m0`, length R.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FlapInertia {
+    /// First moment about the hinge, `m_f X_f`.
+    pub(crate) first_moment: f64,
+    /// `m_f (d + X_f) X_f`, with `d` the distance of the hinge behind the elastic axis.
+    pub(crate) arm_moment: f64,
+    /// Moment of inertia about the flap's centre of gravity, `m_f c_f^2 / 12`.
+    pub(crate) own: f64,
+}
+
+impl TrailingEdgeFlap {
+    /// Inertia per length for a blade chord `c/R` and an elastic axis at the quarter chord.
+    ///
+    /// Source: design values of Viswamurthy and Ganguli, Table 1; the flap's own inertia is that of a
+    /// uniform thin rod, `m_f c_f^2 / 12` (assumption).
+    pub(crate) fn inertia(&self, chord: f64) -> FlapInertia {
+        let flap_chord = self.chord_fraction * chord;
+        let cg = self.cg_fraction * flap_chord;
+        let hinge = (0.75 - self.chord_fraction) * chord;
+        FlapInertia {
+            first_moment: self.mass_fraction * cg,
+            arm_moment: self.mass_fraction * (hinge + cg) * cg,
+            own: self.mass_fraction * flap_chord * flap_chord / 12.0,
+        }
+    }
+}
+
+/// Mode shapes of one family at the stations: `[mode][station]` for value and two derivatives.
+#[derive(Debug, Clone)]
+pub(crate) struct Shapes {
+    pub(crate) value: Vec<Vec<f64>>,
+    pub(crate) slope: Vec<Vec<f64>>,
+    pub(crate) curvature: Vec<Vec<f64>>,
+}
+
+impl Shapes {
+    fn sample(samples: &[Vec<[f64; 3]>]) -> Self {
+        let pick =
+            |k: usize| samples.iter().map(|mode| mode.iter().map(|s| s[k]).collect()).collect();
+        Self { value: pick(0), slope: pick(1), curvature: pick(2) }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.value.len()
+    }
+}
+
+/// The blade as the periodic response sees it: mode shapes and properties at spanwise stations.
+#[derive(Debug, Clone)]
+pub struct ResponseBlade {
+    pub(crate) grid: SpanGrid,
+    pub(crate) flap: Shapes,
+    pub(crate) lag: Shapes,
+    pub(crate) torsion: Shapes,
+    /// Undamped frequencies per rev and modal masses, in the order flap, lag, torsion.
+    pub(crate) frequencies: Vec<f64>,
+    pub(crate) modal_masses: Vec<f64>,
+    /// Flap curvature of every flap mode at the root, for the bending moment there.
+    pub(crate) root_flap_curvature: Vec<f64>,
+    /// Lag curvature of every lag mode at the root.
+    pub(crate) root_lag_curvature: Vec<f64>,
+    /// Bending stiffnesses `[EI_y, EI_z]` and twist at the root.
+    pub(crate) root_stiffness: [f64; 2],
+    pub(crate) root_twist: f64,
+    pub(crate) mass: Vec<f64>,
+    pub(crate) ei_flap: Vec<f64>,
+    pub(crate) ei_lag: Vec<f64>,
+    pub(crate) gj: Vec<f64>,
+    pub(crate) km1_squared: Vec<f64>,
+    pub(crate) km2_squared: Vec<f64>,
+    pub(crate) ka_squared: Vec<f64>,
+    pub(crate) twist: Vec<f64>,
+    pub(crate) tension: Vec<f64>,
+    pub(crate) precone: f64,
+    /// Index of the flap at each station, if any.
+    pub(crate) flap_index: Vec<Option<usize>>,
+    pub(crate) flap_inertia: Vec<FlapInertia>,
+    pub(crate) cutout: f64,
+    pub(crate) root_offset: f64,
+}
+
+impl ResponseBlade {
+    /// Samples mode shapes and properties of a blade at the stations.
+    ///
+    /// # Errors
+    /// [`ResponseError::SpanPoints`] and the errors of the finite elements.
+    pub(crate) fn new(
+        model: &RotorModel,
+        properties: &BladeProperties,
+        discretisation: Discretisation,
+    ) -> Result<Self, ResponseError> {
+        let [flap, lag, torsion] = discretisation.modes;
+        let count = ModeCount { flap, lag, torsion, axial: 0 };
+        let elements = discretisation.blade_elements;
+        let modes = uncoupled_modes(properties, elements, count)?;
+        let root = properties.spec().root_offset;
+        let length = (1.0 - root) / elements as f64;
+        let breaks: Vec<f64> = (1..elements)
+            .map(|e| root + length * e as f64)
+            .chain(properties.breaks().iter().copied())
+            .chain([model.root_cutout])
+            .chain(model.flaps.iter().flat_map(|f| [f.start, f.end]))
+            .collect();
+        let grid = SpanGrid::new(root, &breaks, discretisation.span_points_per_piece)?;
+        let family = |kind: ModeKind| -> Result<Shapes, ResponseError> {
+            let samples = modes
+                .of(kind)
+                .iter()
+                .map(|mode| grid.x().iter().map(|x| mode.shape(*x)).collect())
+                .collect::<Result<Vec<Vec<[f64; 3]>>, _>>()?;
+            Ok(Shapes::sample(&samples))
+        };
+        // just inside the root, where the first element's polynomial holds
+        let root_curvature = |kind: ModeKind| -> Result<Vec<f64>, ResponseError> {
+            Ok(modes
+                .of(kind)
+                .iter()
+                .map(|mode| mode.shape(root).map(|s| s[2]))
+                .collect::<Result<Vec<f64>, _>>()?)
+        };
+        let along = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { grid.x().iter().map(|x| f(*x)).collect() };
+        let flap_index = grid
+            .x()
+            .iter()
+            .map(|x| model.flaps.iter().position(|f| (f.start..f.end).contains(x)))
+            .collect();
+        Ok(Self {
+            flap: family(ModeKind::Flap)?,
+            lag: family(ModeKind::Lag)?,
+            torsion: family(ModeKind::Torsion)?,
+            frequencies: modes.modes().iter().map(|m| m.frequency()).collect(),
+            modal_masses: modes.modes().iter().map(|m| m.modal_mass()).collect(),
+            root_flap_curvature: root_curvature(ModeKind::Flap)?,
+            root_lag_curvature: root_curvature(ModeKind::Lag)?,
+            root_stiffness: [properties.flap_stiffness(root), properties.lag_stiffness(root)],
+            root_twist: properties.twist_rad(root),
+            mass: along(&|x| properties.mass(x)),
+            ei_flap: along(&|x| properties.flap_stiffness(x)),
+            ei_lag: along(&|x| properties.lag_stiffness(x)),
+            gj: along(&|x| properties.torsion_stiffness(x)),
+            km1_squared: along(&|x| properties.squared_mass_radii(x)[0]),
+            km2_squared: along(&|x| properties.squared_mass_radii(x)[1]),
+            ka_squared: along(&|x| properties.squared_area_radius(x)),
+            twist: along(&|x| properties.twist_rad(x)),
+            tension: along(&|x| properties.tension(x)),
+            precone: properties.spec().precone_rad,
+            flap_index,
+            flap_inertia: model.flaps.iter().map(|f| f.inertia(model.chord)).collect(),
+            cutout: model.root_cutout,
+            root_offset: root,
+            grid,
+        })
+    }
+
+    /// Number of modal coordinates.
+    pub(crate) fn dof(&self) -> usize {
+        self.flap.count() + self.lag.count() + self.torsion.count()
+    }
+
+    /// Modal mass matrix: families do not couple, modes of a family do only by rounding.
+    pub(crate) fn mass_matrix(&self) -> DMatrix<f64> {
+        let n = self.grid.len();
+        let polar: Vec<f64> = (0..n)
+            .map(|i| self.mass[i] * (self.km1_squared[i] + self.km2_squared[i]))
+            .collect();
+        let mut matrix = DMatrix::zeros(self.dof(), self.dof());
+        let mut at = 0;
+        for (shapes, density) in
+            [(&self.flap, &self.mass), (&self.lag, &self.mass), (&self.torsion, &polar)]
+        {
+            for (i, a) in shapes.value.iter().enumerate() {
+                for (j, b) in shapes.value.iter().enumerate() {
+                    let product: Vec<f64> = (0..n).map(|k| density[k] * a[k] * b[k]).collect();
+                    matrix[(at + i, at + j)] = self.grid.integral(&product);
+                }
+            }
+            at += shapes.count();
+        }
+        matrix
+    }
+
+    /// Modal damping coefficients `2 zeta omega M`.
+    pub(crate) fn damping(&self, ratio: f64) -> Vec<f64> {
+        self.frequencies
+            .iter()
+            .zip(&self.modal_masses)
+            .map(|(omega, mass)| 2.0 * ratio * omega * mass)
+            .collect()
+    }
+
+    /// Stations and quadrature of the blade.
+    pub fn grid(&self) -> &SpanGrid {
+        &self.grid
+    }
+
+    /// Undamped uncoupled frequencies, per rev at nominal rotor speed, order flap, lag, torsion.
+    pub fn frequencies_per_rev(&self) -> &[f64] {
+        &self.frequencies
+    }
+}

@@ -1,0 +1,91 @@
+//! The errors of this crate.
+
+use rotor_fem::{FemError, PeriodicError};
+
+/// What can go wrong between a blade, its air and its loads.
+///
+/// Three families: rejected input (the first variants), numerical failure (with iteration, residual
+/// and what was kept) and errors of the crates below.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ResponseError {
+    /// The number of Gauss points per spanwise piece is out of range.
+    #[error("span_points_per_piece is {found}, expected 1 to 16")]
+    SpanPoints {
+        /// The number found.
+        found: usize,
+    },
+    /// A model parameter is out of its range.
+    #[error("{field} is {value}, expected {expected}")]
+    Parameter {
+        /// Name of the parameter, unit included.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A trailing-edge flap does not lie on the lifting part of the blade.
+    #[error(
+        "flap {index} spans {start}..{end} R, expected start < end within the lifting span {cutout}..1 R and no overlap with its neighbour"
+    )]
+    FlapSpan {
+        /// Index of the flap, from 0 at the root side.
+        index: usize,
+        /// Inboard edge, radius R.
+        start: f64,
+        /// Outboard edge, radius R.
+        end: f64,
+        /// Aerodynamic root cut-out, radius R.
+        cutout: f64,
+    },
+    /// The flap motions given do not match the flaps of the blade.
+    #[error("{given} flap motions were given for {expected} flaps")]
+    FlapMotions {
+        /// Motions given.
+        given: usize,
+        /// Flaps of the blade.
+        expected: usize,
+    },
+    /// The modal mass matrix is not positive definite.
+    #[error("mass matrix of {modes} modes is not positive definite: mode shapes are linearly dependent or a mass is not positive")]
+    MassMatrix {
+        /// Number of modes.
+        modes: usize,
+    },
+    /// A lag channel of the section aerodynamics cannot be made periodic.
+    #[error(
+        "aerodynamic lag states cannot be made periodic (largest rate {largest_rate:.3e} per rad); expected finite positive lag poles and section speeds"
+    )]
+    LagSingular {
+        /// Largest rate found, per rad.
+        largest_rate: f64,
+    },
+    /// The periodic response was not found; the inner error carries iterations, residuals and the
+    /// best orbit.
+    #[error("periodic blade response: {0}")]
+    Periodic(Box<PeriodicError<ResponseError>>),
+    /// Inflow and thrust did not settle on each other.
+    #[error(
+        "inflow and thrust did not settle: change {change:.3e} of the tip speed after {iterations} iterations (wanted {tolerance:.1e}), last C_T {thrust_coefficient:.6}"
+    )]
+    InflowNotConverged {
+        /// Iterations spent.
+        iterations: usize,
+        /// Last change of an inflow parameter.
+        change: f64,
+        /// Change wanted.
+        tolerance: f64,
+        /// Last thrust coefficient.
+        thrust_coefficient: f64,
+    },
+    /// The blade or the time elements refused their input or failed.
+    #[error(transparent)]
+    Fem(#[from] FemError),
+    /// The section aerodynamics refused its input.
+    #[error(transparent)]
+    Aero(#[from] flap_aero::AeroError),
+    /// The inflow model refused its input or has no solution.
+    #[error(transparent)]
+    Wake(#[from] rotor_wake::WakeError),
+}

@@ -1,0 +1,179 @@
+//! Aerodynamic lag states made periodic, by Gauss collocation on the time elements.
+//!
+//! A lag state follows `x' = a(psi) (r(psi) - x)` with `a = pole |U|/b`. Inside one time element the
+//! state is a polynomial through the Gauss points (the Gauss implicit Runge-Kutta method, order twice
+//! the number of points), so that
+//!
+//! ```text
+//! X = x0 alpha + B r,    x_end = x0 e + f . r
+//! ```
+//! with `alpha`, `B`, `e`, `f` from the linear solve `(I + h/2 A diag(a)) X = x0 1 + h/2 A diag(a) r`.
+//! Chaining the elements over one revolution and asking the last end to be the first start gives the
+//! periodic state without marching.
+//!
+//! Source: Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.5 (Gauss methods).
+
+use crate::ResponseError;
+use nalgebra::{DMatrix, DVector};
+use rotor_base::{LagrangeBasis, gauss_legendre};
+use rotor_fem::TimeElements;
+
+/// Integration matrix of the Gauss points of one element.
+#[derive(Debug, Clone)]
+pub(crate) struct Collocation {
+    integration: DMatrix<f64>,
+    end_weights: DVector<f64>,
+    half_width: f64,
+    elements: usize,
+}
+
+impl Collocation {
+    pub(crate) fn new(time: &TimeElements) -> Self {
+        let points = time.gauss_per_element();
+        let rule = gauss_legendre(points);
+        let rows = LagrangeBasis::new(rule.nodes).integration_matrix();
+        Self {
+            integration: DMatrix::from_fn(points, points, |i, j| rows[i][j]),
+            end_weights: DVector::from_vec(rule.weights),
+            half_width: std::f64::consts::PI / time.elements() as f64,
+            elements: time.elements(),
+        }
+    }
+
+    fn points(&self) -> usize {
+        self.end_weights.len()
+    }
+}
+
+/// The solved element of one lag channel.
+#[derive(Debug, Clone)]
+struct ElementOperator {
+    start: DVector<f64>,
+    drive: DMatrix<f64>,
+    end_start: f64,
+    end_drive: DVector<f64>,
+}
+
+/// One lag channel over one revolution.
+#[derive(Debug, Clone)]
+pub(crate) struct PeriodicLag {
+    elements: Vec<ElementOperator>,
+    closing: f64,
+}
+
+impl PeriodicLag {
+    /// Solves the elements for the rates `a` (per rad) at all points of the revolution.
+    ///
+    /// # Errors
+    /// [`ResponseError::LagSingular`] if an element cannot be solved (rates not finite).
+    pub(crate) fn new(collocation: &Collocation, rates: &[f64]) -> Result<Self, ResponseError> {
+        let g = collocation.points();
+        let half = collocation.half_width;
+        let mut elements = Vec::with_capacity(collocation.elements);
+        for chunk in rates.chunks_exact(g) {
+            let scaled = DMatrix::from_fn(g, g, |i, j| {
+                half * collocation.integration[(i, j)] * chunk[j]
+            });
+            let system = (DMatrix::identity(g, g) + &scaled).lu();
+            let start = system.solve(&DVector::from_element(g, 1.0));
+            let drive = system.solve(&scaled);
+            let (Some(start), Some(drive)) = (start, drive) else {
+                return Err(ResponseError::LagSingular { largest_rate: max_abs(chunk) });
+            };
+            let weights = DVector::from_fn(g, |i, _| half * collocation.end_weights[i] * chunk[i]);
+            let end_start = 1.0 - weights.dot(&start);
+            let end_drive = &weights - drive.transpose() * &weights;
+            elements.push(ElementOperator { start, drive, end_start, end_drive });
+        }
+        let closing = 1.0 - elements.iter().map(|e| e.end_start).product::<f64>();
+        if !closing.is_finite() || closing.abs() < 1e-12 {
+            return Err(ResponseError::LagSingular { largest_rate: max_abs(rates) });
+        }
+        Ok(Self { elements, closing })
+    }
+
+    /// The periodic state at all points for the drive `r`, added into `out` through `add`.
+    pub(crate) fn periodic_state(&self, drive: &[f64], out: &mut Vec<f64>) {
+        let g = drive.len() / self.elements.len();
+        let step = |x: f64, (element, r): (&ElementOperator, &[f64])| {
+            x * element.end_start
+                + element.end_drive.iter().zip(r).map(|(a, b)| a * b).sum::<f64>()
+        };
+        let pairs = || self.elements.iter().zip(drive.chunks_exact(g));
+        let mut x0 = pairs().fold(0.0, step) / self.closing;
+        out.clear();
+        for (element, r) in pairs() {
+            for i in 0..g {
+                let forced: f64 = (0..g).map(|j| element.drive[(i, j)] * r[j]).sum();
+                out.push(x0 * element.start[i] + forced);
+            }
+            x0 = step(x0, (element, r));
+        }
+    }
+}
+
+fn max_abs(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| if v.abs() <= m { m } else { v.abs() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    /// `x' = a (r - x)` with constant `a` and `r = cos n psi`: closed form.
+    #[test]
+    fn a_constant_lag_is_its_transfer_function() {
+        for (elements, gauss) in [(8, 8), (12, 8)] {
+            let time = TimeElements::new(elements, 5, gauss).unwrap();
+            let collocation = Collocation::new(&time);
+            for a in [0.5, 3.0, 25.0] {
+                let lag = PeriodicLag::new(&collocation, &vec![a; time.points().len()]).unwrap();
+                for n in [1.0, 4.0] {
+                    let drive: Vec<f64> = time.points().iter().map(|p| (n * p).cos()).collect();
+                    let mut state = Vec::new();
+                    lag.periodic_state(&drive, &mut state);
+                    for (&psi, got) in time.points().iter().zip(&state) {
+                        let exact = a * (a * (n * psi).cos() + n * (n * psi).sin())
+                            / (a * a + n * n);
+                        assert_abs_diff_eq!(*got, exact, epsilon = 2e-6);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A varying rate: `x = exp(-sin psi)` solves `x' = a (r - x)` for `a = 2 + cos psi`,
+    /// `r = x (1 - cos psi / a)`; the error must fall with high order.
+    #[test]
+    fn a_varying_rate_converges_fast() {
+        let error = |elements: usize| {
+            let time = TimeElements::new(elements, 5, 6).unwrap();
+            let rates: Vec<f64> = time.points().iter().map(|p| 2.0 + p.cos()).collect();
+            let exact: Vec<f64> = time.points().iter().map(|p| (-p.sin()).exp()).collect();
+            let drive: Vec<f64> = time
+                .points()
+                .iter()
+                .zip(&exact)
+                .map(|(p, x)| x * (1.0 - p.cos() / (2.0 + p.cos())))
+                .collect();
+            let lag = PeriodicLag::new(&Collocation::new(&time), &rates).unwrap();
+            let mut state = Vec::new();
+            lag.periodic_state(&drive, &mut state);
+            state.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (error(4), error(8));
+        assert!(fine < 5e-6, "{fine:e}");
+        assert!(coarse / fine > 40.0, "order too low: {coarse:e} to {fine:e}");
+    }
+
+    #[test]
+    fn rates_that_are_no_numbers_are_an_error() {
+        let time = TimeElements::new(4, 5, 8).unwrap();
+        let rates = vec![f64::NAN; time.points().len()];
+        assert!(matches!(
+            PeriodicLag::new(&Collocation::new(&time), &rates),
+            Err(ResponseError::LagSingular { .. })
+        ));
+    }
+}

@@ -1,0 +1,267 @@
+//! Blade root loads by force summation, and hub loads in the fixed frame.
+
+use crate::blade::{Couplings, ResponseBlade};
+use crate::motion::{Motion, RootPitch};
+use crate::structure::SpanLoads;
+use rotor_base::{HarmonicSeries, rotating_to_fixed, uniform_azimuths_rad};
+
+/// Six load components over one revolution as harmonic series, order
+/// `F_x, F_y, F_z, M_x, M_y, M_z`; forces in `m0 Omega^2 R^2`, moments in `m0 Omega^2 R^3`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SixLoads {
+    /// The six series.
+    pub components: [HarmonicSeries; 6],
+}
+
+impl SixLoads {
+    /// Mean of each component.
+    pub fn mean(&self) -> [f64; 6] {
+        self.components.each_ref().map(|c| c.mean)
+    }
+
+    /// Cosine and sine coefficients of harmonic `n` of all components:
+    /// `[Fx_c, Fx_s, Fy_c, Fy_s, Fz_c, ... Mz_s]`, twice the mean of `F cos n psi` and `F sin n psi`.
+    pub fn harmonic(&self, n: usize) -> [f64; 12] {
+        let mut out = [0.0; 12];
+        for (pair, component) in out.chunks_exact_mut(2).zip(&self.components) {
+            let h = component.harmonic(n);
+            pair.copy_from_slice(&[h.cosine, h.sine]);
+        }
+        out
+    }
+
+    /// Component values at an azimuth.
+    pub fn at(&self, azimuth_rad: f64) -> [f64; 6] {
+        self.components.each_ref().map(|c| c.value(azimuth_rad))
+    }
+}
+
+/// Root loads of one blade at one azimuth, rotating frame, about the rotor centre.
+///
+/// ```text
+/// f_x = m (x + u + 2 v' - u'') + F_x      F_x = -w_x F_z - v_x F_y (aerodynamic)
+/// f_y = m (v - v'' - 2 u' + 2 bp w') + F_y
+/// f_z = -m (w'' + bp (x + 2 v')) + F_z
+/// m_x = -m km^2 th'' - m (km2^2 - km1^2) sin th cos th + M
+/// M_x = int v f_z - w f_y + m_x,  M_y = int w f_x - (x + u) f_z,  M_z = int (x + u) f_y - v f_x
+/// ```
+/// The foreshortening `u` and its rates enter in second order whatever the couplings of the modal
+/// equations: without them the vibratory in-plane loads are wrong by most of their size.
+pub(crate) fn root_loads(
+    blade: &ResponseBlade,
+    motion: &Motion,
+    pitch: RootPitch,
+    loads: &SpanLoads,
+    aerodynamic: &SpanLoads,
+) -> [f64; 6] {
+    let n = blade.grid.len();
+    let (w, v) = (&motion.w, &motion.v);
+    let running = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let integrand: Vec<f64> = (0..n).map(f).collect();
+        let mut out = vec![0.0; n];
+        blade.grid.integral_from_root(&integrand, &mut out);
+        out
+    };
+    let squares = running(&|i| 0.5 * (v.slope[i].powi(2) + w.slope[i].powi(2)));
+    let rates =
+        running(&|i| v.slope[i] * v.slope_rate[i] + w.slope[i] * w.slope_rate[i]);
+    let accelerations = running(&|i| {
+        v.slope_rate[i].powi(2)
+            + w.slope_rate[i].powi(2)
+            + v.slope[i] * v.slope_acceleration[i]
+            + w.slope[i] * w.slope_acceleration[i]
+    });
+    let mut total = [0.0; 6];
+    for i in 0..n {
+        let (m, x) = (blade.mass[i], blade.grid.x()[i]);
+        let (u, u_rate, u_acceleration) = (-squares[i], -rates[i], -accelerations[i]);
+        let bp = blade.precone;
+        let aero_x =
+            -w.slope[i] * aerodynamic.fz[i] - v.slope[i] * aerodynamic.fy[i];
+        let fx = m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x;
+        let fy = m * (v.value[i] - v.acceleration[i] - 2.0 * u_rate + 2.0 * bp * w.rate[i])
+            + loads.fy[i];
+        let fz = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i];
+        let theta = pitch.angle + blade.twist[i] + motion.phi.value[i];
+        let theta_acceleration = pitch.acceleration + motion.phi.acceleration[i];
+        let (sin, cos) = theta.sin_cos();
+        let (km1, km2) = (blade.km1_squared[i], blade.km2_squared[i]);
+        let mx = -m * (km1 + km2) * theta_acceleration - m * (km2 - km1) * sin * cos
+            + loads.moment[i];
+        let weight = blade.grid.weight()[i];
+        let parts = [
+            fx,
+            fy,
+            fz,
+            v.value[i] * fz - w.value[i] * fy + mx,
+            w.value[i] * fx - (x + u) * fz,
+            (x + u) * fy - v.value[i] * fx,
+        ];
+        for (t, part) in total.iter_mut().zip(parts) {
+            *t += weight * part;
+        }
+    }
+    total
+}
+
+/// Flap bending moment at the root by force summation, `int x f_z - N w_x dx`, tip up positive.
+///
+/// Carries the terms of the chosen couplings, so that it is the exact counterpart of the curvature
+/// moment of the same modal equations. `x` is measured from the root.
+pub(crate) fn root_flap_moment(
+    blade: &ResponseBlade,
+    couplings: Couplings,
+    motion: &Motion,
+    loads: &SpanLoads,
+) -> f64 {
+    let n = blade.grid.len();
+    let (w, v) = (&motion.w, &motion.v);
+    let coriolis: Vec<f64> = (0..n)
+        .map(|i| match couplings {
+            Couplings::Linear => 0.0,
+            Couplings::Full => 2.0 * blade.mass[i] * v.rate[i],
+        })
+        .collect();
+    let mut tension = vec![0.0; n];
+    blade.grid.integral_to_tip(&coriolis, &mut tension);
+    let integrand: Vec<f64> = (0..n)
+        .map(|i| {
+            let (m, x) = (blade.mass[i], blade.grid.x()[i]);
+            let inertia = -m * (w.acceleration[i] + blade.precone * (x + 2.0 * v.rate[i]));
+            (x - blade.root_offset) * (inertia + loads.fz[i])
+                - (blade.tension[i] + tension[i]) * w.slope[i]
+        })
+        .collect();
+    blade.grid.integral(&integrand)
+}
+
+/// Flap bending moment at the root from the curvature of the mode shapes, tip up positive.
+pub(crate) fn root_flap_curvature_moment(
+    blade: &ResponseBlade,
+    couplings: Couplings,
+    q: &[f64],
+    pitch_rad: f64,
+) -> f64 {
+    let sum = |curvature: &[f64], q: &[f64]| -> f64 {
+        curvature.iter().zip(q).map(|(c, q)| c * q).sum()
+    };
+    let w_xx = sum(&blade.root_flap_curvature, q);
+    let v_xx = sum(&blade.root_lag_curvature, &q[blade.flap.count()..]);
+    let [ei_flap, ei_lag] = blade.root_stiffness;
+    match couplings {
+        Couplings::Linear => ei_flap * w_xx,
+        Couplings::Full => {
+            let (sin, cos) = (pitch_rad + blade.root_twist).sin_cos();
+            let (kz, ky) = (v_xx * cos + w_xx * sin, w_xx * cos - v_xx * sin);
+            ei_lag * kz * sin + ei_flap * ky * cos
+        }
+    }
+}
+
+/// Hub loads in the fixed frame from the root loads of every blade, summed blade by blade.
+///
+/// Blade `k` of `N_b` is at azimuth `psi + 2 pi k / N_b`; its root loads are given as functions of its
+/// own azimuth. Harmonics 0..=`count` of the sum are returned.
+///
+/// Source: summation over blades, Johnson, Helicopter Theory (1980), section 8-2; no use is made of
+/// the blades being alike.
+pub fn hub_loads(blades: &[SixLoads], count: usize) -> SixLoads {
+    let highest = blades
+        .iter()
+        .flat_map(|b| b.components.iter().map(|c| c.harmonics.len()))
+        .max()
+        .unwrap_or(0);
+    // highest harmonic of the sum is one more than that of the root loads
+    let samples = (highest + count + 2).next_multiple_of(blades.len().max(1));
+    let azimuths = uniform_azimuths_rad(samples);
+    let weights = vec![1.0 / samples as f64; samples];
+    let mut history = vec![vec![0.0; samples]; 6];
+    for (k, blade) in blades.iter().enumerate() {
+        let offset = std::f64::consts::TAU * k as f64 / blades.len() as f64;
+        for (i, azimuth) in azimuths.iter().enumerate() {
+            let psi = azimuth + offset;
+            let [fx, fy, fz, mx, my, mz] = blade.at(psi);
+            let force = rotating_to_fixed(psi, [fx, fy, fz]);
+            let moment = rotating_to_fixed(psi, [mx, my, mz]);
+            for (h, part) in history.iter_mut().zip(force.into_iter().chain(moment)) {
+                h[i] += part;
+            }
+        }
+    }
+    let series = |h: &Vec<f64>| HarmonicSeries::project(&azimuths, &weights, h, count);
+    SixLoads {
+        components: [
+            series(&history[0]),
+            series(&history[1]),
+            series(&history[2]),
+            series(&history[3]),
+            series(&history[4]),
+            series(&history[5]),
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+    use rotor_base::Harmonic;
+
+    fn blade() -> SixLoads {
+        let mut components = [(); 6].map(|()| HarmonicSeries::zero(5));
+        for (k, c) in components.iter_mut().enumerate() {
+            for n in 1..=5 {
+                let (a, b) = ((k + 2 * n) as f64, (3 * k) as f64 - n as f64);
+                c.set_harmonic(n, Harmonic { cosine: a.sin(), sine: b.cos() });
+            }
+        }
+        SixLoads { components }
+    }
+
+    /// The closed sums for four blades: `F_X,4c = 2 (a3 + a5 + d3 - d5)` and so on.
+    #[test]
+    fn four_blades_pass_the_third_fourth_and_fifth_harmonic() {
+        let b = blade();
+        let hub = hub_loads(&[b.clone(), b.clone(), b.clone(), b.clone()], 8);
+        let h = |k: usize, n: usize| b.components[k].harmonic(n);
+        let (x3, x5, y3, y5) = (h(0, 3), h(0, 5), h(1, 3), h(1, 5));
+        let z = hub.harmonic(4);
+        let eps = 1e-13;
+        assert_abs_diff_eq!(
+            z[0],
+            2.0 * (x3.cosine + x5.cosine + y3.sine - y5.sine),
+            epsilon = eps
+        );
+        assert_abs_diff_eq!(
+            z[1],
+            2.0 * (x3.sine + x5.sine - y3.cosine + y5.cosine),
+            epsilon = eps
+        );
+        assert_abs_diff_eq!(
+            z[2],
+            2.0 * (-x3.sine + x5.sine + y3.cosine + y5.cosine),
+            epsilon = eps
+        );
+        assert_abs_diff_eq!(
+            z[3],
+            2.0 * (x3.cosine - x5.cosine + y3.sine + y5.sine),
+            epsilon = eps
+        );
+        assert_abs_diff_eq!(z[4], 4.0 * h(2, 4).cosine, epsilon = eps);
+        assert_abs_diff_eq!(z[5], 4.0 * h(2, 4).sine, epsilon = eps);
+    }
+
+    #[test]
+    fn unequal_blades_leak_into_every_harmonic() {
+        let (b, mut other) = (blade(), blade());
+        for c in &mut other.components {
+            c.harmonics[0].cosine *= 1.01;
+        }
+        let equal = hub_loads(&[b.clone(), b.clone(), b.clone(), b.clone()], 8);
+        let unequal = hub_loads(&[b.clone(), b.clone(), b, other], 8);
+        for n in [1, 2, 3, 5, 6, 7] {
+            assert!(equal.harmonic(n).iter().all(|v| v.abs() < 1e-13));
+        }
+        assert!(unequal.harmonic(1).iter().any(|v| v.abs() > 1e-3));
+    }
+}

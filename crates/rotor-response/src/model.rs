@@ -1,0 +1,160 @@
+//! What a rotor is made of: validated parameters handed down by the drivers.
+
+use crate::{Couplings, ResponseError, TrailingEdgeFlap};
+use flap_aero::AttachedFlowModel;
+
+/// How the local Mach number enters the section aerodynamics.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Compressibility {
+    /// Mach number zero everywhere.
+    None,
+    /// Local Mach number `M_tip |x + mu sin psi|`, at most 0.9.
+    LocalMach {
+        /// Hover tip Mach number.
+        tip_mach: f64,
+    },
+}
+
+/// The rotor apart from the structure of its blades. Rotor units: length R, mass per length `m0`,
+/// time 1/Omega.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorModel {
+    /// Number of blades.
+    pub blades: usize,
+    /// Blade chord over radius.
+    pub chord: f64,
+    /// Lock number `gamma = rho a c R^4 / I_b` with `a = 2 pi` and `I_b = m0 R^3 / 3`; the air density
+    /// follows from it.
+    pub lock_number: f64,
+    /// Profile drag coefficient.
+    pub drag_coefficient: f64,
+    /// Aerodynamic root cut-out, radius R.
+    pub root_cutout: f64,
+    /// Modal damping over critical.
+    pub modal_damping: f64,
+    /// Terms of the structural equations.
+    pub couplings: Couplings,
+    /// Section aerodynamics.
+    pub section_model: AttachedFlowModel,
+    /// Mach number.
+    pub compressibility: Compressibility,
+    /// Trailing-edge flaps from root to tip.
+    pub flaps: Vec<TrailingEdgeFlap>,
+}
+
+impl RotorModel {
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// [`ResponseError::Parameter`] or [`ResponseError::FlapSpan`] for the first one out of range.
+    pub fn validate(&self) -> Result<(), ResponseError> {
+        let check = |field, value: f64, ok: bool, expected| {
+            if ok { Ok(()) } else { Err(ResponseError::Parameter { field, value, expected }) }
+        };
+        let within = |v: f64, low: f64, high: f64| v >= low && v <= high;
+        let count = self.blades as f64;
+        check("blades", count, (1..=16).contains(&self.blades), "1 to 16")?;
+        check("chord", self.chord, within(self.chord, 1e-3, 0.5), "0.001 to 0.5 R")?;
+        let gamma = self.lock_number;
+        check("lock_number", gamma, within(gamma, 0.0, 50.0), "0 to 50")?;
+        let cd = self.drag_coefficient;
+        check("drag_coefficient", cd, within(cd, 0.0, 1.0), "0 to 1")?;
+        let cutout = self.root_cutout;
+        check("root_cutout", cutout, within(cutout, 0.0, 0.9), "0 to 0.9 R")?;
+        let zeta = self.modal_damping;
+        check("modal_damping", zeta, within(zeta, 0.0, 0.5), "0 to 0.5 of critical")?;
+        if let Compressibility::LocalMach { tip_mach } = self.compressibility {
+            check("tip_mach", tip_mach, within(tip_mach, 1e-3, 0.95), "0.001 to 0.95")?;
+        }
+        let mut from = cutout;
+        for (index, flap) in self.flaps.iter().enumerate() {
+            let (start, end) = (flap.start, flap.end);
+            if !(start >= from && end > start && end <= 1.0) {
+                return Err(ResponseError::FlapSpan { index, start, end, cutout });
+            }
+            from = end;
+            let e = flap.chord_fraction;
+            check("flap chord_fraction", e, within(e, 0.05, 0.5), "0.05 to 0.5 of the chord")?;
+            let m = flap.mass_fraction;
+            check("flap mass_fraction", m, within(m, 0.0, 1.0), "0 to 1 of m0")?;
+            let cg = flap.cg_fraction;
+            check("flap cg_fraction", cg, within(cg, -1.0, 1.0), "-1 to 1 flap chord")?;
+        }
+        Ok(())
+    }
+
+    /// Density group `rho c R / m0 = gamma / (3 a)`, `a = 2 pi`.
+    pub fn density_chord(&self) -> f64 {
+        self.lock_number / (3.0 * std::f64::consts::TAU)
+    }
+
+    /// Solidity `N_b c / (pi R)`.
+    pub fn solidity(&self) -> f64 {
+        self.blades as f64 * self.chord / std::f64::consts::PI
+    }
+
+    /// Thrust coefficient `C_T = T / (rho pi R^2 (Omega R)^2)` of a thrust in `m0 Omega^2 R^2`.
+    pub fn thrust_coefficient(&self, thrust: f64) -> f64 {
+        thrust * self.chord / (std::f64::consts::PI * self.density_chord())
+    }
+
+    /// Thrust in `m0 Omega^2 R^2` of a thrust coefficient over solidity.
+    pub fn thrust_of_loading(&self, ct_sigma: f64) -> f64 {
+        ct_sigma * self.blades as f64 * self.density_chord()
+    }
+
+    /// Tip Mach number used for the sections, zero without compressibility.
+    pub(crate) fn compressible_tip_mach(&self) -> f64 {
+        match self.compressibility {
+            Compressibility::None => 0.0,
+            Compressibility::LocalMach { tip_mach } => tip_mach,
+        }
+    }
+}
+
+/// Pitch controls at the blade root, `theta = theta0 + theta1c cos psi + theta1s sin psi`, nose up
+/// positive; `theta0` is the pitch at 0.75 R when the twist is zero there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Controls {
+    /// Collective, rad.
+    pub theta0_rad: f64,
+    /// Lateral cyclic, rad.
+    pub theta1c_rad: f64,
+    /// Longitudinal cyclic, rad.
+    pub theta1s_rad: f64,
+}
+
+/// How finely the rotor is resolved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Discretisation {
+    /// Beam elements of the blade.
+    pub blade_elements: usize,
+    /// Flap, lag and torsion modes.
+    pub modes: [usize; 3],
+    /// Gauss points in each spanwise piece.
+    pub span_points_per_piece: usize,
+    /// Elements of the time discretisation.
+    pub time_elements: usize,
+    /// Polynomial order of the time elements.
+    pub time_order: usize,
+    /// Gauss points per time element.
+    pub time_gauss_points: usize,
+    /// Highest harmonic of the loads kept in results.
+    pub load_harmonics: usize,
+}
+
+impl Default for Discretisation {
+    /// Ten beam elements, 4 flap, 4 lag and 2 torsion modes, eight time elements of order 5 (the
+    /// paper's), four spanwise points per piece, eight time points per element.
+    fn default() -> Self {
+        Self {
+            blade_elements: 10,
+            modes: [4, 4, 2],
+            span_points_per_piece: 4,
+            time_elements: 8,
+            time_order: 5,
+            time_gauss_points: 8,
+            load_harmonics: 12,
+        }
+    }
+}

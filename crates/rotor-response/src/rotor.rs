@@ -1,0 +1,464 @@
+//! The periodic response of a rotor: blade motion, inflow and hub loads together.
+
+use crate::air::{AirPoint, AirScales, FlapAngle, SectionLoads};
+use crate::blade::ResponseBlade;
+use crate::flight_air::FlightAir;
+use crate::loads::{
+    SixLoads, hub_loads, root_flap_curvature_moment, root_flap_moment, root_loads,
+};
+use crate::motion::Motion;
+use crate::structure::SpanLoads;
+use crate::system::{PointInput, ResponseSystem};
+use crate::{Controls, Discretisation, ResponseError, RotorModel};
+use nalgebra::DMatrix;
+use rotor_base::HarmonicSeries;
+use rotor_fem::{
+    BladeProperties, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver,
+    PeriodicSystem, TimeElements,
+};
+use rotor_wake::{FlightState, InducedInflow, InflowModel, RotorLoading};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Tolerances of the response.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponseTolerances {
+    /// Largest weak residual of the periodic orbit, generalised force in rotor units.
+    pub periodicity: f64,
+    /// Largest change of an inflow parameter between iterations, tip speed.
+    pub inflow: f64,
+    /// Iterations allowed for the inflow.
+    pub inflow_iterations: usize,
+}
+
+impl Default for ResponseTolerances {
+    fn default() -> Self {
+        Self { periodicity: 1e-11, inflow: 1e-10, inflow_iterations: 60 }
+    }
+}
+
+/// A rotor ready to be solved in any flight condition.
+#[derive(Debug, Clone)]
+pub struct Rotor {
+    model: RotorModel,
+    discretisation: Discretisation,
+    blade: ResponseBlade,
+    mass: DMatrix<f64>,
+    damping: Vec<f64>,
+}
+
+impl Rotor {
+    /// Builds mode shapes, stations and matrices.
+    ///
+    /// # Errors
+    /// Any problem of the model, the blade or the discretisation.
+    pub fn new(
+        model: RotorModel,
+        properties: &BladeProperties,
+        discretisation: Discretisation,
+    ) -> Result<Self, ResponseError> {
+        model.validate()?;
+        let blade = ResponseBlade::new(&model, properties, discretisation)?;
+        let mass = blade.mass_matrix();
+        let damping = blade.damping(model.modal_damping);
+        Ok(Self { model, discretisation, blade, mass, damping })
+    }
+
+    /// The parameters.
+    pub fn model(&self) -> &RotorModel {
+        &self.model
+    }
+
+    /// The blade at its stations.
+    pub fn blade(&self) -> &ResponseBlade {
+        &self.blade
+    }
+
+    fn scales(&self) -> AirScales {
+        AirScales {
+            density_chord: self.model.density_chord(),
+            chord: self.model.chord,
+            drag: self.model.drag_coefficient,
+        }
+    }
+}
+
+/// Flight condition, controls and flap motion of one solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    /// Advance ratio and shaft tilt.
+    pub flight: FlightState,
+    /// Pitch controls.
+    pub controls: Controls,
+    /// Angle of every flap (rad, trailing edge down positive) against blade azimuth.
+    pub flap_angles_rad: Vec<HarmonicSeries>,
+}
+
+/// How well a solution satisfies its equations, and what it cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponseResiduals {
+    /// Largest weak residual of the periodic orbit, generalised force in rotor units.
+    pub periodicity: f64,
+    /// Mismatch between the inflow used and the inflow the loads call for, tip speed.
+    pub inflow: f64,
+    /// Newton and chord iterations over all inflow iterations.
+    pub response_iterations: usize,
+    /// Inflow iterations.
+    pub inflow_iterations: usize,
+}
+
+/// Bending moment at the root about the axis of flap, tip up positive, `m0 Omega^2 R^3`.
+///
+/// ```text
+/// force summation  M_w(0) = int_0^1 x f_z - N w_x dx      curvature  M_w(0) = EI_z kz sin th + EI_y ky cos th
+/// ```
+/// Both solve `(M_w)_xx - (N w_x)_x = f_z`. The curvature of a truncated modal series converges slowly,
+/// the force summation fast: the gap between the two measures the modal truncation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RootBending {
+    /// From the distributed loads.
+    pub force_summation: HarmonicSeries,
+    /// From the curvature of the mode shapes at the root.
+    pub curvature: HarmonicSeries,
+}
+
+/// A converged rotor.
+#[derive(Debug, Clone)]
+pub struct RotorSolution {
+    /// Modal motion over the revolution, order flap, lag, torsion; tip value of each shape is 1.
+    pub orbit: Orbit,
+    /// Harmonics of every modal coordinate.
+    pub modal: Vec<HarmonicSeries>,
+    /// Induced inflow.
+    pub inflow: InducedInflow,
+    /// Thrust coefficient `C_T`.
+    pub thrust_coefficient: f64,
+    /// Root loads of the blade, rotating frame.
+    pub root: SixLoads,
+    /// Hub loads, fixed frame, all blades.
+    pub hub: SixLoads,
+    /// Aerodynamic hinge moment of each flap over its span, positive in the sense of the flap angle
+    /// (trailing edge down), `m0 Omega^2 R^3`.
+    pub hinge: Vec<HarmonicSeries>,
+    /// Flapwise bending moment at the blade root, in two ways.
+    pub root_flap_bending: RootBending,
+    /// Residuals and iterations.
+    pub residuals: ResponseResiduals,
+}
+
+/// Solves one rotor at one advance ratio, keeping the factorised Newton matrix between solutions.
+#[derive(Debug, Clone)]
+pub struct RotorSolver {
+    rotor: Arc<Rotor>,
+    air: Arc<FlightAir>,
+    time: TimeElements,
+    solver: PeriodicSolver,
+    tolerances: ResponseTolerances,
+    advance_ratio: f64,
+}
+
+impl RotorSolver {
+    /// Prepares the section aerodynamics of one advance ratio.
+    ///
+    /// # Errors
+    /// Problems of the time elements or of the section model at the local Mach numbers.
+    pub fn new(
+        rotor: Arc<Rotor>,
+        advance_ratio: f64,
+        tolerances: ResponseTolerances,
+    ) -> Result<Self, ResponseError> {
+        let d = rotor.discretisation;
+        let time = TimeElements::new(d.time_elements, d.time_order, d.time_gauss_points)?;
+        let air = FlightAir::new(&rotor.model, &rotor.blade, &time, advance_ratio)?;
+        let settings =
+            PeriodicSettings { tolerance: tolerances.periodicity, ..PeriodicSettings::default() };
+        let solver = PeriodicSolver::new(time.clone(), settings)?;
+        Ok(Self { rotor, air: Arc::new(air), time, solver, tolerances, advance_ratio })
+    }
+
+    /// The rotor.
+    pub fn rotor(&self) -> &Rotor {
+        &self.rotor
+    }
+
+    /// Periodic response with the inflow settled on the thrust it carries.
+    ///
+    /// `start` is a solution nearby (or none: the undeformed blade and the inflow of zero thrust).
+    ///
+    /// # Errors
+    /// [`ResponseError::FlapMotions`], [`ResponseError::Parameter`] for an advance ratio other than
+    /// the solver's; [`ResponseError::ResponseNotConverged`] and
+    /// [`ResponseError::InflowNotConverged`] with what was reached.
+    pub fn solve(
+        &mut self,
+        condition: &Condition,
+        inflow_model: &dyn InflowModel,
+        start: Option<&RotorSolution>,
+    ) -> Result<RotorSolution, ResponseError> {
+        let expected = self.rotor.model.flaps.len();
+        let given = condition.flap_angles_rad.len();
+        if given != expected {
+            return Err(ResponseError::FlapMotions { given, expected });
+        }
+        let mu = condition.flight.advance_ratio;
+        if (mu - self.advance_ratio).abs() > 1e-12 {
+            return Err(ResponseError::Parameter {
+                field: "advance_ratio",
+                value: mu,
+                expected: "the advance ratio the solver was prepared for",
+            });
+        }
+        let dof = self.rotor.mass.nrows();
+        let mut orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
+        let mut inflow = match start {
+            Some(s) => s.inflow.clone(),
+            None => inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?,
+        };
+        let mut iterations = 0;
+        let mut previous: Option<(Vec<f64>, f64)> = None;
+        let mut last = (f64::INFINITY, 0.0);
+        for inflow_iteration in 1..=self.tolerances.inflow_iterations {
+            let rotor = Arc::clone(&self.rotor);
+            let air = Arc::clone(&self.air);
+            let system = ResponseSystem {
+                blade: &rotor.blade,
+                couplings: rotor.model.couplings,
+                scales: rotor.scales(),
+                air: &air,
+                points: self.point_inputs(condition, &inflow),
+                damping: &rotor.damping,
+                mass: &rotor.mass,
+            };
+            let solution = self.solver.solve(&system, &orbit).map_err(Self::orbit_error)?;
+            iterations += solution.iterations;
+            let loads = RevolutionLoads::new(&rotor, &self.time, &system, &solution.samples)?;
+            let hub = loads.hub(&rotor, &self.time);
+            let ct = rotor.model.thrust_coefficient(hub.components[2].mean);
+            let wanted = inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(ct))?;
+            let used = inflow.parameters();
+            let change: Vec<f64> =
+                wanted.parameters().iter().zip(&used).map(|(a, b)| a - b).collect();
+            let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+            if size <= self.tolerances.inflow {
+                let root = loads.root(&self.time, rotor.discretisation.load_harmonics);
+                return Ok(RotorSolution {
+                    modal: self.modal_harmonics(&solution.samples),
+                    orbit: solution.orbit,
+                    thrust_coefficient: ct,
+                    hinge: loads.hinge(&self.time, rotor.discretisation.load_harmonics),
+                    root_flap_bending: loads
+                        .root_bending(&self.time, rotor.discretisation.load_harmonics),
+                    inflow,
+                    root,
+                    hub,
+                    residuals: ResponseResiduals {
+                        periodicity: solution.residual_norm,
+                        inflow: size,
+                        response_iterations: iterations,
+                        inflow_iterations: inflow_iteration,
+                    },
+                });
+            }
+            last = (size, ct);
+            orbit = solution.orbit;
+            let relaxation = irons_tuck(previous.as_ref(), &change);
+            let next: Vec<f64> =
+                used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
+            inflow = inflow.with_parameters(&next)?;
+            previous = Some((change, relaxation));
+        }
+        Err(ResponseError::InflowNotConverged {
+            iterations: self.tolerances.inflow_iterations,
+            change: last.0,
+            tolerance: self.tolerances.inflow,
+            thrust_coefficient: last.1,
+        })
+    }
+
+    fn orbit_error(error: PeriodicError<ResponseError>) -> ResponseError {
+        match error {
+            PeriodicError::System { source, .. } => source,
+            other => ResponseError::Periodic(Box::new(other)),
+        }
+    }
+
+    /// Azimuth, pitch, inflow and flap angles at every point.
+    fn point_inputs(&self, condition: &Condition, inflow: &InducedInflow) -> Vec<PointInput> {
+        let first = self.air.first_station();
+        let stations = &self.rotor.blade.grid.x()[first..];
+        let mu = condition.flight.advance_ratio;
+        let through = mu * condition.flight.shaft_tilt_rad.tan();
+        self.time
+            .points()
+            .iter()
+            .map(|&azimuth| {
+                let (sin, cos) = azimuth.sin_cos();
+                let pitch = ResponseSystem::root_pitch(&condition.controls, azimuth);
+                let flap: Vec<FlapAngle> =
+                    condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
+                PointInput {
+                    air: AirPoint { sin, cos, advance_ratio: mu, pitch },
+                    inflow: stations.iter().map(|&x| through + inflow.at(azimuth, x)).collect(),
+                    flap,
+                }
+            })
+            .collect()
+    }
+
+    fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
+        let weights = unit_weights(&self.time);
+        let count = self.rotor.discretisation.load_harmonics;
+        samples
+            .q
+            .row_iter()
+            .map(|row| {
+                let values: Vec<f64> = row.iter().copied().collect();
+                HarmonicSeries::project(&samples.azimuth_rad, &weights, &values, count)
+            })
+            .collect()
+    }
+}
+
+/// Irons and Tuck's relaxation factor of a fixed-point iteration (the vector form of Aitken's and the
+/// secant method): exact in one step for a scalar linear map.
+///
+/// Source: B. Irons, R. Tuck, Int. J. Numer. Methods Eng. 1 (1969) 275.
+fn irons_tuck(previous: Option<&(Vec<f64>, f64)>, change: &[f64]) -> f64 {
+    let Some((before, relaxation)) = previous else { return 1.0 };
+    let (mut num, mut den) = (0.0, 0.0);
+    for (new, old) in change.iter().zip(before) {
+        num += old * (new - old);
+        den += (new - old) * (new - old);
+    }
+    if den > 0.0 { (-relaxation * num / den).clamp(0.05, 3.0) } else { 1.0 }
+}
+
+/// Quadrature weights of the time points that sum to 1.
+fn unit_weights(time: &TimeElements) -> Vec<f64> {
+    time.weights().iter().map(|w| w / TAU).collect()
+}
+
+/// Root loads and hinge moments at every azimuth point.
+struct RevolutionLoads {
+    root: Vec<[f64; 6]>,
+    hinge: Vec<Vec<f64>>,
+    /// Root flap bending by force summation and by curvature.
+    bending: [Vec<f64>; 2],
+}
+
+impl RevolutionLoads {
+    /// Force summation with accelerations that satisfy the equations of motion at each azimuth.
+    ///
+    /// The orbit gives positions and rates; the accelerations follow from
+    /// `q'' = -M^-1 f(q, q', q'', psi)`, iterated because apparent mass makes `f` depend weakly on
+    /// them.
+    fn new(
+        rotor: &Rotor,
+        time: &TimeElements,
+        system: &ResponseSystem<'_>,
+        samples: &OrbitSamples,
+    ) -> Result<Self, ResponseError> {
+        let mut samples = samples.clone();
+        let inverse = rotor
+            .mass
+            .clone()
+            .cholesky()
+            .ok_or(ResponseError::MassMatrix { modes: rotor.mass.nrows() })?;
+        let mut forces = DMatrix::zeros(system.dof(), time.points().len());
+        for _ in 0..30 {
+            system.residual(&samples, &mut forces)?;
+            let accelerations = -inverse.solve(&forces);
+            let moved = (&accelerations - &samples.qdd).amax();
+            samples.qdd = accelerations;
+            if moved <= 1e-14 + 1e-13 * samples.qdd.amax() {
+                break;
+            }
+        }
+        let (flows, lags) = system.flows_and_lags(&samples);
+        let blade = &rotor.blade;
+        let first = system.air.first_station();
+        let mut root = Vec::with_capacity(flows.len());
+        let mut hinge = vec![Vec::with_capacity(flows.len()); rotor.model.flaps.len()];
+        let mut bending = [Vec::new(), Vec::new()];
+        let mut motion = Motion::default();
+        let mut loads = SpanLoads::default();
+        for p in 0..flows.len() {
+            system.fill(&mut motion, &samples, p);
+            let sections = system.section_loads(p, &flows[p], &lags[p]);
+            system.span_loads(p, &sections, &mut loads);
+            let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
+            let pitch = system.points[p].air.pitch;
+            root.push(root_loads(blade, &motion, pitch, &loads, &aerodynamic));
+            let couplings = rotor.model.couplings;
+            bending[0].push(root_flap_moment(blade, couplings, &motion, &loads));
+            let q: Vec<f64> = samples.q.column(p).iter().copied().collect();
+            bending[1].push(root_flap_curvature_moment(blade, couplings, &q, pitch.angle));
+            for (k, history) in hinge.iter_mut().enumerate() {
+                history.push(
+                    sections
+                        .iter()
+                        .enumerate()
+                        .filter(|(s, _)| blade.flap_index[first + s] == Some(k))
+                        .map(|(s, load)| blade.grid.weight()[first + s] * load.hinge)
+                        .sum(),
+                );
+            }
+        }
+        Ok(Self { root, hinge, bending })
+    }
+
+    fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {
+        HarmonicSeries::project(time.points(), &unit_weights(time), values, count)
+    }
+
+    fn root(&self, time: &TimeElements, count: usize) -> SixLoads {
+        let component = |k: usize| {
+            let values: Vec<f64> = self.root.iter().map(|r| r[k]).collect();
+            Self::series(time, &values, count)
+        };
+        SixLoads {
+            components: [
+                component(0),
+                component(1),
+                component(2),
+                component(3),
+                component(4),
+                component(5),
+            ],
+        }
+    }
+
+    fn hinge(&self, time: &TimeElements, count: usize) -> Vec<HarmonicSeries> {
+        self.hinge.iter().map(|h| Self::series(time, h, count)).collect()
+    }
+
+    fn root_bending(&self, time: &TimeElements, count: usize) -> RootBending {
+        let [forces, curvature] = &self.bending;
+        RootBending {
+            force_summation: Self::series(time, forces, count),
+            curvature: Self::series(time, curvature, count),
+        }
+    }
+
+    fn hub(&self, rotor: &Rotor, time: &TimeElements) -> SixLoads {
+        let count = rotor.discretisation.load_harmonics;
+        let blade = self.root(time, count + 1);
+        let blades: Vec<SixLoads> = (0..rotor.model.blades).map(|_| blade.clone()).collect();
+        hub_loads(&blades, count)
+    }
+}
+
+/// Aerodynamic forces alone at all stations.
+fn aerodynamic_loads(stations: usize, first: usize, sections: &[SectionLoads]) -> SpanLoads {
+    let mut out = SpanLoads {
+        fz: vec![0.0; stations],
+        fy: vec![0.0; stations],
+        moment: vec![0.0; stations],
+    };
+    for (s, load) in sections.iter().enumerate() {
+        out.fz[first + s] = load.fz;
+        out.fy[first + s] = load.fy;
+        out.moment[first + s] = load.moment;
+    }
+    out
+}

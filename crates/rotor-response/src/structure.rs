@@ -1,0 +1,157 @@
+//! Structural and inertial part of the modal equations at one azimuth.
+//!
+//! ```text
+//! flap    int [ m bp (x + 2 v') - F_z ] F + N w_x F_x + M_w F_xx
+//! lag     int [ -m v + 2 m u' - 2 m bp w' - F_y ] L + N v_x L_x + M_v L_xx
+//! torsion int [ m km^2 th'' + m (km2^2 - km1^2) sin th cos th + (EI_z - EI_y) kz ky - M ] P
+//!             + (GJ + kA^2 T) phi_x P_x
+//! kz = v_xx cos th + w_xx sin th      ky = w_xx cos th - v_xx sin th
+//! M_w = EI_z kz sin th + EI_y ky cos th      M_v = EI_z kz cos th - EI_y ky sin th
+//! N = T + int_x^1 2 m v'      T = int_x^1 m x      u' = -int_0^x (v_x v_x' + w_x w_x')
+//! ```
+//! (here `'` is the azimuth derivative and a subscript `x` the spanwise one; the constant mass part is
+//! left to the time elements; `bp` is the precone). Inextensional blade, elastic axis, centre of
+//! gravity and aerodynamic centre at the quarter chord.
+//!
+//! Source: second-order terms of Hodges and Dowell, NASA TN D-7818 (1974), in the order of Bir and
+//! Chopra's UMARC; the same virtual work as the independent cross-check model of this project.
+
+use crate::blade::{Couplings, ResponseBlade};
+use crate::motion::{Motion, RootPitch};
+
+/// Distributed loads at the stations at one azimuth, per length, mass `m0`, length R, time 1/Omega.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SpanLoads {
+    /// Force normal to the disk, up.
+    pub(crate) fz: Vec<f64>,
+    /// Force in the disk, toward the leading edge.
+    pub(crate) fy: Vec<f64>,
+    /// Nose-up moment about the elastic axis.
+    pub(crate) moment: Vec<f64>,
+}
+
+/// Scratch arrays, one per use, so that nothing is allocated inside the azimuth loop.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct StructureScratch {
+    integrand: Vec<f64>,
+    foreshortening_rate: Vec<f64>,
+    coriolis_tension: Vec<f64>,
+    force: [Vec<f64>; 3],
+    slope_force: [Vec<f64>; 3],
+    bending: [Vec<f64>; 2],
+}
+
+impl StructureScratch {
+    fn resize(&mut self, n: usize) {
+        for v in [
+            &mut self.integrand,
+            &mut self.foreshortening_rate,
+            &mut self.coriolis_tension,
+        ]
+        .into_iter()
+        .chain(&mut self.force)
+        .chain(&mut self.slope_force)
+        .chain(&mut self.bending)
+        {
+            v.resize(n, 0.0);
+        }
+    }
+}
+
+/// `out_j += sum_i w_i (f_i shape_ji + g_i slope_ji [+ b_i curvature_ji])`.
+fn project(
+    out: &mut [f64],
+    weight: &[f64],
+    parts: &[(&[Vec<f64>], &[f64])],
+) {
+    for (j, o) in out.iter_mut().enumerate() {
+        *o = parts
+            .iter()
+            .map(|(shapes, f)| {
+                weight.iter().zip(&shapes[j]).zip(*f).map(|((w, s), f)| w * s * f).sum::<f64>()
+            })
+            .sum();
+    }
+}
+
+/// Generalised residual without the constant mass part, modal order flap, lag, torsion.
+pub(crate) fn modal_residual(
+    blade: &ResponseBlade,
+    couplings: Couplings,
+    motion: &Motion,
+    pitch: RootPitch,
+    loads: &SpanLoads,
+    scratch: &mut StructureScratch,
+    out: &mut [f64],
+) {
+    let n = blade.grid.len();
+    scratch.resize(n);
+    let full = couplings == Couplings::Full;
+    let s = scratch;
+    if full {
+        for i in 0..n {
+            s.integrand[i] = motion.v.slope[i] * motion.v.slope_rate[i]
+                + motion.w.slope[i] * motion.w.slope_rate[i];
+        }
+        blade.grid.integral_from_root(&s.integrand, &mut s.foreshortening_rate);
+        for i in 0..n {
+            s.integrand[i] = 2.0 * blade.mass[i] * motion.v.rate[i];
+        }
+        blade.grid.integral_to_tip(&s.integrand, &mut s.coriolis_tension);
+    } else {
+        s.foreshortening_rate.fill(0.0);
+        s.coriolis_tension.fill(0.0);
+    }
+    for i in 0..n {
+        let (m, x) = (blade.mass[i], blade.grid.x()[i]);
+        let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
+        let theta = pitch.angle + blade.twist[i] + phi.value[i];
+        let tension = blade.tension[i] + s.coriolis_tension[i];
+        let radii = blade.km2_squared[i] - blade.km1_squared[i];
+        let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);
+        s.force[0][i] = m * blade.precone * (x + 2.0 * v.rate[i]) - loads.fz[i];
+        s.force[1][i] = -m * v.value[i]
+            - 2.0 * m * s.foreshortening_rate[i]
+            - 2.0 * m * blade.precone * w.rate[i]
+            - loads.fy[i];
+        s.slope_force[0][i] = tension * w.slope[i];
+        s.slope_force[1][i] = tension * v.slope[i];
+        s.slope_force[2][i] =
+            (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]) * phi.slope[i];
+        let propeller;
+        if full {
+            let (sin, cos) = theta.sin_cos();
+            let kz = v.curvature[i] * cos + w.curvature[i] * sin;
+            let ky = w.curvature[i] * cos - v.curvature[i] * sin;
+            s.bending[0][i] = eiz * kz * sin + eiy * ky * cos;
+            s.bending[1][i] = eiz * kz * cos - eiy * ky * sin;
+            propeller = m * radii * sin * cos + (eiz - eiy) * kz * ky;
+        } else {
+            s.bending[0][i] = eiy * w.curvature[i];
+            s.bending[1][i] = eiz * v.curvature[i];
+            propeller = m * radii * theta;
+        }
+        let km_squared = blade.km1_squared[i] + blade.km2_squared[i];
+        s.force[2][i] = m * km_squared * pitch.acceleration + propeller - loads.moment[i];
+    }
+    let weight = blade.grid.weight();
+    let (nf, nl) = (blade.flap.count(), blade.lag.count());
+    let (out_flap, rest) = out.split_at_mut(nf);
+    let (out_lag, out_torsion) = rest.split_at_mut(nl);
+    for (out, shapes, k) in [(out_flap, &blade.flap, 0), (out_lag, &blade.lag, 1)] {
+        project(
+            out,
+            weight,
+            &[
+                (&shapes.value, &s.force[k]),
+                (&shapes.slope, &s.slope_force[k]),
+                (&shapes.curvature, &s.bending[k]),
+            ],
+        );
+    }
+    project(
+        out_torsion,
+        weight,
+        &[(&blade.torsion.value, &s.force[2]), (&blade.torsion.slope, &s.slope_force[2])],
+    );
+}

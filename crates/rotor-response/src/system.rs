@@ -1,0 +1,230 @@
+//! The aeroelastic blade as a periodic system for the time elements.
+
+use crate::air::{AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, section_flow, section_loads};
+use crate::blade::{Couplings, ResponseBlade};
+use crate::flight_air::FlightAir;
+use crate::motion::{Motion, RootPitch};
+use crate::structure::{SpanLoads, StructureScratch, modal_residual};
+use crate::ResponseError;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use rotor_fem::{LocalTangent, OrbitSamples, PeriodicSystem};
+
+/// Step of the one-sided differences of the Newton matrix. Only the speed of convergence depends on
+/// it, never the solution.
+const TANGENT_STEP: f64 = 1e-6;
+
+/// What the air and the pilot do at one azimuth point.
+#[derive(Debug, Clone)]
+pub(crate) struct PointInput {
+    pub(crate) air: AirPoint,
+    /// Total inflow at the lifting stations, tip speed, down positive.
+    pub(crate) inflow: Vec<f64>,
+    /// Angle, rate and acceleration of each flap, rad.
+    pub(crate) flap: Vec<FlapAngle>,
+}
+
+/// One blade in one flight condition.
+#[derive(Debug)]
+pub(crate) struct ResponseSystem<'a> {
+    pub(crate) blade: &'a ResponseBlade,
+    pub(crate) couplings: Couplings,
+    pub(crate) scales: AirScales,
+    pub(crate) air: &'a FlightAir,
+    pub(crate) points: Vec<PointInput>,
+    /// Modal damping coefficients `2 zeta omega M`.
+    pub(crate) damping: &'a [f64],
+    pub(crate) mass: &'a DMatrix<f64>,
+}
+
+/// Reusable arrays of one evaluation.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    pub(crate) motion: Motion,
+    structure: StructureScratch,
+    pub(crate) loads: SpanLoads,
+}
+
+impl ResponseSystem<'_> {
+    /// Flow at every lifting station for the motion held in `motion`.
+    fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
+        let input = &self.points[point];
+        let first = self.air.first_station();
+        input
+            .inflow
+            .iter()
+            .enumerate()
+            .map(|(s, &lambda)| {
+                let station = first + s;
+                let delta =
+                    self.blade.flap_index[station].map_or([0.0; 3], |flap| input.flap[flap]);
+                let at = (station, lambda);
+                section_flow(self.blade, self.scales.chord, motion, &input.air, at, delta)
+            })
+            .collect()
+    }
+
+    /// Flows at all points, `[point][station]`, and the aerodynamic lag loads they call for.
+    pub(crate) fn flows_and_lags(
+        &self,
+        samples: &OrbitSamples,
+    ) -> (Vec<Vec<SectionFlow>>, Vec<Vec<[f64; 3]>>) {
+        let mut motion = Motion::default();
+        let flows: Vec<_> = (0..self.points.len())
+            .map(|p| {
+                self.fill(&mut motion, samples, p);
+                self.flows(p, &motion)
+            })
+            .collect();
+        let lags = self.air.lag_loads(&flows);
+        (flows, lags)
+    }
+
+    /// Motion of the blade at one point.
+    pub(crate) fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
+        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
+        motion.fill(
+            self.blade,
+            &column(&samples.q),
+            &column(&samples.qd),
+            &column(&samples.qdd),
+        );
+    }
+
+    /// Aerodynamic section loads at the lifting stations of one point.
+    pub(crate) fn section_loads(
+        &self,
+        point: usize,
+        flows: &[SectionFlow],
+        lags: &[[f64; 3]],
+    ) -> Vec<SectionLoads> {
+        flows
+            .iter()
+            .zip(lags)
+            .enumerate()
+            .map(|(s, (flow, &lag))| {
+                section_loads(self.scales, flow, self.air.coefficients(s, point), lag)
+            })
+            .collect()
+    }
+
+    /// Aerodynamic loads plus the inertial loads of the moving flaps, at all stations.
+    ///
+    /// ```text
+    /// F_z += m_f X_f delta''     M += -(m_f (d + X_f) X_f + I_cg) delta'' - m_f (d + X_f) X_f delta
+    /// ```
+    /// Only what the flap angle adds: the flap at rest is part of the blade.
+    pub(crate) fn span_loads(&self, point: usize, sections: &[SectionLoads], out: &mut SpanLoads) {
+        let n = self.blade.grid.len();
+        for v in [&mut out.fz, &mut out.fy, &mut out.moment] {
+            v.clear();
+            v.resize(n, 0.0);
+        }
+        let first = self.air.first_station();
+        for (s, load) in sections.iter().enumerate() {
+            out.fz[first + s] = load.fz;
+            out.fy[first + s] = load.fy;
+            out.moment[first + s] = load.moment;
+        }
+        for (i, flap) in self.blade.flap_index.iter().enumerate() {
+            let Some(k) = *flap else { continue };
+            let [delta, _, acceleration] = self.points[point].flap[k];
+            let inertia = self.blade.flap_inertia[k];
+            out.fz[i] += inertia.first_moment * acceleration;
+            out.moment[i] -= (inertia.arm_moment + inertia.own) * acceleration
+                + inertia.arm_moment * delta;
+        }
+    }
+
+    /// Generalised residual of one point, without the constant mass part.
+    fn project(&self, point: usize, qd: &[f64], scratch: &mut Scratch, out: &mut [f64]) {
+        let Scratch { motion, structure, loads } = scratch;
+        let pitch = self.points[point].air.pitch;
+        modal_residual(self.blade, self.couplings, motion, pitch, loads, structure, out);
+        for ((o, d), rate) in out.iter_mut().zip(self.damping).zip(qd) {
+            *o += d * rate;
+        }
+    }
+
+    /// Residual of one point with settled lag states, for the Newton matrix.
+    fn settled_residual(&self, point: usize, state: [&[f64]; 3], scratch: &mut Scratch) -> Vec<f64> {
+        let [q, qd, qdd] = state;
+        scratch.motion.fill(self.blade, q, qd, qdd);
+        let flows = self.flows(point, &scratch.motion);
+        let sections = self.section_loads(point, &flows, &self.air.settled_loads(point, &flows));
+        self.span_loads(point, &sections, &mut scratch.loads);
+        let mut out = vec![0.0; q.len()];
+        self.project(point, qd, scratch, &mut out);
+        out
+    }
+
+    fn tangent(&self, samples: &OrbitSamples, point: usize) -> LocalTangent {
+        let n = self.dof();
+        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
+        let state = [column(&samples.q), column(&samples.qd), column(&samples.qdd)];
+        let mut scratch = Scratch::default();
+        let base = self.settled_residual(point, [&state[0], &state[1], &state[2]], &mut scratch);
+        let mut derivatives = [0, 1, 2].map(|_| DMatrix::zeros(n, n));
+        for (which, matrix) in derivatives.iter_mut().enumerate() {
+            for j in 0..n {
+                let mut moved = state.clone();
+                moved[which][j] += TANGENT_STEP;
+                let value =
+                    self.settled_residual(point, [&moved[0], &moved[1], &moved[2]], &mut scratch);
+                for i in 0..n {
+                    matrix[(i, j)] = (value[i] - base[i]) / TANGENT_STEP;
+                }
+            }
+        }
+        let [dq, dqd, dqdd] = derivatives;
+        LocalTangent { dq, dqd, dqdd }
+    }
+}
+
+impl PeriodicSystem for ResponseSystem<'_> {
+    type Error = ResponseError;
+
+    fn dof(&self) -> usize {
+        self.mass.nrows()
+    }
+
+    fn mass(&self) -> &DMatrix<f64> {
+        self.mass
+    }
+
+    fn residual(
+        &self,
+        samples: &OrbitSamples,
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Self::Error> {
+        let (flows, lags) = self.flows_and_lags(samples);
+        let mut scratch = Scratch::default();
+        let mut column = vec![0.0; self.dof()];
+        for p in 0..self.points.len() {
+            self.fill(&mut scratch.motion, samples, p);
+            let sections = self.section_loads(p, &flows[p], &lags[p]);
+            self.span_loads(p, &sections, &mut scratch.loads);
+            let qd: Vec<f64> = samples.qd.column(p).iter().copied().collect();
+            self.project(p, &qd, &mut scratch, &mut column);
+            out.column_mut(p).copy_from_slice(&column);
+        }
+        Ok(())
+    }
+
+    fn tangents(&self, samples: &OrbitSamples) -> Result<Vec<LocalTangent>, Self::Error> {
+        Ok((0..self.points.len()).into_par_iter().map(|p| self.tangent(samples, p)).collect())
+    }
+}
+
+impl ResponseSystem<'_> {
+    /// Root pitch at an azimuth from the controls.
+    pub(crate) fn root_pitch(controls: &crate::Controls, azimuth_rad: f64) -> RootPitch {
+        let (sin, cos) = azimuth_rad.sin_cos();
+        let (c, s) = (controls.theta1c_rad, controls.theta1s_rad);
+        RootPitch {
+            angle: controls.theta0_rad + c * cos + s * sin,
+            rate: s * cos - c * sin,
+            acceleration: -c * cos - s * sin,
+        }
+    }
+}

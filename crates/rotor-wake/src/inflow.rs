@@ -1,0 +1,235 @@
+//! What every inflow model shares: its inputs, its answer and the trait.
+
+use crate::WakeError;
+
+/// State of flight of the rotor's hub in still air, in the shaft frame.
+///
+/// | field | symbol | unit | range |
+/// |---|---|---|---|
+/// | `advance_ratio` | `mu` | - | 0 and up |
+/// | `shaft_tilt_rad` | `alpha_s` | rad | less than 90 deg either way, forward + |
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlightState {
+    /// In-plane component of the flight velocity, `V cos(alpha_s) / (Omega R)`.
+    pub advance_ratio: f64,
+    /// Forward tilt of the shaft against the normal of the flight path, rad; a rotor that pulls the
+    /// aircraft forward has a positive tilt.
+    pub shaft_tilt_rad: f64,
+}
+
+impl FlightState {
+    /// Component of the free stream normal to the disk, `mu tan(alpha_s)`, positive down through
+    /// the disk.
+    pub fn normal_inflow(&self) -> f64 {
+        self.advance_ratio * self.shaft_tilt_rad.tan()
+    }
+
+    /// The same state if its numbers describe a flight.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for an advance ratio that is negative or not finite, or a tilt of
+    /// 90 deg or more.
+    pub fn validated(self) -> Result<Self, WakeError> {
+        let bad = |quantity, value, expected| WakeError::BadInput {
+            quantity,
+            value,
+            expected,
+        };
+        if !(self.advance_ratio.is_finite() && self.advance_ratio >= 0.0) {
+            return Err(bad(
+                "advance_ratio",
+                self.advance_ratio,
+                "a finite number, 0 or more",
+            ));
+        }
+        if self.shaft_tilt_rad.is_nan() || self.shaft_tilt_rad.abs() >= std::f64::consts::FRAC_PI_2
+        {
+            return Err(bad(
+                "shaft_tilt_rad",
+                self.shaft_tilt_rad,
+                "less than pi/2 either way",
+            ));
+        }
+        Ok(self)
+    }
+}
+
+/// What the rotor does to the air, as far as the inflow models ask for it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct RotorLoading {
+    /// Thrust coefficient `C_T = T / (rho pi R^2 (Omega R)^2)`, thrust up +.
+    pub thrust_coefficient: f64,
+}
+
+impl RotorLoading {
+    /// The loading known by its thrust alone: all that the linear models need.
+    pub fn from_thrust_coefficient(thrust_coefficient: f64) -> Self {
+        Self { thrust_coefficient }
+    }
+}
+
+/// Induced velocity over the disk, divided by the tip speed, positive down.
+///
+/// ```text
+/// Linear:  lambda_i(psi, r) = mean + r (cosine cos psi + sine sin psi)
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum InducedInflow {
+    /// Linear over the disk.
+    Linear {
+        /// Value at the centre, which is also the mean over the disk.
+        mean: f64,
+        /// Longitudinal gradient: more inflow over the tail (`psi = 0`) if positive.
+        cosine: f64,
+        /// Lateral gradient: more inflow on the advancing side (`psi = 90 deg`) if positive.
+        sine: f64,
+    },
+}
+
+impl InducedInflow {
+    /// The same induced velocity everywhere.
+    pub fn uniform(mean: f64) -> Self {
+        Self::Linear {
+            mean,
+            cosine: 0.0,
+            sine: 0.0,
+        }
+    }
+
+    /// Induced inflow at an azimuth (rad) and a radial station `r` (unit `R`), positive down.
+    pub fn at(&self, azimuth_rad: f64, r: f64) -> f64 {
+        match *self {
+            Self::Linear { mean, cosine, sine } => {
+                let (sin, cos) = azimuth_rad.sin_cos();
+                mean + r * (cosine * cos + sine * sin)
+            }
+        }
+    }
+
+    /// Mean over the disk, by area.
+    pub fn mean(&self) -> f64 {
+        match *self {
+            Self::Linear { mean, .. } => mean,
+        }
+    }
+
+    /// The numbers that make up the inflow, in an order that does not change: what a fixed-point
+    /// iteration relaxes. `Linear`: mean, cosine, sine.
+    pub fn parameters(&self) -> Vec<f64> {
+        match *self {
+            Self::Linear { mean, cosine, sine } => vec![mean, cosine, sine],
+        }
+    }
+
+    /// An inflow of the same kind as `self` made of other numbers; the inverse of
+    /// [`parameters`](Self::parameters).
+    ///
+    /// # Errors
+    /// [`WakeError::ParameterCount`] if the count differs from that of `self`;
+    /// [`WakeError::BadInput`] if a number is not finite.
+    pub fn with_parameters(&self, parameters: &[f64]) -> Result<Self, WakeError> {
+        if let Some(&value) = parameters.iter().find(|p| !p.is_finite()) {
+            return Err(WakeError::BadInput {
+                quantity: "inflow parameter",
+                value,
+                expected: "a finite number",
+            });
+        }
+        match (self, parameters) {
+            (Self::Linear { .. }, &[mean, cosine, sine]) => Ok(Self::Linear { mean, cosine, sine }),
+            (Self::Linear { .. }, _) => Err(WakeError::ParameterCount {
+                expected: 3,
+                got: parameters.len(),
+            }),
+        }
+    }
+}
+
+/// An inflow model: from flight and loading to the induced velocity over the disk.
+///
+/// A model is a value without memory: the same question has the same answer. A caller that couples
+/// it with blade motion iterates on [`InducedInflow::parameters`].
+pub trait InflowModel: Send + Sync {
+    /// Short name, as case files spell it.
+    fn name(&self) -> &'static str;
+
+    /// Induced inflow over the disk.
+    ///
+    /// # Errors
+    /// [`WakeError`] if the inputs describe no flight, or the flow state is one the model does not
+    /// describe.
+    fn induced(
+        &self,
+        flight: &FlightState,
+        loading: &RotorLoading,
+    ) -> Result<InducedInflow, WakeError>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn linear_inflow_in_the_four_quarters() {
+        let inflow = InducedInflow::Linear {
+            mean: 0.01,
+            cosine: 0.004,
+            sine: -0.002,
+        };
+        for (azimuth, want) in [
+            (0.0, 0.012),
+            (FRAC_PI_2, 0.009),
+            (PI, 0.008),
+            (3.0 * FRAC_PI_2, 0.011),
+        ] {
+            assert_relative_eq!(inflow.at(azimuth, 0.5), want, max_relative = 1e-14);
+        }
+        assert_eq!(inflow.mean().to_bits(), 0.01_f64.to_bits());
+    }
+
+    #[test]
+    fn parameters_go_out_and_come_back() {
+        let inflow = InducedInflow::Linear {
+            mean: 0.01,
+            cosine: 0.004,
+            sine: -0.002,
+        };
+        let other = InducedInflow::uniform(1.0);
+        assert_eq!(other.with_parameters(&inflow.parameters()).unwrap(), inflow);
+        assert_eq!(
+            other.with_parameters(&[1.0]).unwrap_err(),
+            WakeError::ParameterCount {
+                expected: 3,
+                got: 1
+            }
+        );
+        assert!(matches!(
+            other.with_parameters(&[1.0, f64::NAN, 0.0]),
+            Err(WakeError::BadInput { .. })
+        ));
+    }
+
+    #[test]
+    fn a_flight_that_is_none_is_refused() {
+        let flight = |advance_ratio, shaft_tilt_rad| FlightState {
+            advance_ratio,
+            shaft_tilt_rad,
+        };
+        assert!(flight(0.3, 0.1).validated().is_ok());
+        for bad in [
+            flight(-0.1, 0.0),
+            flight(f64::NAN, 0.0),
+            flight(0.3, 1.6),
+            flight(0.3, f64::NAN),
+        ] {
+            assert!(
+                matches!(bad.validated(), Err(WakeError::BadInput { .. })),
+                "{bad:?}"
+            );
+        }
+    }
+}

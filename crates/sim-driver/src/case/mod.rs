@@ -1,0 +1,29 @@
+//! Case files: what users write, its check, and the validated case.
+//!
+//! The file types ([`CaseFile`] and its sections) hold degrees and engineering units; the validated
+//! [`Case`] holds radians and rotor units. [`read_case`] reports every problem of a file at once.
+
+mod checker;
+mod convert;
+mod file;
+mod file_control;
+mod read;
+#[cfg(test)]
+mod tests;
+mod validated;
+
+pub use file::{
+    AerodynamicsFile, CaseFile, CompressibilityChoice, CouplingsChoice, FlapFile, InflowChoice,
+    InflowFile, ModesFile, ResponseFile, RotorFile, SectionModelChoice, StructureFile,
+    TolerancesFile,
+};
+pub use file_control::{
+    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice, LinearActuatorFile,
+    LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
+    TrimFile, WindTunnelTrimFile,
+};
+pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
+pub use validated::{
+    ActuatorSource, ActuatorValues, BladeValues, Case, ControlValues, FlapValues, SectionValues,
+    TrimValues,
+};

@@ -1,0 +1,118 @@
+//! What is accepted and what is reported, by the text of a case.
+
+use super::{
+    ActuatorSource, CompressibilityChoice, CouplingsChoice, InflowChoice, LoadedCase, PAPER_CASE,
+    SectionModelChoice, TrimValues, read_case, shipped_case,
+};
+use crate::files::{Folder, Source, ron_text};
+use approx::assert_relative_eq;
+
+fn read(text: &str) -> Result<LoadedCase, String> {
+    let source = Source { name: "case.ron".into(), text: text.into() };
+    read_case(&source, &Folder::Shipped("fixtures/cases".into())).map_err(|p| p.to_string())
+}
+
+#[test]
+fn shipped_cases_are_valid_and_complete() {
+    let paper = shipped_case(PAPER_CASE).unwrap();
+    // the shipped text leaves nothing to a default, and the defaults are the paper's
+    let short = read("()").unwrap();
+    assert_eq!(short.case.blade, paper.case.blade);
+    assert_eq!(short.case.trim, paper.case.trim);
+    assert_eq!(short.case.control, paper.case.control);
+    assert_eq!(short.case.flaps, paper.case.flaps);
+    assert_eq!(short.case.section, paper.case.section);
+    assert_eq!(short.case.actuator, paper.case.actuator);
+    assert_eq!(short.case.response, paper.case.response);
+    assert_eq!(short.case.tolerances, paper.case.tolerances);
+    for field in ["rotor.ka_r", "flaps[1].cg_fraction", "trim.tail_rotor_arm_r", "control.effort"] {
+        assert!(paper.index.contains(field), "{field}");
+    }
+    let case = &paper.case;
+    assert_relative_eq!(case.tip_mach(), 0.582_227, max_relative = 1e-6);
+    assert_relative_eq!(case.bench_frequency_hz(4), 20.0);
+    assert_relative_eq!(case.blade.twist_rad, -0.139_626_340, max_relative = 1e-8);
+    assert_eq!(
+        case.actuator.source,
+        ActuatorSource::Bench(Folder::Shipped("fixtures/bench/apa500l_synthetic".into()))
+    );
+    let physical = shipped_case("paper_mu030_6p383hz.ron").unwrap().case;
+    assert_relative_eq!(physical.bench_frequency_hz(4), 25.533_333, max_relative = 1e-7);
+    assert_relative_eq!(
+        physical.actuator.bench_rev_hz,
+        physical.scales.rev_hz(),
+        max_relative = 1e-14
+    );
+    let s1 = shipped_case("crosscheck_s1.ron").unwrap().case;
+    assert_eq!(s1.blade.couplings, CouplingsChoice::Linear);
+    assert_eq!(s1.section.model, SectionModelChoice::QuasiSteady);
+    assert_eq!(s1.section.compressibility, CompressibilityChoice::None);
+    assert_eq!(s1.inflow, InflowChoice::Prescribed { lambda_i: 0.008 });
+    let TrimValues::Prescribed { shaft_tilt_rad, .. } = s1.trim else { panic!("{:?}", s1.trim) };
+    assert_relative_eq!(shaft_tilt_rad, 5.0_f64.to_radians());
+}
+
+#[test]
+fn a_written_case_reads_back() {
+    let paper = shipped_case(PAPER_CASE).unwrap();
+    let text = ron_text(&paper.file).unwrap();
+    assert_eq!(read(&text).unwrap().file, paper.file);
+}
+
+#[test]
+fn every_problem_is_reported_with_its_line() {
+    let text = read(
+        "(\n  advance_ratio: 0.6,\n  rotor: (\n    ei_flap: -0.0108,\n    radius: 5.0,\n    blades: 0,\n    gj: NaN,\n  ),\n  flaps: [(start_r: 0.7, end_r: 0.8), (start_r: 0.75, end_r: 0.85)],\n  inflow: (model: Dress),\n)",
+    )
+    .unwrap_err();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        lines,
+        [
+            "case.ron:2:3: advance_ratio: is 0.6, expected 0 to 0.5; the attached-flow rotor model ends at 0.5; 0 is hover",
+            "case.ron:4:5: rotor.ei_flap: is -0.0108, expected a positive finite number; a stiffness is positive (paper: 0.0108 m0 Omega^2 R^4)",
+            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping",
+            "case.ron:6:5: rotor.blades: is 0, expected 1 to 16; the paper's rotor has 4",
+            "case.ron:7:5: rotor.gj: is NaN, expected a positive finite number; a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)",
+            "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) < start_r < end_r <= 1 R; list the flaps from root to tip without overlap",
+            "case.ron:10:12: inflow.model: unknown choice `Dress`, did you mean `Drees`?; known here: Uniform, Drees, Prescribed",
+            "7 problems",
+        ],
+        "{text}"
+    );
+}
+
+/// One wrong value and a part of its message.
+#[test]
+fn single_problems_name_the_remedy() {
+    for (text, expected) in [
+        ("(advance_ratio: -0.1)", "case.ron:1:2: advance_ratio: is -0.1, expected 0 to 0.5"),
+        ("(advance_ratio: NaN)", "advance_ratio: is NaN, expected 0 to 0.5"),
+        ("(control: (amplitude_V: 90))", "control.amplitude_V: the voltage 65 V +- 90 V leaves the actuator's range -20 V to 150 V; lower control.amplitude_V to 85 V"),
+        ("(control: (bias_V: 200))", "leaves the actuator's range"),
+        ("(actuator: (range_V: (150, -20)))", "actuator.range_V: (150, -20) is no range; give the lower limit first"),
+        ("(actuator: (model: Linear()))", "control.actuators[1]: Ignored and Hysteretic need an identified actuator"),
+        ("(aerodynamics: (model: Incompressible))", "aerodynamics.model: Incompressible holds at Mach 0 only"),
+        ("(aerodynamics: (speed_of_sound_m_s: 150))", "aerodynamics.speed_of_sound_m_s: is 150 m/s, expected 208"),
+        ("(trim: Propulsive(ct_sigma: 0.9))", "trim.ct_sigma: is 0.9, expected 0.001 to 0.5"),
+        ("(trim: WindTunnel(shaft_tilt_deg: 80))", "trim.shaft_tilt_deg: is 80 deg, expected -45 to 45 deg"),
+        ("(trim: Propulsive(ct: 0.07))", "unknown key `ct`"),
+        ("(trim: Free)", "unknown choice `Free`"),
+        ("(control: (harmonics: [[2, 2]]))", "`2` is used already"),
+        ("(control: (harmonics: [[]]))", "control.harmonics[0]: is empty; give at least one harmonic"),
+        ("(control: (harmonics: [[0]]))", "control.harmonics[0][0]: is 0, expected 1 to 12"),
+        ("(structure: (modes: (flap: 40)))", "structure.modes.flap: is 40, expected 1 to 20"),
+        ("(response: (time_gauss_points: 3))", "response.time_gauss_points: is 3, expected 5 to 32"),
+        ("(tolerances: (trim: 0))", "tolerances.trim: is 0, expected"),
+        ("(inflow: (model: Prescribed(lambda_i: 3)))", "inflow.model.lambda_i: is 3, expected -0.2 to 0.2"),
+        ("(rotor: (blades: \"four\"))", "rotor.blades: has the wrong type"),
+        ("(rotor: (omega_rpm: inf))", "rotor.omega_rpm: is inf rpm, expected a positive finite number"),
+        ("(title: \"\")", "title: is empty; give one line about the case"),
+        ("(rotor: (blades: 4)", "is not valid RON"),
+        ("", "is not valid RON"),
+    ] {
+        let message = read(text).expect_err(text);
+        assert!(message.contains(expected), "{text}\n  gave {message}\n  wanted {expected}");
+        assert!(message.starts_with("case.ron"), "{message}");
+    }
+}

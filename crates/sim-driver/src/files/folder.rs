@@ -1,0 +1,144 @@
+//! Where files come from: a folder on disk, or the files shipped inside the program.
+
+use super::shipped::shipped_file;
+use crate::problem::{Fault, Place, Problem};
+use std::path::{Component, Path, PathBuf};
+
+/// A text file that was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Name for messages: the path as the user gave it.
+    pub name: String,
+    /// The text.
+    pub text: String,
+}
+
+/// A folder that files are read from; relative paths in a file are relative to its folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Folder {
+    /// A folder on disk.
+    Disk(PathBuf),
+    /// A folder of the files shipped inside the program, such as `fixtures/cases`.
+    Shipped(String),
+}
+
+impl Folder {
+    /// The folder that holds a file on disk.
+    pub fn of_file(path: &Path) -> Self {
+        Self::Disk(path.parent().map(Path::to_path_buf).unwrap_or_default())
+    }
+
+    /// The name of a file in this folder, as messages and results show it.
+    pub fn display(&self, file: &str) -> String {
+        match self {
+            Self::Disk(folder) => folder.join(file).display().to_string(),
+            Self::Shipped(folder) => normalised(&format!("{folder}/{file}")),
+        }
+    }
+
+    /// A folder relative to this one; an absolute path on disk stands for itself.
+    #[must_use]
+    pub fn join(&self, relative: &str) -> Self {
+        match self {
+            Self::Disk(folder) => Self::Disk(folder.join(relative)),
+            Self::Shipped(folder) => Self::Shipped(normalised(&format!("{folder}/{relative}"))),
+        }
+    }
+
+    /// Reads a text file of this folder.
+    ///
+    /// # Errors
+    /// [`Fault::Unreadable`], [`Fault::NotText`] or [`Fault::NotShipped`].
+    pub fn read(&self, file: &str) -> Result<Source, Problem> {
+        let name = self.display(file);
+        let bytes = match self {
+            Self::Disk(folder) => read_bytes(&folder.join(file), &name)?,
+            Self::Shipped(_) => shipped_file(&name)
+                .ok_or_else(|| {
+                    Problem::new(Place::file(&name), Fault::NotShipped { path: name.clone() })
+                })?
+                .to_vec(),
+        };
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let offset = e.utf8_error().valid_up_to();
+            Problem::new(Place::file(&name), Fault::NotText { offset })
+        })?;
+        // a byte-order mark belongs to no format read here
+        let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+        Ok(Source { name, text })
+    }
+
+    /// Whether a file exists in this folder.
+    pub fn contains(&self, file: &str) -> bool {
+        match self {
+            Self::Disk(folder) => folder.join(file).is_file(),
+            Self::Shipped(_) => shipped_file(&self.display(file)).is_some(),
+        }
+    }
+}
+
+impl Source {
+    /// Reads a text file on disk.
+    ///
+    /// # Errors
+    /// [`Fault::Unreadable`] or [`Fault::NotText`].
+    pub fn read(path: &Path) -> Result<Self, Problem> {
+        let folder = Folder::of_file(path);
+        match path.file_name().and_then(|n| n.to_str()) {
+            Some(file) => folder.read(file),
+            None => {
+                let reason = "not a file name".to_owned();
+                Err(Problem::new(
+                    Place::file(path.display().to_string()),
+                    Fault::Unreadable { reason },
+                ))
+            }
+        }
+    }
+}
+
+#[expect(clippy::disallowed_methods, reason = "the one place of the program that reads files")]
+fn read_bytes(path: &Path, name: &str) -> Result<Vec<u8>, Problem> {
+    std::fs::read(path).map_err(|e| {
+        Problem::new(Place::file(name), Fault::Unreadable { reason: e.to_string() })
+    })
+}
+
+/// A path with `.` and `..` resolved and `/` between its parts.
+fn normalised(path: &str) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for component in Path::new(path).components() {
+        match component {
+            Component::ParentDir => {
+                parts.pop();
+            }
+            Component::Normal(part) => parts.push(part.to_string_lossy().into_owned()),
+            _ => {}
+        }
+    }
+    parts.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shipped_paths_resolve_dots() {
+        let cases = Folder::Shipped("fixtures/cases".into());
+        let bench = cases.join("../bench/apa500l_synthetic");
+        assert_eq!(bench, Folder::Shipped("fixtures/bench/apa500l_synthetic".into()));
+        assert!(bench.contains("dataset.ron"));
+        assert!(!bench.contains("none.csv"));
+        assert!(matches!(
+            bench.read("none.csv").unwrap_err().fault,
+            Fault::NotShipped { .. }
+        ));
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let problem = Source::read(Path::new("no/such/case.ron")).unwrap_err();
+        assert!(problem.to_string().starts_with("no/such/case.ron: cannot be read"), "{problem}");
+    }
+}

@@ -1,0 +1,164 @@
+//! Rules for the documents.
+
+use std::collections::BTreeMap;
+
+use super::{Finding, Tree};
+use crate::layers::Member;
+
+/// Files a stranger looks for.
+pub const REQUIRED_FILES: [&str; 16] = [
+    ".ci/run",
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "CONTRIBUTING.md",
+    "Cargo.lock",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "docs/book.toml",
+    "docs/src/SUMMARY.md",
+    "docs/src/decisions.md",
+    "docs/src/introduction.md",
+    "docs/src/known-differences.md",
+    "docs/src/validation.md",
+    "rust-toolchain.toml",
+];
+
+/// All of [`REQUIRED_FILES`] are there, and every folder of reference data says where it is from.
+pub fn required(tree: &Tree) -> Vec<Finding> {
+    let missing = |path: &str| !tree.paths.contains(path);
+    let mut findings: Vec<Finding> = REQUIRED_FILES
+        .into_iter()
+        .filter(|path| missing(path))
+        .map(|path| Finding::of_file(path, "is missing"))
+        .collect();
+    for path in &tree.paths {
+        let data = path.strip_prefix("fixtures/reference/").and_then(|rest| rest.split_once('/'));
+        if let Some((folder, _)) = data {
+            let source = format!("fixtures/reference/{folder}/SOURCE.md");
+            if missing(&source) {
+                findings.push(Finding::of_file(&source, "is missing: say where the numbers are from"));
+            }
+        }
+    }
+    findings
+}
+
+/// Every version in CHANGELOG.md has its heading "Numbers changed".
+pub fn changelog(tree: &Tree) -> Vec<Finding> {
+    let path = "CHANGELOG.md";
+    let Some(text) = tree.text(path) else { return Vec::new() };
+    let mut findings = Vec::new();
+    let mut versions = 0;
+    for section in text.split("\n## ").skip(1) {
+        versions += 1;
+        if !section.lines().any(|line| line.trim() == "### Numbers changed") {
+            let version = section.lines().next().unwrap_or_default();
+            let fault = format!("version `{version}` has no heading `### Numbers changed`");
+            findings.push(Finding::of_file(path, fault));
+        }
+    }
+    if versions == 0 {
+        findings.push(Finding::of_file(path, "has no version: expected a `## ` heading"));
+    }
+    findings
+}
+
+/// Every relative link in a Markdown file leads to a file or folder of the tree.
+pub fn links(tree: &Tree) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for file in tree.ending_in(".md") {
+        let mut code = false;
+        for (index, line) in file.text.lines().enumerate() {
+            if line.trim_start().starts_with("```") {
+                code = !code;
+            }
+            for target in link_targets(line).filter(|_| !code) {
+                let resolved = resolve(&file.path, target);
+                if !resolved.is_empty() && !tree.paths.contains(&resolved) {
+                    let fault = format!("link to `{target}` leads nowhere");
+                    findings.push(Finding::at_line(&file.path, index + 1, fault));
+                }
+            }
+        }
+    }
+    findings
+}
+
+/// Targets of the relative links `[text](target)` in a line, without their `#` part.
+fn link_targets(line: &str) -> impl Iterator<Item = &str> {
+    line.split("](").skip(1).filter_map(|rest| {
+        let target = rest.split([')', ' ']).next()?;
+        let target = target.split('#').next()?;
+        let outside = target.contains("://") || target.starts_with("mailto:");
+        (!target.is_empty() && !outside).then_some(target)
+    })
+}
+
+/// A link target as a path from the root; empty for the root itself.
+fn resolve(from: &str, target: &str) -> String {
+    let mut parts: Vec<&str> = from.split('/').collect();
+    parts.pop();
+    for part in target.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop();
+            }
+            name => parts.push(name),
+        }
+    }
+    parts.join("/")
+}
+
+/// Every page of the book stands in its table of contents. (That every entry has a page is a matter
+/// of [`links`].)
+pub fn summary(tree: &Tree) -> Vec<Finding> {
+    let path = "docs/src/SUMMARY.md";
+    let Some(text) = tree.text(path) else { return Vec::new() };
+    let listed: Vec<String> =
+        text.lines().flat_map(link_targets).map(|target| resolve(path, target)).collect();
+    tree.ending_in(".md")
+        .map(|file| file.path.as_str())
+        .filter(|page| page.starts_with("docs/src/") && *page != path)
+        .filter(|page| !listed.iter().any(|l| l == page))
+        .map(|page| Finding::of_file(page, format!("is not in {path}: nobody will find it")))
+        .collect()
+}
+
+/// The code map of ARCHITECTURE.md names every member with the floor its manifest states.
+///
+/// A row of the map starts with the member and its floor.
+pub fn floors_of_the_code_map(tree: &Tree, members: &[Member]) -> Vec<Finding> {
+    let path = "ARCHITECTURE.md";
+    let Some(text) = tree.text(path) else { return Vec::new() };
+    let stated: BTreeMap<&str, u32> = text.lines().filter_map(code_map_row).collect();
+    let mut findings = Vec::new();
+    for member in members {
+        let fault = match (stated.get(member.name.as_str()), member.floor) {
+            (None, _) => format!("the code map does not name `{}`", member.name),
+            (Some(on_page), Some(floor)) if *on_page != floor => format!(
+                "`{}` stands on floor {floor} by its manifest, on {on_page} by the code map",
+                member.name
+            ),
+            _ => continue,
+        };
+        findings.push(Finding::of_file(path, fault));
+    }
+    for name in stated.keys() {
+        if !members.iter().any(|member| member.name == *name) {
+            let fault = format!("the code map names `{name}`, which is no member");
+            findings.push(Finding::of_file(path, fault));
+        }
+    }
+    findings
+}
+
+/// Member and floor of a table row `| [`name`](path) | floor | ... |`.
+fn code_map_row(line: &str) -> Option<(&str, u32)> {
+    let mut cells = line.strip_prefix('|')?.split('|');
+    let name = cells.next()?.split('`').nth(1)?;
+    let floor = cells.next()?.trim().parse().ok()?;
+    Some((name, floor))
+}

@@ -1,0 +1,203 @@
+//! A check: a quantity with an independent reference and a bound, and what became of it.
+
+use super::CheckError;
+
+/// How far a quantity may be from its reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Criterion {
+    /// Near a reference value.
+    Near {
+        /// The reference value.
+        expected: f64,
+        /// Largest distance, in the unit of the quantity.
+        within: f64,
+    },
+    /// Not above a limit: errors and residuals.
+    AtMost(f64),
+    /// Not below a limit: what must be visibly wrong without the effect.
+    AtLeast(f64),
+    /// In an interval: orders of convergence.
+    Between(f64, f64),
+}
+
+impl Criterion {
+    /// Whether a value passes; a NaN does not.
+    pub fn admits(&self, got: f64) -> bool {
+        match *self {
+            Self::Near { expected, within } => (got - expected).abs() <= within,
+            Self::AtMost(limit) => got <= limit,
+            Self::AtLeast(limit) => got >= limit,
+            Self::Between(low, high) => (low..=high).contains(&got),
+        }
+    }
+
+    /// The width against which changes from machine to machine are judged.
+    pub fn width(&self) -> f64 {
+        match *self {
+            Self::Near { within, .. } => within,
+            Self::AtMost(limit) | Self::AtLeast(limit) => limit.abs(),
+            Self::Between(low, high) => 0.5 * (high - low),
+        }
+    }
+
+    /// Reference value and bound as the page shows them.
+    pub(super) fn shown(&self) -> [String; 2] {
+        match *self {
+            Self::Near { expected, within } => [figure(expected), format!("± {}", figure(within))],
+            Self::AtMost(limit) => ["0".to_owned(), format!("≤ {}", figure(limit))],
+            Self::AtLeast(limit) => ["–".to_owned(), format!("≥ {}", figure(limit))],
+            Self::Between(low, high) => {
+                ["–".to_owned(), format!("{} to {}", figure(low), figure(high))]
+            }
+        }
+    }
+}
+
+/// Whether a figure is the same on every machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Repeatability {
+    /// Up to rounding.
+    Everywhere,
+    /// A time: shown, judged, and never a reason to call the page stale.
+    MachineDependent,
+}
+
+/// A quantity with its reference, its bound and the way to compute it.
+#[derive(Debug, Clone, Copy)]
+pub struct Check {
+    /// Id, `V-AREA-NN`; never used again for another check.
+    pub id: &'static str,
+    /// What is measured.
+    pub quantity: &'static str,
+    /// Unit of value and bound.
+    pub unit: &'static str,
+    /// Where the reference is from.
+    pub source: &'static str,
+    /// The bound.
+    pub criterion: Criterion,
+    /// Whether the figure is the same everywhere.
+    pub repeatability: Repeatability,
+    /// Computes the quantity.
+    pub measure: fn() -> Result<f64, CheckError>,
+}
+
+/// The checks of one crate.
+#[derive(Debug, Clone, Copy)]
+pub struct Area {
+    /// Heading on the page.
+    pub heading: &'static str,
+    /// The checks, in the order of the page.
+    pub checks: &'static [Check],
+}
+
+/// A check that has been done.
+#[derive(Debug)]
+pub struct Row {
+    /// Heading of its area.
+    pub heading: &'static str,
+    /// The check.
+    pub check: Check,
+    /// The quantity as computed.
+    pub got: Result<f64, CheckError>,
+}
+
+impl Row {
+    /// Does a check.
+    pub fn of(heading: &'static str, check: Check) -> Self {
+        Self { heading, got: (check.measure)(), check }
+    }
+
+    /// Whether the quantity was computed and keeps its bound.
+    pub fn passes(&self) -> bool {
+        self.got.as_ref().is_ok_and(|got| self.check.criterion.admits(*got))
+    }
+
+    /// The cells of the table: id, quantity, unit, expected, got, bound, pass, source.
+    pub(super) fn cells(&self) -> [String; COLUMNS] {
+        let [expected, bound] = self.check.criterion.shown();
+        let got = match &self.got {
+            Ok(value) => figure(*value),
+            Err(_) => "not computed".to_owned(),
+        };
+        [
+            self.check.id.to_owned(),
+            self.check.quantity.to_owned(),
+            self.check.unit.to_owned(),
+            expected,
+            got,
+            bound,
+            if self.passes() { "yes" } else { "**no**" }.to_owned(),
+            self.check.source.to_owned(),
+        ]
+    }
+}
+
+/// Columns of the table.
+pub(super) const COLUMNS: usize = 8;
+
+/// Column of the computed quantity.
+pub(super) const GOT: usize = 4;
+
+/// Titles of the columns.
+pub(super) const TITLES: [&str; COLUMNS] =
+    ["id", "quantity", "unit", "expected", "got", "bound", "pass", "source"];
+
+/// A number with as many digits as a reader can use.
+pub(super) fn figure(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if !(1e-3..1e6).contains(&size) {
+        let text = format!("{value:.2e}");
+        text.replace(".00e", "e").replacen("0e", "e", usize::from(!text.contains(".00e")))
+    } else {
+        // seven significant digits, without the zeros that say nothing
+        let before = (1..=6).find(|n| size < 10_f64.powi(*n)).unwrap_or(6);
+        let digits = usize::try_from(7 - before).unwrap_or(0);
+        let text = format!("{value:.digits$}");
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_short_and_readable() {
+        for (value, text) in [
+            (0.0, "0"),
+            (15.93, "15.93"),
+            (0.1, "0.1"),
+            (1.125_789_21, "1.125789"),
+            (-143.25, "-143.25"),
+            (4e-8, "4e-8"),
+            (2.56e-9, "2.56e-9"),
+            (2.5e-9, "2.5e-9"),
+            (120.0, "120"),
+            (2e6, "2e6"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(figure(value), text);
+        }
+    }
+
+    #[test]
+    fn bounds_hold_on_their_side_and_refuse_what_is_no_number() {
+        let criteria = [
+            (Criterion::Near { expected: 2.0, within: 0.5 }, 2.5, 1.4),
+            (Criterion::AtMost(1.0), -3.0, 1.1),
+            (Criterion::AtLeast(1.0), 3.0, 0.9),
+            (Criterion::Between(15.0, 17.0), 16.0, 17.1),
+        ];
+        for (criterion, good, bad) in criteria {
+            assert!(criterion.admits(good) && !criterion.admits(bad), "{criterion:?}");
+            assert!(!criterion.admits(f64::NAN), "{criterion:?}");
+            assert!(criterion.width() > 0.0);
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Why a check could not be computed.
+
+use std::convert::Infallible;
+use std::path::PathBuf;
+
+use flap_aero::AeroError;
+use rotor_fem::{FemError, PeriodicError};
+use rotor_wake::WakeError;
+
+/// Why a check could not be computed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckError {
+    /// A reference table cannot be read.
+    #[error("reference table {}: {source}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: csv::Error,
+    },
+    /// A reference table lacks a column, or a cell is no number.
+    #[error("reference table {}, row {row}: column `{column}` {problem}", path.display())]
+    Cell {
+        /// The file.
+        path: PathBuf,
+        /// Row below the header, from 1.
+        row: usize,
+        /// The column.
+        column: String,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// A reference table lacks a row.
+    #[error("reference table {} has no row `{row}`", path.display())]
+    NoRow {
+        /// The file.
+        path: PathBuf,
+        /// What the row is called.
+        row: String,
+    },
+    /// Fewer values were computed or compared than the check needs.
+    #[error("only {found} values of {what} were compared, {needed} are needed")]
+    TooFew {
+        /// What was compared.
+        what: &'static str,
+        /// Values found.
+        found: usize,
+        /// Values needed.
+        needed: usize,
+    },
+    /// The blade.
+    #[error(transparent)]
+    Fem(#[from] FemError),
+    /// The time elements.
+    #[error(transparent)]
+    Periodic(#[from] PeriodicError<Infallible>),
+    /// The section.
+    #[error(transparent)]
+    Aero(#[from] AeroError),
+    /// The inflow.
+    #[error(transparent)]
+    Wake(#[from] WakeError),
+}

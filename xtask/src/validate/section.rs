@@ -1,0 +1,172 @@
+//! Attached-flow loads of a section with a trailing-edge flap.
+
+use flap_aero::{
+    AttachedFlowModel, FlapChord, HingePosition, Load, Mach, Mode, Motion, SectionCoefficients,
+    SectionInputs, SectionState, TheodorsenFunctions, harmonic_response,
+};
+use num_complex::Complex64;
+
+use super::check::{Area, Check, Criterion, Repeatability};
+use super::reference::{Table, TableRow, worst};
+use super::CheckError;
+
+const THEODORSEN: &str = "Theodorsen, NACA Report 496, theodorsen_flap_E020.csv, E = 0.20";
+
+pub(super) const AREA: Area = Area {
+    heading: "Section aerodynamics (`flap-aero`)",
+    checks: &[
+        Check {
+            id: "V-AERO-01",
+            quantity: "flap lift, incompressible, k up to 1: largest error of its magnitude",
+            unit: "%",
+            source: THEODORSEN,
+            criterion: Criterion::AtMost(2.5),
+            repeatability: Repeatability::Everywhere,
+            measure: || flap_error(Load::Lift, 100.0),
+        },
+        Check {
+            id: "V-AERO-02",
+            quantity: "flap pitching moment, the same",
+            unit: "-",
+            source: THEODORSEN,
+            criterion: Criterion::AtMost(1e-6),
+            repeatability: Repeatability::Everywhere,
+            measure: || flap_error(Load::Moment, 1.0),
+        },
+        Check {
+            id: "V-AERO-03",
+            quantity: "flap hinge moment, the same",
+            unit: "%",
+            source: THEODORSEN,
+            criterion: Criterion::AtMost(0.6),
+            repeatability: Repeatability::Everywhere,
+            measure: || flap_error(Load::Hinge, 100.0),
+        },
+        Check {
+            id: "V-AERO-04",
+            quantity: "Theodorsen functions T1 to T19, all hinge positions: largest error",
+            unit: "-",
+            source: "T_coeffs.csv",
+            criterion: Criterion::AtMost(1e-11),
+            repeatability: Repeatability::Everywhere,
+            measure: theodorsen_functions,
+        },
+        Check {
+            id: "V-AERO-05",
+            quantity: "lag recurrence on a ramp: largest error",
+            unit: "-",
+            source: "closed form of a first-order lag",
+            criterion: Criterion::AtMost(1e-12),
+            repeatability: Repeatability::Everywhere,
+            measure: ramp_error,
+        },
+        Check {
+            id: "V-AERO-06",
+            quantity: "lag recurrence on a sine, order from 80 to 160 steps per cycle",
+            unit: "-",
+            source: "theory: second order",
+            criterion: Criterion::Between(1.95, 2.05),
+            repeatability: Repeatability::Everywhere,
+            measure: recurrence_order,
+        },
+    ],
+};
+
+/// Flap chord over chord of the reference tables.
+const FLAP_CHORD: f64 = 0.2;
+
+fn incompressible() -> Result<SectionCoefficients, CheckError> {
+    let flap = FlapChord::new(FLAP_CHORD)?;
+    Ok(AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, flap)?)
+}
+
+fn complex(row: &TableRow<'_>, name: &str) -> Result<Complex64, CheckError> {
+    Ok(Complex64::new(row.number(&format!("{name}_re"))?, row.number(&format!("{name}_im"))?))
+}
+
+/// Largest error of one load over the table's reduced frequencies up to 1, over the load's magnitude.
+fn flap_error(load: Load, scale: f64) -> Result<f64, CheckError> {
+    let section = incompressible()?;
+    let table = Table::read("aero/theodorsen_flap_E020.csv")?;
+    let column = ["cn", "cm25", "ch"][load.index()];
+    let mut errors = Vec::new();
+    for row in table.rows() {
+        let k = row.number("k")?;
+        if k > 1.0 {
+            continue;
+        }
+        let got = harmonic_response(&section, k, Motion::Flap)[load.index()];
+        let exact = complex(&row, column)?;
+        errors.push(Ok(scale * (got - exact).norm() / exact.norm()));
+    }
+    worst("reduced frequencies", 10, errors)
+}
+
+fn theodorsen_functions() -> Result<f64, CheckError> {
+    let table = Table::read("aero/T_coeffs.csv")?;
+    let mut errors = Vec::new();
+    for row in table.rows() {
+        let functions = TheodorsenFunctions::new(HingePosition::new(row.number("e")?)?);
+        for (index, value) in functions.all().iter().enumerate() {
+            let exact = row.number(&format!("T{}", index + 1))?;
+            errors.push(Ok((value - exact).abs()));
+        }
+    }
+    worst("Theodorsen functions", 19, errors)
+}
+
+/// The exact state of `x' = p (u - x)`, `x(0) = 0`, for the ramp `u = r S`.
+fn lag_on_a_ramp(pole: f64, rate: f64, semichords: f64) -> f64 {
+    rate * (semichords + (-pole * semichords).exp_m1() / pole)
+}
+
+/// Largest error of a lag state while the flap angle ramps by 0.01 rad per semichord, in steps from
+/// short to very long.
+fn ramp_error() -> Result<f64, CheckError> {
+    let section = incompressible()?;
+    let mut state = SectionState::at_rest(&section);
+    let rate = 0.01;
+    let mut travelled = 0.0;
+    let mut errors = Vec::new();
+    for step in [1e-3, 0.1, 0.7, 2.0, 11.0, 40.0] {
+        travelled += step;
+        let mut inputs = SectionInputs::default();
+        inputs.modes[Mode::Flap.index()] = rate * travelled;
+        inputs.rates[Mode::Flap.index()] = rate;
+        state.step(&section, &inputs, step)?;
+        for (lag, got) in section.lags.iter().zip(state.states()) {
+            let drive = lag.input[Mode::Flap.index()] * rate;
+            errors.push(Ok((got - lag_on_a_ramp(lag.pole, drive, travelled)).abs()));
+        }
+    }
+    worst("lag states", 6, errors)
+}
+
+/// Largest error of the lift in the tenth cycle of a flap oscillation, over the lift's amplitude.
+fn sine_error(steps_per_cycle: u32) -> Result<f64, CheckError> {
+    let section = incompressible()?;
+    let k = 0.2;
+    let exact = harmonic_response(&section, k, Motion::Flap)[Load::Lift.index()];
+    let motion = Motion::Flap.inputs(k);
+    let ik = Complex64::new(0.0, k);
+    let at = |turn: Complex64| SectionInputs {
+        modes: motion.map(|m| (m * turn).re),
+        rates: motion.map(|m| (m * ik * turn).re),
+    };
+    let step = std::f64::consts::TAU / (k * f64::from(steps_per_cycle));
+    let mut state = SectionState::at_rest(&section);
+    let mut errors = Vec::new();
+    // the slowest lag, 0.0455 per semichord, has forgotten the start after thirty cycles
+    for i in 1..=31 * steps_per_cycle {
+        let turn = Complex64::cis(k * step * f64::from(i));
+        let got = state.step(&section, &at(turn), step)?[Load::Lift.index()];
+        if i > 30 * steps_per_cycle {
+            errors.push(Ok((got - (exact * turn).re).abs() / exact.norm()));
+        }
+    }
+    worst("steps", 10, errors)
+}
+
+fn recurrence_order() -> Result<f64, CheckError> {
+    Ok((sine_error(80)? / sine_error(160)?).log2())
+}

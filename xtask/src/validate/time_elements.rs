@@ -1,0 +1,117 @@
+//! Time finite elements on the flap equation of a rotor in forward flight.
+
+use nalgebra::{DMatrix, DVector};
+use rotor_base::HarmonicSeries;
+use rotor_fem::{
+    LinearCoefficients, LinearPeriodic, Orbit, PeriodicSettings, PeriodicSolver, TimeElements,
+};
+
+use super::check::{Area, Check, Criterion, Repeatability};
+use super::reference::{Table, worst};
+use super::CheckError;
+
+pub(super) const AREA: Area = Area {
+    heading: "Time elements (`rotor-fem`)",
+    checks: &[
+        Check {
+            id: "V-TIME-01",
+            quantity: "flap equation, mu 0.3, 8 elements of order 5: largest error to 5/rev",
+            unit: "deg",
+            source: "harmonic balance with 24 harmonics, timefe_flap_reference.csv",
+            criterion: Criterion::AtMost(4e-8),
+            repeatability: Repeatability::Everywhere,
+            measure: || flap_error(8, 0..=5),
+        },
+        Check {
+            id: "V-TIME-02",
+            quantity: "the same at 6/rev",
+            unit: "deg",
+            source: "harmonic balance with 24 harmonics, timefe_flap_reference.csv",
+            criterion: Criterion::AtMost(2e-7),
+            repeatability: Repeatability::Everywhere,
+            measure: || flap_error(8, 6..=6),
+        },
+        Check {
+            id: "V-TIME-03",
+            quantity: "order of convergence of the harmonics 1 to 3, from 4 to 8 elements of order 3",
+            unit: "-",
+            source: "theory: harmonics converge with twice the polynomial order",
+            criterion: Criterion::Between(5.5, 7.0),
+            repeatability: Repeatability::Everywhere,
+            measure: flap_order,
+        },
+    ],
+};
+
+/// Advance ratio, Lock number and flap frequency of the reference case.
+const MU: f64 = 0.3;
+const LOCK: f64 = 5.2;
+const FLAP_FREQUENCY: f64 = 1.125_789_21;
+
+/// The rigid-blade flap equation at an azimuth, angles in degrees.
+///
+/// ```text
+/// b'' + (g/8)(1 + 4/3 mu s) b' + [nu^2 + (g/8)(4/3 mu c + mu^2 sin 2 psi)] b
+///   = (g/8)[theta (1 + 8/3 mu s + 2 mu^2 s^2) + theta_tw (4/5 + 2 mu s + 4/3 mu^2 s^2)
+///           - lambda (4/3 + 2 mu s)],   theta = 8 + 2 c - 6 s, theta_tw = -8 deg, lambda 0.02
+/// ```
+fn flap_equation(psi: f64) -> LinearCoefficients {
+    let (s, c) = psi.sin_cos();
+    let g8 = LOCK / 8.0;
+    let theta = 8.0 + 2.0 * c - 6.0 * s;
+    let twist = -8.0;
+    let lambda = 0.02_f64.to_degrees();
+    let damping = g8 * (1.0 + 4.0 / 3.0 * MU * s);
+    let stiffness =
+        FLAP_FREQUENCY.powi(2) + g8 * (4.0 / 3.0 * MU * c + MU * MU * (2.0 * psi).sin());
+    let load = g8
+        * (theta * (1.0 + 8.0 / 3.0 * MU * s + 2.0 * (MU * s).powi(2))
+            + twist * (0.8 + 2.0 * MU * s + 4.0 / 3.0 * (MU * s).powi(2))
+            - lambda * (4.0 / 3.0 + 2.0 * MU * s));
+    LinearCoefficients {
+        damping: DMatrix::from_element(1, 1, damping),
+        stiffness: DMatrix::from_element(1, 1, stiffness),
+        load: DVector::from_element(1, load),
+    }
+}
+
+/// Harmonics of the solution in degrees.
+fn flap_harmonics(elements: usize, order: usize) -> Result<HarmonicSeries, CheckError> {
+    let time = TimeElements::new(elements, order, 8)?;
+    let settings = PeriodicSettings { tolerance: 1e-12, ..PeriodicSettings::default() };
+    let system = LinearPeriodic::new(DMatrix::identity(1, 1), flap_equation);
+    let mut solver = PeriodicSolver::new(time.clone(), settings)?;
+    let solution = solver.solve(&system, &Orbit::zero(&time, 1))?;
+    Ok(solution.orbit.harmonics(&time, 0, 6))
+}
+
+/// Largest error of the harmonics in a range, deg.
+fn harmonic_error(
+    elements: usize,
+    order: usize,
+    range: std::ops::RangeInclusive<usize>,
+) -> Result<f64, CheckError> {
+    let table = Table::read("rotor/timefe_flap_reference.csv")?;
+    let truth = table.row(["method_deg", "method_deg"], ["harmonic_balance_N24"; 2])?;
+    let got = flap_harmonics(elements, order)?;
+    let mut errors = Vec::new();
+    for n in range {
+        if n == 0 {
+            errors.push(Ok((got.mean - truth.number("b0")?).abs()));
+        } else {
+            let harmonic = got.harmonic(n);
+            errors.push(Ok((harmonic.cosine - truth.number(&format!("b{n}c"))?).abs()));
+            errors.push(Ok((harmonic.sine - truth.number(&format!("b{n}s"))?).abs()));
+        }
+    }
+    worst("harmonics", 1, errors)
+}
+
+fn flap_error(elements: usize, range: std::ops::RangeInclusive<usize>) -> Result<f64, CheckError> {
+    harmonic_error(elements, 5, range)
+}
+
+fn flap_order() -> Result<f64, CheckError> {
+    let (coarse, fine) = (harmonic_error(4, 3, 1..=3)?, harmonic_error(8, 3, 1..=3)?);
+    Ok((coarse / fine).log2())
+}
