@@ -3,6 +3,9 @@
 use crate::decay::{Decay, LANES, Lanes, decay};
 use crate::{AeroError, SectionCoefficients};
 
+/// A step shorter than this, semichords, is none: its inverse would leave the range of numbers.
+const NO_STEP: f64 = 1e-200;
+
 /// Inputs of a section at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SectionInputs {
@@ -16,6 +19,8 @@ pub struct SectionInputs {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Block {
     pole: Lanes,
+    /// `1 / pole`
+    time: Lanes,
     /// `[input][lag]`
     input: [Lanes; 4],
     /// `[output][lag]`
@@ -40,11 +45,13 @@ impl MarchingSection {
             .map(|lags| {
                 let mut block = Block {
                     pole: [1.0; LANES],
+                    time: [1.0; LANES],
                     input: [[0.0; LANES]; 4],
                     output: [[0.0; LANES]; 3],
                 };
                 for (lane, lag) in lags.iter().enumerate() {
                     block.pole[lane] = lag.pole;
+                    block.time[lane] = 1.0 / lag.pole;
                     for (row, weight) in block.input.iter_mut().zip(lag.input) {
                         row[lane] = weight;
                     }
@@ -87,9 +94,16 @@ impl Block {
         })
     }
 
+    /// Decay over a step of `[semichords, 1 / semichords]`.
     #[inline]
-    fn decay(&self, semichords: f64) -> Decay {
-        decay(&self.pole.map(|pole| pole * semichords))
+    fn decay(&self, [semichords, inverse]: [f64; 2]) -> Decay {
+        if semichords < NO_STEP {
+            return Decay::NONE;
+        }
+        decay(
+            &self.pole.map(|pole| pole * semichords),
+            &self.time.map(|time| time * inverse),
+        )
     }
 }
 
@@ -107,10 +121,11 @@ impl StepFactors {
     /// [`AeroError::BadInput`] if the step is negative or not finite.
     pub fn new(section: &MarchingSection, semichords: f64) -> Result<Self, AeroError> {
         check_step(semichords)?;
+        let step = [semichords, 1.0 / semichords];
         let blocks = section
             .blocks
             .iter()
-            .map(|block| block.decay(semichords))
+            .map(|block| block.decay(step))
             .collect();
         Ok(Self {
             blocks,
@@ -189,7 +204,8 @@ impl SectionState {
         self.check(section)?;
         check_step(semichords)?;
         check_inputs(inputs)?;
-        let decays = section.blocks.iter().map(|block| block.decay(semichords));
+        let step = [semichords, 1.0 / semichords];
+        let decays = section.blocks.iter().map(|block| block.decay(step));
         Ok(self.advance(section, inputs, decays))
     }
 
@@ -272,7 +288,7 @@ fn add(sums: &mut [Lanes; 3], block: &Block, state: &Lanes) {
 /// The loads at once and those of the lags.
 #[inline]
 fn total(at_once: [f64; 3], sums: &[Lanes; 3]) -> [f64; 3] {
-    std::array::from_fn(|o| at_once[o] + sums[o].iter().sum::<f64>())
+    std::array::from_fn(|o| at_once[o] + ((sums[o][0] + sums[o][1]) + (sums[o][2] + sums[o][3])))
 }
 
 fn check_lags(state: usize, coefficients: usize) -> Result<(), AeroError> {
@@ -298,17 +314,15 @@ fn check_step(semichords: f64) -> Result<(), AeroError> {
 
 #[inline]
 fn check_inputs(inputs: &SectionInputs) -> Result<(), AeroError> {
-    let all = inputs.modes.iter().chain(&inputs.rates);
-    // a sum of finite numbers times zero is zero; anything else is not
-    if all.clone().map(|value| value * 0.0).sum::<f64>() == 0.0 {
+    // finite numbers times zero are zero; anything else is not
+    let nothing: [f64; 4] = std::array::from_fn(|i| inputs.modes[i] * 0.0 + inputs.rates[i] * 0.0);
+    if (nothing[0] + nothing[1]) + (nothing[2] + nothing[3]) == 0.0 {
         return Ok(());
     }
+    let mut all = inputs.modes.iter().chain(&inputs.rates).copied();
     Err(AeroError::BadInput {
         quantity: "input of the section (alpha, q, delta, q_delta or a rate of them)",
-        value: all
-            .copied()
-            .find(|value| !value.is_finite())
-            .unwrap_or(f64::NAN),
+        value: all.find(|value| !value.is_finite()).unwrap_or(f64::NAN),
         expected: "a finite number",
     })
 }

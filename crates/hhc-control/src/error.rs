@@ -7,7 +7,9 @@ use crate::{ControlStep, Cost};
 #[non_exhaustive]
 pub enum ControlError {
     /// No flap or no harmonic to control.
-    #[error("a control layout needs a flap and a harmonic, found {flaps} flaps, {harmonics} harmonics")]
+    #[error(
+        "a control layout needs a flap and a harmonic, found {flaps} flaps, {harmonics} harmonics"
+    )]
     EmptyLayout {
         /// Flaps given.
         flaps: usize,
@@ -186,7 +188,10 @@ impl std::fmt::Display for PlantCall {
                 write!(f, "asked for its strokes at u = {control_volt:.4?} V")
             }
             Self::MeanFlap { bias_volt } => {
-                write!(f, "asked for its mean flap angle at a bias of {bias_volt} V")
+                write!(
+                    f,
+                    "asked for its mean flap angle at a bias of {bias_volt} V"
+                )
             }
         }
     }
@@ -218,10 +223,18 @@ pub(crate) fn check_vector(
     expected: usize,
 ) -> Result<(), ControlError> {
     if values.len() != expected {
-        return Err(ControlError::Length { what, found: values.len(), expected });
+        return Err(ControlError::Length {
+            what,
+            found: values.len(),
+            expected,
+        });
     }
     match values.iter().position(|v| !v.is_finite()) {
-        Some(index) => Err(ControlError::NotFinite { what, index, value: values[index] }),
+        Some(index) => Err(ControlError::NotFinite {
+            what,
+            index,
+            value: values[index],
+        }),
         None => Ok(()),
     }
 }
@@ -231,7 +244,11 @@ pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<(), Contr
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {
-        Err(ControlError::OutOfRange { what, value, expected: "a finite number above 0" })
+        Err(ControlError::OutOfRange {
+            what,
+            value,
+            expected: "a finite number above 0",
+        })
     }
 }
 
@@ -240,6 +257,10 @@ pub(crate) fn check_not_negative(what: &'static str, value: f64) -> Result<(), C
     if value.is_finite() && value >= 0.0 {
         Ok(())
     } else {
-        Err(ControlError::OutOfRange { what, value, expected: "a finite number, 0 or above" })
+        Err(ControlError::OutOfRange {
+            what,
+            value,
+            expected: "a finite number, 0 or above",
+        })
     }
 }

@@ -18,7 +18,7 @@ pub struct FeedbackSettings {
     /// this fraction of the largest one.
     pub step_tolerance: f64,
     /// How much a full step may raise the cost and still be taken, as a fraction of the cost at the
-    /// start, if the next step asked for after it is at most half as long. Where T0 is not exact and
+    /// start, if the next step asked for after it is shorter by a fifth or more. Where T0 is not exact and
     /// the control is weighted, the fixed point of eq. (10) lies a little beside the least cost, and
     /// the last steps to it raise the cost by a trifle: halving those would keep the loop from
     /// settling. A halved step may raise nothing.
@@ -33,7 +33,7 @@ impl Default for FeedbackSettings {
         Self {
             max_steps: 30,
             max_halvings: 6,
-            step_tolerance: 1e-5,
+            step_tolerance: 1e-4,
             cost_rise_allowance: 1e-2,
             stroke_tolerance: 1e-3,
         }
@@ -47,7 +47,11 @@ impl FeedbackSettings {
         error::check_positive("stroke tolerance", self.stroke_tolerance)?;
         let (value, expected) = (f64::from(self.max_halvings), "0 to 60");
         if self.max_halvings > 60 {
-            return Err(ControlError::OutOfRange { what: "number of halvings", value, expected });
+            return Err(ControlError::OutOfRange {
+                what: "number of halvings",
+                value,
+                expected,
+            });
         }
         Ok(())
     }
@@ -78,6 +82,9 @@ pub enum Outcome {
     /// Some steps lowered the cost, but no part of the next one does: near the least cost, where a
     /// constant T0 no longer points downhill. The last state is the best found.
     Stalled,
+    /// The next step leads out of the range that the plant admits, and what part of it stays inside
+    /// does not lower the cost.
+    OutOfRange,
     /// The allowed number of steps was taken, still moving.
     StepLimit,
 }
@@ -126,9 +133,14 @@ impl ControlRun {
 /// so is one that the plant does not admit ([`Plant::admits`]).
 ///
 /// On a linear plant with exact T0 the first step reaches the optimum. With T0 wrong by a complex
-/// factor `g exp(i phi)` (voltage harmonics as complex numbers) and `rho = 0` the error shrinks per
-/// full step by `|1 - exp(-i phi) / g|`; with halving the loop still converges for any phase error
-/// below 90 deg, and above 90 deg no step lowers the cost: [`ControlError::Diverges`].
+/// factor `g exp(i phi)` (voltage harmonics as complex numbers) and `rho = 0` the error of the control
+/// shrinks per full step by
+///
+/// ```text
+/// |1 - exp(-i phi) / g|
+/// ```
+/// so that full steps converge for `|phi| < 60 deg` if the gain is right; halved ones converge, the
+/// slower the nearer, up to 90 deg. Beyond that no step lowers the cost: [`ControlError::Diverges`].
 ///
 /// With `rho = 0` an error of that kind does not move the fixed point. With `rho > 0` it does: the
 /// fixed point solves `rho u = -T0' W_Z Z`, which is the least cost only where T0 is exact.
@@ -142,6 +154,9 @@ pub struct FeedbackController {
 
 /// Changes below a nanovolt are none.
 const SMALLEST_CHANGE_VOLT: f64 = 1e-9;
+
+/// A step no longer than this part of the step before belongs to a loop that settles.
+const SETTLING: f64 = 0.8;
 
 /// Part of the starting cost below which a difference is rounding.
 const COST_ROUNDING: f64 = 1e-14;
@@ -161,11 +176,14 @@ impl FeedbackController {
     /// What [`FeedbackLaw::new`] refuses, and settings outside their range.
     pub fn new(
         t0: &TMatrix,
-        load_weights: LoadWeights,
+        load_weights: &LoadWeights,
         settings: FeedbackSettings,
     ) -> Result<Self, ControlError> {
         settings.check()?;
-        Ok(Self { law: FeedbackLaw::new(t0, &load_weights)?, settings })
+        Ok(Self {
+            law: FeedbackLaw::new(t0, load_weights)?,
+            settings,
+        })
     }
 
     /// The control law with its singular values.
@@ -183,11 +201,7 @@ impl FeedbackController {
     /// [`RunError::Plant`] if the plant fails, [`ControlError::Diverges`] if no part of the first
     /// step lowers the cost, [`ControlError::NotAdmitted`] if none can be measured; all with the
     /// history. A run that stalls later or meets its step limit is not an error: see [`Outcome`].
-    pub fn run<P: Plant>(
-        &self,
-        plant: &mut P,
-        rho: f64,
-    ) -> Result<ControlRun, RunError<P::Error>> {
+    pub fn run<P: Plant>(&self, plant: &mut P, rho: f64) -> Result<ControlRun, RunError<P::Error>> {
         let zero = plant.layout().zero();
         self.run_from(plant, rho, &zero)
     }
@@ -228,7 +242,14 @@ impl FeedbackController {
         let measurement = self.measured(plant, start_volt, &[])?;
         let cost = self.cost(&measurement, start_volt, 0.0);
         let control_volt = start_volt.to_vec();
-        Ok(ControlStep { control_volt, measurement, rho: 0.0, cost, asked_volt: 0.0, halvings: 0 })
+        Ok(ControlStep {
+            control_volt,
+            measurement,
+            rho: 0.0,
+            cost,
+            asked_volt: 0.0,
+            halvings: 0,
+        })
     }
 
     /// The loop itself, from a measured start; counts no measurement for the start.
@@ -257,27 +278,31 @@ impl FeedbackController {
             if steps.len() >= self.settings.max_steps {
                 break Outcome::StepLimit;
             }
-            let history = || -> Vec<ControlStep> {
-                std::iter::once(start).chain(&steps).cloned().collect()
-            };
+            let history =
+                || -> Vec<ControlStep> { std::iter::once(start).chain(&steps).cloned().collect() };
             let mut taken = None;
             let mut shortest = None;
+            let mut left_range = false;
             for halvings in 0..=self.settings.max_halvings {
                 let part = 0.5_f64.powi(halvings.cast_signed());
-                let control_volt: Vec<f64> =
-                    here.control_volt.iter().zip(&step).map(|(u, d)| u + part * d).collect();
+                let control_volt: Vec<f64> = here
+                    .control_volt
+                    .iter()
+                    .zip(&step)
+                    .map(|(u, d)| u + part * d)
+                    .collect();
                 if !plant.admits(&control_volt) {
+                    left_range = true;
                     continue;
                 }
                 let measurement = self.measured(plant, &control_volt, &history())?;
                 measurements += 1;
                 let cost = self.cost(&measurement, &control_volt, rho);
                 let rise = (cost.total() - here.cost.total()) / start_cost;
-                eprintln!("rise {rise:e} halvings {halvings} asked {asked_volt}");
                 let settles = halvings == 0
                     && rise <= self.settings.cost_rise_allowance
                     && largest_amplitude(&self.step(rho, &control_volt, &measurement)?.1)
-                        <= 0.5 * asked_volt;
+                        <= SETTLING * asked_volt;
                 if rise <= COST_ROUNDING || settles {
                     taken = Some(ControlStep {
                         control_volt,
@@ -297,20 +322,40 @@ impl FeedbackController {
                 continue;
             }
             if !steps.is_empty() {
-                break Outcome::Stalled;
+                break if left_range {
+                    Outcome::OutOfRange
+                } else {
+                    Outcome::Stalled
+                };
             }
             let divisor = 1_u64 << self.settings.max_halvings;
             let history = vec![here.clone()];
             Err(match shortest {
                 Some(shortest) => {
                     let start = here.cost;
-                    ControlError::Diverges { rho, divisor, start, shortest, history }
+                    ControlError::Diverges {
+                        rho,
+                        divisor,
+                        start,
+                        shortest,
+                        history,
+                    }
                 }
-                None => ControlError::NotAdmitted { rho, divisor, history },
+                None => ControlError::NotAdmitted {
+                    rho,
+                    divisor,
+                    history,
+                },
             })?;
         };
         let start = self.weighed(start, here.rho);
-        Ok(ControlRun { rho: here.rho, outcome, start, steps, measurements })
+        Ok(ControlRun {
+            rho: here.rho,
+            outcome,
+            start,
+            steps,
+            measurements,
+        })
     }
 
     /// The control eq. (10) aims at from a measured state, and the step there, volt.
@@ -320,7 +365,9 @@ impl FeedbackController {
         control_volt: &[f64],
         measurement: &Measurement,
     ) -> Result<(Vec<f64>, Vec<f64>), ControlError> {
-        let aim = self.law.optimum_volt(rho, control_volt, &measurement.hub_loads)?;
+        let aim = self
+            .law
+            .optimum_volt(rho, control_volt, &measurement.hub_loads)?;
         let step = aim.iter().zip(control_volt).map(|(a, u)| a - u).collect();
         Ok((aim, step))
     }
@@ -332,11 +379,15 @@ impl FeedbackController {
         control_volt: &[f64],
         history: &[ControlStep],
     ) -> Result<Measurement, RunError<P::Error>> {
-        let measurement = plant.measure(control_volt).map_err(|source| RunError::Plant {
-            call: PlantCall::Measure { control_volt: control_volt.to_vec() },
-            history: history.to_vec(),
-            source,
-        })?;
+        let measurement = plant
+            .measure(control_volt)
+            .map_err(|source| RunError::Plant {
+                call: PlantCall::Measure {
+                    control_volt: control_volt.to_vec(),
+                },
+                history: history.to_vec(),
+                source,
+            })?;
         let (loads, _) = self.law.shape();
         error::check_vector("measured hub loads", &measurement.hub_loads, loads)?;
         let layout: &ControlLayout = plant.layout();
@@ -347,22 +398,38 @@ impl FeedbackController {
                 expected: layout.pairs(),
             })?;
         }
-        error::check_vector("mean flap angle (deg)", &measurement.mean_flap_deg, layout.flaps())?;
+        error::check_vector(
+            "mean flap angle (deg)",
+            &measurement.mean_flap_deg,
+            layout.flaps(),
+        )?;
         Ok(measurement)
     }
 
     fn cost(&self, measurement: &Measurement, control_volt: &[f64], rho: f64) -> Cost {
-        Cost::of(&measurement.hub_loads, self.law.load_weights(), control_volt, rho)
+        Cost::of(
+            &measurement.hub_loads,
+            self.law.load_weights(),
+            control_volt,
+            rho,
+        )
     }
 
     /// The same state with its cost formed with another weight.
     fn weighed(&self, step: &ControlStep, rho: f64) -> ControlStep {
         let cost = self.cost(&step.measurement, &step.control_volt, rho);
-        ControlStep { rho, cost, ..step.clone() }
+        ControlStep {
+            rho,
+            cost,
+            ..step.clone()
+        }
     }
 }
 
 /// Largest amplitude of the harmonics of a control vector, volt.
 fn largest_amplitude(control_volt: &[f64]) -> f64 {
-    as_harmonics(control_volt).iter().map(Harmonic::amplitude).fold(0.0, f64::max)
+    as_harmonics(control_volt)
+        .iter()
+        .map(Harmonic::amplitude)
+        .fold(0.0, f64::max)
 }

@@ -26,7 +26,10 @@ impl ControlLayout {
     /// harmonic 0 (that is the bias, which is solved for) or one given twice.
     pub fn new(flaps: usize, harmonics: Vec<u32>) -> Result<Self, ControlError> {
         if flaps == 0 || harmonics.is_empty() {
-            return Err(ControlError::EmptyLayout { flaps, harmonics: harmonics.len() });
+            return Err(ControlError::EmptyLayout {
+                flaps,
+                harmonics: harmonics.len(),
+            });
         }
         for (index, &harmonic) in harmonics.iter().enumerate() {
             if harmonic == 0 || harmonics[..index].contains(&harmonic) {
@@ -90,7 +93,11 @@ impl ControlLayout {
     /// # Errors
     /// [`ControlError::Length`] if the vector does not fit the layout.
     pub fn amplitudes_volt(&self, control_volt: &[f64]) -> Result<Vec<f64>, ControlError> {
-        Ok(self.voltages_volt(control_volt)?.iter().map(Harmonic::amplitude).collect())
+        Ok(self
+            .voltages_volt(control_volt)?
+            .iter()
+            .map(Harmonic::amplitude)
+            .collect())
     }
 
     /// The control vector of given harmonics in volt, one per pair.
@@ -105,7 +112,10 @@ impl ControlLayout {
                 expected: self.pairs(),
             });
         }
-        Ok(voltages_volt.iter().flat_map(|h| [h.cosine, h.sine]).collect())
+        Ok(voltages_volt
+            .iter()
+            .flat_map(|h| [h.cosine, h.sine])
+            .collect())
     }
 
     /// Accepts a finite control vector of the right length.
@@ -121,7 +131,10 @@ impl ControlLayout {
 pub(crate) fn as_harmonics(coefficients: &[f64]) -> Vec<Harmonic> {
     coefficients
         .chunks_exact(2)
-        .map(|pair| Harmonic { cosine: pair[0], sine: pair[1] })
+        .map(|pair| Harmonic {
+            cosine: pair[0],
+            sine: pair[1],
+        })
         .collect()
 }
 
@@ -168,13 +181,14 @@ mod tests {
 
     #[test]
     fn impossible_layouts_are_refused() {
-        for (flaps, harmonics) in
-            [(0, vec![3]), (1, vec![]), (1, vec![0]), (2, vec![3, 4, 3])]
-        {
+        for (flaps, harmonics) in [(0, vec![3]), (1, vec![]), (1, vec![0]), (2, vec![3, 4, 3])] {
             assert!(ControlLayout::new(flaps, harmonics).is_err());
         }
         let layout = ControlLayout::new(1, vec![3]).unwrap();
-        assert!(matches!(layout.check(&[1.0]), Err(ControlError::Length { .. })));
+        assert!(matches!(
+            layout.check(&[1.0]),
+            Err(ControlError::Length { .. })
+        ));
         assert!(matches!(
             layout.check(&[1.0, f64::NAN]),
             Err(ControlError::NotFinite { index: 1, .. })

@@ -33,7 +33,7 @@
 //!     .with_actuator(0.5, 0.6)? // half a degree per volt, lagging by 0.6 rad
 //!     .with_stroke_limit_deg(0.75)?; // so at most 1.5 V
 //! let t0 = identify_t(&mut plant, &[0.1, 0.1])?;
-//! let controller = FeedbackController::new(&t0, LoadWeights::Identity, FeedbackSettings::default())?;
+//! let controller = FeedbackController::new(&t0, &LoadWeights::Identity, FeedbackSettings::default())?;
 //! let free = controller.run(&mut plant, 0.0)?;
 //! assert!((free.reduction_percent() - 100.0).abs() < 1e-9); // two loads, two controls
 //! let limited = controller.run_within_stroke(&mut plant)?;

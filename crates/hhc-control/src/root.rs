@@ -14,7 +14,10 @@ pub(crate) enum Bracketed<S> {
     /// `|f| <= tolerance` here.
     Root(Trial<S>),
     /// The function jumps over zero between two neighbouring numbers: negative and positive side.
-    Jump { negative: Trial<S>, positive: Trial<S> },
+    Jump {
+        negative: Trial<S>,
+        positive: Trial<S>,
+    },
 }
 
 /// Root of `f` between two trials of opposite sign, by the regula falsi with the Anderson-Bjorck
@@ -36,8 +39,13 @@ pub(crate) fn root_between<S, E>(
     loop {
         let width = (fresh.x - held.x).abs();
         let middle = f64::midpoint(held.x, fresh.x);
-        if width <= 4.0 * f64::EPSILON * middle.abs() || middle == held.x || middle == fresh.x {
-            let (negative, positive) = if fresh.f < 0.0 { (fresh, held) } else { (held, fresh) };
+        let spacing = 4.0 * f64::EPSILON * middle.abs();
+        if width <= spacing.max(f64::MIN_POSITIVE) {
+            let (negative, positive) = if fresh.f < 0.0 {
+                (fresh, held)
+            } else {
+                (held, fresh)
+            };
             return Ok(Bracketed::Jump { negative, positive });
         }
         let secant = fresh.x - fresh.f * (fresh.x - held.x) / (fresh.f - held_weight * held.f);
@@ -59,7 +67,11 @@ pub(crate) fn root_between<S, E>(
         }
         if f.is_sign_negative() == fresh.f.is_sign_negative() {
             let weight = 1.0 - f / fresh.f;
-            held_weight *= if weight > 0.0 && weight.is_finite() { weight } else { 0.5 };
+            held_weight *= if weight > 0.0 && weight.is_finite() {
+                weight
+            } else {
+                0.5
+            };
             fresh = trial;
         } else {
             held_weight = 1.0;
@@ -80,7 +92,11 @@ mod tests {
         tolerance: f64,
     ) -> (Bracketed<()>, usize) {
         let mut evaluations = 0;
-        let trial = |x: f64| Trial { x, f: f(x), state: () };
+        let trial = |x: f64| Trial {
+            x,
+            f: f(x),
+            state: (),
+        };
         let found: Result<_, Infallible> =
             root_between((trial(low), trial(high)), tolerance, |x| {
                 evaluations += 1;
@@ -98,13 +114,14 @@ mod tests {
 
     #[test]
     fn smooth_functions_take_few_evaluations() {
-        let cases: [(fn(f64) -> f64, f64, f64, f64); 4] = [
-            (|x| x.exp() - 2.0, -1.0, 3.0, 2.0_f64.ln()),
-            (|x| x.powi(3) - 8.0, 0.0, 10.0, 2.0),
-            (|x| 1.0 - x, -5.0, 7.0, 1.0),
-            (|x| (x - 0.3).atan() * 40.0, -20.0, 90.0, 0.3),
+        type Case<'a> = (&'a dyn Fn(f64) -> f64, [f64; 2], f64);
+        let cases: [Case<'_>; 4] = [
+            (&|x| x.exp() - 2.0, [-1.0, 3.0], 2.0_f64.ln()),
+            (&|x| x.powi(3) - 8.0, [0.0, 10.0], 2.0),
+            (&|x| 1.0 - x, [-5.0, 7.0], 1.0),
+            (&|x| (x - 0.3).atan() * 40.0, [-20.0, 90.0], 0.3),
         ];
-        for (f, low, high, exact) in cases {
+        for (f, [low, high], exact) in cases {
             let (found, evaluations) = solve(f, low, high, 1e-12);
             assert!((root(&found) - exact).abs() < 1e-11, "{found:?}");
             assert!(evaluations <= 16, "{evaluations}");
@@ -115,8 +132,12 @@ mod tests {
 
     #[test]
     fn infinite_values_are_bisected_away() {
-        let (found, evaluations) =
-            solve(|x| if x > 2.0 { f64::INFINITY } else { x - 1.999 }, 0.0, 9.0, 1e-6);
+        let (found, evaluations) = solve(
+            |x| if x > 2.0 { f64::INFINITY } else { x - 1.999 },
+            0.0,
+            9.0,
+            1e-6,
+        );
         assert!((root(&found) - 1.999).abs() < 1e-6);
         assert!(evaluations < 40, "{evaluations}");
     }
@@ -124,7 +145,9 @@ mod tests {
     #[test]
     fn a_jump_is_told_from_a_root() {
         let (found, _) = solve(|x| if x > 0.5 { 1.0 } else { -2.0 }, 0.0, 3.0, 1e-6);
-        let Bracketed::Jump { negative, positive } = found else { panic!("{found:?}") };
+        let Bracketed::Jump { negative, positive } = found else {
+            panic!("{found:?}")
+        };
         assert!(negative.f < 0.0 && positive.f > 0.0);
         assert!((negative.x - 0.5).abs() < 1e-14 && (positive.x - 0.5).abs() < 1e-14);
     }

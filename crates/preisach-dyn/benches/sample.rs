@@ -4,7 +4,6 @@
 //! Prints the best figure of all batches beside its bar.
 #![expect(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 #![expect(clippy::print_stdout, reason = "a benchmark reports")]
-#![expect(missing_docs, reason = "criterion's macros write undocumented functions")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use preisach_dyn::{

@@ -1,7 +1,6 @@
 //! The dynamic Preisach actuator, paper equation (5).
 
-use crate::memory::moved;
-use crate::play_map::split;
+use crate::play_map::NodeTable;
 use crate::{PlayMap, PlayMemory, PreisachError, PreisachGrid, StaticPreisach};
 use serde::{Deserialize, Serialize};
 
@@ -152,8 +151,8 @@ impl OutputHistory {
 #[serde(try_from = "DynamicParameters", into = "DynamicParameters")]
 pub struct DynamicPreisach {
     parameters: DynamicParameters,
-    /// `[g0, g1, g2, 0]` at every node, rows behind one another, each with its last node doubled.
-    table: Vec<[f64; 4]>,
+    /// Values of `G0, G1, G2` at every node, then their rises to the next.
+    table: NodeTable<6>,
 }
 
 /// The numbers that make a [`DynamicPreisach`], as they are written to files.
@@ -230,14 +229,14 @@ impl DynamicPreisach {
                 }
             }
         }
-        let mut table = Vec::new();
-        for ((a, b), c) in p.g0_deg.nodes.iter().zip(&p.g1_s.nodes).zip(&p.g2_s2_per_deg.nodes) {
-            let start = table.len();
-            table.extend(a.iter().zip(b).zip(c).map(|((&a, &b), &c)| [a, b, c, 0.0]));
-            if table.len() > start {
-                table.extend(table.last().copied());
-            }
-        }
+        let maps = [&p.g0_deg, &p.g1_s, &p.g2_s2_per_deg];
+        let table = NodeTable::new(&p.grid, |play, knot| {
+            let [a, b, c] = maps.map(|map| {
+                let row = &map.nodes[play];
+                (row[knot], row.get(knot + 1).map_or(0.0, |next| next - row[knot]))
+            });
+            [a.0, b.0, c.0, a.1, b.1, c.1]
+        });
         Ok(Self { parameters, table })
     }
 
@@ -275,20 +274,16 @@ impl DynamicPreisach {
     /// Moves the memory to a voltage and returns `G0, G1, G2` there.
     pub fn apply(&self, memory: &mut PlayMemory, voltage_volt: f64) -> [f64; 3] {
         let p = &self.parameters;
-        let top = p.grid.coordinate(voltage_volt);
-        let mut rest = self.table.as_slice();
-        let mut sum = [p.g0_deg.constant, p.g1_s.constant, p.g2_s2_per_deg.constant, 0.0];
-        for (j, x) in memory.cells_mut().iter_mut().enumerate() {
-            *x = moved(*x, top, j);
-            let (row, after) = rest.split_at(p.grid.knots(j) + 1);
-            let (knot, t) = split(*x);
-            let (low, high) = (&row[knot], &row[knot + 1]);
-            for lane in 0..4 {
-                sum[lane] += low[lane] + t * (high[lane] - low[lane]);
-            }
-            rest = after;
+        memory.apply(&p.grid, voltage_volt);
+        let [mut g0, mut g1, mut g2] =
+            [p.g0_deg.constant, p.g1_s.constant, p.g2_s2_per_deg.constant];
+        for (play, &x) in memory.cells().iter().enumerate() {
+            let (&[a, b, c, a_rise, b_rise, c_rise], t) = self.table.at(play, x);
+            g0 += a + t * a_rise;
+            g1 += b + t * b_rise;
+            g2 += c + t * c_rise;
         }
-        [sum[0], sum[1], sum[2]]
+        [g0, g1, g2]
     }
 
     /// One time step to a new voltage: moves memory and output history, counts, returns the output

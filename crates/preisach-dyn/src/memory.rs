@@ -99,11 +99,6 @@ impl PlayMemory {
         &self.cells
     }
 
-    /// States in cells, to be moved while they are read.
-    pub(crate) fn cells_mut(&mut self) -> &mut [f64] {
-        &mut self.cells
-    }
-
     /// Outputs of the plays, V.
     pub fn plays_volt(&self, grid: &PreisachGrid) -> Vec<f64> {
         self.cells.iter().enumerate().map(|(j, &x)| grid.play_volt(j, x)).collect()

@@ -199,6 +199,36 @@ pub(crate) fn split(x: f64) -> (usize, f64) {
     (knot as usize, x - f64::from(knot))
 }
 
+/// Numbers at every knot of every play, laid out for speed: rows of equal length.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct NodeTable<const N: usize> {
+    stride: usize,
+    entries: Vec<[f64; N]>,
+}
+
+impl<const N: usize> NodeTable<N> {
+    /// The table of `entry(play, knot)`.
+    pub(crate) fn new(grid: &PreisachGrid, entry: impl Fn(usize, usize) -> [f64; N]) -> Self {
+        let stride = grid.levels() + 1;
+        let mut entries = vec![[0.0; N]; stride * grid.levels()];
+        for play in 0..grid.levels() {
+            for knot in 0..grid.knots(play) {
+                entries[play * stride + knot] = entry(play, knot);
+            }
+        }
+        Self { stride, entries }
+    }
+
+    /// The entry of the knot at or below a play state, and the remainder.
+    #[inline]
+    pub(crate) fn at(&self, play: usize, x: f64) -> (&[f64; N], f64) {
+        let shifted = (x - 0.5) + 4_503_599_627_370_496.0;
+        let knot = (shifted.to_bits() & 0xffff_ffff) as usize;
+        let t = x - (shifted - 4_503_599_627_370_496.0);
+        (&self.entries[play * self.stride + knot], t)
+    }
+}
+
 /// Linear interpolation between the knots 0, 1, 2... of a row.
 pub(crate) fn interpolate(row: &[f64], x: f64) -> f64 {
     let (k, t) = split(x);

@@ -1,7 +1,6 @@
 //! The static (classical) Preisach actuator, paper equation (2).
 
-use crate::memory::moved;
-use crate::play_map::split;
+use crate::play_map::NodeTable;
 use crate::{PlayMap, PlayMemory, PreisachError, PreisachGrid};
 use serde::{Deserialize, Serialize};
 
@@ -21,8 +20,7 @@ use serde::{Deserialize, Serialize};
 pub struct StaticPreisach {
     grid: PreisachGrid,
     map: PlayMap,
-    /// All rows behind one another, each with its last node doubled.
-    table: Vec<f64>,
+    table: NodeTable<2>,
 }
 
 /// The model as it is written to files.
@@ -56,11 +54,11 @@ impl StaticPreisach {
     pub fn new(grid: PreisachGrid, map: PlayMap) -> Result<Self, PreisachError> {
         map.check(&grid, "g0_deg")?;
         map.check_rising()?;
-        let mut table = Vec::with_capacity(map.nodes.iter().map(|row| row.len() + 1).sum());
-        for row in &map.nodes {
-            table.extend_from_slice(row);
-            table.extend(row.last());
-        }
+        let table = NodeTable::new(&grid, |play, knot| {
+            let row = &map.nodes[play];
+            let value = row[knot];
+            [value, row.get(knot + 1).map_or(0.0, |next| next - value)]
+        });
         Ok(Self { grid, map, table })
     }
 
@@ -83,17 +81,25 @@ impl StaticPreisach {
     ///
     /// Voltages beyond the grid's range act as its limits. The memory must belong to this grid.
     pub fn apply(&self, memory: &mut PlayMemory, voltage_volt: f64) -> f64 {
-        let top = self.grid.coordinate(voltage_volt);
-        let mut rest = self.table.as_slice();
-        let mut sum = self.map.constant;
-        for (j, x) in memory.cells_mut().iter_mut().enumerate() {
-            *x = moved(*x, top, j);
-            let (row, after) = rest.split_at(self.grid.knots(j) + 1);
-            let (knot, t) = split(*x);
-            sum += row[knot] + t * (row[knot + 1] - row[knot]);
-            rest = after;
+        memory.apply(&self.grid, voltage_volt);
+        let cells = memory.cells();
+        let at = |play: usize, x: f64| {
+            let (&[value, rise], t) = self.table.at(play, x);
+            value + t * rise
+        };
+        // four sums at a time: a single one would wait for every addition before it
+        let mut sums = [self.map.constant, 0.0, 0.0, 0.0];
+        let quads = cells.chunks_exact(4);
+        let first_left = cells.len() - quads.remainder().len();
+        for (i, &x) in quads.remainder().iter().enumerate() {
+            sums[i] += at(first_left + i, x);
         }
-        sum
+        for (quad, x) in quads.enumerate() {
+            for (lane, sum) in sums.iter_mut().enumerate() {
+                *sum += at(4 * quad + lane, x[lane]);
+            }
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3])
     }
 
     /// The same model with its output moved by `shift_deg`.

@@ -22,7 +22,10 @@ fn to_faer(matrix: &DMatrix<f64>) -> Mat<f64> {
 
 /// Cholesky factor of a symmetric matrix, none unless it is positive definite.
 fn cholesky(matrix: &DMatrix<f64>) -> Option<Mat<f64>> {
-    to_faer(matrix).llt(Side::Lower).ok().map(|factor| factor.L().to_owned())
+    to_faer(matrix)
+        .llt(Side::Lower)
+        .ok()
+        .map(|factor| factor.L().to_owned())
 }
 
 /// `L^-1 A` in place.
@@ -57,10 +60,13 @@ pub(crate) fn symmetric(
     shift: f64,
 ) -> Result<Vec<EigenPair<f64>>, FemError> {
     let size = mass.nrows();
-    let lower = cholesky(&(stiffness + mass * shift))
-        .ok_or(FemError::NotStable { squared_frequency: -shift })?;
+    let lower = cholesky(&(stiffness + mass * shift)).ok_or(FemError::NotStable {
+        squared_frequency: -shift,
+    })?;
     let reduced = congruence(&lower, mass, &lower);
-    let eigen = reduced.self_adjoint_eigen(Side::Lower).map_err(|_| FemError::Eigen { size })?;
+    let eigen = reduced
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| FemError::Eigen { size })?;
     let mut vectors = eigen.U().to_owned();
     solve_upper(&lower, &mut vectors);
     let mu = eigen.S().column_vector();
@@ -75,7 +81,9 @@ pub(crate) fn symmetric(
     if let Some(first) = pairs.first_mut() {
         // round-off of a rigid motion, against a true divergence
         if first.squared_frequency < -1e-9 * shift {
-            return Err(FemError::NotStable { squared_frequency: first.squared_frequency });
+            return Err(FemError::NotStable {
+                squared_frequency: first.squared_frequency,
+            });
         }
     }
     for pair in &mut pairs {
@@ -103,7 +111,9 @@ pub(crate) fn gyroscopic(
     lowest_squared_frequency: f64,
 ) -> Result<Vec<EigenPair<Complex<f64>>>, FemError> {
     let size = mass.nrows();
-    let unstable = FemError::NotStable { squared_frequency: lowest_squared_frequency };
+    let unstable = FemError::NotStable {
+        squared_frequency: lowest_squared_frequency,
+    };
     let (Some(lm), Some(lk)) = (cholesky(mass), cholesky(stiffness)) else {
         return Err(unstable);
     };
@@ -123,8 +133,9 @@ pub(crate) fn gyroscopic(
         (false, false) => 0.0,
     };
     let hermitian: Mat<c64> = Mat::from_fn(2 * size, 2 * size, |i, j| c64::new(0.0, skew(i, j)));
-    let eigen =
-        hermitian.self_adjoint_eigen(Side::Lower).map_err(|_| FemError::Eigen { size: 2 * size })?;
+    let eigen = hermitian
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| FemError::Eigen { size: 2 * size })?;
     let frequencies = eigen.S().column_vector();
     let vectors = eigen.U();
     // displacement half of z, real and imaginary part side by side
@@ -139,7 +150,10 @@ pub(crate) fn gyroscopic(
             let raw = DVector::from_fn(size, |i, _| {
                 Complex::new(halves[(i, 2 * k)], halves[(i, 2 * k + 1)])
             });
-            EigenPair { squared_frequency: frequencies[k].re.powi(2), vector: unit_mass(mass, raw) }
+            EigenPair {
+                squared_frequency: frequencies[k].re.powi(2),
+                vector: unit_mass(mass, raw),
+            }
         })
         .collect();
     pairs.sort_by(|a, b| a.squared_frequency.total_cmp(&b.squared_frequency));

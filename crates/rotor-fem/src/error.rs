@@ -135,7 +135,9 @@ pub enum FemError {
         squared_frequency: f64,
     },
     /// An eigenvalue solution did not converge.
-    #[error("the eigenvalue solution of size {size} did not converge: check the blade's properties")]
+    #[error(
+        "the eigenvalue solution of size {size} did not converge: check the blade's properties"
+    )]
     Eigen {
         /// Order of the eigenproblem.
         size: usize,

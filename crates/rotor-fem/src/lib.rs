@@ -1,4 +1,32 @@
 //! Rotating blade finite elements: the 15-dof beam element, rotating modes, finite elements in time.
+//!
+//! Floor 1 of the house: it knows structure and time, but no air, no trim and no file.
+//!
+//! | question | answer |
+//! |---|---|
+//! | What is the blade? | [`BladeSpec`], checked by [`BladeProperties`] |
+//! | What are its matrices? | [`BladeModel`] |
+//! | At which frequencies does it vibrate? | [`modes`], [`fan_plot`] |
+//! | Which shapes does the response use? | [`uncoupled_modes`] and its [`ModeSet`] |
+//! | Which motion repeats every revolution? | [`PeriodicSolver`] for any [`PeriodicSystem`] |
+//!
+//! # Conventions
+//! Rotor units throughout: length R, mass m0 R, time 1/Omega, so stiffnesses are EI / (m0 Omega^2 R^4)
+//! and rates are per rad of azimuth. Rotating blade axes: x outboard, y toward the leading edge, z up;
+//! displacements u, v, w along them and twist phi nose up. Stations are radii r/R, the tip at 1.
+//!
+//! # Example
+//! ```
+//! use rotor_fem::{BladeProperties, BladeSpec, ModeCount, ModeKind, uncoupled_modes};
+//!
+//! // flap, lag, torsion and axial stiffness of a hingeless blade
+//! let blade = BladeProperties::new(BladeSpec::uniform(0.0108, 0.0268, 0.00615, 200.0))?;
+//! let set = uncoupled_modes(&blade, 20, ModeCount::default())?;
+//! let first_flap = &set.of(ModeKind::Flap)[0];
+//! assert!((first_flap.per_rev() - 1.125_79).abs() < 1e-5);
+//! assert_eq!(first_flap.shape(1.0)?[0], 1.0);
+//! # Ok::<(), rotor_fem::FemError>(())
+//! ```
 
 mod acceleration;
 mod assembly;
@@ -12,7 +40,10 @@ mod mode_set;
 mod modes;
 mod newton_matrix;
 mod periodic;
+mod periodic_error;
+mod periodic_system;
 mod properties;
+mod renewal;
 mod shape;
 mod time_elements;
 
@@ -23,9 +54,12 @@ pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
-pub use periodic::{
-    Acceleration, LocalTangent, PeriodicError, PeriodicSettings, PeriodicSolution, PeriodicSolver,
-    PeriodicSystem,
-};
+pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
+pub use periodic_error::PeriodicError;
+pub use periodic_system::{LocalTangent, PeriodicSystem};
 pub use properties::{BladeProperties, BladeSpec, RootCondition, Twist};
 pub use time_elements::{Orbit, OrbitSamples, TimeElements};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -4,63 +4,11 @@ use nalgebra::DMatrix;
 
 use crate::acceleration::Anderson;
 use crate::newton_matrix::{Factorisation, NewtonMatrixError};
-use crate::{FemError, Orbit, OrbitSamples, TimeElements};
+use crate::renewal::{Renewal, Verdict};
+use crate::{FemError, Orbit, OrbitSamples, PeriodicError, PeriodicSystem, TimeElements};
 
-/// Growth of the residual that a step with a fresh tangent may cause before it is shortened.
-const ALLOWED_GROWTH: f64 = 2.0;
 /// Halvings of a step that makes the residual grow.
-const MAX_HALVINGS: usize = 6;
-
-/// Linearisation of `f` at one azimuth, all matrices of shape `dof x dof`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LocalTangent {
-    /// Derivative with respect to the displacements.
-    pub dq: DMatrix<f64>,
-    /// Derivative with respect to the rates.
-    pub dqd: DMatrix<f64>,
-    /// Derivative with respect to the second derivatives; zero if `f` does not depend on them.
-    pub dqdd: DMatrix<f64>,
-}
-
-impl LocalTangent {
-    /// The tangent of a load that does not depend on the motion.
-    pub fn zero(dof: usize) -> Self {
-        let zero = DMatrix::zeros(dof, dof);
-        Self { dq: zero.clone(), dqd: zero.clone(), dqdd: zero }
-    }
-}
-
-/// A system with period 2 pi in azimuth, in rotor units (derivatives are per rad of azimuth).
-///
-/// ```text
-/// M q'' + f(q, q', q'', psi) = 0
-/// ```
-pub trait PeriodicSystem: Sync {
-    /// The error of the system's own physics.
-    type Error: std::error::Error + 'static;
-
-    /// Number of degrees of freedom.
-    fn dof(&self) -> usize;
-
-    /// The constant, symmetric mass matrix; integrated by parts in the weak form.
-    fn mass(&self) -> &DMatrix<f64>;
-
-    /// The rest of the residual at all points of the revolution at once: column `i` of `out` (shape
-    /// `dof x points`, zero on entry) becomes `f` at `orbit.azimuth_rad[i]`.
-    ///
-    /// Seeing the whole revolution, a system with memory (aerodynamic lag states) can make its own
-    /// states periodic here. `f` may depend weakly on the second derivatives.
-    ///
-    /// # Errors
-    /// Whatever the system's physics refuses.
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Self::Error>;
-
-    /// Approximate local linearisation of `f` at every point, used for the Newton matrix only.
-    ///
-    /// # Errors
-    /// Whatever the system's physics refuses.
-    fn tangents(&self, orbit: &OrbitSamples) -> Result<Vec<LocalTangent>, Self::Error>;
-}
+const MAX_HALVINGS: i32 = 6;
 
 /// How chord steps are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,7 +42,7 @@ impl Default for PeriodicSettings {
             tolerance: 1e-11,
             max_iterations: 60,
             refresh_contraction: 0.3,
-            acceleration: Acceleration::Anderson { depth: 3 },
+            acceleration: Acceleration::Anderson { depth: 5 },
         }
     }
 }
@@ -114,102 +62,6 @@ pub struct PeriodicSolution {
     pub iterations: usize,
     /// Newton matrices factorised during this solve.
     pub factorisations: usize,
-}
-
-/// Why no periodic orbit was found; `E` is the system's own error.
-///
-/// Apart from [`FemError`] because it carries the caller's error type.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PeriodicError<E: std::error::Error + 'static> {
-    /// Start orbit, mass matrix or tangents do not fit the system.
-    #[error("{what}: found {found}, expected {expected}")]
-    Shape {
-        /// What does not fit.
-        what: &'static str,
-        /// Size found.
-        found: usize,
-        /// Size expected.
-        expected: usize,
-    },
-    /// The mass matrix is not symmetric with a positive diagonal.
-    #[error(
-        "mass matrix entry ({row}, {column}) is {value}: expected finite and symmetric, with a \
-         positive diagonal"
-    )]
-    Mass {
-        /// Row, from 0.
-        row: usize,
-        /// Column, from 0.
-        column: usize,
-        /// The value found.
-        value: f64,
-    },
-    /// The system's physics refused an orbit.
-    #[error("the system refused the orbit of iteration {iteration}: {source}")]
-    System {
-        /// Iteration, 0 for the start.
-        iteration: usize,
-        /// The system's error.
-        source: E,
-    },
-    /// A residual or tangent is not a finite number.
-    #[error(
-        "the residual of degree of freedom {dof} is not a finite number at azimuth {azimuth_rad} rad \
-         in iteration {iteration}: the system diverges or has bad data; start nearer to the solution"
-    )]
-    NotFinite {
-        /// Iteration, 0 for the start.
-        iteration: usize,
-        /// Degree of freedom, from 0.
-        dof: usize,
-        /// Azimuth, rad.
-        azimuth_rad: f64,
-        /// Last orbit with a finite residual.
-        best: Box<Orbit>,
-    },
-    /// A mode is in resonance without damping: the orbit is not determined.
-    #[error(
-        "degree of freedom {dof} resonates at {per_rev} per rev without damping: the smallest dynamic \
-         stiffness of the revolution is {dynamic_stiffness:e} per unit mass (rotor speed squared), not \
-         distinguishable from zero with a time discretisation error of {resolution:e}; give the mode \
-         damping or move its frequency off the integer"
-    )]
-    Resonance {
-        /// Degree of freedom that dominates the undetermined motion, from 0.
-        dof: usize,
-        /// Harmonic that dominates the undetermined motion, per rev.
-        per_rev: usize,
-        /// Smallest dynamic stiffness per unit mass, rotor speed squared.
-        dynamic_stiffness: f64,
-        /// Error of the time elements in the square of that harmonic.
-        resolution: f64,
-    },
-    /// The residual did not fall below the tolerance.
-    #[error(
-        "no periodic orbit after {iterations} iterations: residual {residual:e}, tolerance \
-         {tolerance:e} (best {}); start nearer, add damping, or raise max_iterations; history: {}",
-        .history.iter().copied().fold(f64::INFINITY, f64::min), show(.history)
-    )]
-    NotConverged {
-        /// Iterations done.
-        iterations: usize,
-        /// Residual norm of the last orbit.
-        residual: f64,
-        /// Tolerance asked for.
-        tolerance: f64,
-        /// Residual norm at the start and after every step.
-        history: Vec<f64>,
-        /// The orbit with the smallest residual.
-        best: Box<Orbit>,
-    },
-}
-
-/// The last few residuals, for a message.
-fn show(history: &[f64]) -> String {
-    let tail = &history[history.len().saturating_sub(6)..];
-    let shown: Vec<String> = tail.iter().map(|r| format!("{r:.1e}")).collect();
-    shown.join(" ")
 }
 
 /// One orbit with its weak residual.
@@ -248,12 +100,22 @@ impl PeriodicSolver {
     /// [`FemError::SolverSetting`] for a tolerance or contraction that is not positive, no iteration,
     /// or a mixing depth outside 1 to 10.
     pub fn new(time: TimeElements, settings: PeriodicSettings) -> Result<Self, FemError> {
-        let bad = |name, value, expected| Err(FemError::SolverSetting { name, value, expected });
+        let bad = |name, value, expected| {
+            Err(FemError::SolverSetting {
+                name,
+                value,
+                expected,
+            })
+        };
         if !(settings.tolerance > 0.0 && settings.tolerance.is_finite()) {
             return bad("tolerance", settings.tolerance, "a positive number");
         }
         if !(settings.refresh_contraction > 0.0 && settings.refresh_contraction < 1.0) {
-            return bad("refresh_contraction", settings.refresh_contraction, "between 0 and 1");
+            return bad(
+                "refresh_contraction",
+                settings.refresh_contraction,
+                "between 0 and 1",
+            );
         }
         if settings.max_iterations == 0 {
             return bad("max_iterations", 0.0, "at least 1");
@@ -263,7 +125,11 @@ impl PeriodicSolver {
         {
             return bad("acceleration depth", depth as f64, "1 to 10");
         }
-        Ok(Self { time, settings, factorisation: None })
+        Ok(Self {
+            time,
+            settings,
+            factorisation: None,
+        })
     }
 
     /// The time mesh.
@@ -292,8 +158,6 @@ impl PeriodicSolver {
         start: &Orbit,
     ) -> Result<PeriodicSolution, PeriodicError<S::Error>> {
         self.check(system, start)?;
-        let limit = self.settings.refresh_contraction;
-        let mut factorisations = 0;
         let mut state = self.evaluate(system, start.clone(), 0, start)?;
         let mut history = vec![state.norm];
         let mut best = (state.norm, state.orbit.clone());
@@ -301,8 +165,7 @@ impl PeriodicSolver {
             Acceleration::None => 0,
             Acceleration::Anderson { depth } => depth,
         });
-        // steps since the matrix was renewed, and steps a renewed matrix is given before the next
-        let (mut age, mut patience) = (usize::MAX, 1);
+        let mut renewal = Renewal::new(self.settings.refresh_contraction);
         while state.norm > self.settings.tolerance {
             let iteration = history.len();
             if iteration > self.settings.max_iterations {
@@ -314,48 +177,42 @@ impl PeriodicSolver {
                     best: Box::new(best.1),
                 });
             }
-            let kept = self.factorisation.take().filter(|f| f.dof() == system.dof());
+            let kept = self
+                .factorisation
+                .take()
+                .filter(|f| f.dof() == system.dof());
             let factorisation = if let Some(kept) = kept {
                 kept
             } else {
-                (age, factorisations) = (0, factorisations + 1);
+                renewal.renewed();
                 mixing.clear();
                 self.factorise(system, &state, iteration - 1)?
             };
             let step = factorisation.solve(&state.residual);
-            let fresh = age == 0;
             let proposal = mixing.propose(&state.orbit.nodal, &step);
             let next = self.evaluate(system, Orbit { nodal: proposal }, iteration, &best.1);
-            let poor = match &next {
-                Ok(next) => next.norm > limit * state.norm,
-                Err(PeriodicError::NotFinite { .. }) => true,
-                Err(_) => false,
+            let growth = match &next {
+                Ok(next) => next.norm / state.norm,
+                Err(PeriodicError::NotFinite { .. }) => f64::INFINITY,
+                Err(_) => 0.0,
             };
-            let grown = poor && !matches!(&next, Ok(n) if n.norm <= ALLOWED_GROWTH * state.norm);
-            if poor && (age >= patience || (grown && !fresh)) {
-                // the tangent has aged: renew it at the better of the two orbits
-                if let Ok(next) = next
-                    && next.norm < state.norm
-                {
-                    state = next;
-                }
-                history.push(state.norm);
-                patience = if age == usize::MAX { patience } else { 2 * patience };
-            } else {
-                let next = if grown {
-                    mixing.clear();
-                    self.shorten(system, &state, &step, iteration)?
-                } else {
+            state = match renewal.judge(growth) {
+                Verdict::Accept => {
+                    self.factorisation = Some(factorisation);
                     next?
-                };
-                if fresh && !poor {
-                    patience = 3;
                 }
-                age = age.saturating_add(1);
-                state = next;
-                history.push(state.norm);
-                self.factorisation = Some(factorisation);
-            }
+                Verdict::Shorten => {
+                    mixing.clear();
+                    self.factorisation = Some(factorisation);
+                    self.shorten(system, &state, &step, iteration)?
+                }
+                // the matrix is dropped; the better of the two orbits gets a new one
+                Verdict::Renew => match next {
+                    Ok(next) if next.norm < state.norm => next,
+                    _ => state,
+                },
+            };
+            history.push(state.norm);
             if state.norm < best.0 {
                 best = (state.norm, state.orbit.clone());
             }
@@ -366,7 +223,7 @@ impl PeriodicSolver {
             residual_norm: state.norm,
             iterations: history.len() - 1,
             residual_history: history,
-            factorisations,
+            factorisations: renewal.factorisations,
         })
     }
 
@@ -381,11 +238,19 @@ impl PeriodicSolver {
             ("rows of the mass matrix", mass.nrows(), dof),
             ("columns of the mass matrix", mass.ncols(), dof),
             ("degrees of freedom of the start orbit", start.dof(), dof),
-            ("time nodes of the start orbit", start.nodal.ncols(), self.time.unknowns_per_dof()),
+            (
+                "time nodes of the start orbit",
+                start.nodal.ncols(),
+                self.time.unknowns_per_dof(),
+            ),
         ];
         for (what, found, expected) in sizes {
             if found != expected {
-                return Err(PeriodicError::Shape { what, found, expected });
+                return Err(PeriodicError::Shape {
+                    what,
+                    found,
+                    expected,
+                });
             }
         }
         let scale = mass.amax();
@@ -419,7 +284,11 @@ impl PeriodicSolver {
         let expected = (system.dof(), time.points().len());
         if force.shape() != expected {
             let (found, expected) = (force.len(), expected.0 * expected.1);
-            return Err(PeriodicError::Shape { what: "entries of the residual", found, expected });
+            return Err(PeriodicError::Shape {
+                what: "entries of the residual",
+                found,
+                expected,
+            });
         }
         let not_finite = |entry: usize, azimuth_rad: f64| PeriodicError::NotFinite {
             iteration,
@@ -447,10 +316,18 @@ impl PeriodicSolver {
             column /= *weight;
         }
         if let Some(entry) = residual.iter().position(|r| !r.is_finite()) {
-            return Err(not_finite(entry, time.node_azimuths_rad()[entry / system.dof()]));
+            return Err(not_finite(
+                entry,
+                time.node_azimuths_rad()[entry / system.dof()],
+            ));
         }
         let norm = residual.amax();
-        Ok(Iterate { orbit, samples, residual, norm })
+        Ok(Iterate {
+            orbit,
+            samples,
+            residual,
+            norm,
+        })
     }
 
     /// A new Newton matrix at an orbit.
@@ -464,18 +341,32 @@ impl PeriodicSolver {
             .tangents(&state.samples)
             .map_err(|source| PeriodicError::System { iteration, source })?;
         Factorisation::new(&self.time, system.mass(), &tangents).map_err(|error| match error {
-            NewtonMatrixError::Shape { what, found, expected } => {
-                PeriodicError::Shape { what, found, expected }
-            }
+            NewtonMatrixError::Shape {
+                what,
+                found,
+                expected,
+            } => PeriodicError::Shape {
+                what,
+                found,
+                expected,
+            },
             NewtonMatrixError::NotFinite { dof, point } => PeriodicError::NotFinite {
                 iteration,
                 dof,
                 azimuth_rad: self.time.points()[point],
                 best: Box::new(state.orbit.clone()),
             },
-            NewtonMatrixError::Resonance { dof, per_rev, dynamic_stiffness, resolution } => {
-                PeriodicError::Resonance { dof, per_rev, dynamic_stiffness, resolution }
-            }
+            NewtonMatrixError::Resonance {
+                dof,
+                per_rev,
+                dynamic_stiffness,
+                resolution,
+            } => PeriodicError::Resonance {
+                dof,
+                per_rev,
+                dynamic_stiffness,
+                resolution,
+            },
         })
     }
 
@@ -490,12 +381,15 @@ impl PeriodicSolver {
         let mut shortest = None;
         let mut failure = None;
         for halving in 0..=MAX_HALVINGS {
-            let factor = 0.5_f64.powi(i32::try_from(halving).unwrap_or(i32::MAX));
+            let factor = 0.5_f64.powi(halving);
             let nodal = &state.orbit.nodal + step * factor;
             match self.evaluate(system, Orbit { nodal }, iteration, &state.orbit) {
                 Ok(trial) if trial.norm < state.norm => return Ok(trial),
                 Ok(trial) => {
-                    if shortest.as_ref().is_none_or(|best: &Iterate| trial.norm < best.norm) {
+                    if shortest
+                        .as_ref()
+                        .is_none_or(|best: &Iterate| trial.norm < best.norm)
+                    {
                         shortest = Some(trial);
                     }
                 }

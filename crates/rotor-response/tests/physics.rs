@@ -111,6 +111,10 @@ fn hover_thrust_of_a_stiff_blade() {
 }
 
 /// Root flap moment: force summation against the curvature of the modes, which converges to it.
+///
+/// Without modal damping: its generalised force has no distribution along the span, so a force
+/// summation cannot hold it (with .5 % of critical it leaves a gap of 4 % at 3/rev, next to the second
+/// flap mode).
 #[test]
 fn force_summation_and_curvature_meet_with_many_modes() {
     let condition = forward(controls_deg(8.0, 1.0, -4.5));
@@ -123,7 +127,11 @@ fn force_summation_and_curvature_meet_with_many_modes() {
                 time_elements: 12,
                 ..Discretisation::default()
             };
-            let model = RotorModel { root_cutout: 0.35, ..paper_model(Couplings::Linear) };
+            let model = RotorModel {
+                root_cutout: 0.35,
+                modal_damping: 0.0,
+                ..paper_model(Couplings::Linear)
+            };
             let inflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
             let bending =
                 solve(model, &paper_blade(), d, &condition, &inflow).root_flap_bending;

@@ -1,12 +1,18 @@
 //! The errors of the driver and the exit code of each.
 
-use crate::problem::{Problem, Problems};
+use crate::problem::{Place, Problem, Problems};
+use flap_aero::AeroError;
+use preisach_dyn::PreisachError;
+use rotor_fem::FemError;
+use rotor_response::ResponseError;
 use std::path::PathBuf;
+use trim::TrimError;
 
 /// What a run of the program can end with.
 ///
 /// Three families, and an exit code for each ([`SimError::exit_code`]): rejected input (2),
-/// numerical failure (1), data mismatch (3).
+/// numerical failure (1), data mismatch (3). The errors of the models carry the place of the user's
+/// file that asked for what failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
@@ -27,6 +33,43 @@ pub enum SimError {
         path: PathBuf,
         /// What the operating system said.
         reason: String,
+    },
+
+    // ---- models; the family depends on the source ----
+    /// The actuator model or its identification.
+    #[error("{place}: {source}")]
+    Actuator {
+        /// Case or data that asked for it.
+        place: Place,
+        /// What went wrong.
+        source: PreisachError,
+    },
+    /// The blade and its modes.
+    #[error("{place}: {source}")]
+    Blade {
+        /// Case that asked for it.
+        place: Place,
+        /// What went wrong.
+        source: FemError,
+    },
+    /// The section aerodynamics.
+    #[error("section: {0}")]
+    Section(#[from] AeroError),
+    /// The periodic response of the rotor.
+    #[error("{place}: {source}")]
+    Response {
+        /// Case that asked for it.
+        place: Place,
+        /// What went wrong.
+        source: ResponseError,
+    },
+    /// The trim.
+    #[error("{place}: {source}")]
+    Trim {
+        /// The trim section of the case.
+        place: Place,
+        /// What went wrong.
+        source: TrimError,
     },
 }
 
@@ -56,15 +99,60 @@ impl SimError {
     /// Family of the error.
     pub fn family(&self) -> Family {
         match self {
-            Self::Rejected(_) | Self::WouldOverwrite { .. } | Self::NotWritten { .. } => {
-                Family::RejectedInput
-            }
+            Self::Rejected(_)
+            | Self::WouldOverwrite { .. }
+            | Self::NotWritten { .. }
+            | Self::Section(_) => Family::RejectedInput,
+            Self::Actuator { source, .. } => actuator_family(source),
+            Self::Blade { source, .. } => blade_family(source),
+            Self::Response { source, .. } => response_family(source),
+            Self::Trim { source, .. } => trim_family(source),
         }
     }
 
     /// Exit code of the program: 1 numerical failure, 2 rejected input, 3 data mismatch.
     pub fn exit_code(&self) -> u8 {
         self.family().exit_code()
+    }
+}
+
+fn actuator_family(error: &PreisachError) -> Family {
+    match error {
+        PreisachError::Diverged { .. }
+        | PreisachError::OrbitNotClosed { .. }
+        | PreisachError::BiasNotConverged { .. }
+        | PreisachError::QuadraticProgram { .. } => Family::NumericalFailure,
+        _ => Family::RejectedInput,
+    }
+}
+
+fn blade_family(error: &FemError) -> Family {
+    match error {
+        FemError::Property { .. } | FemError::Parameter { .. } | FemError::TooFewModes { .. } => {
+            Family::RejectedInput
+        }
+        _ => Family::NumericalFailure,
+    }
+}
+
+fn response_family(error: &ResponseError) -> Family {
+    match error {
+        ResponseError::SpanPoints { .. }
+        | ResponseError::Parameter { .. }
+        | ResponseError::FlapSpan { .. }
+        | ResponseError::FlapMotions { .. }
+        | ResponseError::Aero(_) => Family::RejectedInput,
+        ResponseError::Fem(source) => blade_family(source),
+        _ => Family::NumericalFailure,
+    }
+}
+
+/// A trim out of reach asks for more than the rotor can give: the case is at fault, not the solver.
+fn trim_family(error: &TrimError) -> Family {
+    match error {
+        TrimError::Parameter { .. } | TrimError::OutOfReach { .. } => Family::RejectedInput,
+        TrimError::Response(source) => response_family(source),
+        _ => Family::NumericalFailure,
     }
 }
 

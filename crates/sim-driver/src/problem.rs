@@ -130,6 +130,13 @@ pub enum Fault {
         message: String,
     },
 
+    /// A value was read but makes no sense.
+    #[error("is refused: {message}")]
+    Refused {
+        /// What the value's own check said.
+        message: String,
+    },
+
     // ---- values ----
     /// A number lies outside its range.
     #[error("is {value}{0}, expected {low} to {high}{0}; {remedy}", suffix(.unit))]
@@ -223,7 +230,7 @@ pub enum Fault {
         room_volt: f64,
     },
     /// An `Ignored` run has nothing to be compared with.
-    #[error("Ignored and Hysteretic need an identified actuator; give actuator.model: Bench(...) or File(...)")]
+    #[error("Ignored and Hysteretic need an identified actuator; set actuator.model to Bench(...) or File(...)")]
     NeedsIdentifiedActuator,
     /// A range is upside down.
     #[error("({low}, {high}) is no range; give the lower limit first, both finite")]

@@ -7,6 +7,7 @@
 mod compare;
 mod filter;
 mod snapshot;
+mod source;
 mod sweep;
 
 use std::path::Path;
@@ -16,6 +17,7 @@ use rayon::prelude::*;
 pub use compare::{Difference, compare, unfit_for_a_golden};
 pub use filter::Filter;
 pub use snapshot::{GUARDED_CHANGE, Group, Snapshot, Tolerance};
+pub use source::{SweepError, sweep_point};
 pub use sweep::{
     ADVANCE_RATIOS, HARMONICS_PER_REV, HUB_LOADS, SweepPoint, SweepResult, TrimChannels, all_points,
 };

@@ -1,12 +1,13 @@
 //! From the case file to the validated case: every value is checked, every problem collected.
 
+use super::file_control::SHIPPED_DATASET;
 use super::checker::{Checker, Number};
 use super::{
     ActuatorChoice, ActuatorSource, ActuatorValues, BladeValues, Case, CaseFile,
     CompressibilityChoice, ControlActuator, ControlValues, EffortChoice, FlapValues, InflowChoice,
     SectionModelChoice, SectionValues, StrokeChoice, TrimFile, TrimValues,
 };
-use crate::files::{Folder, RonIndex};
+use crate::files::{Folder, RonIndex, SHIPPED_BENCH};
 use crate::problem::{Fault, Problems};
 use rotor_base::RotorScales;
 use std::f64::consts::TAU;
@@ -82,6 +83,7 @@ fn build(file: &CaseFile, folder: &Folder, scales: RotorScales) -> Case {
         trim: trim_values(&file.trim),
         actuator: ActuatorValues {
             source: actuator_source(&file.actuator.model, folder),
+            ideal_amplitude_deg: file.actuator.ideal_amplitude_deg,
             bench_rev_hz: file.actuator.bench_rev_hz,
             range_volt: file.actuator.range_volt,
         },
@@ -128,8 +130,9 @@ fn trim_values(trim: &TrimFile) -> TrimValues {
 
 fn actuator_source(choice: &ActuatorChoice, folder: &Folder) -> ActuatorSource {
     match choice {
-        ActuatorChoice::Linear(linear) => {
-            ActuatorSource::Linear { amplitude_deg: linear.amplitude_deg }
+        ActuatorChoice::Ideal => ActuatorSource::Ideal,
+        ActuatorChoice::Bench(bench) if bench.dataset == SHIPPED_DATASET => {
+            ActuatorSource::Bench(Folder::Shipped(SHIPPED_BENCH.to_owned()))
         }
         ActuatorChoice::Bench(bench) => ActuatorSource::Bench(folder.join(&bench.dataset)),
         ActuatorChoice::File(stored) => {
@@ -284,12 +287,10 @@ fn check_actuator(check: &mut Checker<'_>, file: &CaseFile) {
     let a = &file.actuator;
     let remedy = "the paper's figures use 5 rev/s, its rotor turns 6.383 rev/s";
     check.within(number("actuator.bench_rev_hz", a.bench_rev_hz, "rev/s", remedy), 1e-3, 1e3);
+    let remedy = "flap amplitude at full-scale voltage; the paper's gain gives 10 deg";
+    let ideal = a.ideal_amplitude_deg;
+    check.within(number("actuator.ideal_amplitude_deg", ideal, "deg", remedy), 1e-3, 45.0);
     match &a.model {
-        ActuatorChoice::Linear(linear) => {
-            let field = "actuator.model.amplitude_deg";
-            let remedy = "flap amplitude at full-scale voltage; the paper's gain gives 10 deg";
-            check.within(number(field, linear.amplitude_deg, "deg", remedy), 1e-3, 45.0);
-        }
         ActuatorChoice::Bench(bench) if bench.dataset.trim().is_empty() => {
             let of = "the folder of dataset.ron, relative to the case file";
             check.fault("actuator.model.dataset", Fault::EmptyText { of });
@@ -344,9 +345,9 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
             }
         }
     }
-    let linear = matches!(file.actuator.model, ActuatorChoice::Linear(_));
+    let ideal = file.actuator.model == ActuatorChoice::Ideal;
     for (i, actuator) in c.actuators.iter().enumerate() {
-        if linear && *actuator != ControlActuator::Ideal {
+        if ideal && *actuator != ControlActuator::Ideal {
             check.fault(&format!("control.actuators[{i}]"), Fault::NeedsIdentifiedActuator);
         }
     }

@@ -86,39 +86,29 @@ pub struct PrescribedTrimFile {
 /// Where the actuator model comes from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum ActuatorChoice {
-    /// Ideal linear actuator.
-    Linear(LinearActuatorFile),
+    /// The ideal linear actuator alone: no bench, no hysteresis.
+    Ideal,
     /// Identified from bench data when the case is run.
     Bench(BenchFile),
     /// An actuator file written by `hhc identify`.
     File(StoredActuatorFile),
 }
 
-/// The ideal actuator: `amplitude_deg` at `control.amplitude_V` about `control.bias_V`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct LinearActuatorFile {
-    /// Flap amplitude at full scale, deg.
-    pub amplitude_deg: f64,
-}
-
-impl Default for LinearActuatorFile {
-    fn default() -> Self {
-        Self { amplitude_deg: 10.0 }
-    }
-}
+/// Name of the data set inside the program.
+pub(super) const SHIPPED_DATASET: &str = "shipped:apa500l_synthetic";
 
 /// A bench data folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BenchFile {
-    /// Folder of `dataset.ron`, relative to the case file.
+    /// Folder of `dataset.ron`, relative to the case file; `shipped:apa500l_synthetic` is the one
+    /// inside the program.
     pub dataset: String,
 }
 
 impl Default for BenchFile {
     fn default() -> Self {
-        Self { dataset: "../bench/apa500l_synthetic".to_owned() }
+        Self { dataset: SHIPPED_DATASET.to_owned() }
     }
 }
 
@@ -136,6 +126,8 @@ pub struct StoredActuatorFile {
 pub struct ActuatorFile {
     /// The model.
     pub model: ActuatorChoice,
+    /// Flap amplitude of the ideal linear actuator at full-scale voltage, deg.
+    pub ideal_amplitude_deg: f64,
     /// Revolutions per second that one second of the bench stands for.
     pub bench_rev_hz: f64,
     /// Voltages the actuator may see, V, lower limit first.
@@ -147,6 +139,7 @@ impl Default for ActuatorFile {
     fn default() -> Self {
         Self {
             model: ActuatorChoice::Bench(BenchFile::default()),
+            ideal_amplitude_deg: 10.0,
             bench_rev_hz: 5.0,
             range_volt: (-20.0, 150.0),
         }

@@ -18,8 +18,7 @@ pub use file::{
     TolerancesFile,
 };
 pub use file_control::{
-    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice, LinearActuatorFile,
-    LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
+    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice, LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
     TrimFile, WindTunnelTrimFile,
 };
 pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};

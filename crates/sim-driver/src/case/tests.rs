@@ -91,7 +91,7 @@ fn single_problems_name_the_remedy() {
         ("(control: (amplitude_V: 90))", "control.amplitude_V: the voltage 65 V +- 90 V leaves the actuator's range -20 V to 150 V; lower control.amplitude_V to 85 V"),
         ("(control: (bias_V: 200))", "leaves the actuator's range"),
         ("(actuator: (range_V: (150, -20)))", "actuator.range_V: (150, -20) is no range; give the lower limit first"),
-        ("(actuator: (model: Linear()))", "control.actuators[1]: Ignored and Hysteretic need an identified actuator"),
+        ("(actuator: (model: Ideal))", "control.actuators[1]: Ignored and Hysteretic need an identified actuator"),
         ("(aerodynamics: (model: Incompressible))", "aerodynamics.model: Incompressible holds at Mach 0 only"),
         ("(aerodynamics: (speed_of_sound_m_s: 150))", "aerodynamics.speed_of_sound_m_s: is 150 m/s, expected 208"),
         ("(trim: Propulsive(ct_sigma: 0.9))", "trim.ct_sigma: is 0.9, expected 0.001 to 0.5"),

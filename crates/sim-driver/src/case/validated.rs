@@ -158,11 +158,8 @@ pub enum TrimValues {
 /// Where the actuator model comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActuatorSource {
-    /// Ideal linear actuator of this amplitude at full scale, deg.
-    Linear {
-        /// Flap amplitude at `control.amplitude_volt`, deg.
-        amplitude_deg: f64,
-    },
+    /// The ideal linear actuator alone.
+    Ideal,
     /// Bench data folder.
     Bench(Folder),
     /// Stored actuator file: its folder and name.
@@ -179,6 +176,8 @@ pub enum ActuatorSource {
 pub struct ActuatorValues {
     /// Where the model comes from.
     pub source: ActuatorSource,
+    /// Flap amplitude of the ideal linear actuator at full-scale voltage, deg.
+    pub ideal_amplitude_deg: f64,
     /// Revolutions per second that one second of the bench stands for.
     pub bench_rev_hz: f64,
     /// Voltages the actuator may see, V: lower and upper limit.

@@ -69,6 +69,11 @@ impl RonIndex {
         self.place_of_byte(entry.start).line
     }
 
+    /// The text of a field's value.
+    pub fn value_text(&self, path: &str) -> Option<&str> {
+        self.entries.iter().find(|e| e.path == path).map(|e| self.text(&e.value))
+    }
+
     /// Whether the text has a field.
     pub fn contains(&self, path: &str) -> bool {
         self.entries.iter().any(|e| e.path == path)

@@ -128,10 +128,13 @@ fn note(
         | RonError::ExpectedUnit
         | RonError::IntegerOutOfBounds
         | RonError::InvalidIntegerDigit { .. }
-        | RonError::Message(_)
             if entry.is_some() =>
         {
             place(Fault::WrongType { message: sentence(&error.code) }, problems);
+            field()
+        }
+        RonError::Message(message) if entry.is_some() => {
+            place(Fault::Refused { message: message.clone() }, problems);
             field()
         }
         _ if within_number => {

@@ -1,0 +1,107 @@
+//! Budgets on one core: the modes of a ten-element blade 50 ms with Coriolis terms, 20 ms uncoupled;
+//! one time-element solve of ten degrees of freedom 30 ms, with a kept factorisation 2 ms.
+//!
+//! The trim solves for the orbit hundreds of times and for the modes once. Each bench ends with a line
+//! that sets the mean of a short run against its budget.
+#![allow(missing_docs, reason = "criterion's macros write undocumented items")]
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use nalgebra::{DMatrix, DVector};
+use rotor_fem::{
+    BladeModel, BladeProperties, BladeSpec, FemError, GyroscopicTerms, LinearCoefficients,
+    LinearPeriodic, ModeCount, Orbit, PeriodicSettings, PeriodicSolver, TimeElements, modes,
+    uncoupled_modes,
+};
+
+/// Runs a bench and prints the share of its budget that it used.
+fn measure(c: &mut Criterion, name: &str, budget_ms: f64, mut run: impl FnMut()) {
+    let mut mean_ms = 0.0;
+    c.bench_function(name, |b| {
+        b.iter_custom(|count| {
+            #[expect(clippy::disallowed_methods, reason = "a bench is about the clock")]
+            let start = std::time::Instant::now();
+            for _ in 0..count {
+                run();
+            }
+            let spent = start.elapsed();
+            mean_ms = 1e3 * spent.as_secs_f64() / count as f64;
+            spent
+        });
+    });
+    println!(
+        "{name}: {mean_ms:.3} ms, {:.2} of the budget of {budget_ms} ms",
+        mean_ms / budget_ms
+    );
+}
+
+/// Ten coupled oscillators at the paper rotor's frequencies with 1/rev coefficients.
+fn ten_modes() -> LinearPeriodic<impl Fn(f64) -> LinearCoefficients + Sync> {
+    let frequencies = [
+        1.126, 3.422, 7.667, 13.92, 0.701, 4.300, 10.90, 20.66, 4.588, 13.52,
+    ];
+    LinearPeriodic::new(DMatrix::identity(10, 10), move |psi: f64| {
+        let square = DVector::from_iterator(10, frequencies.iter().map(|w| w * w));
+        let mut stiffness = DMatrix::from_diagonal(&square);
+        let mut damping = DMatrix::identity(10, 10) * 0.3;
+        for i in 0..9 {
+            stiffness[(i, i + 1)] += 0.1 * psi.cos();
+            damping[(i + 1, i)] += 0.1 * psi.sin();
+        }
+        LinearCoefficients {
+            damping,
+            stiffness,
+            load: DVector::from_element(10, psi.sin().exp()),
+        }
+    })
+}
+
+fn blade_modes(c: &mut Criterion) -> Result<(), FemError> {
+    let spec = BladeSpec {
+        pitch_rad: 0.14,
+        ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 200.0)
+    };
+    let blade = BladeProperties::new(spec)?;
+    let count = ModeCount::default();
+    measure(
+        c,
+        "coupled modes, 10 elements, Coriolis terms",
+        50.0,
+        || {
+            let found = BladeModel::new(blade.clone(), 10)
+                .and_then(|model| modes(&model, GyroscopicTerms::Included, count));
+            black_box(found.is_ok());
+        },
+    );
+    measure(c, "uncoupled modes, 10 elements", 20.0, || {
+        black_box(uncoupled_modes(&blade, 10, count).is_ok());
+    });
+    Ok(())
+}
+
+fn orbits(c: &mut Criterion) -> Result<(), FemError> {
+    let time = TimeElements::default();
+    let system = ten_modes();
+    let zero = Orbit::zero(&time, 10);
+    let mut solver = PeriodicSolver::new(time, PeriodicSettings::default())?;
+    measure(c, "time elements, 10 dof, new factorisation", 30.0, || {
+        solver.forget_factorisation();
+        black_box(solver.solve(&system, &zero).is_ok());
+    });
+    measure(c, "time elements, 10 dof, kept factorisation", 2.0, || {
+        black_box(solver.solve(&system, &zero).is_ok());
+    });
+    Ok(())
+}
+
+fn benches(c: &mut Criterion) {
+    for outcome in [blade_modes(c), orbits(c)] {
+        if let Err(error) = outcome {
+            println!("bench not run: {error}");
+        }
+    }
+}
+
+criterion_group!(solvers, benches);
+criterion_main!(solvers);

@@ -1,0 +1,99 @@
+//! What can go wrong in the search for a periodic orbit.
+
+use crate::Orbit;
+
+/// Why no periodic orbit was found; `E` is the system's own error.
+///
+/// Apart from [`FemError`] because it carries the caller's error type.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PeriodicError<E: std::error::Error + 'static> {
+    /// Start orbit, mass matrix or tangents do not fit the system.
+    #[error("{what}: found {found}, expected {expected}")]
+    Shape {
+        /// What does not fit.
+        what: &'static str,
+        /// Size found.
+        found: usize,
+        /// Size expected.
+        expected: usize,
+    },
+    /// The mass matrix is not symmetric with a positive diagonal.
+    #[error(
+        "mass matrix entry ({row}, {column}) is {value}: expected finite and symmetric, with a \
+         positive diagonal"
+    )]
+    Mass {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// The system's physics refused an orbit.
+    #[error("the system refused the orbit of iteration {iteration}: {source}")]
+    System {
+        /// Iteration, 0 for the start.
+        iteration: usize,
+        /// The system's error.
+        source: E,
+    },
+    /// A residual or tangent is not a finite number.
+    #[error(
+        "the residual of degree of freedom {dof} is not a finite number at azimuth {azimuth_rad} rad \
+         in iteration {iteration}: the system diverges or has bad data; start nearer to the solution"
+    )]
+    NotFinite {
+        /// Iteration, 0 for the start.
+        iteration: usize,
+        /// Degree of freedom, from 0.
+        dof: usize,
+        /// Azimuth, rad.
+        azimuth_rad: f64,
+        /// Last orbit with a finite residual.
+        best: Box<Orbit>,
+    },
+    /// A mode is in resonance without damping: the orbit is not determined.
+    #[error(
+        "degree of freedom {dof} resonates at {per_rev} per rev without damping: the smallest dynamic \
+         stiffness of the revolution is {dynamic_stiffness:e} per unit mass (rotor speed squared), not \
+         distinguishable from zero with a time discretisation error of {resolution:e}; give the mode \
+         damping or move its frequency off the integer"
+    )]
+    Resonance {
+        /// Degree of freedom that dominates the undetermined motion, from 0.
+        dof: usize,
+        /// Harmonic that dominates the undetermined motion, per rev.
+        per_rev: usize,
+        /// Smallest dynamic stiffness per unit mass, rotor speed squared.
+        dynamic_stiffness: f64,
+        /// Error of the time elements in the square of that harmonic.
+        resolution: f64,
+    },
+    /// The residual did not fall below the tolerance.
+    #[error(
+        "no periodic orbit after {iterations} iterations: residual {residual:e}, tolerance \
+         {tolerance:e} (best {}); start nearer, add damping, or raise max_iterations; history: {}",
+        .history.iter().copied().fold(f64::INFINITY, f64::min), show(.history)
+    )]
+    NotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Residual norm of the last orbit.
+        residual: f64,
+        /// Tolerance asked for.
+        tolerance: f64,
+        /// Residual norm at the start and after every step.
+        history: Vec<f64>,
+        /// The orbit with the smallest residual.
+        best: Box<Orbit>,
+    },
+}
+
+/// The last few residuals, for a message.
+fn show(history: &[f64]) -> String {
+    let tail = &history[history.len().saturating_sub(6)..];
+    let shown: Vec<String> = tail.iter().map(|r| format!("{r:.1e}")).collect();
+    shown.join(" ")
+}

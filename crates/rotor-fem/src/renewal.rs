@@ -1,0 +1,66 @@
+//! When a kept factorisation is used again and when it is renewed.
+
+/// Growth of the residual that a step with a new matrix may cause before it is shortened.
+const ALLOWED_GROWTH: f64 = 2.0;
+/// Steps a new factorisation is given at first.
+const PATIENCE: usize = 2;
+
+/// What to do with a chord step.
+pub(crate) enum Verdict {
+    /// Take it.
+    Accept,
+    /// It made things worse although the matrix is new: take a part of the Newton step.
+    Shorten,
+    /// The matrix has aged: make a new one.
+    Renew,
+}
+
+/// Decides when the factorisation is renewed.
+pub(crate) struct Renewal {
+    /// Residual that a good step may leave, as a fraction.
+    limit: f64,
+    /// Steps since the matrix was made; none for one kept from an earlier solve.
+    age: Option<usize>,
+    /// Steps a new matrix is given before it may be replaced. Doubles when a new matrix did not help
+    /// (the tangent is incomplete) and starts anew when it did.
+    patience: usize,
+    pub(crate) factorisations: usize,
+}
+
+impl Renewal {
+    pub(crate) fn new(limit: f64) -> Self {
+        Self {
+            limit,
+            age: None,
+            patience: PATIENCE,
+            factorisations: 0,
+        }
+    }
+
+    /// Notes that a new matrix was made.
+    pub(crate) fn renewed(&mut self) {
+        if self.factorisations > 0 {
+            self.patience *= 2;
+        }
+        self.age = Some(0);
+        self.factorisations += 1;
+    }
+
+    /// Judges a step by the residual it leaves over the one it started from.
+    pub(crate) fn judge(&mut self, growth: f64) -> Verdict {
+        let (good, worse) = (growth <= self.limit, growth > ALLOWED_GROWTH);
+        match self.age {
+            Some(0) if good => self.patience = PATIENCE,
+            Some(0) if worse => {
+                self.age = Some(1);
+                return Verdict::Shorten;
+            }
+            Some(0) => {}
+            Some(age) if !good && (worse || age >= self.patience) => return Verdict::Renew,
+            None if !good => return Verdict::Renew,
+            _ => {}
+        }
+        self.age = self.age.map(|age| age + 1);
+        Verdict::Accept
+    }
+}

@@ -1,0 +1,237 @@
+//! What `hhc run` finds, and how it is stored.
+
+use crate::SimError;
+use crate::case::CaseFile;
+use crate::files::{ron_text, write_atomic};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// What `hhc run` prints. Loads nondimensional (`m0 Omega^2 R^2`, `m0 Omega^2 R^3`), a harmonic as
+/// `[cosine, sine]`, angles of harmonics in (-180, 180] deg.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunResult {
+    /// The trim found.
+    pub trim: TrimLine,
+    /// How well the equations are satisfied; no vibration number without them.
+    pub residuals: Residuals,
+    /// Loads without control.
+    pub baseline: Baseline,
+    /// One entry per set of harmonics and actuator.
+    pub control: Vec<ControlLine>,
+    /// What a reader should know before using the numbers.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+}
+
+/// Controls and attitude. Angles in deg.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct TrimLine {
+    /// Collective at 0.75 R.
+    pub theta0_deg: f64,
+    /// Lateral cyclic.
+    pub theta1c_deg: f64,
+    /// Longitudinal cyclic.
+    pub theta1s_deg: f64,
+    /// Shaft tilt, forward positive.
+    pub alpha_s_deg: f64,
+    /// Bank, right positive.
+    pub phi_s_deg: f64,
+    /// Tail rotor thrust to starboard, `m0 Omega^2 R^2`.
+    pub tail_thrust: f64,
+    /// Thrust coefficient over solidity.
+    pub ct_sigma: f64,
+    /// Mean induced inflow, tip speed, down positive.
+    pub induced_inflow: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+}
+
+/// The three residuals of every result.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Residuals {
+    /// Largest trim residual over the weight.
+    pub trim: f64,
+    /// Largest weak residual of the periodic orbit.
+    pub periodicity: f64,
+    /// Mismatch of the inflow, tip speed.
+    pub inflow: f64,
+}
+
+/// Loads without control.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Baseline {
+    /// Fixed-frame hub loads at the blade number per rev.
+    pub hub_4_per_rev: HubLoads,
+}
+
+/// Six hub loads at one harmonic, `[cosine, sine]`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct HubLoads {
+    /// Longitudinal force, aft positive.
+    pub fx: [f64; 2],
+    /// Lateral force, starboard positive.
+    pub fy: [f64; 2],
+    /// Vertical force, up positive.
+    pub fz: [f64; 2],
+    /// Moment about the aft axis.
+    pub mx: [f64; 2],
+    /// Moment about the starboard axis.
+    pub my: [f64; 2],
+    /// Moment about the upward axis.
+    pub mz: [f64; 2],
+}
+
+impl HubLoads {
+    /// Names of the loads, in the order of [`Self::amplitudes`].
+    pub const NAMES: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
+
+    /// From cosine and sine parts `fx_c fx_s fy_c ... mz_s`.
+    pub fn from_parts(parts: [f64; 12]) -> Self {
+        let pair = |k: usize| [parts[2 * k], parts[2 * k + 1]];
+        Self { fx: pair(0), fy: pair(1), fz: pair(2), mx: pair(3), my: pair(4), mz: pair(5) }
+    }
+
+    /// Amplitudes of the six loads.
+    pub fn amplitudes(&self) -> [f64; 6] {
+        [self.fx, self.fy, self.fz, self.mx, self.my, self.mz].map(|[c, s]| c.hypot(s))
+    }
+}
+
+/// One control study: a set of harmonics and an actuator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ControlLine {
+    /// Harmonics per rev.
+    pub harmonics: Vec<usize>,
+    /// `ideal`, `ignored`, `hysteretic` or `inverse`.
+    pub actuator: String,
+    /// `J_Z` without control.
+    pub j_before: f64,
+    /// `J_Z` with control.
+    pub j_after: f64,
+    /// `100 (1 - J_Z / J_Z0)`.
+    pub reduction_percent: f64,
+    /// Hub loads with control.
+    pub hub_4_per_rev: HubLoads,
+    /// One entry per flap, from root to tip; of a set of several harmonics, one after another.
+    pub flaps: Vec<FlapLine>,
+    /// Control steps.
+    pub steps: usize,
+}
+
+/// Voltage and motion of a flap at one harmonic.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct FlapLine {
+    /// Harmonic per rev.
+    pub harmonic: usize,
+    /// Voltage amplitude, V.
+    #[serde(rename = "voltage_amplitude_V")]
+    pub voltage_amplitude_volt: f64,
+    /// Flap amplitude, deg.
+    pub flap_amplitude_deg: f64,
+    /// Phase by which the flap lags the voltage, deg.
+    pub lag_deg: f64,
+    /// Phase by which this flap leads the inboard one, deg; 0 for the inboard flap itself.
+    pub lead_over_inboard_deg: f64,
+}
+
+/// A stored result: everything needed to reproduce it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StoredResult<T> {
+    /// Program and version.
+    pub program: String,
+    /// blake3 of version, canonical case and input data: equal keys mean equal results.
+    pub key: String,
+    /// blake3 of each input beside the case: actuator or bench data.
+    pub inputs: Vec<String>,
+    /// The whole case, defaults filled in.
+    pub case: CaseFile,
+    /// The result.
+    pub result: T,
+}
+
+impl<T: Serialize> StoredResult<T> {
+    /// Puts a result beside its case and key. `inputs` are blake3 hashes of bench or actuator data.
+    ///
+    /// # Errors
+    /// As [`result_key`].
+    pub fn new(case: &CaseFile, inputs: Vec<String>, result: T) -> Result<Self, SimError> {
+        Ok(Self {
+            program: format!("hhc {}", crate::VERSION),
+            key: result_key(case, &inputs)?,
+            inputs,
+            case: case.clone(),
+            result,
+        })
+    }
+
+    /// Writes the result atomically as JSON.
+    ///
+    /// # Errors
+    /// [`SimError::NotWritten`].
+    pub fn write(&self, path: &Path) -> Result<(), SimError> {
+        let text = serde_json::to_string_pretty(self).map_err(|e| not_written(path, &e))?;
+        write_atomic(path, (text + "\n").as_bytes())
+    }
+}
+
+/// blake3 of program version, canonical case and input hashes.
+///
+/// The canonical case is the case file with its defaults filled in, so comments, order and layout of
+/// the user's file do not matter.
+///
+/// # Errors
+/// [`SimError::NotWritten`] for a case RON cannot express.
+pub fn result_key(case: &CaseFile, inputs: &[String]) -> Result<String, SimError> {
+    let canonical = ron_text(case).map_err(|e| not_written(Path::new("case"), &e))?;
+    let mut hash = blake3::Hasher::new();
+    for part in std::iter::once(crate::VERSION)
+        .chain(std::iter::once(canonical.as_str()))
+        .chain(inputs.iter().map(String::as_str))
+    {
+        hash.update(&(part.len() as u64).to_le_bytes());
+        hash.update(part.as_bytes());
+    }
+    Ok(hash.finalize().to_hex().to_string())
+}
+
+fn not_written(path: &Path, error: &dyn std::fmt::Display) -> SimError {
+    SimError::NotWritten { path: path.to_path_buf(), reason: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{PAPER_CASE, shipped_case};
+
+    #[test]
+    fn the_key_follows_case_and_inputs_but_not_layout() {
+        let file = shipped_case(PAPER_CASE).unwrap().file;
+        let key = |file: &CaseFile, inputs: &[&str]| {
+            let inputs: Vec<String> = inputs.iter().map(|s| (*s).to_owned()).collect();
+            result_key(file, &inputs).unwrap()
+        };
+        let base = key(&file, &["a", "b"]);
+        assert_eq!(base.len(), 64);
+        assert_eq!(base, key(&file.clone(), &["a", "b"]));
+        assert_ne!(base, key(&file, &["ab"]), "inputs are kept apart");
+        let moved = CaseFile { advance_ratio: file.advance_ratio + 1e-12, ..file };
+        assert_ne!(base, key(&moved, &["a", "b"]));
+    }
+
+    #[test]
+    fn hub_loads_keep_their_order() {
+        let mut parts = [0.0; 12];
+        for (i, p) in parts.iter_mut().enumerate() {
+            *p = i as f64;
+        }
+        let loads = HubLoads::from_parts(parts);
+        assert_eq!(loads.fz, [4.0, 5.0]);
+        assert_eq!(loads.mz, [10.0, 11.0]);
+        let json = serde_json::to_value(loads).unwrap();
+        for (name, amplitude) in HubLoads::NAMES.iter().zip(loads.amplitudes()) {
+            let pair = &json[name];
+            let found = pair[0].as_f64().unwrap().hypot(pair[1].as_f64().unwrap());
+            assert!((found - amplitude).abs() < 1e-15);
+        }
+    }
+}

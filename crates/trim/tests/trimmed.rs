@@ -1,0 +1,102 @@
+//! Trim against published-style sanity values, its own equations and its error paths.
+#![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
+
+use flap_aero::AttachedFlowModel;
+use rotor_fem::{BladeProperties, BladeSpec, Twist};
+use rotor_response::{
+    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
+    RotorSolver,
+};
+use rotor_wake::LinearInflow;
+use std::sync::Arc;
+use trim::{TrimError, TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
+
+fn solver(advance_ratio: f64) -> RotorSolver {
+    let blade = BladeProperties::new(BladeSpec {
+        twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
+        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
+    })
+    .unwrap();
+    let model = RotorModel {
+        blades: 4,
+        chord: 0.055,
+        lock_number: 5.2,
+        drag_coefficient: 0.01,
+        root_cutout: 0.2,
+        modal_damping: 0.005,
+        couplings: Couplings::Full,
+        section_model: AttachedFlowModel::QuasiSteady,
+        compressibility: Compressibility::None,
+        flaps: vec![],
+    };
+    let rotor = Rotor::new(model, &blade, Discretisation::default()).unwrap();
+    RotorSolver::new(Arc::new(rotor), advance_ratio, ResponseTolerances::default()).unwrap()
+}
+
+fn propulsive(weight_ct_sigma: f64) -> TrimTarget {
+    TrimTarget::Propulsive { weight_ct_sigma, vehicle: Vehicle::default() }
+}
+
+fn solve(advance_ratio: f64, target: &TrimTarget) -> Result<TrimSolution, TrimError> {
+    let settings = TrimSettings::default();
+    trim(&mut solver(advance_ratio), &LinearInflow::Uniform, advance_ratio, target, &settings, None)
+}
+
+/// The elastic rotor trims near the rigid-blade reference (a simpler model: one rigid flap mode,
+/// lift slope 5.73, drag rising with incidence): same signs, a few tenths to one degree apart.
+#[test]
+fn propulsive_trim_is_near_the_rigid_blade_reference() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../fixtures/reference/rotor/trim_reference_simple.csv"
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    for line in text.lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|f| f.parse().unwrap()).collect();
+        let mu = row[0];
+        if ![0.1, 0.2, 0.3].iter().any(|m| (m - mu).abs() < 1e-9) {
+            continue;
+        }
+        let t = solve(mu, &propulsive(0.07)).unwrap();
+        assert!(t.residual <= 1e-9);
+        assert!(t.rotor.residuals.periodicity <= 1e-8);
+        let c = t.controls;
+        let got = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad, t.attitude.shaft_tilt_rad, t.attitude.roll_rad]
+            .map(f64::to_degrees);
+        println!("mu {mu}: {got:.3?} against {:.3?}, {} its {:?}", &row[1..6], t.iterations, t.residual_history);
+        for (k, allowed) in [1.0, 1.5, 1.2, 0.6, 0.6].into_iter().enumerate() {
+            assert!((got[k] - row[1 + k]).abs() <= allowed, "mu {mu}: {got:?} against {row:?}");
+        }
+        assert!(got[4] < 0.0, "a counter-clockwise rotor banks left, got {}", got[4]);
+    }
+}
+
+#[test]
+fn wind_tunnel_trim_takes_the_hub_moments_away() {
+    let target = TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: 0.08 };
+    let t = solve(0.25, &target).unwrap();
+    let mean = t.rotor.hub.mean();
+    let thrust = 0.07 * 4.0 * 5.2 / (3.0 * std::f64::consts::TAU);
+    assert!((mean[2] / thrust - 1.0).abs() < 1e-8);
+    assert!(mean[3].abs() < 1e-9 && mean[4].abs() < 1e-9);
+}
+
+#[test]
+fn prescribed_controls_are_left_alone() {
+    let controls = Controls { theta0_rad: 0.14, theta1c_rad: 0.01, theta1s_rad: -0.07 };
+    let target = TrimTarget::Prescribed { controls, shaft_tilt_rad: 0.05 };
+    let t = solve(0.2, &target).unwrap();
+    assert_eq!(t.controls, controls);
+    assert_eq!(t.iterations, 0);
+}
+
+#[test]
+fn a_thrust_out_of_reach_is_an_error_with_its_history() {
+    let error = solve(0.3, &propulsive(0.45)).unwrap_err();
+    assert!(
+        matches!(&error, TrimError::OutOfReach { history, .. } | TrimError::NotConverged { history, .. } if !history.is_empty()),
+        "{error}"
+    );
+    assert!(matches!(solve(0.7, &propulsive(0.07)), Err(TrimError::Parameter { .. })));
+    assert!(matches!(solve(0.2, &propulsive(-1.0)), Err(TrimError::Parameter { .. })));
+}
