@@ -51,7 +51,9 @@ pub enum XtaskError {
         source: ron::Error,
     },
     /// A filter of the regression sweep is not understood.
-    #[error("filter `{text}`: {problem}; write for example mu=0.30,n=3 (the sweep has {available})")]
+    #[error(
+        "filter `{text}`: {problem}; write for example mu=0.30,n=3 (the sweep has {available})"
+    )]
     Filter {
         /// The filter as given.
         text: String,

@@ -144,42 +144,53 @@ pub enum LayerFault {
 /// - [`TRUTH`] uses no other member, and no member below the tools uses it;
 /// - [`RESERVED_CRATES`] are used by [`RESERVED_FOR`] alone, or in tests.
 pub fn check(members: &[Member]) -> Vec<LayerFault> {
-    let floors: BTreeMap<&str, Option<u32>> =
-        members.iter().map(|member| (member.name.as_str(), member.floor)).collect();
+    let floors: BTreeMap<&str, Option<u32>> = members
+        .iter()
+        .map(|member| (member.name.as_str(), member.floor))
+        .collect();
     let mut faults = Vec::new();
     for member in members {
         match member.floor {
-            None => faults.push(LayerFault::NoFloor { member: member.name.clone() }),
+            None => faults.push(LayerFault::NoFloor {
+                member: member.name.clone(),
+            }),
             Some(floor) if !FLOORS.contains(&floor) => {
-                faults.push(LayerFault::UnknownFloor { member: member.name.clone(), floor });
+                faults.push(LayerFault::UnknownFloor {
+                    member: member.name.clone(),
+                    floor,
+                });
             }
             Some(_) => {}
         }
         for dependency in &member.dependencies {
-            let local = floors.get(dependency.name.as_str()).copied();
-            faults.extend(check_edge(member, dependency, local));
+            faults.extend(match floors.get(dependency.name.as_str()) {
+                Some(below) => check_member_edge(member, dependency, *below),
+                None => check_external_edge(member, dependency),
+            });
         }
     }
     faults
 }
 
-/// One line of a manifest; `local` is the floor of the dependency if it is a member.
-fn check_edge(
+/// A dependency on a crate of no member.
+fn check_external_edge(member: &Member, dependency: &Dependency) -> Option<LayerFault> {
+    let reserved = RESERVED_CRATES.contains(&dependency.name.as_str())
+        && dependency.kind != DependencyKind::Development
+        && !RESERVED_FOR.contains(&member.name.as_str());
+    reserved.then(|| LayerFault::Reserved {
+        member: member.name.clone(),
+        dependency: dependency.name.clone(),
+        kind: dependency.kind,
+    })
+}
+
+/// A dependency on a member that stands on floor `below`; a missing floor is a fault of its own member.
+fn check_member_edge(
     member: &Member,
     dependency: &Dependency,
-    local: Option<Option<u32>>,
+    below: Option<u32>,
 ) -> Option<LayerFault> {
     let (name, kind) = (dependency.name.clone(), dependency.kind);
-    let Some(below) = local else {
-        let reserved = RESERVED_CRATES.contains(&name.as_str())
-            && kind != DependencyKind::Development
-            && !RESERVED_FOR.contains(&member.name.as_str());
-        return reserved.then(|| LayerFault::Reserved {
-            member: member.name.clone(),
-            dependency: name,
-            kind,
-        });
-    };
     let truth_user = name == TRUTH && member.floor != Some(TOOLS_FLOOR);
     if member.name == TRUTH || truth_user {
         return Some(LayerFault::TruthNotApart {
@@ -188,7 +199,6 @@ fn check_edge(
             kind,
         });
     }
-    // a missing floor is a fault of its own member
     let (floor, dependency_floor) = (member.floor?, below?);
     (dependency_floor >= floor).then(|| LayerFault::NotDownward {
         member: member.name.clone(),

@@ -238,7 +238,9 @@ impl SectionState {
         self.check(section)?;
         let mut sums = [[0.0; LANES]; 3];
         for (block, state) in section.blocks.iter().zip(&self.states) {
-            add(&mut sums, block, state);
+            for (sum, weights) in sums.iter_mut().zip(&block.output) {
+                *sum = add(*sum, weights, state);
+            }
         }
         Ok(total(section.loads_at_once(inputs), &sums))
     }
@@ -250,7 +252,7 @@ impl SectionState {
         inputs: &SectionInputs,
         decays: impl Iterator<Item = Decay>,
     ) -> [f64; 3] {
-        let mut sums = [[0.0; LANES]; 3];
+        let [mut lift, mut moment, mut hinge] = [[0.0; LANES]; 3];
         for (((block, Decay { gone, mean }), state), drive) in section
             .blocks
             .iter()
@@ -258,16 +260,21 @@ impl SectionState {
             .zip(&mut self.states)
             .zip(&mut self.drives)
         {
+            // through local arrays: four lags stay together, in registers
+            let (old, before) = (*drive, *state);
             let target = block.drive(&inputs.modes);
-            for lane in 0..LANES {
-                let behind = state[lane] - drive[lane];
-                state[lane] = target[lane] - (target[lane] - drive[lane]) * mean[lane]
-                    + (behind - behind * gone[lane]);
-            }
+            let after: Lanes = std::array::from_fn(|lane| {
+                let behind = before[lane] - old[lane];
+                target[lane] - (target[lane] - old[lane]) * mean[lane]
+                    + (behind - behind * gone[lane])
+            });
             *drive = target;
-            add(&mut sums, block, state);
+            *state = after;
+            lift = add(lift, &block.output[0], &after);
+            moment = add(moment, &block.output[1], &after);
+            hinge = add(hinge, &block.output[2], &after);
         }
-        total(section.loads_at_once(inputs), &sums)
+        total(section.loads_at_once(inputs), &[lift, moment, hinge])
     }
 
     fn check(&self, section: &MarchingSection) -> Result<(), AeroError> {
@@ -275,14 +282,10 @@ impl SectionState {
     }
 }
 
-/// Adds a block's share of the loads, lag by lag.
+/// Adds a block's share of one load, lag by lag.
 #[inline]
-fn add(sums: &mut [Lanes; 3], block: &Block, state: &Lanes) {
-    for (sum, weights) in sums.iter_mut().zip(&block.output) {
-        for lane in 0..LANES {
-            sum[lane] += weights[lane] * state[lane];
-        }
-    }
+fn add(sum: Lanes, weights: &Lanes, state: &Lanes) -> Lanes {
+    std::array::from_fn(|lane| sum[lane] + weights[lane] * state[lane])
 }
 
 /// The loads at once and those of the lags.

@@ -139,8 +139,15 @@ impl ControlRun {
 /// ```text
 /// |1 - exp(-i phi) / g|
 /// ```
-/// so that full steps converge for `|phi| < 60 deg` if the gain is right; halved ones converge, the
-/// slower the nearer, up to 90 deg. Beyond that no step lowers the cost: [`ControlError::Diverges`].
+/// so that full steps converge for `|phi| < 60 deg` if the gain is right. Whether they also lower the
+/// cost depends on the condition number `k` of T: sure they do, once halved enough, for
+///
+/// ```text
+/// |phi| < 2 arctan(1 / k)
+/// ```
+/// which is 90 deg for `k = 1`, but 37 deg for `k = 3`. If no part of the first step lowers the cost,
+/// that is an error, [`ControlError::Diverges`]. A control weight `rho` of the order of the smaller
+/// singular values squared takes the edge off an ill-conditioned T.
 ///
 /// With `rho = 0` an error of that kind does not move the fixed point. With `rho > 0` it does: the
 /// fixed point solves `rho u = -T0' W_Z Z`, which is the least cost only where T0 is exact.
@@ -152,8 +159,8 @@ pub struct FeedbackController {
     pub(crate) settings: FeedbackSettings,
 }
 
-/// Changes below a nanovolt are none.
-const SMALLEST_CHANGE_VOLT: f64 = 1e-9;
+/// Changes below a picovolt are rounding, should the optimum be no control at all.
+const SMALLEST_CHANGE_VOLT: f64 = 1e-12;
 
 /// A step no longer than this part of the step before belongs to a loop that settles.
 const SETTLING: f64 = 0.8;

@@ -145,8 +145,16 @@ impl ActuatorModel {
             gain_deg_per_volt: 2.0 * amplitude_deg / range_volt.span_volt(),
             bias_volt: range_volt.middle_volt(),
         };
-        let calibration = Calibration { deg_per_um, zero_um: 0.0 };
-        Self { law: ActuatorLaw::Linear(gain), range_volt, calibration, trained: None }
+        let calibration = Calibration {
+            deg_per_um,
+            zero_um: 0.0,
+        };
+        Self {
+            law: ActuatorLaw::Linear(gain),
+            range_volt,
+            calibration,
+            trained: None,
+        }
     }
 
     /// A memory that starts at a voltage, the output settled.
@@ -160,9 +168,7 @@ impl ActuatorModel {
     ) -> Result<ActuatorMemory, PreisachError> {
         self.check_sample(0, voltage_volt)?;
         let (plays, output_deg) = match &self.law {
-            ActuatorLaw::Linear(gain) => {
-                (PlayMemory::empty(), gain.output_deg(voltage_volt))
-            }
+            ActuatorLaw::Linear(gain) => (PlayMemory::empty(), gain.output_deg(voltage_volt)),
             ActuatorLaw::StaticPreisach(model) => {
                 let plays = PlayMemory::new(model.grid(), voltage_volt, state);
                 let output = model.output_deg(&plays);
@@ -175,7 +181,11 @@ impl ActuatorModel {
             }
         };
         let history = OutputHistory::at_rest(output_deg);
-        Ok(ActuatorMemory { plays, history, counts: StepCounts::default() })
+        Ok(ActuatorMemory {
+            plays,
+            history,
+            counts: StepCounts::default(),
+        })
     }
 
     /// One sample on: moves the memory to a new voltage and returns the flap angle, deg.
@@ -195,7 +205,11 @@ impl ActuatorModel {
         self.check_memory(memory)?;
         let before = memory.output_deg();
         let output = self.advance(memory, voltage_volt, time_step_s);
-        if output.is_finite() { Ok(output) } else { Err(diverged(memory, before)) }
+        if output.is_finite() {
+            Ok(output)
+        } else {
+            Err(diverged(memory, before))
+        }
     }
 
     /// The flap angle at every sample of a voltage history, starting at rest at its first sample.
@@ -212,10 +226,14 @@ impl ActuatorModel {
             value: 0,
             least: 1,
         })?;
+        self.check_samples(voltages_volt)?;
         let mut memory = self.start(first, StartState::Rest)?;
         let mut output_deg = vec![memory.output_deg()];
         output_deg.extend(self.continue_from(&mut memory, &voltages_volt[1..], time_step_s)?);
-        Ok(Simulation { output_deg, counts: memory.counts })
+        Ok(Simulation {
+            output_deg,
+            counts: memory.counts,
+        })
     }
 
     /// The flap angle at every sample of a voltage history that follows on a memory.
@@ -230,9 +248,7 @@ impl ActuatorModel {
     ) -> Result<Vec<f64>, PreisachError> {
         check_positive("time_step_s", time_step_s)?;
         self.check_memory(memory)?;
-        for (index, &voltage_volt) in voltages_volt.iter().enumerate() {
-            self.check_sample(index, voltage_volt)?;
-        }
+        self.check_samples(voltages_volt)?;
         let mut outputs = Vec::with_capacity(voltages_volt.len());
         for &voltage_volt in voltages_volt {
             let before = memory.output_deg();
@@ -256,7 +272,11 @@ impl ActuatorModel {
             ActuatorLaw::Linear(gain) => gain.output_deg(voltage_volt),
             ActuatorLaw::StaticPreisach(model) => model.apply(&mut memory.plays, voltage_volt),
             ActuatorLaw::DynamicPreisach(model) => {
-                let ActuatorMemory { plays, history, counts } = memory;
+                let ActuatorMemory {
+                    plays,
+                    history,
+                    counts,
+                } = memory;
                 return model.step(plays, history, counts, voltage_volt, time_step_s);
             }
         };
@@ -297,6 +317,13 @@ impl ActuatorModel {
         } else {
             Err(PreisachError::MemoryMismatch { found, expected })
         }
+    }
+
+    fn check_samples(&self, voltages_volt: &[f64]) -> Result<(), PreisachError> {
+        voltages_volt
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, &u)| self.check_sample(index, u))
     }
 
     fn check_sample(&self, index: usize, voltage_volt: f64) -> Result<(), PreisachError> {

@@ -34,15 +34,26 @@ impl EverettStaircase {
     /// grid.
     pub fn new(grid: PreisachGrid, map: &PlayMap) -> Result<Self, PreisachError> {
         map.check(&grid, "static map")?;
-        let cumulative =
-            map.nodes.iter().map(|row| row.iter().map(|v| v - row[0]).collect()).collect();
+        let cumulative = map
+            .nodes
+            .iter()
+            .map(|row| row.iter().map(|v| v - row[0]).collect())
+            .collect();
         let lowest_output = map.nodes.iter().fold(map.constant, |sum, row| sum + row[0]);
-        Ok(Self { grid, cumulative, lowest_output, turns: vec![0.0] })
+        Ok(Self {
+            grid,
+            cumulative,
+            lowest_output,
+            turns: vec![0.0],
+        })
     }
 
     /// Everett's integral between two voltages, in the unit of the map.
     pub fn everett(&self, upper_volt: f64, lower_volt: f64) -> f64 {
-        self.everett_cells(self.grid.coordinate(upper_volt), self.grid.coordinate(lower_volt))
+        self.everett_cells(
+            self.grid.coordinate(upper_volt),
+            self.grid.coordinate(lower_volt),
+        )
     }
 
     fn everett_cells(&self, upper: f64, lower: f64) -> f64 {
@@ -50,7 +61,11 @@ impl EverettStaircase {
         rows.map(|(j, row)| {
             // s = alpha - r and s = beta + r, in cells above the first centre of the play
             let top = (upper - j as f64).max(0.0);
-            if top > lower { interpolate(row, top) - interpolate(row, lower) } else { 0.0 }
+            if top > lower {
+                interpolate(row, top) - interpolate(row, lower)
+            } else {
+                0.0
+            }
         })
         .sum()
     }
@@ -59,8 +74,9 @@ impl EverettStaircase {
     pub fn apply(&mut self, voltage_volt: f64) -> f64 {
         let u = self.grid.coordinate(voltage_volt);
         let last = self.turns.len() - 1;
-        let (ends_a_rise, rises) = (last % 2 == 1, u > self.turns[last]);
-        if u == self.turns[last] {
+        let (ends_a_rise, rises, falls) =
+            (last % 2 == 1, u > self.turns[last], u < self.turns[last]);
+        if !(rises || falls) {
             return self.output();
         }
         if ends_a_rise == rises {
@@ -70,7 +86,11 @@ impl EverettStaircase {
         }
         // wiping out: an excursion that reaches past an earlier extreme of its kind erases it
         while let [.., same_kind, _, now] = *self.turns.as_slice() {
-            let passed = if rises { now >= same_kind } else { now <= same_kind };
+            let passed = if rises {
+                now >= same_kind
+            } else {
+                now <= same_kind
+            };
             if !passed {
                 break;
             }
@@ -85,7 +105,9 @@ impl EverettStaircase {
     pub fn output(&self) -> f64 {
         let mut sum = self.lowest_output;
         for pair in self.turns.chunks(2).zip(self.turns[1..].chunks(2)) {
-            let ([minimum, ..], [maximum, then @ ..]) = pair else { continue };
+            let ([minimum, ..], [maximum, then @ ..]) = pair else {
+                continue;
+            };
             sum += self.everett_cells(*maximum, *minimum);
             if let Some(next) = then.first() {
                 sum -= self.everett_cells(*maximum, *next);

@@ -89,8 +89,9 @@ impl PlayMemory {
 
     /// Moves every play; `top` is the voltage in cells.
     pub(crate) fn apply_coordinate(&mut self, top: f64) {
-        for (j, x) in self.cells.iter_mut().enumerate() {
-            *x = moved(*x, top, j);
+        // i32, because its conversion to f64 runs in vector registers
+        for (x, width) in self.cells.iter_mut().zip(0_i32..) {
+            *x = moved(*x, top, f64::from(width));
         }
     }
 
@@ -101,15 +102,19 @@ impl PlayMemory {
 
     /// Outputs of the plays, V.
     pub fn plays_volt(&self, grid: &PreisachGrid) -> Vec<f64> {
-        self.cells.iter().enumerate().map(|(j, &x)| grid.play_volt(j, x)).collect()
+        self.cells
+            .iter()
+            .enumerate()
+            .map(|(j, &x)| grid.play_volt(j, x))
+            .collect()
     }
 }
 
-/// A play of half-width `width / 2` cells after its input moved to `top` cells.
+/// A play of full width `width` cells after its input moved to `top` cells.
 #[inline]
-pub(crate) fn moved(x: f64, top: f64, width: usize) -> f64 {
+fn moved(x: f64, top: f64, width: f64) -> f64 {
     let lifted = if x < top { x } else { top };
-    let floor = top - width as f64;
+    let floor = top - width;
     if lifted > floor { lifted } else { floor }
 }
 

@@ -77,7 +77,11 @@ impl ActuatorModel {
         let least = 2 * settings.harmonics + 2;
         if settings.steps_per_rev < least {
             let value = settings.steps_per_rev;
-            return Err(PreisachError::TooFew { quantity: "steps_per_rev", value, least });
+            return Err(PreisachError::TooFew {
+                quantity: "steps_per_rev",
+                value,
+                least,
+            });
         }
         let commands = self.sampled_command(voltage_volt, settings.steps_per_rev)?;
         let time_step_s = 1.0 / (rev_hz * settings.steps_per_rev as f64);
@@ -87,7 +91,10 @@ impl ActuatorModel {
         for revolutions_used in 2..=settings.largest_revolutions.max(2) {
             let counts_before = memory.counts();
             let next = self.continue_from(&mut memory, &commands, time_step_s)?;
-            closure_deg = orbit.iter().zip(&next).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
+            closure_deg = orbit
+                .iter()
+                .zip(&next)
+                .fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
             orbit = next;
             if closure_deg <= settings.closure_deg {
                 let flap_deg = HarmonicSeries::from_uniform_samples(&orbit, settings.harmonics)?;
@@ -127,12 +134,17 @@ impl ActuatorModel {
         let mut command = voltage_volt.clone();
         command.mean = 0.0;
         let (least, most) = extremes(&command, settings.steps_per_rev.max(1));
-        let (lowest_volt, highest_volt) =
-            (self.range_volt.lowest_volt() - least, self.range_volt.highest_volt() - most);
-        if !(lowest_volt <= highest_volt) {
-            // too wide for any mean, or NaN: sampling about the middle names azimuth and voltage
+        let (mut lowest_volt, mut highest_volt) = (
+            self.range_volt.lowest_volt() - least,
+            self.range_volt.highest_volt() - most,
+        );
+        // wider than the range, or NaN
+        let fits = lowest_volt <= highest_volt;
+        if !fits {
             command.mean = self.range_volt.middle_volt() - 0.5 * (least + most);
             self.sampled_command(&command, settings.steps_per_rev)?;
+            // full scale up to rounding: there is one mean it fits with
+            (lowest_volt, highest_volt) = (command.mean, command.mean);
         }
         let mut evaluate = |mean: f64| -> Result<PeriodicResponse, PreisachError> {
             command.mean = mean;
@@ -146,7 +158,11 @@ impl ActuatorModel {
             return Ok((near_volt, orbit));
         }
         let mut near_deg = orbit.flap_deg.mean;
-        let mut far_volt = if near_deg < 0.0 { highest_volt } else { lowest_volt };
+        let mut far_volt = if near_deg < 0.0 {
+            highest_volt
+        } else {
+            lowest_volt
+        };
         let orbit = evaluate(far_volt)?;
         if closed(&orbit) {
             return Ok((far_volt, orbit));
@@ -206,7 +222,13 @@ impl ActuatorModel {
         check_positive("amplitude_volt", amplitude_volt)?;
         let mut command = HarmonicSeries::zero(harmonic_per_rev);
         command.mean = self.range_volt.middle_volt();
-        command.set_harmonic(harmonic_per_rev, Harmonic { cosine: amplitude_volt, sine: 0.0 });
+        command.set_harmonic(
+            harmonic_per_rev,
+            Harmonic {
+                cosine: amplitude_volt,
+                sine: 0.0,
+            },
+        );
         let orbit = match self.bias_for_zero_mean(&command, rev_hz, settings) {
             Ok((_, orbit)) => orbit,
             Err(PreisachError::BiasOutsideRange { .. }) => {
@@ -225,12 +247,19 @@ impl ActuatorModel {
     ) -> Result<Vec<f64>, PreisachError> {
         let range = self.range_volt;
         let azimuths = uniform_azimuths_rad(steps_per_rev);
-        let commands: Vec<f64> = azimuths.iter().map(|&psi| voltage_volt.value(psi)).collect();
+        let commands: Vec<f64> = azimuths
+            .iter()
+            .map(|&psi| voltage_volt.value(psi))
+            .collect();
         let mut worst = (0.0, 0);
         for (index, &value) in commands.iter().enumerate() {
             let excess = range.excess_volt(value);
             if excess.is_nan() {
-                return Err(PreisachError::NotFinite { quantity: "voltage_volt", index, value });
+                return Err(PreisachError::NotFinite {
+                    quantity: "voltage_volt",
+                    index,
+                    value,
+                });
             }
             if excess > worst.0 {
                 worst = (excess, index);
@@ -253,8 +282,10 @@ const COMMAND_TOLERANCE: f64 = 1e-9;
 
 /// Smallest and largest value over a revolution.
 fn extremes(series: &HarmonicSeries, steps: usize) -> (f64, f64) {
-    uniform_azimuths_rad(steps).iter().map(|&psi| series.value(psi)).fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(low, high), value| (low.min(value), high.max(value)),
-    )
+    uniform_azimuths_rad(steps)
+        .iter()
+        .map(|&psi| series.value(psi))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        })
 }

@@ -4,7 +4,7 @@ use crate::Orbit;
 
 /// Why no periodic orbit was found; `E` is the system's own error.
 ///
-/// Apart from [`FemError`] because it carries the caller's error type.
+/// Apart from [`FemError`](crate::FemError) because it carries the caller's error type.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PeriodicError<E: std::error::Error + 'static> {

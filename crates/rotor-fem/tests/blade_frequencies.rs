@@ -1,5 +1,4 @@
 //! Rotating frequencies of uniform blades against exact series, closed forms and published values.
-#![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
 #![expect(clippy::unwrap_used, reason = "a test may fail by unwrapping")]
 
 use std::f64::consts::PI;

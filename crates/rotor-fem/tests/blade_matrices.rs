@@ -1,12 +1,13 @@
 //! What the blade's matrices and modes must be whatever the numbers: symmetry, rigid motions,
 //! orthogonality, nesting, and clear refusals.
+#![expect(clippy::unwrap_used, reason = "a test may fail by unwrapping")]
 
 use nalgebra::{Complex, DMatrix, DVector};
 use proptest::prelude::*;
 use rotor_base::gauss_legendre;
 use rotor_fem::{
     BladeModel, BladeProperties, BladeSpec, Distribution, FemError, GyroscopicTerms, ModeCount,
-    ModeKind, RootCondition, Twist, modes, uncoupled_modes,
+    ModeKind, RootCondition, Twist, UncoupledMode, modes, uncoupled_modes,
 };
 
 fn uniform() -> BladeSpec {
@@ -242,7 +243,11 @@ fn coupled_modes_are_orthogonal_and_solve_their_equations() {
     };
     let real = modes(&model, GyroscopicTerms::Neglected, count).unwrap();
     for (i, a) in real.iter().enumerate() {
-        assert_eq!(a.quadrature.amax(), 0.0);
+        assert!(
+            a.quadrature
+                .iter()
+                .all(|part| part.abs() < f64::MIN_POSITIVE)
+        );
         for (j, b) in real.iter().enumerate() {
             let unit = f64::from(u8::from(i == j));
             let mass = form(model.mass(), &a.in_phase, &b.in_phase);
@@ -274,8 +279,8 @@ fn coupled_modes_are_orthogonal_and_solve_their_equations() {
         let w = Complex::from(mode.frequency);
         let left: DVector<Complex<f64>> =
             &k * &q + &g * &q * Complex::new(0.0, mode.frequency) - &m * &q * (w * w);
-        let size = (&k * &q).map(|z| z.norm()).amax();
-        let rest = left.map(|z| z.norm()).amax();
+        let size = (&k * &q).map(Complex::norm).amax();
+        let rest = left.map(Complex::norm).amax();
         assert!(
             rest < 1e-9 * size,
             "{} {}: {rest:e} of {size:e}",
@@ -302,7 +307,7 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
     let blade = BladeProperties::new(varied()).unwrap();
     let set = uncoupled_modes(&blade, 10, ModeCount::default()).unwrap();
     assert_eq!(set.len(), 10);
-    let kinds: Vec<ModeKind> = set.modes().iter().map(|mode| mode.kind()).collect();
+    let kinds: Vec<ModeKind> = set.modes().iter().map(UncoupledMode::kind).collect();
     assert_eq!(kinds[..4], [ModeKind::Flap; 4]);
     assert_eq!(kinds[4..8], [ModeKind::Lag; 4]);
     assert_eq!(kinds[8..], [ModeKind::Torsion; 2]);
@@ -326,7 +331,12 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
     for (mode, shape) in set.modes().iter().zip(&samples) {
         let [tip, ..] = mode.shape(1.0).unwrap();
         assert!((tip - 1.0).abs() < 1e-12);
-        assert_eq!(mode.shape(0.03).unwrap(), [0.0; 3]);
+        assert!(
+            mode.shape(0.03)
+                .unwrap()
+                .iter()
+                .all(|part| part.abs() < f64::MIN_POSITIVE)
+        );
         for (other, other_shape) in set.modes().iter().zip(&samples) {
             if mode.kind() != other.kind() {
                 continue;
@@ -363,27 +373,17 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
 /// Turning about the axis of rotation is free, with Coriolis terms and without.
 #[test]
 fn a_lag_hinge_on_the_axis_is_neutral() {
-    let hinged = model(
-        BladeSpec {
-            root: RootCondition::Hinged,
-            ..uniform()
-        },
-        5,
-    );
-    for terms in [GyroscopicTerms::Neglected, GyroscopicTerms::Included] {
-        let found = modes(&hinged, terms, ModeCount::default()).unwrap();
-        assert!(
-            (found[0].frequency - 1.0).abs() < 1e-7,
-            "{}",
-            found[0].frequency
-        );
-        assert_eq!(found[4].kind, ModeKind::Lag);
-        assert!(found[4].frequency < 1e-4, "{}", found[4].frequency);
-        assert!(
-            (found[5].frequency - 3.6).abs() < 1.0,
-            "{}",
-            found[5].frequency
-        );
+    for elements in 3..=10 {
+        let hinged = model(BladeSpec { root: RootCondition::Hinged, ..uniform() }, elements);
+        let count = ModeCount { flap: 1, lag: 2, torsion: 0, axial: 0 };
+        for terms in [GyroscopicTerms::Neglected, GyroscopicTerms::Included] {
+            let found = modes(&hinged, terms, count).unwrap();
+            let frequencies: Vec<f64> = found.iter().map(|mode| mode.frequency).collect();
+            assert!((frequencies[0] - 1.0).abs() < 1e-7, "{frequencies:?}");
+            assert_eq!(found[1].kind, ModeKind::Lag);
+            assert!(frequencies[1] < 1e-4, "{frequencies:?}");
+            assert!((frequencies[2] - 3.5).abs() < 0.5, "{frequencies:?}");
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::{Discretisation, ResponseError, RotorModel, SpanGrid};
 use nalgebra::DMatrix;
-use rotor_fem::{BladeProperties, ModeCount, ModeKind, uncoupled_modes};
+use rotor_base::{LagrangeBasis, gauss_legendre};
+use rotor_fem::{BladeProperties, ModeCount, ModeKind, UncoupledMode, uncoupled_modes};
 
 /// Which nonlinear structural and inertial terms the modal equations carry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -146,13 +147,23 @@ impl ResponseBlade {
                 .collect::<Result<Vec<Vec<[f64; 3]>>, _>>()?;
             Ok(Shapes::sample(&samples))
         };
-        // just inside the root, where the first element's polynomial holds
+        // The curvature of a cubic element is best at its two Gauss points (fourth order there, second
+        // at its ends: Barlow, Int. J. Numer. Methods Eng. 10 (1976) 243); extrapolate from these.
+        let barlow: Vec<f64> = (0..elements.min(3))
+            .flat_map(|e| gauss_legendre(2).nodes.into_iter().map(move |s| (e, s)))
+            .map(|(e, s)| root + length * (e as f64 + 0.5 * (1.0 + s)))
+            .collect();
+        let to_root = LagrangeBasis::new(barlow.clone()).evaluate(root);
         let root_curvature = |kind: ModeKind| -> Result<Vec<f64>, ResponseError> {
-            Ok(modes
+            modes
                 .of(kind)
                 .iter()
-                .map(|mode| mode.shape(root).map(|s| s[2]))
-                .collect::<Result<Vec<f64>, _>>()?)
+                .map(|mode| {
+                    barlow.iter().zip(&to_root).try_fold(0.0, |sum, (x, [weight, ..])| {
+                        Ok(sum + weight * mode.shape(*x)?[2])
+                    })
+                })
+                .collect()
         };
         let along = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { grid.x().iter().map(|x| f(*x)).collect() };
         let flap_index = grid
@@ -164,8 +175,8 @@ impl ResponseBlade {
             flap: family(ModeKind::Flap)?,
             lag: family(ModeKind::Lag)?,
             torsion: family(ModeKind::Torsion)?,
-            frequencies: modes.modes().iter().map(|m| m.frequency()).collect(),
-            modal_masses: modes.modes().iter().map(|m| m.modal_mass()).collect(),
+            frequencies: modes.modes().iter().map(UncoupledMode::frequency).collect(),
+            modal_masses: modes.modes().iter().map(UncoupledMode::modal_mass).collect(),
             root_flap_curvature: root_curvature(ModeKind::Flap)?,
             root_lag_curvature: root_curvature(ModeKind::Lag)?,
             root_stiffness: [properties.flap_stiffness(root), properties.lag_stiffness(root)],

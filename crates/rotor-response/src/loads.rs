@@ -1,8 +1,8 @@
 //! Blade root loads by force summation, and hub loads in the fixed frame.
 
 use crate::blade::{Couplings, ResponseBlade};
-use crate::motion::{Motion, RootPitch};
-use crate::structure::SpanLoads;
+use crate::motion::Motion;
+use crate::structure::{BladeState, SpanLoads};
 use rotor_base::{HarmonicSeries, rotating_to_fixed, uniform_azimuths_rad};
 
 /// Six load components over one revolution as harmonic series, order
@@ -49,11 +49,10 @@ impl SixLoads {
 /// equations: without them the vibratory in-plane loads are wrong by most of their size.
 pub(crate) fn root_loads(
     blade: &ResponseBlade,
-    motion: &Motion,
-    pitch: RootPitch,
-    loads: &SpanLoads,
+    state: BladeState<'_>,
     aerodynamic: &SpanLoads,
 ) -> [f64; 6] {
+    let BladeState { motion, pitch, loads } = state;
     let n = blade.grid.len();
     let (w, v) = (&motion.w, &motion.v);
     let running = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {

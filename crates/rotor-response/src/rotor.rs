@@ -7,7 +7,7 @@ use crate::loads::{
     SixLoads, hub_loads, root_flap_curvature_moment, root_flap_moment, root_loads,
 };
 use crate::motion::Motion;
-use crate::structure::SpanLoads;
+use crate::structure::{BladeState, SpanLoads};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
 use nalgebra::DMatrix;
@@ -388,7 +388,8 @@ impl RevolutionLoads {
             system.span_loads(p, &sections, &mut loads);
             let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
             let pitch = system.points[p].air.pitch;
-            root.push(root_loads(blade, &motion, pitch, &loads, &aerodynamic));
+            let state = BladeState { motion: &motion, pitch, loads: &loads };
+            root.push(root_loads(blade, state, &aerodynamic));
             let couplings = rotor.model.couplings;
             bending[0].push(root_flap_moment(blade, couplings, &motion, &loads));
             let q: Vec<f64> = samples.q.column(p).iter().copied().collect();

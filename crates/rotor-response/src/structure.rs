@@ -30,6 +30,14 @@ pub(crate) struct SpanLoads {
     pub(crate) moment: Vec<f64>,
 }
 
+/// Motion, root pitch and loads of the blade at one azimuth.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BladeState<'a> {
+    pub(crate) motion: &'a Motion,
+    pub(crate) pitch: RootPitch,
+    pub(crate) loads: &'a SpanLoads,
+}
+
 /// Scratch arrays, one per use, so that nothing is allocated inside the azimuth loop.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StructureScratch {
@@ -78,12 +86,11 @@ fn project(
 pub(crate) fn modal_residual(
     blade: &ResponseBlade,
     couplings: Couplings,
-    motion: &Motion,
-    pitch: RootPitch,
-    loads: &SpanLoads,
+    state: BladeState<'_>,
     scratch: &mut StructureScratch,
     out: &mut [f64],
 ) {
+    let BladeState { motion, pitch, loads } = state;
     let n = blade.grid.len();
     scratch.resize(n);
     let full = couplings == Couplings::Full;

@@ -4,7 +4,7 @@ use crate::air::{AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, sect
 use crate::blade::{Couplings, ResponseBlade};
 use crate::flight_air::FlightAir;
 use crate::motion::{Motion, RootPitch};
-use crate::structure::{SpanLoads, StructureScratch, modal_residual};
+use crate::structure::{BladeState, SpanLoads, StructureScratch, modal_residual};
 use crate::ResponseError;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -140,7 +140,8 @@ impl ResponseSystem<'_> {
     fn project(&self, point: usize, qd: &[f64], scratch: &mut Scratch, out: &mut [f64]) {
         let Scratch { motion, structure, loads } = scratch;
         let pitch = self.points[point].air.pitch;
-        modal_residual(self.blade, self.couplings, motion, pitch, loads, structure, out);
+        let state = BladeState { motion, pitch, loads };
+        modal_residual(self.blade, self.couplings, state, structure, out);
         for ((o, d), rate) in out.iter_mut().zip(self.damping).zip(qd) {
             *o += d * rate;
         }

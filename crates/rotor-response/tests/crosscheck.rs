@@ -1,5 +1,6 @@
 //! The whole chain against an independent model of the same physics (Fourier collocation, exact mode
-//! shapes): fixtures/reference/rotor/crosscheck_S1_S2.json.
+//! shapes): `fixtures/reference/rotor/crosscheck_S1_S2.json`.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
 
 mod common;

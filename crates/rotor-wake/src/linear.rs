@@ -110,6 +110,7 @@ impl InflowModel for LinearInflow {
 mod tests {
     use super::*;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use rotor_base::{gauss_legendre, uniform_azimuths_rad};
 
     const FLIGHT: FlightState = FlightState {
         advance_ratio: 0.30,
@@ -142,19 +143,15 @@ mod tests {
         let drees = LinearInflow::Drees.induced(&FLIGHT, &loading).unwrap();
         assert_eq!(uniform.mean().to_bits(), drees.mean().to_bits());
         // by the definition, not by the field: the area mean of the values over the disk
-        let rings = 64;
-        let sum: f64 = (0..rings)
-            .flat_map(|i| (0..16).map(move |j| (i, f64::from(j) * std::f64::consts::TAU / 16.0)))
-            .map(|(i, azimuth)| {
-                let r = ((f64::from(i) + 0.5) / f64::from(rings)).sqrt(); // rings of equal area
-                drees.at(azimuth, r)
-            })
-            .sum();
-        assert_relative_eq!(
-            sum / f64::from(16 * rings),
-            uniform.mean(),
-            max_relative = 1e-13
-        );
+        let rule = gauss_legendre(3);
+        let azimuths = uniform_azimuths_rad(16);
+        let mut sum = 0.0;
+        for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
+            let r = 0.5 * (node + 1.0);
+            let ring: f64 = azimuths.iter().map(|&azimuth| drees.at(azimuth, r)).sum();
+            sum += weight * r * ring / 16.0;
+        }
+        assert_relative_eq!(sum, uniform.mean(), max_relative = 1e-13);
     }
 
     #[test]

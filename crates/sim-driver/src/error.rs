@@ -128,22 +128,19 @@ fn actuator_family(error: &PreisachError) -> Family {
 
 fn blade_family(error: &FemError) -> Family {
     match error {
-        FemError::Property { .. } | FemError::Parameter { .. } | FemError::TooFewModes { .. } => {
-            Family::RejectedInput
-        }
-        _ => Family::NumericalFailure,
+        FemError::NotStable { .. } | FemError::Eigen { .. } => Family::NumericalFailure,
+        _ => Family::RejectedInput,
     }
 }
 
 fn response_family(error: &ResponseError) -> Family {
     match error {
-        ResponseError::SpanPoints { .. }
-        | ResponseError::Parameter { .. }
-        | ResponseError::FlapSpan { .. }
-        | ResponseError::FlapMotions { .. }
-        | ResponseError::Aero(_) => Family::RejectedInput,
+        ResponseError::MassMatrix { .. }
+        | ResponseError::LagSingular { .. }
+        | ResponseError::Periodic(_)
+        | ResponseError::InflowNotConverged { .. } => Family::NumericalFailure,
         ResponseError::Fem(source) => blade_family(source),
-        _ => Family::NumericalFailure,
+        _ => Family::RejectedInput,
     }
 }
 

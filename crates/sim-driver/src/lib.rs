@@ -1,8 +1,38 @@
 //! Case files, data files, studies and the `hhc` command of rotor-hhc.
+//!
+//! Floor 4: the only crate that knows files and the terminal. What it hands down are validated
+//! values; what it gets back are plain results.
+//!
+//! | idea | module |
+//! |---|---|
+//! | problems of user files, each with file, line, field and remedy | [`problem`] |
+//! | reading and atomic writing, RON, measured tables, shipped files | [`files`] |
+//! | case files and the validated case | [`case`], its hand-over to the models in `models` |
+//! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
+//! | one physics alone | [`modes`], [`section`] |
+//! | a whole case | [`run`], stored by [`results`] |
+//! | the HTML report | [`report`] |
+//! | `hhc` | [`cli`] |
 
+pub mod actuator;
 pub mod case;
+pub mod check;
+pub mod cli;
 mod error;
 pub mod files;
+pub mod identification;
+mod models;
+pub mod modes;
+pub mod output;
 pub mod problem;
+pub mod progress;
+pub mod report;
+pub mod results;
+pub mod run;
+pub mod section;
+pub mod stored_actuator;
 
 pub use error::{Family, SimError};
+
+/// Version of the program, part of every result and its key.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,2 +1,7 @@
 //! The `hhc` command.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    sim_driver::cli::main()
+}

@@ -56,7 +56,7 @@ pub fn print(text: &str) -> Result<(), SimError> {
 pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     use comfy_table::{CellAlignment, Table, presets::NOTHING};
     let mut table = Table::new();
-    table.load_preset(NOTHING).set_header(header.to_vec());
+    table.load_style(NOTHING).set_header(header.to_vec());
     for row in rows {
         table.add_row(row);
     }

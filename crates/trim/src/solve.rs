@@ -134,7 +134,7 @@ impl<'a> Problem<'a> {
             let (field, expected) = ("ct_sigma", "more than 0 and at most 0.5");
             return Err(TrimError::Parameter { field, value: loading, expected });
         }
-        if !(tilt.abs() <= ATTITUDE_LIMIT) {
+        if !(-ATTITUDE_LIMIT..=ATTITUDE_LIMIT).contains(&tilt) {
             let (field, expected) = ("shaft_tilt_rad", "-0.8 to 0.8 rad");
             return Err(TrimError::Parameter { field, value: tilt, expected });
         }
@@ -245,14 +245,13 @@ impl<'a> Problem<'a> {
     }
 
     fn check_range(
-        &self,
         x: &DVector<f64>,
         iteration: usize,
         history: &[f64],
     ) -> Result<(), TrimError> {
         for (j, &value) in x.iter().enumerate().take(5) {
             let limit = if j < 3 { PITCH_LIMIT } else { ATTITUDE_LIMIT };
-            if !(value.abs() <= limit) {
+            if !(-limit..=limit).contains(&value) {
                 return Err(TrimError::OutOfReach {
                     variable: VARIABLES[j],
                     value_deg: value.to_degrees(),
@@ -272,7 +271,7 @@ impl<'a> Problem<'a> {
         settings: &TrimSettings,
         start: Option<&TrimSolution>,
     ) -> Result<TrimSolution, TrimError> {
-        let mut x = start.map_or_else(|| self.first_guess(), |s| self.from_solution(s));
+        let mut x = start.map_or_else(|| self.first_guess(), |s| self.unknowns_of(s));
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
         let mut history = vec![current.1.amax()];
         let mut jacobian: Option<DMatrix<f64>> = None;
@@ -282,12 +281,11 @@ impl<'a> Problem<'a> {
             if self.unknowns == 0 || residual <= settings.tolerance {
                 return Ok(self.finish(&x, current, history, iteration));
             }
-            let matrix = match jacobian.take() {
-                Some(matrix) => matrix,
-                None => {
-                    fresh = true;
-                    self.jacobian(solver, &x, &current)?
-                }
+            let matrix = if let Some(kept) = jacobian.take() {
+                kept
+            } else {
+                fresh = true;
+                self.jacobian(solver, &x, &current)?
             };
             let singular = || TrimError::Singular { iteration, residual };
             let step = -matrix.clone().lu().solve(&current.1).ok_or_else(singular)?;
@@ -295,7 +293,7 @@ impl<'a> Problem<'a> {
             let largest = step.iter().take(5).fold(0.0_f64, |m, s| m.max(s.abs()));
             let step = step * (0.2 / largest.max(0.2));
             let next = &x + &step;
-            self.check_range(&next, iteration, &history)?;
+            Self::check_range(&next, iteration, &history)?;
             let new = self.evaluate(solver, &next, Some(&current.0))?;
             let gained = new.1.amax() <= 0.3 * residual;
             // Broyden's rank-one update; a matrix that stopped paying is computed anew
@@ -316,7 +314,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    fn from_solution(&self, solution: &TrimSolution) -> DVector<f64> {
+    fn unknowns_of(&self, solution: &TrimSolution) -> DVector<f64> {
         let (c, a) = (&solution.controls, &solution.attitude);
         let all = [
             c.theta0_rad,

@@ -79,8 +79,10 @@ where
     S: Fn(SweepPoint) -> Result<SweepResult, E> + Sync,
     E: std::error::Error,
 {
-    let points: Vec<SweepPoint> =
-        all_points().into_iter().filter(|point| filter.admits(point)).collect();
+    let points: Vec<SweepPoint> = all_points()
+        .into_iter()
+        .filter(|point| filter.admits(point))
+        .collect();
     let results: Vec<Result<Snapshot, String>> = points
         .par_iter()
         .map(|point| match source(*point) {
@@ -94,7 +96,10 @@ where
             Err(message) => Verdict::Failed(message),
             Ok(now) => judge(&folder.join(point.file_name()), mode, point, &now)?,
         };
-        cases.push(CaseReport { case: point.to_string(), verdict });
+        cases.push(CaseReport {
+            case: point.to_string(),
+            verdict,
+        });
     }
     if filter.is_everything() {
         cases.extend(orphans(folder)?);
@@ -130,7 +135,9 @@ fn judge(
     let differences = if path.exists() {
         match Snapshot::from_ron(&crate::files::read(path)?) {
             Ok(golden) => compare(&golden, now),
-            Err(error) => vec![Difference::Unreadable { message: error.to_string() }],
+            Err(error) => vec![Difference::Unreadable {
+                message: error.to_string(),
+            }],
         }
     } else {
         vec![Difference::NoGolden]
@@ -141,9 +148,10 @@ fn judge(
     if mode == Mode::Compare {
         return Ok(Verdict::Different(differences));
     }
-    let text = now
-        .to_ron()
-        .map_err(|source| XtaskError::GoldenText { case: point.to_string(), source })?;
+    let text = now.to_ron().map_err(|source| XtaskError::GoldenText {
+        case: point.to_string(),
+        source,
+    })?;
     crate::files::write_atomically(path, &text)?;
     Ok(Verdict::Blessed(differences))
 }
@@ -153,17 +161,34 @@ fn orphans(folder: &Path) -> Result<Vec<CaseReport>, XtaskError> {
     if !folder.exists() {
         return Ok(Vec::new());
     }
-    let failed = |source| XtaskError::Read { path: folder.to_path_buf(), source };
+    let failed = |source| XtaskError::Read {
+        path: folder.to_path_buf(),
+        source,
+    };
     let known: Vec<String> = all_points().iter().map(SweepPoint::file_name).collect();
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
-        names.push(entry.map_err(failed)?.file_name().to_string_lossy().into_owned());
+        names.push(
+            entry
+                .map_err(failed)?
+                .file_name()
+                .to_string_lossy()
+                .into_owned(),
+        );
     }
     names.sort();
     Ok(names
         .into_iter()
-        .filter(|name| name.ends_with(".ron") && !known.contains(name))
-        .map(|case| CaseReport { case, verdict: Verdict::Different(vec![Difference::Orphan]) })
+        .filter(|name| {
+            Path::new(name)
+                .extension()
+                .is_some_and(|ending| ending == "ron")
+        })
+        .filter(|name| !known.contains(name))
+        .map(|case| CaseReport {
+            case,
+            verdict: Verdict::Different(vec![Difference::Orphan]),
+        })
         .collect())
 }
 
@@ -182,15 +207,18 @@ impl Report {
 
     /// Number of cases with a verdict.
     fn count(&self, wanted: fn(&Verdict) -> bool) -> usize {
-        self.cases.iter().filter(|case| wanted(&case.verdict)).count()
+        self.cases
+            .iter()
+            .filter(|case| wanted(&case.verdict))
+            .count()
     }
 
     /// The report as text: a table of all differences, failures, and a summary.
     pub fn text(&self) -> String {
         let mut table = comfy_table::Table::new();
-        table.load_preset(comfy_table::presets::ASCII_BORDERS_ONLY_CONDENSED);
+        table.load_style(comfy_table::presets::ASCII_BORDERS_ONLY_CONDENSED);
         table.set_header(["case", "channel", "golden", "now", "change", "allowed"]);
-        let mut failures = String::new();
+        let mut failures = Vec::new();
         for case in &self.cases {
             match &case.verdict {
                 Verdict::Same => {}
@@ -201,7 +229,7 @@ impl Report {
                     }
                 }
                 Verdict::Failed(message) => {
-                    failures.push_str(&format!("{}: not computed: {message}\n", case.case));
+                    failures.push(format!("{}: not computed: {message}\n", case.case));
                 }
             }
         }
@@ -209,10 +237,15 @@ impl Report {
         let different = self.count(|verdict| matches!(verdict, Verdict::Different(_)));
         let blessed = self.count(|verdict| matches!(verdict, Verdict::Blessed(_)));
         let failed = self.count(|verdict| matches!(verdict, Verdict::Failed(_)));
-        let shown = if different + blessed == 0 { String::new() } else { format!("{table}\n") };
+        let shown = if different + blessed == 0 {
+            String::new()
+        } else {
+            format!("{table}\n")
+        };
         format!(
-            "{shown}{failures}{same} of {} cases as the goldens have them, {different} different, \
-             {blessed} blessed, {failed} not computed\n",
+            "{shown}{}{same} of {} cases as the goldens have them, {different} different, {blessed} \
+             blessed, {failed} not computed\n",
+            failures.concat(),
             self.cases.len()
         )
     }

@@ -34,11 +34,16 @@ pub fn required(tree: &Tree) -> Vec<Finding> {
         .map(|path| Finding::of_file(path, "is missing"))
         .collect();
     for path in &tree.paths {
-        let data = path.strip_prefix("fixtures/reference/").and_then(|rest| rest.split_once('/'));
+        let data = path
+            .strip_prefix("fixtures/reference/")
+            .and_then(|rest| rest.split_once('/'));
         if let Some((folder, _)) = data {
             let source = format!("fixtures/reference/{folder}/SOURCE.md");
             if missing(&source) {
-                findings.push(Finding::of_file(&source, "is missing: say where the numbers are from"));
+                findings.push(Finding::of_file(
+                    &source,
+                    "is missing: say where the numbers are from",
+                ));
             }
         }
     }
@@ -48,19 +53,27 @@ pub fn required(tree: &Tree) -> Vec<Finding> {
 /// Every version in CHANGELOG.md has its heading "Numbers changed".
 pub fn changelog(tree: &Tree) -> Vec<Finding> {
     let path = "CHANGELOG.md";
-    let Some(text) = tree.text(path) else { return Vec::new() };
+    let Some(text) = tree.text(path) else {
+        return Vec::new();
+    };
     let mut findings = Vec::new();
     let mut versions = 0;
     for section in text.split("\n## ").skip(1) {
         versions += 1;
-        if !section.lines().any(|line| line.trim() == "### Numbers changed") {
+        if !section
+            .lines()
+            .any(|line| line.trim() == "### Numbers changed")
+        {
             let version = section.lines().next().unwrap_or_default();
             let fault = format!("version `{version}` has no heading `### Numbers changed`");
             findings.push(Finding::of_file(path, fault));
         }
     }
     if versions == 0 {
-        findings.push(Finding::of_file(path, "has no version: expected a `## ` heading"));
+        findings.push(Finding::of_file(
+            path,
+            "has no version: expected a `## ` heading",
+        ));
     }
     findings
 }
@@ -116,9 +129,14 @@ fn resolve(from: &str, target: &str) -> String {
 /// of [`links`].)
 pub fn summary(tree: &Tree) -> Vec<Finding> {
     let path = "docs/src/SUMMARY.md";
-    let Some(text) = tree.text(path) else { return Vec::new() };
-    let listed: Vec<String> =
-        text.lines().flat_map(link_targets).map(|target| resolve(path, target)).collect();
+    let Some(text) = tree.text(path) else {
+        return Vec::new();
+    };
+    let listed: Vec<String> = text
+        .lines()
+        .flat_map(link_targets)
+        .map(|target| resolve(path, target))
+        .collect();
     tree.ending_in(".md")
         .map(|file| file.path.as_str())
         .filter(|page| page.starts_with("docs/src/") && *page != path)
@@ -132,7 +150,9 @@ pub fn summary(tree: &Tree) -> Vec<Finding> {
 /// A row of the map starts with the member and its floor.
 pub fn floors_of_the_code_map(tree: &Tree, members: &[Member]) -> Vec<Finding> {
     let path = "ARCHITECTURE.md";
-    let Some(text) = tree.text(path) else { return Vec::new() };
+    let Some(text) = tree.text(path) else {
+        return Vec::new();
+    };
     let stated: BTreeMap<&str, u32> = text.lines().filter_map(code_map_row).collect();
     let mut findings = Vec::new();
     for member in members {

@@ -13,17 +13,36 @@ pub const LONG_FILES: &[(&str, &str)] = &[];
 const FORBIDDEN: [(&str, &str); 5] = [
     (concat!("to", "do!("), "finish it or leave it out"),
     (concat!("unimple", "mented!("), "finish it or leave it out"),
-    (concat!("FIX", "ME"), "repair it, or state the limitation in the documentation"),
-    (concat!("TO", "DO"), "do it, or state the limitation in the documentation"),
-    (concat!("HA", "CK"), "say what the code does and why it must"),
+    (
+        concat!("FIX", "ME"),
+        "repair it, or state the limitation in the documentation",
+    ),
+    (
+        concat!("TO", "DO"),
+        "do it, or state the limitation in the documentation",
+    ),
+    (
+        concat!("HA", "CK"),
+        "say what the code does and why it must",
+    ),
 ];
 
 /// Parts of the standard library that pure functions of values have no use for.
-const OUTSIDE_WORLD: [&str; 5] = ["std::fs", "std::env", "std::net", "std::process", "std::time"];
+const OUTSIDE_WORLD: [&str; 5] = [
+    "std::fs",
+    "std::env",
+    "std::net",
+    "std::process",
+    "std::time",
+];
 
 /// Folders that exist on one machine only.
-const MACHINE_FOLDERS: [&str; 4] =
-    [concat!("/ho", "me/"), concat!("/t", "mp/"), concat!("/ro", "ot/"), concat!("/wo", "rk/")];
+const MACHINE_FOLDERS: [&str; 4] = [
+    concat!("/ho", "me/"),
+    concat!("/t", "mp/"),
+    concat!("/ro", "ot/"),
+    concat!("/wo", "rk/"),
+];
 
 /// Rules for every Rust source:
 ///
@@ -35,17 +54,18 @@ const MACHINE_FOLDERS: [&str; 4] =
 pub fn rust(tree: &Tree) -> Vec<Finding> {
     let mut findings: Vec<Finding> = tree.ending_in(".rs").flat_map(source).collect();
     findings.extend(stale_exceptions(tree, LONG_FILES));
-    for file in tree.texts.iter().filter(|file| !file.path.ends_with(".rs")) {
-        findings.extend(machine_paths(file));
-    }
+    findings.extend(tree.texts.iter().flat_map(machine_paths));
     findings
 }
 
 fn source(file: &TextFile) -> Vec<Finding> {
     let path = file.path.as_str();
-    let mut findings = machine_paths(file);
+    let mut findings = Vec::new();
     if !file.text.starts_with("//!") {
-        findings.push(Finding::of_file(path, "starts without `//!`: say first what the file holds"));
+        findings.push(Finding::of_file(
+            path,
+            "starts without `//!`: say first what the file holds",
+        ));
     }
     let lines = file.text.lines().count();
     if lines > LINE_LIMIT && !LONG_FILES.iter().any(|(long, _)| *long == path) {
@@ -70,9 +90,13 @@ fn source(file: &TextFile) -> Vec<Finding> {
             }
         }
         let commented = code.starts_with("//");
-        for module in OUTSIDE_WORLD.iter().filter(|module| pure && !commented && line.contains(**module))
+        for module in OUTSIDE_WORLD
+            .iter()
+            .filter(|module| pure && !commented && line.contains(**module))
         {
-            fault(format!("`{module}` below sim-driver: hand the function values instead"));
+            fault(format!(
+                "`{module}` below sim-driver: hand the function values instead"
+            ));
         }
     }
     findings
@@ -88,7 +112,8 @@ fn machine_paths(file: &TextFile) -> Vec<Finding> {
                 !line[..at].ends_with(|c: char| c.is_alphanumeric() || "._-/:}".contains(c))
             });
             if absolute {
-                let fault = format!("`{folder}` belongs to one machine: use a path inside the tree");
+                let fault =
+                    format!("`{folder}` belongs to one machine: use a path inside the tree");
                 findings.push(Finding::at_line(&file.path, index + 1, fault));
             }
         }
@@ -98,7 +123,10 @@ fn machine_paths(file: &TextFile) -> Vec<Finding> {
 
 /// Exceptions that have lost their file, or their reason to be.
 fn stale_exceptions(tree: &Tree, exceptions: &[(&str, &str)]) -> Vec<Finding> {
-    let stale = |path: &&str| tree.text(path).is_none_or(|text| text.lines().count() <= LINE_LIMIT);
+    let stale = |path: &&str| {
+        tree.text(path)
+            .is_none_or(|text| text.lines().count() <= LINE_LIMIT)
+    };
     exceptions
         .iter()
         .map(|(path, _)| *path)
@@ -114,7 +142,10 @@ mod tests {
     #[test]
     fn an_exception_must_be_needed() {
         let tree = Tree::of(&[("a.rs", "//! Short.\n")]);
-        assert_eq!(stale_exceptions(&tree, &[("a.rs", "why"), ("gone.rs", "why")]).len(), 2);
+        assert_eq!(
+            stale_exceptions(&tree, &[("a.rs", "why"), ("gone.rs", "why")]).len(),
+            2
+        );
         let long = "//! Long.\n".repeat(LINE_LIMIT + 1);
         let tree = Tree::of(&[("a.rs", &long)]);
         assert!(stale_exceptions(&tree, &[("a.rs", "why")]).is_empty());

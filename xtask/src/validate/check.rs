@@ -46,9 +46,10 @@ impl Criterion {
             Self::Near { expected, within } => [figure(expected), format!("± {}", figure(within))],
             Self::AtMost(limit) => ["0".to_owned(), format!("≤ {}", figure(limit))],
             Self::AtLeast(limit) => ["–".to_owned(), format!("≥ {}", figure(limit))],
-            Self::Between(low, high) => {
-                ["–".to_owned(), format!("{} to {}", figure(low), figure(high))]
-            }
+            Self::Between(low, high) => [
+                "–".to_owned(),
+                format!("{} to {}", figure(low), figure(high)),
+            ],
         }
     }
 }
@@ -104,12 +105,18 @@ pub struct Row {
 impl Row {
     /// Does a check.
     pub fn of(heading: &'static str, check: Check) -> Self {
-        Self { heading, got: (check.measure)(), check }
+        Self {
+            heading,
+            got: (check.measure)(),
+            check,
+        }
     }
 
     /// Whether the quantity was computed and keeps its bound.
     pub fn passes(&self) -> bool {
-        self.got.as_ref().is_ok_and(|got| self.check.criterion.admits(*got))
+        self.got
+            .as_ref()
+            .is_ok_and(|got| self.check.criterion.admits(*got))
     }
 
     /// The cells of the table: id, quantity, unit, expected, got, bound, pass, source.
@@ -139,8 +146,9 @@ pub(super) const COLUMNS: usize = 8;
 pub(super) const GOT: usize = 4;
 
 /// Titles of the columns.
-pub(super) const TITLES: [&str; COLUMNS] =
-    ["id", "quantity", "unit", "expected", "got", "bound", "pass", "source"];
+pub(super) const TITLES: [&str; COLUMNS] = [
+    "id", "quantity", "unit", "expected", "got", "bound", "pass", "source",
+];
 
 /// A number with as many digits as a reader can use.
 pub(super) fn figure(value: f64) -> String {
@@ -149,7 +157,8 @@ pub(super) fn figure(value: f64) -> String {
         "0".to_owned()
     } else if !(1e-3..1e6).contains(&size) {
         let text = format!("{value:.2e}");
-        text.replace(".00e", "e").replacen("0e", "e", usize::from(!text.contains(".00e")))
+        text.replace(".00e", "e")
+            .replacen("0e", "e", usize::from(!text.contains(".00e")))
     } else {
         // seven significant digits, without the zeros that say nothing
         let before = (1..=6).find(|n| size < 10_f64.powi(*n)).unwrap_or(6);
@@ -189,13 +198,23 @@ mod tests {
     #[test]
     fn bounds_hold_on_their_side_and_refuse_what_is_no_number() {
         let criteria = [
-            (Criterion::Near { expected: 2.0, within: 0.5 }, 2.5, 1.4),
+            (
+                Criterion::Near {
+                    expected: 2.0,
+                    within: 0.5,
+                },
+                2.5,
+                1.4,
+            ),
             (Criterion::AtMost(1.0), -3.0, 1.1),
             (Criterion::AtLeast(1.0), 3.0, 0.9),
             (Criterion::Between(15.0, 17.0), 16.0, 17.1),
         ];
         for (criterion, good, bad) in criteria {
-            assert!(criterion.admits(good) && !criterion.admits(bad), "{criterion:?}");
+            assert!(
+                criterion.admits(good) && !criterion.admits(bad),
+                "{criterion:?}"
+            );
             assert!(!criterion.admits(f64::NAN), "{criterion:?}");
             assert!(criterion.width() > 0.0);
         }

@@ -17,20 +17,19 @@ fails the command with exit code 3. The unit holds for the columns expected, got
 
 /// The page for a set of rows, which are grouped by area already.
 pub fn render(rows: &[Row]) -> String {
-    let mut page = INTRODUCTION.to_owned();
+    let mut parts = vec![INTRODUCTION.to_owned()];
     let mut heading = "";
     for row in rows {
         if row.heading != heading {
             heading = row.heading;
-            page.push_str(&format!("\n## {heading}\n\n"));
-            page.push_str(&format!("| {} |\n", TITLES.join(" | ")));
-            page.push_str(&format!("|{}\n", "---|".repeat(COLUMNS)));
+            parts.push(format!("\n## {heading}\n\n| {} |\n", TITLES.join(" | ")));
+            parts.push(format!("|{}\n", "---|".repeat(COLUMNS)));
         }
-        page.push_str(&format!("| {} |\n", row.cells().join(" | ")));
+        parts.push(format!("| {} |\n", row.cells().join(" | ")));
     }
     let passed = rows.iter().filter(|row| row.passes()).count();
-    page.push_str(&format!("\n{passed} of {} checks passed.\n", rows.len()));
-    page
+    parts.push(format!("\n{passed} of {} checks passed.\n", rows.len()));
+    parts.concat()
 }
 
 /// The lines of a stored page that do not say what the rows say now, each with what it should say.
@@ -48,7 +47,11 @@ pub fn stale_lines(stored: &str, rows: &[Row]) -> Vec<String> {
         };
         if !same {
             let is = is.unwrap_or("nothing");
-            stale.push(format!("line {}: stored `{}`, now `{is}`", index + 1, was.unwrap_or("nothing")));
+            stale.push(format!(
+                "line {}: stored `{}`, now `{is}`",
+                index + 1,
+                was.unwrap_or("nothing")
+            ));
         }
     }
     stale
@@ -57,13 +60,18 @@ pub fn stale_lines(stored: &str, rows: &[Row]) -> Vec<String> {
 /// Whether two table lines differ in the computed figure alone, and in that by little.
 fn same_row(was: &str, is: &str, rows: &[Row]) -> bool {
     let cells = |line: &str| -> Vec<String> {
-        line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
+        line.trim_matches('|')
+            .split('|')
+            .map(|cell| cell.trim().to_owned())
+            .collect()
     };
     let (was, is) = (cells(was), cells(is));
     if was.len() != COLUMNS || is.len() != COLUMNS {
         return false;
     }
-    let Some(row) = rows.iter().find(|row| row.check.id == is[0]) else { return false };
+    let Some(row) = rows.iter().find(|row| row.check.id == is[0]) else {
+        return false;
+    };
     let others = (0..COLUMNS).filter(|i| *i != GOT).all(|i| was[i] == is[i]);
     let close = match (was[GOT].parse::<f64>(), is[GOT].parse::<f64>()) {
         (Ok(was), Ok(is)) => (was - is).abs() <= MACHINE_SCATTER * row.check.criterion.width(),

@@ -21,20 +21,34 @@ pub(super) struct TableRow<'a> {
 impl Table {
     /// Reads `fixtures/reference/{file}`; lines that start with `#` are comments.
     pub(super) fn read(file: &str) -> Result<Self, CheckError> {
-        let path = crate::workspace::root().join("fixtures/reference").join(file);
-        let failed = |source| CheckError::Table { path: path.clone(), source };
+        let path = crate::workspace::root()
+            .join("fixtures/reference")
+            .join(file);
+        let failed = |source| CheckError::Table {
+            path: path.clone(),
+            source,
+        };
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
             .from_path(&path)
             .map_err(failed)?;
-        let columns = reader.headers().map_err(failed)?.iter().map(str::to_owned).collect();
+        let columns = reader
+            .headers()
+            .map_err(failed)?
+            .iter()
+            .map(str::to_owned)
+            .collect();
         let rows = reader
             .records()
             .map(|record| Ok(record?.iter().map(str::to_owned).collect()))
             .collect::<Result<_, csv::Error>>()
             .map_err(failed)?;
-        Ok(Self { path, columns, rows })
+        Ok(Self {
+            path,
+            columns,
+            rows,
+        })
     }
 
     /// The rows.
@@ -49,7 +63,10 @@ impl Table {
         wanted: [&str; 2],
     ) -> Result<TableRow<'_>, CheckError> {
         let matches = |row: &TableRow| {
-            columns.iter().zip(wanted).all(|(column, w)| row.text(column).is_ok_and(|t| t == w))
+            columns
+                .iter()
+                .zip(wanted)
+                .all(|(column, w)| row.text(column).is_ok_and(|t| t == w))
         };
         self.rows().find(matches).ok_or_else(|| CheckError::NoRow {
             path: self.path.clone(),
@@ -63,13 +80,21 @@ impl<'a> TableRow<'a> {
     pub(super) fn text(&self, column: &str) -> Result<&'a str, CheckError> {
         let place = self.table.columns.iter().position(|name| name == column);
         let cell = place.and_then(|place| self.table.rows[self.index].get(place));
-        cell.map(String::as_str).ok_or_else(|| self.fault(column, "is missing"))
+        cell.map(String::as_str)
+            .ok_or_else(|| self.fault(column, "is missing"))
     }
 
     /// A number.
     pub(super) fn number(&self, column: &str) -> Result<f64, CheckError> {
-        let value = self.text(column)?.parse().map_err(|_| self.fault(column, "is no number"))?;
-        if f64::is_finite(value) { Ok(value) } else { Err(self.fault(column, "is not finite")) }
+        let value = self
+            .text(column)?
+            .parse()
+            .map_err(|_| self.fault(column, "is no number"))?;
+        if f64::is_finite(value) {
+            Ok(value)
+        } else {
+            Err(self.fault(column, "is not finite"))
+        }
     }
 
     fn fault(&self, column: &str, problem: &'static str) -> CheckError {
@@ -92,11 +117,23 @@ pub(super) fn worst(
     for value in values {
         let value = value?;
         // a NaN must not be lost in the comparison
-        largest = if value.is_nan() { value } else { largest.max(value) };
+        largest = if value.is_nan() {
+            value
+        } else {
+            largest.max(value)
+        };
         if value.is_nan() {
             return Ok(value);
         }
         found += 1;
     }
-    if found < needed { Err(CheckError::TooFew { what, found, needed }) } else { Ok(largest) }
+    if found < needed {
+        Err(CheckError::TooFew {
+            what,
+            found,
+            needed,
+        })
+    } else {
+        Ok(largest)
+    }
 }

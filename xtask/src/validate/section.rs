@@ -1,14 +1,14 @@
 //! Attached-flow loads of a section with a trailing-edge flap.
 
 use flap_aero::{
-    AttachedFlowModel, FlapChord, HingePosition, Load, Mach, Mode, Motion, SectionCoefficients,
-    SectionInputs, SectionState, TheodorsenFunctions, harmonic_response,
+    AttachedFlowModel, FlapChord, HingePosition, Load, Mach, MarchingSection, Mode, Motion,
+    SectionCoefficients, SectionInputs, SectionState, TheodorsenFunctions, harmonic_response,
 };
 use num_complex::Complex64;
 
+use super::CheckError;
 use super::check::{Area, Check, Criterion, Repeatability};
 use super::reference::{Table, TableRow, worst};
-use super::CheckError;
 
 const THEODORSEN: &str = "Theodorsen, NACA Report 496, theodorsen_flap_E020.csv, E = 0.20";
 
@@ -81,7 +81,10 @@ fn incompressible() -> Result<SectionCoefficients, CheckError> {
 }
 
 fn complex(row: &TableRow<'_>, name: &str) -> Result<Complex64, CheckError> {
-    Ok(Complex64::new(row.number(&format!("{name}_re"))?, row.number(&format!("{name}_im"))?))
+    Ok(Complex64::new(
+        row.number(&format!("{name}_re"))?,
+        row.number(&format!("{name}_im"))?,
+    ))
 }
 
 /// Largest error of one load over the table's reduced frequencies up to 1, over the load's magnitude.
@@ -124,7 +127,8 @@ fn lag_on_a_ramp(pole: f64, rate: f64, semichords: f64) -> f64 {
 /// short to very long.
 fn ramp_error() -> Result<f64, CheckError> {
     let section = incompressible()?;
-    let mut state = SectionState::at_rest(&section);
+    let marching = MarchingSection::new(&section);
+    let mut state = SectionState::at_rest(&marching);
     let rate = 0.01;
     let mut travelled = 0.0;
     let mut errors = Vec::new();
@@ -133,7 +137,7 @@ fn ramp_error() -> Result<f64, CheckError> {
         let mut inputs = SectionInputs::default();
         inputs.modes[Mode::Flap.index()] = rate * travelled;
         inputs.rates[Mode::Flap.index()] = rate;
-        state.step(&section, &inputs, step)?;
+        state.step(&marching, &inputs, step)?;
         for (lag, got) in section.lags.iter().zip(state.states()) {
             let drive = lag.input[Mode::Flap.index()] * rate;
             errors.push(Ok((got - lag_on_a_ramp(lag.pole, drive, travelled)).abs()));
@@ -154,12 +158,13 @@ fn sine_error(steps_per_cycle: u32) -> Result<f64, CheckError> {
         rates: motion.map(|m| (m * ik * turn).re),
     };
     let step = std::f64::consts::TAU / (k * f64::from(steps_per_cycle));
-    let mut state = SectionState::at_rest(&section);
+    let marching = MarchingSection::new(&section);
+    let mut state = SectionState::at_rest(&marching);
     let mut errors = Vec::new();
     // the slowest lag, 0.0455 per semichord, has forgotten the start after thirty cycles
     for i in 1..=31 * steps_per_cycle {
         let turn = Complex64::cis(k * step * f64::from(i));
-        let got = state.step(&section, &at(turn), step)?[Load::Lift.index()];
+        let got = state.step(&marching, &at(turn), step)?[Load::Lift.index()];
         if i > 30 * steps_per_cycle {
             errors.push(Ok((got - (exact * turn).re).abs() / exact.norm()));
         }

@@ -36,26 +36,26 @@ impl Table {
 #[derive(Clone, Copy)]
 pub(crate) struct Row<'a>(&'a BTreeMap<String, String>);
 
-impl Row<'_> {
+impl<'a> Row<'a> {
     /// A text.
-    pub(crate) fn text(&self, column: &str) -> &str {
+    pub(crate) fn text(self, column: &str) -> &'a str {
         self.0
             .get(column)
             .unwrap_or_else(|| panic!("no column {column}"))
     }
 
     /// A number.
-    pub(crate) fn number(&self, column: &str) -> f64 {
+    pub(crate) fn number(self, column: &str) -> f64 {
         self.text(column).parse().unwrap()
     }
 
     /// Whether a number is `value`, to the digits of a table.
-    pub(crate) fn is(&self, column: &str, value: f64) -> bool {
+    pub(crate) fn is(self, column: &str, value: f64) -> bool {
         (self.number(column) - value).abs() < 1e-9
     }
 
     /// The columns `{name}_re` and `{name}_im`.
-    pub(crate) fn complex(&self, name: &str) -> Complex64 {
+    pub(crate) fn complex(self, name: &str) -> Complex64 {
         Complex64::new(
             self.number(&format!("{name}_re")),
             self.number(&format!("{name}_im")),
@@ -63,7 +63,7 @@ impl Row<'_> {
     }
 
     /// `[Cn, Cm, Ch]`.
-    pub(crate) fn loads(&self) -> [Complex64; 3] {
+    pub(crate) fn loads(self) -> [Complex64; 3] {
         let moment = if self.0.contains_key("cm25_re") {
             "cm25"
         } else {

@@ -3,7 +3,7 @@
 use crate::plants::{Counted, Problem, as_t, relative_error};
 use hhc_control::{
     ControlLayout, FeedbackController, FeedbackSettings, LinearPlant, LoadWeights, Measurement,
-    Plant, StrokeLimitedRun, StrokeStatus,
+    Outcome, Plant, StrokeLimitedRun, StrokeStatus,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -324,9 +324,20 @@ fn steps_out_of_range_are_halved() {
         .run_within_stroke(&mut odd(f64::INFINITY, 0.0, 2.001))
         .unwrap();
     assert_eq!(found.status, StrokeStatus::AtLimit);
-    let effort = found.rho;
+    assert!((0.999..=1.0).contains(&found.largest_stroke_ratio));
+    assert!(found.run.halvings() > 0);
+
+    // with a smaller weight the loop is led out of the range: no result to call free of the limit
     let run = controller
-        .run(&mut odd(f64::INFINITY, 0.0, 1.5), effort)
+        .run(&mut odd(f64::INFINITY, 0.0, 2.001), 0.1 * found.rho)
         .unwrap();
-    assert!(run.halvings() > 0);
+    assert_eq!(run.outcome, Outcome::OutOfRange);
+    let lost = controller
+        .run(&mut odd(f64::INFINITY, 0.0, 0.1), 0.0)
+        .unwrap_err();
+    assert!(
+        lost.to_string()
+            .contains("no part of the first control step"),
+        "{lost}"
+    );
 }

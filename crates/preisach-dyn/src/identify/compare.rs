@@ -1,6 +1,6 @@
 //! How well a model reproduces a record.
 
-use super::Prepared;
+use super::prepared::Prepared;
 use crate::{ActuatorModel, PreisachError, StepCounts};
 use rotor_base::wrap_degrees;
 use serde::{Deserialize, Serialize};
@@ -30,29 +30,35 @@ impl RecordFit {
 /// Simulates a model over a record and compares.
 pub(super) fn compare(
     model: &ActuatorModel,
-    record: &Prepared,
+    prepared: &Prepared,
 ) -> Result<RecordFit, PreisachError> {
+    let Prepared {
+        record,
+        drive,
+        spread_deg,
+        cycles,
+        ..
+    } = prepared;
     let simulation = model.simulate(&record.voltage_volt, record.time_step_s)?;
     let errors = simulation.output_deg.iter().zip(&record.output_deg);
     let squares: f64 = errors.map(|(a, b)| (a - b).powi(2)).sum();
-    let nrmse = (squares / record.output_deg.len() as f64).sqrt() / record.spread_deg;
+    let nrmse = (squares / record.output_deg.len() as f64).sqrt() / spread_deg;
     let mut fit = RecordFit {
         nrmse,
         amplitude_error_percent: None,
         phase_error_deg: None,
         counts: simulation.counts,
     };
-    if let Some(cycles) = &record.cycles {
+    if let Some(cycles) = cycles {
         let simulated = super::fourier::fit(
             &simulation.output_deg,
-            record.drive.steady.clone(),
-            record.drive.base_hz * record.time_step_s,
+            drive.steady.clone(),
+            drive.base_hz * record.time_step_s,
             cycles.series.harmonics.len(),
         )?;
-        let n = record.drive.strongest_harmonic;
+        let n = drive.strongest_harmonic;
         let (ours, theirs) = (simulated.series.harmonic(n), cycles.series.harmonic(n));
-        fit.amplitude_error_percent =
-            Some(100.0 * (ours.amplitude() / theirs.amplitude() - 1.0));
+        fit.amplitude_error_percent = Some(100.0 * (ours.amplitude() / theirs.amplitude() - 1.0));
         fit.phase_error_deg = Some(wrap_degrees(ours.phase_deg() - theirs.phase_deg()));
     }
     Ok(fit)

@@ -66,16 +66,24 @@ pub(super) fn fit(
         normal.ger(1.0, &row, &row, 1.0);
         right.axpy(values[index], &row, 1.0);
     }
-    let Some(factor) = (range.len() >= unknowns).then(|| normal.cholesky()).flatten() else {
+    let Some(factor) = (range.len() >= unknowns)
+        .then(|| normal.cholesky())
+        .flatten()
+    else {
         return Err(too_few);
     };
     let solution = factor.solve(&right);
     result.series.mean = solution[0];
     for (n, h) in result.series.harmonics.iter_mut().enumerate() {
-        *h = Harmonic { cosine: solution[2 * n + 1], sine: solution[2 * n + 2] };
+        *h = Harmonic {
+            cosine: solution[2 * n + 1],
+            sine: solution[2 * n + 2],
+        };
     }
-    let left: f64 =
-        range.clone().map(|i| (values[i] - result.value_and_rate(i).0).powi(2)).sum();
+    let left: f64 = range
+        .clone()
+        .map(|i| (values[i] - result.value_and_rate(i).0).powi(2))
+        .sum();
     let freedom = (range.len() - unknowns).max(1);
     result.noise = (left / freedom as f64).sqrt();
     Ok(result)

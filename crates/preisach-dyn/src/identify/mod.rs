@@ -12,182 +12,27 @@
 
 mod compare;
 mod fourier;
+mod prepared;
 mod program;
 mod rate_fit;
 mod record;
 mod refine;
+mod settings;
 mod static_fit;
+mod validate;
 
 pub use compare::RecordFit;
 pub use program::QpStatus;
 pub use record::{BenchRecord, Drive, RecordUse, SplitRule, Waveform};
 pub use refine::{Refinement, RefinementOutcome};
+pub use settings::{FlapZero, RateSmoothness, Settings};
+pub use validate::Validation;
 
 use crate::{
-    ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, LinearGain,
-    PlayMap, PlayMemory, PreisachError, PreisachGrid, RateForm, StartState, StaticPreisach,
-    TimeOrder, TrainedRange, VoltageRange,
+    ActuatorLaw, ActuatorModel, DynamicPreisach, LinearGain, PlayMemory, PreisachError,
+    PreisachGrid, StartState, StaticPreisach, TrainedRange,
 };
-use serde::{Deserialize, Serialize};
-
-/// Which output is called zero flap angle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum FlapZero {
-    /// The mean output over the steady cycles of the largest quasi-static record: the flap is
-    /// rigged with the actuator cycling slowly about its bias.
-    #[default]
-    MajorLoopMean,
-    /// The zero of the records.
-    AsRecorded,
-}
-
-/// Settings of an identification.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// Voltages the actuator may see, V.
-    pub range_volt: VoltageRange,
-    /// Equivalent flap angle per displacement, deg/um: the gain the records were made with.
-    pub deg_per_um: f64,
-    /// Levels of the memory and of `mu0`.
-    pub levels: usize,
-    /// Levels of `mu1` and `mu2`; a divisor of `levels`.
-    pub rate_levels: usize,
-    /// Weight of the smoothness of `mu0`, relative to the squared error of a fit.
-    pub static_smoothness: f64,
-    /// Weight of the smoothness of `mu1` and `mu2`, likewise.
-    pub rate_smoothness: f64,
-    /// Smallest relaxation time, s.
-    pub least_relaxation_s: f64,
-    /// No reachable state may fold below this times the fastest trained output rate.
-    pub rate_margin: f64,
-    /// Form of the dynamic model.
-    pub form: RateForm,
-    /// Order of the time integration.
-    pub time_order: TimeOrder,
-    /// Rounds of `mu0` and `mu1, mu2` after one another.
-    pub rounds: usize,
-    /// Harmonics of the steady cycles.
-    pub harmonics: usize,
-    /// Steps the refinement may try for each of its parameters; 0 leaves it out.
-    pub refinement_patience: usize,
-    /// Which records train, where they do not say it themselves.
-    pub split: SplitRule,
-    /// Which output is zero flap angle.
-    pub zero: FlapZero,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            range_volt: VoltageRange::amplified_stack(),
-            deg_per_um: 1.0,
-            levels: 24,
-            rate_levels: 8,
-            static_smoothness: 1e-4,
-            rate_smoothness: 1e-5,
-            least_relaxation_s: 1e-4,
-            rate_margin: 1.5,
-            form: RateForm::WellPosed,
-            time_order: TimeOrder::Second,
-            rounds: 3,
-            harmonics: 20,
-            refinement_patience: 1,
-            split: SplitRule::default(),
-            zero: FlapZero::MajorLoopMean,
-        }
-    }
-}
-
-impl Settings {
-    fn check(&self) -> Result<(), PreisachError> {
-        for (quantity, value) in [
-            ("deg_per_um", self.deg_per_um),
-            ("static_smoothness", self.static_smoothness),
-            ("rate_smoothness", self.rate_smoothness),
-            ("least_relaxation_s", self.least_relaxation_s),
-            ("rate_margin", self.rate_margin),
-        ] {
-            crate::actuator::check_positive(quantity, value)?;
-        }
-        for (quantity, value, least) in [
-            ("levels", self.levels, 2),
-            ("rate_levels", self.rate_levels, 1),
-            ("rounds", self.rounds, 1),
-            ("harmonics", self.harmonics, 3),
-        ] {
-            if value < least {
-                return Err(PreisachError::TooFew { quantity, value, least });
-            }
-        }
-        if self.levels % self.rate_levels != 0 {
-            return Err(PreisachError::LevelsDoNotDivide {
-                rate_levels: self.rate_levels,
-                levels: self.levels,
-            });
-        }
-        Ok(())
-    }
-}
-
-/// A record made ready: its drive, its averaged cycles, the play states at every sample.
-pub(crate) struct Prepared {
-    id: String,
-    time_step_s: f64,
-    voltage_volt: Vec<f64>,
-    output_deg: Vec<f64>,
-    spread_deg: f64,
-    drive: Drive,
-    record_use: RecordUse,
-    cycles: Option<fourier::FourierFit>,
-    levels: usize,
-    /// Play states, one row of `levels` per sample; empty for held-out records.
-    states: Vec<f64>,
-}
-
-impl Prepared {
-    fn new(
-        record: &BenchRecord,
-        drive: Drive,
-        record_use: RecordUse,
-        grid: &PreisachGrid,
-        settings: &Settings,
-    ) -> Result<Self, PreisachError> {
-        let count = drive.harmonics_within(record.time_step_s, settings.harmonics);
-        let cycles = if drive.is_periodic() {
-            let cycles_per_sample = drive.base_hz * record.time_step_s;
-            Some(fourier::fit(&record.output_deg, drive.steady.clone(), cycles_per_sample, count)?)
-        } else {
-            None
-        };
-        let mut states = Vec::new();
-        if record_use == RecordUse::Train {
-            let mut memory = PlayMemory::new(grid, record.voltage_volt[0], StartState::Rest);
-            states.reserve(grid.levels() * record.voltage_volt.len());
-            for &u in &record.voltage_volt {
-                memory.apply(grid, u);
-                states.extend_from_slice(memory.cells());
-            }
-        }
-        Ok(Self {
-            id: record.id.clone(),
-            time_step_s: record.time_step_s,
-            voltage_volt: record.voltage_volt.clone(),
-            output_deg: record.output_deg.clone(),
-            spread_deg: record::spread(&record.output_deg),
-            drive,
-            record_use,
-            cycles,
-            levels: grid.levels(),
-            states,
-        })
-    }
-
-    /// Play states at a sample.
-    fn cells(&self, index: usize) -> &[f64] {
-        &self.states[index * self.levels..(index + 1) * self.levels]
-    }
-}
+use prepared::Prepared;
 
 /// What the identification says about one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -222,6 +67,10 @@ pub struct Identification {
     pub zero_deg: f64,
     /// Per record, in the order given.
     pub records: Vec<RecordReport>,
+    /// Weight of the smoothness of the rate maps that was used.
+    pub rate_smoothness: f64,
+    /// What its choice rests on; empty if it was given.
+    pub validation: Vec<Validation>,
     /// What the refinement did.
     pub refinement: Refinement,
 }
@@ -229,7 +78,9 @@ pub struct Identification {
 impl Identification {
     /// The reports of the records of one use.
     pub fn records_of(&self, record_use: RecordUse) -> impl Iterator<Item = &RecordReport> {
-        self.records.iter().filter(move |report| report.record_use == record_use)
+        self.records
+            .iter()
+            .filter(move |report| report.record_use == record_use)
     }
 }
 
@@ -259,12 +110,9 @@ pub fn identify(
             Prepared::new(record, drive.clone(), record_use, &grid, settings)
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let trained = || prepared.iter().filter(|r| r.record_use == RecordUse::Train);
-    let slow: Vec<&Prepared> =
-        trained().filter(|r| settings.split.is_quasi_static(&r.drive)).collect();
-    let fast: Vec<&Prepared> = trained()
-        .filter(|r| !settings.split.is_quasi_static(&r.drive) && r.cycles.is_some())
-        .collect();
+    let trained = || prepared.iter().filter(|r| !r.samples.is_empty());
+    let slow: Vec<&Prepared> = trained().filter(|r| r.is_slow).collect();
+    let fast: Vec<&Prepared> = trained().filter(|r| !r.is_slow).collect();
     if slow.is_empty() {
         return Err(PreisachError::NoTrainingRecord {
             part: "the static density mu0",
@@ -278,51 +126,44 @@ pub fn identify(
         });
     }
 
+    let trained = Some(trained_range(&slow, &fast, &prepared));
     let wrap = |law| ActuatorModel {
-        law,
-        range_volt: settings.range_volt,
-        calibration: Calibration { deg_per_um: settings.deg_per_um, zero_um: 0.0 },
-        trained: Some(trained_range(&slow, &fast, &prepared)),
+        trained,
+        ..settings.actuator_of(law)
     };
     let linear = wrap(ActuatorLaw::Linear(fit_linear(&slow)));
-    let measured: Vec<Vec<f64>> = slow.iter().map(|r| r.output_deg.clone()).collect();
-    let g0_only = static_fit::fit(&grid, &slow, &measured, settings)?;
-    let static_only =
-        wrap(ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, g0_only.clone())?));
+    let measured: Vec<Vec<f64>> = slow.iter().map(|r| r.record.output_deg.clone()).collect();
+    let mut g0_deg = static_fit::fit(&grid, &slow, &measured, settings)?;
+    let static_only = wrap(ActuatorLaw::StaticPreisach(StaticPreisach::new(
+        grid,
+        g0_deg.clone(),
+    )?));
 
-    let mut g0_deg = g0_only;
-    let mut parameters;
-    let mut round = 0;
-    loop {
-        let rate = rate_fit::fit(&grid, &g0_deg, &fast, settings)?;
-        let factor = settings.levels / settings.rate_levels;
-        parameters = DynamicParameters {
-            grid,
-            g0_deg: g0_deg.clone(),
-            g1_s: rate.g1_s.refined(factor),
-            g2_s2_per_deg: rate.g2_s2_per_deg.refined(factor),
-            form: settings.form,
-            unfolded_rate_deg_s: rate.unfolded_rate_deg_s,
-            time_order: settings.time_order,
-        };
-        round += 1;
-        if round >= settings.rounds {
-            break;
-        }
-        let model = DynamicPreisach::new(parameters.clone())?;
-        let targets: Vec<Vec<f64>> =
-            slow.iter().map(|r| without_rate_terms(&model, r)).collect();
+    let (mut smoothness, mut validation) = validate::smoothness(&grid, &g0_deg, &fast, settings);
+    let mut model = rate_fit::fit(&grid, &g0_deg, &fast, smoothness, settings)?
+        .model(&grid, &g0_deg, settings)?;
+    for round in 1..settings.rounds {
+        let targets: Vec<Vec<f64>> = slow
+            .iter()
+            .map(|r| without_rate_terms(&model, r.record))
+            .collect();
         g0_deg = static_fit::fit(&grid, &slow, &targets, settings)?;
+        if round == 1 {
+            // again, now that the static map no longer holds the dynamics of the slow records
+            (smoothness, validation) = validate::smoothness(&grid, &g0_deg, &fast, settings);
+        }
+        let maps = rate_fit::fit(&grid, &g0_deg, &fast, smoothness, settings)?;
+        model = maps.model(&grid, &g0_deg, settings)?;
     }
-    let all: Vec<&Prepared> = trained().collect();
-    let (model, refinement) = refine::refine(DynamicPreisach::new(parameters)?, &all, settings)?;
+    let all: Vec<&Prepared> = slow.iter().chain(&fast).copied().collect();
+    let (model, refinement) = refine::refine(model, &all, settings)?;
     let dynamic = wrap(ActuatorLaw::DynamicPreisach(model));
 
     let reports = prepared
         .iter()
         .map(|r| {
             Ok(RecordReport {
-                id: r.id.clone(),
+                id: r.record.id.clone(),
                 record_use: r.record_use,
                 drive: r.drive.clone(),
                 noise_deg: r.cycles.as_ref().map(|c| c.noise),
@@ -342,15 +183,16 @@ pub fn identify(
         linear: linear.shifted(-zero_deg),
         zero_deg,
         records: reports,
+        rate_smoothness: smoothness,
+        validation,
         refinement,
     })
 }
 
 /// Output of a record with `d G1 + d^2 G2` taken off, `d` from the simulated model: smooth, and
 /// good enough for a term that is small in slow records.
-fn without_rate_terms(model: &DynamicPreisach, record: &Prepared) -> Vec<f64> {
-    let mut memory =
-        PlayMemory::new(model.grid(), record.voltage_volt[0], StartState::Rest);
+fn without_rate_terms(model: &DynamicPreisach, record: &BenchRecord) -> Vec<f64> {
+    let mut memory = PlayMemory::new(model.grid(), record.voltage_volt[0], StartState::Rest);
     let mut history = crate::OutputHistory::at_rest(model.maps(&memory)[0]);
     let mut counts = crate::StepCounts::default();
     record
@@ -358,8 +200,13 @@ fn without_rate_terms(model: &DynamicPreisach, record: &Prepared) -> Vec<f64> {
         .iter()
         .zip(&record.output_deg)
         .map(|(&u, &measured)| {
-            let output =
-                model.step(&mut memory, &mut history, &mut counts, u, record.time_step_s);
+            let output = model.step(
+                &mut memory,
+                &mut history,
+                &mut counts,
+                u,
+                record.time_step_s,
+            );
             // the simulated output is G0 + d G1 + d^2 G2 by construction
             measured - (output - model.maps(&memory)[0])
         })
@@ -369,7 +216,7 @@ fn without_rate_terms(model: &DynamicPreisach, record: &Prepared) -> Vec<f64> {
 /// Least squares line through the quasi-static records, each weighing alike.
 fn fit_linear(slow: &[&Prepared]) -> LinearGain {
     let [mut w, mut u1, mut u2, mut y1, mut uy] = [0.0; 5];
-    for record in slow {
+    for Prepared { record, .. } in slow {
         let weight = 1.0 / record.output_deg.len() as f64;
         for (&u, &y) in record.voltage_volt.iter().zip(&record.output_deg) {
             w += weight;
@@ -380,7 +227,10 @@ fn fit_linear(slow: &[&Prepared]) -> LinearGain {
         }
     }
     let gain = (w * uy - u1 * y1) / (w * u2 - u1 * u1);
-    LinearGain { gain_deg_per_volt: gain, bias_volt: (u1 - y1 / gain) / w }
+    LinearGain {
+        gain_deg_per_volt: gain,
+        bias_volt: (u1 - y1 / gain) / w,
+    }
 }
 
 /// Mean over the steady cycles of the periodic quasi-static record with the largest amplitude; over
@@ -388,10 +238,19 @@ fn fit_linear(slow: &[&Prepared]) -> LinearGain {
 fn major_loop_mean(slow: &[&Prepared]) -> f64 {
     let by_amplitude =
         |a: &&&Prepared, b: &&&Prepared| a.drive.amplitude_volt.total_cmp(&b.drive.amplitude_volt);
-    let periodic = slow.iter().filter(|r| r.cycles.is_some()).max_by(by_amplitude);
+    let periodic = slow
+        .iter()
+        .filter(|r| r.cycles.is_some())
+        .max_by(by_amplitude);
     match periodic.or_else(|| slow.iter().max_by(by_amplitude)) {
-        Some(Prepared { cycles: Some(cycles), .. }) => cycles.series.mean,
-        Some(record) => record.output_deg.iter().sum::<f64>() / record.output_deg.len() as f64,
+        Some(Prepared {
+            cycles: Some(cycles),
+            ..
+        }) => cycles.series.mean,
+        Some(Prepared {
+            record: BenchRecord { output_deg, .. },
+            ..
+        }) => output_deg.iter().sum::<f64>() / output_deg.len() as f64,
         None => 0.0,
     }
 }
@@ -424,7 +283,9 @@ pub fn half_stroke_gain_deg_per_um(
 ) -> Result<f64, PreisachError> {
     let (low, high) = displacement_um
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
+            (l.min(v), h.max(v))
+        });
     let half_um = 0.5 * (high - low);
     crate::actuator::check_positive("half stroke (um)", half_um)?;
     Ok(half_stroke_deg / half_um)

@@ -99,11 +99,15 @@ impl LeastSquaresProgram {
         let mut by_column: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n];
         let mut bounds = vec![0.0; self.equalities.len()];
         for (k, row) in self.equalities.iter().enumerate() {
-            row.iter().for_each(|&(column, a)| by_column[column].push((k, a)));
+            for &(column, a) in row {
+                by_column[column].push((k, a));
+            }
         }
         for (k, (row, bound)) in self.lower_bounds.iter().enumerate() {
             let k = k + self.equalities.len();
-            row.iter().for_each(|&(column, a)| by_column[column].push((k, -a)));
+            for &(column, a) in row {
+                by_column[column].push((k, -a));
+            }
             bounds.push(-bound);
         }
         let (mut column_starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -115,8 +119,10 @@ impl LeastSquaresProgram {
             column_starts.push(rows.len());
         }
         let matrix = CscMatrix::new(constraints, n, column_starts, rows, values);
-        let cones =
-            [ZeroConeT(self.equalities.len()), NonnegativeConeT(self.lower_bounds.len())];
+        let cones = [
+            ZeroConeT(self.equalities.len()),
+            NonnegativeConeT(self.lower_bounds.len()),
+        ];
 
         let refused = PreisachError::QuadraticProgram {
             stage,

@@ -1,12 +1,11 @@
 //! The rate maps `G1` and `G2` from steady cycles, by constrained least squares.
 
+use super::Settings;
+use super::prepared::Prepared;
 use super::program::{LeastSquaresProgram, Row};
-use super::{Prepared, Settings};
 use crate::play_map::split;
-use crate::{PlayMap, PreisachError, PreisachGrid, RateForm};
+use crate::{DynamicParameters, DynamicPreisach, PlayMap, PreisachError, PreisachGrid, RateForm};
 
-/// Samples used of one record at most; denser records are thinned.
-const MOST_SAMPLES: usize = 600;
 /// Part of the room up to the fold that the fit may use; the rest covers the solver's tolerance.
 const FOLD_ROOM: f64 = 0.98;
 /// Rounds of cutting planes before `G2` is scaled into the cone instead.
@@ -15,10 +14,31 @@ const MOST_CUTS: usize = 60;
 /// The two rate maps on the coarse grid of the rate levels.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RateMaps {
-    pub(super) g1_s: PlayMap,
-    pub(super) g2_s2_per_deg: PlayMap,
+    g1_s: PlayMap,
+    g2_s2_per_deg: PlayMap,
     /// Output rate up to which no reachable state folds, deg/s.
-    pub(super) unfolded_rate_deg_s: f64,
+    unfolded_rate_deg_s: f64,
+}
+
+impl RateMaps {
+    /// The dynamic model of these maps with a static map.
+    pub(super) fn model(
+        &self,
+        grid: &PreisachGrid,
+        g0_deg: &PlayMap,
+        settings: &Settings,
+    ) -> Result<DynamicPreisach, PreisachError> {
+        let factor = settings.levels / settings.rate_levels;
+        DynamicPreisach::new(DynamicParameters {
+            grid: *grid,
+            g0_deg: g0_deg.clone(),
+            g1_s: self.g1_s.refined(factor),
+            g2_s2_per_deg: self.g2_s2_per_deg.refined(factor),
+            form: settings.form,
+            unfolded_rate_deg_s: self.unfolded_rate_deg_s,
+            time_order: settings.time_order,
+        })
+    }
 }
 
 /// Equation error of one steady sample: everything that is known in
@@ -49,6 +69,7 @@ pub(super) fn fit(
     grid: &PreisachGrid,
     g0_deg: &PlayMap,
     records: &[&Prepared],
+    smoothness: f64,
     settings: &Settings,
 ) -> Result<RateMaps, PreisachError> {
     let coarse = PreisachGrid::new(grid.range(), settings.rate_levels)?;
@@ -65,12 +86,17 @@ pub(super) fn fit(
         let mut row = Row::with_capacity(2 * sample.hats.len() + 1);
         row.extend(sample.hats.iter().map(|&(i, a)| (i, -a * d * scale.lag_s)));
         let quadratic = d * d * g2_unit;
-        row.extend(sample.hats.iter().map(|&(i, a)| (unknowns.count + i, a * quadratic)));
+        row.extend(
+            sample
+                .hats
+                .iter()
+                .map(|&(i, a)| (unknowns.count + i, a * quadratic)),
+        );
         row.push((first_offset + sample.record, 1.0));
         program.add(&row, sample.beyond_static_deg, sample.weight);
     }
     for map in 0..2 {
-        unknowns.smooth(map * unknowns.count, settings.rate_smoothness, &mut program);
+        unknowns.smooth(map * unknowns.count, smoothness, &mut program);
         for j in 0..coarse.levels() {
             let ends = [unknowns.node(j, 0), unknowns.node(j, coarse.knots(j) - 1)];
             if literal {
@@ -99,7 +125,11 @@ pub(super) fn fit(
         let g1_s = unknowns.map(&coarse, &lag, -scale.lag_s);
         let mut g2 = unknowns.map(&coarse, &x[unknowns.count..first_offset], g2_unit);
         if literal {
-            return Ok(RateMaps { g1_s, g2_s2_per_deg: g2, unfolded_rate_deg_s });
+            return Ok(RateMaps {
+                g1_s,
+                g2_s2_per_deg: g2,
+                unfolded_rate_deg_s,
+            });
         }
         let mut worst = 0.0_f64;
         for sign in [1.0, -1.0] {
@@ -123,7 +153,11 @@ pub(super) fn fit(
             worst = 0.0;
         }
         if worst <= 0.0 {
-            return Ok(RateMaps { g1_s, g2_s2_per_deg: g2, unfolded_rate_deg_s });
+            return Ok(RateMaps {
+                g1_s,
+                g2_s2_per_deg: g2,
+                unfolded_rate_deg_s,
+            });
         }
         cuts += 1;
     }
@@ -143,7 +177,11 @@ pub(super) fn room_for_g2(g1_s: &PlayMap, g2: &PlayMap, rate_deg_s: f64) -> f64 
     }
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
-        if fits(middle) { low = middle } else { high = middle }
+        if fits(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
     low
 }
@@ -163,13 +201,12 @@ fn equation_samples(
     let factor = settings.levels / settings.rate_levels;
     let mut samples = Vec::new();
     for (index, record) in records.iter().enumerate() {
-        let Some(cycles) = &record.cycles else { continue };
-        let steady = record.drive.steady.clone();
-        let stride = steady.len().div_ceil(MOST_SAMPLES).max(1);
-        let count = steady.len().div_ceil(stride) as f64;
-        for i in steady.step_by(stride) {
+        let Some(cycles) = &record.cycles else {
+            continue;
+        };
+        let count = record.samples.len() as f64;
+        for (i, cells) in record.states() {
             let (output_deg, per_sample) = cycles.value_and_rate(i);
-            let cells = record.cells(i);
             let static_deg = g0_deg
                 .nodes
                 .iter()
@@ -179,21 +216,27 @@ fn equation_samples(
                 });
             samples.push(Sample {
                 hats: unknowns.hats(cells, factor),
-                rate_deg_s: per_sample / record.time_step_s,
+                rate_deg_s: per_sample / record.record.time_step_s,
                 beyond_static_deg: output_deg - static_deg,
                 weight: 1.0 / (count * records.len() as f64),
                 record: index,
             });
         }
     }
-    let fastest = samples.iter().fold(0.0_f64, |m, s| m.max(s.rate_deg_s.abs()));
+    let fastest = samples
+        .iter()
+        .fold(0.0_f64, |m, s| m.max(s.rate_deg_s.abs()));
     let (against, squares) = samples.iter().fold((0.0, 0.0), |(a, b), s| {
         (
             a - s.weight * s.rate_deg_s * s.beyond_static_deg,
             b + s.weight * s.rate_deg_s * s.rate_deg_s,
         )
     });
-    let lag_s = if against > 0.0 { against / squares } else { settings.least_relaxation_s };
+    let lag_s = if against > 0.0 {
+        against / squares
+    } else {
+        settings.least_relaxation_s
+    };
     let lag_s = lag_s.max(settings.least_relaxation_s);
     for sample in &mut samples {
         let record = records[sample.record];
@@ -201,7 +244,13 @@ fn equation_samples(
         let size = record.spread_deg;
         sample.weight /= size * size * (1.0 + (omega * lag_s).powi(2));
     }
-    (samples, Scale { lag_s, rate_deg_s: settings.rate_margin * fastest })
+    (
+        samples,
+        Scale {
+            lag_s,
+            rate_deg_s: settings.rate_margin * fastest,
+        },
+    )
 }
 
 /// Numbering of one rate map: its constant, then all nodes, play by play.
@@ -223,7 +272,11 @@ impl Unknowns {
                 start
             })
             .collect();
-        Self { starts, knots, count }
+        Self {
+            starts,
+            knots,
+            count,
+        }
     }
 
     fn node(&self, j: usize, k: usize) -> usize {
@@ -263,9 +316,15 @@ impl Unknowns {
         let nodes = (0..coarse.levels())
             .map(|j| {
                 let start = self.starts[j];
-                values[start..start + self.knots[j]].iter().map(|v| v * scale).collect()
+                values[start..start + self.knots[j]]
+                    .iter()
+                    .map(|v| v * scale)
+                    .collect()
             })
             .collect();
-        PlayMap { constant: values[0] * scale, nodes }
+        PlayMap {
+            constant: values[0] * scale,
+            nodes,
+        }
     }
 }

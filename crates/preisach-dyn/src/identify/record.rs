@@ -1,5 +1,6 @@
 //! Bench records and what their command tells about them.
 
+use crate::actuator::{SAMPLE_TOLERANCE, check_positive};
 use crate::{PreisachError, VoltageRange};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -42,7 +43,11 @@ impl BenchRecord {
     pub fn check(&self, range: VoltageRange) -> Result<(), PreisachError> {
         let (voltages, outputs) = (self.voltage_volt.len(), self.output_deg.len());
         if voltages != outputs {
-            return Err(PreisachError::UnequalColumns { id: self.id.clone(), voltages, outputs });
+            return Err(PreisachError::UnequalColumns {
+                id: self.id.clone(),
+                voltages,
+                outputs,
+            });
         }
         if voltages < FEWEST_SAMPLES {
             return Err(PreisachError::TooFew {
@@ -51,11 +56,19 @@ impl BenchRecord {
                 least: FEWEST_SAMPLES,
             });
         }
-        crate::actuator::check_positive("time_step_s", self.time_step_s)?;
+        check_positive("time_step_s", self.time_step_s)?;
+        if let Some(hz) = self.base_frequency_hz {
+            check_positive("base_frequency_hz", hz)?;
+        }
         let bad = |index: usize, problem: &'static str, value: f64| {
-            Err(PreisachError::BadRecord { id: self.id.clone(), index, problem, value })
+            Err(PreisachError::BadRecord {
+                id: self.id.clone(),
+                index,
+                problem,
+                value,
+            })
         };
-        let tolerance = crate::actuator::SAMPLE_TOLERANCE * range.span_volt();
+        let tolerance = SAMPLE_TOLERANCE * range.span_volt();
         for (index, (&u, &y)) in self.voltage_volt.iter().zip(&self.output_deg).enumerate() {
             if !u.is_finite() {
                 return bad(index, "the voltage is not a finite number", u);
@@ -125,8 +138,11 @@ const PERIODIC_MISMATCH: f64 = 0.02;
 impl Drive {
     fn of(record: &BenchRecord) -> Self {
         let u = &record.voltage_volt;
-        let (low, high) =
-            u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        let (low, high) = u
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
+                (l.min(v), h.max(v))
+            });
         let mut drive = Self {
             waveform: Waveform::Constant,
             base_hz: 0.0,
@@ -142,14 +158,19 @@ impl Drive {
             Some(hz) => Some(1.0 / (hz * record.time_step_s)),
             None => find_period(u, &drive),
         };
-        let steady = period.and_then(|p| steady_samples(u, p, drive.amplitude_volt).map(|s| (p, s)));
+        let steady =
+            period.and_then(|p| steady_samples(u, p, drive.amplitude_volt).map(|s| (p, s)));
         if let Some((samples, steady)) = steady {
             drive.base_hz = 1.0 / (samples * record.time_step_s);
             drive.steady = steady;
             drive.find_harmonics(record);
         } else {
             let moving: f64 = u.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-            let moves = u.windows(2).filter(|pair| pair[1] != pair[0]).count().max(1);
+            let moves = u
+                .windows(2)
+                .filter(|pair| (pair[1] - pair[0]).abs() > 0.0)
+                .count()
+                .max(1);
             let speed = moving / (moves as f64 * record.time_step_s);
             drive.waveform = Waveform::Transient;
             drive.base_hz = speed / (4.0 * drive.amplitude_volt);
@@ -168,17 +189,27 @@ impl Drive {
             self.waveform = Waveform::Mix;
             return;
         };
-        let powers: Vec<f64> =
-            fit.series.harmonics.iter().map(|h| h.amplitude().powi(2)).collect();
+        let powers: Vec<f64> = fit
+            .series
+            .harmonics
+            .iter()
+            .map(|h| h.amplitude().powi(2))
+            .collect();
         let total: f64 = powers.iter().sum();
         let (index, power) = powers
             .iter()
             .copied()
             .enumerate()
-            .fold((0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+            .fold(
+                (0, 0.0),
+                |best, now| if now.1 > best.1 { now } else { best },
+            );
         self.strongest_harmonic = index + 1;
-        self.waveform =
-            if power >= SINGLE_SHARE * total { Waveform::SingleHarmonic } else { Waveform::Mix };
+        self.waveform = if power >= SINGLE_SHARE * total {
+            Waveform::SingleHarmonic
+        } else {
+            Waveform::Mix
+        };
     }
 
     /// Frequency of the strongest harmonic, Hz.
@@ -199,7 +230,9 @@ impl Drive {
         reason = "positive and held below `wanted`"
     )]
     pub(super) fn harmonics_within(&self, time_step_s: f64, wanted: usize) -> usize {
-        let most = (0.4 / (self.base_hz * time_step_s)).floor().min(wanted as f64);
+        let most = (0.4 / (self.base_hz * time_step_s))
+            .floor()
+            .min(wanted as f64);
         (most as usize).max(1)
     }
 }
@@ -223,8 +256,7 @@ fn find_period(u: &[f64], drive: &Drive) -> Option<f64> {
     (1..=12.min(crossings.len().saturating_sub(1))).find_map(|per_period| {
         let periods = (crossings.len() - 1) / per_period;
         let last = crossings.len() - 1;
-        let period =
-            (crossings[last] - crossings[last - periods * per_period]) / periods as f64;
+        let period = (crossings[last] - crossings[last - periods * per_period]) / periods as f64;
         let repeats = mismatch(u, first, period)? <= PERIODIC_MISMATCH * drive.amplitude_volt;
         repeats.then_some(period)
     })
@@ -233,11 +265,17 @@ fn find_period(u: &[f64], drive: &Drive) -> Option<f64> {
 /// Root mean square of `u(i + period) - u(i)` from `first` on; none if less than half a period is
 /// left to compare.
 fn mismatch(u: &[f64], first: usize, period: f64) -> Option<f64> {
-    let pairs: Vec<f64> = (first..u.len()).map_while(|i| later(u, i, period)).collect();
+    let pairs: Vec<f64> = (first..u.len())
+        .map_while(|i| later(u, i, period))
+        .collect();
     if (pairs.len() as f64) < 0.5 * period {
         return None;
     }
-    let sum: f64 = pairs.iter().enumerate().map(|(k, v)| (v - u[first + k]).powi(2)).sum();
+    let sum: f64 = pairs
+        .iter()
+        .enumerate()
+        .map(|(k, v)| (v - u[first + k]).powi(2))
+        .sum();
     Some((sum / pairs.len() as f64).sqrt())
 }
 
@@ -245,7 +283,11 @@ fn mismatch(u: &[f64], first: usize, period: f64) -> Option<f64> {
 fn later(u: &[f64], index: usize, period: f64) -> Option<f64> {
     let (whole, part) = crate::play_map::split(period);
     let a = u.get(index + whole)?;
-    let b = if part > 0.0 { u.get(index + whole + 1)? } else { a };
+    let b = if part > 0.0 {
+        u.get(index + whole + 1)?
+    } else {
+        a
+    };
     Some(a + part * (b - a))
 }
 
@@ -253,7 +295,9 @@ fn later(u: &[f64], index: usize, period: f64) -> Option<f64> {
 /// there are at least two.
 fn steady_samples(u: &[f64], period: f64, amplitude: f64) -> Option<Range<usize>> {
     let allowed = 3.0 * PERIODIC_MISMATCH * amplitude;
-    let last_pair = (0..u.len()).rev().find(|&i| later(u, i, period).is_some())?;
+    let last_pair = (0..u.len())
+        .rev()
+        .find(|&i| later(u, i, period).is_some())?;
     let repeats = |i: usize| later(u, i, period).is_some_and(|v| (v - u[i]).abs() <= allowed);
     let begin = (0..=last_pair).rev().take_while(|&i| repeats(i)).last()?;
     let (periods, _) = crate::play_map::split((u.len() - begin) as f64 / period + 1e-6);
@@ -282,7 +326,10 @@ pub struct SplitRule {
 impl Default for SplitRule {
     /// Quasi-static to 0.5 Hz; trained at 1 and 10 Hz, the paper's choice.
     fn default() -> Self {
-        Self { quasi_static_hz: 0.5, trained_hz: vec![1.0, 10.0] }
+        Self {
+            quasi_static_hz: 0.5,
+            trained_hz: vec![1.0, 10.0],
+        }
     }
 }
 
@@ -306,13 +353,17 @@ impl SplitRule {
                     return given;
                 }
                 let extreme = self.trained_hz.iter().any(|&hz| {
-                    let amplitudes = drives.iter().filter(|d| near(d, hz)).map(|d| d.amplitude_volt);
-                    let (low, high) = amplitudes
-                        .fold((f64::INFINITY, 0.0_f64), |(l, h), a| (l.min(a), h.max(a)));
+                    let amplitudes = drives
+                        .iter()
+                        .filter(|d| near(d, hz))
+                        .map(|d| d.amplitude_volt);
+                    let (low, high) =
+                        amplitudes.fold((f64::INFINITY, 0.0_f64), |(l, h), a| (l.min(a), h.max(a)));
                     let own = drive.amplitude_volt;
                     near(drive, hz) && (own <= 1.02 * low || own >= 0.98 * high)
                 });
-                if extreme || (self.is_quasi_static(drive) && drive.waveform != Waveform::Constant) {
+                if extreme || (self.is_quasi_static(drive) && drive.waveform != Waveform::Constant)
+                {
                     RecordUse::Train
                 } else {
                     RecordUse::HeldOut

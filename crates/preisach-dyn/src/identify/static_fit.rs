@@ -1,12 +1,10 @@
 //! The static map `G0` from quasi-static records, by constrained least squares.
 
+use super::Settings;
+use super::prepared::Prepared;
 use super::program::{LeastSquaresProgram, Row};
-use super::{Prepared, Settings};
 use crate::play_map::split;
 use crate::{PlayMap, PreisachError, PreisachGrid};
-
-/// Samples used of one record at most; denser records are thinned.
-const MOST_SAMPLES: usize = 4000;
 
 /// `G0` of the density `mu0 >= 0` that fits targets in the least squares sense.
 ///
@@ -28,15 +26,17 @@ pub(super) fn fit(
 ) -> Result<PlayMap, PreisachError> {
     let unknowns = Unknowns::new(grid);
     let mut program = LeastSquaresProgram::new(unknowns.count);
-    let spread = targets_deg.iter().map(|t| super::record::spread(t)).fold(0.0, f64::max);
+    let spread = targets_deg
+        .iter()
+        .map(|t| super::record::spread(t))
+        .fold(0.0, f64::max);
     let share = 1.0 / (records.len() as f64 * spread * spread);
     let mut row = Row::new();
     for (record, targets) in records.iter().zip(targets_deg) {
-        let stride = targets.len().div_ceil(MOST_SAMPLES).max(1);
-        let weight = share / targets.len().div_ceil(stride) as f64;
-        for (index, &target) in targets.iter().enumerate().step_by(stride) {
-            unknowns.hats(record.cells(index), &mut row);
-            program.add(&row, target, weight);
+        let weight = share / record.samples.len() as f64;
+        for (index, cells) in record.states() {
+            unknowns.hats(cells, &mut row);
+            program.add(&row, targets[index], weight);
         }
     }
     let cells = unknowns.count - 1;
@@ -46,7 +46,10 @@ pub(super) fn fit(
             program.at_least(unknowns.rise(j, k, 1.0), 0.0);
             let neighbours = match j {
                 0 => [Some((0, k + 1)), None],
-                _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
+                _ => [
+                    Some((j + 1, k)),
+                    k.checked_sub(1).map(|lower| (j + 1, lower)),
+                ],
             };
             for (j2, k2) in neighbours.into_iter().flatten() {
                 if j2 < grid.levels() && k2 < grid.levels() - j2 {
@@ -70,7 +73,10 @@ pub(super) fn fit(
             nodes
         })
         .collect();
-    Ok(PlayMap { constant: solution[0], nodes })
+    Ok(PlayMap {
+        constant: solution[0],
+        nodes,
+    })
 }
 
 /// Sums entries of the same column; columns ascend.

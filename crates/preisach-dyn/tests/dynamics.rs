@@ -1,0 +1,363 @@
+//! Dynamic Preisach, equation (5): exact special cases, order of accuracy, well-posedness.
+
+use approx::assert_abs_diff_eq;
+use preisach_dyn::{
+    ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, OutputHistory,
+    PlayMap, PlayMemory, PreisachError, PreisachGrid, RateForm, StartState, StepCounts, TimeOrder,
+    VoltageRange, output_rate,
+};
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+
+fn grid(levels: usize) -> PreisachGrid {
+    PreisachGrid::new(VoltageRange::amplified_stack(), levels).unwrap()
+}
+
+fn rises(grid: &PreisachGrid, f: impl Fn(f64, f64) -> f64) -> Vec<Vec<f64>> {
+    let n = grid.levels();
+    (0..n)
+        .map(|j| {
+            (0..n - j)
+                .map(|k| f((2 * k + j + 1) as f64 / n as f64 - 1.0, j as f64 / n as f64))
+                .collect()
+        })
+        .collect()
+}
+
+/// Hysteretic, with a relaxation time that depends on the state and a quadratic term.
+fn parameters(time_order: TimeOrder) -> DynamicParameters {
+    let grid = grid(16);
+    let mut g1_s = PlayMap::from_rises(
+        &grid,
+        -0.020,
+        &rises(&grid, |s, r| 4e-4 * (3.0 * s).sin() * (1.0 - r)),
+    )
+    .unwrap();
+    g1_s.constant = -0.020;
+    DynamicParameters {
+        grid,
+        g0_deg: PlayMap::from_rises(
+            &grid,
+            0.0,
+            &rises(&grid, |s, r| 0.2 * (-2.0 * r).exp() * (1.1 + s * s)),
+        )
+        .unwrap(),
+        g1_s,
+        g2_s2_per_deg: PlayMap::from_rises(&grid, 2e-6, &rises(&grid, |s, _| 1e-7 * s)).unwrap(),
+        form: RateForm::WellPosed,
+        unfolded_rate_deg_s: 600.0,
+        time_order,
+    }
+}
+
+fn actuator(parameters: DynamicParameters) -> ActuatorModel {
+    ActuatorModel {
+        range_volt: parameters.grid.range(),
+        law: ActuatorLaw::DynamicPreisach(DynamicPreisach::new(parameters).unwrap()),
+        calibration: Calibration {
+            deg_per_um: 0.04,
+            zero_um: 0.0,
+        },
+        trained: None,
+    }
+}
+
+/// A linear static part of 0.1 deg/V (the reversible play alone), zero at 65 V, behind a lag.
+fn linear_with_lag(lag_s: f64, time_order: TimeOrder) -> ActuatorModel {
+    let grid = grid(4);
+    let mut g0_deg = PlayMap::constant(&grid, 0.0);
+    g0_deg.nodes[0] = (0..5).map(|k| -8.5 + 4.25 * f64::from(k)).collect();
+    actuator(DynamicParameters {
+        grid,
+        g0_deg,
+        g1_s: PlayMap::constant(&grid, -lag_s),
+        g2_s2_per_deg: PlayMap::constant(&grid, 0.0),
+        form: RateForm::WellPosed,
+        unfolded_rate_deg_s: 1e6,
+        time_order,
+    })
+}
+
+#[test]
+fn with_the_voltage_held_the_state_relaxes_with_minus_g1() {
+    let p = parameters(TimeOrder::Second);
+    let model = DynamicPreisach::new(DynamicParameters {
+        g2_s2_per_deg: PlayMap::constant(&p.grid, 0.0),
+        ..p
+    })
+    .unwrap();
+    let mut memory = PlayMemory::new(model.grid(), 30.0, StartState::Rest);
+    let [start, ..] = model.maps(&memory);
+    let mut history = OutputHistory::at_rest(start);
+    let mut counts = StepCounts::default();
+    let [settled, g1, _] = model.apply(&mut memory, 110.0);
+    let step_s = 1e-5;
+    for i in 1..=4000 {
+        let output = model.step(&mut memory, &mut history, &mut counts, 110.0, step_s);
+        let exact = settled + (start - settled) * (f64::from(i) * step_s / g1).exp();
+        assert_abs_diff_eq!(output, exact, epsilon = 1e-3 * (settled - start).abs());
+    }
+}
+
+/// Exact response of `tau y' + y = x` to `x = amplitude (1 - cos w t)` from rest.
+fn exact_lag(amplitude: f64, lag_s: f64, omega: f64, t: f64) -> f64 {
+    let p = omega * lag_s;
+    let steady = ((omega * t).cos() + p * (omega * t).sin()) / (1.0 + p * p);
+    amplitude * (1.0 - steady - (1.0 - 1.0 / (1.0 + p * p)) * (-t / lag_s).exp())
+}
+
+#[test]
+fn a_constant_g1_is_a_first_order_lag_integrated_at_the_order_asked_for() {
+    let (lag_s, omega) = (0.024, TAU * 15.0);
+    for (order, expected) in [(TimeOrder::First, 1.0), (TimeOrder::Second, 2.0)] {
+        let model = linear_with_lag(lag_s, order);
+        let errors = [50, 100, 200, 400, 800].map(|per_cycle| {
+            let step_s = TAU / omega / f64::from(per_cycle);
+            let volts: Vec<f64> = (0..=3 * per_cycle)
+                .map(|i| 25.0 + 40.0 * (1.0 - (omega * step_s * f64::from(i)).cos()))
+                .collect();
+            let outputs = model.simulate(&volts, step_s).unwrap().output_deg;
+            outputs.iter().zip(0..).fold(0.0_f64, |worst, (y, i)| {
+                let exact = -4.0 + exact_lag(4.0, lag_s, omega, step_s * f64::from(i));
+                worst.max((y - exact).abs())
+            })
+        });
+        for pair in errors.windows(2).skip(1) {
+            let rate = (pair[0] / pair[1]).log2();
+            assert!(
+                (rate - expected).abs() < 0.1,
+                "{order:?}: {rate} ({errors:?})"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_state_dependent_lag_converges_at_the_order_asked_for() {
+    // The maps have kinks at their knots and the plays turn with the voltage. A kink is a jump of
+    // the second derivative of the output: it costs one step of a lower order, not the order of
+    // the whole, but makes the ratio uneven; hence the mean rate over a factor of 16.
+    let reference = refined_output(&actuator(parameters(TimeOrder::Second)), 51_200);
+    for (order, expected) in [(TimeOrder::First, 1.0), (TimeOrder::Second, 2.0)] {
+        let model = actuator(parameters(order));
+        let error = |per_cycle: u32| -> f64 {
+            let outputs = refined_output(&model, per_cycle);
+            let squares: f64 = outputs
+                .iter()
+                .zip(&reference)
+                .map(|(a, b)| (a - b).powi(2))
+                .sum();
+            (squares / outputs.len() as f64).sqrt()
+        };
+        let (coarse, fine) = (error(200), error(3200));
+        let rate = (coarse / fine).log2() / 4.0;
+        assert!(
+            (rate - expected).abs() < 0.15,
+            "{order:?}: {rate} ({coarse:e} {fine:e})"
+        );
+    }
+}
+
+/// Output at 50 instants per cycle over 3 cycles of 10 Hz.
+fn refined_output(model: &ActuatorModel, per_cycle: u32) -> Vec<f64> {
+    let step_s = 0.1 / f64::from(per_cycle);
+    let volts: Vec<f64> = (0..=3 * per_cycle)
+        .map(|i| 65.0 - 80.0 * (TAU * f64::from(i) / f64::from(per_cycle)).sin())
+        .collect();
+    let outputs = model.simulate(&volts, step_s).unwrap().output_deg;
+    outputs
+        .iter()
+        .step_by(per_cycle as usize / 50)
+        .copied()
+        .collect()
+}
+
+#[test]
+fn uneven_steps_keep_the_second_order() {
+    let (lag_s, omega) = (0.024, TAU * 15.0);
+    let model = linear_with_lag(lag_s, TimeOrder::Second);
+    let error = |count: u32| -> f64 {
+        let mut memory = model.start(25.0, StartState::Rest).unwrap();
+        let mut worst = 0.0_f64;
+        let mut t = 0.0;
+        for i in 0..count {
+            let step_s = 0.2 / f64::from(count) * (1.0 + 0.5 * (f64::from(i % 3) - 1.0));
+            t += step_s;
+            let u = 25.0 + 40.0 * (1.0 - (omega * t).cos());
+            let y = model.step(&mut memory, u, step_s).unwrap();
+            worst = worst.max((y + 4.0 - exact_lag(4.0, lag_s, omega, t)).abs());
+        }
+        worst
+    };
+    let rate = (error(300) / error(2400)).log2() / 3.0;
+    assert!((rate - 2.0).abs() < 0.15, "{rate}");
+}
+
+#[test]
+fn the_step_satisfies_equation_5() {
+    let p = parameters(TimeOrder::First);
+    let model = DynamicPreisach::new(p).unwrap();
+    let mut memory = PlayMemory::new(model.grid(), 65.0, StartState::Rest);
+    let mut history = OutputHistory::at_rest(model.maps(&memory)[0]);
+    let mut counts = StepCounts::default();
+    let step_s = 5e-4;
+    for i in 0..2000_u32 {
+        let u = 65.0 + 80.0 * (TAU * 12.0 * step_s * f64::from(i)).sin();
+        let before = history.output_deg;
+        let output = model.step(&mut memory, &mut history, &mut counts, u, step_s);
+        let [g0, g1, g2] = model.maps(&memory);
+        let d = (output - before) / step_s;
+        assert_abs_diff_eq!(output, g0 + d * g1 + d * d * g2, epsilon = 1e-10);
+    }
+    assert_eq!(
+        counts,
+        StepCounts {
+            steps: 2000,
+            g1_not_negative: 0,
+            folds: 0
+        }
+    );
+}
+
+#[test]
+fn past_the_fold_the_rate_is_that_of_the_fold() {
+    // b = h - G1 = 0.021, fold at q = b^2 / (4 G2)
+    let (h, g1, g2) = (1e-3, -0.02, 1e-5);
+    let b: f64 = h - g1;
+    let limit = b * b / (4.0 * g2);
+    let inside = output_rate([limit * (1.0 - 1e-9), g1, g2], 0.0, h);
+    let outside = output_rate([limit * 1.5, g1, g2], 0.0, h);
+    assert!(!inside.folded && outside.folded);
+    assert_abs_diff_eq!(outside.rate_deg_s, b / (2.0 * g2), epsilon = 1e-9);
+    assert_abs_diff_eq!(inside.rate_deg_s, outside.rate_deg_s, epsilon = 0.05);
+    // the branch is the one that stays finite as G2 vanishes
+    let flat = output_rate([1.0, g1, 1e-30], 0.0, h);
+    assert_abs_diff_eq!(flat.rate_deg_s, 1.0 / b, epsilon = 1e-12);
+    assert_eq!(output_rate([0.0, h, 0.0], 0.0, h).rate_deg_s, 0.0);
+}
+
+#[test]
+fn a_jump_of_the_voltage_folds_and_is_counted() {
+    let p = parameters(TimeOrder::First);
+    let g2_s2_per_deg = PlayMap::constant(&p.grid, 1.1e-5);
+    let model = actuator(DynamicParameters { g2_s2_per_deg, ..p });
+    let volts: Vec<f64> = (0..100)
+        .map(|i| if i < 50 { -20.0 } else { 150.0 })
+        .collect();
+    let simulation = model.simulate(&volts, 1e-4).unwrap();
+    assert!(simulation.counts.folds > 0, "{:?}", simulation.counts);
+    assert!(simulation.output_deg.iter().all(|y| y.is_finite()));
+}
+
+#[test]
+fn what_is_not_well_posed_is_refused_or_counted() {
+    let p = parameters(TimeOrder::First);
+    // G1 > 0 near the lower corner
+    let mut g1_s = PlayMap::from_rises(&p.grid, 0.0, &rises(&p.grid, |_, _| -3e-4)).unwrap();
+    let broken = DynamicParameters {
+        g1_s: g1_s.clone(),
+        ..p.clone()
+    };
+    assert!(matches!(
+        DynamicPreisach::new(broken.clone()),
+        Err(PreisachError::NotWellPosed { largest_g1_s }) if largest_g1_s > 0.01
+    ));
+    let literal = actuator(DynamicParameters {
+        form: RateForm::Literal,
+        ..broken
+    });
+    let volts: Vec<f64> = (0..500)
+        .map(|i| 65.0 - 80.0 * (TAU * f64::from(i) / 250.0).sin())
+        .collect();
+    match literal.simulate(&volts, 4e-4) {
+        Ok(simulation) => assert!(simulation.counts.g1_not_negative > 0),
+        Err(error) => assert!(
+            matches!(error, PreisachError::Diverged { bad_steps, .. } if bad_steps > 0),
+            "{error}"
+        ),
+    }
+    // a large constant makes it well posed again
+    g1_s.constant = -0.1;
+    assert!(DynamicPreisach::new(DynamicParameters { g1_s, ..p.clone() }).is_ok());
+    // folding below the promised rate
+    let early = DynamicParameters {
+        unfolded_rate_deg_s: 1e5,
+        ..p
+    };
+    assert!(matches!(
+        DynamicPreisach::new(early),
+        Err(PreisachError::FoldsTooEarly { excess_s, .. }) if excess_s > 0.0
+    ));
+}
+
+proptest! {
+    #[test]
+    fn a_well_posed_model_has_a_negative_g1_and_no_fold_up_to_its_rate(
+        history in prop::collection::vec(-20.0..150.0_f64, 1..200)
+    ) {
+        let model = DynamicPreisach::new(parameters(TimeOrder::First)).unwrap();
+        let covered = model.parameters().unfolded_rate_deg_s;
+        let mut memory = PlayMemory::new(model.grid(), 65.0, StartState::Rest);
+        for u in history {
+            let [g0, g1, g2] = model.apply(&mut memory, u);
+            prop_assert!(g1 < 0.0);
+            // an output that moves at the covered rate, either way, is no fold
+            for (rate, h) in [(covered, 1e-9), (-covered, 1e-9), (covered, 1e-3)] {
+                let base = g0 + rate * g1 + rate * rate * g2 - rate * h;
+                let found = output_rate([g0, g1, g2], base, h);
+                prop_assert!(!found.folded);
+                prop_assert!((found.rate_deg_s - rate).abs() < 1e-4 * covered);
+            }
+        }
+    }
+
+    #[test]
+    fn stopping_and_going_on_changes_nothing(
+        volts in prop::collection::vec(-20.0..150.0_f64, 2..60),
+        cut in 0.0..1.0_f64,
+    ) {
+        let model = actuator(parameters(TimeOrder::Second));
+        let whole = model.simulate(&volts, 1e-3).unwrap();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in 1..len")]
+        let at = 1 + (cut * (volts.len() - 1) as f64) as usize;
+        let mut memory = model.start(volts[0], StartState::Rest).unwrap();
+        let first = model.continue_from(&mut memory, &volts[1..at], 1e-3).unwrap();
+        let mut restored = memory.clone();
+        let second = model.continue_from(&mut restored, &volts[at..], 1e-3).unwrap();
+        let parts = [vec![whole.output_deg[0]], first, second].concat();
+        prop_assert_eq!(parts, whole.output_deg);
+        prop_assert_eq!(restored.counts(), whole.counts);
+    }
+}
+
+#[test]
+fn bad_input_is_an_error_with_its_place() {
+    let model = actuator(parameters(TimeOrder::Second));
+    let error = model.simulate(&[65.0, 70.0, f64::NAN], 1e-3).unwrap_err();
+    assert!(
+        matches!(error, PreisachError::NotFinite { index: 2, .. }),
+        "{error}"
+    );
+    let error = model.simulate(&[65.0, 70.0, 152.0], 1e-3).unwrap_err();
+    assert!(
+        matches!(error, PreisachError::VoltageOutOfRange { index: 2, .. }),
+        "{error}"
+    );
+    assert!(model.simulate(&[], 1e-3).is_err());
+    assert!(model.simulate(&[65.0, 66.0], 0.0).is_err());
+    assert!(model.simulate(&[65.0, 66.0], f64::NAN).is_err());
+    let mut foreign = linear_with_lag(0.02, TimeOrder::First)
+        .start(65.0, StartState::Rest)
+        .unwrap();
+    let error = model.step(&mut foreign, 65.0, 1e-3).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            PreisachError::MemoryMismatch {
+                found: 4,
+                expected: 16
+            }
+        ),
+        "{error}"
+    );
+}

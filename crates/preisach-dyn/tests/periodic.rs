@@ -1,0 +1,272 @@
+//! Closed orbits against exact responses; bias, stroke limit, refused commands.
+
+use approx::assert_abs_diff_eq;
+use preisach_dyn::{
+    ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, PeriodicSettings,
+    PlayMap, PreisachError, PreisachGrid, RateForm, StaticPreisach, TimeOrder, VoltageRange,
+};
+use rotor_base::{Harmonic, HarmonicSeries};
+use std::f64::consts::TAU;
+
+const REV_HZ: f64 = 5.0;
+
+fn command(mean: f64, harmonics: &[(usize, f64, f64)]) -> HarmonicSeries {
+    let mut series = HarmonicSeries::zero(1);
+    series.mean = mean;
+    for &(n, cosine, sine) in harmonics {
+        series.set_harmonic(n, Harmonic { cosine, sine });
+    }
+    series
+}
+
+fn grid() -> PreisachGrid {
+    PreisachGrid::new(VoltageRange::amplified_stack(), 20).unwrap()
+}
+
+fn hysteretic_map(grid: &PreisachGrid) -> PlayMap {
+    let rises: Vec<Vec<f64>> = (0..20_u32)
+        .map(|j| {
+            (0..20 - j)
+                .map(|k| {
+                    let reversible = if j == 0 { 0.45 } else { 0.0 };
+                    reversible + 0.12 * (-0.15 * f64::from(j)).exp() * (1.0 + 0.02 * f64::from(k))
+                })
+                .collect()
+        })
+        .collect();
+    PlayMap::from_rises(grid, 0.4, &rises).unwrap()
+}
+
+fn wrap(law: ActuatorLaw) -> ActuatorModel {
+    ActuatorModel {
+        law,
+        range_volt: VoltageRange::amplified_stack(),
+        calibration: Calibration {
+            deg_per_um: 0.04,
+            zero_um: 3.0,
+        },
+        trained: None,
+    }
+}
+
+fn dynamic(g0_deg: PlayMap, lag_s: f64) -> ActuatorModel {
+    let grid = grid();
+    wrap(ActuatorLaw::DynamicPreisach(
+        DynamicPreisach::new(DynamicParameters {
+            grid,
+            g0_deg,
+            g1_s: PlayMap::constant(&grid, -lag_s),
+            g2_s2_per_deg: PlayMap::constant(&grid, 0.0),
+            form: RateForm::WellPosed,
+            unfolded_rate_deg_s: 1e3,
+            time_order: TimeOrder::Second,
+        })
+        .unwrap(),
+    ))
+}
+
+fn static_model() -> ActuatorModel {
+    let grid = grid();
+    wrap(ActuatorLaw::StaticPreisach(
+        StaticPreisach::new(grid, hysteretic_map(&grid)).unwrap(),
+    ))
+}
+
+#[test]
+fn the_linear_actuator_returns_the_command_scaled() {
+    let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
+    let volts = command(65.0, &[(2, 30.0, -10.0), (3, 5.0, 20.0), (4, 0.0, 12.0)]);
+    let response = model
+        .periodic_response(&volts, REV_HZ, &PeriodicSettings::default())
+        .unwrap();
+    let gain = 10.0 / 85.0;
+    assert_abs_diff_eq!(response.flap_deg.mean, 0.0, epsilon = 1e-12);
+    for n in 1..=24 {
+        let (flap, volt) = (response.flap_deg.harmonic(n), volts.harmonic(n));
+        assert_abs_diff_eq!(flap.cosine, gain * volt.cosine, epsilon = 1e-12);
+        assert_abs_diff_eq!(flap.sine, gain * volt.sine, epsilon = 1e-12);
+    }
+    assert_eq!(response.revolutions_used, 2);
+}
+
+#[test]
+fn a_lag_gives_each_harmonic_its_exact_amplitude_and_phase() {
+    let mut g0_deg = PlayMap::constant(&grid(), 0.0);
+    g0_deg.nodes[0] = (0..21).map(|k| -10.0 + f64::from(k)).collect();
+    let lag_s = 0.024;
+    let model = dynamic(g0_deg, lag_s);
+    let volts = command(65.0, &[(2, 30.0, 0.0), (3, 0.0, 30.0), (4, -10.0, 15.0)]);
+    let worst = |steps_per_rev: usize| -> f64 {
+        let settings = PeriodicSettings {
+            steps_per_rev,
+            ..PeriodicSettings::default()
+        };
+        let response = model.periodic_response(&volts, REV_HZ, &settings).unwrap();
+        [2, 3, 4]
+            .map(|n| {
+                let volt = volts.harmonic(n);
+                let p = TAU * REV_HZ * n as f64 * lag_s;
+                let exact = Harmonic::from_amplitude_phase(
+                    10.0 / 85.0 * volt.amplitude() / p.hypot(1.0),
+                    volt.phase_rad() + p.atan(),
+                );
+                let got = response.flap_deg.harmonic(n);
+                (got.cosine - exact.cosine).hypot(got.sine - exact.sine)
+            })
+            .into_iter()
+            .fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (worst(720), worst(2880));
+    assert!(coarse < 2e-3, "{coarse:e}");
+    let rate = (coarse / fine).log2() / 2.0;
+    assert!((rate - 2.0).abs() < 0.1, "order {rate}");
+}
+
+#[test]
+fn a_static_orbit_closes_at_once_and_does_not_know_the_speed() {
+    let model = static_model();
+    let volts = command(60.0, &[(2, 40.0, 0.0), (3, 0.0, 20.0)]);
+    let settings = PeriodicSettings::default();
+    let slow = model.periodic_response(&volts, 0.1, &settings).unwrap();
+    let fast = model.periodic_response(&volts, 30.0, &settings).unwrap();
+    assert_eq!(slow.samples_deg, fast.samples_deg);
+    assert!(slow.revolutions_used <= 3 && slow.closure_deg == 0.0);
+    // hysteresis lags: the flap's harmonic comes later than the voltage's
+    let lag = slow.flap_deg.harmonic(2).phase_deg() - volts.harmonic(2).phase_deg();
+    assert!((2.0..15.0).contains(&lag), "{lag}");
+}
+
+#[test]
+fn an_orbit_that_cannot_close_in_time_is_an_error() {
+    let model = dynamic(hysteretic_map(&grid()), 1.0);
+    let volts = command(65.0, &[(2, 0.0, 50.0)]);
+    let settings = PeriodicSettings {
+        largest_revolutions: 5,
+        ..PeriodicSettings::default()
+    };
+    let error = model
+        .periodic_response(&volts, REV_HZ, &settings)
+        .unwrap_err();
+    assert!(
+        matches!(error, PreisachError::OrbitNotClosed { revolutions: 5, closure_deg, .. } if closure_deg > 1e-3),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_bias_makes_the_mean_zero() {
+    let settings = PeriodicSettings::default();
+    for model in [static_model(), dynamic(hysteretic_map(&grid()), 0.02)] {
+        let volts = command(65.0, &[(2, 30.0, 0.0), (3, 10.0, 25.0)]);
+        let (bias, response) = model.bias_for_zero_mean(&volts, REV_HZ, &settings).unwrap();
+        assert!(response.flap_deg.mean.abs() <= 1e-3);
+        assert!((40.0..65.0).contains(&bias), "{bias}");
+        // it is the bias that does it: 1 V beside it the mean is no longer zero
+        let beside = HarmonicSeries {
+            mean: bias + 1.0,
+            ..volts.clone()
+        };
+        let mean = model
+            .periodic_response(&beside, REV_HZ, &settings)
+            .unwrap()
+            .flap_deg
+            .mean;
+        assert!((0.03..0.3).contains(&mean), "{mean}");
+        // started elsewhere it ends within what the tolerance leaves
+        let elsewhere = HarmonicSeries {
+            mean: 100.0,
+            ..volts
+        };
+        let (again, _) = model
+            .bias_for_zero_mean(&elsewhere, REV_HZ, &settings)
+            .unwrap();
+        assert!((again - bias).abs() < 0.05, "{again} {bias}");
+    }
+}
+
+#[test]
+fn a_bias_outside_the_range_and_a_command_outside_the_range_are_errors() {
+    let settings = PeriodicSettings::default();
+    let model = static_model().shifted(15.0);
+    let small = command(65.0, &[(2, 5.0, 0.0)]);
+    let error = model
+        .bias_for_zero_mean(&small, REV_HZ, &settings)
+        .unwrap_err();
+    assert!(
+        matches!(error, PreisachError::BiasOutsideRange { limit_volt, mean_at_limit_deg }
+            if (limit_volt + 15.0).abs() < 1e-6 && mean_at_limit_deg > 0.0),
+        "{error}"
+    );
+    let high = command(120.0, &[(1, 0.0, 40.0)]);
+    let error = model
+        .periodic_response(&high, REV_HZ, &settings)
+        .unwrap_err();
+    assert!(
+        matches!(error, PreisachError::CommandOutOfRange { azimuth_deg, voltage_volt, .. }
+            if (azimuth_deg - 90.0).abs() < 1e-9 && (voltage_volt - 160.0).abs() < 1e-9),
+        "{error}"
+    );
+    let wide = command(65.0, &[(1, 0.0, 90.0)]);
+    let error = model
+        .bias_for_zero_mean(&wide, REV_HZ, &settings)
+        .unwrap_err();
+    assert!(
+        matches!(error, PreisachError::CommandOutOfRange { .. }),
+        "{error}"
+    );
+    let not_a_number = command(65.0, &[(1, f64::NAN, 0.0)]);
+    assert!(
+        model
+            .bias_for_zero_mean(&not_a_number, REV_HZ, &settings)
+            .is_err()
+    );
+    assert!(
+        model
+            .periodic_response(&not_a_number, REV_HZ, &settings)
+            .is_err()
+    );
+    let bad_mean = command(f64::NAN, &[(1, 1.0, 0.0)]);
+    assert!(
+        model
+            .bias_for_zero_mean(&bad_mean, REV_HZ, &settings)
+            .is_err()
+    );
+}
+
+#[test]
+fn the_stroke_falls_with_frequency_as_the_lag_says() {
+    let settings = PeriodicSettings {
+        steps_per_rev: 1440,
+        ..PeriodicSettings::default()
+    };
+    let (model, rigid) = (dynamic(hysteretic_map(&grid()), 0.02), static_model());
+    let full = rigid.stroke_limit_deg(85.0, 2, REV_HZ, &settings).unwrap();
+    for n in [2, 3, 4] {
+        let stroke = model.stroke_limit_deg(85.0, n, REV_HZ, &settings).unwrap();
+        let p = TAU * REV_HZ * n as f64 * 0.02;
+        // the lag acts on every harmonic of the static orbit alone: the first is exact
+        assert_abs_diff_eq!(stroke, full / p.hypot(1.0), epsilon = 2e-3 * full);
+    }
+    assert!(model.stroke_limit_deg(86.0, 2, REV_HZ, &settings).is_err());
+}
+
+#[test]
+fn shifting_the_angle_leaves_the_displacement() {
+    for model in [
+        static_model(),
+        ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04),
+    ] {
+        let moved = model.clone().shifted(-1.5);
+        let volts = [65.0, 100.0, 30.0];
+        let a = model.simulate(&volts, 1e-3).unwrap().output_deg;
+        let b = moved.simulate(&volts, 1e-3).unwrap().output_deg;
+        for (a, b) in a.iter().zip(&b) {
+            assert_abs_diff_eq!(b - a, -1.5, epsilon = 1e-12);
+            assert_abs_diff_eq!(
+                model.calibration.displacement_um(*a),
+                moved.calibration.displacement_um(*b),
+                epsilon = 1e-9
+            );
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! The actuators of a case: the ideal one, the real one, and what must be said about them.
+
+use crate::SimError;
+use crate::case::{ActuatorSource, LoadedCase};
+use crate::files::{BenchData, read_bench};
+use crate::identification::{BenchIdentification, identify_bench};
+use crate::problem::Place;
+use crate::stored_actuator::{StoredFit, read_actuator};
+use preisach_dyn::identify::Settings;
+use preisach_dyn::{ActuatorModel, VoltageRange};
+
+/// The actuators of a case.
+#[derive(Debug, Clone)]
+pub struct CaseActuators {
+    /// The ideal linear actuator.
+    pub ideal: ActuatorModel,
+    /// The identified actuator; none if the case asks for the ideal one alone.
+    pub real: Option<ActuatorModel>,
+    /// Title of the data the real one was identified from.
+    pub data_title: String,
+    /// How it fits its bench.
+    pub fits: Vec<StoredFit>,
+    /// Data and identification, if it was identified just now.
+    pub bench: Option<(BenchData, BenchIdentification)>,
+    /// blake3 of the data behind it, for the key of the result.
+    pub inputs: Vec<String>,
+    /// What a reader should know: frequencies beyond the bench.
+    pub warnings: Vec<String>,
+}
+
+/// Gets the actuators of a case: identifies, reads or makes them.
+///
+/// # Errors
+/// Every problem of the bench data or the actuator file; [`SimError::Actuator`] for an
+/// identification that fails.
+pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
+    let case = &loaded.case;
+    let values = &case.actuator;
+    let (low, high) = values.range_volt;
+    let fail = |source| SimError::Actuator { place: loaded.index.place("actuator.range_V"), source };
+    let range = VoltageRange::new(low, high).map_err(fail)?;
+    // the case gives the amplitude at full scale, the model wants it at the ends of the range
+    let full_scale = 2.0 * case.control.amplitude_volt / range.span_volt();
+    let ideal = ActuatorModel::linear(range, values.ideal_amplitude_deg / full_scale, 1.0);
+    let mut actuators = CaseActuators {
+        ideal,
+        real: None,
+        data_title: String::new(),
+        fits: vec![],
+        bench: None,
+        inputs: vec![],
+        warnings: vec![],
+    };
+    match &values.source {
+        ActuatorSource::Ideal => {}
+        ActuatorSource::Bench(folder) => {
+            let data = read_bench(folder)?;
+            let found = identify_bench(&data, &Settings::default())?;
+            let stored = found.stored(&data);
+            actuators.inputs.push(data.content_hash.clone());
+            actuators.data_title = stored.title;
+            actuators.fits = stored.runs;
+            actuators.real = Some(stored.model);
+            actuators.bench = Some((data, found));
+        }
+        ActuatorSource::Stored { folder, file } => {
+            let source = folder.read(file)?;
+            let stored = read_actuator(&source)?;
+            actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
+            actuators.data_title = stored.title;
+            actuators.fits = stored.runs;
+            actuators.real = Some(stored.model);
+        }
+    }
+    let place = loaded.index.place("actuator.bench_rev_hz");
+    actuators.warnings = extrapolation_warnings(loaded, actuators.real.as_ref(), &place);
+    Ok(actuators)
+}
+
+/// One warning per harmonic whose frequency lies above everything the bench has seen.
+fn extrapolation_warnings(
+    loaded: &LoadedCase,
+    real: Option<&ActuatorModel>,
+    place: &Place,
+) -> Vec<String> {
+    let Some(trained) = real.and_then(|model| model.trained) else { return vec![] };
+    let case = &loaded.case;
+    let mut harmonics: Vec<usize> = case.control.harmonics.iter().flatten().copied().collect();
+    harmonics.sort_unstable();
+    harmonics.dedup();
+    harmonics
+        .into_iter()
+        .map(|harmonic| (harmonic, case.bench_frequency_hz(harmonic)))
+        .filter(|(_, hz)| trained.is_beyond_bench(*hz))
+        .map(|(harmonic, hz)| {
+            format!(
+                "{place}: {harmonic}/rev = {hz:.1} Hz is outside the tested range (bench up to {:.1} Hz): the actuator model extrapolates there",
+                trained.bench_highest_hz
+            )
+        })
+        .collect()
+}

@@ -1,0 +1,139 @@
+//! What each command does.
+
+use super::args::{
+    CheckArgs, IdentifyArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs,
+    StudyArgs,
+};
+use crate::SimError;
+use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
+use crate::check::check_file;
+use crate::files::{Folder, SHIPPED_CASES, Source, read_bench, write_atomic, write_new};
+use crate::identification::identify_bench;
+use crate::modes::rotating_modes;
+use crate::output::{Format, Printable, print};
+use crate::problem::{Fault, Place, Problem};
+use crate::progress::Progress;
+use crate::report::{StudyReport, report_html};
+use crate::results::StoredResult;
+use crate::run::run_case;
+use crate::section::{SectionQuestion, section_response};
+use crate::stored_actuator::read_actuator;
+use preisach_dyn::identify::Settings;
+use rotor_fem::GyroscopicTerms;
+use std::path::{Path, PathBuf};
+
+/// Name of the numbers a report is made of.
+const STUDY_FILE: &str = "study.json";
+/// Name of the report.
+const REPORT_FILE: &str = "report.html";
+/// Name of the result of a run.
+const RESULT_FILE: &str = "result.json";
+
+pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
+    let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
+    run_and_store(&loaded, &args.out, args.format.format)
+}
+
+pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
+    let loaded = overridden(load_case(&args.case)?, args.inflow);
+    let out = args.out.clone().unwrap_or_else(|| {
+        let stem = args.case.file_stem().map(PathBuf::from).unwrap_or_default();
+        Path::new("out").join(stem)
+    });
+    run_and_store(&loaded, &out, args.format.format)
+}
+
+fn run_and_store(loaded: &LoadedCase, out: &Path, format: Format) -> Result<(), SimError> {
+    let progress = Progress::new(2);
+    let outcome = run_case(loaded, &progress);
+    progress.finish();
+    let outcome = outcome?;
+    for warning in &outcome.result.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let text = outcome.result.render(format)?;
+    let stored = StoredResult::new(&loaded.file, outcome.actuators.inputs, outcome.result)?;
+    stored.write(&out.join(RESULT_FILE))?;
+    print(&text)
+}
+
+fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> LoadedCase {
+    if let Some(inflow) = inflow {
+        loaded.case.inflow = inflow.into();
+        loaded.file.inflow.model = inflow.into();
+    }
+    loaded
+}
+
+pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
+    let base = match &args.start {
+        Some(path) => read_actuator(&Source::read(path)?)?.settings,
+        None => Settings::default(),
+    };
+    let data = read_bench(&Folder::Disk(args.bench.clone()))?;
+    let progress = Progress::new(1);
+    progress.doing(format!("identifying from {} runs", data.runs.len()));
+    let found = identify_bench(&data, &base);
+    progress.finish();
+    let found = found?;
+    let summary = found.summary(&data, Some(args.output.display().to_string()));
+    let text = summary.render(args.format.format)?;
+    found.stored(&data).write(&args.output)?;
+    print(&text)
+}
+
+pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
+    let loaded = match &args.case {
+        Some(path) => load_case(path)?,
+        None => shipped_case(PAPER_CASE)?,
+    };
+    let terms = if args.no_gyroscopic {
+        GyroscopicTerms::Neglected
+    } else {
+        GyroscopicTerms::Included
+    };
+    let result = rotating_modes(&loaded.case, terms, args.pitch_deg.to_radians(), &args.speeds)?;
+    print(&result.render(args.format.format)?)
+}
+
+pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
+    let result = section_response(&SectionQuestion {
+        model: args.model.into(),
+        mach: args.mach,
+        reduced_frequency: args.reduced_frequency,
+        flap_chord: args.flap_chord,
+        motion: args.motion.into(),
+    })?;
+    print(&result.render(args.format.format)?)
+}
+
+pub(super) fn check(args: &CheckArgs) -> Result<(), SimError> {
+    let result = check_file(&args.file)?;
+    print(&result.render(args.format.format)?)
+}
+
+pub(super) fn init(args: &InitArgs) -> Result<(), SimError> {
+    let text = starting_case()?;
+    write_new(&args.file, text.as_bytes())?;
+    print(&format!(
+        "{0} written: the paper's case, every field commented. Edit it, then `hhc check {0}` and `hhc run {0}`.\n",
+        args.file.display()
+    ))
+}
+
+/// The shipped paper case with its data set named so that it is found from any folder.
+fn starting_case() -> Result<String, Problem> {
+    let text = Folder::Shipped(SHIPPED_CASES.to_owned()).read(PAPER_CASE)?.text;
+    Ok(text.replace("../bench/apa500l_synthetic", "shipped:apa500l_synthetic"))
+}
+
+pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
+    let source = Source::read(&args.dir.join(STUDY_FILE))?;
+    let report: StudyReport = serde_json::from_str(&source.text).map_err(|e| {
+        let place = Place::at(&source.name, e.line(), e.column());
+        Problem::new(place, Fault::Syntax { message: e.to_string() })
+    })?;
+    let path = args.dir.join(REPORT_FILE);
+    write_atomic(&path, report_html(&report).as_bytes())?;
+    print(&format!("{} written\n", path.display()))
+}

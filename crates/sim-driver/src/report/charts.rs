@@ -1,0 +1,101 @@
+//! The charts, as plotly plots without colours of background and text: the page sets those.
+
+use super::{AzimuthChart, LoadBars, LoopChart};
+use crate::results::HubLoads;
+use plotly::common::{DashType, Line, Mode, Title};
+use plotly::layout::{Axis, BarMode, Legend, Margin};
+use plotly::{Bar, Layout, Plot, Scatter};
+
+/// Colours that stay apart from each other and readable on light and dark, also for the colour-blind
+/// (Okabe and Ito's palette).
+const MEASURED: &str = "#8c8c8c";
+const MODEL: &str = "#0e86d4";
+const STATIC: &str = "#d55e00";
+const SERIES: [&str; 5] = ["#8c8c8c", "#0e86d4", "#d55e00", "#009e73", "#cc79a7"];
+
+fn layout() -> Layout {
+    Layout::new()
+        .margin(Margin::new().left(56).right(16).top(8).bottom(44))
+        .legend(Legend::new().orientation(plotly::common::Orientation::Horizontal).y(1.12).x(0.0))
+}
+
+fn axis(title: &str) -> Axis {
+    Axis::new().title(Title::with_text(title)).auto_margin(true)
+}
+
+fn line(
+    x: &[f64],
+    y: &[f64],
+    name: &str,
+    colour: &'static str,
+    dash: DashType,
+) -> Box<Scatter<f64, f64>> {
+    Scatter::new(x.to_vec(), y.to_vec())
+        .name(name)
+        .mode(Mode::Lines)
+        .line(Line::new().color(colour).width(2.0).dash(dash))
+}
+
+/// Flap angle against voltage: measured, dynamic model, static model.
+pub(super) fn loop_chart(chart: &LoopChart) -> Plot {
+    let mut plot = Plot::new();
+    let u = &chart.voltage_volt;
+    if !chart.static_deg.is_empty() {
+        plot.add_trace(line(u, &chart.static_deg, "static model", STATIC, DashType::Dot));
+    }
+    plot.add_trace(line(u, &chart.measured_deg, "measured", MEASURED, DashType::Solid));
+    plot.add_trace(line(u, &chart.simulated_deg, "dynamic model", MODEL, DashType::Dash));
+    plot.set_layout(
+        layout().x_axis(axis("voltage, V")).y_axis(axis("flap angle, deg").zero_line(false)),
+    );
+    plot
+}
+
+/// Voltage above flap angle, against azimuth.
+pub(super) fn azimuth_chart(chart: &AzimuthChart) -> Plot {
+    let mut plot = Plot::new();
+    for (i, flap) in chart.flaps.iter().enumerate() {
+        let colour = SERIES[1 + i % (SERIES.len() - 1)];
+        let psi = &chart.azimuth_deg;
+        plot.add_trace(line(psi, &flap.voltage_volt, &flap.name, colour, DashType::Solid));
+        let angle = line(psi, &flap.flap_deg, &flap.name, colour, DashType::Solid)
+            .y_axis("y2")
+            .show_legend(false);
+        plot.add_trace(angle);
+    }
+    let ticks: Vec<f64> = (0..=4).map(|i| 90.0 * f64::from(i)).collect();
+    plot.set_layout(
+        layout()
+            .x_axis(axis("azimuth, deg").range(vec![0.0, 360.0]).tick_values(ticks).anchor("y2"))
+            .y_axis(axis("voltage, V").domain(&[0.54, 1.0]))
+            .y_axis2(axis("flap, deg").domain(&[0.0, 0.46]).anchor("x")),
+    );
+    plot
+}
+
+/// The six loads as grouped bars: without control, and with each actuator.
+pub(super) fn load_chart(bars: &LoadBars) -> Plot {
+    let names: Vec<String> = HubLoads::NAMES.iter().map(|n| n.to_uppercase()).collect();
+    let mut plot = Plot::new();
+    let series = std::iter::once(("without control".to_owned(), bars.before)).chain(
+        bars.after.iter().map(|(name, loads, percent)| (format!("{name} (J {:+.0} %)", -percent), *loads)),
+    );
+    for (i, (name, loads)) in series.enumerate() {
+        let hover: Vec<String> = loads
+            .iter()
+            .zip(&bars.before)
+            .map(|(after, before)| format!("{:+.0} % of the load", 100.0 * (after / before - 1.0)))
+            .collect();
+        let scaled: Vec<f64> = loads.iter().map(|v| 1e4 * v).collect();
+        plot.add_trace(
+            Bar::new(names.clone(), scaled)
+                .name(name)
+                .hover_text_array(hover)
+                .marker(plotly::common::Marker::new().color(SERIES[i % SERIES.len()])),
+        );
+    }
+    plot.set_layout(
+        layout().bar_mode(BarMode::Group).x_axis(axis("")).y_axis(axis("amplitude, 1e-4")),
+    );
+    plot
+}

@@ -1,0 +1,118 @@
+//! What a report shows: plain numbers, stored beside the report so that it can be written again.
+
+use crate::results::{Residuals, TrimLine};
+use crate::stored_actuator::StoredFit;
+use serde::{Deserialize, Serialize};
+
+/// Everything a report shows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct StudyReport {
+    /// Title of the page.
+    pub title: String,
+    /// Program and version.
+    pub program: String,
+    /// blake3 of version, case and data.
+    pub key: String,
+    /// What was run, a sentence each: rotor, inflow, sections, bench mapping.
+    pub setting: Vec<String>,
+    /// What a reader should know before using the numbers.
+    pub warnings: Vec<String>,
+    /// Title of the bench data, which says whether they are synthetic.
+    pub data_title: String,
+    /// Our numbers beside the paper's.
+    pub headline: Vec<HeadlineRow>,
+    /// The trim.
+    pub trim: TrimLine,
+    /// The three residuals.
+    pub residuals: Residuals,
+    /// Fit of every bench run.
+    pub fits: Vec<StoredFit>,
+    /// Measured and simulated loops.
+    pub loops: Vec<LoopChart>,
+    /// Flap and voltage against azimuth.
+    pub azimuth: Vec<AzimuthChart>,
+    /// Hub loads before and after.
+    pub loads: Vec<LoadBars>,
+    /// Further tables, such as sensitivities.
+    pub sections: Vec<ResultSection>,
+}
+
+/// One line of the comparison with the paper.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HeadlineRow {
+    /// The quantity, with its unit.
+    pub quantity: String,
+    /// The paper's number, as it prints it.
+    pub paper: String,
+    /// Ours, as `(actuator, number)`.
+    pub ours: Vec<(String, String)>,
+}
+
+/// One bench run: displacement as flap angle against voltage over the last steady cycle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoopChart {
+    /// The run.
+    pub id: String,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half peak to peak of the voltage, V.
+    pub amplitude_volt: f64,
+    /// Whether the model was fitted to it.
+    pub trained: bool,
+    /// RMS error over the standard deviation of the measured output, percent.
+    pub nrmse_percent: f64,
+    /// Voltage at every sample, V.
+    pub voltage_volt: Vec<f64>,
+    /// Measured flap angle, deg.
+    pub measured_deg: Vec<f64>,
+    /// Simulated flap angle, deg.
+    pub simulated_deg: Vec<f64>,
+    /// The static model's flap angle, deg.
+    pub static_deg: Vec<f64>,
+}
+
+/// Voltage and flap angle over one revolution.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AzimuthChart {
+    /// Set of harmonics and actuator, such as `3/rev, hysteretic`.
+    pub title: String,
+    /// Azimuth, deg.
+    pub azimuth_deg: Vec<f64>,
+    /// One per flap.
+    pub flaps: Vec<FlapTrace>,
+}
+
+/// One flap over one revolution.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FlapTrace {
+    /// Name, such as `inboard`.
+    pub name: String,
+    /// Voltage, V, bias included.
+    pub voltage_volt: Vec<f64>,
+    /// Flap angle, deg, trailing edge down positive.
+    pub flap_deg: Vec<f64>,
+}
+
+/// The six hub loads of one set of harmonics without control and with each actuator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoadBars {
+    /// Set of harmonics, such as `3/rev`.
+    pub title: String,
+    /// Amplitudes without control, in the order of `HubLoads::NAMES`, nondimensional.
+    pub before: [f64; 6],
+    /// Amplitudes with each actuator, and the reduction of `J_Z` in percent.
+    pub after: Vec<(String, [f64; 6], f64)>,
+}
+
+/// A further table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ResultSection {
+    /// Heading.
+    pub title: String,
+    /// A sentence or two.
+    pub text: String,
+    /// Column heads.
+    pub header: Vec<String>,
+    /// Rows.
+    pub rows: Vec<Vec<String>>,
+}

@@ -1,0 +1,190 @@
+//! `hhc run`: a case trimmed, its baseline vibration, its control.
+
+use crate::SimError;
+use crate::actuator::{CaseActuators, case_actuators};
+use crate::case::{LoadedCase, TrimValues};
+use crate::output::{Printable, table};
+use crate::progress::Progress;
+use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine};
+use rotor_response::{ResponseError, Rotor, RotorSolver};
+use std::sync::Arc;
+use trim::{TrimError, TrimSolution, trim};
+
+/// A trimmed rotor with its solver, ready for control.
+#[derive(Debug, Clone)]
+pub struct TrimmedCase {
+    /// The solver at the case's advance ratio.
+    pub solver: RotorSolver,
+    /// The trim.
+    pub trim: TrimSolution,
+}
+
+/// What a run leaves behind.
+#[derive(Debug, Clone)]
+pub struct RunOutcome {
+    /// What is printed and stored.
+    pub result: RunResult,
+    /// The actuators used.
+    pub actuators: CaseActuators,
+    /// The trimmed rotor.
+    pub trimmed: TrimmedCase,
+}
+
+/// Runs a case.
+///
+/// # Errors
+/// Problems of the data, and failures of identification, trim and response, each with the place of
+/// the case that asked for it.
+pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, SimError> {
+    progress.doing("actuator");
+    let actuators = case_actuators(loaded)?;
+    progress.step();
+    progress.doing("trim");
+    let trimmed = trim_case(loaded)?;
+    progress.step();
+    let result = RunResult {
+        trim: trim_line(loaded, &trimmed.trim),
+        residuals: residuals(&trimmed.trim),
+        baseline: Baseline {
+            hub_4_per_rev: HubLoads::from_parts(trimmed.trim.rotor.hub.harmonic(loaded.case.blades)),
+        },
+        control: vec![],
+        warnings: actuators.warnings.clone(),
+    };
+    Ok(RunOutcome { result, actuators, trimmed })
+}
+
+/// Builds the rotor of a case and trims it with its flaps at rest.
+///
+/// # Errors
+/// [`SimError::Blade`], [`SimError::Response`], [`SimError::Trim`].
+pub fn trim_case(loaded: &LoadedCase) -> Result<TrimmedCase, SimError> {
+    let case = &loaded.case;
+    let response = |source: ResponseError| SimError::Response {
+        place: loaded.index.place("rotor"),
+        source,
+    };
+    let rotor = Rotor::new(case.rotor_model(), &case.blade_properties()?, case.discretisation())
+        .map_err(response)?;
+    let mut solver =
+        RotorSolver::new(Arc::new(rotor), case.advance_ratio, case.response_tolerances())
+            .map_err(response)?;
+    let solution = trim(
+        &mut solver,
+        &case.inflow_model(),
+        case.advance_ratio,
+        &case.trim_target(),
+        &case.trim_settings(),
+        None,
+    )
+    .map_err(|source| trim_error(loaded, source))?;
+    Ok(TrimmedCase { solver, trim: solution })
+}
+
+/// A failure of the trim at the line of the case that asked for it.
+pub fn trim_error(loaded: &LoadedCase, source: TrimError) -> SimError {
+    let field = match loaded.case.trim {
+        TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => "trim.ct_sigma",
+        TrimValues::Prescribed { .. } => "trim",
+    };
+    SimError::Trim { place: loaded.index.place(field), source }
+}
+
+fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {
+    let (controls, attitude) = (&solution.controls, &solution.attitude);
+    let case = &loaded.case;
+    let model = case.rotor_model();
+    TrimLine {
+        theta0_deg: controls.theta0_rad.to_degrees(),
+        theta1c_deg: controls.theta1c_rad.to_degrees(),
+        theta1s_deg: controls.theta1s_rad.to_degrees(),
+        alpha_s_deg: attitude.shaft_tilt_rad.to_degrees(),
+        phi_s_deg: attitude.roll_rad.to_degrees(),
+        tail_thrust: attitude.tail_thrust,
+        ct_sigma: solution.rotor.thrust_coefficient / model.solidity(),
+        induced_inflow: solution.rotor.inflow.mean(),
+        iterations: solution.iterations,
+    }
+}
+
+fn residuals(solution: &TrimSolution) -> Residuals {
+    Residuals {
+        trim: solution.residual,
+        periodicity: solution.rotor.residuals.periodicity,
+        inflow: solution.rotor.residuals.inflow,
+    }
+}
+
+impl Printable for RunResult {
+    fn text(&self) -> String {
+        let (t, r) = (&self.trim, &self.residuals);
+        let mut text = format!(
+            "Trim       theta0 {:.4} deg, theta1c {:.4} deg, theta1s {:.4} deg, shaft tilt {:.4} deg, bank {:.4} deg\n",
+            t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg
+        );
+        text += &format!(
+            "           C_T/sigma {:.5}, induced inflow {:.5}, {} iterations\n",
+            t.ct_sigma, t.induced_inflow, t.iterations
+        );
+        text += &format!(
+            "Residuals  trim {:.1e}, periodicity {:.1e}, inflow {:.1e}\n\n",
+            r.trim, r.periodicity, r.inflow
+        );
+        let baseline = self.baseline.hub_4_per_rev;
+        let parts = [
+            baseline.fx, baseline.fy, baseline.fz, baseline.mx, baseline.my, baseline.mz,
+        ];
+        text += "Hub loads at the blade number per rev, fixed frame, without control\n";
+        text += &table(
+            &["load", "cosine", "sine", "amplitude"],
+            HubLoads::NAMES.iter().zip(parts).map(|(name, [c, s])| {
+                vec![
+                    name.to_uppercase(),
+                    format!("{c:.6e}"),
+                    format!("{s:.6e}"),
+                    format!("{:.6e}", c.hypot(s)),
+                ]
+            }),
+        );
+        if !self.control.is_empty() {
+            text += "\nControl (reduction of J = 100 (1 - J/J0); flaps from root to tip)\n";
+            text += &self.control_table();
+        }
+        text
+    }
+}
+
+impl RunResult {
+    fn control_table(&self) -> String {
+        let before = self.baseline.hub_4_per_rev.amplitudes();
+        table(
+            &[
+                "per rev", "actuator", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %", "MZ %",
+                "flaps deg", "volt", "lag deg", "lead deg", "steps",
+            ],
+            self.control.iter().map(|line| {
+                let joined = |pick: fn(&crate::results::FlapLine) -> f64| {
+                    line.flaps.iter().map(|f| format!("{:.1}", pick(f))).collect::<Vec<_>>().join(" ")
+                };
+                let sets: Vec<String> = line.harmonics.iter().map(usize::to_string).collect();
+                let mut cells = vec![
+                    sets.join("+"),
+                    line.actuator.clone(),
+                    format!("{:.1}", line.reduction_percent),
+                ];
+                let after = line.hub_4_per_rev.amplitudes();
+                cells.extend(
+                    after.iter().zip(&before).map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
+                );
+                cells.extend([
+                    joined(|f| f.flap_amplitude_deg),
+                    joined(|f| f.voltage_amplitude_volt),
+                    joined(|f| f.lag_deg),
+                    joined(|f| f.lead_over_inboard_deg),
+                    line.steps.to_string(),
+                ]);
+                cells
+            }),
+        )
+    }
+}

@@ -1,0 +1,165 @@
+//! From voltage harmonics to flap motion: the ideal actuator and the identified one.
+
+use super::PlantError;
+use hhc_control::{BiasSolver, RunError};
+use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
+use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use std::sync::Arc;
+
+/// Largest mean flap angle the bias solution leaves, deg.
+pub const MEAN_FLAP_TOLERANCE_DEG: f64 = 0.005;
+
+/// Voltage and angle of one flap over a revolution, against the azimuth of its blade.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlapMotion {
+    /// Voltage with its bias, V.
+    pub voltage_volt: HarmonicSeries,
+    /// Flap angle, deg, trailing edge down positive.
+    pub flap_deg: HarmonicSeries,
+}
+
+/// What turns a voltage into a flap angle.
+#[derive(Debug, Clone)]
+pub enum FlapDrive {
+    /// Quasi-static gain, no hysteresis, no lag.
+    Ideal {
+        /// Flap angle per voltage, deg/V.
+        gain_deg_per_volt: f64,
+        /// Bias, V.
+        bias_volt: f64,
+    },
+    /// An actuator model with memory.
+    Model {
+        /// The model.
+        model: Arc<ActuatorModel>,
+        /// Revolutions per second in the actuator's time.
+        rev_hz: f64,
+        /// Where the search for the bias starts, V.
+        bias_volt: f64,
+    },
+}
+
+impl FlapDrive {
+    /// Steady flap motion for voltage harmonics, the bias solved so that the mean angle vanishes
+    /// (paper equation 6).
+    ///
+    /// # Errors
+    /// The actuator's errors: voltage out of range, no bias in the range, orbit not closed.
+    pub fn motion(&self, voltages: &[(usize, Harmonic)]) -> Result<FlapMotion, PlantError> {
+        let mut voltage = HarmonicSeries::zero(0);
+        for &(n, harmonic) in voltages {
+            voltage.set_harmonic(n, harmonic);
+        }
+        match self {
+            Self::Ideal { gain_deg_per_volt, bias_volt } => {
+                let mut flap_deg = HarmonicSeries::zero(0);
+                for &(n, h) in voltages {
+                    let scaled = Harmonic {
+                        cosine: gain_deg_per_volt * h.cosine,
+                        sine: gain_deg_per_volt * h.sine,
+                    };
+                    flap_deg.set_harmonic(n, scaled);
+                }
+                voltage.mean = *bias_volt;
+                Ok(FlapMotion { voltage_volt: voltage, flap_deg })
+            }
+            Self::Model { model, rev_hz, bias_volt } => {
+                let settings = PeriodicSettings::default();
+                let (low, high) = extremes_volt(&voltage, settings.steps_per_rev);
+                let solver = BiasSolver {
+                    range_volt: bias_window(model.range_volt, low, high)?,
+                    guess_volt: *bias_volt,
+                    slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
+                    tolerance_deg: MEAN_FLAP_TOLERANCE_DEG,
+                };
+                let mut orbit = None;
+                let solution = solver.solve(|bias_volt| {
+                    voltage.mean = bias_volt;
+                    let response = model.periodic_response(&voltage, *rev_hz, &settings)?;
+                    let mean_deg = response.flap_deg.mean;
+                    orbit = Some((bias_volt, response));
+                    Ok::<_, preisach_dyn::PreisachError>(mean_deg)
+                });
+                let bias_volt = match solution {
+                    Ok(solution) => solution.bias_volt,
+                    Err(RunError::Plant { source, .. }) => return Err(source.into()),
+                    Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
+                };
+                // the search may have ended on another trial than its last one
+                let response = match orbit {
+                    Some((at, response)) if at.to_bits() == bias_volt.to_bits() => response,
+                    _ => {
+                        voltage.mean = bias_volt;
+                        model.periodic_response(&voltage, *rev_hz, &settings)?
+                    }
+                };
+                Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
+            }
+        }
+    }
+
+    /// Largest amplitude of one harmonic (V) that stays inside the range of voltages with the bias that
+    /// centres the flap, and the flap amplitude it gives (deg).
+    ///
+    /// The bias of an asymmetric actuator is not the middle of its range, so the full range is never
+    /// quite there: the amplitude is `min(V_max - u_st, u_st - V_min)`, found by iteration because
+    /// `u_st` depends on the amplitude.
+    ///
+    /// # Errors
+    /// As [`Self::motion`].
+    pub fn full_scale(
+        &self,
+        harmonic: usize,
+        amplitude_volt: f64,
+    ) -> Result<(f64, f64), PlantError> {
+        let Self::Model { model, .. } = self else {
+            let motion = self.motion(&[(harmonic, cosine(amplitude_volt))])?;
+            return Ok((amplitude_volt, motion.flap_deg.harmonic(harmonic).amplitude()));
+        };
+        let range = model.range_volt;
+        let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
+        for _ in 0..FULL_SCALE_PASSES {
+            let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
+            let bias = motion.voltage_volt.mean;
+            let room = (range.highest_volt() - bias).min(bias - range.lowest_volt());
+            let next = amplitude_volt.min(room - FULL_SCALE_MARGIN_VOLT);
+            if (next - amplitude).abs() <= 0.1 * FULL_SCALE_MARGIN_VOLT {
+                break;
+            }
+            amplitude = next;
+        }
+        let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
+        Ok((amplitude, motion.flap_deg.harmonic(harmonic).amplitude()))
+    }
+}
+
+/// Change of the mean flap angle with the bias of a bench that makes +-10 deg over 170 V, deg/V: the
+/// bias search's first guess only.
+const QUASI_STATIC_SLOPE_DEG_PER_VOLT: f64 = 20.0 / 170.0;
+/// Room left to the bias at full scale, V.
+const FULL_SCALE_MARGIN_VOLT: f64 = 0.1;
+const FULL_SCALE_PASSES: usize = 12;
+
+fn cosine(amplitude: f64) -> Harmonic {
+    Harmonic { cosine: amplitude, sine: 0.0 }
+}
+
+/// Lowest and highest value of the voltage's harmonics over a revolution, bias apart.
+fn extremes_volt(voltage: &HarmonicSeries, steps: usize) -> (f64, f64) {
+    let alternating = HarmonicSeries { mean: 0.0, ..voltage.clone() };
+    uniform_azimuths_rad(steps)
+        .into_iter()
+        .map(|azimuth| alternating.value(azimuth))
+        .fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)))
+}
+
+/// The biases that keep the whole voltage inside its range.
+fn bias_window(range: VoltageRange, low: f64, high: f64) -> Result<[f64; 2], PlantError> {
+    let window = [range.lowest_volt() - low, range.highest_volt() - high];
+    if window[0] <= window[1] {
+        Ok(window)
+    } else {
+        let (swing_volt, span_volt) = (high - low, range.span_volt());
+        Err(PlantError::VoltageSwing { swing_volt, span_volt })
+    }
+}

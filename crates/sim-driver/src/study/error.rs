@@ -1,0 +1,64 @@
+//! What can go wrong while a study runs.
+
+use hhc_control::{ControlError, RunError};
+use preisach_dyn::PreisachError;
+use rotor_response::ResponseError;
+
+/// Why the rotor with its actuators did not answer to a voltage.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlantError {
+    /// The rotor.
+    #[error(transparent)]
+    Rotor(#[from] ResponseError),
+    /// The actuator.
+    #[error(transparent)]
+    Actuator(#[from] PreisachError),
+    /// No bias voltage centres the flap.
+    #[error("bias voltage: {0}")]
+    Bias(ControlError),
+    /// The harmonics of the voltage alone are larger than the range.
+    #[error(
+        "the voltage swings over {swing_volt:.2} V, the actuator takes {span_volt:.2} V: lower the amplitudes"
+    )]
+    VoltageSwing {
+        /// Peak to peak of the command, V.
+        swing_volt: f64,
+        /// Width of the actuator's range, V.
+        span_volt: f64,
+    },
+}
+
+/// Why a control study stopped.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// The control loop or the plant inside it.
+    #[error("control of {harmonics:?}/rev with the {actuator} actuator: {source}")]
+    Control {
+        /// Harmonics under control, per rev.
+        harmonics: Vec<usize>,
+        /// Name of the actuator.
+        actuator: &'static str,
+        /// What went wrong.
+        source: Box<RunError<PlantError>>,
+    },
+    /// The stroke the actuator can make.
+    #[error("stroke of the actuator at {harmonic}/rev ({frequency_hz} Hz on the bench): {source}")]
+    Stroke {
+        /// Harmonic, per rev.
+        harmonic: usize,
+        /// The same in the time of the bench.
+        frequency_hz: f64,
+        /// What went wrong.
+        source: PlantError,
+    },
+    /// The case asks for an actuator it does not have.
+    #[error(
+        "the case asks for the {actuator} actuator but its actuator model is Ideal: give a bench or an actuator file, or control with ideal alone"
+    )]
+    NoActuator {
+        /// Name of the actuator asked for.
+        actuator: &'static str,
+    },
+}

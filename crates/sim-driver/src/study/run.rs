@@ -1,0 +1,265 @@
+//! One case from trim to controlled vibration.
+
+use super::{
+    FlapDrive, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor,
+};
+use crate::case::{Case, ControlActuator, EffortChoice, StrokeChoice};
+use hhc_control::{
+    ControlRun, FeedbackController, FeedbackSettings, LoadWeights, Outcome, Plant, RunError,
+    identify_t, reduction_percent,
+};
+use preisach_dyn::ActuatorModel;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// What the controller did with one set of harmonics and one actuator.
+#[derive(Debug, Clone)]
+pub struct ControlStudy {
+    /// Harmonics per rev.
+    pub harmonics: Vec<usize>,
+    /// The actuator.
+    pub actuator: ControlActuator,
+    /// Voltages at the end, layout of the plant, V.
+    pub control_volt: Vec<f64>,
+    /// The recorded run; none where voltages were taken over from another actuator.
+    pub run: Option<ControlRun>,
+    /// Frobenius norm of the T matrix, load per V; of the run whose voltages are used.
+    pub t_norm: f64,
+    /// Control weight `W_u = rho I` of that run, 1/V^2.
+    pub rho: f64,
+    /// Stroke limit of each controlled harmonic, deg.
+    pub stroke_limit_deg: Vec<f64>,
+    /// `J_Z` without control.
+    pub j_before: f64,
+    /// `J_Z` with control.
+    pub j_after: f64,
+    /// Rotor and flaps at the end.
+    pub state: PlantState,
+}
+
+impl ControlStudy {
+    /// `100 (1 - J_Z / J_Z0)`.
+    pub fn reduction_percent(&self) -> f64 {
+        reduction_percent(self.j_before, self.j_after)
+    }
+
+    /// Control steps measured.
+    pub fn steps(&self) -> usize {
+        self.run.as_ref().map_or(0, |run| run.steps.len())
+    }
+
+    /// Steps that were halved because they raised the cost.
+    pub fn halvings(&self) -> u32 {
+        self.run.as_ref().map_or(0, ControlRun::halvings)
+    }
+
+    /// How the loop ended; converged where voltages were taken over.
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.run.as_ref().map(|run| run.outcome)
+    }
+}
+
+/// The drives of a case and the stroke limits they set.
+#[derive(Debug, Clone)]
+pub struct Drives {
+    /// Ideal linear actuator.
+    pub ideal: FlapDrive,
+    /// The identified actuator, if the case has one.
+    pub hysteretic: Option<FlapDrive>,
+}
+
+impl Drives {
+    /// Drives of a case; `model` is the actuator identified or read for it.
+    pub fn new(case: &Case, model: Option<Arc<ActuatorModel>>) -> Self {
+        let control = &case.control;
+        let gain = case.actuator.ideal_amplitude_deg / control.amplitude_volt;
+        let bias_volt = control.bias_volt;
+        Self {
+            ideal: FlapDrive::Ideal { gain_deg_per_volt: gain, bias_volt },
+            hysteretic: model.map(|model| FlapDrive::Model {
+                model,
+                rev_hz: case.actuator.bench_rev_hz,
+                bias_volt,
+            }),
+        }
+    }
+
+    /// Stroke limit at one harmonic (deg) and the full-scale voltage of the hysteretic actuator (V).
+    fn limit(&self, case: &Case, harmonic: usize) -> Result<(f64, f64), StudyError> {
+        let control = &case.control;
+        let drive = self.hysteretic.as_ref().unwrap_or(&self.ideal);
+        let full = drive.full_scale(harmonic, control.amplitude_volt).map_err(|source| {
+            let frequency_hz = case.bench_frequency_hz(harmonic);
+            StudyError::Stroke { harmonic, frequency_hz, source }
+        })?;
+        Ok(match control.stroke_limit {
+            StrokeChoice::FromActuator => full,
+            StrokeChoice::Given { amplitude_deg } => {
+                (full.0 * (amplitude_deg / full.1).min(1.0), amplitude_deg)
+            }
+        })
+    }
+}
+
+/// Controls one set of harmonics with every actuator the case asks for, in the order of the case.
+///
+/// # Errors
+/// [`StudyError`].
+pub fn control_set(
+    case: &Case,
+    rotor: &TrimmedRotor,
+    drives: &Drives,
+    harmonics: &[usize],
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<ControlStudy>, StudyError> {
+    let limits = harmonics
+        .iter()
+        .map(|&n| drives.limit(case, n))
+        .collect::<Result<Vec<(f64, f64)>, _>>()?;
+    let set = ControlSet { case, rotor, drives, harmonics, limits };
+    let ideal = set.feedback(ControlActuator::Ideal)?;
+    case.control
+        .actuators
+        .iter()
+        .map(|&actuator| {
+            let study = match actuator {
+                ControlActuator::Ideal => ideal.clone(),
+                ControlActuator::Ignored => set.taken_over(&ideal)?,
+                ControlActuator::Hysteretic => set.feedback(actuator)?,
+            };
+            done();
+            Ok(study)
+        })
+        .collect()
+}
+
+/// Controls every set of harmonics of the case; sets in parallel, results in the order of the case.
+///
+/// # Errors
+/// [`StudyError`] of the first set that fails.
+pub fn control_all(
+    case: &Case,
+    rotor: &TrimmedRotor,
+    drives: &Drives,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<ControlStudy>, StudyError> {
+    let sets = case
+        .control
+        .harmonics
+        .par_iter()
+        .map(|harmonics| control_set(case, rotor, drives, harmonics, done))
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(sets.into_iter().flatten().collect())
+}
+
+struct ControlSet<'a> {
+    case: &'a Case,
+    rotor: &'a TrimmedRotor,
+    drives: &'a Drives,
+    harmonics: &'a [usize],
+    /// Full-scale voltage and stroke limit of every harmonic.
+    limits: Vec<(f64, f64)>,
+}
+
+impl ControlSet<'_> {
+    fn failed(&self, actuator: ControlActuator, source: RunError<PlantError>) -> StudyError {
+        StudyError::Control {
+            harmonics: self.harmonics.to_vec(),
+            actuator: actuator.name(),
+            source: Box::new(source),
+        }
+    }
+
+    fn plant(&self, actuator: ControlActuator) -> Result<RotorPlant, StudyError> {
+        let (drive, full_scale) = match actuator {
+            ControlActuator::Ideal => {
+                let amplitude = self.case.control.amplitude_volt;
+                let per_deg = amplitude / self.case.actuator.ideal_amplitude_deg;
+                let scale = self.limits.iter().map(|(_, deg)| (deg * per_deg, *deg)).collect();
+                (&self.drives.ideal, scale)
+            }
+            ControlActuator::Ignored | ControlActuator::Hysteretic => {
+                let drive = self.drives.hysteretic.as_ref();
+                let name = actuator.name();
+                (drive.ok_or(StudyError::NoActuator { actuator: name })?, self.limits.clone())
+            }
+        };
+        RotorPlant::new(self.rotor.clone(), drive.clone(), self.harmonics, &full_scale)
+            .map_err(|e| self.failed(actuator, e.into()))
+    }
+
+    fn weights(&self) -> LoadWeights {
+        let w = &self.case.control.load_weights;
+        let each = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz];
+        LoadWeights::Diagonal(each.into_iter().flat_map(|w| [w, w]).collect())
+    }
+
+    /// `J_Z` of a hub load vector.
+    fn loads_cost(&self, loads: &[f64; 12]) -> f64 {
+        let w = &self.case.control.load_weights;
+        let each = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz];
+        loads.chunks_exact(2).zip(each).map(|(z, w)| w * (z[0] * z[0] + z[1] * z[1])).sum()
+    }
+
+    fn study(
+        &self,
+        actuator: ControlActuator,
+        plant: &RotorPlant,
+        control_volt: Vec<f64>,
+        (run, t_norm, rho): (Option<ControlRun>, f64, f64),
+    ) -> Result<ControlStudy, StudyError> {
+        let state = plant.state(&control_volt).map_err(|source| {
+            let call = hhc_control::PlantCall::Measure { control_volt: control_volt.clone() };
+            self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
+        })?;
+        let blades = self.case.blades;
+        let before = self.rotor.trim().rotor.hub.harmonic(blades);
+        Ok(ControlStudy {
+            harmonics: self.harmonics.to_vec(),
+            actuator,
+            control_volt,
+            run,
+            t_norm,
+            rho,
+            stroke_limit_deg: self.limits.iter().map(|l| l.1).collect(),
+            j_before: self.loads_cost(&before),
+            j_after: self.loads_cost(&state.rotor.hub.harmonic(blades)),
+            state,
+        })
+    }
+
+    /// Feedback to convergence on the plant itself, from zero control.
+    fn feedback(&self, actuator: ControlActuator) -> Result<ControlStudy, StudyError> {
+        let mut plant = self.plant(actuator)?;
+        let failed = |e| self.failed(actuator, e);
+        let control = &self.case.control;
+        let step_volt =
+            control.t_step_deg * control.amplitude_volt / self.case.actuator.ideal_amplitude_deg;
+        let steps = vec![step_volt; plant.layout().len()];
+        let t = identify_t(&mut plant, &steps).map_err(failed)?;
+        let settings = FeedbackSettings {
+            max_steps: control.max_steps,
+            step_tolerance: control.step_tolerance,
+            ..FeedbackSettings::default()
+        };
+        let controller = FeedbackController::new(&t, self.weights(), settings)
+            .map_err(|e| failed(e.into()))?;
+        let (run, rho) = match control.effort {
+            EffortChoice::MeetStroke => {
+                let limited = controller.run_within_stroke(&mut plant).map_err(failed)?;
+                (limited.run, limited.rho)
+            }
+            EffortChoice::Given { rho } => (controller.run(&mut plant, rho).map_err(failed)?, rho),
+        };
+        let volts = run.last().control_volt.clone();
+        self.study(actuator, &plant, volts, (Some(run), t.frobenius_norm(), rho))
+    }
+
+    /// The ideal actuator's voltages applied to the hysteretic one: what ignoring hysteresis costs.
+    fn taken_over(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
+        let actuator = ControlActuator::Ignored;
+        let plant = self.plant(actuator)?;
+        let from = (None, ideal.t_norm, ideal.rho);
+        self.study(actuator, &plant, ideal.control_volt.clone(), from)
+    }
+}

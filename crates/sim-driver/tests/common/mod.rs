@@ -1,0 +1,158 @@
+//! Running `hhc` in a folder of its own.
+#![expect(clippy::disallowed_methods, reason = "tests write the files they try the command on")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A folder for one test.
+pub struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        let path = self.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path().join(name)).unwrap()
+    }
+
+    /// Names of everything in the folder, sorted, folders ending in `/`.
+    pub fn listing(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        list(self.path(), "", &mut names);
+        names.sort();
+        names
+    }
+
+    /// Runs `hhc` here.
+    pub fn hhc(&self, args: &[&str]) -> Ran {
+        let output = Command::new(env!("CARGO_BIN_EXE_hhc"))
+            .args(args)
+            .current_dir(self.path())
+            .output()
+            .unwrap();
+        Ran::new(args, &output)
+    }
+}
+
+fn list(folder: &Path, prefix: &str, names: &mut Vec<String>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let entry = entry.unwrap();
+        let name = format!("{prefix}{}", entry.file_name().display());
+        if entry.path().is_dir() {
+            list(&entry.path(), &format!("{name}/"), names);
+        } else {
+            names.push(name);
+        }
+    }
+}
+
+/// What a run of `hhc` left.
+pub struct Ran {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
+    args: String,
+}
+
+impl Ran {
+    fn new(args: &[&str], output: &Output) -> Self {
+        Self {
+            code: output.status.code().unwrap(),
+            out: String::from_utf8(output.stdout.clone()).unwrap(),
+            err: String::from_utf8(output.stderr.clone()).unwrap(),
+            args: args.join(" "),
+        }
+    }
+
+    /// Asserts success and returns what was printed.
+    #[track_caller]
+    pub fn done(self) -> String {
+        assert_eq!(self.code, 0, "hhc {}\n{}\n{}", self.args, self.out, self.err);
+        self.out
+    }
+
+    /// Asserts success and parses the JSON printed.
+    #[track_caller]
+    pub fn json(self) -> serde_json::Value {
+        let out = self.done();
+        match serde_json::from_str(&out) {
+            Ok(value) => value,
+            Err(error) => panic!("{error} in\n{out}"),
+        }
+    }
+
+    /// Asserts exit code 2, nothing on standard output, and that the message holds every part.
+    #[track_caller]
+    pub fn rejected(self, parts: &[&str]) -> String {
+        assert_eq!(self.code, 2, "hhc {}\n{}\n{}", self.args, self.out, self.err);
+        assert!(self.out.is_empty(), "hhc {} printed\n{}", self.args, self.out);
+        assert!(!self.err.contains("panicked") && !self.err.contains("bug"), "{}", self.err);
+        for part in parts {
+            assert!(
+                self.err.contains(part),
+                "hhc {}: no `{part}` in\n{}",
+                self.args,
+                self.err
+            );
+        }
+        self.err
+    }
+}
+
+/// A case that is quick to run: few modes, coarse in time, prescribed controls, no control.
+#[allow(dead_code, reason = "not every test file runs a case")]
+pub const QUICK_CASE: &str = "(
+    title: \"quick\",
+    advance_ratio: 0.2,
+    structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
+    aerodynamics: (model: QuasiSteady, compressibility: None),
+    inflow: (model: Uniform),
+    trim: WindTunnel(ct_sigma: 0.07, shaft_tilt_deg: 3.0),
+    actuator: (model: Ideal),
+    control: (harmonics: [[3]], actuators: [Ideal]),
+)
+";
+
+/// A small bench: one slow loop, one faster one at two amplitudes.
+#[allow(dead_code, reason = "not every test file needs a bench")]
+pub fn write_bench(place: &Place, folder: &str) {
+    let mut runs = String::new();
+    for (id, hz, amplitude, step_s) in [
+        ("slow", 0.2, 80.0, 0.02),
+        ("one_large", 1.0, 80.0, 0.005),
+        ("one_small", 1.0, 20.0, 0.005),
+        ("five", 5.0, 80.0, 0.001),
+    ] {
+        let samples = (4.0 / hz / step_s) as usize;
+        let mut text = "time_s,command_V,displacement_um\n".to_owned();
+        let mut x = 0.0;
+        for i in 0..=samples {
+            let time = i as f64 * step_s;
+            let u = 65.0 + amplitude * (std::f64::consts::TAU * hz * time).sin();
+            // a play and a lag: hysteresis of its own kind, stepped finely
+            for _ in 0..20 {
+                x += step_s / 20.0 / 0.01 * (2.5 * (u - 65.0) - x);
+            }
+            text += &format!("{time:.4},{u:.5},{x:.5}\n");
+        }
+        place.write(&format!("{folder}/{id}.csv"), &text);
+        runs += &format!("        (id: \"{id}\", file: \"{id}.csv\", role: Reference),\n");
+    }
+    place.write(
+        &format!("{folder}/dataset.ron"),
+        &format!("(\n    kind: ActuatorBench,\n    title: \"a test's own bench\",\n    runs: [\n{runs}    ],\n    command_range_V: (-20, 150),\n)\n"),
+    );
+}
