@@ -3,6 +3,10 @@
     clippy::disallowed_methods,
     reason = "tests read and write golden files"
 )]
+#![expect(
+    clippy::unwrap_used,
+    reason = "a helper that fails is a test that fails"
+)]
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -182,6 +182,6 @@ impl FeedbackLaw {
         let floor = largest * f64::EPSILON * size;
         self.singular_values
             .iter()
-            .map(move |&s| if s > floor { s / (s * s + 1.0001 * rho) } else { 0.0 })
+            .map(move |&s| if s > floor { s / (s * s + rho) } else { 0.0 })
     }
 }

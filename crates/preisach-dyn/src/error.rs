@@ -97,6 +97,20 @@ pub enum PreisachError {
         /// The output rate claimed to be covered, deg/s.
         rate_deg_s: f64,
     },
+    /// A stored play state lies outside the Preisach triangle.
+    #[error(
+        "stored play {play} of {levels} is at {cells} cells, expected 0 to {largest}: the memory was not written by this program"
+    )]
+    PlayOutsideTriangle {
+        /// Index of the play.
+        play: usize,
+        /// Number of plays.
+        levels: usize,
+        /// Its state, cells.
+        cells: f64,
+        /// Largest state it can have, cells.
+        largest: usize,
+    },
     /// A memory was made for another grid.
     #[error("the memory has {found} plays, the model {expected}; start a memory from this model")]
     MemoryMismatch {

@@ -41,3 +41,8 @@ pub use memory::{PlayMemory, StartState};
 pub use periodic::{PeriodicResponse, PeriodicSettings};
 pub use play_map::PlayMap;
 pub use statics::StaticPreisach;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExample;

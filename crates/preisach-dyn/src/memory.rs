@@ -37,10 +37,11 @@ impl TryFrom<Vec<f64>> for PlayMemory {
         let levels = cells.len();
         let inside = |(j, &x): (usize, &f64)| (0.0..=(levels - j) as f64).contains(&x);
         match cells.iter().enumerate().position(|pair| !inside(pair)) {
-            Some(index) => Err(PreisachError::NotFinite {
-                quantity: "play state (cells, inside the triangle)",
-                index,
-                value: cells[index],
+            Some(play) => Err(PreisachError::PlayOutsideTriangle {
+                play,
+                levels,
+                cells: cells[play],
+                largest: levels - play,
             }),
             None => Ok(Self { cells }),
         }

@@ -337,7 +337,7 @@ mod tests {
     fn rises_and_nodes_round_trip() {
         let g = grid(5);
         let rises: Vec<Vec<f64>> = (0..5)
-            .map(|j| (0..5 - j).map(|k| (j + k) as f64).collect())
+            .map(|j| (0..5 - j).map(|k| f64::from(j + k)).collect())
             .collect();
         let map = PlayMap::from_rises(&g, 1.0, &rises).unwrap();
         for (got, want) in map.rises().iter().flatten().zip(rises.iter().flatten()) {

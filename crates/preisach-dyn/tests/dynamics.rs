@@ -1,4 +1,12 @@
 //! Dynamic Preisach, equation (5): exact special cases, order of accuracy, well-posedness.
+#![expect(
+    clippy::float_cmp,
+    reason = "results are claimed to be equal to the last bit"
+)]
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at what it does not expect"
+)]
 
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
@@ -360,4 +368,30 @@ fn bad_input_is_an_error_with_its_place() {
         ),
         "{error}"
     );
+}
+
+#[test]
+fn models_and_memories_survive_being_stored() {
+    let model = actuator(parameters(TimeOrder::Second));
+    let text = serde_json::to_string(&model).unwrap();
+    let restored: ActuatorModel = serde_json::from_str(&text).unwrap();
+    assert_eq!(restored, model);
+    let mut memory = model.start(65.0, StartState::Rest).unwrap();
+    model
+        .continue_from(&mut memory, &[80.0, 20.0, 130.0], 1e-3)
+        .unwrap();
+    let stored = serde_json::to_string(&memory).unwrap();
+    let mut taken_up = serde_json::from_str(&stored).unwrap();
+    assert_eq!(memory, taken_up);
+    assert_eq!(
+        model.step(&mut memory, 50.0, 1e-3).unwrap(),
+        restored.step(&mut taken_up, 50.0, 1e-3).unwrap()
+    );
+    // what is stored is checked when it is read: a relaxation time below zero is refused
+    let broken = text.replace("\"constant\":-0.02", "\"constant\":0.5");
+    assert_ne!(broken, text);
+    let error = serde_json::from_str::<ActuatorModel>(&broken)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("G1 reaches"), "{error}");
 }

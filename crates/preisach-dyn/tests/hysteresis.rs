@@ -1,4 +1,12 @@
 //! Static Preisach: the properties that define it, and agreement of its three forms.
+#![expect(
+    clippy::float_cmp,
+    reason = "results are claimed to be equal to the last bit"
+)]
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at what it does not expect"
+)]
 
 use preisach_dyn::{
     EverettStaircase, PlayMap, PlayMemory, PreisachGrid, StartState, StaticPreisach, VoltageRange,

@@ -1,4 +1,8 @@
 //! Identification against truths made here: one inside the model class, one outside it.
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at what it does not expect"
+)]
 
 use preisach_dyn::identify::{
     BenchRecord, Identification, RecordReport, RecordUse, Settings, Waveform, identify,
@@ -215,7 +219,7 @@ fn worst<'a>(reports: impl Iterator<Item = &'a RecordReport>) -> (f64, f64) {
     })
 }
 
-fn is_fast(report: &&RecordReport) -> bool {
+fn is_fast(report: &RecordReport) -> bool {
     report.drive.waveform == Waveform::SingleHarmonic && report.drive.base_hz > 12.0
 }
 
@@ -234,10 +238,12 @@ fn a_truth_inside_the_class_is_found() {
     let identified = identify(&preisach_truth(), &settings()).unwrap();
     let slow = slow_worst(&identified);
     let (trained, _) = worst(identified.records_of(RecordUse::Train));
-    let (fast, phase) = worst(identified.records_of(RecordUse::HeldOut).filter(is_fast));
+    let (fast, phase) = worst(
+        identified
+            .records_of(RecordUse::HeldOut)
+            .filter(|r| is_fast(r)),
+    );
     let (held_out, _) = worst(identified.records_of(RecordUse::HeldOut));
-    println!("inside: {slow} % slow, {trained} % trained, {fast} % {phase} deg fast, {held_out} %");
-    println!("{:?}", identified.validation);
     assert!(slow <= 1.5, "0.2 Hz: {slow} %");
     assert!(trained <= 4.0, "trained: {trained} %");
     assert!(
@@ -248,15 +254,39 @@ fn a_truth_inside_the_class_is_found() {
 }
 
 #[test]
-fn a_truth_outside_the_class_is_approximated_and_noise_does_little() {
-    for (noise_deg, bound) in [(0.0, 8.0), (0.02, 8.0), (0.1, 12.0)] {
-        let identified = identify(&dahl_truth(noise_deg), &settings()).unwrap();
-        let (trained, _) = worst(identified.records_of(RecordUse::Train));
-        let (fast, phase) = worst(identified.records_of(RecordUse::HeldOut).filter(is_fast));
-        println!("{:?}", identified.validation);
-        for r in &identified.records { println!("{} {:?} stat {:.2} dyn {:.2} {:?}", r.id, r.record_use, r.static_only.nrmse_percent(), r.dynamic.nrmse_percent(), r.dynamic.phase_error_deg); }
-        println!("noise {noise_deg}: trained {trained} %, held out {fast} % {phase} deg");
-        assert!(trained <= bound && fast <= bound, "{trained} {fast}");
+fn a_truth_outside_the_class_is_approximated_and_noise_does_no_harm() {
+    for noise_deg in [0.0, 0.02, 0.1] {
+        let records = dahl_truth(noise_deg);
+        let identified = identify(&records, &settings()).unwrap();
+        for (record, report) in records.iter().zip(&identified.records) {
+            // what the model misses beyond the noise, which no model can reproduce
+            let n = record.output_deg.len() as f64;
+            let mean = record.output_deg.iter().sum::<f64>() / n;
+            let squares: f64 = record.output_deg.iter().map(|y| (y - mean).powi(2)).sum();
+            let floor = noise_deg / (squares / n).sqrt();
+            let fit = report.dynamic;
+            let missed = 100.0 * (fit.nrmse.powi(2) - floor.powi(2)).max(0.0).sqrt();
+            let bound = if report.record_use == RecordUse::Train {
+                4.0
+            } else {
+                8.0
+            };
+            assert!(
+                missed <= bound,
+                "{noise_deg} deg noise, {}: {missed} %",
+                report.id
+            );
+            let phase = fit.phase_error_deg.unwrap_or(0.0).abs();
+            assert!(
+                phase <= 2.0,
+                "{noise_deg} deg noise, {}: {phase} deg",
+                report.id
+            );
+            assert!(
+                !is_fast(report) || report.static_only.nrmse > 1.0,
+                "{report:?}"
+            );
+        }
     }
 }
 

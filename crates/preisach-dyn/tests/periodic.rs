@@ -1,4 +1,8 @@
 //! Closed orbits against exact responses; bias, stroke limit, refused commands.
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test stops at what it does not expect"
+)]
 
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{

@@ -169,3 +169,30 @@ fn unit_mass(mass: &DMatrix<f64>, raw: DVector<Complex<f64>>) -> DVector<Complex
     let phase = 0.5 * (2.0 * ri).atan2(rr - ii);
     raw * (Complex::from_polar(1.0, -phase) / Complex::from((rr + ii).sqrt()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever phase the eigenvalue routine leaves, the real part ends up with the most mass.
+    #[test]
+    fn the_phase_of_a_shape_is_turned_into_its_real_part() {
+        let mass = DMatrix::from_row_slice(2, 2, &[2.0, 0.1, 0.1, 1.0]);
+        let shape = DVector::from_vec(vec![Complex::new(3.0, 0.0), Complex::new(0.0, 0.5)]);
+        let expected = unit_mass(&mass, shape.clone());
+        let (re, im) = (expected.map(|z| z.re), expected.map(|z| z.im));
+        assert!(re.dot(&(&mass * &im)).abs() < 1e-15);
+        assert!(re.dot(&(&mass * &re)) > im.dot(&(&mass * &im)));
+        for phase in [0.4, 1.2, -0.9] {
+            let turned = unit_mass(&mass, &shape * Complex::from_polar(7.0, phase));
+            // the sign stays open: the mode fixes it by its tip
+            let gap = [1.0, -1.0].map(|sign| {
+                (&turned * Complex::from(sign) - &expected)
+                    .map(Complex::norm)
+                    .amax()
+            });
+            let gap = gap[0].min(gap[1]);
+            assert!(gap < 1e-14, "{phase}: {gap:e}");
+        }
+    }
+}

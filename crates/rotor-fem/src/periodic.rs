@@ -79,7 +79,8 @@ struct Iterate {
 /// integral( -N_a' M q' + N_a f ) dpsi = 0   for every node a
 /// ```
 /// The Newton matrix is factorised once and used for chord steps, also in later solves, until a step
-/// contracts the residual too little. The sequence of solves is therefore part of the result at the
+/// contracts the residual too little; when chord steps stall, the search goes back to the best orbit and
+/// takes Newton steps, shortened until the residual falls. The sequence of solves is therefore part of the result at the
 /// level of the tolerance: use one solver per thread, or [`forget_factorisation`] between solves.
 ///
 /// Assumes: a constant symmetric mass matrix; period 2 pi.
@@ -198,12 +199,11 @@ impl PeriodicSolver {
             };
             state = match renewal.judge(growth) {
                 Verdict::Accept => {
-                    self.factorisation = Some(factorisation);
+                    self.factorisation = renewal.keeps().then_some(factorisation);
                     next?
                 }
                 Verdict::Shorten => {
-                    mixing.clear();
-                    self.factorisation = Some(factorisation);
+                    self.factorisation = renewal.keeps().then_some(factorisation);
                     self.shorten(system, &state, &step, iteration)?
                 }
                 // the matrix is dropped; the better of the two orbits gets a new one
@@ -213,8 +213,14 @@ impl PeriodicSolver {
                 },
             };
             history.push(state.norm);
-            if state.norm < best.0 {
+            let improved = state.norm < best.0;
+            if improved {
                 best = (state.norm, state.orbit.clone());
+            }
+            if renewal.stalls(improved) {
+                state = self.evaluate(system, best.1.clone(), iteration, &best.1)?;
+                self.factorisation = None;
+                mixing = Anderson::new(0);
             }
         }
         Ok(PeriodicSolution {

@@ -1,9 +1,11 @@
 //! When a kept factorisation is used again and when it is renewed.
 
-/// Growth of the residual that a step with a new matrix may cause before it is shortened.
+/// Growth of the residual that a mixed step may cause before the matrix is renewed early.
 const ALLOWED_GROWTH: f64 = 2.0;
 /// Steps a new factorisation is given at first.
 const PATIENCE: usize = 2;
+/// Steps without a new best residual after which the search turns careful.
+const STALL: usize = 8;
 
 /// What to do with a chord step.
 pub(crate) enum Verdict {
@@ -25,6 +27,10 @@ pub(crate) struct Renewal {
     /// (the tangent is incomplete) and starts anew when it did.
     patience: usize,
     pub(crate) factorisations: usize,
+    /// Steps since the best residual.
+    stalled: usize,
+    /// A new matrix for every step, and only steps that lower the residual.
+    careful: bool,
 }
 
 impl Renewal {
@@ -34,6 +40,8 @@ impl Renewal {
             age: None,
             patience: PATIENCE,
             factorisations: 0,
+            stalled: 0,
+            careful: false,
         }
     }
 
@@ -46,17 +54,33 @@ impl Renewal {
         self.factorisations += 1;
     }
 
+    /// Notes whether a step gave a new best residual; true once, when chord steps have stalled and the
+    /// search must go back to the best orbit and turn careful.
+    pub(crate) fn stalls(&mut self, improved: bool) -> bool {
+        self.stalled = if improved { 0 } else { self.stalled + 1 };
+        let turns = !self.careful && self.stalled >= STALL;
+        self.careful |= turns;
+        turns
+    }
+
+    /// Whether the matrix of a step that was taken serves the next one too.
+    pub(crate) fn keeps(&self) -> bool {
+        !self.careful
+    }
+
     /// Judges a step by the residual it leaves over the one it started from.
     pub(crate) fn judge(&mut self, growth: f64) -> Verdict {
-        let (good, worse) = (growth <= self.limit, growth > ALLOWED_GROWTH);
+        let good = growth <= self.limit;
         match self.age {
             Some(0) if good => self.patience = PATIENCE,
-            Some(0) if worse => {
+            Some(0) if growth >= 1.0 => {
                 self.age = Some(1);
                 return Verdict::Shorten;
             }
             Some(0) => {}
-            Some(age) if !good && (worse || age >= self.patience) => return Verdict::Renew,
+            Some(age) if !good && (age >= self.patience || growth > ALLOWED_GROWTH) => {
+                return Verdict::Renew;
+            }
             None if !good => return Verdict::Renew,
             _ => {}
         }

@@ -374,8 +374,19 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
 #[test]
 fn a_lag_hinge_on_the_axis_is_neutral() {
     for elements in 3..=10 {
-        let hinged = model(BladeSpec { root: RootCondition::Hinged, ..uniform() }, elements);
-        let count = ModeCount { flap: 1, lag: 2, torsion: 0, axial: 0 };
+        let hinged = model(
+            BladeSpec {
+                root: RootCondition::Hinged,
+                ..uniform()
+            },
+            elements,
+        );
+        let count = ModeCount {
+            flap: 1,
+            lag: 2,
+            torsion: 0,
+            axial: 0,
+        };
         for terms in [GyroscopicTerms::Neglected, GyroscopicTerms::Included] {
             let found = modes(&hinged, terms, count).unwrap();
             let frequencies: Vec<f64> = found.iter().map(|mode| mode.frequency).collect();

@@ -14,7 +14,6 @@
 
 use crate::blade::ResponseBlade;
 use crate::motion::{Motion, RootPitch};
-use flap_aero::SectionCoefficients;
 
 /// Angle of one trailing-edge flap with its azimuth derivatives (rad).
 pub(crate) type FlapAngle = [f64; 3];
@@ -90,7 +89,16 @@ pub(crate) struct AirScales {
     pub(crate) drag: f64,
 }
 
-fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+/// Section coefficients without their lags: outputs per input, and per rate of an input in
+/// semichords travelled, `[output][input]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PromptCoefficients {
+    pub(crate) direct: [[f64; 4]; 3],
+    pub(crate) rate: [[f64; 4]; 3],
+}
+
+/// Scalar product over the four section inputs.
+pub(crate) fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
@@ -99,7 +107,7 @@ fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
 pub(crate) fn section_loads(
     scales: AirScales,
     flow: &SectionFlow,
-    coefficients: &SectionCoefficients,
+    coefficients: &PromptCoefficients,
     lag: [f64; 3],
 ) -> SectionLoads {
     let speed = flow.u_t.abs();
@@ -115,16 +123,4 @@ pub(crate) fn section_loads(
         moment: moment(1),
         hinge: moment(2),
     }
-}
-
-/// The lag part of the outputs when every lag state has settled on its input.
-pub(crate) fn settled_lag(coefficients: &SectionCoefficients, input: &[f64; 4]) -> [f64; 3] {
-    let mut out = [0.0; 3];
-    for channel in &coefficients.lags {
-        let drive = dot(&channel.input, input);
-        for (o, gain) in out.iter_mut().zip(channel.output) {
-            *o += gain * drive;
-        }
-    }
-    out
 }

@@ -4,7 +4,7 @@
 //! elastic part of the speed changes them in second order only. That makes the lag states a linear
 //! operator on the section inputs, solved once per flight condition.
 
-use crate::air::{SectionFlow, settled_lag};
+use crate::air::{PromptCoefficients, SectionFlow, dot};
 use crate::blade::ResponseBlade;
 use crate::lag::{Collocation, PeriodicLag};
 use crate::{ResponseError, RotorModel};
@@ -18,11 +18,23 @@ const MACH_LIMIT: f64 = 0.9;
 /// boundary still has an equation.
 const SLOWEST_RATE: f64 = 1e-3;
 
+/// One lag channel of a station. Its input does not depend on the Mach number, its outputs do.
+#[derive(Debug, Clone)]
+struct StationLag {
+    input: [f64; 4],
+    /// Output and its gain at every point, for the outputs the channel has.
+    gains: Vec<(usize, Vec<f64>)>,
+    lag: PeriodicLag,
+}
+
 /// One station of the lifting part of the blade over the revolution.
 #[derive(Debug, Clone)]
 struct StationAir {
-    coefficients: Vec<SectionCoefficients>,
-    lags: Vec<PeriodicLag>,
+    /// Coefficients without delay and of apparent mass, by point.
+    prompt: Vec<PromptCoefficients>,
+    /// Gain of the settled lags, output by input, by point.
+    settled: Vec<[[f64; 4]; 3]>,
+    lags: Vec<StationLag>,
 }
 
 /// The section aerodynamics of one advance ratio, at every lifting station and azimuth point.
@@ -59,8 +71,8 @@ impl FlightAir {
     }
 
     /// Coefficients at a lifting station (counted from the first) and azimuth point.
-    pub(crate) fn coefficients(&self, station: usize, point: usize) -> &SectionCoefficients {
-        &self.stations[station].coefficients[point]
+    pub(crate) fn prompt(&self, station: usize, point: usize) -> &PromptCoefficients {
+        &self.stations[station].prompt[point]
     }
 
     /// Lag part of the three outputs at all lifting stations and points, `[point][station]`, for
@@ -71,18 +83,20 @@ impl FlightAir {
         let mut drive = vec![0.0; points];
         let mut state = Vec::with_capacity(points);
         for (s, station) in self.stations.iter().enumerate() {
-            for (c, lag) in station.lags.iter().enumerate() {
-                for (p, d) in drive.iter_mut().enumerate() {
-                    let channel = &station.coefficients[p].lags[c];
-                    *d = channel.input.iter().zip(&flows[p][s].input).map(|(a, b)| a * b).sum();
+            let mut sums = [(); 3].map(|()| vec![0.0; points]);
+            for channel in &station.lags {
+                for (d, flow) in drive.iter_mut().zip(flows) {
+                    *d = dot(&channel.input, &flow[s].input);
                 }
-                lag.periodic_state(&drive, &mut state);
-                for (p, x) in state.iter().enumerate() {
-                    let gains = &station.coefficients[p].lags[c].output;
-                    for (o, gain) in out[p][s].iter_mut().zip(gains) {
-                        *o += gain * x;
+                channel.lag.periodic_state(&drive, &mut state);
+                for (output, gains) in &channel.gains {
+                    for ((sum, gain), x) in sums[*output].iter_mut().zip(gains).zip(&state) {
+                        *sum += gain * x;
                     }
                 }
+            }
+            for (p, loads) in out.iter_mut().enumerate() {
+                loads[s] = [sums[0][p], sums[1][p], sums[2][p]];
             }
         }
         out
@@ -94,7 +108,9 @@ impl FlightAir {
         self.stations
             .iter()
             .zip(flows)
-            .map(|(station, flow)| settled_lag(&station.coefficients[point], &flow.input))
+            .map(|(station, flow)| {
+                station.settled[point].each_ref().map(|row| dot(row, &flow.input))
+            })
             .collect()
     }
 }
@@ -114,19 +130,55 @@ impl StationAir {
                 let mach = Mach::limited(model.compressible_tip_mach() * speed, MACH_LIMIT)?;
                 model.section_model.coefficients(mach, flap_chord)
             })
-            .collect::<Result<Vec<_>, _>>()?;
+            .collect::<Result<Vec<SectionCoefficients>, _>>()?;
         let channels = coefficients.first().map_or(0, |c| c.lags.len());
-        let semichord = 0.5 * model.chord;
         let lags = (0..channels)
-            .map(|c| {
-                let rates: Vec<f64> = speeds
-                    .iter()
-                    .zip(&coefficients)
-                    .map(|(speed, k)| k.lags[c].pole * (speed / semichord).max(SLOWEST_RATE))
-                    .collect();
-                PeriodicLag::new(collocation, &rates)
-            })
+            .map(|c| StationLag::new(model, collocation, speeds, (&coefficients, c)))
             .collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { coefficients, lags })
+        let settled = coefficients
+            .iter()
+            .map(|k| {
+                let mut gain = [[0.0; 4]; 3];
+                for channel in &k.lags {
+                    for (row, output) in gain.iter_mut().zip(channel.output) {
+                        for (g, input) in row.iter_mut().zip(channel.input) {
+                            *g += output * input;
+                        }
+                    }
+                }
+                gain
+            })
+            .collect();
+        let prompt = coefficients
+            .iter()
+            .map(|k| PromptCoefficients { direct: k.direct, rate: k.rate })
+            .collect();
+        Ok(Self { prompt, settled, lags })
+    }
+}
+
+impl StationLag {
+    fn new(
+        model: &RotorModel,
+        collocation: &Collocation,
+        speeds: &[f64],
+        (coefficients, channel): (&[SectionCoefficients], usize),
+    ) -> Result<Self, ResponseError> {
+        let semichord = 0.5 * model.chord;
+        let of = |k: &SectionCoefficients| k.lags[channel];
+        let rates: Vec<f64> = speeds
+            .iter()
+            .zip(coefficients)
+            .map(|(speed, k)| of(k).pole * (speed / semichord).max(SLOWEST_RATE))
+            .collect();
+        let gains = (0..3)
+            .map(|output| {
+                let along: Vec<f64> = coefficients.iter().map(|k| of(k).output[output]).collect();
+                (output, along)
+            })
+            .filter(|(_, along)| along.iter().any(|gain| *gain != 0.0))
+            .collect();
+        let input = coefficients.first().map_or([0.0; 4], |k| of(k).input);
+        Ok(Self { input, gains, lag: PeriodicLag::new(collocation, &rates)? })
     }
 }

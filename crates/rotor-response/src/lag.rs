@@ -45,19 +45,13 @@ impl Collocation {
     }
 }
 
-/// The solved element of one lag channel.
-#[derive(Debug, Clone)]
-struct ElementOperator {
-    start: DVector<f64>,
-    drive: DMatrix<f64>,
-    end_start: f64,
-    end_drive: DVector<f64>,
-}
-
-/// One lag channel over one revolution.
+/// One lag channel over one revolution, its elements solved.
 #[derive(Debug, Clone)]
 pub(crate) struct PeriodicLag {
-    elements: Vec<ElementOperator>,
+    points_per_element: usize,
+    /// Element by element, one row per point: `alpha`, then the row of `B`; a last row with `e` and
+    /// `f`.
+    table: Vec<f64>,
     closing: f64,
 }
 
@@ -69,45 +63,48 @@ impl PeriodicLag {
     pub(crate) fn new(collocation: &Collocation, rates: &[f64]) -> Result<Self, ResponseError> {
         let g = collocation.points();
         let half = collocation.half_width;
-        let mut elements = Vec::with_capacity(collocation.elements);
+        let mut table = Vec::with_capacity(collocation.elements * (g + 1) * (g + 1));
+        let mut passed = 1.0;
         for chunk in rates.chunks_exact(g) {
-            let scaled = DMatrix::from_fn(g, g, |i, j| {
-                half * collocation.integration[(i, j)] * chunk[j]
-            });
+            let scaled =
+                DMatrix::from_fn(g, g, |i, j| half * collocation.integration[(i, j)] * chunk[j]);
             let system = (DMatrix::identity(g, g) + &scaled).lu();
             let start = system.solve(&DVector::from_element(g, 1.0));
             let drive = system.solve(&scaled);
             let (Some(start), Some(drive)) = (start, drive) else {
                 return Err(ResponseError::LagSingular { largest_rate: max_abs(chunk) });
             };
+            for i in 0..g {
+                table.push(start[i]);
+                table.extend(drive.row(i).iter());
+            }
             let weights = DVector::from_fn(g, |i, _| half * collocation.end_weights[i] * chunk[i]);
             let end_start = 1.0 - weights.dot(&start);
-            let end_drive = &weights - drive.transpose() * &weights;
-            elements.push(ElementOperator { start, drive, end_start, end_drive });
+            table.push(end_start);
+            table.extend((&weights - drive.transpose() * &weights).iter());
+            passed *= end_start;
         }
-        let closing = 1.0 - elements.iter().map(|e| e.end_start).product::<f64>();
+        let closing = 1.0 - passed;
         if !closing.is_finite() || closing.abs() < 1e-12 {
             return Err(ResponseError::LagSingular { largest_rate: max_abs(rates) });
         }
-        Ok(Self { elements, closing })
+        Ok(Self { points_per_element: g, table, closing })
     }
 
-    /// The periodic state at all points for the drive `r`, added into `out` through `add`.
+    /// The periodic state at all points for the drive `r`, written to `out`.
     pub(crate) fn periodic_state(&self, drive: &[f64], out: &mut Vec<f64>) {
-        let g = drive.len() / self.elements.len();
-        let step = |x: f64, (element, r): (&ElementOperator, &[f64])| {
-            x * element.end_start
-                + element.end_drive.iter().zip(r).map(|(a, b)| a * b).sum::<f64>()
+        let g = self.points_per_element;
+        let value = |row: &[f64], x0: f64, r: &[f64]| -> f64 {
+            row[0] * x0 + row[1..].iter().zip(r).map(|(a, b)| a * b).sum::<f64>()
         };
-        let pairs = || self.elements.iter().zip(drive.chunks_exact(g));
-        let mut x0 = pairs().fold(0.0, step) / self.closing;
+        let elements = || self.table.chunks_exact((g + 1) * (g + 1)).zip(drive.chunks_exact(g));
+        let end = |x0: f64, (rows, r): (&[f64], &[f64])| value(&rows[g * (g + 1)..], x0, r);
+        let mut x0 = elements().fold(0.0, end) / self.closing;
         out.clear();
-        for (element, r) in pairs() {
-            for i in 0..g {
-                let forced: f64 = (0..g).map(|j| element.drive[(i, j)] * r[j]).sum();
-                out.push(x0 * element.start[i] + forced);
-            }
-            x0 = step(x0, (element, r));
+        for (rows, r) in elements() {
+            let mut lines = rows.chunks_exact(g + 1);
+            out.extend(lines.by_ref().take(g).map(|row| value(row, x0, r)));
+            x0 = end(x0, (rows, r));
         }
     }
 }

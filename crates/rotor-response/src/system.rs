@@ -103,7 +103,7 @@ impl ResponseSystem<'_> {
             .zip(lags)
             .enumerate()
             .map(|(s, (flow, &lag))| {
-                section_loads(self.scales, flow, self.air.coefficients(s, point), lag)
+                section_loads(self.scales, flow, self.air.prompt(s, point), lag)
             })
             .collect()
     }

@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::files::{BenchData, RunUse};
-use crate::output::{Printable, table};
+use crate::output::{Printable, Sheet, table};
 use crate::problem::Place;
 use crate::stored_actuator::{FitUse, StoredActuator, StoredFit, StoredKind};
 use preisach_dyn::identify::{
@@ -179,42 +179,49 @@ pub struct IdentifyResult {
 
 impl Printable for IdentifyResult {
     fn text(&self) -> String {
-        let mut text = format!("{}\n", self.title);
-        text += &format!("Data   {}\nSplit  {}\n", self.dataset, self.split);
-        text += &format!(
-            "Gain   {:.6} deg/um; {:.3} deg of the records is zero flap angle\n",
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!("{}", self.title));
+        sheet.line(format_args!("Data   {}\nSplit  {}", self.dataset, self.split));
+        sheet.line(format_args!(
+            "Gain   {:.6} deg/um; {:.3} deg of the records is zero flap angle",
             self.deg_per_um, self.zero_deg
-        );
-        text += &format!(
-            "Output-error refinement {:?}: rms NRMSE of the trained runs {:.2} % before, {:.2} % after\n",
+        ));
+        sheet.line(format_args!(
+            "Output-error refinement {:?}: rms NRMSE of the trained runs {:.2} % before, {:.2} % after",
             self.refinement.outcome,
             100.0 * self.refinement.nrmse_before,
             100.0 * self.refinement.nrmse_after
-        );
+        ));
         for (title, use_as) in
             [("Trained runs", FitUse::Trained), ("Held-out runs", FitUse::HeldOut)]
         {
-            let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
-            text += &format!("\n{title}\n");
-            text += &table(
-                &["run", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg"],
-                self.runs.iter().filter(|r| r.use_as == use_as).map(|r| {
-                    vec![
-                        r.id.clone(),
-                        format!("{:.1}", r.frequency_hz),
-                        format!("{:.0}", r.amplitude_volt),
-                        format!("{:.2}", r.nrmse_percent),
-                        format!("{:.1}", r.static_nrmse_percent),
-                        optional(r.amplitude_error_percent),
-                        optional(r.phase_error_deg),
-                    ]
-                }),
-            );
+            sheet.line(format_args!("\n{title}"));
+            sheet.block(&fit_table(self.runs.iter().filter(|r| r.use_as == use_as)));
         }
-        text += "\nNRMSE: rms error / standard deviation of the measured output. Amplitude and phase error at the\nstrongest harmonic of the command, steady cycles; positive phase: the model lags too much.\n";
+        sheet.line(format_args!(
+            "\nNRMSE: rms error / standard deviation of the measured output. Amplitude and phase error at\nthe strongest harmonic of the command, steady cycles; positive phase: the model lags too much."
+        ));
         if let Some(path) = &self.written_to {
-            text += &format!("Actuator written to {path}\n");
+            sheet.line(format_args!("Actuator written to {path}"));
         }
-        text
+        sheet.finish()
     }
+}
+
+fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>) -> String {
+    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
+    table(
+        &["run", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg"],
+        runs.map(|r| {
+            vec![
+                r.id.clone(),
+                format!("{:.1}", r.frequency_hz),
+                format!("{:.0}", r.amplitude_volt),
+                format!("{:.2}", r.nrmse_percent),
+                format!("{:.1}", r.static_nrmse_percent),
+                optional(r.amplitude_error_percent),
+                optional(r.phase_error_deg),
+            ]
+        }),
+    )
 }

@@ -31,6 +31,7 @@ pub mod results;
 pub mod run;
 pub mod section;
 pub mod stored_actuator;
+pub mod study;
 
 pub use error::{Family, SimError};
 

@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::case::Case;
-use crate::output::{Printable, table};
+use crate::output::{Printable, Sheet, table};
 use crate::problem::Place;
 use rotor_fem::{BladeModel, CoupledMode, FemError, GyroscopicTerms, fan_plot, modes};
 use serde::Serialize;
@@ -70,29 +70,30 @@ pub fn rotating_modes(
 
 impl Printable for ModesResult {
     fn text(&self) -> String {
-        let mut text = format!("Rotor speed {:.4} rad/s\n", self.rotor_speed_rad_s);
-        text += &table(
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!("Rotor speed {:.4} rad/s", self.rotor_speed_rad_s));
+        sheet.block(&table(
             &["mode", "per rev", "Hz"],
             numbered(&self.modes).zip(&self.modes).map(|(name, mode)| {
                 let per_rev = mode.per_rev.map_or_else(|| "-".to_owned(), |p| format!("{p:.6}"));
                 vec![name, per_rev, format!("{:.4}", mode.hz)]
             }),
-        );
+        ));
         if !self.fan.is_empty() {
-            text += "\nFrequencies in Hz over rotor speed\n";
+            sheet.line(format_args!("\nFrequencies in Hz over rotor speed"));
             let names: Vec<String> = numbered(&self.modes).collect();
             let mut header = vec!["rad/s"];
             header.extend(names.iter().map(String::as_str));
-            text += &table(
+            sheet.block(&table(
                 &header,
                 self.fan.iter().map(|point| {
                     std::iter::once(format!("{:.4}", point.rotor_speed_rad_s))
                         .chain(point.modes.iter().map(|m| format!("{:.3}", m.hz)))
                         .collect()
                 }),
-            );
+            ));
         }
-        text
+        sheet.finish()
     }
 }
 

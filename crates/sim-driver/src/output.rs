@@ -52,6 +52,30 @@ pub fn print(text: &str) -> Result<(), SimError> {
     }
 }
 
+/// Text that grows by lines and tables.
+#[derive(Debug, Clone, Default)]
+pub struct Sheet {
+    text: String,
+}
+
+impl Sheet {
+    /// Adds a line: `sheet.line(format_args!(...))`.
+    pub fn line(&mut self, line: std::fmt::Arguments<'_>) {
+        self.text.push_str(&line.to_string());
+        self.text.push('\n');
+    }
+
+    /// Adds a table or any text that ends in a line end.
+    pub fn block(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
+    /// The text.
+    pub fn finish(self) -> String {
+        self.text
+    }
+}
+
 /// A plain table with a header and aligned columns.
 pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     use comfy_table::{CellAlignment, Table, presets::NOTHING};

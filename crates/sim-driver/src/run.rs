@@ -3,7 +3,7 @@
 use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
 use crate::case::{LoadedCase, TrimValues};
-use crate::output::{Printable, table};
+use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
 use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine};
 use rotor_response::{ResponseError, Rotor, RotorSolver};
@@ -118,24 +118,26 @@ fn residuals(solution: &TrimSolution) -> Residuals {
 impl Printable for RunResult {
     fn text(&self) -> String {
         let (t, r) = (&self.trim, &self.residuals);
-        let mut text = format!(
-            "Trim       theta0 {:.4} deg, theta1c {:.4} deg, theta1s {:.4} deg, shaft tilt {:.4} deg, bank {:.4} deg\n",
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!(
+            "Trim       theta0 {:.4} deg, theta1c {:.4} deg, theta1s {:.4} deg, shaft tilt {:.4} deg, bank {:.4} deg",
             t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg
-        );
-        text += &format!(
-            "           C_T/sigma {:.5}, induced inflow {:.5}, {} iterations\n",
+        ));
+        sheet.line(format_args!(
+            "           C_T/sigma {:.5}, induced inflow {:.5}, {} iterations",
             t.ct_sigma, t.induced_inflow, t.iterations
-        );
-        text += &format!(
-            "Residuals  trim {:.1e}, periodicity {:.1e}, inflow {:.1e}\n\n",
+        ));
+        sheet.line(format_args!(
+            "Residuals  trim {:.1e}, periodicity {:.1e}, inflow {:.1e}\n",
             r.trim, r.periodicity, r.inflow
-        );
+        ));
         let baseline = self.baseline.hub_4_per_rev;
-        let parts = [
-            baseline.fx, baseline.fy, baseline.fz, baseline.mx, baseline.my, baseline.mz,
-        ];
-        text += "Hub loads at the blade number per rev, fixed frame, without control\n";
-        text += &table(
+        let parts =
+            [baseline.fx, baseline.fy, baseline.fz, baseline.mx, baseline.my, baseline.mz];
+        sheet.line(format_args!(
+            "Hub loads at the blade number per rev, fixed frame, without control"
+        ));
+        sheet.block(&table(
             &["load", "cosine", "sine", "amplitude"],
             HubLoads::NAMES.iter().zip(parts).map(|(name, [c, s])| {
                 vec![
@@ -145,12 +147,14 @@ impl Printable for RunResult {
                     format!("{:.6e}", c.hypot(s)),
                 ]
             }),
-        );
+        ));
         if !self.control.is_empty() {
-            text += "\nControl (reduction of J = 100 (1 - J/J0); flaps from root to tip)\n";
-            text += &self.control_table();
+            sheet.line(format_args!(
+                "\nControl (reduction of J = 100 (1 - J/J0); flaps from root to tip)"
+            ));
+            sheet.block(&self.control_table());
         }
-        text
+        sheet.finish()
     }
 }
 

@@ -84,11 +84,11 @@ impl StoredActuator {
             path: path.to_path_buf(),
             reason: e.to_string(),
         })?;
-        let header = format!(
+        let comment = format!(
             "// Actuator identified by hhc {} from: {}\n// Written by `hhc identify`; identify again rather than edit.\n",
             self.program_version, self.title
         );
-        write_atomic(path, (header + &text).as_bytes())
+        write_atomic(path, text.replacen('\n', &format!("\n{comment}"), 1).as_bytes())
     }
 }
 

@@ -43,7 +43,9 @@ impl Criterion {
     /// Reference value and bound as the page shows them.
     pub(super) fn shown(&self) -> [String; 2] {
         match *self {
-            Self::Near { expected, within } => [figure(expected), format!("± {}", figure(within))],
+            Self::Near { expected, within } => {
+                [precise(expected, within), format!("± {}", figure(within))]
+            }
             Self::AtMost(limit) => ["0".to_owned(), format!("≤ {}", figure(limit))],
             Self::AtLeast(limit) => ["–".to_owned(), format!("≥ {}", figure(limit))],
             Self::Between(low, high) => [
@@ -123,7 +125,10 @@ impl Row {
     pub(super) fn cells(&self) -> [String; COLUMNS] {
         let [expected, bound] = self.check.criterion.shown();
         let got = match &self.got {
-            Ok(value) => figure(*value),
+            Ok(value) => match self.check.criterion {
+                Criterion::Near { within, .. } => precise(*value, within),
+                _ => figure(*value),
+            },
             Err(_) => "not computed".to_owned(),
         };
         [
@@ -150,25 +155,45 @@ pub(super) const TITLES: [&str; COLUMNS] = [
     "id", "quantity", "unit", "expected", "got", "bound", "pass", "source",
 ];
 
-/// A number with as many digits as a reader can use.
+/// A number with three significant digits, without zeros that say nothing.
 pub(super) fn figure(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 {
-        "0".to_owned()
-    } else if !(1e-3..1e6).contains(&size) {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
         let text = format!("{value:.2e}");
-        text.replace(".00e", "e")
-            .replacen("0e", "e", usize::from(!text.contains(".00e")))
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, ""));
+        return format!("{}e{exponent}", without_zeros(digits))
+            .trim_end_matches('e')
+            .to_owned();
+    }
+    fixed(value, 2 - exponent_of(size))
+}
+
+/// A number with one digit more than a tolerance has.
+fn precise(value: f64, within: f64) -> String {
+    fixed(value, 1 - exponent_of(within))
+}
+
+/// Power of ten of the leading digit.
+fn exponent_of(size: f64) -> i32 {
+    (-30..30)
+        .rev()
+        .find(|n| size >= 0.999_999 * 10_f64.powi(*n))
+        .unwrap_or(-30)
+}
+
+fn fixed(value: f64, decimals: i32) -> String {
+    let decimals = usize::try_from(decimals).unwrap_or(0);
+    without_zeros(&format!("{value:.decimals$}")).to_owned()
+}
+
+fn without_zeros(digits: &str) -> &str {
+    if digits.contains('.') {
+        digits.trim_end_matches('0').trim_end_matches('.')
     } else {
-        // seven significant digits, without the zeros that say nothing
-        let before = (1..=6).find(|n| size < 10_f64.powi(*n)).unwrap_or(6);
-        let digits = usize::try_from(7 - before).unwrap_or(0);
-        let text = format!("{value:.digits$}");
-        if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        }
+        digits
     }
 }
 
@@ -180,10 +205,12 @@ mod tests {
     fn figures_are_short_and_readable() {
         for (value, text) in [
             (0.0, "0"),
-            (15.93, "15.93"),
+            (15.934, "15.9"),
             (0.1, "0.1"),
-            (1.125_789_21, "1.125789"),
-            (-143.25, "-143.25"),
+            (0.004_627, "0.00463"),
+            (-143.25, "-143"),
+            (12_345.6, "12346"),
+            (1000.0, "1000"),
             (4e-8, "4e-8"),
             (2.56e-9, "2.56e-9"),
             (2.5e-9, "2.5e-9"),
@@ -193,6 +220,9 @@ mod tests {
         ] {
             assert_eq!(figure(value), text);
         }
+        assert_eq!(precise(0.008_113_622_59, 1e-9), "0.0081136226");
+        assert_eq!(precise(4.588_073, 4.6e-5), "4.588073");
+        assert_eq!(precise(2.0, 0.5), "2");
     }
 
     #[test]

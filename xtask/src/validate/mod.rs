@@ -68,7 +68,12 @@ pub fn text(rows: &[Row]) -> String {
     table.set_header(["id", "quantity", "unit", "expected", "got", "bound", "pass"]);
     let mut failures = Vec::new();
     for row in rows {
-        table.add_row(row.cells().into_iter().take(7));
+        table.add_row(
+            row.cells()
+                .into_iter()
+                .take(7)
+                .map(|cell| cell.replace('*', "")),
+        );
         if let Err(error) = &row.got {
             failures.push(format!("{}: {error}\n", row.check.id));
         }

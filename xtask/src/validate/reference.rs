@@ -19,7 +19,7 @@ pub(super) struct TableRow<'a> {
 }
 
 impl Table {
-    /// Reads `fixtures/reference/{file}`; lines that start with `#` are comments.
+    /// Reads `fixtures/reference/{file}`; lines that start with `#` are comments, and rows may end early.
     pub(super) fn read(file: &str) -> Result<Self, CheckError> {
         let path = crate::workspace::root()
             .join("fixtures/reference")
@@ -30,6 +30,7 @@ impl Table {
         };
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
+            .flexible(true)
             .trim(csv::Trim::All)
             .from_path(&path)
             .map_err(failed)?;

@@ -33,7 +33,7 @@ pub(super) const AREA: Area = Area {
         },
         Check {
             id: "V-TIME-03",
-            quantity: "order of convergence of the harmonics 1 to 3, from 4 to 8 elements of order 3",
+            quantity: "order of convergence of the harmonics 1 to 3, from 8 to 16 elements of order 3",
             unit: "-",
             source: "theory: harmonics converge with twice the polynomial order",
             criterion: Criterion::Between(5.5, 7.0),
@@ -117,6 +117,6 @@ fn flap_error(elements: usize, range: std::ops::RangeInclusive<usize>) -> Result
 }
 
 fn flap_order() -> Result<f64, CheckError> {
-    let (coarse, fine) = (harmonic_error(4, 3, 1..=3)?, harmonic_error(8, 3, 1..=3)?);
+    let (coarse, fine) = (harmonic_error(8, 3, 1..=3)?, harmonic_error(16, 3, 1..=3)?);
     Ok((coarse / fine).log2())
 }

@@ -88,3 +88,65 @@ pub(super) fn fit(
     result.noise = (left / freedom as f64).sqrt();
     Ok(result)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, Normal};
+
+    /// 2 + 3 sin + 0.5 cos 3 at 66.67 samples per cycle.
+    fn signal(i: usize) -> f64 {
+        let psi = TAU * i as f64 * 0.015;
+        2.0 + 3.0 * psi.sin() + 0.5 * (3.0 * psi).cos()
+    }
+
+    #[test]
+    fn a_series_is_found_exactly_though_a_cycle_is_no_whole_number_of_samples() {
+        let values: Vec<f64> = (0..500).map(signal).collect();
+        let found = fit(&values, 100..300, 0.015, 8).unwrap();
+        assert_abs_diff_eq!(found.series.mean, 2.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(found.series.harmonic(1).sine, 3.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(found.series.harmonic(3).cosine, 0.5, epsilon = 1e-12);
+        assert!(found.noise < 1e-12);
+        let (value, rate) = found.value_and_rate(777);
+        assert_abs_diff_eq!(value, signal(777), epsilon = 1e-11);
+        let central = 0.5 * (signal(778) - signal(776));
+        assert_abs_diff_eq!(rate, central, epsilon = 3e-2);
+    }
+
+    #[test]
+    fn noise_is_measured_and_hardly_reaches_the_derivative() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let noise = Normal::new(0.0, 0.02).unwrap();
+        let values: Vec<f64> = (0..2000)
+            .map(|i| signal(i) + noise.sample(&mut rng))
+            .collect();
+        let found = fit(&values, 0..2000, 0.015, 10).unwrap();
+        assert!((found.noise / 0.02 - 1.0).abs() < 0.1, "{}", found.noise);
+        let exact = fit(
+            &(0..2000).map(signal).collect::<Vec<_>>(),
+            0..2000,
+            0.015,
+            10,
+        )
+        .unwrap();
+        let square = |rate: f64, i: usize| (rate - exact.value_and_rate(i).1).powi(2);
+        let (series, differences) = (1..1999).fold((0.0, 0.0), |(a, b), i| {
+            let central = 0.5 * (values[i + 1] - values[i - 1]);
+            (
+                a + square(found.value_and_rate(i).1, i),
+                b + square(central, i),
+            )
+        });
+        // differences of the samples carry far more of the noise
+        assert!(series * 100.0 < differences, "{series} {differences}");
+    }
+
+    #[test]
+    fn too_few_samples_are_refused() {
+        assert!(fit(&[0.0; 10], 0..10, 0.1, 5).is_err());
+    }
+}

@@ -160,3 +160,57 @@ impl LeastSquaresProgram {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    /// A line through three points, `x0 + x1 t`.
+    fn line() -> LeastSquaresProgram {
+        let mut program = LeastSquaresProgram::new(2);
+        for (t, y) in [(0.0, 1.0), (1.0, 0.0), (2.0, -1.5)] {
+            program.add(&[(0, 1.0), (1, t)], y, 1.0 / 3.0);
+        }
+        program
+    }
+
+    #[test]
+    fn without_constraints_it_is_least_squares() {
+        // normal equations by hand: slope -5/4, intercept 13/12
+        let x = line().solve("test").unwrap();
+        assert_abs_diff_eq!(x[0], 13.0 / 12.0, epsilon = 1e-7);
+        assert_abs_diff_eq!(x[1], -1.25, epsilon = 1e-7);
+    }
+
+    #[test]
+    fn bounds_and_equalities_hold() {
+        let mut program = line();
+        program.at_least(vec![(1, 1.0)], -1.0);
+        let x = program.solve("test").unwrap();
+        // slope at its bound, intercept = mean of y + t
+        assert_abs_diff_eq!(x[1], -1.0, epsilon = 1e-7);
+        assert_abs_diff_eq!(x[0], 2.5 / 3.0, epsilon = 1e-7);
+        program.equal_zero(vec![(0, 1.0), (1, 1.0)]);
+        let x = program.solve("test").unwrap();
+        assert_abs_diff_eq!(x[0] + x[1], 0.0, epsilon = 1e-7);
+    }
+
+    #[test]
+    fn contradicting_constraints_are_an_error() {
+        let mut program = line();
+        program.at_least(vec![(0, 1.0)], 1.0);
+        program.at_least(vec![(0, -1.0)], 1.0);
+        let error = program.solve("test").unwrap_err();
+        assert!(
+            matches!(
+                error,
+                PreisachError::QuadraticProgram {
+                    status: QpStatus::Infeasible,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+    }
+}

@@ -372,3 +372,81 @@ impl SplitRule {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn record(time_step_s: f64, seconds: f64, voltage: impl Fn(f64) -> f64) -> BenchRecord {
+        let mut voltage_volt = Vec::new();
+        while voltage_volt.len() as f64 * time_step_s <= seconds {
+            voltage_volt.push(voltage(voltage_volt.len() as f64 * time_step_s));
+        }
+        BenchRecord {
+            id: "test".into(),
+            time_step_s,
+            output_deg: voltage_volt.clone(),
+            voltage_volt,
+            record_use: None,
+            base_frequency_hz: None,
+        }
+    }
+
+    #[test]
+    fn a_sine_after_a_rest_is_found_with_its_steady_cycles() {
+        // 15 Hz at 2 kHz: 133.33 samples per period
+        let rest = |t: f64| (TAU * 15.0 * (t - 0.25).max(0.0)).sin();
+        let drive = record(5e-4, 1.0, |t| 65.0 + 40.0 * rest(t)).drive();
+        assert_eq!(drive.waveform, Waveform::SingleHarmonic);
+        assert!((drive.base_hz - 15.0).abs() < 1e-3, "{drive:?}");
+        assert!((drive.amplitude_volt - 40.0).abs() < 0.1);
+        // 0.75 s hold 11 periods; the first is left out
+        assert_eq!(drive.steady, 2001 - 1333..2001);
+    }
+
+    #[test]
+    fn a_mix_has_the_period_of_the_revolution() {
+        let mix = |t: f64| {
+            let psi = TAU * 5.0 * t;
+            65.0 + 30.0 * (2.0 * psi).cos()
+                + 30.0 * (3.0 * psi - 1.2).cos()
+                + 20.0 * (4.0 * psi).sin()
+        };
+        let drive = record(1e-3, 1.6, mix).drive();
+        assert_eq!(drive.waveform, Waveform::Mix);
+        assert!((drive.base_hz - 5.0).abs() < 1e-3, "{drive:?}");
+        assert!([2, 3].contains(&drive.strongest_harmonic));
+    }
+
+    #[test]
+    fn triangles_steps_and_constants_are_told_apart() {
+        let triangle = |t: f64| {
+            let phase = (0.2 * t).fract();
+            65.0 + 85.0 * (1.0 - 4.0 * (phase - 0.5).abs())
+        };
+        let drive = record(5e-3, 20.0, triangle).drive();
+        assert_eq!(drive.waveform, Waveform::SingleHarmonic);
+        assert!((drive.base_hz - 0.2).abs() < 1e-4, "{drive:?}");
+        // one sweep: no period to find, the speed of a 0.2 Hz triangle
+        let drive = record(5e-3, 2.4, triangle).drive();
+        assert_eq!(drive.waveform, Waveform::Transient);
+        assert!((drive.base_hz - 0.2).abs() < 0.01, "{drive:?}");
+        let drive = record(5e-3, 2.0, |_| 65.0).drive();
+        assert_eq!((drive.waveform, drive.base_hz), (Waveform::Constant, 0.0));
+        // a drifting frequency does not repeat
+        let drive = record(1e-3, 5.0, |t| 65.0 + 50.0 * (TAU * (t + 0.3 * t * t)).sin()).drive();
+        assert_eq!(drive.waveform, Waveform::Transient);
+    }
+
+    #[test]
+    fn a_given_frequency_is_used() {
+        let mut sine = record(1e-3, 3.0, |t| 65.0 + 50.0 * (TAU * 2.0 * t).sin());
+        sine.base_frequency_hz = Some(1.0);
+        let drive = sine.drive();
+        assert!(
+            (drive.base_hz - 1.0).abs() < 1e-12 && drive.strongest_harmonic == 2,
+            "{drive:?}"
+        );
+    }
+}

@@ -320,7 +320,8 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
     let room_volt = (high_volt - bias_volt).min(bias_volt - low_volt);
     let slack = 1e-9 * (high_volt - low_volt).abs();
     // a range that is no range and an amplitude that is none are reported on their own
-    if low_volt < high_volt && amplitude_volt > 0.0 && !(amplitude_volt <= room_volt + slack) {
+    let fits = amplitude_volt <= room_volt + slack;
+    if low_volt < high_volt && amplitude_volt > 0.0 && !fits {
         let fault = Fault::VoltageOutsideRange {
             bias_volt,
             amplitude_volt,

@@ -143,12 +143,10 @@ fn check_fields(dataset: &DatasetFile, index: &RonIndex, problems: &mut Problems
     if dataset.runs.is_empty() {
         problems.push(index.place("runs"), Fault::EmptyList { of: "run" });
     }
-    if let Some(value) = dataset.flap_deg_per_um {
-        if !(value.is_finite() && value > 0.0) {
-            let remedy = "leave it out to have identification set the gain";
-            let fault = Fault::NotPositive { value, unit: "deg/um", remedy };
-            problems.push(index.place("flap_deg_per_um"), fault);
-        }
+    if let Some(value) = dataset.flap_deg_per_um.filter(|v| !(v.is_finite() && *v > 0.0)) {
+        let remedy = "leave it out to have identification set the gain";
+        let fault = Fault::NotPositive { value, unit: "deg/um", remedy };
+        problems.push(index.place("flap_deg_per_um"), fault);
     }
     let mut ids = BTreeMap::new();
     let mut files = BTreeMap::new();
@@ -167,13 +165,11 @@ fn check_fields(dataset: &DatasetFile, index: &RonIndex, problems: &mut Problems
                 problems.push(index.place(&path), fault);
             }
         }
-        if let Some(value) = run.start_s {
-            if !(value.is_finite() && value >= 0.0) {
-                let (low, high, unit) = (0.0, f64::MAX, "s");
-                let remedy = "give the seconds since switch-on, or leave it out";
-                let fault = Fault::OutOfRange { value, low, high, unit, remedy };
-                problems.push(index.place(&format!("runs[{i}].start_s")), fault);
-            }
+        if let Some(value) = run.start_s.filter(|v| !(v.is_finite() && *v >= 0.0)) {
+            let (low, high, unit) = (0.0, 1e9, "s");
+            let remedy = "give the seconds since switch-on, or leave it out";
+            let fault = Fault::OutOfRange { value, low, high, unit, remedy };
+            problems.push(index.place(&format!("runs[{i}].start_s")), fault);
         }
     }
 }

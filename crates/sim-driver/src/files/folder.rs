@@ -84,16 +84,12 @@ impl Source {
     /// [`Fault::Unreadable`] or [`Fault::NotText`].
     pub fn read(path: &Path) -> Result<Self, Problem> {
         let folder = Folder::of_file(path);
-        match path.file_name().and_then(|n| n.to_str()) {
-            Some(file) => folder.read(file),
-            None => {
-                let reason = "not a file name".to_owned();
-                Err(Problem::new(
-                    Place::file(path.display().to_string()),
-                    Fault::Unreadable { reason },
-                ))
-            }
+        if let Some(file) = path.file_name().and_then(|n| n.to_str()) {
+            return folder.read(file);
         }
+        let reason = "not a file name".to_owned();
+        let place = Place::file(path.display().to_string());
+        Err(Problem::new(place, Fault::Unreadable { reason }))
     }
 }
 

@@ -219,7 +219,7 @@ impl Scanner<'_> {
     }
 
     fn raw_string(&mut self, start: usize) {
-        let hashes = self.bytes[start..self.at].iter().filter(|&&b| b == b'#').count();
+        let hashes = self.bytes[start..self.at].split(|&b| b == b'#').count() - 1;
         self.at += 1;
         let mut end = vec![b'"'];
         end.extend(std::iter::repeat_n(b'#', hashes));
@@ -247,7 +247,6 @@ impl Scanner<'_> {
         loop {
             self.skip_blank();
             match self.peek() {
-                None => return,
                 Some(b) if b == close => {
                     self.at += 1;
                     return;
@@ -256,7 +255,7 @@ impl Scanner<'_> {
                     self.at += 1;
                     continue;
                 }
-                Some(b')' | b']' | b'}') => return,
+                None | Some(b')' | b']' | b'}') => return,
                 Some(_) => {}
             }
             let start = self.at;

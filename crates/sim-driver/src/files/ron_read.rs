@@ -60,11 +60,9 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
 /// # Errors
 /// The error of the RON writer: a value that RON cannot express.
 pub fn ron_text<T: Serialize>(value: &T) -> Result<String, RonError> {
-    let pretty = PrettyConfig::new()
-        .extensions(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
-        .separate_tuple_members(false)
-        .compact_arrays(true);
-    options().to_string_pretty(value, pretty).map(|text| text + "\n")
+    let pretty = PrettyConfig::new().separate_tuple_members(false).compact_arrays(true);
+    let text = options().to_string_pretty(value, pretty)?;
+    Ok(format!("#![enable(implicit_some, unwrap_variant_newtypes)]\n{text}\n"))
 }
 
 /// Notes an error; returns the path and the bytes of the field it belongs to, if it is confined to one.

@@ -84,6 +84,7 @@ impl FlapDrive {
                     Ok(solution) => solution.bias_volt,
                     Err(RunError::Plant { source, .. }) => return Err(source.into()),
                     Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
+                    Err(_) => return Err(PlantError::BiasSearch),
                 };
                 // the search may have ended on another trial than its last one
                 let response = match orbit {

@@ -17,6 +17,9 @@ pub enum PlantError {
     /// No bias voltage centres the flap.
     #[error("bias voltage: {0}")]
     Bias(ControlError),
+    /// The search for the bias voltage ended for a reason unknown here.
+    #[error("the search for the bias voltage failed")]
+    BiasSearch,
     /// The harmonics of the voltage alone are larger than the range.
     #[error(
         "the voltage swings over {swing_volt:.2} V, the actuator takes {span_volt:.2} V: lower the amplitudes"

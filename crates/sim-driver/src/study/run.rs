@@ -242,7 +242,7 @@ impl ControlSet<'_> {
             step_tolerance: control.step_tolerance,
             ..FeedbackSettings::default()
         };
-        let controller = FeedbackController::new(&t, self.weights(), settings)
+        let controller = FeedbackController::new(&t, &self.weights(), settings)
             .map_err(|e| failed(e.into()))?;
         let (run, rho) = match control.effort {
             EffortChoice::MeetStroke => {

@@ -1,35 +1,37 @@
 //! Running `hhc` in a folder of its own.
 #![expect(clippy::disallowed_methods, reason = "tests write the files they try the command on")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot set up its folder fails")]
 
+use std::fmt::Write;
 use std::path::Path;
 use std::process::{Command, Output};
 
 /// A folder for one test.
-pub struct Place {
+pub(crate) struct Place {
     folder: tempfile::TempDir,
 }
 
 impl Place {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { folder: tempfile::tempdir().unwrap() }
     }
 
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    pub fn write(&self, name: &str, text: &str) {
+    pub(crate) fn write(&self, name: &str, text: &str) {
         let path = self.path().join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();
     }
 
-    pub fn read(&self, name: &str) -> String {
+    pub(crate) fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path().join(name)).unwrap()
     }
 
     /// Names of everything in the folder, sorted, folders ending in `/`.
-    pub fn listing(&self) -> Vec<String> {
+    pub(crate) fn listing(&self) -> Vec<String> {
         let mut names = Vec::new();
         list(self.path(), "", &mut names);
         names.sort();
@@ -37,7 +39,7 @@ impl Place {
     }
 
     /// Runs `hhc` here.
-    pub fn hhc(&self, args: &[&str]) -> Ran {
+    pub(crate) fn hhc(&self, args: &[&str]) -> Ran {
         let output = Command::new(env!("CARGO_BIN_EXE_hhc"))
             .args(args)
             .current_dir(self.path())
@@ -60,10 +62,10 @@ fn list(folder: &Path, prefix: &str, names: &mut Vec<String>) {
 }
 
 /// What a run of `hhc` left.
-pub struct Ran {
-    pub code: i32,
-    pub out: String,
-    pub err: String,
+pub(crate) struct Ran {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
     args: String,
 }
 
@@ -79,14 +81,14 @@ impl Ran {
 
     /// Asserts success and returns what was printed.
     #[track_caller]
-    pub fn done(self) -> String {
+    pub(crate) fn done(self) -> String {
         assert_eq!(self.code, 0, "hhc {}\n{}\n{}", self.args, self.out, self.err);
         self.out
     }
 
     /// Asserts success and parses the JSON printed.
     #[track_caller]
-    pub fn json(self) -> serde_json::Value {
+    pub(crate) fn json(self) -> serde_json::Value {
         let out = self.done();
         match serde_json::from_str(&out) {
             Ok(value) => value,
@@ -96,7 +98,7 @@ impl Ran {
 
     /// Asserts exit code 2, nothing on standard output, and that the message holds every part.
     #[track_caller]
-    pub fn rejected(self, parts: &[&str]) -> String {
+    pub(crate) fn rejected(self, parts: &[&str]) -> String {
         assert_eq!(self.code, 2, "hhc {}\n{}\n{}", self.args, self.out, self.err);
         assert!(self.out.is_empty(), "hhc {} printed\n{}", self.args, self.out);
         assert!(!self.err.contains("panicked") && !self.err.contains("bug"), "{}", self.err);
@@ -113,8 +115,7 @@ impl Ran {
 }
 
 /// A case that is quick to run: few modes, coarse in time, prescribed controls, no control.
-#[allow(dead_code, reason = "not every test file runs a case")]
-pub const QUICK_CASE: &str = "(
+pub(crate) const QUICK_CASE: &str = "(
     title: \"quick\",
     advance_ratio: 0.2,
     structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
@@ -127,29 +128,30 @@ pub const QUICK_CASE: &str = "(
 ";
 
 /// A small bench: one slow loop, one faster one at two amplitudes.
-#[allow(dead_code, reason = "not every test file needs a bench")]
-pub fn write_bench(place: &Place, folder: &str) {
+pub(crate) fn write_bench(place: &Place, folder: &str) {
     let mut runs = String::new();
     for (id, hz, amplitude, step_s) in [
-        ("slow", 0.2, 80.0, 0.02),
+        ("slow", 0.2, 80.0, 0.02_f64),
         ("one_large", 1.0, 80.0, 0.005),
         ("one_small", 1.0, 20.0, 0.005),
         ("five", 5.0, 80.0, 0.001),
     ] {
-        let samples = (4.0 / hz / step_s) as usize;
         let mut text = "time_s,command_V,displacement_um\n".to_owned();
         let mut x = 0.0;
-        for i in 0..=samples {
-            let time = i as f64 * step_s;
+        for i in 0..=20_000 {
+            let time = f64::from(i) * step_s;
+            if time > 4.0 / hz {
+                break;
+            }
             let u = 65.0 + amplitude * (std::f64::consts::TAU * hz * time).sin();
             // a play and a lag: hysteresis of its own kind, stepped finely
             for _ in 0..20 {
                 x += step_s / 20.0 / 0.01 * (2.5 * (u - 65.0) - x);
             }
-            text += &format!("{time:.4},{u:.5},{x:.5}\n");
+            writeln!(text, "{time:.4},{u:.5},{x:.5}").unwrap();
         }
         place.write(&format!("{folder}/{id}.csv"), &text);
-        runs += &format!("        (id: \"{id}\", file: \"{id}.csv\", role: Reference),\n");
+        writeln!(runs, "        (id: \"{id}\", file: \"{id}.csv\", role: Reference),").unwrap();
     }
     place.write(
         &format!("{folder}/dataset.ron"),

@@ -1,9 +1,7 @@
 //! Bad input: each kind gives exit code 2, a message with file, line and remedy, and leaves nothing
 //! half-written.
 
-mod common;
-
-use common::{Place, QUICK_CASE, write_bench};
+use crate::place::{Place, QUICK_CASE, write_bench};
 
 /// Changes one line of a bench and expects `hhc check` and `hhc identify` to refuse it.
 #[track_caller]
@@ -131,7 +129,7 @@ fn all_problems_of_a_data_folder_in_one_report() {
     let text = place.hhc(&["check", "bench"]).rejected(&[
         "dataset.ron:3:5: titel: unknown key `titel`, did you mean `title`?",
     ]);
-    assert!(text.contains("dataset.ron:8:43: runs[3].role: unknown choice `Refrence`, did you mean `Reference`?"), "{text}");
+    assert!(text.contains("dataset.ron:8:40: runs[3].role: unknown choice `Refrence`, did you mean `Reference`?"), "{text}");
     // the unknown role leaves a run without one: the records wait until that is mended
     place.write("bench/dataset.ron", &dataset.replace("Refrence", "Reference").replace("titel: \"x\", ", ""));
     let text = place.hhc(&["check", "bench"]).rejected(&[
@@ -252,9 +250,13 @@ fn an_actuator_file_that_was_tampered_with() {
     place.hhc(&["identify", "bench", "-o", "actuator.ron"]).done();
     place.hhc(&["check", "actuator.ron"]).done();
     let text = place.read("actuator.ron");
-    place.write("actuator.ron", &text.replacen("deg_per_um: ", "deg_per_um: -NaN, x: ", 1));
-    place.hhc(&["check", "actuator.ron"]).rejected(&["actuator.ron:"]);
-    place.write("actuator.ron", &text.replacen("range_volt: (-20.0,150.0)", "range_volt: (150.0,-20.0)", 1));
+    place.write("actuator.ron", &text.replacen("zero_um: ", "zero_um: NaN, x: ", 1));
+    place.hhc(&["check", "actuator.ron"]).rejected(&["model.calibration.x: unknown key `x`"]);
+    place.write("actuator.ron", &text.replacen("zero_um: ", "zero_um: inf, // ", 1));
+    place
+        .hhc(&["check", "actuator.ron"])
+        .rejected(&["model.calibration.zero_um: is refused: inf is no actuator's number"]);
+    place.write("actuator.ron", &text.replacen("(-20.0, 150.0)", "(150.0, -20.0)", 1));
     place.hhc(&["check", "actuator.ron"]).rejected(&["actuator.ron:", "is empty or not finite"]);
     place.write("actuator.ron", &text[..text.len() / 2]);
     place.hhc(&["check", "actuator.ron"]).rejected(&["actuator.ron:"]);

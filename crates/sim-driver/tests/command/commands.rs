@@ -1,12 +1,10 @@
 //! The commands that need no long computation: what they print, write and return.
 
-mod common;
-
-use common::{Place, QUICK_CASE, write_bench};
+use crate::place::{Place, QUICK_CASE, write_bench};
 use serde_json::Value;
 
 fn pair(value: &Value) -> [f64; 2] {
-    [value[0].as_f64().unwrap(), value[1].as_f64().unwrap()]
+    [0, 1].map(|i| value[i].as_f64().unwrap_or(f64::NAN))
 }
 
 #[track_caller]
