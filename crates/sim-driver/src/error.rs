@@ -4,6 +4,7 @@ use crate::problem::{Place, Problem, Problems};
 use flap_aero::AeroError;
 use preisach_dyn::PreisachError;
 use rotor_fem::FemError;
+use crate::study::StudyError;
 use rotor_response::ResponseError;
 use std::path::PathBuf;
 use trim::TrimError;
@@ -71,6 +72,14 @@ pub enum SimError {
         /// What went wrong.
         source: TrimError,
     },
+    /// The control study.
+    #[error("{place}: {source}")]
+    Study {
+        /// The control section of the case.
+        place: Place,
+        /// What went wrong.
+        source: StudyError,
+    },
 }
 
 /// The families of errors.
@@ -107,6 +116,7 @@ impl SimError {
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),
             Self::Trim { source, .. } => trim_family(source),
+            Self::Study { source, .. } => study_family(source),
         }
     }
 
@@ -141,6 +151,13 @@ fn response_family(error: &ResponseError) -> Family {
         | ResponseError::InflowNotConverged { .. } => Family::NumericalFailure,
         ResponseError::Fem(source) => blade_family(source),
         _ => Family::RejectedInput,
+    }
+}
+
+fn study_family(error: &StudyError) -> Family {
+    match error {
+        StudyError::NoActuator { .. } => Family::RejectedInput,
+        _ => Family::NumericalFailure,
     }
 }
 

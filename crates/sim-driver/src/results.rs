@@ -116,6 +116,21 @@ pub struct ControlLine {
     pub flaps: Vec<FlapLine>,
     /// Control steps.
     pub steps: usize,
+    /// Steps halved because they would have raised the cost.
+    pub halvings: u32,
+    /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`, or `taken-over` for
+    /// voltages found with another actuator.
+    pub outcome: String,
+    /// Frobenius norm of the T matrix behind the voltages, nondimensional load per V.
+    #[serde(rename = "t_norm_per_V")]
+    pub t_norm_per_volt: f64,
+    /// Control weight `W_u = rho I` that meets the stroke, 1/V^2.
+    #[serde(rename = "rho_per_V2")]
+    pub rho_per_volt2: f64,
+    /// Largest flap amplitude allowed at each harmonic of the set, deg.
+    pub stroke_limit_deg: Vec<f64>,
+    /// Residuals of the controlled response; the trim is that of the baseline.
+    pub residuals: Residuals,
 }
 
 /// Voltage and motion of a flap at one harmonic.
@@ -132,6 +147,14 @@ pub struct FlapLine {
     pub lag_deg: f64,
     /// Phase by which this flap leads the inboard one, deg; 0 for the inboard flap itself.
     pub lead_over_inboard_deg: f64,
+    /// Bias voltage that centres the flap, V.
+    #[serde(rename = "bias_V")]
+    pub bias_volt: f64,
+    /// Mean flap angle left by the bias, deg.
+    pub mean_flap_deg: f64,
+    /// Largest aerodynamic hinge moment over the revolution, N m.
+    #[serde(rename = "peak_hinge_moment_N_m")]
+    pub peak_hinge_moment_newton_metre: f64,
 }
 
 /// A stored result: everything needed to reproduce it.

@@ -2,22 +2,13 @@
 
 use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
-use crate::case::{LoadedCase, TrimValues};
+use crate::case::LoadedCase;
 use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
 use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine};
-use rotor_response::{ResponseError, Rotor, RotorSolver};
+use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line};
 use std::sync::Arc;
-use trim::{TrimError, TrimSolution, trim};
-
-/// A trimmed rotor with its solver, ready for control.
-#[derive(Debug, Clone)]
-pub struct TrimmedCase {
-    /// The solver at the case's advance ratio.
-    pub solver: RotorSolver,
-    /// The trim.
-    pub trim: TrimSolution,
-}
+use trim::TrimSolution;
 
 /// What a run leaves behind.
 #[derive(Debug, Clone)]
@@ -27,7 +18,14 @@ pub struct RunOutcome {
     /// The actuators used.
     pub actuators: CaseActuators,
     /// The trimmed rotor.
-    pub trimmed: TrimmedCase,
+    pub trimmed: TrimmedRotor,
+    /// Every control study, in the order of the result.
+    pub studies: Vec<ControlStudy>,
+}
+
+/// Steps of the progress bar of [`run_case`]: actuator, trim and every control study.
+pub fn steps_of(loaded: &LoadedCase) -> usize {
+    2 + loaded.case.control.harmonics.len() * loaded.case.control.actuators.len()
 }
 
 /// Runs a case.
@@ -40,54 +38,24 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
     let actuators = case_actuators(loaded)?;
     progress.step();
     progress.doing("trim");
-    let trimmed = trim_case(loaded)?;
+    let trimmed = TrimmedRotor::new(loaded, None)?;
     progress.step();
+    progress.doing("control");
+    let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new));
+    let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
+        .map_err(|source| SimError::Study { place: loaded.index.place("control"), source })?;
     let result = RunResult {
-        trim: trim_line(loaded, &trimmed.trim),
-        residuals: residuals(&trimmed.trim),
+        trim: trim_line(loaded, trimmed.trim()),
+        residuals: residuals(trimmed.trim()),
         baseline: Baseline {
-            hub_4_per_rev: HubLoads::from_parts(trimmed.trim.rotor.hub.harmonic(loaded.case.blades)),
+            hub_4_per_rev: HubLoads::from_parts(
+                trimmed.trim().rotor.hub.harmonic(loaded.case.blades),
+            ),
         },
-        control: vec![],
+        control: studies.iter().map(|study| control_line(loaded, study)).collect(),
         warnings: actuators.warnings.clone(),
     };
-    Ok(RunOutcome { result, actuators, trimmed })
-}
-
-/// Builds the rotor of a case and trims it with its flaps at rest.
-///
-/// # Errors
-/// [`SimError::Blade`], [`SimError::Response`], [`SimError::Trim`].
-pub fn trim_case(loaded: &LoadedCase) -> Result<TrimmedCase, SimError> {
-    let case = &loaded.case;
-    let response = |source: ResponseError| SimError::Response {
-        place: loaded.index.place("rotor"),
-        source,
-    };
-    let rotor = Rotor::new(case.rotor_model(), &case.blade_properties()?, case.discretisation())
-        .map_err(response)?;
-    let mut solver =
-        RotorSolver::new(Arc::new(rotor), case.advance_ratio, case.response_tolerances())
-            .map_err(response)?;
-    let solution = trim(
-        &mut solver,
-        &case.inflow_model(),
-        case.advance_ratio,
-        &case.trim_target(),
-        &case.trim_settings(),
-        None,
-    )
-    .map_err(|source| trim_error(loaded, source))?;
-    Ok(TrimmedCase { solver, trim: solution })
-}
-
-/// A failure of the trim at the line of the case that asked for it.
-pub fn trim_error(loaded: &LoadedCase, source: TrimError) -> SimError {
-    let field = match loaded.case.trim {
-        TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => "trim.ct_sigma",
-        TrimValues::Prescribed { .. } => "trim",
-    };
-    SimError::Trim { place: loaded.index.place(field), source }
+    Ok(RunOutcome { result, actuators, trimmed, studies })
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {

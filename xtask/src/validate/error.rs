@@ -4,8 +4,13 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use flap_aero::AeroError;
+use hhc_control::{ControlError, RunError};
+use preisach_dyn::PreisachError;
 use rotor_fem::{FemError, PeriodicError};
+use rotor_response::ResponseError;
 use rotor_wake::WakeError;
+use sim_driver::SimError;
+use trim::TrimError;
 
 /// Why a check could not be computed.
 #[derive(Debug, thiserror::Error)]
@@ -61,4 +66,22 @@ pub enum CheckError {
     /// The inflow.
     #[error(transparent)]
     Wake(#[from] WakeError),
+    /// The response.
+    #[error(transparent)]
+    Response(#[from] ResponseError),
+    /// The trim.
+    #[error(transparent)]
+    Trim(#[from] TrimError),
+    /// The controller.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// The controller on its plant.
+    #[error(transparent)]
+    ControlRun(#[from] RunError<Infallible>),
+    /// The actuator.
+    #[error(transparent)]
+    Actuator(#[from] PreisachError),
+    /// The driver.
+    #[error(transparent)]
+    Driver(#[from] SimError),
 }

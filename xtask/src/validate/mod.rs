@@ -8,10 +8,14 @@ mod error;
 mod page;
 mod reference;
 
+mod actuator;
 mod blade;
+mod control;
 mod inflow;
+mod rotor;
 mod section;
 mod time_elements;
+mod trimmed;
 
 use rayon::prelude::*;
 
@@ -27,6 +31,10 @@ pub const AREAS: &[Area] = &[
     time_elements::AREA,
     section::AREA,
     inflow::AREA,
+    rotor::AREA,
+    trimmed::AREA,
+    actuator::AREA,
+    control::AREA,
 ];
 
 /// Ids of all checks, in the order of the page.

@@ -15,7 +15,7 @@ use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::report::{StudyReport, report_html};
 use crate::results::StoredResult;
-use crate::run::run_case;
+use crate::run::{run_case, steps_of};
 use crate::section::{SectionQuestion, section_response};
 use crate::stored_actuator::read_actuator;
 use preisach_dyn::identify::Settings;
@@ -44,7 +44,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
 }
 
 fn run_and_store(loaded: &LoadedCase, out: &Path, format: Format) -> Result<(), SimError> {
-    let progress = Progress::new(2);
+    let progress = Progress::new(steps_of(loaded));
     let outcome = run_case(loaded, &progress);
     progress.finish();
     let outcome = outcome?;

@@ -2,8 +2,7 @@
 
 use super::{FlapDrive, FlapMotion, PlantError};
 use crate::SimError;
-use crate::case::Case;
-use crate::problem::Place;
+use crate::case::{LoadedCase, TrimValues};
 use hhc_control::{ControlError, ControlLayout, Measurement, Plant};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -21,12 +20,15 @@ pub struct TrimmedRotor {
 }
 
 impl TrimmedRotor {
-    /// Builds the rotor of a case and trims it, from a nearby trim if there is one.
+    /// Builds the rotor of a case and trims it with its flaps at rest, from a nearby trim if there
+    /// is one.
     ///
     /// # Errors
-    /// [`SimError::Blade`], [`SimError::Response`] and [`SimError::Trim`].
-    pub fn new(case: &Case, start: Option<&TrimSolution>) -> Result<Self, SimError> {
-        let at_rotor = |source| SimError::Response { place: Place::file("case").field("rotor"), source };
+    /// [`SimError::Blade`], [`SimError::Response`] and [`SimError::Trim`], at the line of the case
+    /// that asked for it.
+    pub fn new(loaded: &LoadedCase, start: Option<&TrimSolution>) -> Result<Self, SimError> {
+        let case = &loaded.case;
+        let at_rotor = |source| SimError::Response { place: loaded.index.place("rotor"), source };
         let blade = case.blade_properties()?;
         let rotor = Rotor::new(case.rotor_model(), &blade, case.discretisation()).map_err(at_rotor)?;
         let mu = case.advance_ratio;
@@ -35,7 +37,11 @@ impl TrimmedRotor {
         let inflow = case.inflow_model();
         let (target, settings) = (case.trim_target(), case.trim_settings());
         let trim = trim(&mut solver, &inflow, mu, &target, &settings, start).map_err(|source| {
-            SimError::Trim { place: Place::file("case").field("trim"), source }
+            let field = match case.trim {
+                TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => "trim.ct_sigma",
+                TrimValues::Prescribed { .. } => "trim",
+            };
+            SimError::Trim { place: loaded.index.place(field), source }
         })?;
         Ok(Self { solver, inflow, trim })
     }

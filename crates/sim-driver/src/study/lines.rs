@@ -1,0 +1,80 @@
+//! From a control study to what is printed and stored.
+
+use super::ControlStudy;
+use crate::case::LoadedCase;
+use crate::results::{ControlLine, FlapLine, HubLoads, Residuals};
+use hhc_control::{Outcome, lag_deg};
+use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
+
+/// Azimuths at which a peak is looked for.
+const PEAK_AZIMUTHS: usize = 180;
+
+/// The line of one control study.
+pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
+    let rotor = &study.state.rotor;
+    let moment = loaded.case.scales.moment_newton_metre();
+    let flaps = study
+        .harmonics
+        .iter()
+        .flat_map(|&n| {
+            let inboard = study.state.flaps.first().map(|f| f.flap_deg.harmonic(n));
+            study.state.flaps.iter().zip(&rotor.hinge).enumerate().map(
+                move |(k, (motion, hinge))| {
+                    let (voltage, angle) =
+                        (motion.voltage_volt.harmonic(n), motion.flap_deg.harmonic(n));
+                    let lead = match inboard {
+                        Some(inboard) if k > 0 => lag_deg(angle, inboard),
+                        _ => 0.0,
+                    };
+                    FlapLine {
+                        harmonic: n,
+                        voltage_amplitude_volt: voltage.amplitude(),
+                        flap_amplitude_deg: angle.amplitude(),
+                        lag_deg: lag_deg(voltage, angle),
+                        lead_over_inboard_deg: lead,
+                        bias_volt: motion.voltage_volt.mean,
+                        mean_flap_deg: motion.flap_deg.mean,
+                        peak_hinge_moment_newton_metre: moment * peak(hinge),
+                    }
+                },
+            )
+        })
+        .collect();
+    ControlLine {
+        harmonics: study.harmonics.clone(),
+        actuator: study.actuator.name().to_owned(),
+        j_before: study.j_before,
+        j_after: study.j_after,
+        reduction_percent: study.reduction_percent(),
+        hub_4_per_rev: HubLoads::from_parts(rotor.hub.harmonic(loaded.case.blades)),
+        flaps,
+        steps: study.steps(),
+        halvings: study.halvings(),
+        outcome: outcome_name(study.outcome()).to_owned(),
+        t_norm_per_volt: study.t_norm,
+        rho_per_volt2: study.rho,
+        stroke_limit_deg: study.stroke_limit_deg.clone(),
+        residuals: Residuals {
+            trim: 0.0,
+            periodicity: rotor.residuals.periodicity,
+            inflow: rotor.residuals.inflow,
+        },
+    }
+}
+
+fn outcome_name(outcome: Option<Outcome>) -> &'static str {
+    match outcome {
+        None => "taken-over",
+        Some(Outcome::Converged) => "converged",
+        Some(Outcome::Stalled) => "stalled",
+        Some(Outcome::OutOfRange) => "out-of-range",
+        Some(Outcome::StepLimit) => "step-limit",
+    }
+}
+
+fn peak(series: &HarmonicSeries) -> f64 {
+    uniform_azimuths_rad(PEAK_AZIMUTHS)
+        .into_iter()
+        .map(|azimuth| series.value(azimuth).abs())
+        .fold(0.0, f64::max)
+}

@@ -1,0 +1,289 @@
+//! The periodic response of the rotor and its loads.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use flap_aero::AttachedFlowModel;
+use rotor_fem::{BladeProperties, BladeSpec, Twist};
+use rotor_response::{
+    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor,
+    RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
+};
+use rotor_wake::{FlightState, InflowModel, LinearInflow};
+
+use super::CheckError;
+use super::check::{Area, Check, Criterion, Repeatability};
+use super::reference::{self, worst};
+
+const CROSSCHECK: &str = "independent Fourier collocation model, crosscheck_S1_S2.json";
+
+pub(super) const AREA: Area = Area {
+    heading: "Rotor response (`rotor-response`)",
+    checks: &[
+        Check {
+            id: "V-RESP-01",
+            quantity: "case S1 (linear, quasi-steady, fixed controls): 4/rev hub loads, error of \
+                       their norm",
+            unit: "%",
+            source: CROSSCHECK,
+            criterion: Criterion::AtMost(0.1),
+            repeatability: Repeatability::Everywhere,
+            measure: || four_per_rev_error(&S1),
+        },
+        Check {
+            id: "V-RESP-02",
+            quantity: "case S1: mean hub force, error of its norm",
+            unit: "%",
+            source: CROSSCHECK,
+            criterion: Criterion::AtMost(0.1),
+            repeatability: Repeatability::Everywhere,
+            measure: || mean_error(&S1, 0..3),
+        },
+        Check {
+            id: "V-RESP-03",
+            quantity: "case S1: mean hub moment, error of its norm",
+            unit: "%",
+            source: CROSSCHECK,
+            criterion: Criterion::AtMost(0.1),
+            repeatability: Repeatability::Everywhere,
+            measure: || mean_error(&S1, 3..6),
+        },
+        Check {
+            id: "V-RESP-04",
+            quantity: "case S2 (full couplings): 4/rev hub loads, error of their norm",
+            unit: "%",
+            source: CROSSCHECK,
+            criterion: Criterion::AtMost(5.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || four_per_rev_error(&S2),
+        },
+        Check {
+            id: "V-RESP-05",
+            quantity: "case S2 solved without the couplings: what the bounds must see",
+            unit: "%",
+            source: CROSSCHECK,
+            criterion: Criterion::AtLeast(50.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                four_per_rev_error(&Crosscheck { couplings: || Couplings::Linear, ..S2 })
+            },
+        },
+        Check {
+            id: "V-RESP-06",
+            quantity: "hub loads of identical blades off 0, 4, 8 per rev, summed blade by blade, over \
+                       the 4/rev level",
+            unit: "-",
+            source: "symmetry",
+            criterion: Criterion::AtMost(1e-10),
+            repeatability: Repeatability::Everywhere,
+            measure: || leak(1.0),
+        },
+        Check {
+            id: "V-RESP-07",
+            quantity: "the same with 1 % more mass on one blade: what the bound must see",
+            unit: "-",
+            source: "symmetry, broken",
+            criterion: Criterion::AtLeast(1e-2),
+            repeatability: Repeatability::Everywhere,
+            measure: || leak(1.01),
+        },
+        Check {
+            id: "V-RESP-08",
+            quantity: "hover thrust of a stiff blade, collective 6 and 10 deg: largest error",
+            unit: "%",
+            source: "blade-element momentum theory, integral from the cut-out to the tip",
+            criterion: Criterion::AtMost(0.5),
+            repeatability: Repeatability::Everywhere,
+            measure: hover_thrust_error,
+        },
+        Check {
+            id: "V-RESP-09",
+            quantity: "root flap moment at 3/rev, force summation against EI w'' with 10 flap modes, \
+                       linear, no modal damping",
+            unit: "%",
+            source: "both integrate the same equation",
+            criterion: Criterion::AtMost(0.1),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(100.0 * bending_gap(10)?),
+        },
+        Check {
+            id: "V-RESP-10",
+            quantity: "that gap with 10 over 4, and 16 over 10 flap modes: the larger ratio",
+            unit: "-",
+            source: "monotone convergence",
+            criterion: Criterion::AtMost(0.99),
+            repeatability: Repeatability::Everywhere,
+            measure: bending_convergence,
+        },
+        Check {
+            id: "V-RESP-11",
+            quantity: "periodicity residual of case S2",
+            unit: "m0 Omega^2 R^2",
+            source: "the equation itself",
+            criterion: Criterion::AtMost(1e-8),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(solve(&S2)?.residuals.periodicity),
+        },
+    ],
+};
+
+/// A case of the independent model.
+struct Crosscheck {
+    name: &'static str,
+    couplings: fn() -> Couplings,
+}
+
+const S1: Crosscheck = Crosscheck { name: "S1_linear_fixed", couplings: || Couplings::Linear };
+const S2: Crosscheck = Crosscheck { name: "S2_full_fixed", couplings: || Couplings::Full };
+
+/// The blade of Table 1 with the twist of the paper's case; `mass` over m0.
+pub(super) fn paper_blade(mass: f64) -> Result<BladeProperties, CheckError> {
+    Ok(BladeProperties::new(BladeSpec {
+        twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
+        mass: mass.into(),
+        ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1000.0)
+    })?)
+}
+
+/// The rotor of Table 1, incompressible and quasi-steady, without flaps.
+pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel {
+    RotorModel {
+        blades: 4,
+        chord: 0.055,
+        lock_number: 5.2,
+        drag_coefficient: 0.01,
+        root_cutout,
+        modal_damping: 0.005,
+        couplings,
+        section_model: AttachedFlowModel::QuasiSteady,
+        compressibility: Compressibility::None,
+        flaps: vec![],
+    }
+}
+
+/// Fixed controls of the crosscheck cases at advance ratio 0.30.
+fn fixed_controls() -> Condition {
+    Condition {
+        flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 5.0_f64.to_radians() },
+        controls: Controls {
+            theta0_rad: 8.0_f64.to_radians(),
+            theta1c_rad: 1.0_f64.to_radians(),
+            theta1s_rad: (-4.0_f64).to_radians(),
+        },
+        flap_angles_rad: vec![],
+    }
+}
+
+const PRESCRIBED: LinearInflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
+
+fn response(
+    model: RotorModel,
+    blade: &BladeProperties,
+    discretisation: Discretisation,
+    condition: &Condition,
+    inflow: &dyn InflowModel,
+) -> Result<RotorSolution, CheckError> {
+    let rotor = Arc::new(Rotor::new(model, blade, discretisation)?);
+    let mu = condition.flight.advance_ratio;
+    let mut solver = RotorSolver::new(rotor, mu, ResponseTolerances::default())?;
+    Ok(solver.solve(condition, inflow, None)?)
+}
+
+fn solve(case: &Crosscheck) -> Result<RotorSolution, CheckError> {
+    let model = paper_rotor((case.couplings)(), 0.35);
+    let d = Discretisation::default();
+    response(model, &paper_blade(1.0)?, d, &fixed_controls(), &PRESCRIBED)
+}
+
+fn norm(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// `|got - expected| / |expected|` in percent.
+fn percent_off(got: &[f64], expected: &[f64]) -> f64 {
+    let difference = norm(got.iter().zip(expected).map(|(g, e)| g - e));
+    100.0 * difference / norm(expected.iter().copied())
+}
+
+fn four_per_rev_error(case: &Crosscheck) -> Result<f64, CheckError> {
+    let expected: [f64; 12] = reference::crosscheck(case.name, "hub_Z4")?;
+    Ok(percent_off(&solve(case)?.hub.harmonic(4), &expected))
+}
+
+fn mean_error(case: &Crosscheck, part: std::ops::Range<usize>) -> Result<f64, CheckError> {
+    let expected: [f64; 6] = reference::crosscheck(case.name, "hub_mean")?;
+    Ok(percent_off(&solve(case)?.hub.mean()[part.clone()], &expected[part]))
+}
+
+fn largest(loads: impl IntoIterator<Item = f64>) -> f64 {
+    loads.into_iter().fold(0.0, |largest: f64, load| largest.max(load.abs()))
+}
+
+/// Content of the hub loads off the multiples of four per rev over the 4/rev level, with the mass of
+/// the last blade multiplied.
+fn leak(last_mass: f64) -> Result<f64, CheckError> {
+    let root = |mass: f64| -> Result<SixLoads, CheckError> {
+        let model = paper_rotor(Couplings::Full, 0.2);
+        let d = Discretisation::default();
+        Ok(response(model, &paper_blade(mass)?, d, &fixed_controls(), &PRESCRIBED)?.root)
+    };
+    let blade = root(1.0)?;
+    let hub = hub_loads(&[blade.clone(), blade.clone(), blade, root(last_mass)?], 12);
+    let off = (1..=11).filter(|n| n % 4 != 0).flat_map(|n| hub.harmonic(n));
+    Ok(largest(off) / largest(hub.harmonic(4)))
+}
+
+/// `C_T = (sigma a / 2) int_{x0}^1 (theta x^2 - lambda x) dx`, `lambda = sqrt(C_T / 2)`: a quadratic
+/// equation for `sqrt(C_T)`.
+fn hover_thrust(model: &RotorModel, theta0_rad: f64, twist_rad: f64) -> f64 {
+    let moment = |n: i32| (1.0 - model.root_cutout.powi(n + 1)) / f64::from(n + 1);
+    let pitch = (theta0_rad - 0.75 * twist_rad) * moment(2) + twist_rad * moment(3);
+    let half = 0.5 * model.solidity() * TAU;
+    let b = half * moment(1) / 2.0_f64.sqrt();
+    let root = 0.5 * (-b + (b * b + 4.0 * half * pitch).sqrt());
+    root * root
+}
+
+fn hover_thrust_error() -> Result<f64, CheckError> {
+    let twist_rad = (-8.0_f64).to_radians();
+    let stiff = BladeProperties::new(BladeSpec {
+        twist: Twist::Linear { rate_rad: twist_rad },
+        ..BladeSpec::uniform(10.8, 26.8, 6.15, 1000.0)
+    })?;
+    let errors = [6.0_f64, 10.0].map(|theta0_deg| {
+        let condition = Condition {
+            flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
+            controls: Controls { theta0_rad: theta0_deg.to_radians(), ..Controls::default() },
+            flap_angles_rad: vec![],
+        };
+        let model = paper_rotor(Couplings::Full, 0.2);
+        let expected = hover_thrust(&model, theta0_deg.to_radians(), twist_rad);
+        let d = Discretisation::default();
+        let got = response(model, &stiff, d, &condition, &LinearInflow::Uniform)?;
+        Ok(100.0 * (got.thrust_coefficient / expected - 1.0).abs())
+    });
+    worst("collectives", 2, errors)
+}
+
+/// Gap between the root flap moments at 3/rev, over the moment. Without modal damping: its generalised
+/// force has no distribution along the span, so that force summation cannot hold it.
+fn bending_gap(flap_modes: usize) -> Result<f64, CheckError> {
+    let discretisation = Discretisation {
+        blade_elements: 40,
+        modes: [flap_modes, 2, 2],
+        time_elements: 12,
+        ..Discretisation::default()
+    };
+    let model = RotorModel { modal_damping: 0.0, ..paper_rotor(Couplings::Linear, 0.35) };
+    let blade = paper_blade(1.0)?;
+    let solution = response(model, &blade, discretisation, &fixed_controls(), &PRESCRIBED)?;
+    let bending = solution.root_flap_bending;
+    let (summed, curved) = (bending.force_summation.harmonic(3), bending.curvature.harmonic(3));
+    let gap = (summed.cosine - curved.cosine).hypot(summed.sine - curved.sine);
+    Ok(gap / summed.amplitude())
+}
+
+fn bending_convergence() -> Result<f64, CheckError> {
+    let (few, some, many) = (bending_gap(4)?, bending_gap(10)?, bending_gap(16)?);
+    Ok((some / few).max(many / some))
+}
