@@ -146,7 +146,7 @@ fn rises(grid: &PreisachGrid, f: impl Fn(f64, f64) -> f64) -> Vec<Vec<f64>> {
 }
 
 /// A dynamic Preisach actuator on another number of levels than the identified one.
-fn preisach_truth() -> Vec<BenchRecord> {
+fn preisach_truth(g2_s2_per_deg: f64, unfolded_rate_deg_s: f64) -> Vec<BenchRecord> {
     let grid = PreisachGrid::new(VoltageRange::amplified_stack(), 20).unwrap();
     let mut g0 = rises(&grid, |s, r| 0.12 * (-2.5 * r).exp() * (1.2 - s * s));
     g0[0].iter_mut().for_each(|rise| *rise += 0.45);
@@ -157,9 +157,9 @@ fn preisach_truth() -> Vec<BenchRecord> {
         grid,
         g0_deg: PlayMap::from_rises(&grid, 0.7, &g0).unwrap(),
         g1_s,
-        g2_s2_per_deg: PlayMap::constant(&grid, 3e-6),
+        g2_s2_per_deg: PlayMap::constant(&grid, g2_s2_per_deg),
         form: RateForm::WellPosed,
-        unfolded_rate_deg_s: 500.0,
+        unfolded_rate_deg_s,
         time_order: TimeOrder::Second,
     })
     .unwrap();
@@ -235,7 +235,7 @@ fn slow_worst(identified: &Identification) -> f64 {
 
 #[test]
 fn a_truth_inside_the_class_is_found() {
-    let identified = identify(&preisach_truth(), &settings()).unwrap();
+    let identified = identify(&preisach_truth(3e-6, 500.0), &settings()).unwrap();
     let slow = slow_worst(&identified);
     let (trained, _) = worst(identified.records_of(RecordUse::Train));
     let (fast, phase) = worst(
@@ -288,6 +288,30 @@ fn a_truth_outside_the_class_is_approximated_and_noise_does_no_harm() {
             );
         }
     }
+}
+
+#[test]
+fn a_strong_quadratic_term_is_held_at_the_limit_of_the_reachable_states() {
+    // the truth folds above 400 deg/s, the model is not allowed to below 1.5 x the trained rate
+    let identified = identify(&preisach_truth(3e-5, 400.0), &settings()).unwrap();
+    let preisach_dyn::ActuatorLaw::DynamicPreisach(model) = &identified.dynamic.law else {
+        panic!("law")
+    };
+    let p = model.parameters();
+    let covered = p.unfolded_rate_deg_s;
+    let room = |factor: f64| {
+        p.g1_s
+            .combined(1.0, &p.g2_s2_per_deg, 2.0 * covered * factor)
+            .largest()
+            .0
+    };
+    assert!(covered > 410.0, "{covered}");
+    assert!(
+        room(1.0) <= 0.0 && room(1.2) > 0.0,
+        "{} {}",
+        room(1.0),
+        room(1.2)
+    );
 }
 
 #[test]

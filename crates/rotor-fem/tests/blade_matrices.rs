@@ -4,6 +4,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use rotor_base::gauss_legendre;
 use rotor_fem::{
     BladeModel, BladeProperties, BladeSpec, Distribution, FemError, GyroscopicTerms, ModeCount,
@@ -465,7 +466,13 @@ fn refusals_say_what_to_do() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 24,
+        failure_persistence: None,
+        // the same cases every time
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
     /// Halving the elements nests the spaces: no frequency may rise. Sections that all have the same
     /// properties are a uniform blade, wherever they are cut.
@@ -482,10 +489,14 @@ proptest! {
             rotor_speed: speed,
             ..uniform()
         };
+        // the lowest of all, whatever their family: families trade names where frequencies cross
         let frequencies = |spec: &BladeSpec, n: usize| -> Vec<f64> {
-            let found = modes(&model(spec.clone(), n), GyroscopicTerms::Neglected,
-                ModeCount { flap: 2, lag: 2, torsion: 1, axial: 0 }).unwrap();
-            found.iter().map(|mode| mode.frequency).collect()
+            let count = ModeCount { flap: 4, lag: 3, torsion: 2, axial: 0 };
+            let found = modes(&model(spec.clone(), n), GyroscopicTerms::Neglected, count).unwrap();
+            let mut all: Vec<f64> = found.iter().map(|mode| mode.frequency).collect();
+            all.sort_by(f64::total_cmp);
+            all.truncate(5);
+            all
         };
         let (coarse, fine) = (frequencies(&spec, 4), frequencies(&spec, 8));
         for (c, f) in coarse.iter().zip(&fine) {

@@ -6,6 +6,7 @@ use std::convert::Infallible;
 use approx::assert_abs_diff_eq;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
     Acceleration, LinearCoefficients, LinearPeriodic, LocalTangent, Orbit, OrbitSamples,
@@ -608,7 +609,13 @@ fn settings_are_checked() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 64,
+        failure_persistence: None,
+        // the same cases every time
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
     /// Linear systems superpose, and the answer to a load is scaled with it.
     #[test]

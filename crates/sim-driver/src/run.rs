@@ -19,6 +19,8 @@ pub struct RunOutcome {
     pub actuators: CaseActuators,
     /// The trimmed rotor.
     pub trimmed: TrimmedRotor,
+    /// The drives of the flaps with their stroke limits.
+    pub drives: Drives,
     /// Every control study, in the order of the result.
     pub studies: Vec<ControlStudy>,
 }
@@ -41,9 +43,9 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
     let trimmed = TrimmedRotor::new(loaded, None)?;
     progress.step();
     progress.doing("control");
-    let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new));
-    let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
-        .map_err(|source| SimError::Study { place: loaded.index.place("control"), source })?;
+    let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
+    let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new)).map_err(failed)?;
+    let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step()).map_err(failed)?;
     let result = RunResult {
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),
@@ -55,7 +57,7 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
         warnings: actuators.warnings.clone(),
     };
-    Ok(RunOutcome { result, actuators, trimmed, studies })
+    Ok(RunOutcome { result, actuators, trimmed, drives, studies })
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {

@@ -18,6 +18,7 @@ use crate::results::StoredResult;
 use crate::run::{run_case, steps_of};
 use crate::section::{SectionQuestion, section_response};
 use crate::stored_actuator::read_actuator;
+use crate::study::{SENSITIVITY_ROWS, histories_csv, sensitivities, study_report};
 use preisach_dyn::identify::Settings;
 use rotor_fem::GyroscopicTerms;
 use std::path::{Path, PathBuf};
@@ -26,12 +27,14 @@ use std::path::{Path, PathBuf};
 const STUDY_FILE: &str = "study.json";
 /// Name of the report.
 const REPORT_FILE: &str = "report.html";
+/// Name of the flap and voltage histories.
+const HISTORIES_FILE: &str = "histories.csv";
 /// Name of the result of a run.
 const RESULT_FILE: &str = "result.json";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
-    run_and_store(&loaded, &args.out, args.format.format)
+    run_and_store(&loaded, &args.out, args.format.format, Scope::WithSensitivity)
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
@@ -40,21 +43,57 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
         let stem = args.case.file_stem().map(PathBuf::from).unwrap_or_default();
         Path::new("out").join(stem)
     });
-    run_and_store(&loaded, &out, args.format.format)
+    run_and_store(&loaded, &out, args.format.format, Scope::CaseAlone)
 }
 
-fn run_and_store(loaded: &LoadedCase, out: &Path, format: Format) -> Result<(), SimError> {
-    let progress = Progress::new(steps_of(loaded));
-    let outcome = run_case(loaded, &progress);
+/// How much of a case is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Scope {
+    CaseAlone,
+    WithSensitivity,
+}
+
+fn run_and_store(
+    loaded: &LoadedCase,
+    out: &Path,
+    format: Format,
+    scope: Scope,
+) -> Result<(), SimError> {
+    let more = if scope == Scope::WithSensitivity { SENSITIVITY_ROWS } else { 0 };
+    let progress = Progress::new(steps_of(loaded) + more);
+    let computed = run_case(loaded, &progress).and_then(|outcome| {
+        progress.doing("sensitivity");
+        let rows = match scope {
+            Scope::CaseAlone => vec![],
+            Scope::WithSensitivity => {
+                sensitivities(loaded, &outcome.trimmed, &outcome.drives, &|| progress.step())?
+            }
+        };
+        Ok((outcome, rows))
+    });
     progress.finish();
-    let outcome = outcome?;
+    let (outcome, sensitivity) = computed?;
     for warning in &outcome.result.warnings {
         eprintln!("warning: {warning}");
     }
-    let text = outcome.result.render(format)?;
-    let stored = StoredResult::new(&loaded.file, outcome.actuators.inputs, outcome.result)?;
+    let inputs = outcome.actuators.inputs.clone();
+    let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
+    let report = study_report(loaded, &outcome, &stored, &sensitivity)?;
     stored.write(&out.join(RESULT_FILE))?;
-    print(&text)
+    write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
+    let numbers = serde_json::to_string(&report).map_err(|e| SimError::NotWritten {
+        path: out.join(STUDY_FILE),
+        reason: e.to_string(),
+    })?;
+    write_atomic(&out.join(STUDY_FILE), numbers.as_bytes())?;
+    write_atomic(&out.join(REPORT_FILE), report_html(&report).as_bytes())?;
+    match format {
+        Format::Json => print(&outcome.result.render(format)?),
+        Format::Text => {
+            let text = outcome.result.render(format)? + &report.text();
+            print(&format!("{text}\nResults, histories and report in {}\n", out.display()))
+        }
+    }
 }
 
 fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> LoadedCase {

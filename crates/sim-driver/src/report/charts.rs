@@ -2,7 +2,7 @@
 
 use super::{AzimuthChart, LoadBars, LoopChart};
 use crate::results::HubLoads;
-use plotly::common::{DashType, Line, Mode, Title};
+use plotly::common::{Anchor, DashType, Line, Mode, Orientation, Title};
 use plotly::layout::{Axis, BarMode, Legend, Margin};
 use plotly::{Bar, Layout, Plot, Scatter};
 
@@ -13,10 +13,14 @@ const MODEL: &str = "#0e86d4";
 const STATIC: &str = "#d55e00";
 const SERIES: [&str; 5] = ["#8c8c8c", "#0e86d4", "#d55e00", "#009e73", "#cc79a7"];
 
+/// The legend stands below the axis title: the top is left to the zoom buttons.
 fn layout() -> Layout {
-    Layout::new()
-        .margin(Margin::new().left(56).right(16).top(8).bottom(44))
-        .legend(Legend::new().orientation(plotly::common::Orientation::Horizontal).y(1.12).x(0.0))
+    let legend = Legend::new()
+        .orientation(Orientation::Horizontal)
+        .x(0.0)
+        .y(-0.2)
+        .y_anchor(Anchor::Top);
+    Layout::new().margin(Margin::new().left(56).right(16).top(28).bottom(84)).legend(legend)
 }
 
 fn axis(title: &str) -> Axis {

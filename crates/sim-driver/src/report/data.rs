@@ -1,5 +1,6 @@
 //! What a report shows: plain numbers, stored beside the report so that it can be written again.
 
+use crate::output::table;
 use crate::results::{Residuals, TrimLine};
 use crate::stored_actuator::StoredFit;
 use serde::{Deserialize, Serialize};
@@ -115,4 +116,39 @@ pub struct ResultSection {
     pub header: Vec<String>,
     /// Rows.
     pub rows: Vec<Vec<String>>,
+}
+
+impl StudyReport {
+    /// The comparison with the paper and the further tables, for the terminal.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let mut actuators: Vec<&str> = Vec::new();
+        for (actuator, _) in self.headline.iter().flat_map(|row| &row.ours) {
+            if !actuators.contains(&actuator.as_str()) {
+                actuators.push(actuator);
+            }
+        }
+        let rows: Vec<&HeadlineRow> = self.headline.iter().filter(|r| !r.ours.is_empty()).collect();
+        if !rows.is_empty() {
+            let header: Vec<&str> =
+                ["quantity", "paper"].into_iter().chain(actuators.iter().copied()).collect();
+            text += "\nBeside the paper (its numbers are for feedback on the hysteretic actuator)\n";
+            text += &table(
+                &header,
+                rows.into_iter().map(|row| {
+                    let ours = actuators.iter().map(|wanted| {
+                        let found = row.ours.iter().find(|(actuator, _)| actuator == wanted);
+                        found.map_or_else(String::new, |(_, number)| number.clone())
+                    });
+                    [row.quantity.clone(), row.paper.clone()].into_iter().chain(ours).collect()
+                }),
+            );
+        }
+        for section in &self.sections {
+            let header: Vec<&str> = section.header.iter().map(String::as_str).collect();
+            text += &format!("\n{}. {}\n", section.title, section.text);
+            text += &table(&header, section.rows.iter().cloned());
+        }
+        text
+    }
 }

@@ -5,6 +5,7 @@ function themed(layout) {
   const out = Object.assign({}, layout, {
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
     font: { color: ink, size: 12 }, autosize: true,
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: grid, activecolor: ink },
   });
   for (const key of Object.keys(out)) {
     if (/^[xy]axis/.test(key)) {

@@ -90,8 +90,8 @@ fn the_page_is_complete_and_loads_nothing() {
     for word in ["http://", "https://", "src=", "<link", "@import"] {
         assert!(!own.contains(word), "{word}");
     }
-    assert!(page.len() < 7_000_000, "{} bytes", page.len());
-    assert!(!page.contains("MathJax"), "only the plotting library");
+    // 4.7 MB of plotting library; the formula library that comes with it would add two more
+    assert!(page.len() < 6_000_000, "{} bytes", page.len());
 }
 
 #[test]
@@ -116,13 +116,4 @@ fn a_stored_report_gives_the_same_page() {
 fn an_empty_report_is_a_page() {
     let page = report_html(&StudyReport { title: "empty".into(), ..StudyReport::default() });
     assert!(page.contains("Trim and residuals") && !page.contains("Beside the paper"));
-}
-
-/// Writes the example for a look at it: `HHC_EXAMPLE_PAGE=page.html cargo test example_page`.
-#[test]
-#[expect(clippy::disallowed_methods, reason = "asked for by hand")]
-fn example_page() {
-    if let Ok(path) = std::env::var("HHC_EXAMPLE_PAGE") {
-        std::fs::write(path, report_html(&example())).unwrap();
-    }
 }

@@ -1,6 +1,6 @@
 //! From voltage harmonics to flap motion: the ideal actuator and the identified one.
 
-use super::PlantError;
+use super::{FullScale, PlantError};
 use hhc_control::{BiasSolver, RunError};
 use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
@@ -99,8 +99,8 @@ impl FlapDrive {
         }
     }
 
-    /// Largest amplitude of one harmonic (V) that stays inside the range of voltages with the bias that
-    /// centres the flap, and the flap amplitude it gives (deg).
+    /// Largest amplitude of one harmonic that stays inside the range of voltages with the bias that
+    /// centres the flap, and the stroke it gives.
     ///
     /// The bias of an asymmetric actuator is not the middle of its range, so the full range is never
     /// quite there: the amplitude is `min(V_max - u_st, u_st - V_min)`, found by iteration because
@@ -112,10 +112,11 @@ impl FlapDrive {
         &self,
         harmonic: usize,
         amplitude_volt: f64,
-    ) -> Result<(f64, f64), PlantError> {
+    ) -> Result<FullScale, PlantError> {
         let Self::Model { model, .. } = self else {
             let motion = self.motion(&[(harmonic, cosine(amplitude_volt))])?;
-            return Ok((amplitude_volt, motion.flap_deg.harmonic(harmonic).amplitude()));
+            let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
+            return Ok(FullScale { amplitude_volt, stroke_deg });
         };
         let range = model.range_volt;
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
@@ -130,7 +131,8 @@ impl FlapDrive {
             amplitude = next;
         }
         let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
-        Ok((amplitude, motion.flap_deg.harmonic(harmonic).amplitude()))
+        let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
+        Ok(FullScale { amplitude_volt: amplitude, stroke_deg })
     }
 }
 

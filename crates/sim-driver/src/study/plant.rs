@@ -1,6 +1,6 @@
 //! The trimmed rotor with its driven flaps as the plant of the controller.
 
-use super::{FlapDrive, FlapMotion, PlantError};
+use super::{FlapDrive, FlapMotion, FullScale, PlantError};
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
 use hhc_control::{ControlError, ControlLayout, Measurement, Plant};
@@ -96,8 +96,7 @@ pub struct RotorPlant {
 impl RotorPlant {
     /// A plant with the same drive at every flap.
     ///
-    /// `full_scale` holds for each controlled harmonic the voltage amplitude (V) and the stroke limit
-    /// (deg) it belongs to.
+    /// `full_scale` holds the limit at each controlled harmonic.
     ///
     /// # Errors
     /// [`ControlError`] for a layout without flaps or harmonics.
@@ -105,17 +104,17 @@ impl RotorPlant {
         rotor: TrimmedRotor,
         drive: FlapDrive,
         harmonics: &[usize],
-        full_scale: &[(f64, f64)],
+        full_scale: &[FullScale],
     ) -> Result<Self, ControlError> {
         let flaps = rotor.rotor().model().flaps.len();
         let numbers = harmonics.iter().map(|&n| u32::try_from(n).unwrap_or(u32::MAX)).collect();
         let layout = ControlLayout::new(flaps, numbers)?;
-        let per_pair = |pick: &dyn Fn(&(f64, f64)) -> f64| -> Vec<f64> {
+        let per_pair = |pick: &dyn Fn(&FullScale) -> f64| -> Vec<f64> {
             (0..layout.pairs()).map(|p| pick(&full_scale[p % full_scale.len()])).collect()
         };
         Ok(Self {
-            full_scale_volt: per_pair(&|f| f.0),
-            stroke_limits_deg: per_pair(&|f| f.1),
+            full_scale_volt: per_pair(&|f| f.amplitude_volt),
+            stroke_limits_deg: per_pair(&|f| f.stroke_deg),
             layout,
             rotor,
             drive,

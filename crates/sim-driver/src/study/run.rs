@@ -10,6 +10,7 @@ use hhc_control::{
 };
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// What the controller did with one set of harmonics and one actuator.
@@ -59,6 +60,15 @@ impl ControlStudy {
     }
 }
 
+/// Full-scale voltage of an actuator at one harmonic and the stroke it gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FullScale {
+    /// Voltage amplitude, V.
+    pub amplitude_volt: f64,
+    /// Flap amplitude, deg.
+    pub stroke_deg: f64,
+}
+
 /// The drives of a case and the stroke limits they set.
 #[derive(Debug, Clone)]
 pub struct Drives {
@@ -66,26 +76,41 @@ pub struct Drives {
     pub ideal: FlapDrive,
     /// The identified actuator, if the case has one.
     pub hysteretic: Option<FlapDrive>,
+    /// Stroke limits by harmonic per rev.
+    limits: BTreeMap<usize, FullScale>,
 }
 
 impl Drives {
-    /// Drives of a case; `model` is the actuator identified or read for it.
-    pub fn new(case: &Case, model: Option<Arc<ActuatorModel>>) -> Self {
+    /// Drives of a case, with the stroke limit at every harmonic it controls; `model` is the actuator
+    /// identified or read for it.
+    ///
+    /// # Errors
+    /// [`StudyError::Stroke`].
+    pub fn new(case: &Case, model: Option<Arc<ActuatorModel>>) -> Result<Self, StudyError> {
         let control = &case.control;
         let gain = case.actuator.ideal_amplitude_deg / control.amplitude_volt;
         let bias_volt = control.bias_volt;
-        Self {
+        let mut drives = Self {
             ideal: FlapDrive::Ideal { gain_deg_per_volt: gain, bias_volt },
             hysteretic: model.map(|model| FlapDrive::Model {
                 model,
                 rev_hz: case.actuator.bench_rev_hz,
                 bias_volt,
             }),
-        }
+            limits: BTreeMap::new(),
+        };
+        let harmonics: BTreeSet<usize> = control.harmonics.iter().flatten().copied().collect();
+        let harmonics: Vec<usize> = harmonics.into_iter().collect();
+        let limits = harmonics
+            .par_iter()
+            .map(|&n| Ok((n, drives.full_scale(case, n)?)))
+            .collect::<Result<Vec<_>, StudyError>>()?;
+        drives.limits = limits.into_iter().collect();
+        Ok(drives)
     }
 
-    /// Stroke limit at one harmonic (deg) and the full-scale voltage of the hysteretic actuator (V).
-    fn limit(&self, case: &Case, harmonic: usize) -> Result<(f64, f64), StudyError> {
+    /// Stroke limit at one harmonic and the voltage of the hysteretic actuator that belongs to it.
+    fn full_scale(&self, case: &Case, harmonic: usize) -> Result<FullScale, StudyError> {
         let control = &case.control;
         let drive = self.hysteretic.as_ref().unwrap_or(&self.ideal);
         let full = drive.full_scale(harmonic, control.amplitude_volt).map_err(|source| {
@@ -94,10 +119,27 @@ impl Drives {
         })?;
         Ok(match control.stroke_limit {
             StrokeChoice::FromActuator => full,
-            StrokeChoice::Given { amplitude_deg } => {
-                (full.0 * (amplitude_deg / full.1).min(1.0), amplitude_deg)
-            }
+            StrokeChoice::Given { amplitude_deg } => FullScale {
+                amplitude_volt: full.amplitude_volt * (amplitude_deg / full.stroke_deg).min(1.0),
+                stroke_deg: amplitude_deg,
+            },
         })
+    }
+
+    /// The same drives with every stroke limit multiplied by a factor.
+    #[must_use]
+    pub fn with_strokes_scaled(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        for limit in scaled.limits.values_mut() {
+            limit.amplitude_volt *= factor;
+            limit.stroke_deg *= factor;
+        }
+        scaled
+    }
+
+    /// Stroke limit at a harmonic of the case; none at others.
+    pub fn limit(&self, harmonic: usize) -> Option<FullScale> {
+        self.limits.get(&harmonic).copied()
     }
 }
 
@@ -114,8 +156,8 @@ pub fn control_set(
 ) -> Result<Vec<ControlStudy>, StudyError> {
     let limits = harmonics
         .iter()
-        .map(|&n| drives.limit(case, n))
-        .collect::<Result<Vec<(f64, f64)>, _>>()?;
+        .map(|&n| drives.limit(n).map_or_else(|| drives.full_scale(case, n), Ok))
+        .collect::<Result<Vec<FullScale>, _>>()?;
     let set = ControlSet { case, rotor, drives, harmonics, limits };
     let ideal = set.feedback(ControlActuator::Ideal)?;
     case.control
@@ -158,7 +200,7 @@ struct ControlSet<'a> {
     drives: &'a Drives,
     harmonics: &'a [usize],
     /// Full-scale voltage and stroke limit of every harmonic.
-    limits: Vec<(f64, f64)>,
+    limits: Vec<FullScale>,
 }
 
 impl ControlSet<'_> {
@@ -175,7 +217,11 @@ impl ControlSet<'_> {
             ControlActuator::Ideal => {
                 let amplitude = self.case.control.amplitude_volt;
                 let per_deg = amplitude / self.case.actuator.ideal_amplitude_deg;
-                let scale = self.limits.iter().map(|(_, deg)| (deg * per_deg, *deg)).collect();
+                let scale = self
+                    .limits
+                    .iter()
+                    .map(|l| FullScale { amplitude_volt: l.stroke_deg * per_deg, ..*l })
+                    .collect();
                 (&self.drives.ideal, scale)
             }
             ControlActuator::Ignored | ControlActuator::Hysteretic => {
@@ -221,7 +267,7 @@ impl ControlSet<'_> {
             run,
             t_norm,
             rho,
-            stroke_limit_deg: self.limits.iter().map(|l| l.1).collect(),
+            stroke_limit_deg: self.limits.iter().map(|l| l.stroke_deg).collect(),
             j_before: self.loads_cost(&before),
             j_after: self.loads_cost(&state.rotor.hub.harmonic(blades)),
             state,
