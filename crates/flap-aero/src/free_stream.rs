@@ -66,23 +66,41 @@ pub fn section_loads(
 ) -> Result<SectionLoads, AeroError> {
     section.check_lags(lags.len())?;
     let dot = |row: &[f64; 4], v: &[f64; 4]| -> f64 { row.iter().zip(v).map(|(a, b)| a * b).sum() };
-    let speed = stream.speed.abs();
     let mut circulating = section.direct.each_ref().map(|row| dot(row, velocities));
     for (lag, x) in section.lags.iter().zip(lags) {
         for (sum, weight) in circulating.iter_mut().zip(lag.output) {
             *sum += weight * x;
         }
     }
-    let [lift, moment, hinge] = std::array::from_fn(|o| {
-        speed * circulating[o] + stream.semichord * dot(&section.rate[o], velocity_rates)
-    });
+    let apparent = section.rate.each_ref().map(|row| dot(row, velocity_rates));
+    Ok(loads_of_outputs(stream, circulating, apparent))
+}
+
+/// Loads per length from the two kinds of output of a section: those that come with the speed and those
+/// of the apparent mass.
+///
+/// ```text
+/// L = (1/2) rho c   [ |U| y + b y_rate ]_Cn
+/// M = (1/2) rho c^2 [ |U| y + b y_rate ]_Cm,     H with Ch
+/// y = direct w + sum output x,     y_rate = rate dw/dt
+/// ```
+/// For callers that keep the lags of their sections in a form of their own. `y` and `y_rate` are in
+/// the order of [`Load`](crate::Load), a velocity and a velocity per time.
+pub fn loads_of_outputs(
+    stream: &FreeStream,
+    circulating: [f64; 3],
+    apparent: [f64; 3],
+) -> SectionLoads {
+    let speed = stream.speed.abs();
+    let [lift, moment, hinge] =
+        std::array::from_fn(|o| speed * circulating[o] + stream.semichord * apparent[o]);
     let chord = 2.0 * stream.semichord;
     let force = 0.5 * stream.density * chord;
-    Ok(SectionLoads {
+    SectionLoads {
         lift: force * lift,
         moment: force * chord * moment,
         hinge: force * chord * hinge,
-    })
+    }
 }
 
 /// Rates of the lags of velocity inputs, written to `rates`.

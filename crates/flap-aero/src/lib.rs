@@ -51,7 +51,7 @@ mod theodorsen;
 mod values;
 
 pub use error::AeroError;
-pub use free_stream::{FreeStream, SectionLoads, lag_rates, section_loads};
+pub use free_stream::{FreeStream, SectionLoads, lag_rates, loads_of_outputs, section_loads};
 pub use hariharan_leishman::{MIN_NONCIRCULATORY_MACH, initial_slopes, piston_start};
 pub use march::{MarchingSection, SectionInputs, SectionState, StepFactors};
 pub use response::{Motion, harmonic_response, indicial_response, steady_response};

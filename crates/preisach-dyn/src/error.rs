@@ -208,30 +208,6 @@ pub enum PreisachError {
         /// Allowed change, deg.
         allowed_deg: f64,
     },
-    /// No bias inside the voltage range makes the mean flap angle zero.
-    #[error(
-        "no bias gives a zero mean flap angle: it is still {mean_at_limit_deg} deg at {limit_volt} V, the last mean this command fits the range with; lower the harmonics"
-    )]
-    BiasOutsideRange {
-        /// Last mean voltage the command allows, V.
-        limit_volt: f64,
-        /// Mean flap angle there, deg.
-        mean_at_limit_deg: f64,
-    },
-    /// The bias search ran out of iterations.
-    #[error(
-        "bias search stopped after {iterations} iterations at {bias_volt} V with a mean flap angle of {mean_deg} deg, allowed {allowed_deg} deg"
-    )]
-    BiasNotConverged {
-        /// Iterations done.
-        iterations: usize,
-        /// Last bias, V.
-        bias_volt: f64,
-        /// Mean flap angle at it, deg.
-        mean_deg: f64,
-        /// Allowed mean, deg.
-        allowed_deg: f64,
-    },
     /// The quadratic program of an identification stage was not solved.
     #[error(
         "{stage}: the quadratic program ended as {status:?} after {iterations} iterations with primal residual {primal_residual:e}; check the scaling of the records"

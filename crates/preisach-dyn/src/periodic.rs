@@ -2,7 +2,7 @@
 
 use crate::actuator::check_positive;
 use crate::{ActuatorModel, PreisachError, StartState, StepCounts};
-use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use serde::{Deserialize, Serialize};
 
 /// Settings of a periodic response.
@@ -17,8 +17,6 @@ pub struct PeriodicSettings {
     pub closure_deg: f64,
     /// Revolutions to try.
     pub largest_revolutions: usize,
-    /// Largest mean flap angle that counts as zero when the bias is solved for, deg.
-    pub mean_deg: f64,
 }
 
 impl Default for PeriodicSettings {
@@ -29,7 +27,6 @@ impl Default for PeriodicSettings {
             harmonics: 24,
             closure_deg: 1e-9,
             largest_revolutions: 100,
-            mean_deg: 1e-3,
         }
     }
 }
@@ -51,8 +48,6 @@ pub struct PeriodicResponse {
     pub counts: StepCounts,
 }
 
-/// How often the bias search may evaluate the orbit.
-const BIAS_ITERATIONS: usize = 60;
 
 impl ActuatorModel {
     /// The closed orbit under a periodic voltage.
@@ -115,130 +110,6 @@ impl ActuatorModel {
         })
     }
 
-    /// The mean voltage that makes the mean flap angle zero, and the orbit there.
-    ///
-    /// The mean of `voltage_volt` is where the search starts; its harmonics are kept. Paper
-    /// equation (6): the bias is not a control, it follows from the harmonics.
-    ///
-    /// # Errors
-    /// [`PreisachError::CommandOutOfRange`] if the harmonics alone do not fit into the range,
-    /// [`PreisachError::BiasOutsideRange`] if no mean inside it will do,
-    /// [`PreisachError::BiasNotConverged`], and those of [`Self::periodic_response`].
-    pub fn bias_for_zero_mean(
-        &self,
-        voltage_volt: &HarmonicSeries,
-        rev_hz: f64,
-        settings: &PeriodicSettings,
-    ) -> Result<(f64, PeriodicResponse), PreisachError> {
-        check_positive("mean_deg", settings.mean_deg)?;
-        let mut command = voltage_volt.clone();
-        command.mean = 0.0;
-        let (least, most) = extremes(&command, settings.steps_per_rev.max(1));
-        let (mut lowest_volt, mut highest_volt) = (
-            self.range_volt.lowest_volt() - least,
-            self.range_volt.highest_volt() - most,
-        );
-        // wider than the range, or NaN
-        let fits = lowest_volt <= highest_volt;
-        if !fits {
-            command.mean = self.range_volt.middle_volt() - 0.5 * (least + most);
-            self.sampled_command(&command, settings.steps_per_rev)?;
-            // full scale up to rounding: there is one mean it fits with
-            (lowest_volt, highest_volt) = (command.mean, command.mean);
-        }
-        let mut evaluate = |mean: f64| -> Result<PeriodicResponse, PreisachError> {
-            command.mean = mean;
-            self.periodic_response(&command, rev_hz, settings)
-        };
-        let closed = |orbit: &PeriodicResponse| orbit.flap_deg.mean.abs() <= settings.mean_deg;
-
-        let mut near_volt = voltage_volt.mean.clamp(lowest_volt, highest_volt);
-        let orbit = evaluate(near_volt)?;
-        if closed(&orbit) {
-            return Ok((near_volt, orbit));
-        }
-        let mut near_deg = orbit.flap_deg.mean;
-        let mut far_volt = if near_deg < 0.0 {
-            highest_volt
-        } else {
-            lowest_volt
-        };
-        let orbit = evaluate(far_volt)?;
-        if closed(&orbit) {
-            return Ok((far_volt, orbit));
-        }
-        let mut far_deg = orbit.flap_deg.mean;
-        if far_deg * near_deg > 0.0 {
-            return Err(PreisachError::BiasOutsideRange {
-                limit_volt: far_volt,
-                mean_at_limit_deg: far_deg,
-            });
-        }
-        // Illinois variant of false position: the mean flap angle grows with the bias
-        for _ in 0..BIAS_ITERATIONS {
-            let bias_volt = near_volt - near_deg * (far_volt - near_volt) / (far_deg - near_deg);
-            let orbit = evaluate(bias_volt)?;
-            if closed(&orbit) {
-                return Ok((bias_volt, orbit));
-            }
-            let mean_deg = orbit.flap_deg.mean;
-            if mean_deg * near_deg < 0.0 {
-                (far_volt, far_deg) = (near_volt, near_deg);
-            } else {
-                far_deg *= 0.5;
-            }
-            (near_volt, near_deg) = (bias_volt, mean_deg);
-        }
-        Err(PreisachError::BiasNotConverged {
-            iterations: BIAS_ITERATIONS,
-            bias_volt: near_volt,
-            mean_deg: near_deg,
-            allowed_deg: settings.mean_deg,
-        })
-    }
-
-    /// The flap amplitude reached by one harmonic at full scale, deg: its first harmonic of the
-    /// drive, about the bias of zero mean.
-    ///
-    /// | argument | unit |
-    /// |---|---|
-    /// | `amplitude_volt` | V, half the peak-to-peak voltage |
-    /// | `harmonic_per_rev` | 1, 2, 3... |
-    /// | `rev_hz` | revolutions per second |
-    ///
-    /// An amplitude of half the range leaves no room to move the bias; the orbit is then taken
-    /// about the middle of the range, whatever mean it has. The same is done if the room does not
-    /// suffice.
-    ///
-    /// # Errors
-    /// Those of [`Self::periodic_response`].
-    pub fn stroke_limit_deg(
-        &self,
-        amplitude_volt: f64,
-        harmonic_per_rev: usize,
-        rev_hz: f64,
-        settings: &PeriodicSettings,
-    ) -> Result<f64, PreisachError> {
-        check_positive("amplitude_volt", amplitude_volt)?;
-        let mut command = HarmonicSeries::zero(harmonic_per_rev);
-        command.mean = self.range_volt.middle_volt();
-        command.set_harmonic(
-            harmonic_per_rev,
-            Harmonic {
-                cosine: amplitude_volt,
-                sine: 0.0,
-            },
-        );
-        let orbit = match self.bias_for_zero_mean(&command, rev_hz, settings) {
-            Ok((_, orbit)) => orbit,
-            Err(PreisachError::BiasOutsideRange { .. }) => {
-                self.periodic_response(&command, rev_hz, settings)?
-            }
-            Err(error) => return Err(error),
-        };
-        Ok(orbit.flap_deg.harmonic(harmonic_per_rev).amplitude())
-    }
-
     /// The command at every step of a revolution, refused where it leaves the range.
     fn sampled_command(
         &self,
@@ -277,15 +148,5 @@ impl ActuatorModel {
     }
 }
 
-/// Rounding allowed to a command, as a fraction of the range.
+/// Rounding of a command at the very end of its range, as a fraction of the span.
 const COMMAND_TOLERANCE: f64 = 1e-9;
-
-/// Smallest and largest value over a revolution.
-fn extremes(series: &HarmonicSeries, steps: usize) -> (f64, f64) {
-    uniform_azimuths_rad(steps)
-        .iter()
-        .map(|&psi| series.value(psi))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        })
-}

@@ -14,6 +14,7 @@
 
 use crate::blade::ResponseBlade;
 use crate::motion::{Motion, RootPitch};
+use flap_aero::{FreeStream, loads_of_outputs};
 
 /// Angle of one trailing-edge flap with its azimuth derivatives (rad).
 pub(crate) type FlapAngle = [f64; 3];
@@ -110,17 +111,21 @@ pub(crate) fn section_loads(
     coefficients: &PromptCoefficients,
     lag: [f64; 3],
 ) -> SectionLoads {
-    let speed = flow.u_t.abs();
+    let stream = FreeStream {
+        density: scales.density_chord / scales.chord,
+        semichord: 0.5 * scales.chord,
+        speed: flow.u_t,
+    };
+    let circulating = [0, 1, 2].map(|k| dot(&coefficients.direct[k], &flow.input) + lag[k]);
+    let apparent = [0, 1, 2].map(|k| dot(&coefficients.rate[k], &flow.input_rate));
+    let loads = loads_of_outputs(&stream, circulating, apparent);
     let half = 0.5 * scales.density_chord;
-    let semichord = 0.5 * scales.chord;
-    let steady = |k: usize| dot(&coefficients.direct[k], &flow.input) + lag[k];
-    let rate = |k: usize| semichord * dot(&coefficients.rate[k], &flow.input_rate);
-    let lift_per_speed = half * steady(0);
-    let moment = |k: usize| half * scales.chord * (speed * steady(k) + rate(k));
     SectionLoads {
-        fz: speed * lift_per_speed + half * rate(0),
-        fy: -flow.u_t.signum() * lift_per_speed * flow.u_p - half * scales.drag * speed * flow.u_t,
-        moment: moment(1),
-        hinge: moment(2),
+        fz: loads.lift,
+        fy: -half
+            * flow.u_t.signum()
+            * (circulating[0] * flow.u_p + scales.drag * flow.u_t * flow.u_t),
+        moment: loads.moment,
+        hinge: loads.hinge,
     }
 }

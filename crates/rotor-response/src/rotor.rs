@@ -6,7 +6,6 @@ use crate::flight_air::FlightAir;
 use crate::loads::{
     SixLoads, hub_loads, root_flap_curvature_moment, root_flap_moment, root_loads,
 };
-use crate::motion::Motion;
 use crate::structure::{BladeState, SpanLoads};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
@@ -374,24 +373,22 @@ impl RevolutionLoads {
                 break;
             }
         }
-        let (flows, lags) = system.flows_and_lags(&samples);
+        let revolution = system.revolution(&samples);
         let blade = &rotor.blade;
         let first = system.air.first_station();
-        let mut root = Vec::with_capacity(flows.len());
-        let mut hinge = vec![Vec::with_capacity(flows.len()); rotor.model.flaps.len()];
+        let mut root = Vec::with_capacity(revolution.motions.len());
+        let mut hinge = vec![Vec::new(); rotor.model.flaps.len()];
         let mut bending = [Vec::new(), Vec::new()];
-        let mut motion = Motion::default();
         let mut loads = SpanLoads::default();
-        for p in 0..flows.len() {
-            system.fill(&mut motion, &samples, p);
-            let sections = system.section_loads(p, &flows[p], &lags[p]);
+        for (p, motion) in revolution.motions.iter().enumerate() {
+            let sections = system.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
             system.span_loads(p, &sections, &mut loads);
             let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
             let pitch = system.points[p].air.pitch;
-            let state = BladeState { motion: &motion, pitch, loads: &loads };
+            let state = BladeState { motion, pitch, loads: &loads };
             root.push(root_loads(blade, state, &aerodynamic));
             let couplings = rotor.model.couplings;
-            bending[0].push(root_flap_moment(blade, couplings, &motion, &loads));
+            bending[0].push(root_flap_moment(blade, couplings, motion, &loads));
             let q: Vec<f64> = samples.q.column(p).iter().copied().collect();
             bending[1].push(root_flap_curvature_moment(blade, couplings, &q, pitch.angle));
             for (k, history) in hinge.iter_mut().enumerate() {

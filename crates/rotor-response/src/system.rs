@@ -37,12 +37,22 @@ pub(crate) struct ResponseSystem<'a> {
     pub(crate) mass: &'a DMatrix<f64>,
 }
 
+/// Motion, flow and lag loads at every point of the revolution.
+#[derive(Debug)]
+pub(crate) struct Revolution {
+    /// By point.
+    pub(crate) motions: Vec<Motion>,
+    /// By point and lifting station.
+    pub(crate) flows: Vec<Vec<SectionFlow>>,
+    /// Lag part of lift, moment and hinge moment, by point and lifting station.
+    pub(crate) lags: Vec<Vec<[f64; 3]>>,
+}
+
 /// Reusable arrays of one evaluation.
 #[derive(Debug, Default)]
-pub(crate) struct Scratch {
-    pub(crate) motion: Motion,
+struct Scratch {
     structure: StructureScratch,
-    pub(crate) loads: SpanLoads,
+    loads: SpanLoads,
 }
 
 impl ResponseSystem<'_> {
@@ -64,24 +74,21 @@ impl ResponseSystem<'_> {
             .collect()
     }
 
-    /// Flows at all points, `[point][station]`, and the aerodynamic lag loads they call for.
-    pub(crate) fn flows_and_lags(
-        &self,
-        samples: &OrbitSamples,
-    ) -> (Vec<Vec<SectionFlow>>, Vec<Vec<[f64; 3]>>) {
-        let mut motion = Motion::default();
-        let flows: Vec<_> = (0..self.points.len())
-            .map(|p| {
-                self.fill(&mut motion, samples, p);
-                self.flows(p, &motion)
-            })
-            .collect();
+    /// Motion, flow and aerodynamic lag loads over the whole revolution.
+    pub(crate) fn revolution(&self, samples: &OrbitSamples) -> Revolution {
+        let points = self.points.len();
+        let mut motions = vec![Motion::default(); points];
+        let mut flows = Vec::with_capacity(points);
+        for (p, motion) in motions.iter_mut().enumerate() {
+            self.fill(motion, samples, p);
+            flows.push(self.flows(p, motion));
+        }
         let lags = self.air.lag_loads(&flows);
-        (flows, lags)
+        Revolution { motions, flows, lags }
     }
 
     /// Motion of the blade at one point.
-    pub(crate) fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
+    fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
         let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
         motion.fill(
             self.blade,
@@ -137,8 +144,14 @@ impl ResponseSystem<'_> {
     }
 
     /// Generalised residual of one point, without the constant mass part.
-    fn project(&self, point: usize, qd: &[f64], scratch: &mut Scratch, out: &mut [f64]) {
-        let Scratch { motion, structure, loads } = scratch;
+    fn project(
+        &self,
+        point: usize,
+        (motion, qd): (&Motion, &[f64]),
+        scratch: &mut Scratch,
+        out: &mut [f64],
+    ) {
+        let Scratch { structure, loads } = scratch;
         let pitch = self.points[point].air.pitch;
         let state = BladeState { motion, pitch, loads };
         modal_residual(self.blade, self.couplings, state, structure, out);
@@ -148,14 +161,18 @@ impl ResponseSystem<'_> {
     }
 
     /// Residual of one point with settled lag states, for the Newton matrix.
-    fn settled_residual(&self, point: usize, state: [&[f64]; 3], scratch: &mut Scratch) -> Vec<f64> {
-        let [q, qd, qdd] = state;
-        scratch.motion.fill(self.blade, q, qd, qdd);
-        let flows = self.flows(point, &scratch.motion);
+    fn settled_residual(
+        &self,
+        point: usize,
+        [q, qd, qdd]: [&[f64]; 3],
+        (motion, scratch): (&mut Motion, &mut Scratch),
+    ) -> Vec<f64> {
+        motion.fill(self.blade, q, qd, qdd);
+        let flows = self.flows(point, motion);
         let sections = self.section_loads(point, &flows, &self.air.settled_loads(point, &flows));
         self.span_loads(point, &sections, &mut scratch.loads);
         let mut out = vec![0.0; q.len()];
-        self.project(point, qd, scratch, &mut out);
+        self.project(point, (motion, qd), scratch, &mut out);
         out
     }
 
@@ -163,15 +180,17 @@ impl ResponseSystem<'_> {
         let n = self.dof();
         let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
         let state = [column(&samples.q), column(&samples.qd), column(&samples.qdd)];
-        let mut scratch = Scratch::default();
-        let base = self.settled_residual(point, [&state[0], &state[1], &state[2]], &mut scratch);
+        let (mut motion, mut scratch) = (Motion::default(), Scratch::default());
+        let mut settled = |[q, qd, qdd]: &[Vec<f64>; 3]| {
+            self.settled_residual(point, [q, qd, qdd], (&mut motion, &mut scratch))
+        };
+        let base = settled(&state);
         let mut derivatives = [0, 1, 2].map(|_| DMatrix::zeros(n, n));
         for (which, matrix) in derivatives.iter_mut().enumerate() {
             for j in 0..n {
                 let mut moved = state.clone();
                 moved[which][j] += TANGENT_STEP;
-                let value =
-                    self.settled_residual(point, [&moved[0], &moved[1], &moved[2]], &mut scratch);
+                let value = settled(&moved);
                 for i in 0..n {
                     matrix[(i, j)] = (value[i] - base[i]) / TANGENT_STEP;
                 }
@@ -198,15 +217,14 @@ impl PeriodicSystem for ResponseSystem<'_> {
         samples: &OrbitSamples,
         out: &mut DMatrix<f64>,
     ) -> Result<(), Self::Error> {
-        let (flows, lags) = self.flows_and_lags(samples);
+        let revolution = self.revolution(samples);
         let mut scratch = Scratch::default();
         let mut column = vec![0.0; self.dof()];
-        for p in 0..self.points.len() {
-            self.fill(&mut scratch.motion, samples, p);
-            let sections = self.section_loads(p, &flows[p], &lags[p]);
+        for (p, motion) in revolution.motions.iter().enumerate() {
+            let sections = self.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
             self.span_loads(p, &sections, &mut scratch.loads);
             let qd: Vec<f64> = samples.qd.column(p).iter().copied().collect();
-            self.project(p, &qd, &mut scratch, &mut column);
+            self.project(p, (motion, &qd), &mut scratch, &mut column);
             out.column_mut(p).copy_from_slice(&column);
         }
         Ok(())

@@ -37,7 +37,10 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     let case = &loaded.case;
     let values = &case.actuator;
     let (low, high) = values.range_volt;
-    let fail = |source| SimError::Actuator { place: loaded.index.place("actuator.range_V"), source };
+    let fail = |source| SimError::Actuator {
+        place: loaded.index.place("actuator.range_V"),
+        source,
+    };
     let range = VoltageRange::new(low, high).map_err(fail)?;
     // the case gives the amplitude at full scale, the model wants it at the ends of the range
     let full_scale = 2.0 * case.control.amplitude_volt / range.span_volt();
@@ -66,7 +69,9 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         ActuatorSource::Stored { folder, file } => {
             let source = folder.read(file)?;
             let stored = read_actuator(&source)?;
-            actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
+            actuators
+                .inputs
+                .push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;
             actuators.real = Some(stored.model);
@@ -83,7 +88,9 @@ fn extrapolation_warnings(
     real: Option<&ActuatorModel>,
     place: &Place,
 ) -> Vec<String> {
-    let Some(trained) = real.and_then(|model| model.trained) else { return vec![] };
+    let Some(trained) = real.and_then(|model| model.trained) else {
+        return vec![];
+    };
     let case = &loaded.case;
     let mut harmonics: Vec<usize> = case.control.harmonics.iter().flatten().copied().collect();
     harmonics.sort_unstable();

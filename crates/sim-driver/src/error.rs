@@ -1,10 +1,10 @@
 //! The errors of the driver and the exit code of each.
 
 use crate::problem::{Place, Problem, Problems};
+use crate::study::StudyError;
 use flap_aero::AeroError;
 use preisach_dyn::PreisachError;
 use rotor_fem::FemError;
-use crate::study::StudyError;
 use rotor_response::ResponseError;
 use std::path::PathBuf;
 use trim::TrimError;
@@ -130,7 +130,6 @@ fn actuator_family(error: &PreisachError) -> Family {
     match error {
         PreisachError::Diverged { .. }
         | PreisachError::OrbitNotClosed { .. }
-        | PreisachError::BiasNotConverged { .. }
         | PreisachError::QuadraticProgram { .. } => Family::NumericalFailure,
         _ => Family::RejectedInput,
     }

@@ -35,10 +35,7 @@ pub struct BenchIdentification {
 ///
 /// # Errors
 /// [`SimError::Actuator`] at the place of the data set.
-pub fn identify_bench(
-    data: &BenchData,
-    base: &Settings,
-) -> Result<BenchIdentification, SimError> {
+pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentification, SimError> {
     let fail = |source: PreisachError| SimError::Actuator {
         place: Place::file(format!("{}/dataset.ron", data.folder)),
         source,
@@ -49,7 +46,11 @@ pub fn identify_bench(
         Some(gain) => gain,
         None => quasi_static_gain(data, base),
     };
-    let settings = Settings { range_volt, deg_per_um, ..base.clone() };
+    let settings = Settings {
+        range_volt,
+        deg_per_um,
+        ..base.clone()
+    };
     let records: Vec<BenchRecord> = data
         .runs
         .iter()
@@ -57,7 +58,12 @@ pub fn identify_bench(
             id: run.id.clone(),
             time_step_s: run.table.time_step_s,
             voltage_volt: run.table.command_volt.clone(),
-            output_deg: run.table.displacement_um.iter().map(|x| deg_per_um * x).collect(),
+            output_deg: run
+                .table
+                .displacement_um
+                .iter()
+                .map(|x| deg_per_um * x)
+                .collect(),
             record_use: run.use_as.map(|given| match given {
                 RunUse::Train => RecordUse::Train,
                 RunUse::HeldOut => RecordUse::HeldOut,
@@ -66,7 +72,11 @@ pub fn identify_bench(
         })
         .collect();
     let identification = identify(&records, &settings).map_err(fail)?;
-    Ok(BenchIdentification { identification, settings, records })
+    Ok(BenchIdentification {
+        identification,
+        settings,
+        records,
+    })
 }
 
 /// Gain that makes the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`], deg/um.
@@ -74,7 +84,9 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> f64 {
     let half_stroke = |displacement_um: &[f64]| {
         let (low, high) = displacement_um
             .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| {
+                (l.min(x), h.max(x))
+            });
         0.5 * (high - low)
     };
     let widest_um = data
@@ -95,7 +107,11 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> f64 {
         .map(|run| half_stroke(&run.table.displacement_um))
         .fold(0.0, f64::max);
     // no slow loop at all: identification says so in its own words
-    if widest_um > 0.0 { QUASI_STATIC_AMPLITUDE_DEG / widest_um } else { 1.0 }
+    if widest_um > 0.0 {
+        QUASI_STATIC_AMPLITUDE_DEG / widest_um
+    } else {
+        1.0
+    }
 }
 
 impl BenchIdentification {
@@ -125,8 +141,16 @@ impl BenchIdentification {
                 format!(
                     "trained: quasi-static records (up to {} Hz) and, at {} Hz, the largest and the smallest amplitude; held out: all others{}",
                     rule.quasi_static_hz,
-                    rule.trained_hz.iter().map(f64::to_string).collect::<Vec<_>>().join(" and "),
-                    if *rule == base { "" } else { " (rule of the start file)" },
+                    rule.trained_hz
+                        .iter()
+                        .map(f64::to_string)
+                        .collect::<Vec<_>>()
+                        .join(" and "),
+                    if *rule == base {
+                        ""
+                    } else {
+                        " (rule of the start file)"
+                    },
                 )
             } else {
                 "as dataset.ron says for every run".to_owned()
@@ -181,7 +205,10 @@ impl Printable for IdentifyResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("{}", self.title));
-        sheet.line(format_args!("Data   {}\nSplit  {}", self.dataset, self.split));
+        sheet.line(format_args!(
+            "Data   {}\nSplit  {}",
+            self.dataset, self.split
+        ));
         sheet.line(format_args!(
             "Gain   {:.6} deg/um; {:.3} deg of the records is zero flap angle",
             self.deg_per_um, self.zero_deg
@@ -192,9 +219,10 @@ impl Printable for IdentifyResult {
             100.0 * self.refinement.nrmse_before,
             100.0 * self.refinement.nrmse_after
         ));
-        for (title, use_as) in
-            [("Trained runs", FitUse::Trained), ("Held-out runs", FitUse::HeldOut)]
-        {
+        for (title, use_as) in [
+            ("Trained runs", FitUse::Trained),
+            ("Held-out runs", FitUse::HeldOut),
+        ] {
             sheet.line(format_args!("\n{title}"));
             sheet.block(&fit_table(self.runs.iter().filter(|r| r.use_as == use_as)));
         }
@@ -211,7 +239,15 @@ impl Printable for IdentifyResult {
 fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>) -> String {
     let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
     table(
-        &["run", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg"],
+        &[
+            "run",
+            "Hz",
+            "V",
+            "NRMSE %",
+            "static only %",
+            "amplitude %",
+            "phase deg",
+        ],
         runs.map(|r| {
             vec![
                 r.id.clone(),

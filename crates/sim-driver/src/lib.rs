@@ -37,3 +37,8 @@ pub use error::{Family, SimError};
 
 /// Version of the program, part of every result and its key.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

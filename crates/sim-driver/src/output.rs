@@ -26,9 +26,12 @@ pub trait Printable: Serialize {
     fn render(&self, format: Format) -> Result<String, SimError> {
         let mut text = match format {
             Format::Text => self.text(),
-            Format::Json => serde_json::to_string_pretty(self).map_err(|e| {
-                SimError::NotWritten { path: "JSON".into(), reason: e.to_string() }
-            })?,
+            Format::Json => {
+                serde_json::to_string_pretty(self).map_err(|e| SimError::NotWritten {
+                    path: "JSON".into(),
+                    reason: e.to_string(),
+                })?
+            }
         };
         if !text.ends_with('\n') {
             text.push('\n');
@@ -89,5 +92,8 @@ pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> St
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-    table.lines().map(|line| line.trim_end().to_owned() + "\n").collect()
+    table
+        .lines()
+        .map(|line| line.trim_end().to_owned() + "\n")
+        .collect()
 }

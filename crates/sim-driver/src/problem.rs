@@ -18,12 +18,20 @@ pub struct Place {
 impl Place {
     /// A whole file.
     pub fn file(file: impl Into<String>) -> Self {
-        Self { file: file.into(), ..Self::default() }
+        Self {
+            file: file.into(),
+            ..Self::default()
+        }
     }
 
     /// A line and column of a file, both from 1.
     pub fn at(file: impl Into<String>, line: usize, column: usize) -> Self {
-        Self { file: file.into(), line: Some(line), column: Some(column), field: None }
+        Self {
+            file: file.into(),
+            line: Some(line),
+            column: Some(column),
+            field: None,
+        }
     }
 
     /// The same place with the name of the field or table column found there.
@@ -59,7 +67,9 @@ pub enum Fault {
         reason: String,
     },
     /// A file is not UTF-8 text.
-    #[error("is not UTF-8 text (byte {offset}); save it as UTF-8, and check that it is no binary file")]
+    #[error(
+        "is not UTF-8 text (byte {offset}); save it as UTF-8, and check that it is no binary file"
+    )]
     NotText {
         /// First offending byte, from 0.
         offset: usize,
@@ -86,7 +96,9 @@ pub enum Fault {
 
     // ---- RON ----
     /// The text is not RON.
-    #[error("is not valid RON: {message}; check brackets, commas and quotes just before this place")]
+    #[error(
+        "is not valid RON: {message}; check brackets, commas and quotes just before this place"
+    )]
     Syntax {
         /// What the reader said.
         message: String,
@@ -230,7 +242,9 @@ pub enum Fault {
         room_volt: f64,
     },
     /// An `Ignored` run has nothing to be compared with.
-    #[error("Ignored and Hysteretic need an identified actuator; set actuator.model to Bench(...) or File(...)")]
+    #[error(
+        "Ignored and Hysteretic need an identified actuator; set actuator.model to Bench(...) or File(...)"
+    )]
     NeedsIdentifiedActuator,
     /// A range is upside down.
     #[error("({low}, {high}) is no range; give the lower limit first, both finite")]
@@ -241,14 +255,18 @@ pub enum Fault {
         high: f64,
     },
     /// A path is absolute or leads out of its folder.
-    #[error("{path} is not a plain file name inside the data folder; give the name of a file beside dataset.ron")]
+    #[error(
+        "{path} is not a plain file name inside the data folder; give the name of a file beside dataset.ron"
+    )]
     NotPlainFile {
         /// The path.
         path: String,
     },
     // ---- tables ----
     /// A required column is missing.
-    #[error("the column `{column}` is missing, the header has {found}; add the column, or correct its name")]
+    #[error(
+        "the column `{column}` is missing, the header has {found}; add the column, or correct its name"
+    )]
     MissingColumn {
         /// The column wanted, with its unit.
         column: &'static str,
@@ -256,7 +274,9 @@ pub enum Fault {
         found: String,
     },
     /// A column has no unit.
-    #[error("the column `{found}` has no unit; name it `{expected}` (or `name [unit]`, or give a second row of units in brackets)")]
+    #[error(
+        "the column `{found}` has no unit; name it `{expected}` (or `name [unit]`, or give a second row of units in brackets)"
+    )]
     MissingUnit {
         /// The column found.
         found: String,
@@ -300,7 +320,9 @@ pub enum Fault {
         least: usize,
     },
     /// A row has the wrong number of fields.
-    #[error("the row has {found} fields, the header has {expected}; check separators and decimal commas")]
+    #[error(
+        "the row has {found} fields, the header has {expected}; check separators and decimal commas"
+    )]
     FieldCount {
         /// Fields found.
         found: usize,
@@ -324,13 +346,17 @@ pub enum Fault {
         text: String,
     },
     /// A field is NaN or infinite.
-    #[error("the value is {value}, expected a finite number; remove the record's bad samples at the source, they are not interpolated here")]
+    #[error(
+        "the value is {value}, expected a finite number; remove the record's bad samples at the source, they are not interpolated here"
+    )]
     NotFinite {
         /// The value.
         value: f64,
     },
     /// Time does not increase.
-    #[error("time {time_s} s follows {before_s} s, expected increasing time; sort the rows or split the record")]
+    #[error(
+        "time {time_s} s follows {before_s} s, expected increasing time; sort the rows or split the record"
+    )]
     TimeNotIncreasing {
         /// Time, s.
         time_s: f64,
@@ -338,7 +364,9 @@ pub enum Fault {
         before_s: f64,
     },
     /// The sampling is not uniform.
-    #[error("the time step is {step_s} s, the record's is {usual_s} s, expected uniform sampling; resample the record, or split it at the gap")]
+    #[error(
+        "the time step is {step_s} s, the record's is {usual_s} s, expected uniform sampling; resample the record, or split it at the gap"
+    )]
     TimeStepUneven {
         /// The step, s.
         step_s: f64,
@@ -346,7 +374,9 @@ pub enum Fault {
         usual_s: f64,
     },
     /// A command lies outside the actuator's range.
-    #[error("the command {voltage_volt} V lies outside command_range_V ({low_volt}, {high_volt}) of dataset.ron; correct the range, or remove the record")]
+    #[error(
+        "the command {voltage_volt} V lies outside command_range_V ({low_volt}, {high_volt}) of dataset.ron; correct the range, or remove the record"
+    )]
     CommandOutsideRange {
         /// Command, V.
         voltage_volt: f64,
@@ -364,11 +394,17 @@ pub enum Fault {
 }
 
 fn suggestion(nearest: Option<&String>) -> String {
-    nearest.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default()
+    nearest
+        .map(|n| format!(", did you mean `{n}`?"))
+        .unwrap_or_default()
 }
 
 fn suffix(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+    if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
 }
 
 fn unit_remedy(factor: Option<f64>, column: &str) -> String {
@@ -510,7 +546,10 @@ mod tests {
     #[test]
     fn near_words_are_found_and_far_ones_are_not() {
         assert_eq!(edit_distance("kitten", "sitting"), 3);
-        assert_eq!(nearest("radius", ["radius_m", "blades"]).unwrap(), "radius_m");
+        assert_eq!(
+            nearest("radius", ["radius_m", "blades"]).unwrap(),
+            "radius_m"
+        );
         assert_eq!(nearest("uniform", ["Uniform", "Drees"]).unwrap(), "Uniform");
         assert_eq!(nearest("temperature", ["blades", "chord_r"]), None);
     }
@@ -519,9 +558,15 @@ mod tests {
     fn problems_are_listed_by_line() {
         let mut problems = Problems::default();
         problems.push(Place::at("a.ron", 9, 2), Fault::UnknownKind);
-        problems.push(Place::at("a.ron", 3, 4).field("rotor.blades"), Fault::UnknownKind);
+        problems.push(
+            Place::at("a.ron", 3, 4).field("rotor.blades"),
+            Fault::UnknownKind,
+        );
         let text = problems.into_result(Some(())).unwrap_err().to_string();
-        assert!(text.starts_with("a.ron:3:4: rotor.blades: is neither"), "{text}");
+        assert!(
+            text.starts_with("a.ron:3:4: rotor.blades: is neither"),
+            "{text}"
+        );
         assert!(text.ends_with("2 problems"), "{text}");
     }
 }

@@ -43,9 +43,13 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
     let trimmed = TrimmedRotor::new(loaded, None)?;
     progress.step();
     progress.doing("control");
-    let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
+    let failed = |source| SimError::Study {
+        place: loaded.index.place("control"),
+        source,
+    };
     let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new)).map_err(failed)?;
-    let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step()).map_err(failed)?;
+    let studies =
+        control_all(&loaded.case, &trimmed, &drives, &|| progress.step()).map_err(failed)?;
     let result = RunResult {
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),
@@ -54,10 +58,19 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
                 trimmed.trim().rotor.hub.harmonic(loaded.case.blades),
             ),
         },
-        control: studies.iter().map(|study| control_line(loaded, study)).collect(),
+        control: studies
+            .iter()
+            .map(|study| control_line(loaded, study))
+            .collect(),
         warnings: actuators.warnings.clone(),
     };
-    Ok(RunOutcome { result, actuators, trimmed, drives, studies })
+    Ok(RunOutcome {
+        result,
+        actuators,
+        trimmed,
+        drives,
+        studies,
+    })
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {
@@ -102,8 +115,14 @@ impl Printable for RunResult {
             r.trim, r.periodicity, r.inflow
         ));
         let baseline = self.baseline.hub_4_per_rev;
-        let parts =
-            [baseline.fx, baseline.fy, baseline.fz, baseline.mx, baseline.my, baseline.mz];
+        let parts = [
+            baseline.fx,
+            baseline.fy,
+            baseline.fz,
+            baseline.mx,
+            baseline.my,
+            baseline.mz,
+        ];
         sheet.line(format_args!(
             "Hub loads at the blade number per rev, fixed frame, without control"
         ));
@@ -133,12 +152,28 @@ impl RunResult {
         let before = self.baseline.hub_4_per_rev.amplitudes();
         table(
             &[
-                "per rev", "actuator", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %", "MZ %",
-                "flaps deg", "volt", "lag deg", "lead deg", "steps",
+                "per rev",
+                "actuator",
+                "J %",
+                "FX %",
+                "FY %",
+                "FZ %",
+                "MX %",
+                "MY %",
+                "MZ %",
+                "flaps deg",
+                "volt",
+                "lag deg",
+                "lead deg",
+                "steps",
             ],
             self.control.iter().map(|line| {
                 let joined = |pick: fn(&crate::results::FlapLine) -> f64| {
-                    line.flaps.iter().map(|f| format!("{:.1}", pick(f))).collect::<Vec<_>>().join(" ")
+                    line.flaps
+                        .iter()
+                        .map(|f| format!("{:.1}", pick(f)))
+                        .collect::<Vec<_>>()
+                        .join(" ")
                 };
                 let sets: Vec<String> = line.harmonics.iter().map(usize::to_string).collect();
                 let mut cells = vec![
@@ -148,7 +183,10 @@ impl RunResult {
                 ];
                 let after = line.hub_4_per_rev.amplitudes();
                 cells.extend(
-                    after.iter().zip(&before).map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
+                    after
+                        .iter()
+                        .zip(&before)
+                        .map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
                 );
                 cells.extend([
                     joined(|f| f.flap_amplitude_deg),

@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use preisach_dyn::ActuatorModel;
 use sim_driver::SimError;
 use sim_driver::actuator::case_actuators;
-use sim_driver::case::{Case, ControlActuator, InflowChoice, PAPER_CASE, shipped_case};
+use sim_driver::case::{ControlActuator, InflowChoice, LoadedCase, PAPER_CASE, shipped_case};
 use sim_driver::study::{Drives, StudyError, TrimmedRotor, control_set};
 
 use super::sweep::{SweepPoint, SweepResult, TrimChannels};
@@ -28,13 +28,18 @@ pub enum SweepError {
     },
 }
 
-/// The paper's case with its identified actuator, made once: all cases of the sweep share it.
-static PAPER: LazyLock<Result<(Case, Option<Arc<ActuatorModel>>), SimError>> =
-    LazyLock::new(|| {
-        let loaded = shipped_case(PAPER_CASE)?;
-        let actuators = case_actuators(&loaded)?;
-        Ok((loaded.case, actuators.real.map(Arc::new)))
-    });
+/// The paper's case with its identified actuator.
+struct Paper {
+    loaded: LoadedCase,
+    actuator: Option<Arc<ActuatorModel>>,
+}
+
+/// Identified once: all cases of the sweep share it.
+static PAPER: LazyLock<Result<Paper, SimError>> = LazyLock::new(|| {
+    let loaded = shipped_case(PAPER_CASE)?;
+    let actuator = case_actuators(&loaded)?.real.map(Arc::new);
+    Ok(Paper { loaded, actuator })
+});
 
 /// Computes one case: the paper's rotor with Drees inflow at another advance ratio, one harmonic of
 /// control, the identified actuator.
@@ -42,15 +47,18 @@ static PAPER: LazyLock<Result<(Case, Option<Arc<ActuatorModel>>), SimError>> =
 /// # Errors
 /// [`SweepError`]: what the driver or the study could not do.
 pub fn sweep_point(point: SweepPoint) -> Result<SweepResult, SweepError> {
-    let (paper, actuator) = PAPER.as_ref().map_err(Clone::clone)?;
-    let mut case = paper.clone();
+    let paper = PAPER.as_ref().map_err(Clone::clone)?;
+    let harmonics = [point.harmonic_per_rev as usize];
+    let mut loaded = paper.loaded.clone();
+    let case = &mut loaded.case;
     case.advance_ratio = point.advance_ratio;
     case.inflow = InflowChoice::Drees;
+    case.control.harmonics = vec![harmonics.to_vec()];
     case.control.actuators = vec![ControlActuator::Hysteretic];
-    let rotor = TrimmedRotor::new(&case, None)?;
-    let drives = Drives::new(&case, actuator.clone());
-    let harmonics = [point.harmonic_per_rev as usize];
-    let studies = control_set(&case, &rotor, &drives, &harmonics, &|| ())?;
+    let rotor = TrimmedRotor::new(&loaded, None)?;
+    let case = &loaded.case;
+    let drives = Drives::new(case, paper.actuator.clone())?;
+    let studies = control_set(case, &rotor, &drives, &harmonics, &|| ())?;
     let study = studies.first().ok_or(SweepError::NoControl { point })?;
     let trim = rotor.trim();
     let counts = &trim.rotor.residuals;

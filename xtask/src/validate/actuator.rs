@@ -136,7 +136,9 @@ fn wander(seed: u64, count: usize) -> Vec<f64> {
     let mut state = seed;
     (0..count)
         .map(|_| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             LOWEST + (HIGHEST - LOWEST) * (state >> 11) as f64 / (1_u64 << 53) as f64
         })
         .collect()
@@ -166,8 +168,7 @@ fn wiping_out() -> Result<f64, CheckError> {
 fn return_point() -> Result<f64, CheckError> {
     let model = static_model()?;
     let differences = (1..=5).map(|seed| {
-        let (mut memory, before) =
-            driven(&model, &[wander(seed, 40), vec![20.0, 110.0]].concat());
+        let (mut memory, before) = driven(&model, &[wander(seed, 40), vec![20.0, 110.0]].concat());
         model.apply(&mut memory, 35.0);
         Ok((model.apply(&mut memory, 110.0) - before).abs())
     });
@@ -178,14 +179,20 @@ fn congruency() -> Result<f64, CheckError> {
     let model = static_model()?;
     let (low, high) = (30.0, 95.0);
     let shape = |seed: u64| -> Vec<f64> {
-        let (mut memory, start) = driven(&model, &[wander(seed, 40), vec![low, high, low]].concat());
+        let (mut memory, start) =
+            driven(&model, &[wander(seed, 40), vec![low, high, low]].concat());
         let up = (1..=13).map(|i| low + (high - low) * f64::from(i) / 13.0);
         let down = (1..=13).map(|i| high - (high - low) * f64::from(i) / 13.0);
-        up.chain(down).map(|voltage| model.apply(&mut memory, voltage) - start).collect()
+        up.chain(down)
+            .map(|voltage| model.apply(&mut memory, voltage) - start)
+            .collect()
     };
     let first = shape(1);
     let differences = (2..=5).flat_map(|seed| {
-        shape(seed).into_iter().zip(first.clone()).map(|(a, b)| Ok((a - b).abs()))
+        shape(seed)
+            .into_iter()
+            .zip(first.clone())
+            .map(|(a, b)| Ok((a - b).abs()))
     });
     worst("loop points", 100, differences.collect::<Vec<_>>())
 }
@@ -211,11 +218,15 @@ fn staircase() -> Result<f64, CheckError> {
 /// The shipped records, identified once for all checks.
 static RECORDS: LazyLock<Result<Vec<RecordReport>, SimError>> = LazyLock::new(|| {
     let data = read_bench(&Folder::Shipped(SHIPPED_BENCH.to_owned()))?;
-    Ok(identify_bench(&data, &Settings::default())?.identification.records)
+    Ok(identify_bench(&data, &Settings::default())?
+        .identification
+        .records)
 });
 
 fn records() -> Result<&'static [RecordReport], CheckError> {
-    RECORDS.as_deref().map_err(|error| CheckError::Driver(error.clone()))
+    RECORDS
+        .as_deref()
+        .map_err(|error| CheckError::Driver(error.clone()))
 }
 
 fn is_held_out(record: &RecordReport) -> bool {
@@ -243,14 +254,30 @@ fn over(
     figure: fn(&RecordFit) -> f64,
 ) -> Result<f64, CheckError> {
     let chosen = records()?.iter().filter(|record| wanted(record));
-    worst("records", needed, chosen.map(|record| Ok(figure(&record.dynamic))))
+    worst(
+        "records",
+        needed,
+        chosen.map(|record| Ok(figure(&record.dynamic))),
+    )
 }
 
 fn static_at_15_hz() -> Result<f64, CheckError> {
     let at_15 = |record: &&RecordReport| (record.drive.base_hz - 15.0).abs() < 0.5;
-    let figures = records()?.iter().filter(at_15).map(|record| record.static_only.nrmse_percent());
-    let (smallest, found) =
-        figures.fold((f64::INFINITY, 0), |(smallest, n), figure| (figure.min(smallest), n + 1));
+    let figures = records()?
+        .iter()
+        .filter(at_15)
+        .map(|record| record.static_only.nrmse_percent());
+    let (smallest, found) = figures.fold((f64::INFINITY, 0), |(smallest, n), figure| {
+        (figure.min(smallest), n + 1)
+    });
     let needed = 3;
-    if found < needed { Err(CheckError::TooFew { what: "records", found, needed }) } else { Ok(smallest) }
+    if found < needed {
+        Err(CheckError::TooFew {
+            what: "records",
+            found,
+            needed,
+        })
+    } else {
+        Ok(smallest)
+    }
 }

@@ -111,14 +111,19 @@ impl<'a> TableRow<'a> {
 /// Numbers of a case of the crosscheck of the whole chain, `crosscheck_S1_S2.json`.
 pub(super) fn crosscheck<const N: usize>(case: &str, field: &str) -> Result<[f64; N], CheckError> {
     let path = crate::workspace::root().join("fixtures/reference/rotor/crosscheck_S1_S2.json");
-    let missing = || CheckError::NoRow { path: path.clone(), row: format!("{case} {field}") };
+    let missing = || CheckError::NoRow {
+        path: path.clone(),
+        row: format!("{case} {field}"),
+    };
     let text = std::fs::read_to_string(&path).map_err(|_| missing())?;
     let json: serde_json::Value = serde_json::from_str(&text).map_err(|_| missing())?;
     let numbers: Option<Vec<f64>> = json
         .get(case)
         .and_then(|case| case.get(field)?.as_array())
         .and_then(|array| array.iter().map(serde_json::Value::as_f64).collect());
-    numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(missing)
+    numbers
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(missing)
 }
 
 /// The largest of at least `needed` values; the error of the first that could not be had.

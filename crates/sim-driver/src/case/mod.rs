@@ -7,6 +7,7 @@ mod checker;
 mod convert;
 mod file;
 mod file_control;
+mod ranges;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -18,7 +19,8 @@ pub use file::{
     TolerancesFile,
 };
 pub use file_control::{
-    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice, LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
+    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice,
+    LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
     TrimFile, WindTunnelTrimFile,
 };
 pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};

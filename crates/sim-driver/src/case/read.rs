@@ -27,7 +27,9 @@ pub struct LoadedCase {
 pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problems> {
     let read = read_ron::<CaseFile>(source);
     let mut problems = read.problems;
-    let Some(file) = read.value else { return problems.into_result(None) };
+    let Some(file) = read.value else {
+        return problems.into_result(None);
+    };
     let case = match convert(&file, folder, &read.index) {
         Ok(case) => Some(case),
         Err(more) => {
@@ -35,7 +37,11 @@ pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problem
             None
         }
     };
-    problems.into_result(case.map(|case| LoadedCase { case, file, index: read.index }))
+    problems.into_result(case.map(|case| LoadedCase {
+        case,
+        file,
+        index: read.index,
+    }))
 }
 
 /// Reads and validates a case on disk.

@@ -11,7 +11,9 @@ use std::path::PathBuf;
 /// Without a command: the paper's study on the shipped case and the shipped synthetic bench data.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "hhc", version, args_conflicts_with_subcommands = true)]
-#[command(after_help = "Exit codes: 0 done, 1 the numerics failed, 2 bad input, 3 a comparison failed.")]
+#[command(
+    after_help = "Exit codes: 0 done, 1 the numerics failed, 2 bad input, 3 a comparison failed."
+)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -124,7 +126,12 @@ pub struct ModesArgs {
     #[arg(long)]
     pub no_gyroscopic: bool,
     /// Pitch angle at 0.75 R, deg.
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     pub pitch_deg: f64,
     /// Further rotor speeds over the nominal one, such as 0,0.25,0.5,0.75,1: a fan plot.
     #[arg(long, value_name = "RATIOS", value_delimiter = ',')]
@@ -189,7 +196,12 @@ pub struct SectionArgs {
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub reduced_frequency: f64,
     /// Flap chord over chord.
-    #[arg(long, value_name = "E", default_value_t = 0.2, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "E",
+        default_value_t = 0.2,
+        allow_negative_numbers = true
+    )]
     pub flap_chord: f64,
     /// What moves.
     #[arg(long, value_enum, default_value_t = MotionArg::Flap)]

@@ -34,7 +34,12 @@ const RESULT_FILE: &str = "result.json";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
-    run_and_store(&loaded, &args.out, args.format.format, Scope::WithSensitivity)
+    run_and_store(
+        &loaded,
+        &args.out,
+        args.format.format,
+        Scope::WithSensitivity,
+    )
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
@@ -59,14 +64,20 @@ fn run_and_store(
     format: Format,
     scope: Scope,
 ) -> Result<(), SimError> {
-    let more = if scope == Scope::WithSensitivity { SENSITIVITY_ROWS } else { 0 };
+    let more = if scope == Scope::WithSensitivity {
+        SENSITIVITY_ROWS
+    } else {
+        0
+    };
     let progress = Progress::new(steps_of(loaded) + more);
     let computed = run_case(loaded, &progress).and_then(|outcome| {
         progress.doing("sensitivity");
         let rows = match scope {
             Scope::CaseAlone => vec![],
             Scope::WithSensitivity => {
-                sensitivities(loaded, &outcome.trimmed, &outcome.drives, &|| progress.step())?
+                sensitivities(loaded, &outcome.trimmed, &outcome.drives, &|| {
+                    progress.step();
+                })?
             }
         };
         Ok((outcome, rows))
@@ -80,7 +91,10 @@ fn run_and_store(
     let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
     let report = study_report(loaded, &outcome, &stored, &sensitivity)?;
     stored.write(&out.join(RESULT_FILE))?;
-    write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
+    write_atomic(
+        &out.join(HISTORIES_FILE),
+        histories_csv(&outcome.studies).as_bytes(),
+    )?;
     let numbers = serde_json::to_string(&report).map_err(|e| SimError::NotWritten {
         path: out.join(STUDY_FILE),
         reason: e.to_string(),
@@ -91,7 +105,10 @@ fn run_and_store(
         Format::Json => print(&outcome.result.render(format)?),
         Format::Text => {
             let text = outcome.result.render(format)? + &report.text();
-            print(&format!("{text}\nResults, histories and report in {}\n", out.display()))
+            print(&format!(
+                "{text}\nResults, histories and report in {}\n",
+                out.display()
+            ))
         }
     }
 }
@@ -131,7 +148,12 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     } else {
         GyroscopicTerms::Included
     };
-    let result = rotating_modes(&loaded.case, terms, args.pitch_deg.to_radians(), &args.speeds)?;
+    let result = rotating_modes(
+        &loaded.case,
+        terms,
+        args.pitch_deg.to_radians(),
+        &args.speeds,
+    )?;
     print(&result.render(args.format.format)?)
 }
 
@@ -162,7 +184,9 @@ pub(super) fn init(args: &InitArgs) -> Result<(), SimError> {
 
 /// The shipped paper case with its data set named so that it is found from any folder.
 fn starting_case() -> Result<String, Problem> {
-    let text = Folder::Shipped(SHIPPED_CASES.to_owned()).read(PAPER_CASE)?.text;
+    let text = Folder::Shipped(SHIPPED_CASES.to_owned())
+        .read(PAPER_CASE)?
+        .text;
     Ok(text.replace("../bench/apa500l_synthetic", "shipped:apa500l_synthetic"))
 }
 
@@ -170,7 +194,12 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
     let source = Source::read(&args.dir.join(STUDY_FILE))?;
     let report: StudyReport = serde_json::from_str(&source.text).map_err(|e| {
         let place = Place::at(&source.name, e.line(), e.column());
-        Problem::new(place, Fault::Syntax { message: e.to_string() })
+        Problem::new(
+            place,
+            Fault::Syntax {
+                message: e.to_string(),
+            },
+        )
     })?;
     let path = args.dir.join(REPORT_FILE);
     write_atomic(&path, report_html(&report).as_bytes())?;

@@ -27,7 +27,12 @@ const QUANTITIES: [Quantity; 6] = [
         column: "time_s",
         unit: "s",
         spellings: &["s", "sec"],
-        others: &[("ms", Some(1e-3)), ("us", Some(1e-6)), ("min", Some(60.0)), ("h", Some(3600.0))],
+        others: &[
+            ("ms", Some(1e-3)),
+            ("us", Some(1e-6)),
+            ("min", Some(60.0)),
+            ("h", Some(3600.0)),
+        ],
         required: true,
     },
     Quantity {
@@ -43,7 +48,12 @@ const QUANTITIES: [Quantity; 6] = [
         column: "displacement_um",
         unit: "um",
         spellings: &["um", "µm", "μm"],
-        others: &[("nm", Some(1e-3)), ("mm", Some(1e3)), ("cm", Some(1e4)), ("m", Some(1e6))],
+        others: &[
+            ("nm", Some(1e-3)),
+            ("mm", Some(1e3)),
+            ("cm", Some(1e4)),
+            ("m", Some(1e6)),
+        ],
         required: true,
     },
     Quantity {
@@ -67,7 +77,12 @@ const QUANTITIES: [Quantity; 6] = [
         column: "load_N",
         unit: "N",
         spellings: &["N"],
-        others: &[("mN", Some(1e-3)), ("kN", Some(1e3)), ("kgf", Some(9.806_65)), ("lbf", Some(4.448_222))],
+        others: &[
+            ("mN", Some(1e-3)),
+            ("kN", Some(1e3)),
+            ("kgf", Some(9.806_65)),
+            ("lbf", Some(4.448_222)),
+        ],
         required: false,
     },
 ];
@@ -171,34 +186,59 @@ fn read_header(
     problems: &mut Problems,
 ) -> (Vec<usize>, usize) {
     let Some(header) = lines.first() else {
-        let fault = Fault::TooFewRows { rows: 0, least: LEAST_ROWS };
+        let fault = Fault::TooFewRows {
+            rows: 0,
+            least: LEAST_ROWS,
+        };
         problems.push(Place::file(&source.name), fault);
         return (vec![], 0);
     };
     let names = header.fields();
-    let units = lines.get(1).map(|l| l.fields()).filter(|f| f.iter().all(|(t, _)| is_unit_cell(t)));
+    let units = lines
+        .get(1)
+        .map(|l| l.fields())
+        .filter(|f| f.iter().all(|(t, _)| is_unit_cell(t)));
     let first_row = if units.is_some() { 2 } else { 1 };
     let place = |at: usize| Place::at(&source.name, header.number, at);
     let known = || QUANTITIES.map(|q| q.column).join(", ");
     let mut columns = Vec::new();
     for (index, (name, at)) in names.iter().enumerate() {
-        let second = units.as_ref().and_then(|u| u.get(index)).map(|(t, _)| strip_brackets(t));
+        let second = units
+            .as_ref()
+            .and_then(|u| u.get(index))
+            .map(|(t, _)| strip_brackets(t));
         let Some((quantity, unit)) = split_name(name, second) else {
             let nearest = nearest(name, QUANTITIES.iter().flat_map(|q| [q.column, q.name]));
-            let fault = Fault::UnknownColumn { found: (*name).into(), known: known(), nearest };
+            let fault = Fault::UnknownColumn {
+                found: (*name).into(),
+                known: known(),
+                nearest,
+            };
             problems.push(place(*at), fault);
             continue;
         };
         let q = &QUANTITIES[quantity];
         match unit {
             None => {
-                let fault = Fault::MissingUnit { found: (*name).into(), expected: q.column };
+                let fault = Fault::MissingUnit {
+                    found: (*name).into(),
+                    expected: q.column,
+                };
                 problems.push(place(*at), fault);
             }
             Some(unit) if !q.spellings.contains(&unit) => {
-                let factor = q.others.iter().find(|(u, _)| *u == unit).and_then(|(_, f)| *f);
+                let factor = q
+                    .others
+                    .iter()
+                    .find(|(u, _)| *u == unit)
+                    .and_then(|(_, f)| *f);
                 let (column, expected) = (q.column, q.unit);
-                let fault = Fault::WrongUnit { column, found: unit.into(), expected, factor };
+                let fault = Fault::WrongUnit {
+                    column,
+                    found: unit.into(),
+                    expected,
+                    factor,
+                };
                 problems.push(place(*at).field(*name), fault);
             }
             Some(_) if columns.contains(&quantity) => {
@@ -211,7 +251,13 @@ fn read_header(
     for (index, quantity) in QUANTITIES.iter().enumerate() {
         if quantity.required && !columns.contains(&index) {
             let found = names.iter().map(|(n, _)| *n).collect::<Vec<_>>().join(", ");
-            problems.push(place(1), Fault::MissingColumn { column: quantity.column, found });
+            problems.push(
+                place(1),
+                Fault::MissingColumn {
+                    column: quantity.column,
+                    found,
+                },
+            );
         }
     }
     (columns, first_row)
@@ -227,7 +273,11 @@ fn strip_brackets(text: &str) -> &str {
 
 /// The quantity and unit of a header cell; none if it names no known quantity.
 fn split_name<'a>(cell: &'a str, second_row: Option<&'a str>) -> Option<(usize, Option<&'a str>)> {
-    let find = |name: &str| QUANTITIES.iter().position(|q| q.name.eq_ignore_ascii_case(name));
+    let find = |name: &str| {
+        QUANTITIES
+            .iter()
+            .position(|q| q.name.eq_ignore_ascii_case(name))
+    };
     if let Some(open) = cell.find(['[', '(']) {
         return find(cell[..open].trim()).map(|q| (q, Some(strip_brackets(&cell[open..]))));
     }
@@ -251,7 +301,10 @@ impl Rows {
         columns: &[usize],
         problems: &mut Problems,
     ) -> Self {
-        let mut rows = Self { values: vec![Vec::new(); columns.len()], lines: Vec::new() };
+        let mut rows = Self {
+            values: vec![Vec::new(); columns.len()],
+            lines: Vec::new(),
+        };
         let mut lists = [Listing::default(), Listing::default(), Listing::default()];
         let [field_counts, words, infinities] = &mut lists;
         let last = lines.len().saturating_sub(1);
@@ -259,13 +312,18 @@ impl Rows {
             let fields = line.fields();
             let before = i.checked_sub(1).map(|b| lines[b].fields());
             if i == last && is_cut_off(line, &fields, before.as_deref(), columns.len()) {
-                let fault =
-                    Fault::Truncated { text: line.text.to_owned(), expected: columns.len() };
+                let fault = Fault::Truncated {
+                    text: line.text.to_owned(),
+                    expected: columns.len(),
+                };
                 problems.push(Place::at(&source.name, line.number, 1), fault);
                 break;
             }
             if fields.len() != columns.len() {
-                let fault = Fault::FieldCount { found: fields.len(), expected: columns.len() };
+                let fault = Fault::FieldCount {
+                    found: fields.len(),
+                    expected: columns.len(),
+                };
                 field_counts.push(problems, Place::at(&source.name, line.number, 1), fault);
                 continue;
             }
@@ -280,7 +338,9 @@ impl Rows {
                     Ok(value) if value.is_finite() => {}
                     Ok(value) => infinities.push(problems, place(), Fault::NotFinite { value }),
                     Err(_) => {
-                        let fault = Fault::NotANumber { text: (*text).to_owned() };
+                        let fault = Fault::NotANumber {
+                            text: (*text).to_owned(),
+                        };
                         words.push(problems, place(), fault);
                     }
                 }
@@ -302,7 +362,10 @@ impl Rows {
     ) -> Option<MeasuredTable> {
         let rows = self.lines.len();
         if rows < LEAST_ROWS {
-            let fault = Fault::TooFewRows { rows, least: LEAST_ROWS };
+            let fault = Fault::TooFewRows {
+                rows,
+                least: LEAST_ROWS,
+            };
             problems.push(Place::file(&source.name), fault);
             return None;
         }
@@ -337,7 +400,9 @@ fn is_cut_off(
         return false;
     }
     let decimals = |f: &[(&str, usize)]| {
-        f.last().and_then(|(t, _)| t.split_once('.')).map(|(_, d)| d.len())
+        f.last()
+            .and_then(|(t, _)| t.split_once('.'))
+            .map(|(_, d)| d.len())
     };
     let shorter = match before.and_then(decimals) {
         Some(usual) => decimals(fields).is_none_or(|d| d < usual),
@@ -352,15 +417,22 @@ fn check_time(source: &Source, time_s: &[f64], lines: &[usize], problems: &mut P
     let mut sorted: Vec<f64> = steps.iter().copied().filter(|s| *s > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN);
-    // printed times are rounded: allow the last digit that distinguishes two of them
     let (mut back, mut uneven) = (Listing::default(), Listing::default());
     for (i, &step) in steps.iter().enumerate() {
         let place = || Place::at(&source.name, lines[i + 1], 1).field(QUANTITIES[TIME].column);
         if step <= 0.0 {
-            let fault = Fault::TimeNotIncreasing { time_s: time_s[i + 1], before_s: time_s[i] };
+            let fault = Fault::TimeNotIncreasing {
+                time_s: time_s[i + 1],
+                before_s: time_s[i],
+            };
             back.push(problems, place(), fault);
+        } else if i > 0 && steps[i - 1] <= 0.0 {
+            // the step out of a time that ran back is long for that reason alone
         } else if (step - usual).abs() > STEP_TOLERANCE * usual {
-            let fault = Fault::TimeStepUneven { step_s: step, usual_s: usual };
+            let fault = Fault::TimeStepUneven {
+                step_s: step,
+                usual_s: usual,
+            };
             uneven.push(problems, place(), fault);
         }
     }
@@ -389,125 +461,16 @@ impl Listing {
 
     pub(crate) fn finish(self, problems: &mut Problems) {
         if let Some(place) = self.next {
-            problems.push(place, Fault::More { count: self.count - LISTED });
+            problems.push(
+                place,
+                Fault::More {
+                    count: self.count - LISTED,
+                },
+            );
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parse(text: &str) -> Result<MeasuredTable, Problems> {
-        parse_measured_csv(&Source { name: "r.csv".into(), text: text.into() })
-    }
-
-    fn error(text: &str) -> String {
-        parse(text).unwrap_err().to_string()
-    }
-
-    const GOOD: &str = "time_s,command_V,displacement_um\n0.0,1,2\n0.1,1.5,2.5\n0.2,2,3\n";
-
-    #[test]
-    fn three_ways_to_give_units() {
-        let a = parse(GOOD).unwrap();
-        let b = parse(&GOOD.replace(
-            "time_s,command_V,displacement_um",
-            "time [s], command [V], displacement [µm]",
-        ));
-        let c = parse(&GOOD.replace(
-            "time_s,command_V,displacement_um",
-            "Time,command,displacement\n(s),(V),(um)",
-        ))
-        .unwrap();
-        assert_eq!(b.unwrap(), a);
-        assert_eq!((c.time_s, c.displacement_um), (a.time_s.clone(), a.displacement_um.clone()));
-        assert_eq!(a.lines, [2, 3, 4]);
-        assert!((a.time_step_s - 0.1).abs() < 1e-15);
-        assert_eq!(a.load_newton, None);
-    }
-
-    #[test]
-    fn windows_lines_comments_and_further_columns() {
-        let text = "# bench of May\r\ntime_s,command_V,displacement_um,load_N,temperature_C\r\n0,1,2,3,20\r\n1,1,2,3,20\r\n2,1,2,3,21\r\n";
-        let table = parse(text).unwrap();
-        assert_eq!(table.load_newton.unwrap(), [3.0; 3]);
-        assert_eq!(table.temperature_celsius.unwrap(), [20.0, 20.0, 21.0]);
-        assert_eq!(table.lines, [3, 4, 5]);
-    }
-
-    #[test]
-    fn a_missing_column_is_named() {
-        let text = error("time_s,displacement_um\n0,1\n1,2\n2,3\n");
-        assert_eq!(
-            text,
-            "r.csv:1:1: the column `command_V` is missing, the header has time_s, displacement_um; add the column, or correct its name"
-        );
-    }
-
-    #[test]
-    fn wrong_units_come_with_the_factor() {
-        let text = error("time_s,command_mV,displacement_mm\n0,1,1\n1,2,1\n2,3,1\n");
-        assert!(text.contains("r.csv:1:8: command_mV: the unit is mV, expected V; multiply the column by 0.001 and name it `command_V`"), "{text}");
-        assert!(text.contains("the unit is mm, expected um; multiply the column by 1000"), "{text}");
-        let text = error("time_s,command_V,displacement_furlong\n0,1,1\n1,2,1\n2,3,1\n");
-        assert!(text.contains("the unit is furlong, expected um; give the column as"), "{text}");
-        let text = error("time_s,command,displacement_um\n0,1,1\n1,2,1\n2,3,1\n");
-        assert!(text.contains("`command` has no unit; name it `command_V`"), "{text}");
-    }
-
-    #[test]
-    fn unknown_and_repeated_columns() {
-        let text = error("time_s,comand_V,displacement_um\n0,1,1\n1,2,1\n2,3,1\n");
-        assert!(text.contains("unknown column `comand_V`, did you mean `command_V`?"), "{text}");
-        let text = error("time_s,command_V,command_V,displacement_um\n0,1,1,1\n1,2,1,1\n");
-        assert!(text.contains("there twice"), "{text}");
-    }
-
-    #[test]
-    fn bad_numbers_have_line_and_column() {
-        let text = error("time_s,command_V,displacement_um\n0.0,1,2\n0.1, NaN,2.5\n0.2,2,x3\n");
-        assert!(text.contains("r.csv:3:6: command_V: the value is NaN, expected a finite"), "{text}");
-        assert!(text.contains("r.csv:4:7: displacement_um: `x3` is not a number"), "{text}");
-    }
-
-    #[test]
-    fn many_alike_are_counted() {
-        let rows: Vec<String> = (0..20).map(|i| format!("{i},NaN,1")).collect();
-        let text = error(&format!("time_s,command_V,displacement_um\n{}\n", rows.join("\n")));
-        assert_eq!(text.lines().count(), 7, "{text}");
-        assert!(text.contains("r.csv:7:3: command_V: 15 more problems of this kind"), "{text}");
-    }
-
-    #[test]
-    fn truncated_files_are_recognised() {
-        for cut in 1..GOOD.len() - "0.2,2,3\n".len() {
-            assert!(parse(&GOOD[..cut]).is_err(), "cut at {cut}");
-        }
-        let fixed = "time_s,command_V,displacement_um\n0.00,1.00,2.00\n0.10,1.50,2.50\n0.20,2.00,3.00\n0.30,2.00,3.00";
-        assert!(parse(fixed).is_ok(), "a last line without line end is no truncation by itself");
-        for cut in 1..14 {
-            let text = error(&fixed[..fixed.len() - cut]);
-            assert!(text.contains("r.csv:5:1: the last line is cut off"), "{cut}: {text}");
-        }
-    }
-
-    #[test]
-    fn time_must_march_evenly() {
-        let text = error("time_s,command_V,displacement_um\n0,1,1\n1,2,1\n1,2,1\n2,3,1\n3,3,1\n");
-        assert!(text.contains("r.csv:4:1: time_s: time 1 s follows 1 s, expected increasing"), "{text}");
-        let text = error("time_s,command_V,displacement_um\n0,1,1\n1,2,1\n2,2,1\n4,3,1\n");
-        assert!(text.contains("r.csv:5:1: time_s: the time step is 2 s, the record's is 1 s"), "{text}");
-    }
-
-    #[test]
-    fn no_prefix_or_damage_panics() {
-        for byte in 0..GOOD.len() {
-            let mut bytes = GOOD.as_bytes().to_vec();
-            for replacement in [b',', b'\n', b'x', b'(', b'"', b'-'] {
-                bytes[byte] = replacement;
-                let _ = parse(std::str::from_utf8(&bytes).unwrap());
-            }
-        }
-    }
-}
+#[path = "measured_csv_tests.rs"]
+mod tests;

@@ -40,7 +40,13 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
     let options = options();
     for _ in 0..MOST_PROBLEMS {
         match options.from_str::<T>(&text) {
-            Ok(value) => return RonFile { value: Some(value), index, problems },
+            Ok(value) => {
+                return RonFile {
+                    value: Some(value),
+                    index,
+                    problems,
+                };
+            }
             Err(error) => {
                 let field = note(&error, &index, &blanked, &mut problems);
                 let Some((path, range)) = field else { break };
@@ -52,7 +58,11 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
             }
         }
     }
-    RonFile { value: None, index, problems }
+    RonFile {
+        value: None,
+        index,
+        problems,
+    }
 }
 
 /// Writes a value as readable RON.
@@ -60,9 +70,13 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
 /// # Errors
 /// The error of the RON writer: a value that RON cannot express.
 pub fn ron_text<T: Serialize>(value: &T) -> Result<String, RonError> {
-    let pretty = PrettyConfig::new().separate_tuple_members(false).compact_arrays(true);
+    let pretty = PrettyConfig::new()
+        .separate_tuple_members(false)
+        .compact_arrays(true);
     let text = options().to_string_pretty(value, pretty)?;
-    Ok(format!("#![enable(implicit_some, unwrap_variant_newtypes)]\n{text}\n"))
+    Ok(format!(
+        "#![enable(implicit_some, unwrap_variant_newtypes)]\n{text}\n"
+    ))
 }
 
 /// Notes an error; returns the path and the bytes of the field it belongs to, if it is confined to one.
@@ -73,45 +87,79 @@ fn note(
     problems: &mut Problems,
 ) -> Option<(String, Range<usize>)> {
     let start = index.byte(error.span.start.line, error.span.start.col);
-    let end = index.byte(error.span.end.line, error.span.end.col).max(start);
-    let entry = [start..end, start..start, end..end].iter().find_map(|r| index.innermost(r));
-    let place = |fault: Fault, problems: &mut Problems| {
-        let place = match entry {
-            Some(entry) => index.place_of_byte(entry.start).field(&entry.path),
-            None => index.place_of_byte(start),
-        };
-        problems.push(place, fault);
+    let end = index
+        .byte(error.span.end.line, error.span.end.col)
+        .max(start);
+    let ranges = [start..end, start..start, end..end];
+    let entry = ranges.iter().find_map(|r| index.innermost(r));
+    let section = || match entry {
+        Some(entry) => index.place_of_byte(entry.start).field(&entry.path),
+        None => index.place_of_byte(start),
     };
-    let field = || entry.map(|e| (e.path.clone(), e.start..e.value.end));
-    // the reader took the front part of a value for the whole: 4 of 4.5
-    let within_number = entry.is_some_and(|e| e.value.start < start && start < e.value.end)
-        && entry.is_some_and(|e| !index.text(&e.value).contains(['(', '[', '{', '"']));
-    match &error.code {
-        RonError::NoSuchStructField { expected, found, .. } => {
-            let found = found.clone();
-            let nearest = nearest(&found, expected.iter().copied());
-            place(Fault::UnknownKey { found, known: expected.join(", "), nearest }, problems);
-            field()
-        }
-        RonError::NoSuchEnumVariant { expected, found, .. } => {
-            let found = found.clone();
-            let nearest = nearest(&found, expected.iter().copied());
-            place(Fault::UnknownChoice { found, known: expected.join(", "), nearest }, problems);
-            field()
-        }
-        RonError::MissingStructField { field, .. } => {
+    match (&error.code, entry) {
+        (RonError::MissingStructField { field, .. }, _) => {
             let inside = entry.map(|e| format!("{}.{field}", e.path));
             let name = inside.as_deref().unwrap_or(field);
+            let suffix = format!(".{field}");
             // a field blanked out above is not missing
-            if !blanked.iter().any(|b| b == name || b.ends_with(&format!(".{field}"))) {
-                place(Fault::MissingKey { key: (*field).to_owned() }, problems);
+            if !blanked.iter().any(|b| b == name || b.ends_with(&suffix)) {
+                problems.push(
+                    section(),
+                    Fault::MissingKey {
+                        key: (*field).to_owned(),
+                    },
+                );
             }
             None
         }
-        RonError::DuplicateStructField { field: key, .. } => {
-            place(Fault::RepeatedKey { key: (*key).to_owned() }, problems);
+        (RonError::DuplicateStructField { field, .. }, _) => {
+            problems.push(
+                section(),
+                Fault::RepeatedKey {
+                    key: (*field).to_owned(),
+                },
+            );
             None
         }
+        (code, Some(entry)) => {
+            // the reader may take the front part of a number for the whole: 4 of 4.5
+            let value = index.text(&entry.value);
+            let inside = entry.value.start < start && start < entry.value.end;
+            let front = inside && !value.contains(['(', '[', '{', '"']);
+            let Some(fault) = field_fault(code).or_else(|| {
+                let message = format!("`{value}` is not a value of the kind expected here");
+                front.then_some(Fault::WrongType { message })
+            }) else {
+                problems.push(index.place_of_byte(start), syntax(code));
+                return None;
+            };
+            problems.push(section(), fault);
+            Some((entry.path.clone(), entry.start..entry.value.end))
+        }
+        (code, None) => {
+            problems.push(index.place_of_byte(start), syntax(code));
+            None
+        }
+    }
+}
+
+/// What is wrong with a field, if the error is about one field alone.
+fn field_fault(code: &RonError) -> Option<Fault> {
+    match code {
+        RonError::NoSuchStructField {
+            expected, found, ..
+        } => Some(Fault::UnknownKey {
+            found: found.clone(),
+            known: expected.join(", "),
+            nearest: nearest(found, expected.iter().copied()),
+        }),
+        RonError::NoSuchEnumVariant {
+            expected, found, ..
+        } => Some(Fault::UnknownChoice {
+            found: found.clone(),
+            known: expected.join(", "),
+            nearest: nearest(found, expected.iter().copied()),
+        }),
         RonError::InvalidValueForType { .. }
         | RonError::ExpectedDifferentLength { .. }
         | RonError::ExpectedFloat
@@ -125,27 +173,19 @@ fn note(
         | RonError::ExpectedOption
         | RonError::ExpectedUnit
         | RonError::IntegerOutOfBounds
-        | RonError::InvalidIntegerDigit { .. }
-            if entry.is_some() =>
-        {
-            place(Fault::WrongType { message: sentence(&error.code) }, problems);
-            field()
-        }
-        RonError::Message(message) if entry.is_some() => {
-            place(Fault::Refused { message: message.clone() }, problems);
-            field()
-        }
-        _ if within_number => {
-            let found = entry.map(|e| index.text(&e.value)).unwrap_or_default();
-            let message = format!("`{found}` is not a value of the kind expected here");
-            place(Fault::WrongType { message }, problems);
-            field()
-        }
-        code => {
-            let position = index.place_of_byte(start);
-            problems.push(position, Fault::Syntax { message: sentence(code) });
-            None
-        }
+        | RonError::InvalidIntegerDigit { .. } => Some(Fault::WrongType {
+            message: sentence(code),
+        }),
+        RonError::Message(message) => Some(Fault::Refused {
+            message: message.clone(),
+        }),
+        _ => None,
+    }
+}
+
+fn syntax(code: &RonError) -> Fault {
+    Fault::Syntax {
+        message: sentence(code),
     }
 }
 
@@ -153,13 +193,20 @@ fn note(
 fn sentence(code: &RonError) -> String {
     let text = code.to_string();
     let mut chars = text.chars();
-    chars.next().map(|c| c.to_lowercase().collect::<String>() + chars.as_str()).unwrap_or_default()
+    chars
+        .next()
+        .map(|c| c.to_lowercase().collect::<String>() + chars.as_str())
+        .unwrap_or_default()
 }
 
 /// Replaces bytes and the comma behind them by blanks; lines stay where they are.
 fn blank(text: &mut String, range: Range<usize>) {
     let behind = &text[range.end..];
-    let comma = behind.trim_start().starts_with(',').then(|| behind.find(',')).flatten();
+    let comma = behind
+        .trim_start()
+        .starts_with(',')
+        .then(|| behind.find(','))
+        .flatten();
     let end = range.end + comma.map_or(0, |c| c + 1);
     let blanks: String = text[range.start..end]
         .bytes()
@@ -182,7 +229,10 @@ mod tests {
 
     impl Default for Inner {
         fn default() -> Self {
-            Self { radius_m: 4.94, blades: 4 }
+            Self {
+                radius_m: 4.94,
+                blades: 4,
+            }
         }
     }
 
@@ -203,7 +253,10 @@ mod tests {
     }
 
     fn read(text: &str) -> RonFile<Outer> {
-        read_ron(&Source { name: "t.ron".into(), text: text.into() })
+        read_ron(&Source {
+            name: "t.ron".into(),
+            text: text.into(),
+        })
     }
 
     #[test]
@@ -212,7 +265,13 @@ mod tests {
             read("(rotor: (radius_m: 5), choice: Given(blades: 2), optional: 3, list: [(), ()])");
         assert!(file.problems.is_empty(), "{}", file.problems);
         let value = file.value.unwrap();
-        assert_eq!(value.choice, Choice::Given(Inner { radius_m: 4.94, blades: 2 }));
+        assert_eq!(
+            value.choice,
+            Choice::Given(Inner {
+                radius_m: 4.94,
+                blades: 2
+            })
+        );
         let again = read(&ron_text(&value).unwrap());
         assert_eq!(again.value.unwrap(), value);
     }
@@ -225,11 +284,30 @@ mod tests {
         let text = file.problems.to_string();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 6, "{text}");
-        assert!(lines[0].starts_with("t.ron:3:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?"), "{text}");
-        assert!(lines[1].starts_with("t.ron:4:5: rotor.blades: has the wrong type"), "{text}");
-        assert!(lines[2].starts_with("t.ron:6:3: choice: unknown choice `Unifrom`, did you mean `Uniform`?"), "{text}");
-        assert!(lines[3].starts_with("t.ron:7:11: list[0].radius_m: has the wrong type"), "{text}");
-        assert!(lines[4].starts_with("t.ron:8:3: flaps: unknown key"), "{text}");
+        assert!(
+            lines[0].starts_with(
+                "t.ron:3:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?"
+            ),
+            "{text}"
+        );
+        assert!(
+            lines[1].starts_with("t.ron:4:5: rotor.blades: has the wrong type"),
+            "{text}"
+        );
+        assert!(
+            lines[2].starts_with(
+                "t.ron:6:3: choice: unknown choice `Unifrom`, did you mean `Uniform`?"
+            ),
+            "{text}"
+        );
+        assert!(
+            lines[3].starts_with("t.ron:7:11: list[0].radius_m: has the wrong type"),
+            "{text}"
+        );
+        assert!(
+            lines[4].starts_with("t.ron:8:3: flaps: unknown key"),
+            "{text}"
+        );
         assert!(file.value.is_some(), "the rest is read");
     }
 
@@ -237,10 +315,21 @@ mod tests {
     fn broken_syntax_has_a_place() {
         let file = read("(\n  rotor: (radius_m: 5,\n");
         let text = file.problems.to_string();
-        assert!(text.starts_with("t.ron:3:1: is not valid RON") || text.starts_with("t.ron:2:"), "{text}");
+        assert!(
+            text.starts_with("t.ron:3:1: is not valid RON") || text.starts_with("t.ron:2:"),
+            "{text}"
+        );
         let file = read("(rotor: (radius_m: 5) choice: Uniform)");
-        assert!(file.problems.to_string().contains("expected comma"), "{}", file.problems);
+        assert!(
+            file.problems.to_string().contains("expected comma"),
+            "{}",
+            file.problems
+        );
         let file = read("(optional: 1, optional: 2)");
-        assert!(file.problems.to_string().contains("given twice"), "{}", file.problems);
+        assert!(
+            file.problems.to_string().contains("given twice"),
+            "{}",
+            file.problems
+        );
     }
 }

@@ -128,11 +128,18 @@ impl StudyReport {
                 actuators.push(actuator);
             }
         }
-        let rows: Vec<&HeadlineRow> = self.headline.iter().filter(|r| !r.ours.is_empty()).collect();
+        let rows: Vec<&HeadlineRow> = self
+            .headline
+            .iter()
+            .filter(|r| !r.ours.is_empty())
+            .collect();
         if !rows.is_empty() {
-            let header: Vec<&str> =
-                ["quantity", "paper"].into_iter().chain(actuators.iter().copied()).collect();
-            text += "\nBeside the paper (its numbers are for feedback on the hysteretic actuator)\n";
+            let header: Vec<&str> = ["quantity", "paper"]
+                .into_iter()
+                .chain(actuators.iter().copied())
+                .collect();
+            text +=
+                "\nBeside the paper (its numbers are for feedback on the hysteretic actuator)\n";
             text += &table(
                 &header,
                 rows.into_iter().map(|row| {
@@ -140,13 +147,16 @@ impl StudyReport {
                         let found = row.ours.iter().find(|(actuator, _)| actuator == wanted);
                         found.map_or_else(String::new, |(_, number)| number.clone())
                     });
-                    [row.quantity.clone(), row.paper.clone()].into_iter().chain(ours).collect()
+                    [row.quantity.clone(), row.paper.clone()]
+                        .into_iter()
+                        .chain(ours)
+                        .collect()
                 }),
             );
         }
         for section in &self.sections {
             let header: Vec<&str> = section.header.iter().map(String::as_str).collect();
-            text += &format!("\n{}. {}\n", section.title, section.text);
+            text.push_str(&["\n", &section.title, ". ", &section.text, "\n"].concat());
             text += &table(&header, section.rows.iter().cloned());
         }
         text

@@ -40,7 +40,7 @@ const HARMONICS: [PaperHarmonic; 3] = [
 const THREE_PER_REV_LOADS: [(&str, &str); 6] =
     [("FX", "43"), ("FY", "38"), ("FZ", "67"), ("MX", "28"), ("MY", "34"), ("MZ", "50")];
 
-fn lines<'a>(result: &'a RunResult, per_rev: usize) -> impl Iterator<Item = &'a ControlLine> {
+fn lines(result: &RunResult, per_rev: usize) -> impl Iterator<Item = &ControlLine> {
     result.control.iter().filter(move |line| line.harmonics == [per_rev])
 }
 

@@ -143,13 +143,14 @@ pub fn histories_csv(studies: &[ControlStudy]) -> String {
         let (set, actuator) = (set_name(&study.harmonics), study.actuator.name());
         for (k, motion) in study.state.flaps.iter().enumerate() {
             for azimuth in uniform_azimuths_rad(HISTORY_AZIMUTHS) {
-                text += &format!(
+                let row = format!(
                     "{set},{actuator},{},{},{:e},{:e}\n",
                     flap_name(k),
                     azimuth.to_degrees(),
                     motion.voltage_volt.value(azimuth),
                     motion.flap_deg.value(azimuth)
                 );
+                text.push_str(&row);
             }
         }
     }
