@@ -1,6 +1,7 @@
 //! Case S1, from its case file to hub loads, against an independent model of the same physics:
 //! `fixtures/reference/rotor/crosscheck_S1_S2.json`.
 #![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sim_driver::case::{CouplingsChoice, shipped_case};
 use sim_driver::progress::Progress;
