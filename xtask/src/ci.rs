@@ -11,14 +11,10 @@ use crate::XtaskError;
 /// [`XtaskError::Start`] if the script cannot be started.
 pub fn run(root: &Path) -> Result<ExitCode, XtaskError> {
     let script = root.join(".ci").join("run");
-    let status = Command::new(&script)
-        .current_dir(root)
-        .stdin(Stdio::null())
-        .status()
-        .map_err(|source| XtaskError::Start {
-            program: script.display().to_string(),
-            source,
-        })?;
+    let status =
+        Command::new(&script).current_dir(root).stdin(Stdio::null()).status().map_err(
+            |source| XtaskError::Start { program: script.display().to_string(), source },
+        )?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }

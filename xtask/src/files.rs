@@ -10,10 +10,8 @@ use crate::XtaskError;
 /// # Errors
 /// [`XtaskError::Read`] if there is no such file or it is not UTF-8.
 pub fn read(path: &Path) -> Result<String, XtaskError> {
-    std::fs::read_to_string(path).map_err(|source| XtaskError::Read {
-        path: path.to_path_buf(),
-        source,
-    })
+    std::fs::read_to_string(path)
+        .map_err(|source| XtaskError::Read { path: path.to_path_buf(), source })
 }
 
 /// Writes a file so that a reader sees the old text or the new one, never a part.
@@ -21,19 +19,10 @@ pub fn read(path: &Path) -> Result<String, XtaskError> {
 /// # Errors
 /// [`XtaskError::Write`] if the folder cannot be made or the file cannot be put in place.
 pub fn write_atomically(path: &Path, text: &str) -> Result<(), XtaskError> {
-    let failed = |source| XtaskError::Write {
-        path: path.to_path_buf(),
-        source,
-    };
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let failed = |source| XtaskError::Write { path: path.to_path_buf(), source };
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(failed)?;
-    let mut file = tempfile::Builder::new()
-        .prefix(".new-")
-        .tempfile_in(folder)
-        .map_err(failed)?;
+    let mut file = tempfile::Builder::new().prefix(".new-").tempfile_in(folder).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
     readable_by_all(file.as_file()).map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;

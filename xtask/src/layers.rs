@@ -144,21 +144,14 @@ pub enum LayerFault {
 /// - [`TRUTH`] uses no other member, and no member below the tools uses it;
 /// - [`RESERVED_CRATES`] are used by [`RESERVED_FOR`] alone, or in tests.
 pub fn check(members: &[Member]) -> Vec<LayerFault> {
-    let floors: BTreeMap<&str, Option<u32>> = members
-        .iter()
-        .map(|member| (member.name.as_str(), member.floor))
-        .collect();
+    let floors: BTreeMap<&str, Option<u32>> =
+        members.iter().map(|member| (member.name.as_str(), member.floor)).collect();
     let mut faults = Vec::new();
     for member in members {
         match member.floor {
-            None => faults.push(LayerFault::NoFloor {
-                member: member.name.clone(),
-            }),
+            None => faults.push(LayerFault::NoFloor { member: member.name.clone() }),
             Some(floor) if !FLOORS.contains(&floor) => {
-                faults.push(LayerFault::UnknownFloor {
-                    member: member.name.clone(),
-                    floor,
-                });
+                faults.push(LayerFault::UnknownFloor { member: member.name.clone(), floor });
             }
             Some(_) => {}
         }

@@ -73,17 +73,9 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(verdict(&findings, &summary))
         }
         Chore::Validate { filter, check } => validation(root, &filter, check),
-        Chore::Regress {
-            bless,
-            filter,
-            golden,
-        } => {
+        Chore::Regress { bless, filter, golden } => {
             let folder = golden.unwrap_or_else(|| root.join("fixtures/golden"));
-            let mode = if bless {
-                regress::Mode::Bless
-            } else {
-                regress::Mode::Compare
-            };
+            let mode = if bless { regress::Mode::Bless } else { regress::Mode::Compare };
             let filter = regress::Filter::parse(&filter)?;
             let report = regress::run(&folder, mode, &filter, regress::sweep_point)?;
             say(&mut std::io::stdout(), &report.text());
@@ -97,11 +89,7 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
 fn verdict<F: std::fmt::Display>(faults: &[F], summary: &str) -> ExitCode {
     let lines: Vec<String> = faults.iter().map(|fault| format!("{fault}\n")).collect();
     say(&mut std::io::stdout(), &(lines.concat() + summary));
-    if faults.is_empty() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(2)
-    }
+    if faults.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) }
 }
 
 fn validation(root: &Path, filter: &str, check: bool) -> Result<ExitCode, XtaskError> {
@@ -118,11 +106,7 @@ fn validation(root: &Path, filter: &str, check: bool) -> Result<ExitCode, XtaskE
         text.extend(["written: ", &page.display().to_string(), "\n"]);
     }
     say(&mut std::io::stdout(), &text);
-    Ok(if failed {
-        ExitCode::from(3)
-    } else {
-        ExitCode::SUCCESS
-    })
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
 /// Writes text; a reader that has gone away is no reason to fail.

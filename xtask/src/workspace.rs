@@ -21,13 +21,7 @@ pub fn root() -> PathBuf {
 pub fn members(root: &Path) -> Result<Vec<Member>, XtaskError> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(&cargo)
-        .args([
-            "metadata",
-            "--no-deps",
-            "--format-version",
-            "1",
-            "--offline",
-        ])
+        .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
         .current_dir(root)
         .output()
         .map_err(|source| XtaskError::Start {
@@ -48,11 +42,7 @@ pub fn members(root: &Path) -> Result<Vec<Member>, XtaskError> {
 pub fn members_of(metadata_json: &[u8]) -> Result<Vec<Member>, XtaskError> {
     let metadata: Metadata = serde_json::from_slice(metadata_json)
         .map_err(|source| XtaskError::MetadataShape { source })?;
-    Ok(metadata
-        .packages
-        .into_iter()
-        .map(Package::into_member)
-        .collect())
+    Ok(metadata.packages.into_iter().map(Package::into_member).collect())
 }
 
 #[derive(Deserialize)]
@@ -95,10 +85,7 @@ impl Package {
         });
         Member {
             name: self.name,
-            floor: self
-                .metadata
-                .and_then(|m| m.house)
-                .and_then(|house| house.layer),
+            floor: self.metadata.and_then(|m| m.house).and_then(|house| house.layer),
             dependencies: dependencies.collect(),
         }
     }

@@ -1,28 +1,16 @@
 //! The command `cargo xtask` from outside: exit codes and messages, and the sweep it runs.
-#![expect(
-    clippy::disallowed_methods,
-    reason = "tests read and write golden files"
-)]
-#![expect(
-    clippy::unwrap_used,
-    reason = "a helper that fails is a test that fails"
-)]
+#![expect(clippy::disallowed_methods, reason = "tests read and write golden files")]
+#![expect(clippy::unwrap_used, reason = "a helper that fails is a test that fails")]
 
 use std::process::{Command, Output};
 
 use xtask::regress::{Snapshot, SweepPoint, sweep_point};
 use xtask::workspace;
 
-const POINT: SweepPoint = SweepPoint {
-    advance_ratio: 0.30,
-    harmonic_per_rev: 3,
-};
+const POINT: SweepPoint = SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 3 };
 
 fn xtask(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xtask"))
-        .args(arguments)
-        .output()
-        .unwrap()
+    Command::new(env!("CARGO_BIN_EXE_xtask")).args(arguments).output().unwrap()
 }
 
 fn shown(bytes: &[u8]) -> String {
@@ -33,11 +21,7 @@ fn shown(bytes: &[u8]) -> String {
 fn the_layer_rule_holds() {
     let output = xtask(&["layers"]);
     assert_eq!(output.status.code(), Some(0), "{}", shown(&output.stdout));
-    assert!(
-        shown(&output.stdout).contains("13 members, 0 faults"),
-        "{}",
-        shown(&output.stdout)
-    );
+    assert!(shown(&output.stdout).contains("13 members, 0 faults"), "{}", shown(&output.stdout));
 }
 
 #[test]
@@ -49,11 +33,7 @@ fn bad_requests_are_exit_code_2_with_the_remedy() {
     ] {
         let output = xtask(&arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        assert!(
-            shown(&output.stderr).contains(remedy),
-            "{}",
-            shown(&output.stderr)
-        );
+        assert!(shown(&output.stderr).contains(remedy), "{}", shown(&output.stderr));
     }
 }
 
@@ -61,9 +41,7 @@ fn bad_requests_are_exit_code_2_with_the_remedy() {
 /// 1 %: the command says which.
 #[test]
 fn a_moved_golden_makes_the_command_exit_with_code_3_and_name_the_channel() {
-    let golden = workspace::root()
-        .join("fixtures/golden")
-        .join(POINT.file_name());
+    let golden = workspace::root().join("fixtures/golden").join(POINT.file_name());
     let text = std::fs::read_to_string(golden).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(POINT.file_name());
@@ -76,11 +54,7 @@ fn a_moved_golden_makes_the_command_exit_with_code_3_and_name_the_channel() {
     let same = regress();
     assert_eq!(same.status.code(), Some(0), "{}", shown(&same.stdout));
     let mut moved = Snapshot::from_ron(&text).unwrap();
-    let group = moved
-        .groups
-        .iter_mut()
-        .find(|group| group.name.starts_with("controlled"))
-        .unwrap();
+    let group = moved.groups.iter_mut().find(|group| group.name.starts_with("controlled")).unwrap();
     let (name, value) = &mut group.channels[4];
     *value *= 1.01;
     let name = name.clone();
@@ -95,10 +69,7 @@ fn a_moved_golden_makes_the_command_exit_with_code_3_and_name_the_channel() {
 #[test]
 fn one_and_two_threads_give_the_same_bits() {
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| sweep_point(POINT).unwrap())
     };
     assert_eq!(on(1), on(2));

@@ -1,12 +1,6 @@
 //! The regression sweep: what it must see, what it may rewrite, and how it reports.
-#![expect(
-    clippy::disallowed_methods,
-    reason = "tests read and write golden files"
-)]
-#![expect(
-    clippy::unwrap_used,
-    reason = "a helper that fails is a test that fails"
-)]
+#![expect(clippy::disallowed_methods, reason = "tests read and write golden files")]
+#![expect(clippy::unwrap_used, reason = "a helper that fails is a test that fails")]
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -45,18 +39,12 @@ fn plausible(point: SweepPoint) -> SweepResult {
     }
 }
 
-#[expect(
-    clippy::unnecessary_wraps,
-    reason = "stands where a program that can fail stands"
-)]
+#[expect(clippy::unnecessary_wraps, reason = "stands where a program that can fail stands")]
 fn computed(point: SweepPoint) -> Result<SweepResult, NoTrim> {
     Ok(plausible(point))
 }
 
-const POINT: SweepPoint = SweepPoint {
-    advance_ratio: 0.30,
-    harmonic_per_rev: 3,
-};
+const POINT: SweepPoint = SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 3 };
 
 fn snapshot() -> Snapshot {
     plausible(POINT).snapshot(POINT)
@@ -71,12 +59,7 @@ fn blessed() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let report = run(folder.path(), Mode::Bless, &everything(), computed).unwrap();
     assert_eq!(report.cases.len(), 24);
-    assert!(
-        report
-            .cases
-            .iter()
-            .all(|case| matches!(case.verdict, Verdict::Blessed(_)))
-    );
+    assert!(report.cases.iter().all(|case| matches!(case.verdict, Verdict::Blessed(_))));
     folder
 }
 
@@ -96,11 +79,7 @@ fn every_channel_is_guarded(golden: &Snapshot) -> usize {
                 let name = format!("{}: {name}", golden.groups[group].name);
                 let zero = golden.groups[group].channels[channel].1 == 0.0;
                 let differences = compare(&moved, golden);
-                assert_eq!(
-                    differences.len(),
-                    usize::from(!zero),
-                    "{name}: {differences:?}"
-                );
+                assert_eq!(differences.len(), usize::from(!zero), "{name}: {differences:?}");
                 let named = matches!(
                     differences.first(),
                     Some(Difference::Moved { channel, .. }) if *channel == name
@@ -115,10 +94,7 @@ fn every_channel_is_guarded(golden: &Snapshot) -> usize {
 
 #[test]
 fn a_change_of_one_percent_of_any_channel_is_named() {
-    assert_eq!(
-        every_channel_is_guarded(&snapshot()),
-        6 + 12 + 12 + 2 + 1 + 2
-    );
+    assert_eq!(every_channel_is_guarded(&snapshot()), 6 + 12 + 12 + 2 + 1 + 2);
 }
 
 #[test]
@@ -127,19 +103,12 @@ fn the_shipped_goldens_guard_every_channel() {
     for point in all_points() {
         let path = folder.join(point.file_name());
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| {
-            panic!(
-                "{}: {error}; `cargo xtask regress --bless` writes it",
-                path.display()
-            )
+            panic!("{}: {error}; `cargo xtask regress --bless` writes it", path.display())
         });
         let golden = Snapshot::from_ron(&text).unwrap();
         assert_eq!(unfit_for_a_golden(&golden), [], "{}", path.display());
         let channels = every_channel_is_guarded(&golden);
-        assert!(
-            channels >= 34,
-            "{}: only {channels} channels",
-            path.display()
-        );
+        assert!(channels >= 34, "{}: only {channels} channels", path.display());
     }
 }
 
@@ -149,10 +118,7 @@ fn what_is_within_tolerance_passes() {
     let mut now = golden.clone();
     for group in &mut now.groups {
         if group.tolerance != Tolerance::Exact {
-            group
-                .channels
-                .iter_mut()
-                .for_each(|(_, value)| *value *= 1.0 + 5e-4);
+            group.channels.iter_mut().for_each(|(_, value)| *value *= 1.0 + 5e-4);
         }
     }
     assert_eq!(compare(&golden, &now), []);
@@ -164,21 +130,10 @@ fn counts_are_exact() {
     let mut result = plausible(POINT);
     result.counts[1].1 += 1;
     let differences = compare(&golden, &result.snapshot(POINT));
-    let [
-        Difference::Moved {
-            channel,
-            golden,
-            now,
-            ..
-        },
-    ] = differences.as_slice()
-    else {
+    let [Difference::Moved { channel, golden, now, .. }] = differences.as_slice() else {
         panic!("{differences:?}")
     };
-    assert_eq!(
-        (channel.as_str(), *golden, *now),
-        ("solver statistics: control_steps", 4.0, 5.0)
-    );
+    assert_eq!((channel.as_str(), *golden, *now), ("solver statistics: control_steps", 4.0, 5.0));
 }
 
 #[test]
@@ -194,10 +149,7 @@ fn what_is_no_number_fails_on_either_side() {
                 "{differences:?}"
             );
         }
-        assert!(matches!(
-            unfit_for_a_golden(&broken).as_slice(),
-            [Difference::NotFinite { .. }]
-        ));
+        assert!(matches!(unfit_for_a_golden(&broken).as_slice(), [Difference::NotFinite { .. }]));
     }
 }
 
@@ -210,31 +162,21 @@ fn channels_that_come_go_or_stand_twice_are_named() {
     assert_eq!(
         differences,
         [
-            Difference::Gone {
-                channel: "trim angles: theta1c_deg".to_owned()
-            },
-            Difference::New {
-                channel: "trim angles: theta_new_deg".to_owned()
-            },
+            Difference::Gone { channel: "trim angles: theta1c_deg".to_owned() },
+            Difference::New { channel: "trim angles: theta_new_deg".to_owned() },
         ]
     );
     let mut twice = golden.clone();
     let again = twice.groups[0].channels[0].clone();
     twice.groups[0].channels.push(again);
-    assert!(matches!(
-        compare(&twice, &golden).as_slice(),
-        [Difference::Twice { .. }]
-    ));
+    assert!(matches!(compare(&twice, &golden).as_slice(), [Difference::Twice { .. }]));
 }
 
 #[test]
 fn a_golden_cannot_loosen_its_own_tolerance() {
     let now = snapshot();
     let mut golden = now.clone();
-    golden.groups[0].tolerance = Tolerance::Scaled {
-        relative: 0.5,
-        absolute: 1.0,
-    };
+    golden.groups[0].tolerance = Tolerance::Scaled { relative: 0.5, absolute: 1.0 };
     golden.groups[0].channels[0].1 *= 1.02;
     let differences = compare(&golden, &now);
     assert!(
@@ -249,15 +191,9 @@ fn a_golden_cannot_loosen_its_own_tolerance() {
 
 #[test]
 fn a_golden_of_another_case_differs() {
-    let other = SweepPoint {
-        harmonic_per_rev: 4,
-        ..POINT
-    };
+    let other = SweepPoint { harmonic_per_rev: 4, ..POINT };
     let differences = compare(&plausible(POINT).snapshot(other), &snapshot());
-    assert!(
-        matches!(differences.as_slice(), [Difference::Label { .. }]),
-        "{differences:?}"
-    );
+    assert!(matches!(differences.as_slice(), [Difference::Label { .. }]), "{differences:?}");
 }
 
 #[test]
@@ -265,9 +201,7 @@ fn a_value_below_its_floor_cannot_become_golden() {
     let mut result = plausible(POINT);
     result.baseline_loads[4] = 1e-14;
     let unfit = unfit_for_a_golden(&result.snapshot(POINT));
-    let [Difference::Blind { channel, .. }] = unfit.as_slice() else {
-        panic!("{unfit:?}")
-    };
+    let [Difference::Blind { channel, .. }] = unfit.as_slice() else { panic!("{unfit:?}") };
     assert!(channel.contains(HUB_LOADS[4]), "{channel}");
     // an exact zero has no share of itself to lose
     result.baseline_loads[4] = 0.0;
@@ -279,10 +213,7 @@ fn text_keeps_every_bit() {
     let golden = snapshot();
     let text = golden.to_ron().unwrap();
     assert_eq!(Snapshot::from_ron(&text).unwrap(), golden);
-    assert!(
-        text.contains("m0 Omega^2 R^3") && text.contains("relative: 0.001"),
-        "{text}"
-    );
+    assert!(text.contains("m0 Omega^2 R^3") && text.contains("relative: 0.001"), "{text}");
     assert!(Snapshot::from_ron(&text.replace("groups", "grups")).is_err());
 }
 
@@ -291,11 +222,7 @@ fn an_unchanged_program_agrees_with_its_goldens() {
     let folder = blessed();
     let report = compared(folder.path());
     assert_eq!(report.exit_code(), 0);
-    assert!(
-        report.text().starts_with("24 of 24 cases"),
-        "{}",
-        report.text()
-    );
+    assert!(report.text().starts_with("24 of 24 cases"), "{}", report.text());
 }
 
 #[test]
@@ -308,26 +235,12 @@ fn a_changed_golden_makes_exit_code_3_and_is_named() {
     let report = compared(folder.path());
     assert_eq!(report.exit_code(), 3);
     let text = report.text();
-    assert!(
-        text.contains("mu=0.30,n=3") && text.contains("my_cos"),
-        "{text}"
-    );
-    assert!(
-        text.contains("-0.990 %") && text.contains("m0 Omega^2 R^3"),
-        "{text}"
-    );
-    assert!(
-        text.contains("23 of 24 cases") && text.contains("1 different"),
-        "{text}"
-    );
+    assert!(text.contains("mu=0.30,n=3") && text.contains("my_cos"), "{text}");
+    assert!(text.contains("-0.990 %") && text.contains("m0 Omega^2 R^3"), "{text}");
+    assert!(text.contains("23 of 24 cases") && text.contains("1 different"), "{text}");
     // another case does not care
     let others = Filter::parse("mu=0.30,n=2,n=4,n=5").unwrap();
-    assert_eq!(
-        run(folder.path(), Mode::Compare, &others, computed)
-            .unwrap()
-            .exit_code(),
-        0
-    );
+    assert_eq!(run(folder.path(), Mode::Compare, &others, computed).unwrap().exit_code(), 0);
 }
 
 #[test]
@@ -339,13 +252,7 @@ fn missing_unreadable_and_orphaned_goldens_fail() {
     let report = compared(folder.path());
     assert_eq!(report.exit_code(), 3);
     let text = report.text();
-    for part in [
-        "missing",
-        "mu=0.15,n=2",
-        "mu040_n2.ron",
-        "no case of the sweep",
-        "1:",
-    ] {
+    for part in ["missing", "mu=0.15,n=2", "mu040_n2.ron", "no case of the sweep", "1:"] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }
@@ -374,12 +281,7 @@ fn blessing_rewrites_what_changed_and_nothing_else() {
         .collect();
     assert_eq!(blessed, BTreeSet::from(["mu=0.30,n=3"]));
     assert_eq!(std::fs::read_to_string(&untouched).unwrap(), marked);
-    assert_eq!(
-        run(folder.path(), Mode::Compare, &everything(), changed)
-            .unwrap()
-            .exit_code(),
-        0
-    );
+    assert_eq!(run(folder.path(), Mode::Compare, &everything(), changed).unwrap().exit_code(), 0);
     // nothing is left behind by the atomic writes
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 24);
 }
@@ -403,19 +305,12 @@ fn a_broken_result_is_not_blessed() {
 fn a_case_that_cannot_be_computed_is_exit_code_1_and_the_others_are_still_compared() {
     let folder = blessed();
     let failing = |point: SweepPoint| {
-        if point == POINT {
-            Err(NoTrim { iterations: 40 })
-        } else {
-            Ok(plausible(point))
-        }
+        if point == POINT { Err(NoTrim { iterations: 40 }) } else { Ok(plausible(point)) }
     };
     let report = run(folder.path(), Mode::Compare, &everything(), failing).unwrap();
     assert_eq!(report.exit_code(), 1);
     let text = report.text();
-    assert!(
-        text.contains("mu=0.30,n=3: not computed: no trim after 40 iterations"),
-        "{text}"
-    );
+    assert!(text.contains("mu=0.30,n=3: not computed: no trim after 40 iterations"), "{text}");
     assert!(text.contains("23 of 24"), "{text}");
 }
 
@@ -428,15 +323,8 @@ fn the_report_does_not_depend_on_the_number_of_threads() {
         Ok(result)
     };
     let text = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
-            run(folder.path(), Mode::Compare, &everything(), shifted)
-                .unwrap()
-                .text()
-        })
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| run(folder.path(), Mode::Compare, &everything(), shifted).unwrap().text())
     };
     assert_eq!(text(1), text(3));
 }

@@ -1,8 +1,5 @@
 //! The rules of the house hold in this tree, and each is seen to fail on a planted breach.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a helper that fails is a test that fails"
-)]
+#![expect(clippy::unwrap_used, reason = "a helper that fails is a test that fails")]
 
 use xtask::layers::{Dependency, DependencyKind, LayerFault, Member, check};
 use xtask::tidy::{self, Finding, Tree};
@@ -14,10 +11,7 @@ fn member(name: &str, floor: u32, dependencies: &[(&str, DependencyKind)]) -> Me
         floor: Some(floor),
         dependencies: dependencies
             .iter()
-            .map(|(name, kind)| Dependency {
-                name: (*name).to_owned(),
-                kind: *kind,
-            })
+            .map(|(name, kind)| Dependency { name: (*name).to_owned(), kind: *kind })
             .collect(),
     }
 }
@@ -26,38 +20,14 @@ fn member(name: &str, floor: u32, dependencies: &[(&str, DependencyKind)]) -> Me
 fn sound_house() -> Vec<Member> {
     use DependencyKind::{Development, Normal};
     vec![
-        member(
-            "rotor-base",
-            0,
-            &[("thiserror", Normal), ("proptest", Development)],
-        ),
-        member(
-            "rotor-fem",
-            1,
-            &[("rotor-base", Normal), ("csv", Development)],
-        ),
+        member("rotor-base", 0, &[("thiserror", Normal), ("proptest", Development)]),
+        member("rotor-fem", 1, &[("rotor-base", Normal), ("csv", Development)]),
         member("flap-aero", 1, &[("rotor-base", Normal)]),
-        member(
-            "rotor-response",
-            2,
-            &[("rotor-fem", Normal), ("flap-aero", Normal)],
-        ),
-        member(
-            "sim-driver",
-            4,
-            &[
-                ("rotor-response", Normal),
-                ("clap", Normal),
-                ("ron", Normal),
-            ],
-        ),
+        member("rotor-response", 2, &[("rotor-fem", Normal), ("flap-aero", Normal)]),
+        member("sim-driver", 4, &[("rotor-response", Normal), ("clap", Normal), ("ron", Normal)]),
         member("truth", 0, &[("clap", Normal)]),
         member("xtask", 9, &[("sim-driver", Normal), ("csv", Normal)]),
-        member(
-            "e2e",
-            9,
-            &[("sim-driver", Development), ("truth", Development)],
-        ),
+        member("e2e", 9, &[("sim-driver", Development), ("truth", Development)]),
     ]
 }
 
@@ -65,18 +35,12 @@ fn sound_house() -> Vec<Member> {
 fn fault_of(user: &str, dependency: &str, kind: DependencyKind) -> LayerFault {
     let mut house = sound_house();
     let planted = house.iter_mut().find(|member| member.name == user).unwrap();
-    planted.dependencies.push(Dependency {
-        name: dependency.to_owned(),
-        kind,
-    });
+    planted.dependencies.push(Dependency { name: dependency.to_owned(), kind });
     let mut faults = check(&house);
     assert_eq!(faults.len(), 1, "{faults:?}");
     let fault = faults.remove(0);
     let message = fault.to_string();
-    assert!(
-        message.contains(user) && message.contains(dependency),
-        "{message}"
-    );
+    assert!(message.contains(user) && message.contains(dependency), "{message}");
     fault
 }
 
@@ -86,10 +50,7 @@ fn this_workspace_keeps_the_layer_rule() {
     let faults: Vec<String> = check(&members).iter().map(ToString::to_string).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     for name in ["rotor-base", "trim", "sim-driver", "truth", "xtask", "e2e"] {
-        assert!(
-            members.iter().any(|member| member.name == name),
-            "{name} is no member"
-        );
+        assert!(members.iter().any(|member| member.name == name), "{name} is no member");
     }
 }
 
@@ -104,14 +65,7 @@ fn an_upward_edge_is_a_fault_in_every_table() {
     for kind in [Normal, Build, Development] {
         let fault = fault_of("rotor-fem", "rotor-response", kind);
         assert!(
-            matches!(
-                fault,
-                LayerFault::NotDownward {
-                    floor: 1,
-                    dependency_floor: 2,
-                    ..
-                }
-            ),
+            matches!(fault, LayerFault::NotDownward { floor: 1, dependency_floor: 2, .. }),
             "{fault}"
         );
     }
@@ -121,30 +75,18 @@ fn an_upward_edge_is_a_fault_in_every_table() {
 fn a_sideways_edge_is_a_fault() {
     let fault = fault_of("flap-aero", "rotor-fem", DependencyKind::Normal);
     assert!(
-        matches!(
-            fault,
-            LayerFault::NotDownward {
-                floor: 1,
-                dependency_floor: 1,
-                ..
-            }
-        ),
+        matches!(fault, LayerFault::NotDownward { floor: 1, dependency_floor: 1, .. }),
         "{fault}"
     );
     let fault = fault_of("e2e", "xtask", DependencyKind::Development);
-    assert!(
-        matches!(fault, LayerFault::NotDownward { floor: 9, .. }),
-        "{fault}"
-    );
+    assert!(matches!(fault, LayerFault::NotDownward { floor: 9, .. }), "{fault}");
 }
 
 #[test]
 fn truth_and_product_stay_apart() {
-    for (user, dependency) in [
-        ("truth", "rotor-base"),
-        ("sim-driver", "truth"),
-        ("rotor-fem", "truth"),
-    ] {
+    for (user, dependency) in
+        [("truth", "rotor-base"), ("sim-driver", "truth"), ("rotor-fem", "truth")]
+    {
         let fault = fault_of(user, dependency, DependencyKind::Development);
         assert!(matches!(fault, LayerFault::TruthNotApart { .. }), "{fault}");
     }
@@ -171,13 +113,8 @@ fn a_member_needs_a_floor_the_house_has() {
     assert_eq!(
         faults,
         [
-            LayerFault::NoFloor {
-                member: "flap-aero".to_owned()
-            },
-            LayerFault::UnknownFloor {
-                member: "attic".to_owned(),
-                floor: 7
-            }
+            LayerFault::NoFloor { member: "flap-aero".to_owned() },
+            LayerFault::UnknownFloor { member: "attic".to_owned(), floor: 7 }
         ]
     );
 }
@@ -202,16 +139,10 @@ fn this_tree_is_tidy() {
     let root = workspace::root();
     let tree = Tree::load(&root).unwrap();
     let members = workspace::members(&root).unwrap();
-    let findings: Vec<String> = tidy::check(&tree, &members, &validate::ids())
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let findings: Vec<String> =
+        tidy::check(&tree, &members, &validate::ids()).iter().map(ToString::to_string).collect();
     assert!(findings.is_empty(), "{}", findings.join("\n"));
-    assert!(
-        tree.texts.len() > 100,
-        "only {} texts were read",
-        tree.texts.len()
-    );
+    assert!(tree.texts.len() > 100, "only {} texts were read", tree.texts.len());
 }
 
 /// The only finding of a rule in a tree.
@@ -227,32 +158,16 @@ fn breaches_in_sources_are_found() {
         "//! Sound.\n\n/// A todo list is fine.\n#[ignore = \"needs a cluster\"]\nfn f() {}\n";
     assert_eq!(rust("crates/trim/src/a.rs", sound), []);
     one(&rust("a.rs", "fn f() {}\n"), "//!");
-    one(
-        &rust("a.rs", "//! A.\n    #[should_panic(expected = \"x\")]\n"),
-        "should_panic",
-    );
+    one(&rust("a.rs", "//! A.\n    #[should_panic(expected = \"x\")]\n"), "should_panic");
     one(&rust("a.rs", "//! A.\n#[ignore]\n"), "reason");
-    one(
-        &rust("a.rs", &"//! Long.\n".repeat(tidy::LINE_LIMIT + 1)),
-        "lines",
-    );
+    one(&rust("a.rs", &"//! Long.\n".repeat(tidy::LINE_LIMIT + 1)), "lines");
     assert_eq!(rust("a.rs", &"//! Long.\n".repeat(tidy::LINE_LIMIT)), []);
-    for word in [
-        concat!("to", "do!()"),
-        concat!("unimple", "mented!()"),
-        concat!("// FIX", "ME"),
-    ] {
+    for word in [concat!("to", "do!()"), concat!("unimple", "mented!()"), concat!("// FIX", "ME")] {
         one(&rust("a.rs", &format!("//! A.\n{word}\n")), "undone");
     }
     let home = concat!("//! See /ho", "me/me/notes.\n");
     one(&rust("a.rs", home), "machine");
-    assert_eq!(
-        rust(
-            "a.rs",
-            concat!("//! See framewo", "rk/a and docs/ho", "me/a.\n")
-        ),
-        []
-    );
+    assert_eq!(rust("a.rs", concat!("//! See framewo", "rk/a and docs/ho", "me/a.\n")), []);
 }
 
 #[test]
@@ -260,11 +175,7 @@ fn crates_below_the_driver_know_no_files() {
     let using = "//! A.\nuse std::fs::File;\n";
     let rust = |path: &str| tidy::rust(&Tree::of(&[(path, using)]));
     one(&rust("crates/trim/src/solve.rs"), "std::fs");
-    for allowed in [
-        "crates/sim-driver/src/a.rs",
-        "crates/trim/tests/a.rs",
-        "xtask/src/a.rs",
-    ] {
+    for allowed in ["crates/sim-driver/src/a.rs", "crates/trim/tests/a.rs", "xtask/src/a.rs"] {
         assert_eq!(rust(allowed), [], "{allowed}");
     }
     let documented = Tree::of(&[("crates/trim/src/a.rs", "//! A.\n/// No `std::time` here.\n")]);
@@ -276,57 +187,34 @@ fn breaches_in_manifests_are_found() {
     let sound = "[package]\nversion.workspace = true\n[lints]\nworkspace = true\n[dependencies]\n\
                  a.workspace = true\nb = { workspace = true, features = [\"c\"] }\n";
     let tree = |manifest: &str| {
-        Tree::of(&[
-            ("crates/trim/Cargo.toml", manifest),
-            ("crates/trim/README.md", "# trim"),
-        ])
+        Tree::of(&[("crates/trim/Cargo.toml", manifest), ("crates/trim/README.md", "# trim")])
     };
     assert_eq!(tidy::manifests(&tree(sound)), []);
-    one(
-        &tidy::manifests(&tree(&format!("{sound}c = \"1\"\n"))),
-        "workspace = true",
-    );
+    one(&tidy::manifests(&tree(&format!("{sound}c = \"1\"\n"))), "workspace = true");
     one(&tidy::manifests(&tree("[package]\n")), "lints");
-    one(
-        &tidy::manifests(&Tree::of(&[("crates/trim/Cargo.toml", sound)])),
-        "ten lines",
-    );
+    one(&tidy::manifests(&Tree::of(&[("crates/trim/Cargo.toml", sound)])), "ten lines");
 }
 
 #[test]
 fn breaches_in_documents_are_found() {
-    let everything: Vec<(&str, &str)> = tidy::REQUIRED_FILES
-        .into_iter()
-        .map(|path| (path, ""))
-        .collect();
+    let everything: Vec<(&str, &str)> =
+        tidy::REQUIRED_FILES.into_iter().map(|path| (path, "")).collect();
     assert_eq!(tidy::required(&Tree::of(&everything)), []);
     one(&tidy::required(&Tree::of(&everything[1..])), "missing");
     let data = ("fixtures/reference/aero/table.csv", "");
     let unsourced: Vec<_> = everything.iter().copied().chain([data]).collect();
-    one(
-        &tidy::required(&Tree::of(&unsourced)),
-        "where the numbers are from",
-    );
+    one(&tidy::required(&Tree::of(&unsourced)), "where the numbers are from");
 
     let changelog = |text: &str| tidy::changelog(&Tree::of(&[("CHANGELOG.md", text)]));
-    assert_eq!(
-        changelog("# C\n\n## 1.0\n\n### Numbers changed\n\nNone.\n"),
-        []
-    );
-    one(
-        &changelog("# C\n\n## 1.0\n\n### Added\n"),
-        "Numbers changed",
-    );
+    assert_eq!(changelog("# C\n\n## 1.0\n\n### Numbers changed\n\nNone.\n"), []);
+    one(&changelog("# C\n\n## 1.0\n\n### Added\n"), "Numbers changed");
     one(&changelog("# C\n"), "no version");
 }
 
 #[test]
 fn dead_links_and_lost_pages_are_found() {
     let files = [
-        (
-            "docs/src/SUMMARY.md",
-            "[A](a.md)\n[Licence](../../LICENSE)\n",
-        ),
+        ("docs/src/SUMMARY.md", "[A](a.md)\n[Licence](../../LICENSE)\n"),
         (
             "docs/src/a.md",
             "[out](https://example.org) [in](SUMMARY.md#a) `x`](b)\n```\n[no](c.md)\n```\n",
@@ -347,20 +235,12 @@ fn the_code_map_must_agree_with_the_manifests() {
     };
     let truth = "| [`truth`](tests/truth) | 0 | data |\n";
     assert_eq!(
-        map(&format!(
-            "| member | floor | |\n| [`trim`](crates/trim) | 3 | a |\n{truth}"
-        )),
+        map(&format!("| member | floor | |\n| [`trim`](crates/trim) | 3 | a |\n{truth}")),
         []
     );
-    one(
-        &map(&format!("| `trim` | 2 | a |\n{truth}")),
-        "by its manifest",
-    );
+    one(&map(&format!("| `trim` | 2 | a |\n{truth}")), "by its manifest");
     one(&map("| `trim` | 3 | a |\n"), "does not name `truth`");
-    one(
-        &map(&format!("| `trim` | 3 | a |\n{truth}| `attic` | 1 | b |\n")),
-        "no member",
-    );
+    one(&map(&format!("| `trim` | 3 | a |\n{truth}| `attic` | 1 | b |\n")), "no member");
 }
 
 #[test]
@@ -377,23 +257,10 @@ fn validation_ids_belong_to_checks_and_stand_on_the_page() {
     };
     let known = [first.as_str(), second.as_str()];
     assert_eq!(ids(&page, &format!("//! Test: {first}.\n"), &known), []);
-    one(
-        &ids(&page, "//! A.\n", &[known[0], known[1], known[1]]),
-        "share",
-    );
-    one(
-        &ids(&page, &format!("//! {}\n", id("77")), &known),
-        "no validation check",
-    );
+    one(&ids(&page, "//! A.\n", &[known[0], known[1], known[1]]), "share");
+    one(&ids(&page, &format!("//! {}\n", id("77")), &known), "no validation check");
     one(&ids(&page, "//! A.\n", &known[..1]), "no validation check");
-    one(
-        &ids(&format!("| {first} | a |\n"), "//! A.\n", &known),
-        "has no row",
-    );
+    one(&ids(&format!("| {first} | a |\n"), "//! A.\n", &known), "has no row");
     let odd = ids(&page, "//! A.\n", &[known[0], known[1], "V-qq-1"]);
-    assert!(
-        odd.iter()
-            .any(|finding| finding.fault.contains("V-AREA-NN")),
-        "{odd:?}"
-    );
+    assert!(odd.iter().any(|finding| finding.fault.contains("V-AREA-NN")), "{odd:?}");
 }

@@ -28,10 +28,7 @@ fn rows() -> Vec<Row> {
         ..check("time", || Ok(3.25))
     };
     let near = Check {
-        criterion: Criterion::Near {
-            expected: 2.0,
-            within: 0.1,
-        },
+        criterion: Criterion::Near { expected: 2.0, within: 0.1 },
         ..check("near", || Ok(2.05))
     };
     vec![
@@ -75,27 +72,14 @@ fn a_check_that_fails_or_cannot_be_computed_shows() {
     let no_number = Row::of(HEADING, check("nan", || Ok(f64::NAN)));
     let broken = Row::of(
         HEADING,
-        check("broken", || {
-            Err(CheckError::TooFew {
-                what: "modes",
-                found: 1,
-                needed: 8,
-            })
-        }),
+        check("broken", || Err(CheckError::TooFew { what: "modes", found: 1, needed: 8 })),
     );
     let rows = [too_large, no_number, broken];
     assert!(!rows.iter().any(Row::passes));
     let page = render(&rows);
     assert_eq!(page.matches("**no**").count(), 3, "{page}");
-    assert!(
-        page.contains("0 of 3 checks passed") && page.contains("not computed"),
-        "{page}"
-    );
-    assert!(
-        text(&rows).contains("broken: only 1 values of modes"),
-        "{}",
-        text(&rows)
-    );
+    assert!(page.contains("0 of 3 checks passed") && page.contains("not computed"), "{page}");
+    assert!(text(&rows).contains("broken: only 1 values of modes"), "{}", text(&rows));
 }
 
 #[test]

@@ -25,10 +25,7 @@ pub(crate) struct Decay {
 
 impl Decay {
     /// No step.
-    pub(crate) const NONE: Self = Self {
-        gone: [0.0; LANES],
-        mean: [1.0; LANES],
-    };
+    pub(crate) const NONE: Self = Self { gone: [0.0; LANES], mean: [1.0; LANES] };
 }
 
 /// Decay factors for `z = pole step`, a step above 0, without loss of digits at small `z`.

@@ -86,6 +86,7 @@ pub fn section_loads(
 /// ```
 /// For callers that keep the lags of their sections in a form of their own. `y` and `y_rate` are in
 /// the order of [`Load`](crate::Load), a velocity and a velocity per time.
+#[inline]
 pub fn loads_of_outputs(
     stream: &FreeStream,
     circulating: [f64; 3],

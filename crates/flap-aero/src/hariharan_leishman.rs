@@ -43,19 +43,9 @@ pub fn piston_start(mach: Mach, flap: FlapChord) -> [[f64; 4]; 3] {
     let flap_by_rate = e2 * (e / 3.0 + 0.5 * (0.75 - e));
     [
         [p, 0.25 * p, p * e, 0.5 * p * e2],
-        [
-            -0.25 * p,
-            -7.0 / 48.0 * p,
-            -p * e * (0.75 - 0.5 * e),
-            -p * e2 * (9.0 - 4.0 * e) / 24.0,
-        ],
+        [-0.25 * p, -7.0 / 48.0 * p, -p * e * (0.75 - 0.5 * e), -p * e2 * (9.0 - 4.0 * e) / 24.0],
         // without a flap there is no hinge to have a moment about; all four vanish with E
-        [
-            -0.5 * p * e2,
-            -p * flap_by_rate,
-            -0.5 * p * e2,
-            -p * e2 * e / 3.0,
-        ],
+        [-0.5 * p * e2, -p * flap_by_rate, -0.5 * p * e2, -p * e2 * e / 3.0],
     ]
 }
 
@@ -162,11 +152,7 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
     let beta2 = beta * beta;
     let compress = 1.0 / beta;
     let floored = mach.value() < MIN_NONCIRCULATORY_MACH;
-    let noncirculatory = if floored {
-        Mach::noncirculatory_floor()
-    } else {
-        mach
-    };
+    let noncirculatory = if floored { Mach::noncirculatory_floor() } else { mach };
     let m = noncirculatory.value();
 
     let circulation = t.circulatory_input();
@@ -176,32 +162,18 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
     let held_moment = t.held_moment();
     let held_hinge = t.held_hinge();
 
-    let mut times = TimeConstants {
-        floor: 0.5 * flap.ratio() * m / (1.0 + m),
-        unmatched: [[false; 4]; 3],
-    };
+    let mut times =
+        TimeConstants { floor: 0.5 * flap.ratio() * m / (1.0 + m), unmatched: [[false; 4]; 3] };
     let mut lags = Vec::with_capacity(16);
     for (a, b) in BEDDOES {
         lags.push(LagChannel {
             pole: b * beta2,
             input: circulation,
-            output: [
-                TAU * compress * a,
-                0.0,
-                t.circulatory_hinge() * compress * a,
-            ],
+            output: [TAU * compress * a, 0.0, t.circulatory_hinge() * compress * a],
         });
     }
-    let modes = if flap.is_none() {
-        &Mode::ALL[..2]
-    } else {
-        &Mode::ALL[..]
-    };
-    let loads = if flap.is_none() {
-        &Load::ALL[..2]
-    } else {
-        &Load::ALL[..]
-    };
+    let modes = if flap.is_none() { &Mode::ALL[..2] } else { &Mode::ALL[..] };
+    let loads = if flap.is_none() { &Load::ALL[..2] } else { &Load::ALL[..] };
     for &load in loads {
         for &mode in modes {
             let (o, j) = (load.index(), mode.index());
@@ -224,14 +196,12 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
                 }
                 _ => {
                     let settling = match load {
-                        Load::Lift => Settling {
-                            at_once: 0.0,
-                            circulatory: TAU * compress * circulation[j],
-                        },
-                        Load::Moment => Settling {
-                            at_once: held_moment[j] * compress,
-                            circulatory: 0.0,
-                        },
+                        Load::Lift => {
+                            Settling { at_once: 0.0, circulatory: TAU * compress * circulation[j] }
+                        }
+                        Load::Moment => {
+                            Settling { at_once: held_moment[j] * compress, circulatory: 0.0 }
+                        }
                         Load::Hinge => Settling {
                             at_once: held_hinge[j] * compress,
                             circulatory: t.circulatory_hinge() * compress * circulation[j],
@@ -252,20 +222,13 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
         direct: start,
         rate: [[0.0; 4]; 3],
         lags,
-        remarks: ModelRemarks {
-            mach_floored: floored,
-            slope_unmatched: times.unmatched,
-        },
+        remarks: ModelRemarks { mach_floored: floored, slope_unmatched: times.unmatched },
     }
 }
 
 /// A lag of one input into one output.
 fn single(load: Load, mode: Mode, time: f64, weight: f64) -> LagChannel {
-    let mut lag = LagChannel {
-        pole: 1.0 / time,
-        input: [0.0; 4],
-        output: [0.0; 3],
-    };
+    let mut lag = LagChannel { pole: 1.0 / time, input: [0.0; 4], output: [0.0; 3] };
     lag.input[mode.index()] = 1.0;
     lag.output[load.index()] = weight;
     lag

@@ -62,12 +62,7 @@ impl MarchingSection {
                 block
             })
             .collect();
-        Self {
-            direct: section.direct,
-            rate: section.rate,
-            blocks,
-            lags: section.lags.len(),
-        }
+        Self { direct: section.direct, rate: section.rate, blocks, lags: section.lags.len() }
     }
 
     /// The loads without the lags' share.
@@ -100,10 +95,7 @@ impl Block {
         if semichords < NO_STEP {
             return Decay::NONE;
         }
-        decay(
-            &self.pole.map(|pole| pole * semichords),
-            &self.time.map(|time| time * inverse),
-        )
+        decay(&self.pole.map(|pole| pole * semichords), &self.time.map(|time| time * inverse))
     }
 }
 
@@ -122,15 +114,8 @@ impl StepFactors {
     pub fn new(section: &MarchingSection, semichords: f64) -> Result<Self, AeroError> {
         check_step(semichords)?;
         let step = [semichords, 1.0 / semichords];
-        let blocks = section
-            .blocks
-            .iter()
-            .map(|block| block.decay(step))
-            .collect();
-        Ok(Self {
-            blocks,
-            lags: section.lags,
-        })
+        let blocks = section.blocks.iter().map(|block| block.decay(step)).collect();
+        Ok(Self { blocks, lags: section.lags })
     }
 }
 
@@ -156,16 +141,8 @@ impl SectionState {
 
     /// A section whose inputs have been held for ever.
     pub fn settled(section: &MarchingSection, modes: &[f64; 4]) -> Self {
-        let drives: Vec<Lanes> = section
-            .blocks
-            .iter()
-            .map(|block| block.drive(modes))
-            .collect();
-        Self {
-            states: drives.clone(),
-            drives,
-            lags: section.lags,
-        }
+        let drives: Vec<Lanes> = section.blocks.iter().map(|block| block.drive(modes)).collect();
+        Self { states: drives.clone(), drives, lags: section.lags }
     }
 
     /// The lag states, in the order of [`SectionCoefficients::lags`].
@@ -253,12 +230,8 @@ impl SectionState {
         decays: impl Iterator<Item = Decay>,
     ) -> [f64; 3] {
         let [mut lift, mut moment, mut hinge] = [[0.0; LANES]; 3];
-        for (((block, Decay { gone, mean }), state), drive) in section
-            .blocks
-            .iter()
-            .zip(decays)
-            .zip(&mut self.states)
-            .zip(&mut self.drives)
+        for (((block, Decay { gone, mean }), state), drive) in
+            section.blocks.iter().zip(decays).zip(&mut self.states).zip(&mut self.drives)
         {
             // through local arrays: four lags stay together, in registers
             let (old, before) = (*drive, *state);
@@ -298,10 +271,7 @@ fn check_lags(state: usize, coefficients: usize) -> Result<(), AeroError> {
     if state == coefficients {
         return Ok(());
     }
-    Err(AeroError::StateMismatch {
-        state,
-        coefficients,
-    })
+    Err(AeroError::StateMismatch { state, coefficients })
 }
 
 fn check_step(semichords: f64) -> Result<(), AeroError> {

@@ -23,18 +23,10 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
     let compress = 1.0 / mach.beta();
     let circulation = t.circulatory_input().map(|w| w * compress);
     let lift = circulation.map(|w| TAU * w);
-    let moment = [
-        0.0,
-        -0.25 * PI,
-        -0.5 * compress * t.t::<15>(),
-        -0.25 * compress * t.t::<16>(),
-    ];
+    let moment = [0.0, -0.25 * PI, -0.5 * compress * t.t::<15>(), -0.25 * compress * t.t::<16>()];
     let mut hinge = circulation.map(|w| t.circulatory_hinge() * w);
     hinge[1] -= 0.25 * t.t::<17>();
     hinge[2] -= compress * t.t::<18>() / TAU;
     hinge[3] += compress * t.t::<4>() * t.t::<11>() / (8.0 * PI);
-    SectionCoefficients {
-        direct: [lift, moment, hinge],
-        ..SectionCoefficients::default()
-    }
+    SectionCoefficients { direct: [lift, moment, hinge], ..SectionCoefficients::default() }
 }

@@ -53,10 +53,7 @@ pub fn harmonic_response(
     let inputs = motion.inputs(reduced_frequency);
     let ik = Complex64::new(0.0, reduced_frequency);
     let mut loads = [Complex64::ZERO; 3];
-    for (load, (direct, rate)) in loads
-        .iter_mut()
-        .zip(section.direct.iter().zip(&section.rate))
-    {
+    for (load, (direct, rate)) in loads.iter_mut().zip(section.direct.iter().zip(&section.rate)) {
         for ((d, r), m) in direct.iter().zip(rate).zip(&inputs) {
             *load += (*d + ik * *r) * m;
         }

@@ -112,10 +112,7 @@ impl SectionCoefficients {
         if count == self.lags.len() {
             return Ok(());
         }
-        Err(AeroError::StateMismatch {
-            state: count,
-            coefficients: self.lags.len(),
-        })
+        Err(AeroError::StateMismatch { state: count, coefficients: self.lags.len() })
     }
 }
 
@@ -156,11 +153,7 @@ pub enum AttachedFlowModel {
 
 impl AttachedFlowModel {
     /// All models.
-    pub const ALL: [Self; 3] = [
-        Self::QuasiSteady,
-        Self::Incompressible,
-        Self::HariharanLeishman,
-    ];
+    pub const ALL: [Self; 3] = [Self::QuasiSteady, Self::Incompressible, Self::HariharanLeishman];
 
     /// Short name, as case files and the command line spell it.
     pub fn name(self) -> &'static str {

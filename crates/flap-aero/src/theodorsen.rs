@@ -97,12 +97,7 @@ impl TheodorsenFunctions {
     /// other half comes from the growth of the angle that goes with the rate, and sits in
     /// [`apparent_mass`](Self::apparent_mass).
     pub fn held_moment(&self) -> [f64; 4] {
-        [
-            0.0,
-            -PI / 8.0,
-            -0.5 * self.t::<15>(),
-            -0.125 * self.t::<16>(),
-        ]
+        [0.0, -PI / 8.0, -0.5 * self.t::<15>(), -0.125 * self.t::<16>()]
     }
 
     /// Hinge moment that a *held* downwash makes at once, circulation apart:

@@ -22,10 +22,7 @@ impl Mach {
         if (0.0..=Self::MAX).contains(&mach) {
             Ok(Self(mach))
         } else {
-            Err(AeroError::MachOutOfRange {
-                mach,
-                limit: Self::MAX,
-            })
+            Err(AeroError::MachOutOfRange { mach, limit: Self::MAX })
         }
     }
 
@@ -36,10 +33,7 @@ impl Mach {
     /// [`AeroError::MachOutOfRange`] if `speed_ratio` is not finite or `limit` is no Mach number.
     pub fn limited(speed_ratio: f64, limit: f64) -> Result<Self, AeroError> {
         if !speed_ratio.is_finite() {
-            return Err(AeroError::MachOutOfRange {
-                mach: speed_ratio,
-                limit,
-            });
+            return Err(AeroError::MachOutOfRange { mach: speed_ratio, limit });
         }
         Self::new(limit).map(|Self(limit)| Self(speed_ratio.abs().min(limit)))
     }
@@ -129,22 +123,13 @@ mod tests {
     #[test]
     fn values_outside_their_range_are_refused() {
         for bad in [-0.1, 0.951, f64::NAN, f64::INFINITY] {
-            assert!(
-                matches!(Mach::new(bad), Err(AeroError::MachOutOfRange { .. })),
-                "{bad}"
-            );
+            assert!(matches!(Mach::new(bad), Err(AeroError::MachOutOfRange { .. })), "{bad}");
         }
         for bad in [-0.1, 1.0, f64::NAN] {
-            assert!(matches!(
-                FlapChord::new(bad),
-                Err(AeroError::FlapChordOutOfRange { .. })
-            ));
+            assert!(matches!(FlapChord::new(bad), Err(AeroError::FlapChordOutOfRange { .. })));
         }
         for bad in [-1.1, 1.1, f64::NAN] {
-            assert!(matches!(
-                HingePosition::new(bad),
-                Err(AeroError::HingeOutOfRange { .. })
-            ));
+            assert!(matches!(HingePosition::new(bad), Err(AeroError::HingeOutOfRange { .. })));
         }
     }
 

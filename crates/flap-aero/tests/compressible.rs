@@ -1,9 +1,6 @@
 //! The compressible reconstruction against exact linear theory: what it has exact, and how wrong it
 //! is elsewhere.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a helper whose table or section is missing cannot go on"
-)]
+#![expect(clippy::unwrap_used, reason = "a helper whose table or section is missing cannot go on")]
 
 mod tables;
 
@@ -27,9 +24,7 @@ fn flap(ratio: f64) -> FlapChord {
 }
 
 fn section(m: f64, ratio: f64) -> SectionCoefficients {
-    AttachedFlowModel::HariharanLeishman
-        .coefficients(mach(m), flap(ratio))
-        .unwrap()
+    AttachedFlowModel::HariharanLeishman.coefficients(mach(m), flap(ratio)).unwrap()
 }
 
 /// Initial slope of an indicial function, from the lags.
@@ -78,26 +73,10 @@ fn start_values_are_piston_theory() {
             let pitch = |x: f64| 0.5 * (x + 0.5);
             let lever = |x: f64| 0.5 * (x - e);
             let exact = [
-                [
-                    whole(&one, &one),
-                    whole(&one, &about_quarter),
-                    aft(&one, &about_hinge),
-                ],
-                [
-                    whole(&pitch, &one),
-                    whole(&pitch, &about_quarter),
-                    aft(&pitch, &about_hinge),
-                ],
-                [
-                    aft(&one, &one),
-                    aft(&one, &about_quarter),
-                    aft(&one, &about_hinge),
-                ],
-                [
-                    aft(&lever, &one),
-                    aft(&lever, &about_quarter),
-                    aft(&lever, &about_hinge),
-                ],
+                [whole(&one, &one), whole(&one, &about_quarter), aft(&one, &about_hinge)],
+                [whole(&pitch, &one), whole(&pitch, &about_quarter), aft(&pitch, &about_hinge)],
+                [aft(&one, &one), aft(&one, &about_quarter), aft(&one, &about_hinge)],
+                [aft(&lever, &one), aft(&lever, &about_quarter), aft(&lever, &about_hinge)],
             ];
             for (mode, exact) in Mode::ALL.into_iter().zip(exact) {
                 let got = indicial_response(&section, mode, 0.0);
@@ -112,10 +91,7 @@ fn start_values_are_piston_theory() {
 #[test]
 fn start_values_against_the_evvard_and_lomax_tables() {
     let mut starts = 0;
-    for row in Table::read("evvard_flap_step_E020.csv")
-        .rows()
-        .filter(|row| row.is("S", 0.0))
-    {
+    for row in Table::read("evvard_flap_step_E020.csv").rows().filter(|row| row.is("S", 0.0)) {
         starts += 1;
         let start = piston_start(mach(row.number("M")), flap(0.2));
         for (load, name) in Load::ALL.into_iter().zip(["cn", "cm25", "ch"]) {
@@ -124,10 +100,7 @@ fn start_values_against_the_evvard_and_lomax_tables() {
             assert_abs_diff_eq!(rate, row.number(&format!("{name}_ddot")), epsilon = 1e-8);
         }
     }
-    for row in Table::read("lomax_alpha_q.csv")
-        .rows()
-        .filter(|row| row.is("S", 0.0))
-    {
+    for row in Table::read("lomax_alpha_q.csv").rows().filter(|row| row.is("S", 0.0)) {
         starts += 1;
         let start = piston_start(mach(row.number("M")), flap(0.2));
         for (load, name) in Load::ALL.into_iter().zip(["cn", "cm25"]) {
@@ -206,10 +179,7 @@ fn what_cannot_be_matched_is_said() {
     };
     assert_eq!(unmatched(0.3), []);
     assert_eq!(unmatched(0.5), [(Load::Moment, Mode::FlapRate)]);
-    assert_eq!(
-        unmatched(0.7),
-        [(Load::Moment, Mode::Flap), (Load::Moment, Mode::FlapRate)]
-    );
+    assert_eq!(unmatched(0.7), [(Load::Moment, Mode::Flap), (Load::Moment, Mode::FlapRate)]);
     assert!(section(0.3, 0.2).remarks.is_empty());
     let floored = section(0.02, 0.2);
     assert!(floored.remarks.mach_floored && !floored.remarks.is_empty());
@@ -224,9 +194,8 @@ fn steady_values_are_linear_theorys() {
             let section = section(m, ratio);
             let t = TheodorsenFunctions::new(flap(ratio).hinge());
             // the incompressible answer to the same held downwash, over beta
-            let still = AttachedFlowModel::Incompressible
-                .coefficients(Mach::ZERO, flap(ratio))
-                .unwrap();
+            let still =
+                AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, flap(ratio)).unwrap();
             for mode in Mode::ALL {
                 let mut inputs = [0.0; 4];
                 inputs[mode.index()] = 1.0;
@@ -248,15 +217,10 @@ fn steady_values_are_linear_theorys() {
 #[test]
 fn low_frequency_limit_is_quasi_steady() {
     for m in [0.0, 0.4, 0.7] {
-        let quasi = AttachedFlowModel::QuasiSteady
-            .coefficients(mach(m), flap(0.2))
-            .unwrap();
+        let quasi = AttachedFlowModel::QuasiSteady.coefficients(mach(m), flap(0.2)).unwrap();
         for motion in [Motion::Flap, Motion::Pitch, Motion::Plunge] {
             let slow = harmonic_response(&section(m, 0.2), 1e-7, motion);
-            for (s, l) in slow
-                .into_iter()
-                .zip(harmonic_response(&quasi, 1e-7, motion))
-            {
+            for (s, l) in slow.into_iter().zip(harmonic_response(&quasi, 1e-7, motion)) {
                 assert!((s - l).norm() < 1e-4, "M {m} {motion:?}: {s} {l}");
             }
         }
@@ -273,20 +237,13 @@ fn lags_keep_their_meaning_while_the_mach_number_varies() {
             assert_eq!(now.lags.len(), reference.lags.len());
             for (a, b) in now.lags.iter().zip(&reference.lags) {
                 assert_eq!(a.input.map(f64::to_bits), b.input.map(f64::to_bits));
-                assert!(
-                    a.pole > 0.0 && a.pole.is_finite(),
-                    "M {i}e-3 E {ratio}: {}",
-                    a.pole
-                );
+                assert!(a.pole > 0.0 && a.pole.is_finite(), "M {i}e-3 E {ratio}: {}", a.pole);
             }
             // and the answers do not jump from one Mach number to the next
             if let Some(last) = last {
                 let [new, old] = [&now, &last].map(|s| harmonic_response(s, 0.3, Motion::Flap));
                 for (n, o) in new.into_iter().zip(old) {
-                    assert!(
-                        (n - o).norm() <= 0.03 * o.norm().max(1e-3),
-                        "M {i}e-3 E {ratio}"
-                    );
+                    assert!((n - o).norm() <= 0.03 * o.norm().max(1e-3), "M {i}e-3 E {ratio}");
                 }
             }
             last = Some(now);
@@ -299,10 +256,7 @@ fn worst(table: &Table, m: f64, ratio_column: &str, k_max: f64, motion: Motion) 
     let section = section(m, 0.2);
     let mut worst = [0.0_f64; 3];
     let mut count = 0;
-    for row in table
-        .rows()
-        .filter(|row| row.is("M", m) && row.is(ratio_column, 0.2))
-    {
+    for row in table.rows().filter(|row| row.is("M", m) && row.is(ratio_column, 0.2)) {
         let k = row.number("k");
         let wanted = match motion {
             Motion::Flap => true,
@@ -340,10 +294,7 @@ fn error_against_possio_is_large_and_known() {
     ] {
         for (k_max, known) in [(0.3, slow), (1.0, fast)] {
             let got = worst(&table, m, "E", k_max, Motion::Flap);
-            println!(
-                "M {m} k <= {k_max}: Cn {:.3} Cm {:.3} Ch {:.3}",
-                got[0], got[1], got[2]
-            );
+            println!("M {m} k <= {k_max}: Cn {:.3} Cm {:.3} Ch {:.3}", got[0], got[1], got[2]);
             for (g, known) in got.into_iter().zip(known) {
                 assert_abs_diff_eq!(g, known, epsilon = 6e-4);
             }
@@ -375,10 +326,7 @@ fn rigid_motions_against_possio() {
     ] {
         for (m, known) in known {
             let got = worst(&table, m, "E_hinge", 0.3, motion);
-            println!(
-                "{motion:?} M {m}: Cn {:.3} Cm {:.3} Ch {:.3}",
-                got[0], got[1], got[2]
-            );
+            println!("{motion:?} M {m}: Cn {:.3} Cm {:.3} Ch {:.3}", got[0], got[1], got[2]);
             for (g, known) in got.into_iter().zip(known) {
                 assert_abs_diff_eq!(g, known, epsilon = 6e-4);
             }
@@ -395,15 +343,8 @@ fn flap_angle_and_flap_rate_apart() {
         (0.7, "possio_modes_M0.7.csv"),
     ] {
         let section = section(m, 0.2);
-        for row in Table::read(file)
-            .rows()
-            .filter(|row| row.number("k") <= 0.011)
-        {
-            let mode = if row.text("mode") == "delta" {
-                Mode::Flap
-            } else {
-                Mode::FlapRate
-            };
+        for row in Table::read(file).rows().filter(|row| row.number("k") <= 0.011) {
+            let mode = if row.text("mode") == "delta" { Mode::Flap } else { Mode::FlapRate };
             let ik = Complex64::new(0.0, row.number("k"));
             let j = mode.index();
             for (o, exact) in row.loads().into_iter().enumerate() {
@@ -424,12 +365,7 @@ fn a_full_rate_moment_would_be_wrong() {
     // the exact moment of a slowly varying flap rate is that of the held downwash, -T16/(8 beta):
     // half of Theodorsen's delta_dot coefficient
     let row = Table::read("possio_modes_M0.5.csv");
-    let exact = row
-        .rows()
-        .find(|row| row.text("mode") == "ddot")
-        .unwrap()
-        .loads()[1]
-        .re;
+    let exact = row.rows().find(|row| row.text("mode") == "ddot").unwrap().loads()[1].re;
     let t = TheodorsenFunctions::new(flap(0.2).hinge());
     let beta = mach(0.5).beta();
     assert_relative_eq!(-t.t::<16>() / (8.0 * beta), exact, max_relative = 1e-3);

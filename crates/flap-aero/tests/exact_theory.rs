@@ -1,8 +1,5 @@
 //! Incompressible sections against exact thin-aerofoil theory.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a helper whose table or section is missing cannot go on"
-)]
+#![expect(clippy::unwrap_used, reason = "a helper whose table or section is missing cannot go on")]
 
 mod tables;
 
@@ -22,9 +19,7 @@ fn flap(ratio: f64) -> FlapChord {
 }
 
 fn incompressible(ratio: f64) -> SectionCoefficients {
-    AttachedFlowModel::Incompressible
-        .coefficients(Mach::ZERO, flap(ratio))
-        .unwrap()
+    AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, flap(ratio)).unwrap()
 }
 
 #[test]
@@ -67,11 +62,7 @@ fn a_flap_of_no_chord_does_nothing() {
 
 /// Integral of `cos(n theta)` from the hinge to the trailing edge.
 fn cosine_integral(n: i32, hinge_angle: f64) -> f64 {
-    if n == 0 {
-        PI - hinge_angle
-    } else {
-        -(f64::from(n) * hinge_angle).sin() / f64::from(n)
-    }
+    if n == 0 { PI - hinge_angle } else { -(f64::from(n) * hinge_angle).sin() / f64::from(n) }
 }
 
 /// `[Cn, Cm, Ch]` of a held downwash by Glauert's Fourier series, `x = -cos(theta)`.
@@ -90,11 +81,7 @@ fn glauert(moment: impl Fn(i32) -> f64, hinge: f64) -> [f64; 3] {
     let c = |m: i32| cosine_integral(m, angle);
     let against_a0 = -(1.0 + hinge) * c(1) - (0.5 + hinge) * c(0) - 0.5 * c(2);
     let series: f64 = (1..20_000).rev().map(|n| a(n) * against_sine(n)).sum();
-    [
-        TAU * (a0 + 0.5 * a(1)),
-        -0.25 * PI * (a(1) - a(2)),
-        -(a0 * against_a0 + series),
-    ]
+    [TAU * (a0 + 0.5 * a(1)), -0.25 * PI * (a(1) - a(2)), -(a0 * against_a0 + series)]
 }
 
 #[test]
@@ -149,10 +136,7 @@ fn worst(
 fn flap_motion_against_theodorsen() {
     let section = incompressible(0.2);
     let [cn, cm, ch] = worst(&Table::read("theodorsen_flap_E020.csv"), |row| {
-        Some([
-            harmonic_response(&section, row.number("k"), Motion::Flap),
-            row.loads(),
-        ])
+        Some([harmonic_response(&section, row.number("k"), Motion::Flap), row.loads()])
     });
     println!("flap, k <= 1: Cn {cn:.4} Cm {cm:.1e} Ch {ch:.4} of magnitude");
     assert!(cn <= 0.025 && cm <= 1e-6 && ch <= 0.006, "{cn} {cm} {ch}");
@@ -176,10 +160,7 @@ fn pitch_and_plunge_against_theodorsen() {
                 _ => Complex64::ONE,
             };
             (row.text("mode") == name).then(|| {
-                [
-                    harmonic_response(&section, k, motion),
-                    row.loads().map(|load| load * scale),
-                ]
+                [harmonic_response(&section, k, motion), row.loads().map(|load| load * scale)]
             })
         });
         println!("{motion:?}, k <= 1: Cn {cn:.4} Cm {cm:.1e} Ch {ch:.4} of magnitude");
@@ -208,34 +189,17 @@ fn with_the_exact_function_in_place_of_the_lags_nothing_is_left() {
     let t = TheodorsenFunctions::new(flap(0.2).hinge());
     let flap_table = Table::read("theodorsen_flap_E020.csv");
     let rigid_table = Table::read("theodorsen_pitch_plunge_E020.csv");
-    let exact_function = |k: f64| {
-        flap_table
-            .rows()
-            .find(|row| row.is("k", k))
-            .map(|row| row.complex("C"))
-            .unwrap()
-    };
+    let exact_function =
+        |k: f64| flap_table.rows().find(|row| row.is("k", k)).map(|row| row.complex("C")).unwrap();
     let corrected = |k: f64, motion: Motion| {
         let gap = exact_function(k) - lagged_function(&section, k);
         let weights = t.circulatory_input();
-        let drive: Complex64 = motion
-            .inputs(k)
-            .into_iter()
-            .zip(weights)
-            .map(|(m, w)| m * w)
-            .sum();
+        let drive: Complex64 = motion.inputs(k).into_iter().zip(weights).map(|(m, w)| m * w).sum();
         let [cn, cm, ch] = harmonic_response(&section, k, motion);
-        [
-            cn + TAU * gap * drive,
-            cm,
-            ch + t.circulatory_hinge() * gap * drive,
-        ]
+        [cn + TAU * gap * drive, cm, ch + t.circulatory_hinge() * gap * drive]
     };
     let check = |row: tables::Row<'_>, motion: Motion, scale: Complex64| {
-        for (got, exact) in corrected(row.number("k"), motion)
-            .into_iter()
-            .zip(row.loads())
-        {
+        for (got, exact) in corrected(row.number("k"), motion).into_iter().zip(row.loads()) {
             let error = (got - exact * scale).norm();
             assert!(
                 error <= 2e-9 * (1.0 + scale.norm()),
@@ -251,11 +215,7 @@ fn with_the_exact_function_in_place_of_the_lags_nothing_is_left() {
         if row.text("mode") == "alpha" {
             check(row, Motion::Pitch, Complex64::ONE);
         } else {
-            check(
-                row,
-                Motion::Plunge,
-                Complex64::new(0.0, row.number("k")).inv(),
-            );
+            check(row, Motion::Plunge, Complex64::new(0.0, row.number("k")).inv());
         }
     }
 }
@@ -288,9 +248,7 @@ fn wagner_step_starts_at_half_and_settles() {
 fn quasi_steady_is_the_low_frequency_limit() {
     let ratio = 0.2;
     let section = incompressible(ratio);
-    let quasi = AttachedFlowModel::QuasiSteady
-        .coefficients(Mach::ZERO, flap(ratio))
-        .unwrap();
+    let quasi = AttachedFlowModel::QuasiSteady.coefficients(Mach::ZERO, flap(ratio)).unwrap();
     for motion in [Motion::Flap, Motion::Pitch, Motion::Plunge] {
         let k = 1e-6;
         let slow = harmonic_response(&section, k, motion);
@@ -310,19 +268,11 @@ fn quasi_steady_is_the_low_frequency_limit() {
 #[test]
 fn quasi_steady_compressibility_factor() {
     let mach = Mach::new(0.6).unwrap();
-    let at_rest = AttachedFlowModel::QuasiSteady
-        .coefficients(Mach::ZERO, flap(0.2))
-        .unwrap();
-    let moving = AttachedFlowModel::QuasiSteady
-        .coefficients(mach, flap(0.2))
-        .unwrap();
+    let at_rest = AttachedFlowModel::QuasiSteady.coefficients(Mach::ZERO, flap(0.2)).unwrap();
+    let moving = AttachedFlowModel::QuasiSteady.coefficients(mach, flap(0.2)).unwrap();
     for o in 0..3 {
         for j in [0, 2, 3] {
-            assert_relative_eq!(
-                moving.direct[o][j],
-                at_rest.direct[o][j] / 0.8,
-                epsilon = 1e-15
-            );
+            assert_relative_eq!(moving.direct[o][j], at_rest.direct[o][j] / 0.8, epsilon = 1e-15);
         }
     }
     // pitch-rate damping of apparent-mass kind is not scaled

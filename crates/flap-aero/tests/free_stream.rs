@@ -1,8 +1,5 @@
 //! Dimensional loads in a stream of constant, varying and reversed velocity.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a helper whose section is missing cannot go on"
-)]
+#![expect(clippy::unwrap_used, reason = "a helper whose section is missing cannot go on")]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use flap_aero::{
@@ -46,18 +43,10 @@ proptest! {
 
 #[test]
 fn a_constant_stream_gives_the_coefficients() {
-    let section = AttachedFlowModel::HariharanLeishman
-        .coefficients(Mach::new(0.5).unwrap(), flap())
-        .unwrap();
-    let stream = FreeStream {
-        density: 1.2,
-        semichord: 0.25,
-        speed: 170.0,
-    };
-    let inputs = SectionInputs {
-        modes: [0.05, 0.01, -0.03, 0.02],
-        rates: [0.0; 4],
-    };
+    let section =
+        AttachedFlowModel::HariharanLeishman.coefficients(Mach::new(0.5).unwrap(), flap()).unwrap();
+    let stream = FreeStream { density: 1.2, semichord: 0.25, speed: 170.0 };
+    let inputs = SectionInputs { modes: [0.05, 0.01, -0.03, 0.02], rates: [0.0; 4] };
     let march = MarchingSection::new(&section);
     let mut state = SectionState::at_rest(&march);
     let coefficients = state.step(&march, &inputs, 1.3).unwrap();
@@ -69,31 +58,17 @@ fn a_constant_stream_gives_the_coefficients() {
     let chord = 2.0 * stream.semichord;
     let [cn, cm, ch] = coefficients;
     assert_relative_eq!(got.lift, pressure * chord * cn, max_relative = 1e-13);
-    assert_relative_eq!(
-        got.moment,
-        pressure * chord * chord * cm,
-        max_relative = 1e-13
-    );
-    assert_relative_eq!(
-        got.hinge,
-        pressure * chord * chord * ch,
-        max_relative = 1e-13
-    );
+    assert_relative_eq!(got.moment, pressure * chord * chord * cm, max_relative = 1e-13);
+    assert_relative_eq!(got.hinge, pressure * chord * chord * ch, max_relative = 1e-13);
 }
 
 #[test]
 fn apparent_mass_of_a_plunging_plate_is_a_cylinder_of_air() {
     // L = pi rho b^2 dw/dt, its resultant at mid-chord, whatever the speed: also with none at all
-    let section = AttachedFlowModel::Incompressible
-        .coefficients(Mach::ZERO, flap())
-        .unwrap();
+    let section = AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, flap()).unwrap();
     for speed in [0.0, -30.0, 50.0] {
         let (density, b) = (1.2, 0.25);
-        let stream = FreeStream {
-            density,
-            semichord: b,
-            speed,
-        };
+        let stream = FreeStream { density, semichord: b, speed };
         let still = [0.0; 4];
         let lags = [0.0; 2];
         let got = section_loads(&section, &stream, &still, &[3.0, 0.0, 0.0, 0.0], &lags).unwrap();
@@ -107,20 +82,12 @@ fn apparent_mass_of_a_plunging_plate_is_a_cylinder_of_air() {
 fn flap_in_a_stream_that_speeds_up() {
     // potential of a held flap grows with U: lift -T4 rho b^2 d(U delta)/dt beside the circulation
     let t = TheodorsenFunctions::new(flap().hinge());
-    let section = AttachedFlowModel::Incompressible
-        .coefficients(Mach::ZERO, flap())
-        .unwrap();
+    let section = AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, flap()).unwrap();
     let (density, b, speed, acceleration, delta) = (1.2, 0.25, 40.0, 15.0, 0.1);
-    let stream = FreeStream {
-        density,
-        semichord: b,
-        speed,
-    };
+    let stream = FreeStream { density, semichord: b, speed };
     let w = [0.0, 0.0, speed * delta, 0.0];
     let at = |rate: f64| {
-        section_loads(&section, &stream, &w, &[0.0, 0.0, rate, 0.0], &[0.0; 2])
-            .unwrap()
-            .lift
+        section_loads(&section, &stream, &w, &[0.0, 0.0, rate, 0.0], &[0.0; 2]).unwrap().lift
     };
     let extra = at(acceleration * delta) - at(0.0);
     assert_relative_eq!(
@@ -134,9 +101,7 @@ fn flap_in_a_stream_that_speeds_up() {
 fn lags_follow_the_distance_travelled_not_the_time() {
     // an impulsive start at a speed that varies, and reverses for a while: against the distance
     // travelled it is the same indicial response
-    let section = AttachedFlowModel::Incompressible
-        .coefficients(Mach::ZERO, flap())
-        .unwrap();
+    let section = AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, flap()).unwrap();
     let b = 0.25;
     let (mut lags, mut rates, mut travelled) = (vec![0.0; 2], vec![0.0; 2], 0.0);
     let w = [1.0, 0.0, 0.0, 0.0];
@@ -146,17 +111,9 @@ fn lags_follow_the_distance_travelled_not_the_time() {
         // mid-point rule
         let time = f64::from(n) * dt;
         let speed = |t: f64| 20.0 + 15.0 * (30.0 * t).sin() - 60.0 * t;
-        let stream = |t: f64| FreeStream {
-            density: 1.0,
-            semichord: b,
-            speed: speed(t),
-        };
+        let stream = |t: f64| FreeStream { density: 1.0, semichord: b, speed: speed(t) };
         lag_rates(&section, &stream(time), &w, &lags, &mut rates).unwrap();
-        let half: Vec<f64> = lags
-            .iter()
-            .zip(&rates)
-            .map(|(x, r)| x + 0.5 * dt * r)
-            .collect();
+        let half: Vec<f64> = lags.iter().zip(&rates).map(|(x, r)| x + 0.5 * dt * r).collect();
         lag_rates(&section, &stream(time + 0.5 * dt), &w, &half, &mut rates).unwrap();
         for (x, r) in lags.iter_mut().zip(&rates) {
             *x += dt * r;
@@ -170,28 +127,13 @@ fn lags_follow_the_distance_travelled_not_the_time() {
 
 #[test]
 fn the_wrong_number_of_lags_is_refused() {
-    let section = AttachedFlowModel::Incompressible
-        .coefficients(Mach::ZERO, flap())
-        .unwrap();
-    let stream = FreeStream {
-        density: 1.0,
-        semichord: 0.1,
-        speed: 10.0,
-    };
+    let section = AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, flap()).unwrap();
+    let stream = FreeStream { density: 1.0, semichord: 0.1, speed: 10.0 };
     let zero = [0.0; 4];
-    let mismatch = AeroError::StateMismatch {
-        state: 1,
-        coefficients: 2,
-    };
-    assert_eq!(
-        section_loads(&section, &stream, &zero, &zero, &[0.0]),
-        Err(mismatch.clone())
-    );
+    let mismatch = AeroError::StateMismatch { state: 1, coefficients: 2 };
+    assert_eq!(section_loads(&section, &stream, &zero, &zero, &[0.0]), Err(mismatch.clone()));
     let mut rates = [7.0];
-    assert_eq!(
-        lag_rates(&section, &stream, &zero, &[0.0; 2], &mut rates),
-        Err(mismatch)
-    );
+    assert_eq!(lag_rates(&section, &stream, &zero, &[0.0; 2], &mut rates), Err(mismatch));
     assert_eq!(
         section_loads(&section, &stream, &zero, &zero, &[0.0; 2]),
         Ok(SectionLoads::default())

@@ -1,8 +1,5 @@
 //! Time marching: exact on ramps, second order elsewhere, and honest about bad input.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a helper whose table or section is missing cannot go on"
-)]
+#![expect(clippy::unwrap_used, reason = "a helper whose table or section is missing cannot go on")]
 
 mod tables;
 
@@ -30,10 +27,7 @@ fn incompressible() -> SectionCoefficients {
 }
 
 fn held(modes: [f64; 4]) -> SectionInputs {
-    SectionInputs {
-        modes,
-        rates: [0.0; 4],
-    }
+    SectionInputs { modes, rates: [0.0; 4] }
 }
 
 #[test]
@@ -45,13 +39,8 @@ fn exact_on_a_ramp_whatever_the_step() {
             let mut state = SectionState::at_rest(&march);
             for n in 1..=steps {
                 let s = distance * f64::from(n) / f64::from(steps);
-                let inputs = SectionInputs {
-                    modes: slope.map(|r| r * s),
-                    rates: slope,
-                };
-                state
-                    .step(&march, &inputs, distance / f64::from(steps))
-                    .unwrap();
+                let inputs = SectionInputs { modes: slope.map(|r| r * s), rates: slope };
+                state.step(&march, &inputs, distance / f64::from(steps)).unwrap();
             }
             for (x, lag) in state.states().iter().zip(&section.lags) {
                 let rate: f64 = lag.input.iter().zip(slope).map(|(w, r)| w * r).sum();
@@ -126,13 +115,9 @@ fn marching_error(section: &SectionCoefficients, k: f64, steps_per_cycle: u32) -
 
 #[test]
 fn second_order_on_a_harmonic_motion() {
-    for (name, section) in [
-        ("incompressible", incompressible()),
-        ("M 0.5", compressible(0.5)),
-    ] {
-        let errors: Vec<f64> = [72, 144, 288, 576]
-            .map(|n| marching_error(&section, 0.2, n))
-            .to_vec();
+    for (name, section) in [("incompressible", incompressible()), ("M 0.5", compressible(0.5))] {
+        let errors: Vec<f64> =
+            [72, 144, 288, 576].map(|n| marching_error(&section, 0.2, n)).to_vec();
         let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect();
         println!("{name}: errors {errors:.6?} orders {orders:.3?}");
         // an order is a limit: the last two must have it
@@ -181,9 +166,9 @@ fn recurrence_error(weighting: Weighting, k: f64, steps_per_cycle: u32) -> f64 {
         let effective = match weighting {
             Weighting::Rectangle => weigh(|_| 1.0, &mut deficiency),
             Weighting::MidPoint => weigh(|z| (-0.5 * z).exp(), &mut deficiency),
-            Weighting::ExactRamp => state
-                .step(&march, &held([alpha, 0.0, 0.0, 0.0]), step)
-                .unwrap()[0],
+            Weighting::ExactRamp => {
+                state.step(&march, &held([alpha, 0.0, 0.0, 0.0]), step).unwrap()[0]
+            }
         };
         let exact: f64 = LAGS
             .iter()
@@ -200,18 +185,13 @@ fn recurrence_error(weighting: Weighting, k: f64, steps_per_cycle: u32) -> f64 {
 
 #[test]
 fn the_recurrence_beside_the_cheaper_ones() {
-    for (weighting, order) in [
-        (Weighting::Rectangle, 1.0),
-        (Weighting::MidPoint, 2.0),
-        (Weighting::ExactRamp, 2.0),
-    ] {
+    for (weighting, order) in
+        [(Weighting::Rectangle, 1.0), (Weighting::MidPoint, 2.0), (Weighting::ExactRamp, 2.0)]
+    {
         let errors = [72, 144, 288].map(|n| recurrence_error(weighting, 0.2, n));
         println!("{weighting:?}, 72, 144, 288 steps per cycle: {errors:.7?}");
         for pair in errors.windows(2) {
-            assert!(
-                ((pair[0] / pair[1]).log2() - order).abs() < 0.05,
-                "{weighting:?} {errors:?}"
-            );
+            assert!(((pair[0] / pair[1]).log2() - order).abs() < 0.05, "{weighting:?} {errors:?}");
         }
     }
     assert!(recurrence_error(Weighting::ExactRamp, 0.2, 72) <= 6e-4);
@@ -249,35 +229,17 @@ fn bad_input_is_refused_and_leaves_the_state() {
     let before = state.clone();
     let good = held([0.1; 4]);
     for step in [-1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            state.step(&section, &good, step),
-            Err(AeroError::BadInput { .. })
-        ));
-        assert!(matches!(
-            StepFactors::new(&section, step),
-            Err(AeroError::BadInput { .. })
-        ));
+        assert!(matches!(state.step(&section, &good, step), Err(AeroError::BadInput { .. })));
+        assert!(matches!(StepFactors::new(&section, step), Err(AeroError::BadInput { .. })));
     }
     let nan = held([0.1, f64::NAN, 0.0, 0.0]);
-    assert!(matches!(
-        state.step(&section, &nan, 0.1),
-        Err(AeroError::BadInput { .. })
-    ));
-    let nan_rate = SectionInputs {
-        modes: [0.0; 4],
-        rates: [f64::INFINITY; 4],
-    };
-    assert!(matches!(
-        state.step(&section, &nan_rate, 0.1),
-        Err(AeroError::BadInput { .. })
-    ));
+    assert!(matches!(state.step(&section, &nan, 0.1), Err(AeroError::BadInput { .. })));
+    let nan_rate = SectionInputs { modes: [0.0; 4], rates: [f64::INFINITY; 4] };
+    assert!(matches!(state.step(&section, &nan_rate, 0.1), Err(AeroError::BadInput { .. })));
     assert_eq!(state, before);
     assert_eq!(
         state.step(&MarchingSection::new(&incompressible()), &good, 0.1),
-        Err(AeroError::StateMismatch {
-            state: 16,
-            coefficients: 2
-        })
+        Err(AeroError::StateMismatch { state: 16, coefficients: 2 })
     );
 }
 

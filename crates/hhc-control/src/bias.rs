@@ -70,11 +70,7 @@ impl BiasSolver {
             // A step a quarter longer than the slope asks for brackets the root if the slope is fair.
             let step = -1.25 * first.f / self.slope_deg_per_volt;
             let aimed = (first.x + step).clamp(low_volt, high_volt);
-            let ends = if step > 0.0 {
-                [high_volt, low_volt]
-            } else {
-                [low_volt, high_volt]
-            };
+            let ends = if step > 0.0 { [high_volt, low_volt] } else { [low_volt, high_volt] };
             for x in [aimed, ends[0], ends[1]] {
                 let other = trial(x)?;
                 if good(&other) {
@@ -88,9 +84,7 @@ impl BiasSolver {
             }
         }
         if let (None, Some(ends)) = (&found, bracket) {
-            match root_between(ends, self.tolerance_deg, |x| {
-                trial(x).map(|t| (t.f, t.state))
-            })? {
+            match root_between(ends, self.tolerance_deg, |x| trial(x).map(|t| (t.f, t.state)))? {
                 Bracketed::Root(root) => found = Some(root),
                 Bracketed::Jump { negative, positive } => Err(ControlError::BiasJump {
                     bias_volt: negative.x,
@@ -102,33 +96,18 @@ impl BiasSolver {
         }
         let Some(root) = found else {
             let (low_deg, high_deg) = (trial(low_volt)?.f, trial(high_volt)?.f);
-            return Err(ControlError::BiasOutOfRange {
-                low_volt,
-                high_volt,
-                low_deg,
-                high_deg,
-            }
-            .into());
+            return Err(
+                ControlError::BiasOutOfRange { low_volt, high_volt, low_deg, high_deg }.into()
+            );
         };
-        Ok(BiasSolution {
-            bias_volt: root.x,
-            mean_flap_deg: root.f,
-            evaluations,
-        })
+        Ok(BiasSolution { bias_volt: root.x, mean_flap_deg: root.f, evaluations })
     }
 
     fn check(&self) -> Result<(), ControlError> {
         let [low, high] = self.range_volt;
-        error::check_vector(
-            "bias range and guess (volt)",
-            &[low, high, self.guess_volt],
-            3,
-        )?;
+        error::check_vector("bias range and guess (volt)", &[low, high, self.guess_volt], 3)?;
         error::check_positive("width of the bias range (volt)", high - low)?;
-        error::check_positive(
-            "size of the bias slope (deg/V)",
-            self.slope_deg_per_volt.abs(),
-        )?;
+        error::check_positive("size of the bias slope (deg/V)", self.slope_deg_per_volt.abs())?;
         error::check_positive("tolerance on the mean flap angle (deg)", self.tolerance_deg)
     }
 }
@@ -158,14 +137,8 @@ mod tests {
         for guess_volt in [-20.0, 20.0, 65.0, 150.0] {
             for sign in [1.0, -1.0] {
                 let slope_deg_per_volt = sign * 10.0 / 85.0;
-                let solver = BiasSolver {
-                    guess_volt,
-                    slope_deg_per_volt,
-                    ..solver()
-                };
-                let found = solver
-                    .solve(|v| Ok::<_, Infallible>(sign * mean(v)))
-                    .unwrap();
+                let solver = BiasSolver { guess_volt, slope_deg_per_volt, ..solver() };
+                let found = solver.solve(|v| Ok::<_, Infallible>(sign * mean(v))).unwrap();
                 assert!(found.mean_flap_deg.abs() <= 1e-6);
                 assert!((found.bias_volt - exact).abs() < 1e-5);
                 assert!(found.evaluations <= 9, "{}", found.evaluations);
@@ -176,10 +149,7 @@ mod tests {
     #[test]
     fn a_wrong_slope_only_costs_evaluations() {
         for slope_deg_per_volt in [-1.0, 1e-4, 1e4] {
-            let solver = BiasSolver {
-                slope_deg_per_volt,
-                ..solver()
-            };
+            let solver = BiasSolver { slope_deg_per_volt, ..solver() };
             assert!(solver.solve(|v| Ok::<_, Infallible>(mean(v))).is_ok());
         }
     }
@@ -187,39 +157,19 @@ mod tests {
     #[test]
     fn a_warm_start_costs_one_evaluation() {
         let cold = solver().solve(|v| Ok::<_, Infallible>(mean(v))).unwrap();
-        let warm = BiasSolver {
-            guess_volt: cold.bias_volt,
-            ..solver()
-        };
-        assert_eq!(
-            warm.solve(|v| Ok::<_, Infallible>(mean(v)))
-                .unwrap()
-                .evaluations,
-            1
-        );
+        let warm = BiasSolver { guess_volt: cold.bias_volt, ..solver() };
+        assert_eq!(warm.solve(|v| Ok::<_, Infallible>(mean(v))).unwrap().evaluations, 1);
     }
 
     #[test]
     fn what_cannot_be_solved_is_said() {
         let one_sided = solver().solve(|v| Ok::<_, Infallible>(mean(v) + 30.0));
-        assert!(matches!(
-            one_sided,
-            Err(RunError::Control(ControlError::BiasOutOfRange { .. }))
-        ));
+        assert!(matches!(one_sided, Err(RunError::Control(ControlError::BiasOutOfRange { .. }))));
         let jump = solver().solve(|v| Ok::<_, Infallible>(if v > 60.0 { 1.0 } else { -1.0 }));
-        assert!(matches!(
-            jump,
-            Err(RunError::Control(ControlError::BiasJump { .. }))
-        ));
+        assert!(matches!(jump, Err(RunError::Control(ControlError::BiasJump { .. }))));
         let nan = solver().solve(|_| Ok::<_, Infallible>(f64::NAN));
-        assert!(matches!(
-            nan,
-            Err(RunError::Control(ControlError::NotFinite { .. }))
-        ));
-        let reversed = BiasSolver {
-            range_volt: [150.0, -20.0],
-            ..solver()
-        };
+        assert!(matches!(nan, Err(RunError::Control(ControlError::NotFinite { .. }))));
+        let reversed = BiasSolver { range_volt: [150.0, -20.0], ..solver() };
         assert!(reversed.solve(|v| Ok::<_, Infallible>(mean(v))).is_err());
     }
 }

@@ -60,11 +60,7 @@ impl Cost {
     /// | `rho` | `rho` | 1/V^2 | >= 0 |
     pub fn of(hub_loads: &[f64], load_weights: &[f64], control_volt: &[f64], rho: f64) -> Self {
         Self {
-            loads: hub_loads
-                .iter()
-                .zip(load_weights)
-                .map(|(z, w)| w * z * z)
-                .sum(),
+            loads: hub_loads.iter().zip(load_weights).map(|(z, w)| w * z * z).sum(),
             control: rho * control_volt.iter().map(|u| u * u).sum::<f64>(),
         }
     }
@@ -111,15 +107,9 @@ mod tests {
     #[test]
     fn halving_every_load_is_a_reduction_of_75_percent() {
         let (before, after) = ([0.4, -0.2, 0.1], [0.2, -0.1, 0.05]);
-        let weights = LoadWeights::Diagonal(vec![1.0, 2.0, 5.0])
-            .diagonal(3)
-            .unwrap();
+        let weights = LoadWeights::Diagonal(vec![1.0, 2.0, 5.0]).diagonal(3).unwrap();
         let cost = |z: &[f64]| Cost::of(z, &weights, &[], 0.0).loads;
-        assert_abs_diff_eq!(
-            reduction_percent(cost(&before), cost(&after)),
-            75.0,
-            epsilon = 1e-12
-        );
+        assert_abs_diff_eq!(reduction_percent(cost(&before), cost(&after)), 75.0, epsilon = 1e-12);
         assert_abs_diff_eq!(reduction_percent(0.0, 0.0), 0.0);
         assert!(reduction_percent(1.0, 3.75) < -270.0);
     }

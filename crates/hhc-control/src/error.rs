@@ -188,10 +188,7 @@ impl std::fmt::Display for PlantCall {
                 write!(f, "asked for its strokes at u = {control_volt:.4?} V")
             }
             Self::MeanFlap { bias_volt } => {
-                write!(
-                    f,
-                    "asked for its mean flap angle at a bias of {bias_volt} V"
-                )
+                write!(f, "asked for its mean flap angle at a bias of {bias_volt} V")
             }
         }
     }
@@ -223,18 +220,10 @@ pub(crate) fn check_vector(
     expected: usize,
 ) -> Result<(), ControlError> {
     if values.len() != expected {
-        return Err(ControlError::Length {
-            what,
-            found: values.len(),
-            expected,
-        });
+        return Err(ControlError::Length { what, found: values.len(), expected });
     }
     match values.iter().position(|v| !v.is_finite()) {
-        Some(index) => Err(ControlError::NotFinite {
-            what,
-            index,
-            value: values[index],
-        }),
+        Some(index) => Err(ControlError::NotFinite { what, index, value: values[index] }),
         None => Ok(()),
     }
 }
@@ -244,11 +233,7 @@ pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<(), Contr
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {
-        Err(ControlError::OutOfRange {
-            what,
-            value,
-            expected: "a finite number above 0",
-        })
+        Err(ControlError::OutOfRange { what, value, expected: "a finite number above 0" })
     }
 }
 
@@ -257,10 +242,6 @@ pub(crate) fn check_not_negative(what: &'static str, value: f64) -> Result<(), C
     if value.is_finite() && value >= 0.0 {
         Ok(())
     } else {
-        Err(ControlError::OutOfRange {
-            what,
-            value,
-            expected: "a finite number, 0 or above",
-        })
+        Err(ControlError::OutOfRange { what, value, expected: "a finite number, 0 or above" })
     }
 }

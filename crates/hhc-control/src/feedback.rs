@@ -47,11 +47,7 @@ impl FeedbackSettings {
         error::check_positive("stroke tolerance", self.stroke_tolerance)?;
         let (value, expected) = (f64::from(self.max_halvings), "0 to 60");
         if self.max_halvings > 60 {
-            return Err(ControlError::OutOfRange {
-                what: "number of halvings",
-                value,
-                expected,
-            });
+            return Err(ControlError::OutOfRange { what: "number of halvings", value, expected });
         }
         Ok(())
     }
@@ -187,10 +183,7 @@ impl FeedbackController {
         settings: FeedbackSettings,
     ) -> Result<Self, ControlError> {
         settings.check()?;
-        Ok(Self {
-            law: FeedbackLaw::new(t0, load_weights)?,
-            settings,
-        })
+        Ok(Self { law: FeedbackLaw::new(t0, load_weights)?, settings })
     }
 
     /// The control law with its singular values.
@@ -249,14 +242,7 @@ impl FeedbackController {
         let measurement = self.measured(plant, start_volt, &[])?;
         let cost = self.cost(&measurement, start_volt, 0.0);
         let control_volt = start_volt.to_vec();
-        Ok(ControlStep {
-            control_volt,
-            measurement,
-            rho: 0.0,
-            cost,
-            asked_volt: 0.0,
-            halvings: 0,
-        })
+        Ok(ControlStep { control_volt, measurement, rho: 0.0, cost, asked_volt: 0.0, halvings: 0 })
     }
 
     /// The loop itself, from a measured start; counts no measurement for the start.
@@ -292,12 +278,8 @@ impl FeedbackController {
             let mut left_range = false;
             for halvings in 0..=self.settings.max_halvings {
                 let part = 0.5_f64.powi(halvings.cast_signed());
-                let control_volt: Vec<f64> = here
-                    .control_volt
-                    .iter()
-                    .zip(&step)
-                    .map(|(u, d)| u + part * d)
-                    .collect();
+                let control_volt: Vec<f64> =
+                    here.control_volt.iter().zip(&step).map(|(u, d)| u + part * d).collect();
                 if !plant.admits(&control_volt) {
                     left_range = true;
                     continue;
@@ -329,40 +311,20 @@ impl FeedbackController {
                 continue;
             }
             if !steps.is_empty() {
-                break if left_range {
-                    Outcome::OutOfRange
-                } else {
-                    Outcome::Stalled
-                };
+                break if left_range { Outcome::OutOfRange } else { Outcome::Stalled };
             }
             let divisor = 1_u64 << self.settings.max_halvings;
             let history = vec![here.clone()];
             Err(match shortest {
                 Some(shortest) => {
                     let start = here.cost;
-                    ControlError::Diverges {
-                        rho,
-                        divisor,
-                        start,
-                        shortest,
-                        history,
-                    }
+                    ControlError::Diverges { rho, divisor, start, shortest, history }
                 }
-                None => ControlError::NotAdmitted {
-                    rho,
-                    divisor,
-                    history,
-                },
+                None => ControlError::NotAdmitted { rho, divisor, history },
             })?;
         };
         let start = self.weighed(start, here.rho);
-        Ok(ControlRun {
-            rho: here.rho,
-            outcome,
-            start,
-            steps,
-            measurements,
-        })
+        Ok(ControlRun { rho: here.rho, outcome, start, steps, measurements })
     }
 
     /// The control eq. (10) aims at from a measured state, and the step there, volt.
@@ -372,9 +334,7 @@ impl FeedbackController {
         control_volt: &[f64],
         measurement: &Measurement,
     ) -> Result<(Vec<f64>, Vec<f64>), ControlError> {
-        let aim = self
-            .law
-            .optimum_volt(rho, control_volt, &measurement.hub_loads)?;
+        let aim = self.law.optimum_volt(rho, control_volt, &measurement.hub_loads)?;
         let step = aim.iter().zip(control_volt).map(|(a, u)| a - u).collect();
         Ok((aim, step))
     }
@@ -386,15 +346,11 @@ impl FeedbackController {
         control_volt: &[f64],
         history: &[ControlStep],
     ) -> Result<Measurement, RunError<P::Error>> {
-        let measurement = plant
-            .measure(control_volt)
-            .map_err(|source| RunError::Plant {
-                call: PlantCall::Measure {
-                    control_volt: control_volt.to_vec(),
-                },
-                history: history.to_vec(),
-                source,
-            })?;
+        let measurement = plant.measure(control_volt).map_err(|source| RunError::Plant {
+            call: PlantCall::Measure { control_volt: control_volt.to_vec() },
+            history: history.to_vec(),
+            source,
+        })?;
         let (loads, _) = self.law.shape();
         error::check_vector("measured hub loads", &measurement.hub_loads, loads)?;
         let layout: &ControlLayout = plant.layout();
@@ -405,38 +361,22 @@ impl FeedbackController {
                 expected: layout.pairs(),
             })?;
         }
-        error::check_vector(
-            "mean flap angle (deg)",
-            &measurement.mean_flap_deg,
-            layout.flaps(),
-        )?;
+        error::check_vector("mean flap angle (deg)", &measurement.mean_flap_deg, layout.flaps())?;
         Ok(measurement)
     }
 
     fn cost(&self, measurement: &Measurement, control_volt: &[f64], rho: f64) -> Cost {
-        Cost::of(
-            &measurement.hub_loads,
-            self.law.load_weights(),
-            control_volt,
-            rho,
-        )
+        Cost::of(&measurement.hub_loads, self.law.load_weights(), control_volt, rho)
     }
 
     /// The same state with its cost formed with another weight.
     fn weighed(&self, step: &ControlStep, rho: f64) -> ControlStep {
         let cost = self.cost(&step.measurement, &step.control_volt, rho);
-        ControlStep {
-            rho,
-            cost,
-            ..step.clone()
-        }
+        ControlStep { rho, cost, ..step.clone() }
     }
 }
 
 /// Largest amplitude of the harmonics of a control vector, volt.
 fn largest_amplitude(control_volt: &[f64]) -> f64 {
-    as_harmonics(control_volt)
-        .iter()
-        .map(Harmonic::amplitude)
-        .fold(0.0, f64::max)
+    as_harmonics(control_volt).iter().map(Harmonic::amplitude).fold(0.0, f64::max)
 }

@@ -56,11 +56,7 @@ pub fn step_sensitivity<P: Plant>(
     error::check_positive("factor between the two voltage steps", factor)?;
     if (factor - 1.0).abs() < f64::EPSILON {
         let what = "factor between the two voltage steps";
-        Err(ControlError::OutOfRange {
-            what,
-            value: factor,
-            expected: "any factor other than 1",
-        })?;
+        Err(ControlError::OutOfRange { what, value: factor, expected: "any factor other than 1" })?;
     }
     let other_volt: Vec<f64> = step_volt.iter().map(|step| factor * step).collect();
     let mut controls = central_controls(plant, step_volt)?;
@@ -70,23 +66,13 @@ pub fn step_sensitivity<P: Plant>(
     let t0 = central_differences(step_volt, &measurements[..half])?;
     let t0_other = central_differences(&other_volt, &measurements[half..])?;
     let relative_difference = t0_other.relative_difference(&t0)?;
-    Ok(StepSensitivity {
-        t0,
-        t0_other,
-        step_volt: step_volt.to_vec(),
-        factor,
-        relative_difference,
-    })
+    Ok(StepSensitivity { t0, t0_other, step_volt: step_volt.to_vec(), factor, relative_difference })
 }
 
 /// The control vectors of the central differences: `+h_0, -h_0, +h_1, -h_1, ...`.
 fn central_controls<P: Plant>(plant: &P, step_volt: &[f64]) -> Result<Vec<Vec<f64>>, ControlError> {
     let zero = plant.layout().zero();
-    error::check_vector(
-        "voltage steps of the T matrix (volt)",
-        step_volt,
-        zero.len(),
-    )?;
+    error::check_vector("voltage steps of the T matrix (volt)", step_volt, zero.len())?;
     let mut controls = Vec::with_capacity(2 * zero.len());
     for (index, &step) in step_volt.iter().enumerate() {
         error::check_positive("voltage step of the T matrix (volt)", step)?;
@@ -103,15 +89,11 @@ fn measure_all<P: Plant>(
     plant: &mut P,
     controls: &[Vec<f64>],
 ) -> Result<Vec<Measurement>, RunError<P::Error>> {
-    let measurements = plant
-        .measure_many(controls)
-        .map_err(|source| RunError::Plant {
-            call: PlantCall::MeasureMany {
-                count: controls.len(),
-            },
-            history: Vec::new(),
-            source,
-        })?;
+    let measurements = plant.measure_many(controls).map_err(|source| RunError::Plant {
+        call: PlantCall::MeasureMany { count: controls.len() },
+        history: Vec::new(),
+        source,
+    })?;
     if measurements.len() != controls.len() {
         Err(ControlError::Length {
             what: "measurements for the T matrix",
@@ -135,10 +117,7 @@ fn central_differences(
         .zip(measurements.chunks_exact(2))
         .map(|(step, pair)| {
             let (plus, minus) = (&pair[0].hub_loads, &pair[1].hub_loads);
-            plus.iter()
-                .zip(minus)
-                .map(|(p, m)| (p - m) / (2.0 * step))
-                .collect()
+            plus.iter().zip(minus).map(|(p, m)| (p - m) / (2.0 * step)).collect()
         })
         .collect();
     TMatrix::from_columns(&columns)

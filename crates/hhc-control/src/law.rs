@@ -46,24 +46,14 @@ impl FeedbackLaw {
         }
         weighted /= size;
         let (rows, columns) = weighted.shape();
-        let failed = ControlError::SingularValues {
-            rows,
-            columns,
-            iterations: SVD_ITERATIONS,
-        };
+        let failed = ControlError::SingularValues { rows, columns, iterations: SVD_ITERATIONS };
         let svd = SVD::try_new(weighted, true, true, f64::EPSILON, SVD_ITERATIONS)
             .ok_or_else(|| failed.clone())?;
         let (Some(left), Some(right_transposed)) = (svd.u, svd.v_t) else {
             return Err(failed);
         };
         let singular_values = svd.singular_values.iter().map(|s| s * size).collect();
-        Ok(Self {
-            t,
-            load_weights,
-            left,
-            singular_values,
-            right_transposed,
-        })
+        Ok(Self { t, load_weights, left, singular_values, right_transposed })
     }
 
     /// The optimal control `u*` (volt) as seen from one measurement.
@@ -131,26 +121,14 @@ impl FeedbackLaw {
     pub(crate) fn optimum_of(&self, rho: f64, target: &DVector<f64>) -> Vec<f64> {
         let scaled = DVector::from_iterator(
             target.len(),
-            target
-                .iter()
-                .zip(self.gains(rho))
-                .map(|(value, gain)| value * gain),
+            target.iter().zip(self.gains(rho)).map(|(value, gain)| value * gain),
         );
-        self.right_transposed
-            .tr_mul(&scaled)
-            .iter()
-            .copied()
-            .collect()
+        self.right_transposed.tr_mul(&scaled).iter().copied().collect()
     }
 
     /// Euclidean norm of the optimum, volt; never grows with `rho`.
     pub(crate) fn optimum_norm(&self, rho: f64, target: &DVector<f64>) -> f64 {
-        target
-            .iter()
-            .zip(self.gains(rho))
-            .map(|(v, g)| (v * g).powi(2))
-            .sum::<f64>()
-            .sqrt()
+        target.iter().zip(self.gains(rho)).map(|(v, g)| (v * g).powi(2)).sum::<f64>().sqrt()
     }
 
     /// Square of the largest singular value, 1/V^2: the scale of `rho`.
@@ -165,11 +143,8 @@ impl FeedbackLaw {
         let (mut low, mut high) = (middle - 37.0, middle + 37.0);
         while high - low > 1e-3 {
             let x = f64::midpoint(low, high);
-            let end = if self.optimum_norm(x.exp(), target) > norm_volt {
-                &mut low
-            } else {
-                &mut high
-            };
+            let end =
+                if self.optimum_norm(x.exp(), target) > norm_volt { &mut low } else { &mut high };
             *end = x;
         }
         f64::midpoint(low, high).exp()
@@ -180,8 +155,6 @@ impl FeedbackLaw {
         let largest = self.singular_values.first().copied().unwrap_or_default();
         let size = self.t.nrows().max(self.t.ncols()) as f64;
         let floor = largest * f64::EPSILON * size;
-        self.singular_values
-            .iter()
-            .map(move |&s| if s > floor { s / (s * s + rho) } else { 0.0 })
+        self.singular_values.iter().map(move |&s| if s > floor { s / (s * s + rho) } else { 0.0 })
     }
 }

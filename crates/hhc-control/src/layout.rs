@@ -26,10 +26,7 @@ impl ControlLayout {
     /// harmonic 0 (that is the bias, which is solved for) or one given twice.
     pub fn new(flaps: usize, harmonics: Vec<u32>) -> Result<Self, ControlError> {
         if flaps == 0 || harmonics.is_empty() {
-            return Err(ControlError::EmptyLayout {
-                flaps,
-                harmonics: harmonics.len(),
-            });
+            return Err(ControlError::EmptyLayout { flaps, harmonics: harmonics.len() });
         }
         for (index, &harmonic) in harmonics.iter().enumerate() {
             if harmonic == 0 || harmonics[..index].contains(&harmonic) {
@@ -93,11 +90,7 @@ impl ControlLayout {
     /// # Errors
     /// [`ControlError::Length`] if the vector does not fit the layout.
     pub fn amplitudes_volt(&self, control_volt: &[f64]) -> Result<Vec<f64>, ControlError> {
-        Ok(self
-            .voltages_volt(control_volt)?
-            .iter()
-            .map(Harmonic::amplitude)
-            .collect())
+        Ok(self.voltages_volt(control_volt)?.iter().map(Harmonic::amplitude).collect())
     }
 
     /// The control vector of given harmonics in volt, one per pair.
@@ -112,10 +105,7 @@ impl ControlLayout {
                 expected: self.pairs(),
             });
         }
-        Ok(voltages_volt
-            .iter()
-            .flat_map(|h| [h.cosine, h.sine])
-            .collect())
+        Ok(voltages_volt.iter().flat_map(|h| [h.cosine, h.sine]).collect())
     }
 
     /// Accepts a finite control vector of the right length.
@@ -129,13 +119,7 @@ impl ControlLayout {
 
 /// Consecutive cosine and sine coefficients as harmonics.
 pub(crate) fn as_harmonics(coefficients: &[f64]) -> Vec<Harmonic> {
-    coefficients
-        .chunks_exact(2)
-        .map(|pair| Harmonic {
-            cosine: pair[0],
-            sine: pair[1],
-        })
-        .collect()
+    coefficients.chunks_exact(2).map(|pair| Harmonic { cosine: pair[0], sine: pair[1] }).collect()
 }
 
 /// Lag of one harmonic behind another of the same frequency, in degrees of harmonic phase.
@@ -185,10 +169,7 @@ mod tests {
             assert!(ControlLayout::new(flaps, harmonics).is_err());
         }
         let layout = ControlLayout::new(1, vec![3]).unwrap();
-        assert!(matches!(
-            layout.check(&[1.0]),
-            Err(ControlError::Length { .. })
-        ));
+        assert!(matches!(layout.check(&[1.0]), Err(ControlError::Length { .. })));
         assert!(matches!(
             layout.check(&[1.0, f64::NAN]),
             Err(ControlError::NotFinite { index: 1, .. })

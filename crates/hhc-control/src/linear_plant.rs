@@ -41,14 +41,7 @@ impl LinearPlant {
             });
         }
         let (gain_deg_per_volt, lag_rad, stroke_limit_deg) = (1.0, 0.0, f64::INFINITY);
-        Ok(Self {
-            layout,
-            baseline_loads,
-            t,
-            gain_deg_per_volt,
-            lag_rad,
-            stroke_limit_deg,
-        })
+        Ok(Self { layout, baseline_loads, t, gain_deg_per_volt, lag_rad, stroke_limit_deg })
     }
 
     /// The same plant with another actuator: gain `g` in degrees per volt (positive) and lag in
@@ -59,11 +52,7 @@ impl LinearPlant {
     pub fn with_actuator(self, gain_deg_per_volt: f64, lag_rad: f64) -> Result<Self, ControlError> {
         error::check_positive("actuator gain (deg/V)", gain_deg_per_volt)?;
         error::check_vector("actuator lag (rad)", &[lag_rad], 1)?;
-        Ok(Self {
-            gain_deg_per_volt,
-            lag_rad,
-            ..self
-        })
+        Ok(Self { gain_deg_per_volt, lag_rad, ..self })
     }
 
     /// The same plant with a limit on the flap amplitude of every pair, degrees.
@@ -72,10 +61,7 @@ impl LinearPlant {
     /// [`ControlError::OutOfRange`] unless positive and finite.
     pub fn with_stroke_limit_deg(self, stroke_limit_deg: f64) -> Result<Self, ControlError> {
         error::check_positive("stroke limit (deg)", stroke_limit_deg)?;
-        Ok(Self {
-            stroke_limit_deg,
-            ..self
-        })
+        Ok(Self { stroke_limit_deg, ..self })
     }
 
     fn flap_motion_deg(&self, control_volt: &[f64]) -> Vec<Harmonic> {
@@ -113,11 +99,7 @@ impl Plant for LinearPlant {
     }
 
     fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Self::Error> {
-        Ok(self
-            .flap_motion_deg(control_volt)
-            .iter()
-            .map(Harmonic::amplitude)
-            .collect())
+        Ok(self.flap_motion_deg(control_volt).iter().map(Harmonic::amplitude).collect())
     }
 
     fn stroke_limits_deg(&self) -> Vec<f64> {

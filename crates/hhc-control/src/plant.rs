@@ -47,10 +47,7 @@ pub trait Plant {
         &mut self,
         controls_volt: &[Vec<f64>],
     ) -> Result<Vec<Measurement>, Self::Error> {
-        controls_volt
-            .iter()
-            .map(|control_volt| self.measure(control_volt))
-            .collect()
+        controls_volt.iter().map(|control_volt| self.measure(control_volt)).collect()
     }
 
     /// Strokes (degrees, `>= 0`) that the actuators make for a control vector: the cheap call, with

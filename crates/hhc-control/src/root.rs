@@ -14,10 +14,7 @@ pub(crate) enum Bracketed<S> {
     /// `|f| <= tolerance` here.
     Root(Trial<S>),
     /// The function jumps over zero between two neighbouring numbers: negative and positive side.
-    Jump {
-        negative: Trial<S>,
-        positive: Trial<S>,
-    },
+    Jump { negative: Trial<S>, positive: Trial<S> },
 }
 
 /// Root of `f` between two trials of opposite sign, by the regula falsi with the Anderson-Bjorck
@@ -41,11 +38,7 @@ pub(crate) fn root_between<S, E>(
         let middle = f64::midpoint(held.x, fresh.x);
         let spacing = 4.0 * f64::EPSILON * middle.abs();
         if width <= spacing.max(f64::MIN_POSITIVE) {
-            let (negative, positive) = if fresh.f < 0.0 {
-                (fresh, held)
-            } else {
-                (held, fresh)
-            };
+            let (negative, positive) = if fresh.f < 0.0 { (fresh, held) } else { (held, fresh) };
             return Ok(Bracketed::Jump { negative, positive });
         }
         let secant = fresh.x - fresh.f * (fresh.x - held.x) / (fresh.f - held_weight * held.f);
@@ -67,11 +60,7 @@ pub(crate) fn root_between<S, E>(
         }
         if f.is_sign_negative() == fresh.f.is_sign_negative() {
             let weight = 1.0 - f / fresh.f;
-            held_weight *= if weight > 0.0 && weight.is_finite() {
-                weight
-            } else {
-                0.5
-            };
+            held_weight *= if weight > 0.0 && weight.is_finite() { weight } else { 0.5 };
             fresh = trial;
         } else {
             held_weight = 1.0;
@@ -92,11 +81,7 @@ mod tests {
         tolerance: f64,
     ) -> (Bracketed<()>, usize) {
         let mut evaluations = 0;
-        let trial = |x: f64| Trial {
-            x,
-            f: f(x),
-            state: (),
-        };
+        let trial = |x: f64| Trial { x, f: f(x), state: () };
         let found: Result<_, Infallible> =
             root_between((trial(low), trial(high)), tolerance, |x| {
                 evaluations += 1;
@@ -132,12 +117,8 @@ mod tests {
 
     #[test]
     fn infinite_values_are_bisected_away() {
-        let (found, evaluations) = solve(
-            |x| if x > 2.0 { f64::INFINITY } else { x - 1.999 },
-            0.0,
-            9.0,
-            1e-6,
-        );
+        let (found, evaluations) =
+            solve(|x| if x > 2.0 { f64::INFINITY } else { x - 1.999 }, 0.0, 9.0, 1e-6);
         assert!((root(&found) - 1.999).abs() < 1e-6);
         assert!(evaluations < 40, "{evaluations}");
     }
@@ -145,9 +126,7 @@ mod tests {
     #[test]
     fn a_jump_is_told_from_a_root() {
         let (found, _) = solve(|x| if x > 0.5 { 1.0 } else { -2.0 }, 0.0, 3.0, 1e-6);
-        let Bracketed::Jump { negative, positive } = found else {
-            panic!("{found:?}")
-        };
+        let Bracketed::Jump { negative, positive } = found else { panic!("{found:?}") };
         assert!(negative.f < 0.0 && positive.f > 0.0);
         assert!((negative.x - 0.5).abs() < 1e-14 && (positive.x - 0.5).abs() < 1e-14);
     }

@@ -132,21 +132,14 @@ impl FeedbackController {
                 Outcome::OutOfRange => f64::INFINITY,
                 _ => strokes.ratio(&strokes_deg),
             };
-            trials.push(EffortTrial {
-                rho,
-                stroke_ratio,
-                outcome,
-            });
+            trials.push(EffortTrial { rho, stroke_ratio, outcome });
             Ok((stroke_ratio, Some((run, strokes_deg))))
         })?;
         let (rho, stroke_ratio) = (found.rho, found.ratio);
         let Some((mut run, strokes_deg)) = found.state else {
-            return Err(ControlError::StrokeNotMet {
-                rho,
-                stroke_ratio,
-                trials: trials.len(),
-            }
-            .into());
+            return Err(
+                ControlError::StrokeNotMet { rho, stroke_ratio, trials: trials.len() }.into()
+            );
         };
         run.measurements += 1;
         Ok(StrokeLimitedRun {
@@ -173,11 +166,7 @@ pub(crate) fn track_effort<P: Plant>(
     let guess = (here.rho > 0.0).then_some(here.rho);
     // The first guess takes strokes to be in proportion to the norm of the control.
     let from_norm = |ratio: f64| {
-        let shrink = if ratio.is_finite() {
-            strokes.target / ratio
-        } else {
-            0.1
-        };
+        let shrink = if ratio.is_finite() { strokes.target / ratio } else { 0.1 };
         law.effort_for_norm(shrink * law.optimum_norm(0.0, &target), &target)
     };
     let found = find_effort(strokes.accepted(0.2), guess, from_norm, |rho| {
@@ -196,19 +185,11 @@ impl Strokes {
                 return Err(if value.is_nan() {
                     ControlError::NotFinite { what, index, value }
                 } else {
-                    ControlError::OutOfRange {
-                        what,
-                        value,
-                        expected: "above 0",
-                    }
+                    ControlError::OutOfRange { what, value, expected: "above 0" }
                 });
             }
         }
-        Ok(Self {
-            limits_deg,
-            target: 1.0 - 0.5 * tolerance,
-            tolerance,
-        })
+        Ok(Self { limits_deg, target: 1.0 - 0.5 * tolerance, tolerance })
     }
 
     /// Target ratio, and the accepted distance from it as a part of the tolerance.
@@ -222,22 +203,14 @@ impl Strokes {
         plant: &mut P,
         control_volt: &[f64],
     ) -> Result<Vec<f64>, RunError<P::Error>> {
-        let strokes_deg = plant
-            .strokes_deg(control_volt)
-            .map_err(|source| RunError::Plant {
-                call: PlantCall::Strokes {
-                    control_volt: control_volt.to_vec(),
-                },
-                history: Vec::new(),
-                source,
-            })?;
+        let strokes_deg = plant.strokes_deg(control_volt).map_err(|source| RunError::Plant {
+            call: PlantCall::Strokes { control_volt: control_volt.to_vec() },
+            history: Vec::new(),
+            source,
+        })?;
         let (what, found, expected) = ("strokes", strokes_deg.len(), self.limits_deg.len());
         if found != expected {
-            Err(ControlError::Length {
-                what,
-                found,
-                expected,
-            })?;
+            Err(ControlError::Length { what, found, expected })?;
         }
         if let Some(index) = strokes_deg.iter().position(|stroke| stroke.is_nan()) {
             let (what, value) = ("stroke (deg)", strokes_deg[index]);
@@ -269,20 +242,11 @@ fn find_effort<S, E: std::error::Error + 'static>(
 ) -> Result<Weighted<S>, RunError<E>> {
     let mut at = |x: f64| -> Result<Trial<(f64, S)>, RunError<E>> {
         let (ratio, state) = evaluate(x.exp())?;
-        Ok(Trial {
-            x,
-            f: (ratio / target).ln(),
-            state: (ratio, state),
-        })
+        Ok(Trial { x, f: (ratio / target).ln(), state: (ratio, state) })
     };
     let weighted = |t: Trial<(f64, S)>, status| {
         let (ratio, state) = t.state;
-        Weighted {
-            rho: t.x.exp(),
-            ratio,
-            state,
-            status,
-        }
+        Weighted { rho: t.x.exp(), ratio, state, status }
     };
     let guessed = guess.map(|rho| at(rho.ln())).transpose()?;
     let mut here = match guessed {
@@ -304,23 +268,11 @@ fn find_effort<S, E: std::error::Error + 'static>(
         let upward = here.f > 0.0;
         if upward && here.x > LARGEST_LN_RHO {
             let (rho, stroke_ratio) = (here.x.exp(), here.state.0);
-            Err(ControlError::StrokeNotMet {
-                rho,
-                stroke_ratio,
-                trials,
-            })?;
+            Err(ControlError::StrokeNotMet { rho, stroke_ratio, trials })?;
         }
         // The stroke of a linear actuator falls no faster than 1 / rho: the root is |f| away or more.
-        stride = (2.0 * stride).max(if here.f.is_finite() {
-            1.5 * here.f.abs()
-        } else {
-            1.0
-        });
-        let next = at(if upward {
-            here.x + stride
-        } else {
-            here.x - stride
-        })?;
+        stride = (2.0 * stride).max(if here.f.is_finite() { 1.5 * here.f.abs() } else { 1.0 });
+        let next = at(if upward { here.x + stride } else { here.x - stride })?;
         if next.f.abs() > tolerance && (next.f > 0.0) != upward {
             let found = root_between((here, next), tolerance, |x| at(x).map(|t| (t.f, t.state)))?;
             return Ok(match found {

@@ -51,10 +51,7 @@ impl TMatrix {
 
     /// The columns, one per control.
     pub fn columns(&self) -> Vec<Vec<f64>> {
-        self.matrix
-            .column_iter()
-            .map(|column| column.iter().copied().collect())
-            .collect()
+        self.matrix.column_iter().map(|column| column.iter().copied().collect()).collect()
     }
 
     /// The matrix for algebra: loads x controls, 1/V.
@@ -68,10 +65,7 @@ impl TMatrix {
     /// [`ControlError::Length`], [`ControlError::NotFinite`].
     pub fn loads_for(&self, control_volt: &[f64]) -> Result<Vec<f64>, ControlError> {
         error::check_vector("control vector (volt)", control_volt, self.controls())?;
-        Ok((&self.matrix * DVector::from_column_slice(control_volt))
-            .iter()
-            .copied()
-            .collect())
+        Ok((&self.matrix * DVector::from_column_slice(control_volt)).iter().copied().collect())
     }
 
     /// Frobenius norm, 1/V: the square root of the sum of all squared elements.
@@ -81,10 +75,7 @@ impl TMatrix {
 
     /// Norm of each column, 1/V: the authority of each control.
     pub fn column_norms(&self) -> Vec<f64> {
-        self.matrix
-            .column_iter()
-            .map(|column| column.norm())
-            .collect()
+        self.matrix.column_iter().map(|column| column.norm()).collect()
     }
 
     /// Difference from a reference matrix, relative to that matrix.
@@ -98,18 +89,10 @@ impl TMatrix {
     pub fn relative_difference(&self, reference: &Self) -> Result<f64, ControlError> {
         for (what, found, expected) in [
             ("rows of the T matrix", self.loads(), reference.loads()),
-            (
-                "columns of the T matrix",
-                self.controls(),
-                reference.controls(),
-            ),
+            ("columns of the T matrix", self.controls(), reference.controls()),
         ] {
             if found != expected {
-                return Err(ControlError::Length {
-                    what,
-                    found,
-                    expected,
-                });
+                return Err(ControlError::Length { what, found, expected });
             }
         }
         let norm = reference.frobenius_norm();
@@ -151,12 +134,7 @@ mod tests {
 
     #[test]
     fn impossible_matrices_are_refused() {
-        for columns in [
-            vec![],
-            vec![vec![]],
-            vec![vec![1.0], vec![]],
-            vec![vec![f64::INFINITY]],
-        ] {
+        for columns in [vec![], vec![vec![]], vec![vec![1.0], vec![]], vec![vec![f64::INFINITY]]] {
             assert!(TMatrix::from_columns(&columns).is_err());
         }
     }

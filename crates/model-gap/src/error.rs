@@ -130,18 +130,10 @@ pub enum GapError {
 /// Accepts a record of finite samples, at least `needed`.
 pub(crate) fn check_record(what: &str, samples: &[f64], needed: usize) -> Result<(), GapError> {
     if samples.len() < needed {
-        return Err(GapError::TooShort {
-            what: what.into(),
-            samples: samples.len(),
-            needed,
-        });
+        return Err(GapError::TooShort { what: what.into(), samples: samples.len(), needed });
     }
     match samples.iter().position(|v| !v.is_finite()) {
-        Some(index) => Err(GapError::NotFinite {
-            what: what.into(),
-            index,
-            value: samples[index],
-        }),
+        Some(index) => Err(GapError::NotFinite { what: what.into(), index, value: samples[index] }),
         None => Ok(()),
     }
 }
@@ -155,11 +147,7 @@ pub(crate) fn check_pair(
     check_record("measured output", measured, needed)?;
     if simulated.len() != measured.len() {
         let (found, expected) = (simulated.len(), measured.len());
-        return Err(GapError::Length {
-            what: "simulated output".into(),
-            found,
-            expected,
-        });
+        return Err(GapError::Length { what: "simulated output".into(), found, expected });
     }
     check_record("simulated output", simulated, needed)
 }
@@ -169,10 +157,6 @@ pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<(), GapEr
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {
-        Err(GapError::OutOfRange {
-            what,
-            value,
-            expected: "a finite number above 0",
-        })
+        Err(GapError::OutOfRange { what, value, expected: "a finite number above 0" })
     }
 }

@@ -40,11 +40,7 @@ impl Channel {
     ) -> Result<Self, GapError> {
         let name = name.into();
         error::check_record(&name, &samples, 2)?;
-        Ok(Self {
-            name,
-            unit: unit.into(),
-            samples,
-        })
+        Ok(Self { name, unit: unit.into(), samples })
     }
 
     /// Name, for example `command`.
@@ -94,29 +90,15 @@ impl Experiment {
         error::check_positive("time step (s)", time_step_s)?;
         let (found, expected) = (output.samples.len(), input.samples.len());
         if found != expected {
-            return Err(GapError::Length {
-                what: output.name,
-                found,
-                expected,
-            });
+            return Err(GapError::Length { what: output.name, found, expected });
         }
-        Ok(Self {
-            id: id.into(),
-            role,
-            stated_use: None,
-            time_step_s,
-            input,
-            output,
-        })
+        Ok(Self { id: id.into(), role, stated_use: None, time_step_s, input, output })
     }
 
     /// The same record with a stated use.
     #[must_use]
     pub fn with_use(self, stated_use: Use) -> Self {
-        Self {
-            stated_use: Some(stated_use),
-            ..self
-        }
+        Self { stated_use: Some(stated_use), ..self }
     }
 
     /// Name of the record, unique in its set.

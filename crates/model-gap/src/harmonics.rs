@@ -55,26 +55,15 @@ impl HarmonicFit {
         let at = |harmonic: usize| harmonic as f64 * frequency_hz;
         if let Some(harmonic) = (1..=count).find(|&n| at(n) >= nyquist_hz * (1.0 - 1e-9)) {
             let frequency_hz = at(harmonic);
-            return Err(GapError::AboveNyquist {
-                harmonic,
-                frequency_hz,
-                nyquist_hz,
-            });
+            return Err(GapError::AboveNyquist { harmonic, frequency_hz, nyquist_hz });
         }
         let duration_s = samples.len() as f64 * time_step_s;
         let cycles = duration_s * frequency_hz;
         if cycles < 1.0 - 1e-9 {
-            return Err(GapError::TooFewCycles {
-                what: "a fit of harmonics",
-                cycles,
-                needed: 1,
-            });
+            return Err(GapError::TooFewCycles { what: "a fit of harmonics", cycles, needed: 1 });
         }
-        let not_separable = || GapError::NotSeparable {
-            harmonics: count,
-            cycles,
-            samples: samples.len(),
-        };
+        let not_separable =
+            || GapError::NotSeparable { harmonics: count, cycles, samples: samples.len() };
         let alias_distance_hz = 2.0 * (nyquist_hz - at(count));
         if alias_distance_hz * duration_s < CLOSEST_ALIAS {
             return Err(not_separable());
@@ -84,10 +73,7 @@ impl HarmonicFit {
         let mut right = DVector::zeros(size);
         let mut row = vec![0.0; size];
         for (i, &value) in samples.iter().enumerate() {
-            basis(
-                TAU * (frequency_hz * time_step_s * i as f64).fract(),
-                &mut row,
-            );
+            basis(TAU * (frequency_hz * time_step_s * i as f64).fract(), &mut row);
             for a in 0..size {
                 right[a] += row[a] * value;
                 for b in 0..=a {
@@ -99,16 +85,9 @@ impl HarmonicFit {
         let found = cholesky.solve(&right);
         let harmonics = found.as_slice()[1..]
             .chunks_exact(2)
-            .map(|pair| Harmonic {
-                cosine: pair[0],
-                sine: pair[1],
-            })
+            .map(|pair| Harmonic { cosine: pair[0], sine: pair[1] })
             .collect();
-        Ok(Self {
-            frequency_hz,
-            mean: found[0],
-            harmonics,
-        })
+        Ok(Self { frequency_hz, mean: found[0], harmonics })
     }
 
     /// The first harmonic.
@@ -235,11 +214,6 @@ impl ResidualHarmonics {
                 ),
             })
             .collect();
-        Ok(Self {
-            frequency_hz,
-            measured: first,
-            mean: fit.mean,
-            rows,
-        })
+        Ok(Self { frequency_hz, measured: first, mean: fit.mean, rows })
     }
 }

@@ -40,12 +40,7 @@ impl Misfit {
         let residual: Vec<f64> = residual(measured, simulated);
         let rms = mean_square(&residual).sqrt();
         let largest_at = (0..residual.len())
-            .max_by(|&a, &b| {
-                residual[a]
-                    .abs()
-                    .total_cmp(&residual[b].abs())
-                    .then(b.cmp(&a))
-            })
+            .max_by(|&a, &b| residual[a].abs().total_cmp(&residual[b].abs()).then(b.cmp(&a)))
             .unwrap_or_default();
         Ok(Self {
             nrmse: rms / measured_std,
@@ -77,14 +72,9 @@ pub(crate) fn variance(measured: &[f64]) -> Result<f64, GapError> {
     let centre = mean(measured);
     let (low, high) = measured
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
-            (low.min(v), high.max(v))
-        });
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
     if low >= high {
-        return Err(GapError::Constant {
-            what: "the measured output".into(),
-            value: low,
-        });
+        return Err(GapError::Constant { what: "the measured output".into(), value: low });
     }
     Ok(measured.iter().map(|v| (v - centre).powi(2)).sum::<f64>() / measured.len() as f64)
 }

@@ -53,11 +53,7 @@ impl NoiseEstimate {
         let cycles = samples.len() as f64 / samples_per_cycle;
         if cycles < 2.0 - LARGEST_SLIP {
             let what = "a noise estimate";
-            return Err(GapError::TooFewCycles {
-                what,
-                cycles,
-                needed: 2,
-            });
+            return Err(GapError::TooFewCycles { what, cycles, needed: 2 });
         }
         let repeats = |block: usize| {
             let exact = block as f64 * samples_per_cycle;
@@ -65,10 +61,7 @@ impl NoiseEstimate {
             slip <= LARGEST_SLIP && exact.round() >= 1.0
         };
         let Some(cycles_per_block) = (1..=LONGEST_BLOCK).find(|&block| repeats(block)) else {
-            return Err(GapError::NoRepeat {
-                samples_per_cycle,
-                tried: LONGEST_BLOCK,
-            });
+            return Err(GapError::NoRepeat { samples_per_cycle, tried: LONGEST_BLOCK });
         };
         #[expect(
             clippy::cast_possible_truncation,
@@ -79,19 +72,13 @@ impl NoiseEstimate {
         let blocks = samples.len() / block_samples;
         if blocks < 2 {
             let (what, needed) = ("a noise estimate", 2 * cycles_per_block);
-            return Err(GapError::TooFewCycles {
-                what,
-                cycles,
-                needed,
-            });
+            return Err(GapError::TooFewCycles { what, cycles, needed });
         }
         let at = |block: usize, n: usize| samples[block * block_samples + n];
         let mut sum = 0.0;
         for n in 0..block_samples {
             let centre = (0..blocks).map(|k| at(k, n)).sum::<f64>() / blocks as f64;
-            sum += (0..blocks)
-                .map(|k| (at(k, n) - centre).powi(2))
-                .sum::<f64>();
+            sum += (0..blocks).map(|k| (at(k, n) - centre).powi(2)).sum::<f64>();
         }
         let degrees_of_freedom = block_samples * (blocks - 1);
         let last = (blocks - 1) * block_samples;

@@ -53,18 +53,13 @@ impl SplitRule {
         let mut ids = BTreeSet::new();
         for experiment in experiments {
             if !ids.insert(experiment.id()) {
-                return Err(GapError::DuplicateId {
-                    id: experiment.id().into(),
-                });
+                return Err(GapError::DuplicateId { id: experiment.id().into() });
             }
         }
         let uses = match self {
             Self::Stated => experiments
                 .iter()
-                .map(|e| {
-                    e.stated_use()
-                        .ok_or_else(|| GapError::NoStatedUse { id: e.id().into() })
-                })
+                .map(|e| e.stated_use().ok_or_else(|| GapError::NoStatedUse { id: e.id().into() }))
                 .collect::<Result<Vec<Use>, GapError>>()?,
             Self::SlowAndTwoFrequencies => by_speed(experiments),
         };
@@ -81,30 +76,16 @@ fn by_speed(experiments: &[Experiment]) -> Vec<Use> {
     let sines: Vec<Option<(f64, f64)>> = experiments
         .iter()
         .map(|experiment| match experiment.stimulus() {
-            Stimulus::Sine {
-                frequency_hz,
-                amplitude,
-                ..
-            } => Some((frequency_hz, amplitude)),
+            Stimulus::Sine { frequency_hz, amplitude, .. } => Some((frequency_hz, amplitude)),
             Stimulus::Other => None,
         })
         .collect();
     let frequencies = distinct(sines.iter().flatten().map(|sine| sine.0).collect());
     let Some((&slowest, above)) = frequencies.split_first() else {
-        return experiments
-            .iter()
-            .map(|e| e.stated_use().unwrap_or(Use::HeldOut))
-            .collect();
+        return experiments.iter().map(|e| e.stated_use().unwrap_or(Use::HeldOut)).collect();
     };
     let amplitudes_at = |frequency: f64| {
-        distinct(
-            sines
-                .iter()
-                .flatten()
-                .filter(|s| same(s.0, frequency))
-                .map(|s| s.1)
-                .collect(),
-        )
+        distinct(sines.iter().flatten().filter(|s| same(s.0, frequency)).map(|s| s.1).collect())
     };
     let largest = amplitudes_at(slowest).last().copied().unwrap_or_default();
     let slow_rate = TAU * slowest * largest * (1.0 + SAME);
@@ -112,10 +93,7 @@ fn by_speed(experiments: &[Experiment]) -> Vec<Use> {
     let chosen = [above.first().copied(), above.get(middle).copied()];
     let extreme = |(frequency, amplitude): (f64, f64)| {
         let amplitudes = amplitudes_at(frequency);
-        [amplitudes.first(), amplitudes.last()]
-            .iter()
-            .flatten()
-            .any(|&&a| same(a, amplitude))
+        [amplitudes.first(), amplitudes.last()].iter().flatten().any(|&&a| same(a, amplitude))
     };
     let trains = |experiment: &Experiment, sine: Option<(f64, f64)>| match sine {
         None => largest_rate_per_s(experiment) <= slow_rate,
@@ -136,10 +114,7 @@ fn by_speed(experiments: &[Experiment]) -> Vec<Use> {
 /// Largest rate of the input, in its unit per second.
 fn largest_rate_per_s(experiment: &Experiment) -> f64 {
     let samples = experiment.input().samples();
-    let largest = samples
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs())
-        .fold(0.0, f64::max);
+    let largest = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     largest / experiment.time_step_s()
 }
 

@@ -99,16 +99,9 @@ impl Stimulus {
             (record[i] - sine).abs() <= ON_SINE * amplitude
         };
         let start = (0..moving.start).rev().take_while(|&i| on_sine(i)).last();
-        let end = (moving.end..record.len())
-            .take_while(|&i| on_sine(i))
-            .last();
+        let end = (moving.end..record.len()).take_while(|&i| on_sine(i)).last();
         let samples = start.unwrap_or(moving.start)..end.map_or(moving.end, |last| last + 1);
-        Some(Self::Sine {
-            frequency_hz: frequency / time_step_s,
-            amplitude,
-            mean: fit[0],
-            samples,
-        })
+        Some(Self::Sine { frequency_hz: frequency / time_step_s, amplitude, mean: fit[0], samples })
     }
 }
 
@@ -125,9 +118,7 @@ fn moving(record: &[f64]) -> Option<Range<usize>> {
 fn range(samples: &[f64]) -> (f64, f64) {
     samples
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
-            (low.min(v), high.max(v))
-        })
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
 }
 
 /// Cycles per sample from the crossings of the middle, each armed by leaving a band about it.

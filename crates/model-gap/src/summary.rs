@@ -45,12 +45,7 @@ impl Summary {
         let set: Vec<&RunError> = errors.iter().filter(|run| run.used == used).collect();
         let worst = |value: &dyn Fn(&RunError) -> Option<f64>, size: fn(f64) -> f64| {
             set.iter()
-                .filter_map(|run| {
-                    value(run).map(|value| WorstRun {
-                        id: run.id.clone(),
-                        value,
-                    })
-                })
+                .filter_map(|run| value(run).map(|value| WorstRun { id: run.id.clone(), value }))
                 .max_by(|a, b| size(a.value).total_cmp(&size(b.value)))
         };
         let worst_nrmse = worst(&|run| Some(run.misfit.nrmse), f64::abs)?;

@@ -29,11 +29,7 @@ fn voltages() -> Vec<f64> {
 
 fn map(grid: &PreisachGrid, size: f64) -> Result<PlayMap, PreisachError> {
     let rises: Vec<Vec<f64>> = (0..grid.levels())
-        .map(|j| {
-            (0..grid.levels() - j)
-                .map(|k| size * (1.5 + ((j * k) as f64).sin()))
-                .collect()
-        })
+        .map(|j| (0..grid.levels() - j).map(|k| size * (1.5 + ((j * k) as f64).sin())).collect())
         .collect();
     PlayMap::from_rises(grid, 0.0, &rises)
 }
@@ -88,10 +84,7 @@ fn samples(c: &mut Criterion) {
     group.bench_function("static", |b| {
         b.iter_custom(|rounds| {
             timed(rounds, volts.len(), &mut best, || {
-                let sum: f64 = volts
-                    .iter()
-                    .map(|&u| fixed.apply(&mut memory, black_box(u)))
-                    .sum();
+                let sum: f64 = volts.iter().map(|&u| fixed.apply(&mut memory, black_box(u))).sum();
                 black_box(sum);
             })
         });

@@ -145,16 +145,8 @@ impl ActuatorModel {
             gain_deg_per_volt: 2.0 * amplitude_deg / range_volt.span_volt(),
             bias_volt: range_volt.middle_volt(),
         };
-        let calibration = Calibration {
-            deg_per_um,
-            zero_um: 0.0,
-        };
-        Self {
-            law: ActuatorLaw::Linear(gain),
-            range_volt,
-            calibration,
-            trained: None,
-        }
+        let calibration = Calibration { deg_per_um, zero_um: 0.0 };
+        Self { law: ActuatorLaw::Linear(gain), range_volt, calibration, trained: None }
     }
 
     /// A memory that starts at a voltage, the output settled.
@@ -181,11 +173,7 @@ impl ActuatorModel {
             }
         };
         let history = OutputHistory::at_rest(output_deg);
-        Ok(ActuatorMemory {
-            plays,
-            history,
-            counts: StepCounts::default(),
-        })
+        Ok(ActuatorMemory { plays, history, counts: StepCounts::default() })
     }
 
     /// One sample on: moves the memory to a new voltage and returns the flap angle, deg.
@@ -205,11 +193,7 @@ impl ActuatorModel {
         self.check_memory(memory)?;
         let before = memory.output_deg();
         let output = self.advance(memory, voltage_volt, time_step_s);
-        if output.is_finite() {
-            Ok(output)
-        } else {
-            Err(diverged(memory, before))
-        }
+        if output.is_finite() { Ok(output) } else { Err(diverged(memory, before)) }
     }
 
     /// The flap angle at every sample of a voltage history, starting at rest at its first sample.
@@ -230,10 +214,7 @@ impl ActuatorModel {
         let mut memory = self.start(first, StartState::Rest)?;
         let mut output_deg = vec![memory.output_deg()];
         output_deg.extend(self.continue_from(&mut memory, &voltages_volt[1..], time_step_s)?);
-        Ok(Simulation {
-            output_deg,
-            counts: memory.counts,
-        })
+        Ok(Simulation { output_deg, counts: memory.counts })
     }
 
     /// The flap angle at every sample of a voltage history that follows on a memory.
@@ -272,11 +253,7 @@ impl ActuatorModel {
             ActuatorLaw::Linear(gain) => gain.output_deg(voltage_volt),
             ActuatorLaw::StaticPreisach(model) => model.apply(&mut memory.plays, voltage_volt),
             ActuatorLaw::DynamicPreisach(model) => {
-                let ActuatorMemory {
-                    plays,
-                    history,
-                    counts,
-                } = memory;
+                let ActuatorMemory { plays, history, counts } = memory;
                 return model.step(plays, history, counts, voltage_volt, time_step_s);
             }
         };
@@ -320,10 +297,7 @@ impl ActuatorModel {
     }
 
     fn check_samples(&self, voltages_volt: &[f64]) -> Result<(), PreisachError> {
-        voltages_volt
-            .iter()
-            .enumerate()
-            .try_for_each(|(index, &u)| self.check_sample(index, u))
+        voltages_volt.iter().enumerate().try_for_each(|(index, &u)| self.check_sample(index, u))
     }
 
     fn check_sample(&self, index: usize, voltage_volt: f64) -> Result<(), PreisachError> {
@@ -358,9 +332,5 @@ pub(crate) fn check_positive(quantity: &'static str, value: f64) -> Result<(), P
 
 fn diverged(memory: &ActuatorMemory, last_output_deg: f64) -> PreisachError {
     let counts = memory.counts;
-    PreisachError::Diverged {
-        index: counts.steps,
-        last_output_deg,
-        bad_steps: counts.bad_steps(),
-    }
+    PreisachError::Diverged { index: counts.steps, last_output_deg, bad_steps: counts.bad_steps() }
 }

@@ -94,17 +94,11 @@ pub fn output_rate(g: [f64; 3], base: f64, weight: f64) -> OutputRate {
     let q = g0 - base;
     let discriminant = b * b - 4.0 * g2 * q;
     if discriminant < 0.0 {
-        return OutputRate {
-            rate_deg_s: b / (2.0 * g2),
-            folded: true,
-        };
+        return OutputRate { rate_deg_s: b / (2.0 * g2), folded: true };
     }
     let denominator = b + discriminant.sqrt().copysign(b);
     let rate_deg_s = if q == 0.0 { 0.0 } else { 2.0 * q / denominator };
-    OutputRate {
-        rate_deg_s,
-        folded: false,
-    }
+    OutputRate { rate_deg_s, folded: false }
 }
 
 /// The output history the time integration looks back on.
@@ -119,10 +113,7 @@ pub struct OutputHistory {
 impl OutputHistory {
     /// An actuator at rest.
     pub fn at_rest(output_deg: f64) -> Self {
-        Self {
-            output_deg,
-            earlier: None,
-        }
+        Self { output_deg, earlier: None }
     }
 
     /// `base` and `weight` of the backward difference `delta = base + weight d` over a new step.
@@ -234,10 +225,7 @@ impl DynamicPreisach {
                 let slack = p.g1_s.combined(1.0, &p.g2_s2_per_deg, 2.0 * sign * rate);
                 let (excess_s, _) = slack.largest();
                 if excess_s > 0.0 {
-                    return Err(PreisachError::FoldsTooEarly {
-                        excess_s,
-                        rate_deg_s: rate,
-                    });
+                    return Err(PreisachError::FoldsTooEarly { excess_s, rate_deg_s: rate });
                 }
             }
         }
@@ -245,10 +233,7 @@ impl DynamicPreisach {
         let table = NodeTable::new(&p.grid, |play, knot| {
             let [a, b, c] = maps.map(|map| {
                 let row = &map.nodes[play];
-                (
-                    row[knot],
-                    row.get(knot + 1).map_or(0.0, |next| next - row[knot]),
-                )
+                (row[knot], row.get(knot + 1).map_or(0.0, |next| next - row[knot]))
             });
             [a.0, b.0, c.0, a.1, b.1, c.1]
         });
@@ -283,11 +268,7 @@ impl DynamicPreisach {
     /// `G0` (deg), `G1` (s) and `G2` (s^2/deg) in a given memory state.
     pub fn maps(&self, memory: &PlayMemory) -> [f64; 3] {
         let p = &self.parameters;
-        [
-            p.g0_deg.value(memory),
-            p.g1_s.value(memory),
-            p.g2_s2_per_deg.value(memory),
-        ]
+        [p.g0_deg.value(memory), p.g1_s.value(memory), p.g2_s2_per_deg.value(memory)]
     }
 
     /// Moves the memory to a voltage and returns `G0, G1, G2` there.
@@ -324,10 +305,7 @@ impl DynamicPreisach {
         counts.steps += 1;
         counts.g1_not_negative += usize::from(g[1] >= 0.0);
         counts.folds += usize::from(folded);
-        *history = OutputHistory {
-            output_deg,
-            earlier: Some((history.output_deg, time_step_s)),
-        };
+        *history = OutputHistory { output_deg, earlier: Some((history.output_deg, time_step_s)) };
         output_deg
     }
 

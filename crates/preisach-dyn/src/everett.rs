@@ -34,26 +34,15 @@ impl EverettStaircase {
     /// grid.
     pub fn new(grid: PreisachGrid, map: &PlayMap) -> Result<Self, PreisachError> {
         map.check(&grid, "static map")?;
-        let cumulative = map
-            .nodes
-            .iter()
-            .map(|row| row.iter().map(|v| v - row[0]).collect())
-            .collect();
+        let cumulative =
+            map.nodes.iter().map(|row| row.iter().map(|v| v - row[0]).collect()).collect();
         let lowest_output = map.nodes.iter().fold(map.constant, |sum, row| sum + row[0]);
-        Ok(Self {
-            grid,
-            cumulative,
-            lowest_output,
-            turns: vec![0.0],
-        })
+        Ok(Self { grid, cumulative, lowest_output, turns: vec![0.0] })
     }
 
     /// Everett's integral between two voltages, in the unit of the map.
     pub fn everett(&self, upper_volt: f64, lower_volt: f64) -> f64 {
-        self.everett_cells(
-            self.grid.coordinate(upper_volt),
-            self.grid.coordinate(lower_volt),
-        )
+        self.everett_cells(self.grid.coordinate(upper_volt), self.grid.coordinate(lower_volt))
     }
 
     fn everett_cells(&self, upper: f64, lower: f64) -> f64 {
@@ -61,11 +50,7 @@ impl EverettStaircase {
         rows.map(|(j, row)| {
             // s = alpha - r and s = beta + r, in cells above the first centre of the play
             let top = (upper - j as f64).max(0.0);
-            if top > lower {
-                interpolate(row, top) - interpolate(row, lower)
-            } else {
-                0.0
-            }
+            if top > lower { interpolate(row, top) - interpolate(row, lower) } else { 0.0 }
         })
         .sum()
     }
@@ -86,11 +71,7 @@ impl EverettStaircase {
         }
         // wiping out: an excursion that reaches past an earlier extreme of its kind erases it
         while let [.., same_kind, _, now] = *self.turns.as_slice() {
-            let passed = if rises {
-                now >= same_kind
-            } else {
-                now <= same_kind
-            };
+            let passed = if rises { now >= same_kind } else { now <= same_kind };
             if !passed {
                 break;
             }

@@ -19,24 +19,15 @@ impl VoltageRange {
     pub fn new(lowest_volt: f64, highest_volt: f64) -> Result<Self, PreisachError> {
         let span = highest_volt - lowest_volt;
         if span.is_finite() && span > 0.0 {
-            Ok(Self {
-                lowest_volt,
-                highest_volt,
-            })
+            Ok(Self { lowest_volt, highest_volt })
         } else {
-            Err(PreisachError::EmptyVoltageRange {
-                lowest_volt,
-                highest_volt,
-            })
+            Err(PreisachError::EmptyVoltageRange { lowest_volt, highest_volt })
         }
     }
 
     /// The range of the amplified piezo stack of the bench tests, -20 V to 150 V.
     pub const fn amplified_stack() -> Self {
-        Self {
-            lowest_volt: -20.0,
-            highest_volt: 150.0,
-        }
+        Self { lowest_volt: -20.0, highest_volt: 150.0 }
     }
 
     /// Lower limit, V.
@@ -122,10 +113,7 @@ impl TryFrom<GridFile> for PreisachGrid {
 
 impl From<PreisachGrid> for GridFile {
     fn from(grid: PreisachGrid) -> Self {
-        Self {
-            range_volt: grid.range,
-            levels: grid.levels,
-        }
+        Self { range_volt: grid.range, levels: grid.levels }
     }
 }
 
@@ -136,11 +124,7 @@ impl PreisachGrid {
     /// [`PreisachError::TooFew`] without a level.
     pub fn new(range: VoltageRange, levels: usize) -> Result<Self, PreisachError> {
         if levels == 0 {
-            return Err(PreisachError::TooFew {
-                quantity: "levels",
-                value: 0,
-                least: 1,
-            });
+            return Err(PreisachError::TooFew { quantity: "levels", value: 0, least: 1 });
         }
         Ok(Self { range, levels })
     }
@@ -167,11 +151,7 @@ impl PreisachGrid {
 
     /// Number of knots of play `play`, `n - j + 1`; none beyond the last play.
     pub fn knots(&self, play: usize) -> usize {
-        if play < self.levels {
-            self.levels - play + 1
-        } else {
-            0
-        }
+        if play < self.levels { self.levels - play + 1 } else { 0 }
     }
 
     /// Centre `s_jk` of knot `knot` of play `play`, V.
@@ -214,10 +194,6 @@ mod tests {
         assert!(VoltageRange::new(1.0, 1.0).is_err());
         assert!(VoltageRange::new(0.0, f64::NAN).is_err());
         assert!(PreisachGrid::new(VoltageRange::amplified_stack(), 0).is_err());
-        assert!(
-            VoltageRange::amplified_stack()
-                .excess_volt(f64::NAN)
-                .is_nan()
-        );
+        assert!(VoltageRange::amplified_stack().excess_volt(f64::NAN).is_nan());
     }
 }

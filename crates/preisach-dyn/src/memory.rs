@@ -103,11 +103,7 @@ impl PlayMemory {
 
     /// Outputs of the plays, V.
     pub fn plays_volt(&self, grid: &PreisachGrid) -> Vec<f64> {
-        self.cells
-            .iter()
-            .enumerate()
-            .map(|(j, &x)| grid.play_volt(j, x))
-            .collect()
+        self.cells.iter().enumerate().map(|(j, &x)| grid.play_volt(j, x)).collect()
     }
 }
 

@@ -22,12 +22,7 @@ pub struct PeriodicSettings {
 impl Default for PeriodicSettings {
     /// 720 steps, 24 harmonics, closed to 1e-9 deg within 100 revolutions, mean within 0.001 deg.
     fn default() -> Self {
-        Self {
-            steps_per_rev: 720,
-            harmonics: 24,
-            closure_deg: 1e-9,
-            largest_revolutions: 100,
-        }
+        Self { steps_per_rev: 720, harmonics: 24, closure_deg: 1e-9, largest_revolutions: 100 }
     }
 }
 
@@ -47,7 +42,6 @@ pub struct PeriodicResponse {
     /// What happened to the steps of the last revolution.
     pub counts: StepCounts,
 }
-
 
 impl ActuatorModel {
     /// The closed orbit under a periodic voltage.
@@ -72,11 +66,7 @@ impl ActuatorModel {
         let least = 2 * settings.harmonics + 2;
         if settings.steps_per_rev < least {
             let value = settings.steps_per_rev;
-            return Err(PreisachError::TooFew {
-                quantity: "steps_per_rev",
-                value,
-                least,
-            });
+            return Err(PreisachError::TooFew { quantity: "steps_per_rev", value, least });
         }
         let commands = self.sampled_command(voltage_volt, settings.steps_per_rev)?;
         let time_step_s = 1.0 / (rev_hz * settings.steps_per_rev as f64);
@@ -86,10 +76,7 @@ impl ActuatorModel {
         for revolutions_used in 2..=settings.largest_revolutions.max(2) {
             let counts_before = memory.counts();
             let next = self.continue_from(&mut memory, &commands, time_step_s)?;
-            closure_deg = orbit
-                .iter()
-                .zip(&next)
-                .fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
+            closure_deg = orbit.iter().zip(&next).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
             orbit = next;
             if closure_deg <= settings.closure_deg {
                 let flap_deg = HarmonicSeries::from_uniform_samples(&orbit, settings.harmonics)?;
@@ -118,19 +105,12 @@ impl ActuatorModel {
     ) -> Result<Vec<f64>, PreisachError> {
         let range = self.range_volt;
         let azimuths = uniform_azimuths_rad(steps_per_rev);
-        let commands: Vec<f64> = azimuths
-            .iter()
-            .map(|&psi| voltage_volt.value(psi))
-            .collect();
+        let commands: Vec<f64> = azimuths.iter().map(|&psi| voltage_volt.value(psi)).collect();
         let mut worst = (0.0, 0);
         for (index, &value) in commands.iter().enumerate() {
             let excess = range.excess_volt(value);
             if excess.is_nan() {
-                return Err(PreisachError::NotFinite {
-                    quantity: "voltage_volt",
-                    index,
-                    value,
-                });
+                return Err(PreisachError::NotFinite { quantity: "voltage_volt", index, value });
             }
             if excess > worst.0 {
                 worst = (excess, index);

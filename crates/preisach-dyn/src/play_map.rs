@@ -22,9 +22,7 @@ pub struct PlayMap {
 impl PlayMap {
     /// The map that is `constant` in every state.
     pub fn constant(grid: &PreisachGrid, constant: f64) -> Self {
-        let nodes = (0..grid.levels())
-            .map(|j| vec![0.0; grid.knots(j)])
-            .collect();
+        let nodes = (0..grid.levels()).map(|j| vec![0.0; grid.knots(j)]).collect();
         Self { constant, nodes }
     }
 
@@ -84,23 +82,13 @@ impl PlayMap {
             let found = self.nodes.get(play).map_or(0, Vec::len);
             let expected = grid.knots(play);
             if found != expected {
-                return Err(PreisachError::NodeCount {
-                    map,
-                    play,
-                    found,
-                    expected,
-                    levels,
-                });
+                return Err(PreisachError::NodeCount { map, play, found, expected, levels });
             }
         }
         let values = std::iter::once(&self.constant).chain(self.nodes.iter().flatten());
         for (index, &value) in values.enumerate() {
             if !value.is_finite() {
-                return Err(PreisachError::NotFinite {
-                    quantity: map,
-                    index,
-                    value,
-                });
+                return Err(PreisachError::NotFinite { quantity: map, index, value });
             }
         }
         Ok(())
@@ -108,20 +96,12 @@ impl PlayMap {
 
     /// Checks that the map never falls, up to rounding.
     pub(crate) fn check_rising(&self) -> Result<(), PreisachError> {
-        let size = self
-            .nodes
-            .iter()
-            .flatten()
-            .fold(0.0_f64, |m, v| m.max(v.abs()));
+        let size = self.nodes.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
         for (play, row) in self.nodes.iter().enumerate() {
             for (node, pair) in row.windows(2).enumerate() {
                 let fall_deg = pair[0] - pair[1];
                 if fall_deg > 1e-12 * size {
-                    return Err(PreisachError::NegativeDensity {
-                        play,
-                        node,
-                        fall_deg,
-                    });
+                    return Err(PreisachError::NegativeDensity { play, node, fall_deg });
                 }
             }
         }
@@ -137,10 +117,7 @@ impl PlayMap {
             .zip(&other.nodes)
             .map(|(p, q)| p.iter().zip(q).map(|(x, y)| a * x + b * y).collect())
             .collect();
-        Self {
-            constant: a * self.constant + b * other.constant,
-            nodes,
-        }
+        Self { constant: a * self.constant + b * other.constant, nodes }
     }
 
     /// Largest value over *all* reachable states, and a state that attains it.
@@ -202,17 +179,14 @@ impl PlayMap {
             .map(|j| {
                 let knots = levels - j + 1;
                 match self.nodes.get(j / factor) {
-                    Some(row) if j % factor == 0 => (0..knots)
-                        .map(|k| interpolate(row, k as f64 / factor as f64))
-                        .collect(),
+                    Some(row) if j % factor == 0 => {
+                        (0..knots).map(|k| interpolate(row, k as f64 / factor as f64)).collect()
+                    }
                     _ => vec![0.0; knots],
                 }
             })
             .collect();
-        Self {
-            constant: self.constant,
-            nodes,
-        }
+        Self { constant: self.constant, nodes }
     }
 }
 
@@ -280,15 +254,10 @@ mod tests {
     fn wavy(levels: usize, seed: f64) -> PlayMap {
         let nodes = (0..levels)
             .map(|j| {
-                (0..=levels - j)
-                    .map(|k| (seed * (3.1 * j as f64 + 1.7 * k as f64)).sin())
-                    .collect()
+                (0..=levels - j).map(|k| (seed * (3.1 * j as f64 + 1.7 * k as f64)).sin()).collect()
             })
             .collect();
-        PlayMap {
-            constant: 0.25,
-            nodes,
-        }
+        PlayMap { constant: 0.25, nodes }
     }
 
     /// Every staircase of knots, by brute force.
@@ -299,13 +268,11 @@ mod tests {
                 .into_iter()
                 .flat_map(|s| {
                     let x = s[j - 1];
-                    (x.saturating_sub(1)..=x)
-                        .filter(move |&y| y <= levels - j)
-                        .map(move |y| {
-                            let mut t = s.clone();
-                            t.push(y);
-                            t
-                        })
+                    (x.saturating_sub(1)..=x).filter(move |&y| y <= levels - j).map(move |y| {
+                        let mut t = s.clone();
+                        t.push(y);
+                        t
+                    })
                 })
                 .collect();
         }
@@ -317,16 +284,9 @@ mod tests {
         for (levels, seed) in [(1, 0.3), (4, 0.9), (7, 1.3), (8, 2.2)] {
             let map = wavy(levels, seed);
             let of = |s: &[usize]| -> f64 {
-                map.constant
-                    + s.iter()
-                        .zip(&map.nodes)
-                        .map(|(&k, row)| row[k])
-                        .sum::<f64>()
+                map.constant + s.iter().zip(&map.nodes).map(|(&k, row)| row[k]).sum::<f64>()
             };
-            let brute = staircases(levels)
-                .iter()
-                .map(|s| of(s))
-                .fold(f64::NEG_INFINITY, f64::max);
+            let brute = staircases(levels).iter().map(|s| of(s)).fold(f64::NEG_INFINITY, f64::max);
             let (value, state) = map.largest();
             assert_abs_diff_eq!(value, brute, epsilon = 1e-12);
             assert_abs_diff_eq!(value, of(&state), epsilon = 1e-12);
@@ -336,9 +296,8 @@ mod tests {
     #[test]
     fn rises_and_nodes_round_trip() {
         let g = grid(5);
-        let rises: Vec<Vec<f64>> = (0..5)
-            .map(|j| (0..5 - j).map(|k| f64::from(j + k)).collect())
-            .collect();
+        let rises: Vec<Vec<f64>> =
+            (0..5).map(|j| (0..5 - j).map(|k| f64::from(j + k)).collect()).collect();
         let map = PlayMap::from_rises(&g, 1.0, &rises).unwrap();
         for (got, want) in map.rises().iter().flatten().zip(rises.iter().flatten()) {
             assert_abs_diff_eq!(got, want, epsilon = 1e-12);

@@ -41,10 +41,7 @@ impl TryFrom<StaticFile> for StaticPreisach {
 
 impl From<StaticPreisach> for StaticFile {
     fn from(model: StaticPreisach) -> Self {
-        Self {
-            grid: model.grid,
-            g0_deg: model.map,
-        }
+        Self { grid: model.grid, g0_deg: model.map }
     }
 }
 

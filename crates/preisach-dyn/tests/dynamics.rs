@@ -1,12 +1,6 @@
 //! Dynamic Preisach, equation (5): exact special cases, order of accuracy, well-posedness.
-#![expect(
-    clippy::float_cmp,
-    reason = "results are claimed to be equal to the last bit"
-)]
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
-)]
+#![expect(clippy::float_cmp, reason = "results are claimed to be equal to the last bit")]
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
@@ -62,10 +56,7 @@ fn actuator(parameters: DynamicParameters) -> ActuatorModel {
     ActuatorModel {
         range_volt: parameters.grid.range(),
         law: ActuatorLaw::DynamicPreisach(DynamicPreisach::new(parameters).unwrap()),
-        calibration: Calibration {
-            deg_per_um: 0.04,
-            zero_um: 0.0,
-        },
+        calibration: Calibration { deg_per_um: 0.04, zero_um: 0.0 },
         trained: None,
     }
 }
@@ -132,10 +123,7 @@ fn a_constant_g1_is_a_first_order_lag_integrated_at_the_order_asked_for() {
         });
         for pair in errors.windows(2).skip(1) {
             let rate = (pair[0] / pair[1]).log2();
-            assert!(
-                (rate - expected).abs() < 0.1,
-                "{order:?}: {rate} ({errors:?})"
-            );
+            assert!((rate - expected).abs() < 0.1, "{order:?}: {rate} ({errors:?})");
         }
     }
 }
@@ -150,19 +138,12 @@ fn a_state_dependent_lag_converges_at_the_order_asked_for() {
         let model = actuator(parameters(order));
         let error = |per_cycle: u32| -> f64 {
             let outputs = refined_output(&model, per_cycle);
-            let squares: f64 = outputs
-                .iter()
-                .zip(&reference)
-                .map(|(a, b)| (a - b).powi(2))
-                .sum();
+            let squares: f64 = outputs.iter().zip(&reference).map(|(a, b)| (a - b).powi(2)).sum();
             (squares / outputs.len() as f64).sqrt()
         };
         let (coarse, fine) = (error(200), error(3200));
         let rate = (coarse / fine).log2() / 4.0;
-        assert!(
-            (rate - expected).abs() < 0.15,
-            "{order:?}: {rate} ({coarse:e} {fine:e})"
-        );
+        assert!((rate - expected).abs() < 0.15, "{order:?}: {rate} ({coarse:e} {fine:e})");
     }
 }
 
@@ -173,11 +154,7 @@ fn refined_output(model: &ActuatorModel, per_cycle: u32) -> Vec<f64> {
         .map(|i| 65.0 - 80.0 * (TAU * f64::from(i) / f64::from(per_cycle)).sin())
         .collect();
     let outputs = model.simulate(&volts, step_s).unwrap().output_deg;
-    outputs
-        .iter()
-        .step_by(per_cycle as usize / 50)
-        .copied()
-        .collect()
+    outputs.iter().step_by(per_cycle as usize / 50).copied().collect()
 }
 
 #[test]
@@ -217,14 +194,7 @@ fn the_step_satisfies_equation_5() {
         let d = (output - before) / step_s;
         assert_abs_diff_eq!(output, g0 + d * g1 + d * d * g2, epsilon = 1e-10);
     }
-    assert_eq!(
-        counts,
-        StepCounts {
-            steps: 2000,
-            g1_not_negative: 0,
-            folds: 0
-        }
-    );
+    assert_eq!(counts, StepCounts { steps: 2000, g1_not_negative: 0, folds: 0 });
 }
 
 #[test]
@@ -249,9 +219,7 @@ fn a_jump_of_the_voltage_folds_and_is_counted() {
     let p = parameters(TimeOrder::First);
     let g2_s2_per_deg = PlayMap::constant(&p.grid, 1.1e-5);
     let model = actuator(DynamicParameters { g2_s2_per_deg, ..p });
-    let volts: Vec<f64> = (0..100)
-        .map(|i| if i < 50 { -20.0 } else { 150.0 })
-        .collect();
+    let volts: Vec<f64> = (0..100).map(|i| if i < 50 { -20.0 } else { 150.0 }).collect();
     let simulation = model.simulate(&volts, 1e-4).unwrap();
     assert!(simulation.counts.folds > 0, "{:?}", simulation.counts);
     assert!(simulation.output_deg.iter().all(|y| y.is_finite()));
@@ -262,21 +230,14 @@ fn what_is_not_well_posed_is_refused_or_counted() {
     let p = parameters(TimeOrder::First);
     // G1 > 0 near the lower corner
     let mut g1_s = PlayMap::from_rises(&p.grid, 0.0, &rises(&p.grid, |_, _| -3e-4)).unwrap();
-    let broken = DynamicParameters {
-        g1_s: g1_s.clone(),
-        ..p.clone()
-    };
+    let broken = DynamicParameters { g1_s: g1_s.clone(), ..p.clone() };
     assert!(matches!(
         DynamicPreisach::new(broken.clone()),
         Err(PreisachError::NotWellPosed { largest_g1_s }) if largest_g1_s > 0.01
     ));
-    let literal = actuator(DynamicParameters {
-        form: RateForm::Literal,
-        ..broken
-    });
-    let volts: Vec<f64> = (0..500)
-        .map(|i| 65.0 - 80.0 * (TAU * f64::from(i) / 250.0).sin())
-        .collect();
+    let literal = actuator(DynamicParameters { form: RateForm::Literal, ..broken });
+    let volts: Vec<f64> =
+        (0..500).map(|i| 65.0 - 80.0 * (TAU * f64::from(i) / 250.0).sin()).collect();
     match literal.simulate(&volts, 4e-4) {
         Ok(simulation) => assert!(simulation.counts.g1_not_negative > 0),
         Err(error) => assert!(
@@ -288,10 +249,7 @@ fn what_is_not_well_posed_is_refused_or_counted() {
     g1_s.constant = -0.1;
     assert!(DynamicPreisach::new(DynamicParameters { g1_s, ..p.clone() }).is_ok());
     // folding below the promised rate
-    let early = DynamicParameters {
-        unfolded_rate_deg_s: 1e5,
-        ..p
-    };
+    let early = DynamicParameters { unfolded_rate_deg_s: 1e5, ..p };
     assert!(matches!(
         DynamicPreisach::new(early),
         Err(PreisachError::FoldsTooEarly { excess_s, .. }) if excess_s > 0.0
@@ -342,32 +300,16 @@ proptest! {
 fn bad_input_is_an_error_with_its_place() {
     let model = actuator(parameters(TimeOrder::Second));
     let error = model.simulate(&[65.0, 70.0, f64::NAN], 1e-3).unwrap_err();
-    assert!(
-        matches!(error, PreisachError::NotFinite { index: 2, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::NotFinite { index: 2, .. }), "{error}");
     let error = model.simulate(&[65.0, 70.0, 152.0], 1e-3).unwrap_err();
-    assert!(
-        matches!(error, PreisachError::VoltageOutOfRange { index: 2, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::VoltageOutOfRange { index: 2, .. }), "{error}");
     assert!(model.simulate(&[], 1e-3).is_err());
     assert!(model.simulate(&[65.0, 66.0], 0.0).is_err());
     assert!(model.simulate(&[65.0, 66.0], f64::NAN).is_err());
-    let mut foreign = linear_with_lag(0.02, TimeOrder::First)
-        .start(65.0, StartState::Rest)
-        .unwrap();
+    let mut foreign =
+        linear_with_lag(0.02, TimeOrder::First).start(65.0, StartState::Rest).unwrap();
     let error = model.step(&mut foreign, 65.0, 1e-3).unwrap_err();
-    assert!(
-        matches!(
-            error,
-            PreisachError::MemoryMismatch {
-                found: 4,
-                expected: 16
-            }
-        ),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::MemoryMismatch { found: 4, expected: 16 }), "{error}");
 }
 
 #[test]
@@ -377,9 +319,7 @@ fn models_and_memories_survive_being_stored() {
     let restored: ActuatorModel = serde_json::from_str(&text).unwrap();
     assert_eq!(restored, model);
     let mut memory = model.start(65.0, StartState::Rest).unwrap();
-    model
-        .continue_from(&mut memory, &[80.0, 20.0, 130.0], 1e-3)
-        .unwrap();
+    model.continue_from(&mut memory, &[80.0, 20.0, 130.0], 1e-3).unwrap();
     let stored = serde_json::to_string(&memory).unwrap();
     let mut taken_up = serde_json::from_str(&stored).unwrap();
     assert_eq!(memory, taken_up);
@@ -390,8 +330,6 @@ fn models_and_memories_survive_being_stored() {
     // what is stored is checked when it is read: a relaxation time below zero is refused
     let broken = text.replace("\"constant\":-0.02", "\"constant\":0.5");
     assert_ne!(broken, text);
-    let error = serde_json::from_str::<ActuatorModel>(&broken)
-        .unwrap_err()
-        .to_string();
+    let error = serde_json::from_str::<ActuatorModel>(&broken).unwrap_err().to_string();
     assert!(error.contains("G1 reaches"), "{error}");
 }

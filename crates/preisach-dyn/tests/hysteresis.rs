@@ -1,12 +1,6 @@
 //! Static Preisach: the properties that define it, and agreement of its three forms.
-#![expect(
-    clippy::float_cmp,
-    reason = "results are claimed to be equal to the last bit"
-)]
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
-)]
+#![expect(clippy::float_cmp, reason = "results are claimed to be equal to the last bit")]
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use preisach_dyn::{
     EverettStaircase, PlayMap, PlayMemory, PreisachGrid, StartState, StaticPreisach, VoltageRange,
@@ -171,12 +165,7 @@ fn relay_sum(model: &StaticPreisach, history: &[f64], per_cell: usize) -> Vec<f6
                 let s = grid.knot_volt(j, k) + middle * grid.cell_volt();
                 let r = grid.half_width_volt(j);
                 let weight = 0.5 * (pair[1] - pair[0]) / per_cell as f64;
-                relays.push(Relay {
-                    alpha: s + r,
-                    beta: s - r,
-                    weight,
-                    up: -1.0,
-                });
+                relays.push(Relay { alpha: s + r, beta: s - r, weight, up: -1.0 });
             }
         }
     }
@@ -192,10 +181,7 @@ fn relay_sum(model: &StaticPreisach, history: &[f64], per_cell: usize) -> Vec<f6
                 }
             }
             now = u;
-            base + relays
-                .iter()
-                .map(|relay| relay.weight * relay.up)
-                .sum::<f64>()
+            base + relays.iter().map(|relay| relay.weight * relay.up).sum::<f64>()
         })
         .collect()
 }
@@ -203,40 +189,24 @@ fn relay_sum(model: &StaticPreisach, history: &[f64], per_cell: usize) -> Vec<f6
 #[test]
 fn relays_converge_to_the_play_form_at_first_order() {
     let model = model(8);
-    let history: Vec<f64> = (0..400_u32)
-        .map(|i| 65.0 + 84.0 * (f64::from(i) * 0.7391).sin())
-        .collect();
+    let history: Vec<f64> =
+        (0..400_u32).map(|i| 65.0 + 84.0 * (f64::from(i) * 0.7391).sin()).collect();
     let mut memory = PlayMemory::new(model.grid(), LOW, StartState::RisingFromLowest);
-    let exact: Vec<f64> = history
-        .iter()
-        .map(|&u| model.apply(&mut memory, u))
-        .collect();
+    let exact: Vec<f64> = history.iter().map(|&u| model.apply(&mut memory, u)).collect();
     // a play is off by half a relay at most
     let rises = model.map().rises();
-    let half_relays: f64 = rises
-        .iter()
-        .map(|row| 0.5 * row.iter().fold(0.0_f64, |m, r| m.max(*r)))
-        .sum();
+    let half_relays: f64 =
+        rises.iter().map(|row| 0.5 * row.iter().fold(0.0_f64, |m, r| m.max(*r))).sum();
     let errors = [2, 8, 32, 128].map(|per_cell| {
         let relays = relay_sum(&model, &history, per_cell);
-        let squares: f64 = relays
-            .iter()
-            .zip(&exact)
-            .map(|(a, b)| (a - b).powi(2))
-            .sum();
+        let squares: f64 = relays.iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum();
         let error = (squares / exact.len() as f64).sqrt();
-        assert!(
-            error <= half_relays / per_cell as f64,
-            "{per_cell} relays: {error}"
-        );
+        assert!(error <= half_relays / per_cell as f64, "{per_cell} relays: {error}");
         error
     });
     for pair in errors.windows(2) {
         let ratio = pair[0] / pair[1];
-        assert!(
-            (3.0..5.5).contains(&ratio),
-            "four times the relays: {ratio} ({errors:?})"
-        );
+        assert!((3.0..5.5).contains(&ratio), "four times the relays: {ratio} ({errors:?})");
     }
 }
 
@@ -245,14 +215,8 @@ fn the_starting_states_are_what_they_say() {
     let model = model(17);
     let start = |u, state| PlayMemory::new(model.grid(), u, state);
     // coming up from the lower limit, down from the upper one
-    assert_eq!(
-        start(70.0, StartState::RisingFromLowest),
-        driven(&model, &[LOW, 70.0])
-    );
-    assert_eq!(
-        start(70.0, StartState::FallingFromHighest),
-        driven(&model, &[HIGH, 70.0])
-    );
+    assert_eq!(start(70.0, StartState::RisingFromLowest), driven(&model, &[LOW, 70.0]));
+    assert_eq!(start(70.0, StartState::FallingFromHighest), driven(&model, &[HIGH, 70.0]));
     // demagnetised: an alternating voltage dying away about 70 V leads close to rest at 70 V
     let swings = 4000;
     let dying: Vec<f64> = (0..swings)
@@ -264,10 +228,7 @@ fn the_starting_states_are_what_they_say() {
         .collect();
     let rested = model.output_deg(&start(70.0, StartState::Rest));
     let demagnetised = model.output_deg(&driven(&model, &dying));
-    assert!(
-        (rested - demagnetised).abs() < 5e-3,
-        "{rested} {demagnetised}"
-    );
+    assert!((rested - demagnetised).abs() < 5e-3, "{rested} {demagnetised}");
 }
 
 #[test]

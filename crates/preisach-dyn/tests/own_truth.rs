@@ -1,8 +1,5 @@
 //! Identification against truths made here: one inside the model class, one outside it.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
-)]
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use preisach_dyn::identify::{
     BenchRecord, Identification, RecordReport, RecordUse, Settings, Waveform, identify,
@@ -49,19 +46,12 @@ fn reversal_curves() -> Run {
     }
     let seconds = corners.last().unwrap().0;
     let voltage = move |t: f64| {
-        let pair = corners
-            .windows(2)
-            .find(|pair| t <= pair[1].0)
-            .unwrap_or(&corners[corners.len() - 2..]);
+        let pair =
+            corners.windows(2).find(|pair| t <= pair[1].0).unwrap_or(&corners[corners.len() - 2..]);
         let ((t0, u0), (t1, u1)) = (pair[0], pair[1]);
         u0 + (u1 - u0) * ((t - t0) / (t1 - t0)).clamp(0.0, 1.0)
     };
-    Run {
-        id: "reversal curves".into(),
-        seconds,
-        time_step_s: 5e-3,
-        voltage: Box::new(voltage),
-    }
+    Run { id: "reversal curves".into(), seconds, time_step_s: 5e-3, voltage: Box::new(voltage) }
 }
 
 fn mix() -> Run {
@@ -71,11 +61,7 @@ fn mix() -> Run {
         time_step_s: 1e-3,
         voltage: Box::new(|t| {
             let psi = TAU * 5.0 * t;
-            let fade = if t < 0.2 {
-                0.5 * (1.0 - (0.5 * psi).cos())
-            } else {
-                1.0
-            };
+            let fade = if t < 0.2 { 0.5 * (1.0 - (0.5 * psi).cos()) } else { 1.0 };
             BIAS_VOLT
                 + fade
                     * (30.0 * (2.0 * psi).sin()
@@ -104,11 +90,7 @@ fn bench(
     runs()
         .into_iter()
         .map(|run| {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "short"
-            )]
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "short")]
             let samples = (run.seconds / run.time_step_s).round() as u32;
             let fine_s = run.time_step_s / f64::from(FINER);
             let mut step = truth();
@@ -136,13 +118,7 @@ fn bench(
 fn rises(grid: &PreisachGrid, f: impl Fn(f64, f64) -> f64) -> Vec<Vec<f64>> {
     let n = grid.levels();
     let place = |j: usize, k: usize| ((2 * k + j + 1) as f64 / n as f64 - 1.0, j as f64 / n as f64);
-    (0..n)
-        .map(|j| {
-            (0..n - j)
-                .map(|k| f(place(j, k).0, place(j, k).1))
-                .collect()
-        })
-        .collect()
+    (0..n).map(|j| (0..n - j).map(|k| f(place(j, k).0, place(j, k).1)).collect()).collect()
 }
 
 /// A dynamic Preisach actuator on another number of levels than the identified one.
@@ -170,11 +146,7 @@ fn preisach_truth(g2_s2_per_deg: f64, unfolded_rate_deg_s: f64) -> Vec<BenchReco
             let (memory, history, counts) = state.get_or_insert_with(|| {
                 let memory = PlayMemory::new(model.grid(), u, StartState::Rest);
                 let output = model.maps(&memory)[0];
-                (
-                    memory,
-                    OutputHistory::at_rest(output),
-                    StepCounts::default(),
-                )
+                (memory, OutputHistory::at_rest(output), StepCounts::default())
             });
             model.step(memory, history, counts, u, step_s)
         })
@@ -203,19 +175,13 @@ fn dahl_truth(noise_deg: f64) -> Vec<BenchRecord> {
 }
 
 fn settings() -> Settings {
-    Settings {
-        levels: 16,
-        ..Settings::default()
-    }
+    Settings { levels: 16, ..Settings::default() }
 }
 
 fn worst<'a>(reports: impl Iterator<Item = &'a RecordReport>) -> (f64, f64) {
     reports.fold((0.0, 0.0), |(nrmse, phase), r| {
         let fit = r.dynamic;
-        (
-            fit.nrmse_percent().max(nrmse),
-            fit.phase_error_deg.unwrap_or(0.0).abs().max(phase),
-        )
+        (fit.nrmse_percent().max(nrmse), fit.phase_error_deg.unwrap_or(0.0).abs().max(phase))
     })
 }
 
@@ -224,13 +190,7 @@ fn is_fast(report: &RecordReport) -> bool {
 }
 
 fn slow_worst(identified: &Identification) -> f64 {
-    worst(
-        identified
-            .records
-            .iter()
-            .filter(|r| r.drive.strongest_hz() < 0.5),
-    )
-    .0
+    worst(identified.records.iter().filter(|r| r.drive.strongest_hz() < 0.5)).0
 }
 
 #[test]
@@ -238,18 +198,11 @@ fn a_truth_inside_the_class_is_found() {
     let identified = identify(&preisach_truth(3e-6, 500.0), &settings()).unwrap();
     let slow = slow_worst(&identified);
     let (trained, _) = worst(identified.records_of(RecordUse::Train));
-    let (fast, phase) = worst(
-        identified
-            .records_of(RecordUse::HeldOut)
-            .filter(|r| is_fast(r)),
-    );
+    let (fast, phase) = worst(identified.records_of(RecordUse::HeldOut).filter(|r| is_fast(r)));
     let (held_out, _) = worst(identified.records_of(RecordUse::HeldOut));
     assert!(slow <= 1.5, "0.2 Hz: {slow} %");
     assert!(trained <= 4.0, "trained: {trained} %");
-    assert!(
-        fast <= 6.0 && phase <= 2.0,
-        "15 and 20 Hz: {fast} %, {phase} deg"
-    );
+    assert!(fast <= 6.0 && phase <= 2.0, "15 and 20 Hz: {fast} %, {phase} deg");
     assert!(held_out <= 8.0, "held out: {held_out} %");
 }
 
@@ -266,26 +219,11 @@ fn a_truth_outside_the_class_is_approximated_and_noise_does_no_harm() {
             let floor = noise_deg / (squares / n).sqrt();
             let fit = report.dynamic;
             let missed = 100.0 * (fit.nrmse.powi(2) - floor.powi(2)).max(0.0).sqrt();
-            let bound = if report.record_use == RecordUse::Train {
-                4.0
-            } else {
-                8.0
-            };
-            assert!(
-                missed <= bound,
-                "{noise_deg} deg noise, {}: {missed} %",
-                report.id
-            );
+            let bound = if report.record_use == RecordUse::Train { 4.0 } else { 8.0 };
+            assert!(missed <= bound, "{noise_deg} deg noise, {}: {missed} %", report.id);
             let phase = fit.phase_error_deg.unwrap_or(0.0).abs();
-            assert!(
-                phase <= 2.0,
-                "{noise_deg} deg noise, {}: {phase} deg",
-                report.id
-            );
-            assert!(
-                !is_fast(report) || report.static_only.nrmse > 1.0,
-                "{report:?}"
-            );
+            assert!(phase <= 2.0, "{noise_deg} deg noise, {}: {phase} deg", report.id);
+            assert!(!is_fast(report) || report.static_only.nrmse > 1.0, "{report:?}");
         }
     }
 }
@@ -299,19 +237,10 @@ fn a_strong_quadratic_term_is_held_at_the_limit_of_the_reachable_states() {
     };
     let p = model.parameters();
     let covered = p.unfolded_rate_deg_s;
-    let room = |factor: f64| {
-        p.g1_s
-            .combined(1.0, &p.g2_s2_per_deg, 2.0 * covered * factor)
-            .largest()
-            .0
-    };
+    let room =
+        |factor: f64| p.g1_s.combined(1.0, &p.g2_s2_per_deg, 2.0 * covered * factor).largest().0;
     assert!(covered > 410.0, "{covered}");
-    assert!(
-        room(1.0) <= 0.0 && room(1.2) > 0.0,
-        "{} {}",
-        room(1.0),
-        room(1.2)
-    );
+    assert!(room(1.0) <= 0.0 && room(1.2) > 0.0, "{} {}", room(1.0), room(1.2));
 }
 
 #[test]
@@ -327,17 +256,8 @@ fn every_state_of_the_identified_model_is_well_posed() {
         let report = identified.records.iter().find(|r| r.id == id).unwrap();
         TAU * report.drive.base_hz * 5.0
     };
-    assert!(
-        p.unfolded_rate_deg_s > 1.2 * fastest("10 Hz 85 V"),
-        "{}",
-        p.unfolded_rate_deg_s
-    );
-    assert!(
-        identified
-            .records
-            .iter()
-            .all(|r| r.dynamic.counts.bad_steps() == 0)
-    );
+    assert!(p.unfolded_rate_deg_s > 1.2 * fastest("10 Hz 85 V"), "{}", p.unfolded_rate_deg_s);
+    assert!(identified.records.iter().all(|r| r.dynamic.counts.bad_steps() == 0));
 }
 
 #[test]
@@ -352,56 +272,29 @@ fn records_that_cannot_be_used_are_named() {
     let error = with(&|r| r[3].output_deg[7] = f64::NAN);
     assert!(matches!(&error, PreisachError::BadRecord { id, index: 7, .. } if *id == good[3].id));
     let error = with(&|r| r[0].voltage_volt[9] = 400.0);
-    assert!(
-        matches!(error, PreisachError::BadRecord { index: 9, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::BadRecord { index: 9, .. }), "{error}");
     let error = with(&|r| r[1].output_deg.iter_mut().for_each(|y| *y = 1.0));
     assert!(matches!(error, PreisachError::BadRecord { .. }), "{error}");
     let error = with(&|r| r[2].output_deg.truncate(100));
-    assert!(
-        matches!(error, PreisachError::UnequalColumns { outputs: 100, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::UnequalColumns { outputs: 100, .. }), "{error}");
     let error = with(&|r| r[2].time_step_s = f64::NAN);
-    assert!(
-        matches!(error, PreisachError::NotPositive { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::NotPositive { .. }), "{error}");
     let error = with(&|r| r[2].base_frequency_hz = Some(-5.0));
-    assert!(
-        matches!(error, PreisachError::NotPositive { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::NotPositive { .. }), "{error}");
     let error = with(&|r| r.retain(|r| !r.id.starts_with("1 ") && !r.id.starts_with("10 ")));
-    assert!(
-        matches!(error, PreisachError::NoTrainingRecord { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::NoTrainingRecord { .. }), "{error}");
     let error = with(&|r| r.retain(|r| r.id.contains("Hz") && !r.id.starts_with("0.2")));
-    assert!(
-        matches!(error, PreisachError::NoTrainingRecord { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::NoTrainingRecord { .. }), "{error}");
     let error = with(&|r| {
         let rest = r[0].voltage_volt[0];
         r[0].voltage_volt.iter_mut().for_each(|u| *u = rest);
         r.remove(1);
     });
-    assert!(
-        matches!(error, PreisachError::NoTrainingRecord { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::NoTrainingRecord { .. }), "{error}");
     assert!(identify(&[], &settings).is_err());
-    let odd = Settings {
-        rate_levels: 5,
-        ..settings
-    };
+    let odd = Settings { rate_levels: 5, ..settings };
     let error = identify(&good, &odd).unwrap_err();
-    assert!(
-        matches!(error, PreisachError::LevelsDoNotDivide { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, PreisachError::LevelsDoNotDivide { .. }), "{error}");
 }
 
 #[test]
@@ -415,14 +308,7 @@ fn what_a_record_says_about_its_use_goes_first() {
         };
     }
     let identified = identify(&records, &settings()).unwrap();
-    let use_of = |id: &str| {
-        identified
-            .records
-            .iter()
-            .find(|r| r.id == id)
-            .unwrap()
-            .record_use
-    };
+    let use_of = |id: &str| identified.records.iter().find(|r| r.id == id).unwrap().record_use;
     assert_eq!(use_of("10 Hz 85 V"), RecordUse::HeldOut);
     assert_eq!(use_of("5 Hz 55 V"), RecordUse::Train);
     assert_eq!(use_of("mix"), RecordUse::Train);

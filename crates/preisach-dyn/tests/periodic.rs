@@ -1,8 +1,5 @@
 //! Closed orbits against exact responses; bias, stroke limit, refused commands.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
-)]
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
@@ -45,10 +42,7 @@ fn wrap(law: ActuatorLaw) -> ActuatorModel {
     ActuatorModel {
         law,
         range_volt: VoltageRange::amplified_stack(),
-        calibration: Calibration {
-            deg_per_um: 0.04,
-            zero_um: 3.0,
-        },
+        calibration: Calibration { deg_per_um: 0.04, zero_um: 3.0 },
         trained: None,
     }
 }
@@ -71,18 +65,14 @@ fn dynamic(g0_deg: PlayMap, lag_s: f64) -> ActuatorModel {
 
 fn static_model() -> ActuatorModel {
     let grid = grid();
-    wrap(ActuatorLaw::StaticPreisach(
-        StaticPreisach::new(grid, hysteretic_map(&grid)).unwrap(),
-    ))
+    wrap(ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, hysteretic_map(&grid)).unwrap()))
 }
 
 #[test]
 fn the_linear_actuator_returns_the_command_scaled() {
     let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
     let volts = command(65.0, &[(2, 30.0, -10.0), (3, 5.0, 20.0), (4, 0.0, 12.0)]);
-    let response = model
-        .periodic_response(&volts, REV_HZ, &PeriodicSettings::default())
-        .unwrap();
+    let response = model.periodic_response(&volts, REV_HZ, &PeriodicSettings::default()).unwrap();
     let gain = 10.0 / 85.0;
     assert_abs_diff_eq!(response.flap_deg.mean, 0.0, epsilon = 1e-12);
     for n in 1..=24 {
@@ -101,10 +91,7 @@ fn a_lag_gives_each_harmonic_its_exact_amplitude_and_phase() {
     let model = dynamic(g0_deg, lag_s);
     let volts = command(65.0, &[(2, 30.0, 0.0), (3, 0.0, 30.0), (4, -10.0, 15.0)]);
     let worst = |steps_per_rev: usize| -> f64 {
-        let settings = PeriodicSettings {
-            steps_per_rev,
-            ..PeriodicSettings::default()
-        };
+        let settings = PeriodicSettings { steps_per_rev, ..PeriodicSettings::default() };
         let response = model.periodic_response(&volts, REV_HZ, &settings).unwrap();
         [2, 3, 4]
             .map(|n| {
@@ -144,13 +131,8 @@ fn a_static_orbit_closes_at_once_and_does_not_know_the_speed() {
 fn an_orbit_that_cannot_close_in_time_is_an_error() {
     let model = dynamic(hysteretic_map(&grid()), 1.0);
     let volts = command(65.0, &[(2, 0.0, 50.0)]);
-    let settings = PeriodicSettings {
-        largest_revolutions: 5,
-        ..PeriodicSettings::default()
-    };
-    let error = model
-        .periodic_response(&volts, REV_HZ, &settings)
-        .unwrap_err();
+    let settings = PeriodicSettings { largest_revolutions: 5, ..PeriodicSettings::default() };
+    let error = model.periodic_response(&volts, REV_HZ, &settings).unwrap_err();
     assert!(
         matches!(error, PreisachError::OrbitNotClosed { revolutions: 5, closure_deg, .. } if closure_deg > 1e-3),
         "{error}"
@@ -162,20 +144,14 @@ fn a_command_outside_the_range_is_an_error_with_its_azimuth() {
     let settings = PeriodicSettings::default();
     let model = static_model();
     let high = command(120.0, &[(1, 0.0, 40.0)]);
-    let error = model
-        .periodic_response(&high, REV_HZ, &settings)
-        .unwrap_err();
+    let error = model.periodic_response(&high, REV_HZ, &settings).unwrap_err();
     assert!(
         matches!(error, PreisachError::CommandOutOfRange { azimuth_deg, voltage_volt, .. }
             if (azimuth_deg - 90.0).abs() < 1e-9 && (voltage_volt - 160.0).abs() < 1e-9),
         "{error}"
     );
     let not_a_number = command(65.0, &[(1, f64::NAN, 0.0)]);
-    assert!(
-        model
-            .periodic_response(&not_a_number, REV_HZ, &settings)
-            .is_err()
-    );
+    assert!(model.periodic_response(&not_a_number, REV_HZ, &settings).is_err());
 }
 
 /// First-harmonic stroke at full scale about the middle of the range.
@@ -187,10 +163,7 @@ fn stroke_deg(model: &ActuatorModel, harmonic: usize, settings: &PeriodicSetting
 
 #[test]
 fn the_stroke_falls_with_frequency_as_the_lag_says() {
-    let settings = PeriodicSettings {
-        steps_per_rev: 1440,
-        ..PeriodicSettings::default()
-    };
+    let settings = PeriodicSettings { steps_per_rev: 1440, ..PeriodicSettings::default() };
     let (model, rigid) = (dynamic(hysteretic_map(&grid()), 0.02), static_model());
     let full = stroke_deg(&rigid, 2, &settings);
     for n in [2, 3, 4] {
@@ -203,10 +176,9 @@ fn the_stroke_falls_with_frequency_as_the_lag_says() {
 
 #[test]
 fn shifting_the_angle_leaves_the_displacement() {
-    for model in [
-        static_model(),
-        ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04),
-    ] {
+    for model in
+        [static_model(), ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04)]
+    {
         let moved = model.clone().shifted(-1.5);
         let volts = [65.0, 100.0, 30.0];
         let a = model.simulate(&volts, 1e-3).unwrap().output_deg;

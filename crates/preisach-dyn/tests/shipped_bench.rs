@@ -1,8 +1,5 @@
 //! Identification on the shipped bench set (synthetic, made by an independent generator).
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test stops at what it does not expect"
-)]
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 #![expect(clippy::disallowed_methods, reason = "tests read fixtures")]
 
 use preisach_dyn::identify::{
@@ -19,25 +16,15 @@ fn records() -> Vec<BenchRecord> {
     let folder =
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/bench/apa500l_synthetic");
     let list = std::fs::read_to_string(folder.join("dataset.ron")).unwrap();
-    assert!(
-        list.contains("flap_deg_per_um: 0.039537815"),
-        "the gain of the set has changed"
-    );
-    let files = list
-        .split("file: \"")
-        .skip(1)
-        .map(|rest| rest.split('"').next().unwrap());
+    assert!(list.contains("flap_deg_per_um: 0.039537815"), "the gain of the set has changed");
+    let files = list.split("file: \"").skip(1).map(|rest| rest.split('"').next().unwrap());
     files
         .map(|file| {
             let text = std::fs::read_to_string(folder.join(file)).unwrap();
             let rows: Vec<Vec<f64>> = text
                 .lines()
                 .skip(1)
-                .map(|line| {
-                    line.split(',')
-                        .map(|field| field.parse().unwrap())
-                        .collect()
-                })
+                .map(|line| line.split(',').map(|field| field.parse().unwrap()).collect())
                 .collect();
             let last = rows.len() - 1;
             BenchRecord {
@@ -53,17 +40,11 @@ fn records() -> Vec<BenchRecord> {
 }
 
 fn settings() -> Settings {
-    Settings {
-        deg_per_um: DEG_PER_UM,
-        ..Settings::default()
-    }
+    Settings { deg_per_um: DEG_PER_UM, ..Settings::default() }
 }
 
 fn identified_on(threads: usize) -> Identification {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| identify(&records(), &settings()).unwrap())
 }
 
@@ -72,10 +53,8 @@ static IDENTIFIED: LazyLock<Identification> = LazyLock::new(|| identified_on(2))
 
 #[test]
 fn the_split_is_by_experiment() {
-    let trained: Vec<&str> = IDENTIFIED
-        .records_of(RecordUse::Train)
-        .map(|r| r.id.as_str())
-        .collect();
+    let trained: Vec<&str> =
+        IDENTIFIED.records_of(RecordUse::Train).map(|r| r.id.as_str()).collect();
     let expected = [
         "major_0p2hz",
         "forc_from_150v",
@@ -96,10 +75,7 @@ fn commands_are_recognised() {
             let hz: f64 = hz.trim_end_matches("hz").parse().unwrap();
             let volt: f64 = volt.trim_end_matches('v').parse().unwrap();
             assert!((report.drive.base_hz / hz - 1.0).abs() < 1e-3, "{report:?}");
-            assert!(
-                (report.drive.amplitude_volt - volt).abs() < 0.1,
-                "{report:?}"
-            );
+            assert!((report.drive.amplitude_volt - volt).abs() < 0.1, "{report:?}");
             assert_eq!(report.drive.strongest_harmonic, 1);
         }
         if report.id.starts_with("mix") {
@@ -108,10 +84,7 @@ fn commands_are_recognised() {
         }
         // the noise of the set is 0.25 um
         if let (Some(noise), true) = (report.noise_deg, report.drive.base_hz < 1.5) {
-            assert!(
-                (0.9..1.5).contains(&(noise / (0.25 * DEG_PER_UM))),
-                "{report:?}"
-            );
+            assert!((0.9..1.5).contains(&(noise / (0.25 * DEG_PER_UM))), "{report:?}");
         }
     }
 }
@@ -119,12 +92,7 @@ fn commands_are_recognised() {
 #[test]
 fn trained_runs_fit_within_4_percent() {
     for report in IDENTIFIED.records_of(RecordUse::Train) {
-        assert!(
-            report.dynamic.nrmse_percent() <= 4.0,
-            "{}: {:?}",
-            report.id,
-            report.dynamic
-        );
+        assert!(report.dynamic.nrmse_percent() <= 4.0, "{}: {:?}", report.id, report.dynamic);
     }
 }
 
@@ -136,11 +104,7 @@ fn held_out_runs_are_predicted() {
         let bound = if fast { 10.0 } else { 15.0 };
         assert!(fit.nrmse_percent() <= bound, "{}: {fit:?}", report.id);
         if fast {
-            assert!(
-                fit.phase_error_deg.unwrap().abs() <= 3.0,
-                "{}: {fit:?}",
-                report.id
-            );
+            assert!(fit.phase_error_deg.unwrap().abs() <= 3.0, "{}: {fit:?}", report.id);
         }
     }
 }
@@ -148,46 +112,22 @@ fn held_out_runs_are_predicted() {
 #[test]
 fn the_static_model_is_visibly_wrong_at_speed() {
     for report in IDENTIFIED.records.iter().filter(|r| r.id.contains("15hz")) {
-        assert!(
-            report.static_only.nrmse > 0.5,
-            "{}: {:?}",
-            report.id,
-            report.static_only
-        );
-        assert!(
-            report.linear.nrmse > 0.5,
-            "{}: {:?}",
-            report.id,
-            report.linear
-        );
+        assert!(report.static_only.nrmse > 0.5, "{}: {:?}", report.id, report.static_only);
+        assert!(report.linear.nrmse > 0.5, "{}: {:?}", report.id, report.linear);
     }
-    let slow = IDENTIFIED
-        .records
-        .iter()
-        .find(|r| r.id == "major_0p2hz")
-        .unwrap();
-    assert!(
-        slow.static_only.nrmse < 0.02 && slow.linear.nrmse > 0.1,
-        "{slow:?}"
-    );
+    let slow = IDENTIFIED.records.iter().find(|r| r.id == "major_0p2hz").unwrap();
+    assert!(slow.static_only.nrmse < 0.02 && slow.linear.nrmse > 0.1, "{slow:?}");
 }
 
 #[test]
 fn no_step_folds_or_runs_away_and_the_refinement_helped() {
     for report in &IDENTIFIED.records {
         let counts = report.dynamic.counts;
-        assert!(
-            counts.steps > 0 && counts.bad_steps() == 0,
-            "{}: {counts:?}",
-            report.id
-        );
+        assert!(counts.steps > 0 && counts.bad_steps() == 0, "{}: {counts:?}", report.id);
     }
     let refinement = IDENTIFIED.refinement;
     assert_eq!(refinement.outcome, RefinementOutcome::Kept);
-    assert!(
-        refinement.nrmse_after < 0.95 * refinement.nrmse_before,
-        "{refinement:?}"
-    );
+    assert!(refinement.nrmse_after < 0.95 * refinement.nrmse_before, "{refinement:?}");
 }
 
 #[test]
@@ -197,17 +137,8 @@ fn stroke_zero_and_trained_range_are_those_of_the_bench() {
     let full_scale = |harmonic: usize, rev_hz: f64| {
         let mut volts = HarmonicSeries::zero(harmonic);
         volts.mean = 65.0;
-        volts.set_harmonic(
-            harmonic,
-            Harmonic {
-                cosine: 85.0,
-                sine: 0.0,
-            },
-        );
-        model
-            .periodic_response(&volts, rev_hz, &periodic)
-            .unwrap()
-            .flap_deg
+        volts.set_harmonic(harmonic, Harmonic { cosine: 85.0, sine: 0.0 });
+        model.periodic_response(&volts, rev_hz, &periodic).unwrap().flap_deg
     };
     let slow = full_scale(1, 0.2);
     let slow_deg = slow.harmonic(1).amplitude();
@@ -225,36 +156,15 @@ fn stroke_zero_and_trained_range_are_those_of_the_bench() {
 
 #[test]
 fn the_literal_form_reports_how_often_it_was_ill_posed() {
-    let literal = Settings {
-        form: RateForm::Literal,
-        ..settings()
-    };
+    let literal = Settings { form: RateForm::Literal, ..settings() };
     let identified = identify(&records(), &literal).unwrap();
-    let large = identified
-        .records
-        .iter()
-        .find(|r| r.id == "sine_10hz_85v")
-        .unwrap();
-    let same = IDENTIFIED
-        .records
-        .iter()
-        .find(|r| r.id == "sine_10hz_85v")
-        .unwrap();
+    let large = identified.records.iter().find(|r| r.id == "sine_10hz_85v").unwrap();
+    let same = IDENTIFIED.records.iter().find(|r| r.id == "sine_10hz_85v").unwrap();
     // near saturation its G1 goes through zero: a plain lag is outside equation (5) as printed
-    let ActuatorLaw::DynamicPreisach(model) = &identified.dynamic.law else {
-        panic!("law")
-    };
+    let ActuatorLaw::DynamicPreisach(model) = &identified.dynamic.law else { panic!("law") };
     assert!(model.parameters().g1_s.largest().0 > 0.0);
-    assert!(
-        large.dynamic.counts.g1_not_negative > 0,
-        "{:?}",
-        large.dynamic
-    );
-    assert!(
-        large.dynamic.nrmse > 3.0 * same.dynamic.nrmse,
-        "{:?}",
-        large.dynamic
-    );
+    assert!(large.dynamic.counts.g1_not_negative > 0, "{:?}", large.dynamic);
+    assert!(large.dynamic.nrmse > 3.0 * same.dynamic.nrmse, "{:?}", large.dynamic);
 }
 
 #[test]

@@ -31,17 +31,12 @@ fn measure(c: &mut Criterion, name: &str, budget_ms: f64, mut run: impl FnMut())
             spent
         });
     });
-    println!(
-        "{name}: {mean_ms:.3} ms, {:.2} of the budget of {budget_ms} ms",
-        mean_ms / budget_ms
-    );
+    println!("{name}: {mean_ms:.3} ms, {:.2} of the budget of {budget_ms} ms", mean_ms / budget_ms);
 }
 
 /// Ten coupled oscillators at the paper rotor's frequencies with 1/rev coefficients.
 fn ten_modes() -> LinearPeriodic<impl Fn(f64) -> LinearCoefficients + Sync> {
-    let frequencies = [
-        1.126, 3.422, 7.667, 13.92, 0.701, 4.300, 10.90, 20.66, 4.588, 13.52,
-    ];
+    let frequencies = [1.126, 3.422, 7.667, 13.92, 0.701, 4.300, 10.90, 20.66, 4.588, 13.52];
     LinearPeriodic::new(DMatrix::identity(10, 10), move |psi: f64| {
         let square = DVector::from_iterator(10, frequencies.iter().map(|w| w * w));
         let mut stiffness = DMatrix::from_diagonal(&square);
@@ -50,31 +45,19 @@ fn ten_modes() -> LinearPeriodic<impl Fn(f64) -> LinearCoefficients + Sync> {
             stiffness[(i, i + 1)] += 0.1 * psi.cos();
             damping[(i + 1, i)] += 0.1 * psi.sin();
         }
-        LinearCoefficients {
-            damping,
-            stiffness,
-            load: DVector::from_element(10, psi.sin().exp()),
-        }
+        LinearCoefficients { damping, stiffness, load: DVector::from_element(10, psi.sin().exp()) }
     })
 }
 
 fn blade_modes(c: &mut Criterion) -> Result<(), FemError> {
-    let spec = BladeSpec {
-        pitch_rad: 0.14,
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 200.0)
-    };
+    let spec = BladeSpec { pitch_rad: 0.14, ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 200.0) };
     let blade = BladeProperties::new(spec)?;
     let count = ModeCount::default();
-    measure(
-        c,
-        "coupled modes, 10 elements, Coriolis terms",
-        50.0,
-        || {
-            let found = BladeModel::new(blade.clone(), 10)
-                .and_then(|model| modes(&model, GyroscopicTerms::Included, count));
-            black_box(found.is_ok());
-        },
-    );
+    measure(c, "coupled modes, 10 elements, Coriolis terms", 50.0, || {
+        let found = BladeModel::new(blade.clone(), 10)
+            .and_then(|model| modes(&model, GyroscopicTerms::Included, count));
+        black_box(found.is_ok());
+    });
     measure(c, "uncoupled modes, 10 elements", 2.0, || {
         black_box(uncoupled_modes(&blade, 10, count).is_ok());
     });

@@ -26,11 +26,7 @@ pub(crate) struct Anderson {
 impl Anderson {
     /// Mixing of `depth` earlier steps; depth 0 leaves steps as they are.
     pub(crate) fn new(depth: usize) -> Self {
-        Self {
-            depth,
-            last: None,
-            differences: VecDeque::new(),
-        }
+        Self { depth, last: None, differences: VecDeque::new() }
     }
 
     /// Forgets all earlier steps.

@@ -15,10 +15,7 @@ pub(crate) fn element_edges(
     elements: usize,
 ) -> Result<Vec<f64>, FemError> {
     if !(1..=MAX_ELEMENTS).contains(&elements) {
-        return Err(FemError::ElementCount {
-            found: elements,
-            most: MAX_ELEMENTS,
-        });
+        return Err(FemError::ElementCount { found: elements, most: MAX_ELEMENTS });
     }
     let root = blade.spec().root_offset;
     let edge = |i: usize| root + (1.0 - root) * i as f64 / elements as f64;
@@ -35,10 +32,7 @@ pub(crate) fn locate(edges: &[f64], x: f64) -> Result<Option<(usize, f64)>, FemE
     if x < edges[0] {
         return Ok(None);
     }
-    let e = edges
-        .partition_point(|edge| *edge <= x)
-        .clamp(1, edges.len() - 1)
-        - 1;
+    let e = edges.partition_point(|edge| *edge <= x).clamp(1, edges.len() - 1) - 1;
     Ok(Some((e, (x - edges[e]) / (edges[e + 1] - edges[e]))))
 }
 
@@ -143,11 +137,7 @@ impl BladeModel {
 
     /// Indices of the free degrees of freedom of one family, ascending.
     pub fn free_of(&self, kind: ModeKind) -> Vec<usize> {
-        self.free
-            .iter()
-            .copied()
-            .filter(|&i| dof_kind(i) == kind)
-            .collect()
+        self.free.iter().copied().filter(|&i| dof_kind(i) == kind).collect()
     }
 
     /// Motion of the section at station r/R for a vector over all 9 n + 6 degrees of freedom; at rest

@@ -69,10 +69,9 @@ impl Distribution {
                 }
                 None => values.first().copied().unwrap_or(0.0),
             },
-            Self::PiecewiseConstant { edges, values } => segment(edges, station)
-                .and_then(|i| values.get(i))
-                .copied()
-                .unwrap_or(0.0),
+            Self::PiecewiseConstant { edges, values } => {
+                segment(edges, station).and_then(|i| values.get(i)).copied().unwrap_or(0.0)
+            }
         }
     }
 
@@ -80,9 +79,7 @@ impl Distribution {
     pub fn slope(&self, station: f64) -> f64 {
         match self {
             Self::PiecewiseLinear { stations, values } => segment(stations, station)
-                .map_or(0.0, |i| {
-                    (values[i + 1] - values[i]) / (stations[i + 1] - stations[i])
-                }),
+                .map_or(0.0, |i| (values[i + 1] - values[i]) / (stations[i + 1] - stations[i])),
             Self::Uniform(_) | Self::PiecewiseConstant { .. } => 0.0,
         }
     }
@@ -91,9 +88,7 @@ impl Distribution {
     pub fn breaks(&self) -> &[f64] {
         match self {
             Self::Uniform(_) => &[],
-            Self::PiecewiseLinear {
-                stations: breaks, ..
-            }
+            Self::PiecewiseLinear { stations: breaks, .. }
             | Self::PiecewiseConstant { edges: breaks, .. } => breaks,
         }
     }
@@ -102,10 +97,7 @@ impl Distribution {
     fn entries(&self) -> Vec<(f64, f64)> {
         match self {
             Self::Uniform(value) => vec![(0.0, *value)],
-            Self::PiecewiseLinear {
-                stations: at,
-                values,
-            }
+            Self::PiecewiseLinear { stations: at, values }
             | Self::PiecewiseConstant { edges: at, values } => {
                 at.iter().copied().zip(values.iter().copied()).collect()
             }
@@ -150,22 +142,12 @@ impl Distribution {
             }
             let (from, to) = (stations[0], stations[stations.len() - 1]);
             if from > root + 1e-9 || to < 1.0 - 1e-9 {
-                return Err(FemError::TableGap {
-                    field,
-                    from,
-                    to,
-                    root,
-                });
+                return Err(FemError::TableGap { field, from, to, root });
             }
         }
         for (station, value) in self.entries() {
             if !allowed.admits(value) {
-                return Err(FemError::Property {
-                    field,
-                    station,
-                    value,
-                    expected: allowed.text(),
-                });
+                return Err(FemError::Property { field, station, value, expected: allowed.text() });
             }
         }
         Ok(())
@@ -175,12 +157,7 @@ impl Distribution {
 /// Index of the interval of `stations` that holds `x`, the nearest one outside; none without any.
 fn segment(stations: &[f64], x: f64) -> Option<usize> {
     let intervals = stations.len().checked_sub(1).filter(|n| *n > 0)?;
-    Some(
-        stations
-            .partition_point(|s| *s <= x)
-            .saturating_sub(1)
-            .min(intervals - 1),
-    )
+    Some(stations.partition_point(|s| *s <= x).saturating_sub(1).min(intervals - 1))
 }
 
 #[cfg(test)]
@@ -188,28 +165,20 @@ mod tests {
     use super::*;
 
     fn table() -> Distribution {
-        Distribution::PiecewiseLinear {
-            stations: vec![0.0, 0.4, 1.0],
-            values: vec![2.0, 1.0, 4.0],
-        }
+        Distribution::PiecewiseLinear { stations: vec![0.0, 0.4, 1.0], values: vec![2.0, 1.0, 4.0] }
     }
 
     #[test]
     fn lines_and_steps() {
         let lines = table();
-        for (x, value, slope) in [
-            (0.0, 2.0, -2.5),
-            (0.2, 1.5, -2.5),
-            (0.7, 2.5, 5.0),
-            (1.0, 4.0, 5.0),
-        ] {
+        for (x, value, slope) in
+            [(0.0, 2.0, -2.5), (0.2, 1.5, -2.5), (0.7, 2.5, 5.0), (1.0, 4.0, 5.0)]
+        {
             assert!((lines.value(x) - value).abs() < 1e-14, "{x}");
             assert!((lines.slope(x) - slope).abs() < 1e-13, "{x}");
         }
-        let steps = Distribution::PiecewiseConstant {
-            edges: vec![0.0, 0.4, 1.0],
-            values: vec![3.0, 5.0],
-        };
+        let steps =
+            Distribution::PiecewiseConstant { edges: vec![0.0, 0.4, 1.0], values: vec![3.0, 5.0] };
         for (x, value) in [(0.0, 3.0), (0.39, 3.0), (0.4, 5.0), (1.0, 5.0)] {
             assert!((steps.value(x) - value).abs() < 1e-14, "{x}");
         }
@@ -218,47 +187,22 @@ mod tests {
     #[test]
     fn bad_tables_are_named_with_their_station() {
         let check = |d: &Distribution| d.check("mass", 0.0, Allowed::Positive).unwrap_err();
-        let Distribution::PiecewiseLinear { stations, .. } = table() else {
-            unreachable!()
-        };
-        let bad_value = Distribution::PiecewiseLinear {
-            stations,
-            values: vec![1.0, -1.0, 1.0],
-        };
+        let Distribution::PiecewiseLinear { stations, .. } = table() else { unreachable!() };
+        let bad_value = Distribution::PiecewiseLinear { stations, values: vec![1.0, -1.0, 1.0] };
         let message = check(&bad_value).to_string();
-        assert!(
-            message.contains("mass") && message.contains("0.4"),
-            "{message}"
-        );
+        assert!(message.contains("mass") && message.contains("0.4"), "{message}");
 
         let order = Distribution::PiecewiseConstant {
             edges: vec![0.0, 0.5, 0.5, 1.0],
             values: vec![1.0; 3],
         };
-        assert!(matches!(
-            check(&order),
-            FemError::StationOrder { index: 2, .. }
-        ));
-        let gap = Distribution::PiecewiseConstant {
-            edges: vec![0.0, 0.5],
-            values: vec![1.0],
-        };
+        assert!(matches!(check(&order), FemError::StationOrder { index: 2, .. }));
+        let gap = Distribution::PiecewiseConstant { edges: vec![0.0, 0.5], values: vec![1.0] };
         assert!(matches!(check(&gap), FemError::TableGap { .. }));
-        let length = Distribution::PiecewiseConstant {
-            edges: vec![0.0, 1.0],
-            values: vec![1.0, 2.0],
-        };
-        assert!(matches!(
-            check(&length),
-            FemError::TableLength { expected: 1, .. }
-        ));
-        assert!(matches!(
-            check(&Distribution::Uniform(f64::NAN)),
-            FemError::Property { .. }
-        ));
-        assert!(matches!(
-            check(&Distribution::Uniform(0.0)),
-            FemError::Property { .. }
-        ));
+        let length =
+            Distribution::PiecewiseConstant { edges: vec![0.0, 1.0], values: vec![1.0, 2.0] };
+        assert!(matches!(check(&length), FemError::TableLength { expected: 1, .. }));
+        assert!(matches!(check(&Distribution::Uniform(f64::NAN)), FemError::Property { .. }));
+        assert!(matches!(check(&Distribution::Uniform(0.0)), FemError::Property { .. }));
     }
 }

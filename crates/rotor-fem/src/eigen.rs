@@ -22,10 +22,7 @@ fn to_faer(matrix: &DMatrix<f64>) -> Mat<f64> {
 
 /// Cholesky factor of a symmetric matrix, none unless it is positive definite.
 fn cholesky(matrix: &DMatrix<f64>) -> Option<Mat<f64>> {
-    to_faer(matrix)
-        .llt(Side::Lower)
-        .ok()
-        .map(|factor| factor.L().to_owned())
+    to_faer(matrix).llt(Side::Lower).ok().map(|factor| factor.L().to_owned())
 }
 
 /// `L^-1 A` in place.
@@ -60,13 +57,10 @@ pub(crate) fn symmetric(
     shift: f64,
 ) -> Result<Vec<EigenPair<f64>>, FemError> {
     let size = mass.nrows();
-    let lower = cholesky(&(stiffness + mass * shift)).ok_or(FemError::NotStable {
-        squared_frequency: -shift,
-    })?;
+    let lower = cholesky(&(stiffness + mass * shift))
+        .ok_or(FemError::NotStable { squared_frequency: -shift })?;
     let reduced = congruence(&lower, mass, &lower);
-    let eigen = reduced
-        .self_adjoint_eigen(Side::Lower)
-        .map_err(|_| FemError::Eigen { size })?;
+    let eigen = reduced.self_adjoint_eigen(Side::Lower).map_err(|_| FemError::Eigen { size })?;
     let mut vectors = eigen.U().to_owned();
     solve_upper(&lower, &mut vectors);
     let mu = eigen.S().column_vector();
@@ -81,9 +75,7 @@ pub(crate) fn symmetric(
     if let Some(first) = pairs.first_mut() {
         // round-off of a rigid motion, against a true divergence
         if first.squared_frequency < -1e-9 * shift {
-            return Err(FemError::NotStable {
-                squared_frequency: first.squared_frequency,
-            });
+            return Err(FemError::NotStable { squared_frequency: first.squared_frequency });
         }
     }
     for pair in &mut pairs {
@@ -111,9 +103,7 @@ pub(crate) fn gyroscopic(
     lowest_squared_frequency: f64,
 ) -> Result<Vec<EigenPair<Complex<f64>>>, FemError> {
     let size = mass.nrows();
-    let unstable = FemError::NotStable {
-        squared_frequency: lowest_squared_frequency,
-    };
+    let unstable = FemError::NotStable { squared_frequency: lowest_squared_frequency };
     let (Some(lm), Some(lk)) = (cholesky(mass), cholesky(stiffness)) else {
         return Err(unstable);
     };
@@ -150,10 +140,7 @@ pub(crate) fn gyroscopic(
             let raw = DVector::from_fn(size, |i, _| {
                 Complex::new(halves[(i, 2 * k)], halves[(i, 2 * k + 1)])
             });
-            EigenPair {
-                squared_frequency: frequencies[k].re.powi(2),
-                vector: unit_mass(mass, raw),
-            }
+            EigenPair { squared_frequency: frequencies[k].re.powi(2), vector: unit_mass(mass, raw) }
         })
         .collect();
     pairs.sort_by(|a, b| a.squared_frequency.total_cmp(&b.squared_frequency));
@@ -186,11 +173,8 @@ mod tests {
         for phase in [0.4, 1.2, -0.9] {
             let turned = unit_mass(&mass, &shape * Complex::from_polar(7.0, phase));
             // the sign stays open: the mode fixes it by its tip
-            let gap = [1.0, -1.0].map(|sign| {
-                (&turned * Complex::from(sign) - &expected)
-                    .map(Complex::norm)
-                    .amax()
-            });
+            let gap = [1.0, -1.0]
+                .map(|sign| (&turned * Complex::from(sign) - &expected).map(Complex::norm).amax());
             let gap = gap[0].min(gap[1]);
             assert!(gap < 1e-14, "{phase}: {gap:e}");
         }

@@ -32,18 +32,11 @@ pub(crate) fn element_matrices(blade: &BladeProperties, from: f64, to: f64) -> E
         stiffness: ElementMatrix::zeros(),
         gyroscopic: ElementMatrix::zeros(),
     };
-    let inner = blade
-        .breaks()
-        .iter()
-        .copied()
-        .filter(|b| *b > from && *b < to);
+    let inner = blade.breaks().iter().copied().filter(|b| *b > from && *b < to);
     let ends: Vec<f64> = [from].into_iter().chain(inner).chain([to]).collect();
     let rule = gauss_legendre(GAUSS_POINTS);
     for stretch in ends.windows(2) {
-        let (half, mid) = (
-            0.5 * (stretch[1] - stretch[0]),
-            0.5 * (stretch[1] + stretch[0]),
-        );
+        let (half, mid) = (0.5 * (stretch[1] - stretch[0]), 0.5 * (stretch[1] + stretch[0]));
         for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
             let station = mid + half * node;
             let rows = Rows::at((station - from) / (to - from), to - from);

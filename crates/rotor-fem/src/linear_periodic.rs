@@ -61,11 +61,7 @@ impl<F: Fn(f64) -> LinearCoefficients + Sync> PeriodicSystem for LinearPeriodic<
         let tangent = |&psi: &f64| {
             let c = (self.coefficients)(psi);
             let dqdd = DMatrix::zeros(self.dof(), self.dof());
-            LocalTangent {
-                dq: c.stiffness,
-                dqd: c.damping,
-                dqdd,
-            }
+            LocalTangent { dq: c.stiffness, dqd: c.damping, dqdd }
         };
         Ok(orbit.azimuth_rad.iter().map(tangent).collect())
     }

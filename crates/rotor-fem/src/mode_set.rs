@@ -25,12 +25,7 @@ pub struct ModeCount {
 impl Default for ModeCount {
     /// Four flap, four lag and two torsion modes, as in the paper.
     fn default() -> Self {
-        Self {
-            flap: 4,
-            lag: 4,
-            torsion: 2,
-            axial: 0,
-        }
+        Self { flap: 4, lag: 4, torsion: 2, axial: 0 }
     }
 }
 
@@ -153,10 +148,7 @@ impl ModeSet {
     /// # Errors
     /// [`FemError::Station`] for a station outside 0 to 1.
     pub fn sample(&self, stations: &[f64]) -> Result<Vec<Vec<[f64; 3]>>, FemError> {
-        self.modes
-            .iter()
-            .map(|mode| stations.iter().map(|x| mode.shape(*x)).collect())
-            .collect()
+        self.modes.iter().map(|mode| stations.iter().map(|x| mode.shape(*x)).collect()).collect()
     }
 }
 
@@ -188,17 +180,9 @@ pub fn uncoupled_modes(
         if wanted == 0 {
             continue;
         }
-        let free = if kind == ModeKind::Axial {
-            Vec::new()
-        } else {
-            model.free_of(kind)
-        };
+        let free = if kind == ModeKind::Axial { Vec::new() } else { model.free_of(kind) };
         if free.len() < wanted {
-            return Err(FemError::TooFewModes {
-                kind,
-                wanted,
-                available: free.len(),
-            });
+            return Err(FemError::TooFewModes { kind, wanted, available: free.len() });
         }
         let mass = restrict(model.mass(), &free);
         let stiffness = restrict(model.stiffness(), &free);
@@ -218,9 +202,7 @@ pub fn uncoupled_modes(
                 per_rev: frequency / blade.spec().rotor_speed,
                 modal_mass: (tip * tip).recip(),
                 edges: Arc::clone(&edges),
-                nodal: (0..elements)
-                    .map(|e| element_values(kind, e, &all, tip))
-                    .collect(),
+                nodal: (0..elements).map(|e| element_values(kind, e, &all, tip)).collect(),
             });
         }
     }

@@ -105,32 +105,20 @@ pub fn modes(
             let gyro = restrict(model.gyroscopic(), free);
             let lowest = real.first().map_or(0.0, |pair| pair.squared_frequency);
             let floor = NEUTRAL * shift(model.properties());
-            let firm = if lowest < floor {
-                stiffness + &mass * floor
-            } else {
-                stiffness
-            };
+            let firm = if lowest < floor { stiffness + &mass * floor } else { stiffness };
             gyroscopic(&mass, &gyro, &firm, lowest)?
         }
     };
-    let classified: Vec<(EnergyShares, EigenPair<Complex<f64>>)> = pairs
-        .into_iter()
-        .map(|pair| (shares(free, &mass, &pair.vector), pair))
-        .collect();
+    let classified: Vec<(EnergyShares, EigenPair<Complex<f64>>)> =
+        pairs.into_iter().map(|pair| (shares(free, &mass, &pair.vector), pair)).collect();
 
     let mut chosen = Vec::with_capacity(count.total());
     for kind in ModeKind::ALL {
-        let family: Vec<_> = classified
-            .iter()
-            .filter(|(energy, _)| energy.leader() == kind)
-            .collect();
+        let family: Vec<_> =
+            classified.iter().filter(|(energy, _)| energy.leader() == kind).collect();
         if family.len() < count.of(kind) {
             let (wanted, available) = (count.of(kind), family.len());
-            return Err(FemError::TooFewModes {
-                kind,
-                wanted,
-                available,
-            });
+            return Err(FemError::TooFewModes { kind, wanted, available });
         }
         for (index, (energy, pair)) in family.into_iter().take(count.of(kind)).enumerate() {
             chosen.push(mode(model, kind, index + 1, *energy, pair));
@@ -163,19 +151,13 @@ pub fn fan_plot(
         .iter()
         .map(|&rotor_speed| {
             let model = BladeModel::new(blade.with_rotor_speed(rotor_speed)?, elements)?;
-            Ok(FanPoint {
-                rotor_speed,
-                modes: modes(&model, terms, count)?,
-            })
+            Ok(FanPoint { rotor_speed, modes: modes(&model, terms, count)? })
         })
         .collect()
 }
 
 fn to_complex(pair: &EigenPair<f64>) -> EigenPair<Complex<f64>> {
-    EigenPair {
-        squared_frequency: pair.squared_frequency,
-        vector: pair.vector.map(Complex::from),
-    }
+    EigenPair { squared_frequency: pair.squared_frequency, vector: pair.vector.map(Complex::from) }
 }
 
 /// Kinetic energy of each family over the whole; the mass matrix does not couple families.
@@ -183,11 +165,7 @@ fn shares(free: &[usize], mass: &DMatrix<f64>, vector: &DVector<Complex<f64>>) -
     let energy = |kind: ModeKind| -> f64 {
         let only = |part: fn(&Complex<f64>) -> f64| {
             DVector::from_fn(free.len(), |i, _| {
-                if dof_kind(free[i]) == kind {
-                    part(&vector[i])
-                } else {
-                    0.0
-                }
+                if dof_kind(free[i]) == kind { part(&vector[i]) } else { 0.0 }
             })
         };
         let (re, im) = (only(|z| z.re), only(|z| z.im));
@@ -196,12 +174,7 @@ fn shares(free: &[usize], mass: &DMatrix<f64>, vector: &DVector<Complex<f64>>) -
     let parts = ModeKind::ALL.map(energy);
     let whole: f64 = parts.iter().sum();
     let [flap, lag, torsion, axial] = parts.map(|part| part / whole);
-    EnergyShares {
-        flap,
-        lag,
-        torsion,
-        axial,
-    }
+    EnergyShares { flap, lag, torsion, axial }
 }
 
 /// A mode over all degrees of freedom, the tip of its family moving in the positive direction.

@@ -21,21 +21,9 @@ const RELATIVE_FLOOR: f64 = 1e-9;
 /// Why a Newton matrix is unusable.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum NewtonMatrixError {
-    Shape {
-        what: &'static str,
-        found: usize,
-        expected: usize,
-    },
-    NotFinite {
-        dof: usize,
-        point: usize,
-    },
-    Resonance {
-        dof: usize,
-        per_rev: usize,
-        dynamic_stiffness: f64,
-        resolution: f64,
-    },
+    Shape { what: &'static str, found: usize, expected: usize },
+    NotFinite { dof: usize, point: usize },
+    Resonance { dof: usize, per_rev: usize, dynamic_stiffness: f64, resolution: f64 },
 }
 
 /// LU factors of the scaled Newton matrix.
@@ -50,9 +38,7 @@ pub(crate) struct Factorisation {
 
 impl std::fmt::Debug for Factorisation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Factorisation")
-            .field("dof", &self.dof())
-            .finish_non_exhaustive()
+        f.debug_struct("Factorisation").field("dof", &self.dof()).finish_non_exhaustive()
     }
 }
 
@@ -74,10 +60,7 @@ impl Factorisation {
                     weights[row / dof] * root_mass[row % dof] * root_mass[column % dof];
             }
         }
-        let this = Self {
-            lu: matrix.partial_piv_lu(),
-            root_mass,
-        };
+        let this = Self { lu: matrix.partial_piv_lu(), root_mass };
         this.refuse_resonance(time)?;
         Ok(this)
     }
@@ -94,9 +77,7 @@ impl Factorisation {
             -residual[(k % dof, k / dof)] / self.root_mass[k % dof]
         });
         self.lu.solve_in_place(x.as_mut());
-        DMatrix::from_fn(dof, residual.ncols(), |i, a| {
-            x[(a * dof + i, 0)] / self.root_mass[i]
-        })
+        DMatrix::from_fn(dof, residual.ncols(), |i, a| x[(a * dof + i, 0)] / self.root_mass[i])
     }
 
     /// Finds the motion with the least dynamic stiffness and refuses a resonance without damping.
@@ -108,9 +89,8 @@ impl Factorisation {
         let dof = self.dof();
         let size = dof * time.unknowns_per_dof();
         // any start does that is not orthogonal to the answer: the golden-ratio sequence
-        let mut y = Mat::from_fn(size, 1, |k, _| {
-            (0.5 + k as f64 * 0.618_033_988_749_895).fract() - 0.5
-        });
+        let mut y =
+            Mat::from_fn(size, 1, |k, _| (0.5 + k as f64 * 0.618_033_988_749_895).fract() - 0.5);
         let mut stiffness = f64::INFINITY;
         for _ in 0..INVERSE_ITERATIONS {
             let length = y.norm_l2();
@@ -126,22 +106,15 @@ impl Factorisation {
             }
             stiffness = growth.sqrt().recip();
         }
-        let motion = Orbit {
-            nodal: DMatrix::from_fn(dof, size / dof, |i, a| y[(a * dof + i, 0)]),
-        };
+        let motion = Orbit { nodal: DMatrix::from_fn(dof, size / dof, |i, a| y[(a * dof + i, 0)]) };
         let energy = |i: usize| motion.nodal.row(i).norm_squared();
-        let leader = (0..dof)
-            .max_by(|&i, &j| energy(i).total_cmp(&energy(j)))
-            .unwrap_or(0);
+        let leader = (0..dof).max_by(|&i, &j| energy(i).total_cmp(&energy(j))).unwrap_or(0);
         let series = motion.harmonics(time, leader, time.unknowns_per_dof() / 2);
         let per_rev = dominant_harmonic(&series);
         let resolution = harmonic_error(time, per_rev);
         let square = (per_rev * per_rev).max(1) as f64;
-        let margin = if resolution < RESOLVED * square {
-            RESOLUTION_MARGIN * resolution
-        } else {
-            0.0
-        };
+        let margin =
+            if resolution < RESOLVED * square { RESOLUTION_MARGIN * resolution } else { 0.0 };
         if stiffness < margin.max(RELATIVE_FLOOR * square) {
             return Err(NewtonMatrixError::Resonance {
                 dof: leader,
@@ -160,19 +133,9 @@ fn check(
     dof: usize,
     tangents: &[LocalTangent],
 ) -> Result<(), NewtonMatrixError> {
-    let shape = |what, found, expected| {
-        Err(NewtonMatrixError::Shape {
-            what,
-            found,
-            expected,
-        })
-    };
+    let shape = |what, found, expected| Err(NewtonMatrixError::Shape { what, found, expected });
     if tangents.len() != time.points().len() {
-        return shape(
-            "tangents of the revolution",
-            tangents.len(),
-            time.points().len(),
-        );
+        return shape("tangents of the revolution", tangents.len(), time.points().len());
     }
     for (point, tangent) in tangents.iter().enumerate() {
         for matrix in [&tangent.dq, &tangent.dqd, &tangent.dqdd] {
@@ -180,10 +143,7 @@ fn check(
                 return shape("entries of a tangent", matrix.len(), dof * dof);
             }
             if let Some(entry) = matrix.iter().position(|v| !v.is_finite()) {
-                return Err(NewtonMatrixError::NotFinite {
-                    dof: entry % dof,
-                    point,
-                });
+                return Err(NewtonMatrixError::NotFinite { dof: entry % dof, point });
             }
         }
     }

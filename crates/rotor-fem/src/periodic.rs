@@ -101,22 +101,12 @@ impl PeriodicSolver {
     /// [`FemError::SolverSetting`] for a tolerance or contraction that is not positive, no iteration,
     /// or a mixing depth outside 1 to 10.
     pub fn new(time: TimeElements, settings: PeriodicSettings) -> Result<Self, FemError> {
-        let bad = |name, value, expected| {
-            Err(FemError::SolverSetting {
-                name,
-                value,
-                expected,
-            })
-        };
+        let bad = |name, value, expected| Err(FemError::SolverSetting { name, value, expected });
         if !(settings.tolerance > 0.0 && settings.tolerance.is_finite()) {
             return bad("tolerance", settings.tolerance, "a positive number");
         }
         if !(settings.refresh_contraction > 0.0 && settings.refresh_contraction < 1.0) {
-            return bad(
-                "refresh_contraction",
-                settings.refresh_contraction,
-                "between 0 and 1",
-            );
+            return bad("refresh_contraction", settings.refresh_contraction, "between 0 and 1");
         }
         if settings.max_iterations == 0 {
             return bad("max_iterations", 0.0, "at least 1");
@@ -126,11 +116,7 @@ impl PeriodicSolver {
         {
             return bad("acceleration depth", depth as f64, "1 to 10");
         }
-        Ok(Self {
-            time,
-            settings,
-            factorisation: None,
-        })
+        Ok(Self { time, settings, factorisation: None })
     }
 
     /// The time mesh.
@@ -178,10 +164,7 @@ impl PeriodicSolver {
                     best: Box::new(best.1),
                 });
             }
-            let kept = self
-                .factorisation
-                .take()
-                .filter(|f| f.dof() == system.dof());
+            let kept = self.factorisation.take().filter(|f| f.dof() == system.dof());
             let factorisation = if let Some(kept) = kept {
                 kept
             } else {
@@ -244,19 +227,11 @@ impl PeriodicSolver {
             ("rows of the mass matrix", mass.nrows(), dof),
             ("columns of the mass matrix", mass.ncols(), dof),
             ("degrees of freedom of the start orbit", start.dof(), dof),
-            (
-                "time nodes of the start orbit",
-                start.nodal.ncols(),
-                self.time.unknowns_per_dof(),
-            ),
+            ("time nodes of the start orbit", start.nodal.ncols(), self.time.unknowns_per_dof()),
         ];
         for (what, found, expected) in sizes {
             if found != expected {
-                return Err(PeriodicError::Shape {
-                    what,
-                    found,
-                    expected,
-                });
+                return Err(PeriodicError::Shape { what, found, expected });
             }
         }
         let scale = mass.amax();
@@ -290,11 +265,7 @@ impl PeriodicSolver {
         let expected = (system.dof(), time.points().len());
         if force.shape() != expected {
             let (found, expected) = (force.len(), expected.0 * expected.1);
-            return Err(PeriodicError::Shape {
-                what: "entries of the residual",
-                found,
-                expected,
-            });
+            return Err(PeriodicError::Shape { what: "entries of the residual", found, expected });
         }
         let not_finite = |entry: usize, azimuth_rad: f64| PeriodicError::NotFinite {
             iteration,
@@ -322,18 +293,10 @@ impl PeriodicSolver {
             column /= *weight;
         }
         if let Some(entry) = residual.iter().position(|r| !r.is_finite()) {
-            return Err(not_finite(
-                entry,
-                time.node_azimuths_rad()[entry / system.dof()],
-            ));
+            return Err(not_finite(entry, time.node_azimuths_rad()[entry / system.dof()]));
         }
         let norm = residual.amax();
-        Ok(Iterate {
-            orbit,
-            samples,
-            residual,
-            norm,
-        })
+        Ok(Iterate { orbit, samples, residual, norm })
     }
 
     /// A new Newton matrix at an orbit.
@@ -347,32 +310,18 @@ impl PeriodicSolver {
             .tangents(&state.samples)
             .map_err(|source| PeriodicError::System { iteration, source })?;
         Factorisation::new(&self.time, system.mass(), &tangents).map_err(|error| match error {
-            NewtonMatrixError::Shape {
-                what,
-                found,
-                expected,
-            } => PeriodicError::Shape {
-                what,
-                found,
-                expected,
-            },
+            NewtonMatrixError::Shape { what, found, expected } => {
+                PeriodicError::Shape { what, found, expected }
+            }
             NewtonMatrixError::NotFinite { dof, point } => PeriodicError::NotFinite {
                 iteration,
                 dof,
                 azimuth_rad: self.time.points()[point],
                 best: Box::new(state.orbit.clone()),
             },
-            NewtonMatrixError::Resonance {
-                dof,
-                per_rev,
-                dynamic_stiffness,
-                resolution,
-            } => PeriodicError::Resonance {
-                dof,
-                per_rev,
-                dynamic_stiffness,
-                resolution,
-            },
+            NewtonMatrixError::Resonance { dof, per_rev, dynamic_stiffness, resolution } => {
+                PeriodicError::Resonance { dof, per_rev, dynamic_stiffness, resolution }
+            }
         })
     }
 
@@ -392,10 +341,7 @@ impl PeriodicSolver {
             match self.evaluate(system, Orbit { nodal }, iteration, &state.orbit) {
                 Ok(trial) if trial.norm < state.norm => return Ok(trial),
                 Ok(trial) => {
-                    if shortest
-                        .as_ref()
-                        .is_none_or(|best: &Iterate| trial.norm < best.norm)
-                    {
+                    if shortest.as_ref().is_none_or(|best: &Iterate| trial.norm < best.norm) {
                         shortest = Some(trial);
                     }
                 }

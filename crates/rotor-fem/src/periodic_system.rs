@@ -19,11 +19,7 @@ impl LocalTangent {
     /// The tangent of a load that does not depend on the motion.
     pub fn zero(dof: usize) -> Self {
         let zero = DMatrix::zeros(dof, dof);
-        Self {
-            dq: zero.clone(),
-            dqd: zero.clone(),
-            dqdd: zero,
-        }
+        Self { dq: zero.clone(), dqd: zero.clone(), dqdd: zero }
     }
 }
 

@@ -147,64 +147,26 @@ impl BladeProperties {
     /// [`FemError`] naming the field, station and value of the first fault found.
     pub fn new(spec: BladeSpec) -> Result<Self, FemError> {
         let ranges = [
-            (
-                "root_offset",
-                spec.root_offset,
-                0.0,
-                0.95,
-                "0 to 0.95 (r/R)",
-            ),
-            (
-                "rotor_speed",
-                spec.rotor_speed,
-                0.0,
-                1e6,
-                "0 to 1e6 times the nominal speed",
-            ),
+            ("root_offset", spec.root_offset, 0.0, 0.95, "0 to 0.95 (r/R)"),
+            ("rotor_speed", spec.rotor_speed, 0.0, 1e6, "0 to 1e6 times the nominal speed"),
             ("pitch_rad", spec.pitch_rad, -10.0, 10.0, "-10 to 10 rad"),
-            (
-                "precone_rad",
-                spec.precone_rad,
-                -0.8,
-                0.8,
-                "-0.8 to 0.8 rad",
-            ),
+            ("precone_rad", spec.precone_rad, -0.8, 0.8, "-0.8 to 0.8 rad"),
         ];
         for (field, value, least, most, expected) in ranges {
             if !(least..=most).contains(&value) {
-                return Err(FemError::Parameter {
-                    field,
-                    value,
-                    expected,
-                });
+                return Err(FemError::Parameter { field, value, expected });
             }
         }
         let root = spec.root_offset;
         let fields = [
             ("flap_stiffness", &spec.flap_stiffness, Allowed::Positive),
             ("lag_stiffness", &spec.lag_stiffness, Allowed::Positive),
-            (
-                "torsion_stiffness",
-                &spec.torsion_stiffness,
-                Allowed::Positive,
-            ),
+            ("torsion_stiffness", &spec.torsion_stiffness, Allowed::Positive),
             ("axial_stiffness", &spec.axial_stiffness, Allowed::Positive),
             ("mass", &spec.mass, Allowed::Positive),
-            (
-                "thickness_gyration_radius",
-                &spec.thickness_gyration_radius,
-                Allowed::NotNegative,
-            ),
-            (
-                "chord_gyration_radius",
-                &spec.chord_gyration_radius,
-                Allowed::Positive,
-            ),
-            (
-                "area_gyration_radius",
-                &spec.area_gyration_radius,
-                Allowed::NotNegative,
-            ),
+            ("thickness_gyration_radius", &spec.thickness_gyration_radius, Allowed::NotNegative),
+            ("chord_gyration_radius", &spec.chord_gyration_radius, Allowed::Positive),
+            ("area_gyration_radius", &spec.area_gyration_radius, Allowed::NotNegative),
         ];
         for (field, distribution, allowed) in fields {
             distribution.check(field, root, allowed)?;
@@ -225,11 +187,7 @@ impl BladeProperties {
             .collect();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-        let mut this = Self {
-            outboard_moment: vec![0.0; breaks.len()],
-            spec,
-            breaks,
-        };
+        let mut this = Self { outboard_moment: vec![0.0; breaks.len()], spec, breaks };
         for i in (1..this.breaks.len()).rev() {
             this.outboard_moment[i - 1] =
                 this.outboard_moment[i] + this.moment_between(this.breaks[i - 1], this.breaks[i]);
@@ -247,10 +205,7 @@ impl BladeProperties {
     /// # Errors
     /// [`FemError::Parameter`] beyond 10 rad or for a NaN.
     pub fn with_pitch_rad(&self, pitch_rad: f64) -> Result<Self, FemError> {
-        Self::new(BladeSpec {
-            pitch_rad,
-            ..self.spec.clone()
-        })
+        Self::new(BladeSpec { pitch_rad, ..self.spec.clone() })
     }
 
     /// The same blade at another rotor speed, over the nominal one.
@@ -258,24 +213,14 @@ impl BladeProperties {
     /// # Errors
     /// [`FemError::Parameter`] for a negative speed or a NaN.
     pub fn with_rotor_speed(&self, rotor_speed: f64) -> Result<Self, FemError> {
-        Self::new(BladeSpec {
-            rotor_speed,
-            ..self.spec.clone()
-        })
+        Self::new(BladeSpec { rotor_speed, ..self.spec.clone() })
     }
 
     /// The same blade at zero pitch, without twist and precone.
     pub(crate) fn straightened(&self) -> Self {
-        let spec = BladeSpec {
-            twist: Twist::NONE,
-            pitch_rad: 0.0,
-            precone_rad: 0.0,
-            ..self.spec.clone()
-        };
-        Self {
-            spec,
-            ..self.clone()
-        }
+        let spec =
+            BladeSpec { twist: Twist::NONE, pitch_rad: 0.0, precone_rad: 0.0, ..self.spec.clone() };
+        Self { spec, ..self.clone() }
     }
 
     /// Root, tip and every station between them where a property jumps or has a kink.
@@ -311,10 +256,7 @@ impl BladeProperties {
     /// Squares of the mass radii of gyration, `[k_m1^2, k_m2^2]`, over R^2.
     pub fn squared_mass_radii(&self, station: f64) -> [f64; 2] {
         let square = |d: &Distribution| d.value(station).powi(2);
-        [
-            square(&self.spec.thickness_gyration_radius),
-            square(&self.spec.chord_gyration_radius),
-        ]
+        [square(&self.spec.thickness_gyration_radius), square(&self.spec.chord_gyration_radius)]
     }
 
     /// Square of the polar mass radius of gyration, `k_m^2 = k_m1^2 + k_m2^2`, over R^2.
@@ -387,17 +329,11 @@ mod tests {
         for x in [0.0_f64, 0.3, 0.77, 1.0] {
             assert_abs_diff_eq!(uniform.tension(x), 0.5 * (1.0 - x * x), epsilon = 1e-15);
         }
-        let mass = Distribution::PiecewiseConstant {
-            edges: vec![0.1, 0.6, 1.0],
-            values: vec![2.0, 1.0],
-        };
-        let stepped = BladeProperties::new(BladeSpec {
-            mass,
-            root_offset: 0.1,
-            rotor_speed: 2.0,
-            ..spec()
-        })
-        .unwrap();
+        let mass =
+            Distribution::PiecewiseConstant { edges: vec![0.1, 0.6, 1.0], values: vec![2.0, 1.0] };
+        let stepped =
+            BladeProperties::new(BladeSpec { mass, root_offset: 0.1, rotor_speed: 2.0, ..spec() })
+                .unwrap();
         let exact = |x: f64| 4.0 * (0.5 * (1.0 - x.max(0.6).powi(2)) + (0.36 - x.min(0.6).powi(2)));
         for x in [0.1, 0.3, 0.6, 0.9, 1.0] {
             assert_abs_diff_eq!(stepped.tension(x), exact(x), epsilon = 1e-14);
@@ -408,43 +344,13 @@ mod tests {
     fn bad_blades_are_named() {
         let message = |spec: BladeSpec| BladeProperties::new(spec).unwrap_err().to_string();
         assert!(
-            message(BladeSpec {
-                lag_stiffness: (-1.0).into(),
-                ..spec()
-            })
-            .contains("lag_stiff")
+            message(BladeSpec { lag_stiffness: (-1.0).into(), ..spec() }).contains("lag_stiff")
         );
-        assert!(
-            message(BladeSpec {
-                mass: 0.0.into(),
-                ..spec()
-            })
-            .contains("mass")
-        );
-        assert!(
-            message(BladeSpec {
-                root_offset: 1.0,
-                ..spec()
-            })
-            .contains("root_offset")
-        );
-        assert!(
-            message(BladeSpec {
-                pitch_rad: f64::NAN,
-                ..spec()
-            })
-            .contains("pitch_rad")
-        );
-        assert!(
-            message(BladeSpec {
-                rotor_speed: -1.0,
-                ..spec()
-            })
-            .contains("rotor_speed")
-        );
-        let twist = Twist::Linear {
-            rate_rad: f64::INFINITY,
-        };
+        assert!(message(BladeSpec { mass: 0.0.into(), ..spec() }).contains("mass"));
+        assert!(message(BladeSpec { root_offset: 1.0, ..spec() }).contains("root_offset"));
+        assert!(message(BladeSpec { pitch_rad: f64::NAN, ..spec() }).contains("pitch_rad"));
+        assert!(message(BladeSpec { rotor_speed: -1.0, ..spec() }).contains("rotor_speed"));
+        let twist = Twist::Linear { rate_rad: f64::INFINITY };
         assert!(message(BladeSpec { twist, ..spec() }).contains("twist"));
     }
 }

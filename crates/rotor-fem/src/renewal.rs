@@ -35,14 +35,7 @@ pub(crate) struct Renewal {
 
 impl Renewal {
     pub(crate) fn new(limit: f64) -> Self {
-        Self {
-            limit,
-            age: None,
-            patience: PATIENCE,
-            factorisations: 0,
-            stalled: 0,
-            careful: false,
-        }
+        Self { limit, age: None, patience: PATIENCE, factorisations: 0, stalled: 0, careful: false }
     }
 
     /// Notes that a new matrix was made.

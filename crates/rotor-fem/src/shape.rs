@@ -33,21 +33,9 @@ pub(crate) fn hermite(s: f64, length: f64) -> [[f64; 3]; 4] {
     let l = length;
     let (s2, s3) = (s * s, s * s * s);
     [
-        [
-            1.0 - 3.0 * s2 + 2.0 * s3,
-            (6.0 * s2 - 6.0 * s) / l,
-            (12.0 * s - 6.0) / (l * l),
-        ],
-        [
-            l * (s - 2.0 * s2 + s3),
-            1.0 - 4.0 * s + 3.0 * s2,
-            (6.0 * s - 4.0) / l,
-        ],
-        [
-            3.0 * s2 - 2.0 * s3,
-            (6.0 * s - 6.0 * s2) / l,
-            (6.0 - 12.0 * s) / (l * l),
-        ],
+        [1.0 - 3.0 * s2 + 2.0 * s3, (6.0 * s2 - 6.0 * s) / l, (12.0 * s - 6.0) / (l * l)],
+        [l * (s - 2.0 * s2 + s3), 1.0 - 4.0 * s + 3.0 * s2, (6.0 * s - 4.0) / l],
+        [3.0 * s2 - 2.0 * s3, (6.0 * s - 6.0 * s2) / l, (6.0 - 12.0 * s) / (l * l)],
         [l * (s3 - s2), 3.0 * s2 - 2.0 * s, (6.0 * s - 2.0) / l],
     ]
 }
@@ -56,22 +44,10 @@ pub(crate) fn hermite(s: f64, length: f64) -> [[f64; 3]; 4] {
 pub(crate) fn cubic(s: f64, length: f64) -> [[f64; 2]; 4] {
     let (s2, s3) = (s * s, s * s * s);
     [
-        [
-            1.0 - 5.5 * s + 9.0 * s2 - 4.5 * s3,
-            (-5.5 + 18.0 * s - 13.5 * s2) / length,
-        ],
-        [
-            9.0 * s - 22.5 * s2 + 13.5 * s3,
-            (9.0 - 45.0 * s + 40.5 * s2) / length,
-        ],
-        [
-            -4.5 * s + 18.0 * s2 - 13.5 * s3,
-            (-4.5 + 36.0 * s - 40.5 * s2) / length,
-        ],
-        [
-            s - 4.5 * s2 + 4.5 * s3,
-            (1.0 - 9.0 * s + 13.5 * s2) / length,
-        ],
+        [1.0 - 5.5 * s + 9.0 * s2 - 4.5 * s3, (-5.5 + 18.0 * s - 13.5 * s2) / length],
+        [9.0 * s - 22.5 * s2 + 13.5 * s3, (9.0 - 45.0 * s + 40.5 * s2) / length],
+        [-4.5 * s + 18.0 * s2 - 13.5 * s3, (-4.5 + 36.0 * s - 40.5 * s2) / length],
+        [s - 4.5 * s2 + 4.5 * s3, (1.0 - 9.0 * s + 13.5 * s2) / length],
     ]
 }
 
@@ -112,11 +88,7 @@ impl Rows {
                 row[i] = value;
             }
         }
-        for ((i, j), shape) in place::LAG
-            .into_iter()
-            .zip(place::FLAP)
-            .zip(hermite(s, length))
-        {
+        for ((i, j), shape) in place::LAG.into_iter().zip(place::FLAP).zip(hermite(s, length)) {
             for (k, value) in shape.into_iter().enumerate() {
                 rows.lag[k][i] = value;
                 rows.flap[k][j] = value;
@@ -140,18 +112,10 @@ mod tests {
     #[test]
     fn each_family_holds_its_polynomials() {
         let length = 0.4;
-        let f = |x: f64| {
-            [
-                1.0 + 2.0 * x - x * x + 3.0 * x.powi(3),
-                2.0 - 2.0 * x + 9.0 * x * x,
-            ]
-        };
+        let f = |x: f64| [1.0 + 2.0 * x - x * x + 3.0 * x.powi(3), 2.0 - 2.0 * x + 9.0 * x * x];
         let g = |x: f64| [1.0 + 2.0 * x - x * x, 2.0 - 2.0 * x];
         let mut dof = Row::zeros();
-        for (i, s) in place::AXIAL
-            .into_iter()
-            .zip([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
-        {
+        for (i, s) in place::AXIAL.into_iter().zip([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0]) {
             dof[i] = f(s * length)[0];
         }
         for (family, factor) in [(place::LAG, 1.0), (place::FLAP, -2.0)] {

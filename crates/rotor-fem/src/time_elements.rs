@@ -60,12 +60,7 @@ impl TimeElements {
         ];
         for (name, found, least, most) in ranges {
             if !(least..=most).contains(&found) {
-                return Err(FemError::TimeMesh {
-                    name,
-                    found,
-                    least,
-                    most,
-                });
+                return Err(FemError::TimeMesh { name, found, least, most });
             }
         }
         Ok(Self::build(elements, order, gauss_points))
@@ -142,11 +137,7 @@ impl TimeElements {
         let length = TAU / self.elements as f64;
         let local = &self.basis.nodes()[..self.order];
         (0..self.elements)
-            .flat_map(|e| {
-                local
-                    .iter()
-                    .map(move |s| length * (e as f64 + 0.5 * (s + 1.0)))
-            })
+            .flat_map(|e| local.iter().map(move |s| length * (e as f64 + 0.5 * (s + 1.0))))
             .collect()
     }
 
@@ -177,13 +168,7 @@ impl TimeElements {
         let e = (place as usize).min(self.elements - 1);
         let rate = 2.0 / length;
         let shapes = self.basis.evaluate(2.0 * (place - e as f64) - 1.0);
-        (
-            e,
-            shapes
-                .into_iter()
-                .map(|[n, d, dd]| [n, d * rate, dd * rate * rate])
-                .collect(),
-        )
+        (e, shapes.into_iter().map(|[n, d, dd]| [n, d * rate, dd * rate * rate]).collect())
     }
 }
 
@@ -199,9 +184,7 @@ pub struct Orbit {
 impl Orbit {
     /// The orbit at rest at zero.
     pub fn zero(time: &TimeElements, dof: usize) -> Self {
-        Self {
-            nodal: DMatrix::zeros(dof, time.unknowns_per_dof()),
-        }
+        Self { nodal: DMatrix::zeros(dof, time.unknowns_per_dof()) }
     }
 
     /// The orbit that interpolates `motion` (azimuth in rad to all degrees of freedom) at the nodes.
@@ -312,11 +295,7 @@ mod tests {
         assert_eq!(time.points().len(), 54);
         assert!(time.points().windows(2).all(|p| p[0] < p[1]));
         assert_abs_diff_eq!(time.weights().iter().sum::<f64>(), TAU, epsilon = 1e-13);
-        assert_abs_diff_eq!(
-            time.node_weights().iter().sum::<f64>(),
-            TAU,
-            epsilon = 1e-13
-        );
+        assert_abs_diff_eq!(time.node_weights().iter().sum::<f64>(), TAU, epsilon = 1e-13);
         assert!(time.node_weights().iter().all(|w| *w > 0.0));
     }
 
@@ -353,11 +332,9 @@ mod tests {
 
     #[test]
     fn bad_meshes_are_named() {
-        for (elements, order, gauss, name) in [
-            (0, 5, 8, "elements"),
-            (8, 1, 8, "order"),
-            (8, 5, 4, "gauss_points"),
-        ] {
+        for (elements, order, gauss, name) in
+            [(0, 5, 8, "elements"), (8, 1, 8, "order"), (8, 5, 4, "gauss_points")]
+        {
             let error = TimeElements::new(elements, order, gauss).unwrap_err();
             assert!(error.to_string().contains(name), "{error}");
         }

@@ -20,38 +20,23 @@ fn blade(spec: BladeSpec) -> BladeProperties {
 
 /// Rows of a reference table, cut at commas outside quotes.
 fn table(name: &str) -> Vec<Vec<String>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../fixtures/reference/rotor")
-        .join(name);
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .from_path(path)
-        .unwrap();
-    reader
-        .records()
-        .map(|row| row.unwrap().iter().map(String::from).collect())
-        .collect()
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/reference/rotor").join(name);
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path).unwrap();
+    reader.records().map(|row| row.unwrap().iter().map(String::from).collect()).collect()
 }
 
 /// Frequencies per rev in the row of `family` and `method`.
 fn table_1_row(family: &str, method: &str) -> Vec<f64> {
     let rows = table("bo105_uniform_frequencies.csv");
-    let row = rows
-        .iter()
-        .find(|row| row[0] == family && row[1] == method)
-        .unwrap();
+    let row = rows.iter().find(|row| row[0] == family && row[1] == method).unwrap();
     row[2..].iter().map(|v| v.parse().unwrap()).collect()
 }
 
 /// Coupled frequencies per rev without gyroscopic terms.
 fn coupled(spec: BladeSpec, elements: usize, kind: ModeKind, count: usize) -> Vec<f64> {
     let model = BladeModel::new(blade(spec), elements).unwrap();
-    let mut wanted = ModeCount {
-        flap: 0,
-        lag: 0,
-        torsion: 0,
-        axial: 0,
-    };
+    let mut wanted = ModeCount { flap: 0, lag: 0, torsion: 0, axial: 0 };
     match kind {
         ModeKind::Flap => wanted.flap = count,
         ModeKind::Lag => wanted.lag = count,
@@ -63,10 +48,7 @@ fn coupled(spec: BladeSpec, elements: usize, kind: ModeKind, count: usize) -> Ve
 }
 
 fn relative_errors(got: &[f64], exact: &[f64]) -> Vec<f64> {
-    got.iter()
-        .zip(exact)
-        .map(|(g, e)| (g - e).abs() / e)
-        .collect()
+    got.iter().zip(exact).map(|(g, e)| (g - e).abs() / e).collect()
 }
 
 fn worst(errors: &[f64]) -> f64 {
@@ -78,20 +60,12 @@ fn table_1_frequencies_meet_the_series_and_converge_with_the_fourth_power() {
     for (family, kind) in [("flap", ModeKind::Flap), ("lag", ModeKind::Lag)] {
         let exact = &table_1_row(family, "exact")[..4];
         let errors = [10, 20, 40].map(|n| relative_errors(&coupled(table_1(), n, kind, 4), exact));
-        println!(
-            "{family}: 10 el. {:.2e}, 20 el. {:.2e}",
-            worst(&errors[0]),
-            worst(&errors[1])
-        );
+        println!("{family}: 10 el. {:.2e}, 20 el. {:.2e}", worst(&errors[0]), worst(&errors[1]));
         assert!(worst(&errors[0]) <= 1e-3);
         assert!(worst(&errors[1]) <= 6e-5);
         for (coarse, fine) in errors[1].iter().zip(&errors[2]) {
             println!("{family}: ratio 20 to 40 {:.3}", coarse / fine);
-            assert!(
-                (15.0..=17.0).contains(&(coarse / fine)),
-                "{}",
-                coarse / fine
-            );
+            assert!((15.0..=17.0).contains(&(coarse / fine)), "{}", coarse / fine);
         }
     }
 }
@@ -111,20 +85,15 @@ fn table_1_frequencies_equal_those_of_an_independent_program() {
     let family = "torsion km1=.0132,km2=.0247,kA=.029";
     for (elements, method) in [(5, "FE5"), (10, "FE10"), (20, "FE20"), (40, "FE40")] {
         let theirs = table_1_row(family, method);
-        let gap = worst(&relative_errors(
-            &coupled(table_1(), elements, ModeKind::Torsion, 3),
-            &theirs,
-        ));
+        let gap =
+            worst(&relative_errors(&coupled(table_1(), elements, ModeKind::Torsion, 3), &theirs));
         assert!(gap < 1e-8, "{family} {method}: {gap:e}");
     }
 }
 
 #[test]
 fn at_rest_the_blade_is_a_cantilever() {
-    let spec = BladeSpec {
-        rotor_speed: 0.0,
-        ..table_1()
-    };
+    let spec = BladeSpec { rotor_speed: 0.0, ..table_1() };
     let set = uncoupled_modes(&blade(spec), 20, ModeCount::default()).unwrap();
     for (family, kind) in [("flap", ModeKind::Flap), ("lag", ModeKind::Lag)] {
         let exact = &table_1_row(family, "nonrot")[..4];
@@ -137,11 +106,7 @@ fn at_rest_the_blade_is_a_cantilever() {
 #[test]
 fn lag_and_flap_of_equal_stiffness_differ_by_one_rev_squared() {
     for (elements, offset) in [(7, 0.0), (20, 0.1)] {
-        let spec = BladeSpec {
-            flap_stiffness: 0.0268.into(),
-            root_offset: offset,
-            ..table_1()
-        };
+        let spec = BladeSpec { flap_stiffness: 0.0268.into(), root_offset: offset, ..table_1() };
         let set = uncoupled_modes(&blade(spec), elements, ModeCount::default()).unwrap();
         for (flap, lag) in set.of(ModeKind::Flap).iter().zip(set.of(ModeKind::Lag)) {
             let gap = flap.per_rev().powi(2) - lag.per_rev().powi(2) - 1.0;
@@ -175,10 +140,7 @@ fn torsion_meets_its_closed_form() {
         assert!((15.0..=17.0).contains(&ratio), "{ratio}");
     }
     let paper = coupled(table_1(), 40, ModeKind::Torsion, 2);
-    assert!(
-        worst(&relative_errors(&paper, &[4.588_073, 13.521_86])) < 1e-6,
-        "{paper:?}"
-    );
+    assert!(worst(&relative_errors(&paper, &[4.588_073, 13.521_86])) < 1e-6, "{paper:?}");
 }
 
 /// The beam of length L on a hub of radius e, in units of the tip radius R = L + e.
@@ -207,12 +169,7 @@ fn rotating_beams_meet_the_exact_table() {
         let (offset, eta, exact) = (numbers[0], numbers[1], &numbers[2..]);
         // at rest the hinged beam's rigid mode, frequency 0, is not in the table
         let skip = usize::from(root == RootCondition::Hinged && eta == 0.0);
-        let count = ModeCount {
-            flap: 5 + skip,
-            lag: 0,
-            torsion: 0,
-            axial: 0,
-        };
+        let count = ModeCount { flap: 5 + skip, lag: 0, torsion: 0, axial: 0 };
         let set = uncoupled_modes(&rotating_beam(root, offset, eta), 24, count).unwrap();
         let got: Vec<f64> = set.modes().iter().map(UncoupledMode::frequency).collect();
         assert!(skip == 0 || got[0] < 1e-3, "{got:?}");
@@ -228,30 +185,16 @@ fn rotating_beams_meet_the_exact_table() {
 #[test]
 fn a_hinged_blade_flaps_rigidly_once_per_rev() {
     for speed in [0.5, 1.0, 1.2] {
-        let spec = BladeSpec {
-            root: RootCondition::Hinged,
-            rotor_speed: speed,
-            ..table_1()
-        };
-        let count = ModeCount {
-            flap: 1,
-            lag: 1,
-            torsion: 0,
-            axial: 0,
-        };
+        let spec = BladeSpec { root: RootCondition::Hinged, rotor_speed: speed, ..table_1() };
+        let count = ModeCount { flap: 1, lag: 1, torsion: 0, axial: 0 };
         let set = uncoupled_modes(&blade(spec), 10, count).unwrap();
-        let [flap, lag] = set.modes() else {
-            panic!("two modes")
-        };
+        let [flap, lag] = set.modes() else { panic!("two modes") };
         assert!((flap.per_rev() - 1.0).abs() < 1e-9, "{}", flap.per_rev());
         // a lag hinge on the axis of rotation has no stiffness
         assert!(lag.per_rev() < 1e-5, "{}", lag.per_rev());
         for x in [0.0, 0.33, 0.8, 1.0] {
             let [value, slope, curvature] = flap.shape(x).unwrap();
-            assert!(
-                (value - x).abs() < 1e-8 && (slope - 1.0).abs() < 1e-8,
-                "{x} {value} {slope}"
-            );
+            assert!((value - x).abs() < 1e-8 && (slope - 1.0).abs() < 1e-8, "{x} {value} {slope}");
             assert!(curvature.abs() < 1e-5);
         }
     }
@@ -294,16 +237,12 @@ fn pitch_and_twist_couple_flap_and_lag_as_in_the_table() {
         };
         let spec = BladeSpec {
             pitch_rad: f64::to_radians(pitch_deg),
-            twist: Twist::Linear {
-                rate_rad: f64::to_radians(twist_deg),
-            },
+            twist: Twist::Linear { rate_rad: f64::to_radians(twist_deg) },
             ..table_1()
         };
         let exact: Vec<f64> = row[1..].iter().map(|v| v.parse().unwrap()).collect();
-        let (flap, lag) = (
-            coupled(spec.clone(), 20, ModeKind::Flap, 3),
-            coupled(spec, 20, ModeKind::Lag, 3),
-        );
+        let (flap, lag) =
+            (coupled(spec.clone(), 20, ModeKind::Flap, 3), coupled(spec, 20, ModeKind::Lag, 3));
         let got = [lag[0], flap[0], flap[1], lag[1], flap[2], lag[2]];
         let error = worst(&relative_errors(&got, &exact));
         largest = largest.max(error);
@@ -319,39 +258,18 @@ fn pitch_and_twist_couple_flap_and_lag_as_in_the_table() {
 /// (`fem_tests_060.tst`, commit b0fc510).
 #[test]
 fn lag_axial_coriolis_coupling_meets_published_values() {
-    let published = [
-        (2.0_f64, 3.6195),
-        (4.0, 3.888),
-        (6.0, 4.2393),
-        (8.0, 4.6105),
-        (10.0, 4.97),
-    ];
-    let count = ModeCount {
-        flap: 1,
-        lag: 1,
-        torsion: 0,
-        axial: 0,
-    };
+    let published = [(2.0_f64, 3.6195), (4.0, 3.888), (6.0, 4.2393), (8.0, 4.6105), (10.0, 4.97)];
+    let count = ModeCount { flap: 1, lag: 1, torsion: 0, axial: 0 };
     let flap = [4.1373, 5.5850, 7.3603, 9.2568, 11.2023];
     for ((eta, theirs), flap) in published.into_iter().zip(flap) {
-        let spec = BladeSpec {
-            rotor_speed: eta,
-            ..BladeSpec::uniform(1.0, 1.0, 1.0, 4900.0)
-        };
+        let spec = BladeSpec { rotor_speed: eta, ..BladeSpec::uniform(1.0, 1.0, 1.0, 4900.0) };
         let model = BladeModel::new(blade(spec), 20).unwrap();
         let lag = |terms| {
             let found = modes(&model, terms, count).unwrap();
-            assert!(
-                (found[0].frequency / flap - 1.0).abs() < 2e-5,
-                "{}",
-                found[0].frequency
-            );
+            assert!((found[0].frequency / flap - 1.0).abs() < 2e-5, "{}", found[0].frequency);
             found[1].frequency
         };
-        let (with, without) = (
-            lag(GyroscopicTerms::Included),
-            lag(GyroscopicTerms::Neglected),
-        );
+        let (with, without) = (lag(GyroscopicTerms::Included), lag(GyroscopicTerms::Neglected));
         println!("eta {eta}: {with:.5} (published {theirs}), without {without:.5}");
         assert!((with / theirs - 1.0).abs() <= 3e-5);
         // the bound sees the effect: at every speed it fails without the Coriolis terms
@@ -363,38 +281,20 @@ fn lag_axial_coriolis_coupling_meets_published_values() {
 #[test]
 fn stretch_lowers_the_lag_frequency_of_the_paper_rotor() {
     for (stiffness, l1) in [(200.0, 0.698_69), (1000.0, 0.700_83), (1e6, 0.701_363)] {
-        let spec = BladeSpec {
-            axial_stiffness: stiffness.into(),
-            ..table_1()
-        };
+        let spec = BladeSpec { axial_stiffness: stiffness.into(), ..table_1() };
         let model = BladeModel::new(blade(spec), 20).unwrap();
         let found = modes(&model, GyroscopicTerms::Included, ModeCount::default()).unwrap();
-        let lag = found
-            .iter()
-            .find(|mode| mode.kind == ModeKind::Lag)
-            .unwrap();
-        assert!(
-            (lag.per_rev - l1).abs() < 1e-5,
-            "{stiffness}: {}",
-            lag.per_rev
-        );
+        let lag = found.iter().find(|mode| mode.kind == ModeKind::Lag).unwrap();
+        assert!((lag.per_rev - l1).abs() < 1e-5, "{stiffness}: {}", lag.per_rev);
     }
 }
 
 #[test]
 fn a_root_offset_raises_the_frequencies_of_the_shorter_blade() {
-    let spec = BladeSpec {
-        root_offset: 0.05,
-        ..table_1()
-    };
-    let (flap, lag) = (
-        coupled(spec.clone(), 20, ModeKind::Flap, 1)[0],
-        coupled(spec, 20, ModeKind::Lag, 1)[0],
-    );
-    assert!(
-        (flap - 1.1766).abs() < 5e-5 && (lag - 0.8081).abs() < 5e-5,
-        "{flap} {lag}"
-    );
+    let spec = BladeSpec { root_offset: 0.05, ..table_1() };
+    let (flap, lag) =
+        (coupled(spec.clone(), 20, ModeKind::Flap, 1)[0], coupled(spec, 20, ModeKind::Lag, 1)[0]);
+    assert!((flap - 1.1766).abs() < 5e-5 && (lag - 0.8081).abs() < 5e-5, "{flap} {lag}");
 }
 
 /// Along the fan plot the modes obey Southwell's form: frequencies rise, between the bounds
@@ -402,29 +302,15 @@ fn a_root_offset_raises_the_frequencies_of_the_shorter_blade() {
 #[test]
 fn the_fan_plot_starts_at_rest_and_rises() {
     let speeds = [0.0, 0.25, 0.5, 0.75, 1.0, 1.2];
-    let count = ModeCount {
-        flap: 3,
-        lag: 2,
-        torsion: 1,
-        axial: 0,
-    };
-    let spec = BladeSpec {
-        pitch_rad: 0.14,
-        axial_stiffness: 500.0.into(),
-        ..table_1()
-    };
+    let count = ModeCount { flap: 3, lag: 2, torsion: 1, axial: 0 };
+    let spec = BladeSpec { pitch_rad: 0.14, axial_stiffness: 500.0.into(), ..table_1() };
     let fan = fan_plot(&blade(spec), 8, &speeds, GyroscopicTerms::Included, count).unwrap();
     assert_eq!(fan.len(), speeds.len());
     for pair in fan.windows(2) {
         assert!(pair[0].rotor_speed < pair[1].rotor_speed);
         for (slow, fast) in pair[0].modes.iter().zip(&pair[1].modes) {
             assert_eq!((slow.kind, slow.number), (fast.kind, fast.number));
-            assert!(
-                fast.frequency > slow.frequency,
-                "{} {}",
-                fast.kind,
-                fast.number
-            );
+            assert!(fast.frequency > slow.frequency, "{} {}", fast.kind, fast.number);
         }
     }
 }

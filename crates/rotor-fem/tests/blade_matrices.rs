@@ -42,8 +42,7 @@ fn model(spec: BladeSpec, elements: usize) -> BladeModel {
 fn motion(model: &BladeModel, section: impl Fn(f64) -> [f64; 6]) -> DVector<f64> {
     let mut all = DVector::zeros(model.mass().nrows());
     for (joint, x) in model.edges().iter().enumerate() {
-        all.fixed_rows_mut::<6>(9 * joint)
-            .copy_from_slice(&section(*x));
+        all.fixed_rows_mut::<6>(9 * joint).copy_from_slice(&section(*x));
     }
     for (e, pair) in model.edges().windows(2).enumerate() {
         let at = |s: f64| section(pair[0] + s * (pair[1] - pair[0]));
@@ -64,13 +63,7 @@ fn sizes_follow_the_element() {
         let clamped = model(uniform(), n);
         assert_eq!(clamped.mass().nrows(), 9 * n + 6);
         assert_eq!(clamped.free().len(), 9 * n);
-        let hinged = model(
-            BladeSpec {
-                root: RootCondition::Hinged,
-                ..uniform()
-            },
-            n,
-        );
+        let hinged = model(BladeSpec { root: RootCondition::Hinged, ..uniform() }, n);
         assert_eq!(hinged.free().len(), 9 * n + 2);
     }
 }
@@ -78,11 +71,9 @@ fn sizes_follow_the_element() {
 #[test]
 fn matrices_are_symmetric_and_skew() {
     let model = model(varied(), 6);
-    for (matrix, sign) in [
-        (model.mass(), 1.0),
-        (model.stiffness(), 1.0),
-        (model.gyroscopic(), -1.0),
-    ] {
+    for (matrix, sign) in
+        [(model.mass(), 1.0), (model.stiffness(), 1.0), (model.gyroscopic(), -1.0)]
+    {
         let gap = (matrix - matrix.transpose() * sign).amax();
         assert!(gap <= 1e-14 * matrix.amax(), "{gap:e}");
     }
@@ -93,77 +84,30 @@ fn matrices_are_symmetric_and_skew() {
 #[test]
 fn rigid_motions_are_those_of_a_rod() {
     let speed = 1.3;
-    let rod = model(
-        BladeSpec {
-            rotor_speed: speed,
-            ..uniform()
-        },
-        5,
-    );
-    let shift = |k: usize| {
-        motion(&rod, move |_| {
-            std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })
-        })
-    };
+    let rod = model(BladeSpec { rotor_speed: speed, ..uniform() }, 5);
+    let shift =
+        |k: usize| motion(&rod, move |_| std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }));
     let turn_lag = motion(&rod, |x| [0.0, x, 1.0, 0.0, 0.0, 0.0]);
     let turn_flap = motion(&rod, |x| [0.0, 0.0, 0.0, x, 1.0, 0.0]);
     let (radial, inplane, up) = (shift(0), shift(1), shift(3));
     let square = speed * speed;
     let expected = [
         ("mass", form(rod.mass(), &up, &up), 1.0),
-        (
-            "moment of inertia",
-            form(rod.mass(), &turn_lag, &turn_lag),
-            1.0 / 3.0,
-        ),
+        ("moment of inertia", form(rod.mass(), &turn_lag, &turn_lag), 1.0 / 3.0),
         ("static moment", form(rod.mass(), &up, &turn_flap), 0.5),
-        (
-            "radial shift",
-            form(rod.stiffness(), &radial, &radial),
-            -square,
-        ),
-        (
-            "in-plane shift",
-            form(rod.stiffness(), &inplane, &inplane),
-            -square,
-        ),
+        ("radial shift", form(rod.stiffness(), &radial, &radial), -square),
+        ("in-plane shift", form(rod.stiffness(), &inplane, &inplane), -square),
         ("vertical shift", form(rod.stiffness(), &up, &up), 0.0),
-        (
-            "turn in the plane",
-            form(rod.stiffness(), &turn_lag, &turn_lag),
-            0.0,
-        ),
-        (
-            "turn out of the plane",
-            form(rod.stiffness(), &turn_flap, &turn_flap),
-            square / 3.0,
-        ),
+        ("turn in the plane", form(rod.stiffness(), &turn_lag, &turn_lag), 0.0),
+        ("turn out of the plane", form(rod.stiffness(), &turn_flap, &turn_flap), square / 3.0),
         // turning faster by 1 raises the centrifugal force by 2 Omega x: left side of the equation
-        (
-            "Coriolis, radial",
-            form(rod.gyroscopic(), &radial, &turn_lag),
-            -speed,
-        ),
-        (
-            "Coriolis, in-plane",
-            form(rod.gyroscopic(), &turn_lag, &radial),
-            speed,
-        ),
+        ("Coriolis, radial", form(rod.gyroscopic(), &radial, &turn_lag), -speed),
+        ("Coriolis, in-plane", form(rod.gyroscopic(), &turn_lag, &radial), speed),
     ];
     for (what, got, want) in expected {
-        assert!(
-            (got - want).abs() < 1e-11,
-            "{what}: {got} instead of {want}"
-        );
+        assert!((got - want).abs() < 1e-11, "{what}: {got} instead of {want}");
     }
-    let at_rest = model(
-        BladeSpec {
-            rotor_speed: 0.0,
-            pitch_rad: 0.3,
-            ..uniform()
-        },
-        5,
-    );
+    let at_rest = model(BladeSpec { rotor_speed: 0.0, pitch_rad: 0.3, ..uniform() }, 5);
     for rigid in [&radial, &inplane, &up, &turn_lag, &turn_flap] {
         assert!((at_rest.stiffness() * rigid).amax() < 1e-9);
     }
@@ -177,18 +121,10 @@ fn energies_of_a_smooth_motion_meet_direct_integration() {
     let blade = model.properties();
     // cubic u, v, w and quadratic phi are held exactly
     let u = |x: f64| [0.2 * x - x * x, 0.2 - 2.0 * x];
-    let v = |x: f64| {
-        [
-            x * x - 0.4 * x.powi(3),
-            2.0 * x - 1.2 * x * x,
-            2.0 - 2.4 * x,
-        ]
-    };
+    let v = |x: f64| [x * x - 0.4 * x.powi(3), 2.0 * x - 1.2 * x * x, 2.0 - 2.4 * x];
     let w = |x: f64| [0.3 * x + x.powi(3), 0.3 + 3.0 * x * x, 6.0 * x];
     let p = |x: f64| [0.1 * x + 0.5 * x * x, 0.1 + x];
-    let q = motion(&model, |x| {
-        [u(x)[0], v(x)[0], v(x)[1], w(x)[0], w(x)[1], p(x)[0]]
-    });
+    let q = motion(&model, |x| [u(x)[0], v(x)[0], v(x)[1], w(x)[0], w(x)[1], p(x)[0]]);
     let (mut strain, mut kinetic) = (0.0, 0.0);
     let rule = gauss_legendre(12);
     for ends in blade.breaks().windows(2) {
@@ -236,43 +172,25 @@ fn energies_of_a_smooth_motion_meet_direct_integration() {
 #[test]
 fn coupled_modes_are_orthogonal_and_solve_their_equations() {
     let model = model(varied(), 8);
-    let count = ModeCount {
-        flap: 4,
-        lag: 4,
-        torsion: 2,
-        axial: 1,
-    };
+    let count = ModeCount { flap: 4, lag: 4, torsion: 2, axial: 1 };
     let real = modes(&model, GyroscopicTerms::Neglected, count).unwrap();
     for (i, a) in real.iter().enumerate() {
-        assert!(
-            a.quadrature
-                .iter()
-                .all(|part| part.abs() < f64::MIN_POSITIVE)
-        );
+        assert!(a.quadrature.iter().all(|part| part.abs() < f64::MIN_POSITIVE));
         for (j, b) in real.iter().enumerate() {
             let unit = f64::from(u8::from(i == j));
             let mass = form(model.mass(), &a.in_phase, &b.in_phase);
             let stiffness = form(model.stiffness(), &a.in_phase, &b.in_phase);
             assert!((mass - unit).abs() < 1e-9, "{i} {j} {mass}");
             let scale = a.frequency * b.frequency;
-            assert!(
-                (stiffness / scale - unit).abs() < 1e-8,
-                "{i} {j} {stiffness}"
-            );
+            assert!((stiffness / scale - unit).abs() < 1e-8, "{i} {j} {stiffness}");
         }
     }
     let turning = modes(&model, GyroscopicTerms::Included, count).unwrap();
     let free = model.free();
     let cut = |m: &DMatrix<f64>| {
-        DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            Complex::from(m[(free[i], free[j])])
-        })
+        DMatrix::from_fn(free.len(), free.len(), |i, j| Complex::from(m[(free[i], free[j])]))
     };
-    let (m, g, k) = (
-        cut(model.mass()),
-        cut(model.gyroscopic()),
-        cut(model.stiffness()),
-    );
+    let (m, g, k) = (cut(model.mass()), cut(model.gyroscopic()), cut(model.stiffness()));
     for (mode, still) in turning.iter().zip(&real) {
         let q = DVector::from_fn(free.len(), |i, _| {
             Complex::new(mode.in_phase[free[i]], mode.quadrature[free[i]])
@@ -282,22 +200,14 @@ fn coupled_modes_are_orthogonal_and_solve_their_equations() {
             &k * &q + &g * &q * Complex::new(0.0, mode.frequency) - &m * &q * (w * w);
         let size = (&k * &q).map(Complex::norm).amax();
         let rest = left.map(Complex::norm).amax();
-        assert!(
-            rest < 1e-9 * size,
-            "{} {}: {rest:e} of {size:e}",
-            mode.kind,
-            mode.number
-        );
+        assert!(rest < 1e-9 * size, "{} {}: {rest:e} of {size:e}", mode.kind, mode.number);
         assert!((q.dotc(&(&m * &q)).re - 1.0).abs() < 1e-10);
         assert_eq!((mode.kind, mode.number), (still.kind, still.number));
         let energy = ModeKind::ALL.map(|kind| mode.energy.of(kind));
         assert!((energy.iter().sum::<f64>() - 1.0).abs() < 1e-12);
     }
     // the coupling moves the modes, and lag carries axial motion a quarter cycle away
-    let lag = turning
-        .iter()
-        .position(|mode| mode.kind == ModeKind::Lag)
-        .unwrap();
+    let lag = turning.iter().position(|mode| mode.kind == ModeKind::Lag).unwrap();
     assert!((turning[lag].frequency - real[lag].frequency).abs() > 1e-4);
     let tip = turning[lag].in_phase.len() - 6;
     assert!(turning[lag].quadrature[tip].abs() > 100.0 * turning[lag].in_phase[tip].abs());
@@ -321,23 +231,14 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
     let (mut stations, mut weights) = (Vec::new(), Vec::new());
     for pair in ends.windows(2) {
         let half = 0.5 * (pair[1] - pair[0]);
-        stations.extend(
-            rule.nodes
-                .iter()
-                .map(|s| 0.5 * (pair[0] + pair[1]) + half * s),
-        );
+        stations.extend(rule.nodes.iter().map(|s| 0.5 * (pair[0] + pair[1]) + half * s));
         weights.extend(rule.weights.iter().map(|w| half * w));
     }
     let samples = set.sample(&stations).unwrap();
     for (mode, shape) in set.modes().iter().zip(&samples) {
         let [tip, ..] = mode.shape(1.0).unwrap();
         assert!((tip - 1.0).abs() < 1e-12);
-        assert!(
-            mode.shape(0.03)
-                .unwrap()
-                .iter()
-                .all(|part| part.abs() < f64::MIN_POSITIVE)
-        );
+        assert!(mode.shape(0.03).unwrap().iter().all(|part| part.abs() < f64::MIN_POSITIVE));
         for (other, other_shape) in set.modes().iter().zip(&samples) {
             if mode.kind() != other.kind() {
                 continue;
@@ -352,15 +253,8 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
                     weights[i] * m * shape[i][0] * other_shape[i][0]
                 })
                 .sum();
-            let expected = if mode.number() == other.number() {
-                mode.modal_mass()
-            } else {
-                0.0
-            };
-            assert!(
-                (product - expected).abs() < 1e-9 * mode.modal_mass().max(1e-5),
-                "{product}"
-            );
+            let expected = if mode.number() == other.number() { mode.modal_mass() } else { 0.0 };
+            assert!((product - expected).abs() < 1e-9 * mode.modal_mass().max(1e-5), "{product}");
         }
         // derivatives belong to the values
         let h = 1e-5;
@@ -375,19 +269,8 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
 #[test]
 fn a_lag_hinge_on_the_axis_is_neutral() {
     for elements in 3..=10 {
-        let hinged = model(
-            BladeSpec {
-                root: RootCondition::Hinged,
-                ..uniform()
-            },
-            elements,
-        );
-        let count = ModeCount {
-            flap: 1,
-            lag: 2,
-            torsion: 0,
-            axial: 0,
-        };
+        let hinged = model(BladeSpec { root: RootCondition::Hinged, ..uniform() }, elements);
+        let count = ModeCount { flap: 1, lag: 2, torsion: 0, axial: 0 };
         for terms in [GyroscopicTerms::Neglected, GyroscopicTerms::Included] {
             let found = modes(&hinged, terms, count).unwrap();
             let frequencies: Vec<f64> = found.iter().map(|mode| mode.frequency).collect();
@@ -406,50 +289,23 @@ fn refusals_say_what_to_do() {
         BladeModel::new(blade.clone(), 0),
         Err(FemError::ElementCount { found: 0, .. })
     ));
-    let wanted = ModeCount {
-        flap: 40,
-        ..ModeCount::default()
-    };
+    let wanted = ModeCount { flap: 40, ..ModeCount::default() };
     assert!(matches!(
         uncoupled_modes(&blade, 3, wanted),
-        Err(FemError::TooFewModes {
-            kind: ModeKind::Flap,
-            wanted: 40,
-            available: 6
-        })
+        Err(FemError::TooFewModes { kind: ModeKind::Flap, wanted: 40, available: 6 })
     ));
-    let axial = ModeCount {
-        axial: 1,
-        ..ModeCount::default()
-    };
-    assert!(matches!(
-        uncoupled_modes(&blade, 3, axial),
-        Err(FemError::TooFewModes { .. })
-    ));
+    let axial = ModeCount { axial: 1, ..ModeCount::default() };
+    assert!(matches!(uncoupled_modes(&blade, 3, axial), Err(FemError::TooFewModes { .. })));
     let set = uncoupled_modes(&blade, 5, ModeCount::default()).unwrap();
     for station in [-0.1, 1.1, f64::NAN] {
-        assert!(matches!(
-            set.sample(&[0.5, station]),
-            Err(FemError::Station { .. })
-        ));
+        assert!(matches!(set.sample(&[0.5, station]), Err(FemError::Station { .. })));
     }
     // a lag hinge on the axis of a preconed rotor turns over
-    let preconed = model(
-        BladeSpec {
-            root: RootCondition::Hinged,
-            precone_rad: 0.2,
-            ..uniform()
-        },
-        5,
-    );
+    let preconed =
+        model(BladeSpec { root: RootCondition::Hinged, precone_rad: 0.2, ..uniform() }, 5);
     let error = modes(&preconed, GyroscopicTerms::Included, ModeCount::default()).unwrap_err();
-    let FemError::NotStable { squared_frequency } = error else {
-        panic!("{error}")
-    };
-    assert!(
-        (squared_frequency + 0.2_f64.sin().powi(2)).abs() < 1e-6,
-        "{squared_frequency}"
-    );
+    let FemError::NotStable { squared_frequency } = error else { panic!("{error}") };
+    assert!((squared_frequency + 0.2_f64.sin().powi(2)).abs() < 1e-6, "{squared_frequency}");
     // mass spread out of the plane with hardly any stiffness: the propeller moment turns it over
     let floppy = BladeSpec {
         torsion_stiffness: 1e-7.into(),
@@ -459,9 +315,7 @@ fn refusals_say_what_to_do() {
     };
     let floppy = BladeProperties::new(floppy).unwrap();
     let error = uncoupled_modes(&floppy, 5, ModeCount::default()).unwrap_err();
-    let FemError::NotStable { squared_frequency } = error else {
-        panic!("{error}")
-    };
+    let FemError::NotStable { squared_frequency } = error else { panic!("{error}") };
     assert!(squared_frequency < -0.1, "{squared_frequency}");
 }
 

@@ -16,11 +16,7 @@ fn reference(row: &str) -> Vec<[f64; 2]> {
         .join("../../fixtures/reference/rotor/timefe_flap_reference.csv");
     let text = std::fs::read_to_string(path).unwrap();
     let line = text.lines().find(|line| line.starts_with(row)).unwrap();
-    let values: Vec<f64> = line
-        .split(',')
-        .skip(1)
-        .map(|v| v.parse().unwrap())
-        .collect();
+    let values: Vec<f64> = line.split(',').skip(1).map(|v| v.parse().unwrap()).collect();
     let mut out = vec![[values[0], 0.0]];
     out.extend(values[1..].chunks(2).map(|pair| [pair[0], pair[1]]));
     out
@@ -30,9 +26,7 @@ fn reference(row: &str) -> Vec<[f64; 2]> {
 fn computed(elements: usize, order: usize, gauss: usize) -> (Vec<[f64; 2]>, f64, usize) {
     let time = TimeElements::new(elements, order, gauss).unwrap();
     let mut solver = PeriodicSolver::new(time.clone(), PeriodicSettings::default()).unwrap();
-    let solution = solver
-        .solve(&flap_equation(), &Orbit::zero(&time, 1))
-        .unwrap();
+    let solution = solver.solve(&flap_equation(), &Orbit::zero(&time, 1)).unwrap();
     let series = solution.orbit.harmonics(&time, 0, 6);
     let mut out = vec![[series.mean, 0.0]];
     out.extend(series.harmonics.iter().map(|h| [h.cosine, h.sine]));
@@ -42,9 +36,7 @@ fn computed(elements: usize, order: usize, gauss: usize) -> (Vec<[f64; 2]>, f64,
 /// Largest error of the harmonics in `range`, degrees.
 fn error(got: &[[f64; 2]], range: std::ops::RangeInclusive<usize>) -> f64 {
     let truth = reference("harmonic_balance");
-    range
-        .flat_map(|n| [0, 1].map(|k| (got[n][k] - truth[n][k]).abs()))
-        .fold(0.0, f64::max)
+    range.flat_map(|n| [0, 1].map(|k| (got[n][k] - truth[n][k]).abs())).fold(0.0, f64::max)
 }
 
 #[test]
@@ -63,11 +55,7 @@ fn the_default_mesh_meets_harmonic_balance() {
 /// not merely others that are also accurate. The table prints ten decimals.
 #[test]
 fn the_discretisation_error_itself_is_the_one_of_the_table() {
-    for (elements, row) in [
-        (4, "timeFE_p5_ne4"),
-        (6, "timeFE_p5_ne6"),
-        (8, "timeFE_p5_ne8"),
-    ] {
+    for (elements, row) in [(4, "timeFE_p5_ne4"), (6, "timeFE_p5_ne6"), (8, "timeFE_p5_ne8")] {
         let got = computed(elements, 5, 8).0;
         for (ours, theirs) in got.iter().zip(reference(row)) {
             for k in 0..2 {
@@ -85,15 +73,9 @@ fn more_elements_help_and_less_order_or_quadrature_hurts() {
     let counts = [4, 6, 8, 10];
     let errors = counts.map(|e| all(e, 5, 8));
     println!("4, 6, 8, 10 elements: {errors:?} deg");
-    assert!(
-        errors.windows(2).all(|pair| pair[1] < 0.5 * pair[0]),
-        "{errors:?}"
-    );
-    let logs: Vec<(f64, f64)> = counts
-        .iter()
-        .zip(errors)
-        .map(|(e, err)| ((*e as f64).ln(), err.ln()))
-        .collect();
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.5 * pair[0]), "{errors:?}");
+    let logs: Vec<(f64, f64)> =
+        counts.iter().zip(errors).map(|(e, err)| ((*e as f64).ln(), err.ln())).collect();
     let mean = |f: fn(&(f64, f64)) -> f64| logs.iter().map(f).sum::<f64>() / 4.0;
     let (mx, my) = (mean(|p| p.0), mean(|p| p.1));
     let covariance: f64 = logs.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();

@@ -41,9 +41,7 @@ fn displacement_and_rate_converge_with_their_orders() {
     let errors = |elements: usize, order: usize| -> [f64; 2] {
         let time = TimeElements::new(elements, order, 12).unwrap();
         let system = oscillator(frequency, zeta, load);
-        let solution = solver(&time)
-            .solve(&system, &Orbit::zero(&time, 1))
-            .unwrap();
+        let solution = solver(&time).solve(&system, &Orbit::zero(&time, 1)).unwrap();
         // integral norms at the 12 Gauss points per element
         let mut squares = [0.0_f64; 2];
         let samples = solution.samples;
@@ -87,12 +85,8 @@ impl PeriodicSystem for Lagging {
     }
 
     fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
-        let weights: Vec<f64> = self
-            .time
-            .weights()
-            .iter()
-            .map(|w| w / std::f64::consts::TAU)
-            .collect();
+        let weights: Vec<f64> =
+            self.time.weights().iter().map(|w| w / std::f64::consts::TAU).collect();
         let rates: Vec<f64> = orbit.qd.iter().copied().collect();
         let mut lag = HarmonicSeries::project(&orbit.azimuth_rad, &weights, &rates, 16);
         for (k, h) in lag.harmonics.iter_mut().enumerate() {
@@ -126,28 +120,15 @@ fn a_hidden_lag_state_converges_by_chord_steps_to_the_exact_answer() {
     let time = TimeElements::default();
     for (gain, zeta, rate, plain_steps) in [(0.3, 0.1, 0.2, 8), (1.0, 0.05, 0.5, 40)] {
         let mass = DMatrix::identity(1, 1);
-        let system = Lagging {
-            mass,
-            time: time.clone(),
-            frequency: 1.3,
-            zeta,
-            gain,
-            rate,
-        };
+        let system = Lagging { mass, time: time.clone(), frequency: 1.3, zeta, gain, rate };
         let run = |acceleration| {
-            let settings = PeriodicSettings {
-                acceleration,
-                ..PeriodicSettings::default()
-            };
+            let settings = PeriodicSettings { acceleration, ..PeriodicSettings::default() };
             let mut solver = PeriodicSolver::new(time.clone(), settings).unwrap();
             solver.solve(&system, &Orbit::zero(&time, 1)).unwrap()
         };
         let mixed = run(Acceleration::Anderson { depth: 3 });
         let plain = run(Acceleration::None);
-        println!(
-            "gain {gain}: mixed {} steps, plain {}",
-            mixed.iterations, plain.iterations
-        );
+        println!("gain {gain}: mixed {} steps, plain {}", mixed.iterations, plain.iterations);
         assert!(mixed.residual_norm <= 1e-11 && plain.residual_norm <= 1e-11);
         assert!(mixed.iterations <= 5 && plain.iterations >= plain_steps);
         assert_eq!(mixed.factorisations, 1);
@@ -233,11 +214,7 @@ impl PeriodicSystem for Cubic {
 
 fn cubic(hidden_inertia: f64, spring: f64) -> Cubic {
     let mass = DMatrix::from_row_slice(2, 2, &[1.0, 0.1, 0.1, 1.2]);
-    Cubic {
-        mass,
-        hidden_inertia,
-        spring,
-    }
+    Cubic { mass, hidden_inertia, spring }
 }
 
 #[test]
@@ -246,13 +223,8 @@ fn a_nonlinear_orbit_is_found_from_rest() {
     for spring in [0.2, 2.0] {
         for hidden_inertia in [0.0, 0.2] {
             let system = cubic(hidden_inertia, spring);
-            let found = solver(&time)
-                .solve(&system, &Orbit::zero(&time, 2))
-                .unwrap();
-            println!(
-                "{} steps, {} matrices",
-                found.iterations, found.factorisations
-            );
+            let found = solver(&time).solve(&system, &Orbit::zero(&time, 2)).unwrap();
+            println!("{} steps, {} matrices", found.iterations, found.factorisations);
             // inertia inside f is not integrated by parts and costs one order of accuracy
             let loss = if hidden_inertia > 0.0 { 30.0 } else { 1.0 };
             for psi in [0.0, 1.0, 2.5, 4.0, 6.0] {
@@ -272,17 +244,13 @@ fn a_kept_factorisation_serves_the_next_solve_and_is_renewed_when_it_no_longer_d
     let time = TimeElements::default();
     let mut solver = solver(&time);
     let zero = Orbit::zero(&time, 1);
-    let first = solver
-        .solve(&oscillator(1.4, 0.1, f64::cos), &zero)
-        .unwrap();
+    let first = solver.solve(&oscillator(1.4, 0.1, f64::cos), &zero).unwrap();
     assert_eq!(first.factorisations, 1);
     let near = oscillator(1.41, 0.1, f64::sin);
     let kept = solver.solve(&near, &first.orbit).unwrap();
     assert_eq!(kept.factorisations, 0);
     assert!(kept.iterations > 1);
-    let far = solver
-        .solve(&oscillator(4.5, 0.01, |psi| (4.0 * psi).sin()), &kept.orbit)
-        .unwrap();
+    let far = solver.solve(&oscillator(4.5, 0.01, |psi| (4.0 * psi).sin()), &kept.orbit).unwrap();
     assert_eq!(far.factorisations, 1);
     solver.forget_factorisation();
     let fresh = solver.solve(&near, &zero).unwrap();
@@ -296,31 +264,20 @@ fn an_undamped_mode_at_an_integer_is_named_and_its_neighbours_are_not() {
     let time = TimeElements::default();
     let zero = Orbit::zero(&time, 2);
     let pair = |frequency: f64, zeta: f64| {
-        LinearPeriodic::new(
-            DMatrix::from_diagonal_element(2, 2, 2e-4),
-            move |psi: f64| {
-                let damping = DVector::from_vec(vec![0.2, 2.0 * zeta * frequency]) * 2e-4;
-                let stiffness = DVector::from_vec(vec![1.7, frequency.powi(2)]) * 2e-4;
-                LinearCoefficients {
-                    damping: DMatrix::from_diagonal(&damping),
-                    stiffness: DMatrix::from_diagonal(&stiffness),
-                    load: DVector::from_element(2, 2e-4 * psi.cos()),
-                }
-            },
-        )
+        LinearPeriodic::new(DMatrix::from_diagonal_element(2, 2, 2e-4), move |psi: f64| {
+            let damping = DVector::from_vec(vec![0.2, 2.0 * zeta * frequency]) * 2e-4;
+            let stiffness = DVector::from_vec(vec![1.7, frequency.powi(2)]) * 2e-4;
+            LinearCoefficients {
+                damping: DMatrix::from_diagonal(&damping),
+                stiffness: DMatrix::from_diagonal(&stiffness),
+                load: DVector::from_element(2, 2e-4 * psi.cos()),
+            }
+        })
     };
     for n in 0..=6_u32 {
         let frequency = f64::from(n);
-        let error = solver(&time)
-            .solve(&pair(frequency, 0.0), &zero)
-            .unwrap_err();
-        let PeriodicError::Resonance {
-            dof,
-            per_rev,
-            dynamic_stiffness,
-            ..
-        } = error
-        else {
+        let error = solver(&time).solve(&pair(frequency, 0.0), &zero).unwrap_err();
+        let PeriodicError::Resonance { dof, per_rev, dynamic_stiffness, .. } = error else {
             panic!("{n}: {error}");
         };
         println!("{n}/rev: {error}");
@@ -351,15 +308,9 @@ fn an_unresolved_harmonic_is_no_resonance() {
     let time = TimeElements::new(6, 4, 8).unwrap();
     for frequency in [5.6, 5.7, 5.8, 5.9, 6.0, 6.1, 6.2] {
         let system = oscillator(frequency, 0.002, f64::cos);
-        let found = solver(&time)
-            .solve(&system, &Orbit::zero(&time, 1))
-            .unwrap();
+        let found = solver(&time).solve(&system, &Orbit::zero(&time, 1)).unwrap();
         let first = found.orbit.harmonics(&time, 0, 1).harmonic(1);
-        assert_abs_diff_eq!(
-            first.cosine,
-            1.0 / (frequency * frequency - 1.0),
-            epsilon = 1e-5
-        );
+        assert_abs_diff_eq!(first.cosine, 1.0 / (frequency * frequency - 1.0), epsilon = 1e-5);
     }
 }
 
@@ -402,13 +353,8 @@ impl PeriodicSystem for SplitInertia {
 fn inertia_inside_the_load_is_part_of_the_newton_matrix() {
     let time = TimeElements::default();
     for hidden in [-0.1, 0.1, 0.3] {
-        let system = SplitInertia {
-            mass: DMatrix::from_element(1, 1, 1.0 - hidden),
-            hidden,
-        };
-        let found = solver(&time)
-            .solve(&system, &Orbit::zero(&time, 1))
-            .unwrap();
+        let system = SplitInertia { mass: DMatrix::from_element(1, 1, 1.0 - hidden), hidden };
+        let found = solver(&time).solve(&system, &Orbit::zero(&time, 1)).unwrap();
         assert_eq!(found.iterations, 1);
         let first = found.orbit.harmonics(&time, 0, 1).harmonic(1);
         assert_abs_diff_eq!(first.cosine, 1.3 / (1.3 * 1.3 + 0.01), epsilon = 1e-5);
@@ -455,21 +401,13 @@ impl PeriodicSystem for Saturating {
 #[test]
 fn a_step_that_goes_astray_is_shortened() {
     let time = TimeElements::default();
-    let system = Saturating {
-        mass: DMatrix::identity(1, 1),
-    };
+    let system = Saturating { mass: DMatrix::identity(1, 1) };
     let far = Orbit::interpolate(&time, 1, |_| DVector::from_element(1, 4.0));
     for acceleration in [Acceleration::None, Acceleration::Anderson { depth: 5 }] {
-        let settings = PeriodicSettings {
-            acceleration,
-            ..PeriodicSettings::default()
-        };
+        let settings = PeriodicSettings { acceleration, ..PeriodicSettings::default() };
         let mut solver = PeriodicSolver::new(time.clone(), settings).unwrap();
         let found = solver.solve(&system, &far).unwrap();
-        println!(
-            "{} steps, {} matrices",
-            found.iterations, found.factorisations
-        );
+        println!("{} steps, {} matrices", found.iterations, found.factorisations);
         assert!(found.residual_norm <= 1e-11);
         // the mean of the equation over a revolution: the spring pulls to q = 1 but for q / 100
         let mean = found.orbit.harmonics(&time, 0, 1).mean;
@@ -526,49 +464,20 @@ fn faults_are_reported_with_what_is_known() {
         solver.solve(&Faulty { mass, value }, start).unwrap_err()
     };
     let wrong = Orbit::zero(&TimeElements::new(4, 5, 8).unwrap(), 1);
-    assert!(matches!(
-        run(1.0, 1.0, &wrong),
-        PeriodicError::Shape {
-            found: 20,
-            expected: 40,
-            ..
-        }
-    ));
-    assert!(matches!(
-        run(-1.0, 1.0, &zero),
-        PeriodicError::Mass {
-            row: 0,
-            column: 0,
-            ..
-        }
-    ));
-    assert!(matches!(
-        run(f64::NAN, 1.0, &zero),
-        PeriodicError::Mass { .. }
-    ));
+    assert!(matches!(run(1.0, 1.0, &wrong), PeriodicError::Shape { found: 20, expected: 40, .. }));
+    assert!(matches!(run(-1.0, 1.0, &zero), PeriodicError::Mass { row: 0, column: 0, .. }));
+    assert!(matches!(run(f64::NAN, 1.0, &zero), PeriodicError::Mass { .. }));
     let refused = run(1.0, -2.0, &zero);
-    assert!(
-        refused.to_string().contains("table left at -2"),
-        "{refused}"
-    );
-    let PeriodicError::NotFinite {
-        azimuth_rad,
-        iteration: 0,
-        dof: 0,
-        ..
-    } = run(1.0, f64::NAN, &zero)
+    assert!(refused.to_string().contains("table left at -2"), "{refused}");
+    let PeriodicError::NotFinite { azimuth_rad, iteration: 0, dof: 0, .. } =
+        run(1.0, f64::NAN, &zero)
     else {
         panic!("a NaN was not recognised");
     };
     assert!((3.0..3.3).contains(&azimuth_rad));
     // |q| + 1 = -q'' has no periodic solution: the mean cannot vanish
-    let PeriodicError::NotConverged {
-        iterations,
-        residual,
-        history,
-        best,
-        ..
-    } = run(1.0, 1.0, &zero)
+    let PeriodicError::NotConverged { iterations, residual, history, best, .. } =
+        run(1.0, 1.0, &zero)
     else {
         panic!("convergence to something that does not exist");
     };
@@ -580,31 +489,13 @@ fn faults_are_reported_with_what_is_known() {
 fn settings_are_checked() {
     let good = PeriodicSettings::default();
     for bad in [
-        PeriodicSettings {
-            tolerance: 0.0,
-            ..good
-        },
-        PeriodicSettings {
-            tolerance: f64::NAN,
-            ..good
-        },
-        PeriodicSettings {
-            max_iterations: 0,
-            ..good
-        },
-        PeriodicSettings {
-            refresh_contraction: 1.0,
-            ..good
-        },
-        PeriodicSettings {
-            acceleration: Acceleration::Anderson { depth: 0 },
-            ..good
-        },
+        PeriodicSettings { tolerance: 0.0, ..good },
+        PeriodicSettings { tolerance: f64::NAN, ..good },
+        PeriodicSettings { max_iterations: 0, ..good },
+        PeriodicSettings { refresh_contraction: 1.0, ..good },
+        PeriodicSettings { acceleration: Acceleration::Anderson { depth: 0 }, ..good },
     ] {
-        assert!(
-            PeriodicSolver::new(TimeElements::default(), bad).is_err(),
-            "{bad:?}"
-        );
+        assert!(PeriodicSolver::new(TimeElements::default(), bad).is_err(), "{bad:?}");
     }
 }
 

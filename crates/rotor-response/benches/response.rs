@@ -59,7 +59,11 @@ fn condition(amplitude_rad: f64) -> Condition {
     }
 }
 
-#[expect(clippy::disallowed_methods, clippy::print_stdout, reason = "a bench reads the clock and reports")]
+#[expect(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    reason = "a bench reads the clock and reports"
+)]
 fn response(criterion: &mut Criterion) {
     for model in [
         AttachedFlowModel::QuasiSteady,

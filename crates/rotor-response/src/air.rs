@@ -55,10 +55,9 @@ pub(crate) fn section_flow(
     let u_t = blade.grid.x()[i] + mu_sin + v.rate[i] + v.slope[i] * mu_cos;
     let u_p = lambda + w.rate[i] + (w.slope[i] + blade.precone) * mu_cos;
     let om = theta_rate + w.slope[i] + blade.precone;
-    let u_t_rate =
-        mu_cos + v.acceleration[i] + v.slope_rate[i] * mu_cos - v.slope[i] * mu_sin;
-    let u_p_rate = w.acceleration[i] + w.slope_rate[i] * mu_cos
-        - (w.slope[i] + blade.precone) * mu_sin;
+    let u_t_rate = mu_cos + v.acceleration[i] + v.slope_rate[i] * mu_cos - v.slope[i] * mu_sin;
+    let u_p_rate =
+        w.acceleration[i] + w.slope_rate[i] * mu_cos - (w.slope[i] + blade.precone) * mu_sin;
     let om_rate = point.pitch.acceleration + phi.acceleration[i] + w.slope_rate[i];
     SectionFlow {
         u_t,

@@ -165,7 +165,8 @@ impl ResponseBlade {
                 })
                 .collect()
         };
-        let along = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { grid.x().iter().map(|x| f(*x)).collect() };
+        let along =
+            |f: &dyn Fn(f64) -> f64| -> Vec<f64> { grid.x().iter().map(|x| f(*x)).collect() };
         let flap_index = grid
             .x()
             .iter()
@@ -207,9 +208,8 @@ impl ResponseBlade {
     /// Modal mass matrix: families do not couple, modes of a family do only by rounding.
     pub(crate) fn mass_matrix(&self) -> DMatrix<f64> {
         let n = self.grid.len();
-        let polar: Vec<f64> = (0..n)
-            .map(|i| self.mass[i] * (self.km1_squared[i] + self.km2_squared[i]))
-            .collect();
+        let polar: Vec<f64> =
+            (0..n).map(|i| self.mass[i] * (self.km1_squared[i] + self.km2_squared[i])).collect();
         let mut matrix = DMatrix::zeros(self.dof(), self.dof());
         let mut at = 0;
         for (shapes, density) in

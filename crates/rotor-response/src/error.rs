@@ -48,7 +48,9 @@ pub enum ResponseError {
         expected: usize,
     },
     /// The modal mass matrix is not positive definite.
-    #[error("mass matrix of {modes} modes is not positive definite: mode shapes are linearly dependent or a mass is not positive")]
+    #[error(
+        "mass matrix of {modes} modes is not positive definite: mode shapes are linearly dependent or a mass is not positive"
+    )]
     MassMatrix {
         /// Number of modes.
         modes: usize,

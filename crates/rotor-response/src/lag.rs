@@ -131,8 +131,8 @@ mod tests {
                     let mut state = Vec::new();
                     lag.periodic_state(&drive, &mut state);
                     for (&psi, got) in time.points().iter().zip(&state) {
-                        let exact = a * (a * (n * psi).cos() + n * (n * psi).sin())
-                            / (a * a + n * n);
+                        let exact =
+                            a * (a * (n * psi).cos() + n * (n * psi).sin()) / (a * a + n * n);
                         assert_abs_diff_eq!(*got, exact, epsilon = 2e-6);
                     }
                 }

@@ -18,7 +18,8 @@ pub use error::ResponseError;
 pub use loads::{SixLoads, hub_loads};
 pub use model::{Compressibility, Controls, Discretisation, RotorModel};
 pub use rotor::{
-    Condition, ResponseResiduals, ResponseTolerances, RootBending, Rotor, RotorSolution, RotorSolver,
+    Condition, ResponseResiduals, ResponseTolerances, RootBending, Rotor, RotorSolution,
+    RotorSolver,
 };
 pub use span::SpanGrid;
 

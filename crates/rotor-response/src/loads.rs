@@ -62,8 +62,7 @@ pub(crate) fn root_loads(
         out
     };
     let squares = running(&|i| 0.5 * (v.slope[i].powi(2) + w.slope[i].powi(2)));
-    let rates =
-        running(&|i| v.slope[i] * v.slope_rate[i] + w.slope[i] * w.slope_rate[i]);
+    let rates = running(&|i| v.slope[i] * v.slope_rate[i] + w.slope[i] * w.slope_rate[i]);
     let accelerations = running(&|i| {
         v.slope_rate[i].powi(2)
             + w.slope_rate[i].powi(2)
@@ -75,8 +74,7 @@ pub(crate) fn root_loads(
         let (m, x) = (blade.mass[i], blade.grid.x()[i]);
         let (u, u_rate, u_acceleration) = (-squares[i], -rates[i], -accelerations[i]);
         let bp = blade.precone;
-        let aero_x =
-            -w.slope[i] * aerodynamic.fz[i] - v.slope[i] * aerodynamic.fy[i];
+        let aero_x = -w.slope[i] * aerodynamic.fz[i] - v.slope[i] * aerodynamic.fy[i];
         let fx = m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x;
         let fy = m * (v.value[i] - v.acceleration[i] - 2.0 * u_rate + 2.0 * bp * w.rate[i])
             + loads.fy[i];
@@ -85,8 +83,8 @@ pub(crate) fn root_loads(
         let theta_acceleration = pitch.acceleration + motion.phi.acceleration[i];
         let (sin, cos) = theta.sin_cos();
         let (km1, km2) = (blade.km1_squared[i], blade.km2_squared[i]);
-        let mx = -m * (km1 + km2) * theta_acceleration - m * (km2 - km1) * sin * cos
-            + loads.moment[i];
+        let mx =
+            -m * (km1 + km2) * theta_acceleration - m * (km2 - km1) * sin * cos + loads.moment[i];
         let weight = blade.grid.weight()[i];
         let parts = [
             fx,
@@ -141,9 +139,8 @@ pub(crate) fn root_flap_curvature_moment(
     q: &[f64],
     pitch_rad: f64,
 ) -> f64 {
-    let sum = |curvature: &[f64], q: &[f64]| -> f64 {
-        curvature.iter().zip(q).map(|(c, q)| c * q).sum()
-    };
+    let sum =
+        |curvature: &[f64], q: &[f64]| -> f64 { curvature.iter().zip(q).map(|(c, q)| c * q).sum() };
     let w_xx = sum(&blade.root_flap_curvature, q);
     let v_xx = sum(&blade.root_lag_curvature, &q[blade.flap.count()..]);
     let [ei_flap, ei_lag] = blade.root_stiffness;
@@ -226,26 +223,14 @@ mod tests {
         let (x3, x5, y3, y5) = (h(0, 3), h(0, 5), h(1, 3), h(1, 5));
         let z = hub.harmonic(4);
         let eps = 1e-13;
-        assert_abs_diff_eq!(
-            z[0],
-            2.0 * (x3.cosine + x5.cosine + y3.sine - y5.sine),
-            epsilon = eps
-        );
-        assert_abs_diff_eq!(
-            z[1],
-            2.0 * (x3.sine + x5.sine - y3.cosine + y5.cosine),
-            epsilon = eps
-        );
+        assert_abs_diff_eq!(z[0], 2.0 * (x3.cosine + x5.cosine + y3.sine - y5.sine), epsilon = eps);
+        assert_abs_diff_eq!(z[1], 2.0 * (x3.sine + x5.sine - y3.cosine + y5.cosine), epsilon = eps);
         assert_abs_diff_eq!(
             z[2],
             2.0 * (-x3.sine + x5.sine + y3.cosine + y5.cosine),
             epsilon = eps
         );
-        assert_abs_diff_eq!(
-            z[3],
-            2.0 * (x3.cosine - x5.cosine + y3.sine + y5.sine),
-            epsilon = eps
-        );
+        assert_abs_diff_eq!(z[3], 2.0 * (x3.cosine - x5.cosine + y3.sine + y5.sine), epsilon = eps);
         assert_abs_diff_eq!(z[4], 4.0 * h(2, 4).cosine, epsilon = eps);
         assert_abs_diff_eq!(z[5], 4.0 * h(2, 4).sine, epsilon = eps);
     }

@@ -3,9 +3,7 @@
 use crate::air::{AirPoint, AirScales, FlapAngle, SectionLoads};
 use crate::blade::ResponseBlade;
 use crate::flight_air::FlightAir;
-use crate::loads::{
-    SixLoads, hub_loads, root_flap_curvature_moment, root_flap_moment, root_loads,
-};
+use crate::loads::{SixLoads, hub_loads, root_flap_curvature_moment, root_flap_moment, root_loads};
 use crate::structure::{BladeState, SpanLoads};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
@@ -18,6 +16,10 @@ use rotor_fem::{
 use rotor_wake::{FlightState, InducedInflow, InflowModel, RotorLoading};
 use std::f64::consts::TAU;
 use std::sync::Arc;
+
+/// The Newton matrix leaves the lag states out, so chord steps contract slowly with any matrix: a new
+/// one, thirty times the cost of a step, pays only when they hardly contract at all.
+const REFRESH_CONTRACTION: f64 = 0.8;
 
 /// Tolerances of the response.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +104,8 @@ pub struct ResponseResiduals {
     pub inflow: f64,
     /// Newton and chord iterations over all inflow iterations.
     pub response_iterations: usize,
+    /// Newton matrices made.
+    pub factorisations: usize,
     /// Inflow iterations.
     pub inflow_iterations: usize,
 }
@@ -169,8 +173,11 @@ impl RotorSolver {
         let d = rotor.discretisation;
         let time = TimeElements::new(d.time_elements, d.time_order, d.time_gauss_points)?;
         let air = FlightAir::new(&rotor.model, &rotor.blade, &time, advance_ratio)?;
-        let settings =
-            PeriodicSettings { tolerance: tolerances.periodicity, ..PeriodicSettings::default() };
+        let settings = PeriodicSettings {
+            tolerance: tolerances.periodicity,
+            refresh_contraction: REFRESH_CONTRACTION,
+            ..PeriodicSettings::default()
+        };
         let solver = PeriodicSolver::new(time.clone(), settings)?;
         Ok(Self { rotor, air: Arc::new(air), time, solver, tolerances, advance_ratio })
     }
@@ -211,9 +218,10 @@ impl RotorSolver {
         let mut orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
         let mut inflow = match start {
             Some(s) => s.inflow.clone(),
-            None => inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?,
+            None => inflow_model
+                .induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?,
         };
-        let mut iterations = 0;
+        let (mut iterations, mut factorisations) = (0, 0);
         let mut previous: Option<(Vec<f64>, f64)> = None;
         let mut last = (f64::INFINITY, 0.0);
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
@@ -230,10 +238,12 @@ impl RotorSolver {
             };
             let solution = self.solver.solve(&system, &orbit).map_err(Self::orbit_error)?;
             iterations += solution.iterations;
+            factorisations += solution.factorisations;
             let loads = RevolutionLoads::new(&rotor, &self.time, &system, &solution.samples)?;
             let hub = loads.hub(&rotor, &self.time);
             let ct = rotor.model.thrust_coefficient(hub.components[2].mean);
-            let wanted = inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(ct))?;
+            let wanted = inflow_model
+                .induced(&condition.flight, &RotorLoading::from_thrust_coefficient(ct))?;
             let used = inflow.parameters();
             let change: Vec<f64> =
                 wanted.parameters().iter().zip(&used).map(|(a, b)| a - b).collect();
@@ -254,6 +264,7 @@ impl RotorSolver {
                         periodicity: solution.residual_norm,
                         inflow: size,
                         response_iterations: iterations,
+                        factorisations,
                         inflow_iterations: inflow_iteration,
                     },
                 });
@@ -448,11 +459,8 @@ impl RevolutionLoads {
 
 /// Aerodynamic forces alone at all stations.
 fn aerodynamic_loads(stations: usize, first: usize, sections: &[SectionLoads]) -> SpanLoads {
-    let mut out = SpanLoads {
-        fz: vec![0.0; stations],
-        fy: vec![0.0; stations],
-        moment: vec![0.0; stations],
-    };
+    let mut out =
+        SpanLoads { fz: vec![0.0; stations], fy: vec![0.0; stations], moment: vec![0.0; stations] };
     for (s, load) in sections.iter().enumerate() {
         out.fz[first + s] = load.fz;
         out.fy[first + s] = load.fy;

@@ -51,15 +51,11 @@ pub(crate) struct StructureScratch {
 
 impl StructureScratch {
     fn resize(&mut self, n: usize) {
-        for v in [
-            &mut self.integrand,
-            &mut self.foreshortening_rate,
-            &mut self.coriolis_tension,
-        ]
-        .into_iter()
-        .chain(&mut self.force)
-        .chain(&mut self.slope_force)
-        .chain(&mut self.bending)
+        for v in [&mut self.integrand, &mut self.foreshortening_rate, &mut self.coriolis_tension]
+            .into_iter()
+            .chain(&mut self.force)
+            .chain(&mut self.slope_force)
+            .chain(&mut self.bending)
         {
             v.resize(n, 0.0);
         }
@@ -67,11 +63,7 @@ impl StructureScratch {
 }
 
 /// `out_j += sum_i w_i (f_i shape_ji + g_i slope_ji [+ b_i curvature_ji])`.
-fn project(
-    out: &mut [f64],
-    weight: &[f64],
-    parts: &[(&[Vec<f64>], &[f64])],
-) {
+fn project(out: &mut [f64], weight: &[f64], parts: &[(&[Vec<f64>], &[f64])]) {
     for (j, o) in out.iter_mut().enumerate() {
         *o = parts
             .iter()
@@ -123,8 +115,7 @@ pub(crate) fn modal_residual(
             - loads.fy[i];
         s.slope_force[0][i] = tension * w.slope[i];
         s.slope_force[1][i] = tension * v.slope[i];
-        s.slope_force[2][i] =
-            (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]) * phi.slope[i];
+        s.slope_force[2][i] = (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]) * phi.slope[i];
         let propeller;
         if full {
             let (sin, cos) = theta.sin_cos();

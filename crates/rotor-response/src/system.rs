@@ -1,11 +1,13 @@
 //! The aeroelastic blade as a periodic system for the time elements.
 
-use crate::air::{AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, section_flow, section_loads};
+use crate::ResponseError;
+use crate::air::{
+    AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, section_flow, section_loads,
+};
 use crate::blade::{Couplings, ResponseBlade};
 use crate::flight_air::FlightAir;
 use crate::motion::{Motion, RootPitch};
 use crate::structure::{BladeState, SpanLoads, StructureScratch, modal_residual};
-use crate::ResponseError;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_fem::{LocalTangent, OrbitSamples, PeriodicSystem};
@@ -90,12 +92,7 @@ impl ResponseSystem<'_> {
     /// Motion of the blade at one point.
     fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
         let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
-        motion.fill(
-            self.blade,
-            &column(&samples.q),
-            &column(&samples.qd),
-            &column(&samples.qdd),
-        );
+        motion.fill(self.blade, &column(&samples.q), &column(&samples.qd), &column(&samples.qdd));
     }
 
     /// Aerodynamic section loads at the lifting stations of one point.
@@ -138,8 +135,8 @@ impl ResponseSystem<'_> {
             let [delta, _, acceleration] = self.points[point].flap[k];
             let inertia = self.blade.flap_inertia[k];
             out.fz[i] += inertia.first_moment * acceleration;
-            out.moment[i] -= (inertia.arm_moment + inertia.own) * acceleration
-                + inertia.arm_moment * delta;
+            out.moment[i] -=
+                (inertia.arm_moment + inertia.own) * acceleration + inertia.arm_moment * delta;
         }
     }
 
@@ -212,11 +209,7 @@ impl PeriodicSystem for ResponseSystem<'_> {
         self.mass
     }
 
-    fn residual(
-        &self,
-        samples: &OrbitSamples,
-        out: &mut DMatrix<f64>,
-    ) -> Result<(), Self::Error> {
+    fn residual(&self, samples: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Self::Error> {
         let revolution = self.revolution(samples);
         let mut scratch = Scratch::default();
         let mut column = vec![0.0; self.dof()];

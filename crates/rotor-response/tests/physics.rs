@@ -38,8 +38,7 @@ fn solve(
 ) -> RotorSolution {
     let rotor = Rotor::new(model, blade, discretisation).unwrap();
     let mu = condition.flight.advance_ratio;
-    let mut solver =
-        RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
+    let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
     solver.solve(condition, inflow, None).unwrap()
 }
 
@@ -134,8 +133,7 @@ fn force_summation_and_curvature_meet_with_many_modes() {
                 ..paper_model(Couplings::Linear)
             };
             let inflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
-            let bending =
-                solve(model, &paper_blade(), d, &condition, &inflow).root_flap_bending;
+            let bending = solve(model, &paper_blade(), d, &condition, &inflow).root_flap_bending;
             let (a, b) = (bending.force_summation.harmonic(3), bending.curvature.harmonic(3));
             (a.cosine - b.cosine).hypot(a.sine - b.sine) / a.amplitude()
         })
@@ -146,10 +144,7 @@ fn force_summation_and_curvature_meet_with_many_modes() {
 
 fn flapped(amplitude_deg: f64, harmonic: usize) -> RotorSolution {
     let mut angle = HarmonicSeries::zero(5);
-    angle.set_harmonic(
-        harmonic,
-        Harmonic::from_amplitude_phase(amplitude_deg.to_radians(), 0.4),
-    );
+    angle.set_harmonic(harmonic, Harmonic::from_amplitude_phase(amplitude_deg.to_radians(), 0.4));
     let condition = Condition {
         flap_angles_rad: vec![HarmonicSeries::zero(1), angle],
         ..forward(controls_deg(8.0, 1.0, -4.5))
@@ -164,7 +159,13 @@ fn flapped(amplitude_deg: f64, harmonic: usize) -> RotorSolution {
 fn flap_authority_is_nearly_linear() {
     let rest = flapped(0.0, 3).hub.harmonic(4);
     let response = |amplitude: f64| -> Vec<f64> {
-        flapped(amplitude, 3).hub.harmonic(4).iter().zip(rest).map(|(a, b)| (a - b) / amplitude).collect()
+        flapped(amplitude, 3)
+            .hub
+            .harmonic(4)
+            .iter()
+            .zip(rest)
+            .map(|(a, b)| (a - b) / amplitude)
+            .collect()
     };
     let (small, large) = (response(0.5), response(4.0));
     let size: f64 = small.iter().map(|v| v * v).sum::<f64>().sqrt();

@@ -30,25 +30,13 @@ impl FlightState {
     /// [`WakeError::BadInput`] for an advance ratio that is negative or not finite, or a tilt of
     /// 90 deg or more.
     pub fn validated(self) -> Result<Self, WakeError> {
-        let bad = |quantity, value, expected| WakeError::BadInput {
-            quantity,
-            value,
-            expected,
-        };
+        let bad = |quantity, value, expected| WakeError::BadInput { quantity, value, expected };
         if !(self.advance_ratio.is_finite() && self.advance_ratio >= 0.0) {
-            return Err(bad(
-                "advance_ratio",
-                self.advance_ratio,
-                "a finite number, 0 or more",
-            ));
+            return Err(bad("advance_ratio", self.advance_ratio, "a finite number, 0 or more"));
         }
         if self.shaft_tilt_rad.is_nan() || self.shaft_tilt_rad.abs() >= std::f64::consts::FRAC_PI_2
         {
-            return Err(bad(
-                "shaft_tilt_rad",
-                self.shaft_tilt_rad,
-                "less than pi/2 either way",
-            ));
+            return Err(bad("shaft_tilt_rad", self.shaft_tilt_rad, "less than pi/2 either way"));
         }
         Ok(self)
     }
@@ -91,11 +79,7 @@ pub enum InducedInflow {
 impl InducedInflow {
     /// The same induced velocity everywhere.
     pub fn uniform(mean: f64) -> Self {
-        Self::Linear {
-            mean,
-            cosine: 0.0,
-            sine: 0.0,
-        }
+        Self::Linear { mean, cosine: 0.0, sine: 0.0 }
     }
 
     /// Induced inflow at an azimuth (rad) and a radial station `r` (unit `R`), positive down.
@@ -139,10 +123,9 @@ impl InducedInflow {
         }
         match (self, parameters) {
             (Self::Linear { .. }, &[mean, cosine, sine]) => Ok(Self::Linear { mean, cosine, sine }),
-            (Self::Linear { .. }, _) => Err(WakeError::ParameterCount {
-                expected: 3,
-                got: parameters.len(),
-            }),
+            (Self::Linear { .. }, _) => {
+                Err(WakeError::ParameterCount { expected: 3, got: parameters.len() })
+            }
         }
     }
 }
@@ -175,17 +158,10 @@ mod tests {
 
     #[test]
     fn linear_inflow_in_the_four_quarters() {
-        let inflow = InducedInflow::Linear {
-            mean: 0.01,
-            cosine: 0.004,
-            sine: -0.002,
-        };
-        for (azimuth, want) in [
-            (0.0, 0.012),
-            (FRAC_PI_2, 0.009),
-            (PI, 0.008),
-            (3.0 * FRAC_PI_2, 0.011),
-        ] {
+        let inflow = InducedInflow::Linear { mean: 0.01, cosine: 0.004, sine: -0.002 };
+        for (azimuth, want) in
+            [(0.0, 0.012), (FRAC_PI_2, 0.009), (PI, 0.008), (3.0 * FRAC_PI_2, 0.011)]
+        {
             assert_relative_eq!(inflow.at(azimuth, 0.5), want, max_relative = 1e-14);
         }
         assert_eq!(inflow.mean().to_bits(), 0.01_f64.to_bits());
@@ -193,19 +169,12 @@ mod tests {
 
     #[test]
     fn parameters_go_out_and_come_back() {
-        let inflow = InducedInflow::Linear {
-            mean: 0.01,
-            cosine: 0.004,
-            sine: -0.002,
-        };
+        let inflow = InducedInflow::Linear { mean: 0.01, cosine: 0.004, sine: -0.002 };
         let other = InducedInflow::uniform(1.0);
         assert_eq!(other.with_parameters(&inflow.parameters()).unwrap(), inflow);
         assert_eq!(
             other.with_parameters(&[1.0]).unwrap_err(),
-            WakeError::ParameterCount {
-                expected: 3,
-                got: 1
-            }
+            WakeError::ParameterCount { expected: 3, got: 1 }
         );
         assert!(matches!(
             other.with_parameters(&[1.0, f64::NAN, 0.0]),
@@ -215,21 +184,12 @@ mod tests {
 
     #[test]
     fn a_flight_that_is_none_is_refused() {
-        let flight = |advance_ratio, shaft_tilt_rad| FlightState {
-            advance_ratio,
-            shaft_tilt_rad,
-        };
+        let flight = |advance_ratio, shaft_tilt_rad| FlightState { advance_ratio, shaft_tilt_rad };
         assert!(flight(0.3, 0.1).validated().is_ok());
-        for bad in [
-            flight(-0.1, 0.0),
-            flight(f64::NAN, 0.0),
-            flight(0.3, 1.6),
-            flight(0.3, f64::NAN),
-        ] {
-            assert!(
-                matches!(bad.validated(), Err(WakeError::BadInput { .. })),
-                "{bad:?}"
-            );
+        for bad in
+            [flight(-0.1, 0.0), flight(f64::NAN, 0.0), flight(0.3, 1.6), flight(0.3, f64::NAN)]
+        {
+            assert!(matches!(bad.validated(), Err(WakeError::BadInput { .. })), "{bad:?}");
         }
     }
 }

@@ -44,18 +44,11 @@ pub fn drees_factors(advance_ratio: f64, inflow: f64) -> [f64; 2] {
     let speed = advance_ratio.hypot(inflow);
     // tan(chi/2) = mu / (V + lambda) = (V - lambda) / mu: the form that does not cancel
     let half_angle_tangent = if inflow >= 0.0 {
-        if speed == 0.0 {
-            0.0
-        } else {
-            advance_ratio / (speed + inflow)
-        }
+        if speed == 0.0 { 0.0 } else { advance_ratio / (speed + inflow) }
     } else {
         (speed - inflow) / advance_ratio
     };
-    [
-        4.0 / 3.0 * (half_angle_tangent - 1.8 * advance_ratio * speed),
-        -2.0 * advance_ratio,
-    ]
+    [4.0 / 3.0 * (half_angle_tangent - 1.8 * advance_ratio * speed), -2.0 * advance_ratio]
 }
 
 impl InflowModel for LinearInflow {
@@ -96,11 +89,7 @@ impl InflowModel for LinearInflow {
                     });
                 }
                 let [k_x, k_y] = drees_factors(flight.advance_ratio, flight.normal_inflow() + mean);
-                Ok(InducedInflow::Linear {
-                    mean,
-                    cosine: mean * k_x,
-                    sine: mean * k_y,
-                })
+                Ok(InducedInflow::Linear { mean, cosine: mean * k_x, sine: mean * k_y })
             }
         }
     }
@@ -112,10 +101,8 @@ mod tests {
     use approx::{assert_abs_diff_eq, assert_relative_eq};
     use rotor_base::{gauss_legendre, uniform_azimuths_rad};
 
-    const FLIGHT: FlightState = FlightState {
-        advance_ratio: 0.30,
-        shaft_tilt_rad: 0.087_266_462_6,
-    };
+    const FLIGHT: FlightState =
+        FlightState { advance_ratio: 0.30, shaft_tilt_rad: 0.087_266_462_6 };
 
     #[test]
     fn drees_factors_at_the_stated_flight_point() {
@@ -156,30 +143,20 @@ mod tests {
 
     #[test]
     fn prescribed_inflow_does_not_ask_the_thrust() {
-        let model = LinearInflow::Prescribed {
-            induced_inflow: 0.008,
-        };
+        let model = LinearInflow::Prescribed { induced_inflow: 0.008 };
         for thrust in [0.0, 0.005, f64::NAN] {
             let loading = RotorLoading::from_thrust_coefficient(thrust);
             let inflow = model.induced(&FLIGHT, &loading).unwrap();
             assert_eq!(inflow, InducedInflow::uniform(0.008));
         }
-        let bad = LinearInflow::Prescribed {
-            induced_inflow: f64::NAN,
-        };
+        let bad = LinearInflow::Prescribed { induced_inflow: f64::NAN };
         let loading = RotorLoading::from_thrust_coefficient(0.005);
-        assert!(matches!(
-            bad.induced(&FLIGHT, &loading),
-            Err(WakeError::BadInput { .. })
-        ));
+        assert!(matches!(bad.induced(&FLIGHT, &loading), Err(WakeError::BadInput { .. })));
     }
 
     #[test]
     fn drees_refuses_a_wake_that_leaves_upward() {
-        let flight = FlightState {
-            advance_ratio: 0.05,
-            shaft_tilt_rad: -1.35,
-        };
+        let flight = FlightState { advance_ratio: 0.05, shaft_tilt_rad: -1.35 };
         let loading = RotorLoading::from_thrust_coefficient(0.005);
         assert!(LinearInflow::Uniform.induced(&flight, &loading).is_ok());
         let error = LinearInflow::Drees.induced(&flight, &loading).unwrap_err();
@@ -189,9 +166,7 @@ mod tests {
     #[test]
     fn the_trait_is_usable_through_a_reference() {
         let models: [&dyn InflowModel; 3] = [
-            &LinearInflow::Prescribed {
-                induced_inflow: 0.01,
-            },
+            &LinearInflow::Prescribed { induced_inflow: 0.01 },
             &LinearInflow::Uniform,
             &LinearInflow::Drees,
         ];

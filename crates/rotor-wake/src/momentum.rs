@@ -95,9 +95,7 @@ pub fn momentum_inflow(flight: &FlightState, thrust_coefficient: f64) -> Result<
 /// chi = atan2(mu, lambda),      lambda = mu tan(alpha_s) + lambda_i
 /// ```
 pub fn wake_skew_rad(flight: &FlightState, induced_inflow: f64) -> f64 {
-    flight
-        .advance_ratio
-        .atan2(flight.normal_inflow() + induced_inflow)
+    flight.advance_ratio.atan2(flight.normal_inflow() + induced_inflow)
 }
 
 /// The interval `(low, high)` that holds the smallest positive root of
@@ -139,22 +137,14 @@ fn smallest_root(mu: f64, normal: f64, hover: f64) -> Result<f64, WakeError> {
             low = x;
         }
         let newton = x - excess * speed / (speed * speed + x * through);
-        let next = if newton > low && newton < high {
-            newton
-        } else {
-            0.5 * (low + high)
-        };
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         // neighbouring numbers: this is as near as the arithmetic comes
         if (next - x).abs() <= f64::EPSILON * x.abs() {
             return Ok(next);
         }
         x = next;
     }
-    Err(WakeError::NotConverged {
-        iterations: MAX_ITERATIONS,
-        residual: relative,
-        last_inflow: x,
-    })
+    Err(WakeError::NotConverged { iterations: MAX_ITERATIONS, residual: relative, last_inflow: x })
 }
 
 #[cfg(test)]
@@ -163,10 +153,7 @@ mod tests {
     use approx::{assert_abs_diff_eq, assert_relative_eq};
 
     fn flight(advance_ratio: f64, tilt_deg: f64) -> FlightState {
-        FlightState {
-            advance_ratio,
-            shaft_tilt_rad: tilt_deg.to_radians(),
-        }
+        FlightState { advance_ratio, shaft_tilt_rad: tilt_deg.to_radians() }
     }
 
     #[test]
@@ -175,11 +162,7 @@ mod tests {
         let induced = momentum_inflow(&flight, 0.0049).unwrap();
         assert_abs_diff_eq!(induced, 0.008_114, epsilon = 5e-7);
         assert_abs_diff_eq!(flight.normal_inflow() + induced, 0.034_360, epsilon = 5e-7);
-        assert_abs_diff_eq!(
-            wake_skew_rad(&flight, induced).to_degrees(),
-            83.47,
-            epsilon = 5e-3
-        );
+        assert_abs_diff_eq!(wake_skew_rad(&flight, induced).to_degrees(), 83.47, epsilon = 5e-3);
     }
 
     #[test]
@@ -229,10 +212,7 @@ mod tests {
                 shaft_tilt_rad: -(descent * 0.05 / 1e-8_f64).atan(),
             };
             let error = momentum_inflow(&flight, 0.005).unwrap_err();
-            let WakeError::VortexRingState {
-                transport_ratio, ..
-            } = error
-            else {
+            let WakeError::VortexRingState { transport_ratio, .. } = error else {
                 panic!("descent {descent}: {error}");
             };
             assert!(transport_ratio < VORTEX_RING_TRANSPORT);
@@ -247,10 +227,7 @@ mod tests {
         let up = momentum_inflow(&flight(0.2, 3.0), 0.006).unwrap();
         let down = momentum_inflow(&flight(0.2, -3.0), -0.006).unwrap();
         assert_eq!(up.to_bits(), (-down).to_bits());
-        assert_eq!(
-            momentum_inflow(&flight(0.0, 0.0), 0.0).unwrap().to_bits(),
-            0
-        );
+        assert_eq!(momentum_inflow(&flight(0.0, 0.0), 0.0).unwrap().to_bits(), 0);
     }
 
     #[test]
@@ -258,10 +235,7 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY] {
             assert!(matches!(
                 momentum_inflow(&flight(0.3, 5.0), bad),
-                Err(WakeError::BadInput {
-                    quantity: "thrust_coefficient",
-                    ..
-                })
+                Err(WakeError::BadInput { quantity: "thrust_coefficient", .. })
             ));
         }
     }

@@ -69,17 +69,11 @@ proptest! {
 fn fast_forward_flight_approaches_the_wing_formula() {
     // lambda_i -> C_T / (2 mu): the departure falls as (lambda/mu)^2 / 2
     for advance_ratio in [0.1, 0.2, 0.4] {
-        let flight = FlightState {
-            advance_ratio,
-            shaft_tilt_rad: 0.0,
-        };
+        let flight = FlightState { advance_ratio, shaft_tilt_rad: 0.0 };
         let induced = momentum_inflow(&flight, 0.0049).unwrap();
         let wing = 0.0049 / (2.0 * advance_ratio);
         let departure = 1.0 - induced / wing;
         let expected = 0.5 * (induced / advance_ratio).powi(2);
-        assert!(
-            (departure / expected - 1.0).abs() < 0.05,
-            "{departure} {expected}"
-        );
+        assert!((departure / expected - 1.0).abs() < 0.05, "{departure} {expected}");
     }
 }

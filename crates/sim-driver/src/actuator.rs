@@ -37,10 +37,8 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     let case = &loaded.case;
     let values = &case.actuator;
     let (low, high) = values.range_volt;
-    let fail = |source| SimError::Actuator {
-        place: loaded.index.place("actuator.range_V"),
-        source,
-    };
+    let fail =
+        |source| SimError::Actuator { place: loaded.index.place("actuator.range_V"), source };
     let range = VoltageRange::new(low, high).map_err(fail)?;
     // the case gives the amplitude at full scale, the model wants it at the ends of the range
     let full_scale = 2.0 * case.control.amplitude_volt / range.span_volt();
@@ -69,9 +67,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         ActuatorSource::Stored { folder, file } => {
             let source = folder.read(file)?;
             let stored = read_actuator(&source)?;
-            actuators
-                .inputs
-                .push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
+            actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;
             actuators.real = Some(stored.model);

@@ -47,19 +47,11 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         Some(FileKind::Actuator) => {
             let stored = read_actuator(&source)?;
             let summary = format!("{}, {} runs", stored.title, stored.runs.len());
-            Ok(CheckResult {
-                file: name,
-                kind: FileKind::Actuator,
-                summary,
-            })
+            Ok(CheckResult { file: name, kind: FileKind::Actuator, summary })
         }
         Some(FileKind::Case) => {
             let summary = read_case(&source, &Folder::of_file(path))?.case.title;
-            Ok(CheckResult {
-                file: name,
-                kind: FileKind::Case,
-                summary,
-            })
+            Ok(CheckResult { file: name, kind: FileKind::Case, summary })
         }
         None => {
             let mut problems = Problems::default();
@@ -82,27 +74,15 @@ fn kind_of(source: &Source, index: &RonIndex) -> Option<FileKind> {
         return Some(FileKind::Bench);
     }
     // any other text in brackets is taken for a case, whose reader then names what is wrong
-    let begins = source
-        .text
-        .lines()
-        .map(str::trim)
-        .any(|line| line.starts_with('('));
+    let begins = source.text.lines().map(str::trim).any(|line| line.starts_with('('));
     begins.then_some(FileKind::Case)
 }
 
 fn check_bench(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
     let data = read_bench(folder)?;
     let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
-    let summary = format!(
-        "{}: {} runs, {samples} samples",
-        data.title,
-        data.runs.len()
-    );
-    Ok(CheckResult {
-        file,
-        kind: FileKind::Bench,
-        summary,
-    })
+    let summary = format!("{}: {} runs, {samples} samples", data.title, data.runs.len());
+    Ok(CheckResult { file, kind: FileKind::Bench, summary })
 }
 
 impl Printable for CheckResult {

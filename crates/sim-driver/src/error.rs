@@ -3,6 +3,7 @@
 use crate::problem::{Place, Problem, Problems};
 use crate::study::StudyError;
 use flap_aero::AeroError;
+use model_gap::GapError;
 use preisach_dyn::PreisachError;
 use rotor_fem::FemError;
 use rotor_response::ResponseError;
@@ -44,6 +45,14 @@ pub enum SimError {
         place: Place,
         /// What went wrong.
         source: PreisachError,
+    },
+    /// The misfit of a record.
+    #[error("{place}: {source}")]
+    Misfit {
+        /// The record.
+        place: Place,
+        /// What went wrong.
+        source: GapError,
     },
     /// The blade and its modes.
     #[error("{place}: {source}")]
@@ -113,6 +122,7 @@ impl SimError {
             | Self::NotWritten { .. }
             | Self::Section(_) => Family::RejectedInput,
             Self::Actuator { source, .. } => actuator_family(source),
+            Self::Misfit { .. } => Family::RejectedInput,
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),
             Self::Trim { source, .. } => trim_family(source),

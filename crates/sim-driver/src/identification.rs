@@ -5,10 +5,12 @@ use crate::files::{BenchData, RunUse};
 use crate::output::{Printable, Sheet, table};
 use crate::problem::Place;
 use crate::stored_actuator::{FitUse, StoredActuator, StoredFit, StoredKind};
+use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, NoiseEstimate, RunError, Use};
 use preisach_dyn::identify::{
-    BenchRecord, Identification, RecordReport, RecordUse, Refinement, Settings, identify,
+    BenchRecord, Identification, RecordUse, Refinement, Settings, identify,
 };
-use preisach_dyn::{PreisachError, VoltageRange};
+use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Half peak to peak of the slowest full-scale loop where the data set gives no gain, deg.
@@ -25,6 +27,8 @@ pub struct BenchIdentification {
     pub settings: Settings,
     /// The records as the identification saw them.
     pub records: Vec<BenchRecord>,
+    /// How the models fit each record.
+    pub fits: Vec<RunFit>,
 }
 
 /// Identifies an actuator from a bench.
@@ -46,11 +50,7 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
         Some(gain) => gain,
         None => quasi_static_gain(data, base),
     };
-    let settings = Settings {
-        range_volt,
-        deg_per_um,
-        ..base.clone()
-    };
+    let settings = Settings { range_volt, deg_per_um, ..base.clone() };
     let records: Vec<BenchRecord> = data
         .runs
         .iter()
@@ -58,12 +58,7 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
             id: run.id.clone(),
             time_step_s: run.table.time_step_s,
             voltage_volt: run.table.command_volt.clone(),
-            output_deg: run
-                .table
-                .displacement_um
-                .iter()
-                .map(|x| deg_per_um * x)
-                .collect(),
+            output_deg: run.table.displacement_um.iter().map(|x| deg_per_um * x).collect(),
             record_use: run.use_as.map(|given| match given {
                 RunUse::Train => RecordUse::Train,
                 RunUse::HeldOut => RecordUse::HeldOut,
@@ -72,11 +67,90 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
         })
         .collect();
     let identification = identify(&records, &settings).map_err(fail)?;
-    Ok(BenchIdentification {
-        identification,
-        settings,
-        records,
-    })
+    let fits = judge(&records, &identification).map_err(|e| match e {
+        Judged::Model(source) => fail(source),
+        Judged::Misfit { id, source } => SimError::Misfit {
+            place: Place::file(format!("{}/dataset.ron", data.folder)).field(&id),
+            source,
+        },
+    })?;
+    Ok(BenchIdentification { identification, settings, records, fits })
+}
+
+/// Why a record cannot be judged.
+enum Judged {
+    Model(PreisachError),
+    Misfit { id: String, source: GapError },
+}
+
+/// The identified models against every record, judged by `model-gap` from their simulated outputs: the
+/// identification does not mark its own work.
+fn judge(records: &[BenchRecord], identification: &Identification) -> Result<Vec<RunFit>, Judged> {
+    records
+        .par_iter()
+        .zip(&identification.records)
+        .map(|(record, report)| {
+            let failed = |source| Judged::Misfit { id: record.id.clone(), source };
+            let simulate = |model: &ActuatorModel| {
+                let run = model.simulate(&record.voltage_volt, record.time_step_s);
+                run.map(|simulation| simulation.output_deg).map_err(Judged::Model)
+            };
+            let measured: Vec<f64> =
+                record.output_deg.iter().map(|y| y - identification.zero_deg).collect();
+            let simulated = simulate(&identification.dynamic)?;
+            let quasi_static = simulate(&identification.static_only)?;
+            let drive = &report.drive;
+            let steady = drive.steady.clone();
+            let first_harmonic = if drive.is_periodic() {
+                let (dt, hz) = (record.time_step_s, drive.strongest_hz());
+                let (y, model) = (&measured[steady.clone()], &simulated[steady.clone()]);
+                Some(FirstHarmonicError::of(y, model, dt, hz).map_err(failed)?)
+            } else {
+                None
+            };
+            // the noise of the steady cycles; a record without repeats tells none
+            let noise = drive.is_periodic().then(|| {
+                NoiseEstimate::from_cycles(&measured[steady], record.time_step_s, drive.base_hz)
+            });
+            let structured = match noise {
+                Some(Ok(noise)) => {
+                    let split = EnergySplit::of(&measured, &simulated, noise.variance);
+                    Some(split.map_err(failed)?.structured)
+                }
+                _ => None,
+            };
+            Ok(RunFit {
+                error: RunError {
+                    id: record.id.clone(),
+                    used: match report.record_use {
+                        RecordUse::Train => Use::Train,
+                        RecordUse::HeldOut => Use::HeldOut,
+                    },
+                    misfit: Misfit::of(&measured, &simulated).map_err(failed)?,
+                    first_harmonic,
+                },
+                static_nrmse: Misfit::of(&measured, &quasi_static).map_err(failed)?.nrmse,
+                structured,
+                frequency_hz: drive.strongest_hz(),
+                amplitude_volt: drive.amplitude_volt,
+            })
+        })
+        .collect()
+}
+
+/// How the identified models fit one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunFit {
+    /// Misfit of the dynamic model.
+    pub error: RunError,
+    /// NRMSE of the static model.
+    pub static_nrmse: f64,
+    /// Share of the output's energy that is neither explained nor noise; none without repeated cycles.
+    pub structured: Option<f64>,
+    /// Frequency of the strongest harmonic of the command, Hz.
+    pub frequency_hz: f64,
+    /// Half peak to peak of the command, V.
+    pub amplitude_volt: f64,
 }
 
 /// Gain that makes the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`], deg/um.
@@ -84,9 +158,7 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> f64 {
     let half_stroke = |displacement_um: &[f64]| {
         let (low, high) = displacement_um
             .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| {
-                (l.min(x), h.max(x))
-            });
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
         0.5 * (high - low)
     };
     let widest_um = data
@@ -107,11 +179,7 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> f64 {
         .map(|run| half_stroke(&run.table.displacement_um))
         .fold(0.0, f64::max);
     // no slow loop at all: identification says so in its own words
-    if widest_um > 0.0 {
-        QUASI_STATIC_AMPLITUDE_DEG / widest_um
-    } else {
-        1.0
-    }
+    if widest_um > 0.0 { QUASI_STATIC_AMPLITUDE_DEG / widest_um } else { 1.0 }
 }
 
 impl BenchIdentification {
@@ -124,7 +192,7 @@ impl BenchIdentification {
             data_hash: data.content_hash.clone(),
             program_version: crate::VERSION.to_owned(),
             settings: self.settings.clone(),
-            runs: self.identification.records.iter().map(stored_fit).collect(),
+            runs: self.fits.iter().map(stored_fit).collect(),
             model: self.identification.dynamic.clone(),
         }
     }
@@ -141,16 +209,8 @@ impl BenchIdentification {
                 format!(
                     "trained: quasi-static records (up to {} Hz) and, at {} Hz, the largest and the smallest amplitude; held out: all others{}",
                     rule.quasi_static_hz,
-                    rule.trained_hz
-                        .iter()
-                        .map(f64::to_string)
-                        .collect::<Vec<_>>()
-                        .join(" and "),
-                    if *rule == base {
-                        ""
-                    } else {
-                        " (rule of the start file)"
-                    },
+                    rule.trained_hz.iter().map(f64::to_string).collect::<Vec<_>>().join(" and "),
+                    if *rule == base { "" } else { " (rule of the start file)" },
                 )
             } else {
                 "as dataset.ron says for every run".to_owned()
@@ -158,25 +218,27 @@ impl BenchIdentification {
             deg_per_um: self.settings.deg_per_um,
             zero_deg: self.identification.zero_deg,
             refinement: self.identification.refinement,
-            runs: self.identification.records.iter().map(stored_fit).collect(),
+            runs: self.fits.iter().map(stored_fit).collect(),
             written_to,
         }
     }
 }
 
-fn stored_fit(report: &RecordReport) -> StoredFit {
+fn stored_fit(fit: &RunFit) -> StoredFit {
+    let first = fit.error.first_harmonic.as_ref();
     StoredFit {
-        id: report.id.clone(),
-        use_as: match report.record_use {
-            RecordUse::Train => FitUse::Trained,
-            RecordUse::HeldOut => FitUse::HeldOut,
+        id: fit.error.id.clone(),
+        use_as: match fit.error.used {
+            Use::Train => FitUse::Trained,
+            Use::HeldOut => FitUse::HeldOut,
         },
-        frequency_hz: report.drive.strongest_hz(),
-        amplitude_volt: report.drive.amplitude_volt,
-        nrmse_percent: report.dynamic.nrmse_percent(),
-        static_nrmse_percent: report.static_only.nrmse_percent(),
-        amplitude_error_percent: report.dynamic.amplitude_error_percent,
-        phase_error_deg: report.dynamic.phase_error_deg,
+        frequency_hz: fit.frequency_hz,
+        amplitude_volt: fit.amplitude_volt,
+        nrmse_percent: 100.0 * fit.error.misfit.nrmse,
+        static_nrmse_percent: 100.0 * fit.static_nrmse,
+        amplitude_error_percent: first.map(|f| 100.0 * (f.amplitude_ratio - 1.0)),
+        phase_error_deg: first.map(|f| f.phase_error_deg),
+        structured_percent: fit.structured.map(|s| 100.0 * s),
     }
 }
 
@@ -205,10 +267,7 @@ impl Printable for IdentifyResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("{}", self.title));
-        sheet.line(format_args!(
-            "Data   {}\nSplit  {}",
-            self.dataset, self.split
-        ));
+        sheet.line(format_args!("Data   {}\nSplit  {}", self.dataset, self.split));
         sheet.line(format_args!(
             "Gain   {:.6} deg/um; {:.3} deg of the records is zero flap angle",
             self.deg_per_um, self.zero_deg
@@ -219,15 +278,14 @@ impl Printable for IdentifyResult {
             100.0 * self.refinement.nrmse_before,
             100.0 * self.refinement.nrmse_after
         ));
-        for (title, use_as) in [
-            ("Trained runs", FitUse::Trained),
-            ("Held-out runs", FitUse::HeldOut),
-        ] {
+        for (title, use_as) in
+            [("Trained runs", FitUse::Trained), ("Held-out runs", FitUse::HeldOut)]
+        {
             sheet.line(format_args!("\n{title}"));
             sheet.block(&fit_table(self.runs.iter().filter(|r| r.use_as == use_as)));
         }
         sheet.line(format_args!(
-            "\nNRMSE: rms error / standard deviation of the measured output. Amplitude and phase error at\nthe strongest harmonic of the command, steady cycles; positive phase: the model lags too much."
+            "\nNRMSE: rms error / standard deviation of the measured output. Amplitude and phase error at\nthe strongest harmonic of the command, steady cycles; positive phase: the model lags too much.\nStructured: share of the output's energy that is neither explained nor noise of repeated cycles."
         ));
         if let Some(path) = &self.written_to {
             sheet.line(format_args!("Actuator written to {path}"));
@@ -239,15 +297,7 @@ impl Printable for IdentifyResult {
 fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>) -> String {
     let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
     table(
-        &[
-            "run",
-            "Hz",
-            "V",
-            "NRMSE %",
-            "static only %",
-            "amplitude %",
-            "phase deg",
-        ],
+        &["run", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg", "structured %"],
         runs.map(|r| {
             vec![
                 r.id.clone(),

@@ -25,27 +25,18 @@ impl Case {
             thickness_gyration_radius: b.km1.into(),
             chord_gyration_radius: b.km2.into(),
             area_gyration_radius: b.ka.into(),
-            twist: Twist::Linear {
-                rate_rad: b.twist_rad,
-            },
+            twist: Twist::Linear { rate_rad: b.twist_rad },
             precone_rad: b.precone_rad,
             ..BladeSpec::uniform(b.ei_flap, b.ei_lag, b.gj, b.ea)
         };
-        BladeProperties::new(spec).map_err(|source| SimError::Blade {
-            place: Place::file("case").field("rotor"),
-            source,
-        })
+        BladeProperties::new(spec)
+            .map_err(|source| SimError::Blade { place: Place::file("case").field("rotor"), source })
     }
 
     /// Modes kept in the response.
     pub fn mode_count(&self) -> ModeCount {
         let [flap, lag, torsion] = self.blade.modes;
-        ModeCount {
-            flap,
-            lag,
-            torsion,
-            axial: 0,
-        }
+        ModeCount { flap, lag, torsion, axial: 0 }
     }
 
     /// The rotor apart from the structure of its blades.
@@ -64,9 +55,9 @@ impl Case {
             section_model: self.section_model(),
             compressibility: match self.section.compressibility {
                 CompressibilityChoice::None => Compressibility::None,
-                CompressibilityChoice::LocalMach => Compressibility::LocalMach {
-                    tip_mach: self.tip_mach(),
-                },
+                CompressibilityChoice::LocalMach => {
+                    Compressibility::LocalMach { tip_mach: self.tip_mach() }
+                }
             },
             flaps: self
                 .flaps
@@ -96,9 +87,9 @@ impl Case {
         match self.inflow {
             InflowChoice::Uniform => LinearInflow::Uniform,
             InflowChoice::Drees => LinearInflow::Drees,
-            InflowChoice::Prescribed { lambda_i } => LinearInflow::Prescribed {
-                induced_inflow: lambda_i,
-            },
+            InflowChoice::Prescribed { lambda_i } => {
+                LinearInflow::Prescribed { induced_inflow: lambda_i }
+            }
         }
     }
 
@@ -138,26 +129,15 @@ impl Case {
                     tail_rotor_height,
                 },
             },
-            TrimValues::WindTunnel {
-                ct_sigma,
-                shaft_tilt_rad,
-            } => TrimTarget::WindTunnel {
-                ct_sigma,
-                shaft_tilt_rad,
-            },
-            TrimValues::Prescribed {
-                theta0_rad,
-                theta1c_rad,
-                theta1s_rad,
-                shaft_tilt_rad,
-            } => TrimTarget::Prescribed {
-                controls: Controls {
-                    theta0_rad,
-                    theta1c_rad,
-                    theta1s_rad,
-                },
-                shaft_tilt_rad,
-            },
+            TrimValues::WindTunnel { ct_sigma, shaft_tilt_rad } => {
+                TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad }
+            }
+            TrimValues::Prescribed { theta0_rad, theta1c_rad, theta1s_rad, shaft_tilt_rad } => {
+                TrimTarget::Prescribed {
+                    controls: Controls { theta0_rad, theta1c_rad, theta1s_rad },
+                    shaft_tilt_rad,
+                }
+            }
         }
     }
 
@@ -174,9 +154,6 @@ impl Case {
     /// Tolerances of the trim.
     pub fn trim_settings(&self) -> TrimSettings {
         let t = &self.tolerances;
-        TrimSettings {
-            tolerance: t.trim,
-            max_iterations: t.trim_iterations,
-        }
+        TrimSettings { tolerance: t.trim, max_iterations: t.trim_iterations }
     }
 }

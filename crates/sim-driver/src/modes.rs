@@ -41,14 +41,8 @@ pub fn rotating_modes(
     pitch_rad: f64,
     speed_ratios: &[f64],
 ) -> Result<ModesResult, SimError> {
-    let fail = |source: FemError| SimError::Blade {
-        place: Place::file("modes"),
-        source,
-    };
-    let blade = case
-        .blade_properties()?
-        .with_pitch_rad(pitch_rad)
-        .map_err(fail)?;
+    let fail = |source: FemError| SimError::Blade { place: Place::file("modes"), source };
+    let blade = case.blade_properties()?.with_pitch_rad(pitch_rad).map_err(fail)?;
     let nominal_rad_s = case.scales.omega_rad_s();
     let lines = |found: &[CoupledMode]| {
         found
@@ -60,43 +54,28 @@ pub fn rotating_modes(
             })
             .collect()
     };
-    let fan = fan_plot(
-        &blade,
-        case.blade.elements,
-        speed_ratios,
-        terms,
-        case.mode_count(),
-    )
-    .map_err(fail)?
-    .iter()
-    .map(|point| ModesResult {
-        rotor_speed_rad_s: point.rotor_speed * nominal_rad_s,
-        modes: lines(&point.modes),
-        fan: vec![],
-    })
-    .collect();
+    let fan = fan_plot(&blade, case.blade.elements, speed_ratios, terms, case.mode_count())
+        .map_err(fail)?
+        .iter()
+        .map(|point| ModesResult {
+            rotor_speed_rad_s: point.rotor_speed * nominal_rad_s,
+            modes: lines(&point.modes),
+            fan: vec![],
+        })
+        .collect();
     let model = BladeModel::new(blade, case.blade.elements).map_err(fail)?;
     let nominal = modes(&model, terms, case.mode_count()).map_err(fail)?;
-    Ok(ModesResult {
-        rotor_speed_rad_s: nominal_rad_s,
-        modes: lines(&nominal),
-        fan,
-    })
+    Ok(ModesResult { rotor_speed_rad_s: nominal_rad_s, modes: lines(&nominal), fan })
 }
 
 impl Printable for ModesResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
-        sheet.line(format_args!(
-            "Rotor speed {:.4} rad/s",
-            self.rotor_speed_rad_s
-        ));
+        sheet.line(format_args!("Rotor speed {:.4} rad/s", self.rotor_speed_rad_s));
         sheet.block(&table(
             &["mode", "per rev", "Hz"],
             numbered(&self.modes).zip(&self.modes).map(|(name, mode)| {
-                let per_rev = mode
-                    .per_rev
-                    .map_or_else(|| "-".to_owned(), |p| format!("{p:.6}"));
+                let per_rev = mode.per_rev.map_or_else(|| "-".to_owned(), |p| format!("{p:.6}"));
                 vec![name, per_rev, format!("{:.4}", mode.hz)]
             }),
         ));

@@ -26,12 +26,8 @@ pub trait Printable: Serialize {
     fn render(&self, format: Format) -> Result<String, SimError> {
         let mut text = match format {
             Format::Text => self.text(),
-            Format::Json => {
-                serde_json::to_string_pretty(self).map_err(|e| SimError::NotWritten {
-                    path: "JSON".into(),
-                    reason: e.to_string(),
-                })?
-            }
+            Format::Json => serde_json::to_string_pretty(self)
+                .map_err(|e| SimError::NotWritten { path: "JSON".into(), reason: e.to_string() })?,
         };
         if !text.ends_with('\n') {
             text.push('\n');
@@ -47,10 +43,9 @@ pub trait Printable: Serialize {
 pub fn print(text: &str) -> Result<(), SimError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(SimError::NotWritten {
-            path: "standard output".into(),
-            reason: e.to_string(),
-        }),
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(SimError::NotWritten { path: "standard output".into(), reason: e.to_string() })
+        }
         _ => Ok(()),
     }
 }
@@ -92,8 +87,5 @@ pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> St
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-    table
-        .lines()
-        .map(|line| line.trim_end().to_owned() + "\n")
-        .collect()
+    table.lines().map(|line| line.trim_end().to_owned() + "\n").collect()
 }

@@ -18,20 +18,12 @@ pub struct Place {
 impl Place {
     /// A whole file.
     pub fn file(file: impl Into<String>) -> Self {
-        Self {
-            file: file.into(),
-            ..Self::default()
-        }
+        Self { file: file.into(), ..Self::default() }
     }
 
     /// A line and column of a file, both from 1.
     pub fn at(file: impl Into<String>, line: usize, column: usize) -> Self {
-        Self {
-            file: file.into(),
-            line: Some(line),
-            column: Some(column),
-            field: None,
-        }
+        Self { file: file.into(), line: Some(line), column: Some(column), field: None }
     }
 
     /// The same place with the name of the field or table column found there.
@@ -394,17 +386,11 @@ pub enum Fault {
 }
 
 fn suggestion(nearest: Option<&String>) -> String {
-    nearest
-        .map(|n| format!(", did you mean `{n}`?"))
-        .unwrap_or_default()
+    nearest.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default()
 }
 
 fn suffix(unit: &str) -> String {
-    if unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {unit}")
-    }
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
 fn unit_remedy(factor: Option<f64>, column: &str) -> String {
@@ -546,10 +532,7 @@ mod tests {
     #[test]
     fn near_words_are_found_and_far_ones_are_not() {
         assert_eq!(edit_distance("kitten", "sitting"), 3);
-        assert_eq!(
-            nearest("radius", ["radius_m", "blades"]).unwrap(),
-            "radius_m"
-        );
+        assert_eq!(nearest("radius", ["radius_m", "blades"]).unwrap(), "radius_m");
         assert_eq!(nearest("uniform", ["Uniform", "Drees"]).unwrap(), "Uniform");
         assert_eq!(nearest("temperature", ["blades", "chord_r"]), None);
     }
@@ -558,15 +541,9 @@ mod tests {
     fn problems_are_listed_by_line() {
         let mut problems = Problems::default();
         problems.push(Place::at("a.ron", 9, 2), Fault::UnknownKind);
-        problems.push(
-            Place::at("a.ron", 3, 4).field("rotor.blades"),
-            Fault::UnknownKind,
-        );
+        problems.push(Place::at("a.ron", 3, 4).field("rotor.blades"), Fault::UnknownKind);
         let text = problems.into_result(Some(())).unwrap_err().to_string();
-        assert!(
-            text.starts_with("a.ron:3:4: rotor.blades: is neither"),
-            "{text}"
-        );
+        assert!(text.starts_with("a.ron:3:4: rotor.blades: is neither"), "{text}");
         assert!(text.ends_with("2 problems"), "{text}");
     }
 }

@@ -22,9 +22,7 @@ impl Progress {
 
     /// No bar at all.
     pub fn hidden() -> Self {
-        Self {
-            bar: ProgressBar::hidden(),
-        }
+        Self { bar: ProgressBar::hidden() }
     }
 
     /// Says what is being done.

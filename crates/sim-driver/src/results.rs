@@ -88,14 +88,7 @@ impl HubLoads {
     /// From cosine and sine parts `fx_c fx_s fy_c ... mz_s`.
     pub fn from_parts(parts: [f64; 12]) -> Self {
         let pair = |k: usize| [parts[2 * k], parts[2 * k + 1]];
-        Self {
-            fx: pair(0),
-            fy: pair(1),
-            fz: pair(2),
-            mx: pair(3),
-            my: pair(4),
-            mz: pair(5),
-        }
+        Self { fx: pair(0), fy: pair(1), fz: pair(2), mx: pair(3), my: pair(4), mz: pair(5) }
     }
 
     /// Amplitudes of the six loads.
@@ -225,10 +218,7 @@ pub fn result_key(case: &CaseFile, inputs: &[String]) -> Result<String, SimError
 }
 
 fn not_written(path: &Path, error: &dyn std::fmt::Display) -> SimError {
-    SimError::NotWritten {
-        path: path.to_path_buf(),
-        reason: error.to_string(),
-    }
+    SimError::NotWritten { path: path.to_path_buf(), reason: error.to_string() }
 }
 
 #[cfg(test)]
@@ -247,10 +237,7 @@ mod tests {
         assert_eq!(base.len(), 64);
         assert_eq!(base, key(&file.clone(), &["a", "b"]));
         assert_ne!(base, key(&file, &["ab"]), "inputs are kept apart");
-        let moved = CaseFile {
-            advance_ratio: file.advance_ratio + 1e-12,
-            ..file
-        };
+        let moved = CaseFile { advance_ratio: file.advance_ratio + 1e-12, ..file };
         assert_ne!(base, key(&moved, &["a", "b"]));
     }
 

@@ -43,10 +43,7 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
     let trimmed = TrimmedRotor::new(loaded, None)?;
     progress.step();
     progress.doing("control");
-    let failed = |source| SimError::Study {
-        place: loaded.index.place("control"),
-        source,
-    };
+    let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
     let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new)).map_err(failed)?;
     let studies =
         control_all(&loaded.case, &trimmed, &drives, &|| progress.step()).map_err(failed)?;
@@ -58,19 +55,10 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
                 trimmed.trim().rotor.hub.harmonic(loaded.case.blades),
             ),
         },
-        control: studies
-            .iter()
-            .map(|study| control_line(loaded, study))
-            .collect(),
+        control: studies.iter().map(|study| control_line(loaded, study)).collect(),
         warnings: actuators.warnings.clone(),
     };
-    Ok(RunOutcome {
-        result,
-        actuators,
-        trimmed,
-        drives,
-        studies,
-    })
+    Ok(RunOutcome { result, actuators, trimmed, drives, studies })
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {
@@ -115,14 +103,7 @@ impl Printable for RunResult {
             r.trim, r.periodicity, r.inflow
         ));
         let baseline = self.baseline.hub_4_per_rev;
-        let parts = [
-            baseline.fx,
-            baseline.fy,
-            baseline.fz,
-            baseline.mx,
-            baseline.my,
-            baseline.mz,
-        ];
+        let parts = [baseline.fx, baseline.fy, baseline.fz, baseline.mx, baseline.my, baseline.mz];
         sheet.line(format_args!(
             "Hub loads at the blade number per rev, fixed frame, without control"
         ));
@@ -183,10 +164,7 @@ impl RunResult {
                 ];
                 let after = line.hub_4_per_rev.amplitudes();
                 cells.extend(
-                    after
-                        .iter()
-                        .zip(&before)
-                        .map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
+                    after.iter().zip(&before).map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
                 );
                 cells.extend([
                     joined(|f| f.flap_amplitude_deg),

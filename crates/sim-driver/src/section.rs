@@ -62,13 +62,7 @@ impl Printable for SectionResult {
             ("Ch, about the hinge", self.ch),
         ];
         table(
-            &[
-                "per radian (plunge: per h_dot/U)",
-                "real",
-                "imaginary",
-                "amplitude",
-                "lag, deg",
-            ],
+            &["per radian (plunge: per h_dot/U)", "real", "imaginary", "amplitude", "lag, deg"],
             rows.map(|(name, [re, im])| {
                 let lag = -im.atan2(re).to_degrees();
                 let amplitude = re.hypot(im);

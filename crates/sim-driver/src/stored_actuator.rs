@@ -61,6 +61,10 @@ pub struct StoredFit {
     /// Phase error, deg of harmonic phase, positive if the model lags too much; none for transients.
     #[serde(default)]
     pub phase_error_deg: Option<f64>,
+    /// Share of the output's energy that is neither explained nor noise, percent; none without
+    /// repeated cycles.
+    #[serde(default)]
+    pub structured_percent: Option<f64>,
 }
 
 /// Side of the split of a run.
@@ -88,10 +92,7 @@ impl StoredActuator {
             "// Actuator identified by hhc {} from: {}\n// Written by `hhc identify`; identify again rather than edit.\n",
             self.program_version, self.title
         );
-        write_atomic(
-            path,
-            text.replacen('\n', &format!("\n{comment}"), 1).as_bytes(),
-        )
+        write_atomic(path, text.replacen('\n', &format!("\n{comment}"), 1).as_bytes())
     }
 }
 
@@ -100,27 +101,15 @@ impl StoredActuator {
 /// # Errors
 /// Every problem of the file, with its line.
 pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
-    let RonFile {
-        value,
-        index,
-        mut problems,
-    } = read_ron::<StoredActuator>(source);
+    let RonFile { value, index, mut problems } = read_ron::<StoredActuator>(source);
     if let Some(stored) = &value {
         let calibration = stored.model.calibration;
         let mut numbers = vec![
-            (
-                "model.calibration.deg_per_um",
-                calibration.deg_per_um,
-                calibration.deg_per_um != 0.0,
-            ),
+            ("model.calibration.deg_per_um", calibration.deg_per_um, calibration.deg_per_um != 0.0),
             ("model.calibration.zero_um", calibration.zero_um, true),
         ];
         if let ActuatorLaw::Linear(gain) = &stored.model.law {
-            numbers.push((
-                "model.law",
-                gain.gain_deg_per_volt,
-                gain.gain_deg_per_volt != 0.0,
-            ));
+            numbers.push(("model.law", gain.gain_deg_per_volt, gain.gain_deg_per_volt != 0.0));
             numbers.push(("model.law", gain.bias_volt, true));
         }
         for (field, value, ok) in numbers {

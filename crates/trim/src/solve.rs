@@ -1,7 +1,7 @@
 //! Newton's method on the trim equations around the periodic rotor response.
 
-use crate::vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
 use crate::TrimError;
+use crate::vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
@@ -68,6 +68,8 @@ pub struct TrimSolution {
     pub residual_history: Vec<f64>,
     /// Newton iterations.
     pub iterations: usize,
+    /// Last Jacobian of the trim residuals, kept for a nearby trim; none if none was needed.
+    pub jacobian: Option<DMatrix<f64>>,
 }
 
 /// Step of the finite-difference Jacobian, rad (and weights for the tail thrust).
@@ -244,11 +246,7 @@ impl<'a> Problem<'a> {
         Ok(DMatrix::from_columns(&columns))
     }
 
-    fn check_range(
-        x: &DVector<f64>,
-        iteration: usize,
-        history: &[f64],
-    ) -> Result<(), TrimError> {
+    fn check_range(x: &DVector<f64>, iteration: usize, history: &[f64]) -> Result<(), TrimError> {
         for (j, &value) in x.iter().enumerate().take(5) {
             let limit = if j < 3 { PITCH_LIMIT } else { ATTITUDE_LIMIT };
             if !(-limit..=limit).contains(&value) {
@@ -274,12 +272,13 @@ impl<'a> Problem<'a> {
         let mut x = start.map_or_else(|| self.first_guess(), |s| self.unknowns_of(s));
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
         let mut history = vec![current.1.amax()];
-        let mut jacobian: Option<DMatrix<f64>> = None;
+        let mut jacobian: Option<DMatrix<f64>> =
+            start.and_then(|s| s.jacobian.clone()).filter(|j| j.nrows() == self.unknowns);
         let mut fresh = false;
         for iteration in 0..=settings.max_iterations {
             let residual = current.1.amax();
             if self.unknowns == 0 || residual <= settings.tolerance {
-                return Ok(self.finish(&x, current, history, iteration));
+                return Ok(self.finish(&x, current, (history, iteration), jacobian));
             }
             let matrix = if let Some(kept) = jacobian.take() {
                 kept
@@ -331,8 +330,8 @@ impl<'a> Problem<'a> {
         &self,
         x: &DVector<f64>,
         (rotor, residual): (RotorSolution, DVector<f64>),
-        residual_history: Vec<f64>,
-        iterations: usize,
+        (residual_history, iterations): (Vec<f64>, usize),
+        jacobian: Option<DMatrix<f64>>,
     ) -> TrimSolution {
         let (controls, attitude) = self.state(x);
         let flight = FlightState {
@@ -340,6 +339,15 @@ impl<'a> Problem<'a> {
             shaft_tilt_rad: attitude.shaft_tilt_rad,
         };
         let residual = if self.unknowns == 0 { 0.0 } else { residual.amax() };
-        TrimSolution { controls, attitude, flight, rotor, residual, residual_history, iterations }
+        TrimSolution {
+            controls,
+            attitude,
+            flight,
+            rotor,
+            residual,
+            residual_history,
+            iterations,
+            jacobian,
+        }
     }
 }

@@ -150,7 +150,8 @@ mod tests {
     /// Moments of the forces about the centre of gravity, by the cross product.
     #[test]
     fn moments_are_those_of_the_cross_product() {
-        let vehicle = Vehicle { hub_aft_of_cg: 0.07, hub_starboard_of_cg: -0.03, ..Vehicle::default() };
+        let vehicle =
+            Vehicle { hub_aft_of_cg: 0.07, hub_starboard_of_cg: -0.03, ..Vehicle::default() };
         let hub = [0.3, -0.2, 1.1, 0.05, 0.04, -0.06];
         let attitude = Attitude { tail_thrust: 0.09, ..Attitude::default() };
         let cross = |r: [f64; 3], f: [f64; 3]| {

@@ -62,9 +62,20 @@ fn propulsive_trim_is_near_the_rigid_blade_reference() {
         assert!(t.residual <= 1e-9);
         assert!(t.rotor.residuals.periodicity <= 1e-8);
         let c = t.controls;
-        let got = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad, t.attitude.shaft_tilt_rad, t.attitude.roll_rad]
-            .map(f64::to_degrees);
-        println!("mu {mu}: {got:.3?} against {:.3?}, {} its {:?}", &row[1..6], t.iterations, t.residual_history);
+        let got = [
+            c.theta0_rad,
+            c.theta1c_rad,
+            c.theta1s_rad,
+            t.attitude.shaft_tilt_rad,
+            t.attitude.roll_rad,
+        ]
+        .map(f64::to_degrees);
+        println!(
+            "mu {mu}: {got:.3?} against {:.3?}, {} its {:?}",
+            &row[1..6],
+            t.iterations,
+            t.residual_history
+        );
         for (k, allowed) in [1.0, 1.5, 1.2, 0.6, 0.6].into_iter().enumerate() {
             assert!((got[k] - row[1 + k]).abs() <= allowed, "mu {mu}: {got:?} against {row:?}");
         }

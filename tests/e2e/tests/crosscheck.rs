@@ -33,18 +33,12 @@ fn s1_from_its_case_file() {
     let whole = norm(&expected);
     for (k, (f, e)) in found.iter().zip(&expected).enumerate() {
         let error = (f - e).abs() / whole;
-        assert!(
-            error <= 1e-3,
-            "hub harmonic {k}: {f:e} instead of {e:e}, {error:.2e} of |Z4|"
-        );
+        assert!(error <= 1e-3, "hub harmonic {k}: {f:e} instead of {e:e}, {error:.2e} of |Z4|");
     }
     let (found, expected) = (solution.hub.mean(), reference("hub_mean"));
     for part in [0..3, 3..6] {
-        let difference: Vec<f64> = found[part.clone()]
-            .iter()
-            .zip(&expected[part.clone()])
-            .map(|(f, e)| f - e)
-            .collect();
+        let difference: Vec<f64> =
+            found[part.clone()].iter().zip(&expected[part.clone()]).map(|(f, e)| f - e).collect();
         let error = norm(&difference) / norm(&expected[part.clone()]);
         assert!(error <= 1e-3, "mean loads {part:?}: {error:.2e}");
     }
@@ -54,10 +48,7 @@ fn s1_from_its_case_file() {
     assert_eq!(hub.fz[0].to_bits(), solution.hub.harmonic(4)[4].to_bits());
     assert!(outcome.result.control.is_empty());
     let r = &outcome.result.residuals;
-    assert!(
-        r.trim <= 1e-8 && r.periodicity <= 1e-8 && r.inflow <= 1e-8,
-        "{r:?}"
-    );
+    assert!(r.trim <= 1e-8 && r.periodicity <= 1e-8 && r.inflow <= 1e-8, "{r:?}");
 }
 
 /// The bounds fail when an effect is changed: nonlinear couplings in the vibratory loads, the profile
@@ -67,24 +58,14 @@ fn the_bounds_see_a_missing_effect() {
     let mut full = shipped_case("crosscheck_s1.ron").unwrap();
     full.case.blade.couplings = CouplingsChoice::Full;
     let outcome = run_case(&full, &Progress::hidden()).unwrap();
-    let (found, expected) = (
-        outcome.trimmed.trim().rotor.hub.harmonic(4),
-        reference("hub_Z4"),
-    );
-    let worst = found
-        .iter()
-        .zip(&expected)
-        .map(|(f, e)| (f - e).abs())
-        .fold(0.0, f64::max);
+    let (found, expected) = (outcome.trimmed.trim().rotor.hub.harmonic(4), reference("hub_Z4"));
+    let worst = found.iter().zip(&expected).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
     assert!(worst > 0.1 * norm(&expected), "{worst:e}");
 
     let mut smooth = shipped_case("crosscheck_s1.ron").unwrap();
     smooth.case.section.drag_coefficient = 0.0;
     let outcome = run_case(&smooth, &Progress::hidden()).unwrap();
-    let (found, expected) = (
-        outcome.trimmed.trim().rotor.hub.mean(),
-        reference("hub_mean"),
-    );
+    let (found, expected) = (outcome.trimmed.trim().rotor.hub.mean(), reference("hub_mean"));
     let error = (found[5] - expected[5]).abs() / norm(&expected[3..6]);
     assert!(error > 1e-2, "{error:e}");
 }

@@ -15,11 +15,7 @@ fn is_near(fit: &StoredFit, hz: f64) -> bool {
 fn identification_meets_its_bounds() {
     let loaded = shipped_case(PAPER_CASE).unwrap();
     let actuators = case_actuators(&loaded).unwrap();
-    assert!(
-        actuators.data_title.to_lowercase().contains("synthetic"),
-        "{}",
-        actuators.data_title
-    );
+    assert!(actuators.data_title.to_lowercase().contains("synthetic"), "{}", actuators.data_title);
     assert!(actuators.warnings.is_empty(), "{:?}", actuators.warnings);
     assert_eq!(actuators.fits.len(), 19);
     for fit in &actuators.fits {
@@ -38,15 +34,8 @@ fn identification_meets_its_bounds() {
             assert!(fit.static_nrmse_percent > 50.0, "{fit:?}");
         }
     }
-    let trained = actuators
-        .fits
-        .iter()
-        .filter(|f| f.use_as == FitUse::Trained)
-        .count();
-    assert_eq!(
-        trained, 7,
-        "0.2 Hz runs, and the outer amplitudes at 1 and 10 Hz"
-    );
+    let trained = actuators.fits.iter().filter(|f| f.use_as == FitUse::Trained).count();
+    assert_eq!(trained, 7, "0.2 Hz runs, and the outer amplitudes at 1 and 10 Hz");
 }
 
 /// With the rotor's physical speed 4/rev lies beyond everything the bench has seen, and 2, 3/rev do not.
@@ -56,13 +45,7 @@ fn extrapolation_is_warned_of() {
     let actuators = case_actuators(&loaded).unwrap();
     assert_eq!(actuators.warnings.len(), 1, "{:?}", actuators.warnings);
     let warning = &actuators.warnings[0];
-    assert!(
-        warning.contains("4/rev = 25.5 Hz is outside the tested range"),
-        "{warning}"
-    );
+    assert!(warning.contains("4/rev = 25.5 Hz is outside the tested range"), "{warning}");
     let line = loaded.index.line("actuator.bench_rev_hz").unwrap();
-    assert!(
-        warning.contains(&format!("paper_mu030_6p383hz.ron:{line}:")),
-        "{warning}"
-    );
+    assert!(warning.contains(&format!("paper_mu030_6p383hz.ron:{line}:")), "{warning}");
 }

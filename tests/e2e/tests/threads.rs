@@ -29,20 +29,11 @@ fn run_on(loaded: &LoadedCase, threads: usize) -> RunResult {
 
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
-    let source = Source {
-        name: "threads.ron".into(),
-        text: CASE.into(),
-    };
+    let source = Source { name: "threads.ron".into(), text: CASE.into() };
     let loaded = read_case(&source, &Folder::Shipped("fixtures/cases".into())).unwrap();
     let one = run_on(&loaded, 1);
-    assert!(
-        one.control.iter().all(|line| line.reduction_percent > 1.0),
-        "{one:?}"
-    );
+    assert!(one.control.iter().all(|line| line.reduction_percent > 1.0), "{one:?}");
     let two = run_on(&loaded, 2);
     // equal text of all digits is equal bits
-    assert_eq!(
-        serde_json::to_string(&one).unwrap(),
-        serde_json::to_string(&two).unwrap()
-    );
+    assert_eq!(serde_json::to_string(&one).unwrap(), serde_json::to_string(&two).unwrap());
 }

@@ -34,10 +34,7 @@ impl ActuatorParameters {
     /// The stroke is from memory and unverified; all else is chosen, none of it measured. The
     /// relaxation times are what turns 10 deg of flap at 0.2 Hz into 4 deg at 15 Hz.
     pub fn apa500l() -> Self {
-        let walls = |weight, pinning_volt| WallPopulation {
-            weight,
-            pinning_volt,
-        };
+        let walls = |weight, pinning_volt| WallPopulation { weight, pinning_volt };
         let bias_volt = 65.0;
         Self {
             low_volt: -20.0,
@@ -60,14 +57,8 @@ impl ActuatorParameters {
             },
             relaxation: RelaxationParameters {
                 channels: vec![
-                    RelaxationChannel {
-                        weight: 0.97,
-                        time_constant_s: 0.027,
-                    },
-                    RelaxationChannel {
-                        weight: 0.03,
-                        time_constant_s: 0.005,
-                    },
+                    RelaxationChannel { weight: 0.97, time_constant_s: 0.027 },
+                    RelaxationChannel { weight: 0.03, time_constant_s: 0.005 },
                 ],
                 reference_um: 250.0,
                 position_sensitivity: 0.10,
@@ -79,11 +70,7 @@ impl ActuatorParameters {
                 elements_per_decade: 2,
                 elements: 7,
             },
-            lvdt: LvdtParameters {
-                range_um: 500.0,
-                noise_um: 0.25,
-                bits: 16,
-            },
+            lvdt: LvdtParameters { range_um: 500.0, noise_um: 0.25, bits: 16 },
         }
     }
 

@@ -53,25 +53,11 @@ pub fn programme(actuator: &ActuatorParameters) -> Vec<Run> {
         note: "0.2 Hz major loop, 85 V, four cycles from rest at the bias".to_owned(),
         sample_rate_hz: 200,
         rest_s: 0.5,
-        command: Command::Sine {
-            frequency_hz: 0.2,
-            amplitude_volt: 85.0,
-            cycles: 4,
-        },
+        command: Command::Sine { frequency_hz: 0.2, amplitude_volt: 85.0, cycles: 4 },
     }];
     let families = [
-        (
-            "forc_from_150v",
-            actuator.high_volt,
-            actuator.low_volt,
-            "falling from 150 V",
-        ),
-        (
-            "forc_from_minus20v",
-            actuator.low_volt,
-            actuator.high_volt,
-            "rising from -20 V",
-        ),
+        ("forc_from_150v", actuator.high_volt, actuator.low_volt, "falling from 150 V"),
+        ("forc_from_minus20v", actuator.low_volt, actuator.high_volt, "rising from -20 V"),
     ];
     for (id, saturation_volt, opposite_volt, what) in families {
         let mut turning_points_volt = vec![saturation_volt];
@@ -85,19 +71,12 @@ pub fn programme(actuator: &ActuatorParameters) -> Vec<Run> {
             note: format!("{REVERSALS} first-order reversals, {what}, 68 V/s (0.2 Hz triangle)"),
             sample_rate_hz: 200,
             rest_s: 0.5,
-            command: Command::Ramps {
-                speed_volt_per_s: RAMP_VOLT_PER_S,
-                turning_points_volt,
-            },
+            command: Command::Ramps { speed_volt_per_s: RAMP_VOLT_PER_S, turning_points_volt },
         });
     }
-    for (frequency_hz, sample_rate_hz, cycles) in [
-        (1_u32, 1000, 6),
-        (5, 2000, 8),
-        (10, 2000, 12),
-        (15, 2000, 15),
-        (20, 2000, 20),
-    ] {
+    for (frequency_hz, sample_rate_hz, cycles) in
+        [(1_u32, 1000, 6), (5, 2000, 8), (10, 2000, 12), (15, 2000, 15), (20, 2000, 20)]
+    {
         for amplitude_volt in [85_u32, 55, 25] {
             runs.push(Run {
                 id: format!("sine_{frequency_hz}hz_{amplitude_volt}v"),
@@ -114,11 +93,7 @@ pub fn programme(actuator: &ActuatorParameters) -> Vec<Run> {
             });
         }
     }
-    let tone = |per_rev, amplitude_volt, phase_deg| Tone {
-        per_rev,
-        amplitude_volt,
-        phase_deg,
-    };
+    let tone = |per_rev, amplitude_volt, phase_deg| Tone { per_rev, amplitude_volt, phase_deg };
     runs.push(Run {
         id: "mix_2_3_4_per_rev".to_owned(),
         note: "2, 3 and 4/rev together (10, 15, 20 Hz at 5 rev/s), eight revolutions, the first \
@@ -128,11 +103,7 @@ pub fn programme(actuator: &ActuatorParameters) -> Vec<Run> {
         rest_s: 0.25,
         command: Command::Mix {
             revolution_hz: 5.0,
-            tones: vec![
-                tone(2, 30.0, 0.0),
-                tone(3, 30.0, 70.0),
-                tone(4, 25.0, 200.0),
-            ],
+            tones: vec![tone(2, 30.0, 0.0), tone(3, 30.0, 70.0), tone(4, 25.0, 200.0)],
             revolutions: 8,
         },
     });
@@ -157,18 +128,9 @@ pub fn generate(actuator: ActuatorParameters, seed: u64) -> Result<BenchData, Tr
             flap_deg_per_um = FULL_SCALE_FLAP_DEG / half_peak_to_peak(steady);
         }
         let measured = exact.measured_by(&mut Lvdt::new(actuator.lvdt, seed, stream)?);
-        runs.push(BenchRun {
-            run,
-            exact,
-            measured,
-        });
+        runs.push(BenchRun { run, exact, measured });
     }
-    Ok(BenchData {
-        actuator,
-        seed,
-        flap_deg_per_um,
-        runs,
-    })
+    Ok(BenchData { actuator, seed, flap_deg_per_um, runs })
 }
 
 /// The last whole cycles of a run, as many as have a whole number of samples.

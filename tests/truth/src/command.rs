@@ -47,15 +47,8 @@ impl Command {
     /// Duration without the initial rest, s.
     pub fn duration_s(&self, bias_volt: f64) -> f64 {
         match self {
-            Self::Sine {
-                frequency_hz,
-                cycles,
-                ..
-            } => f64::from(*cycles) / frequency_hz,
-            Self::Ramps {
-                speed_volt_per_s,
-                turning_points_volt,
-            } => {
+            Self::Sine { frequency_hz, cycles, .. } => f64::from(*cycles) / frequency_hz,
+            Self::Ramps { speed_volt_per_s, turning_points_volt } => {
                 let mut path_volt = 0.0;
                 let mut from = bias_volt;
                 for &to in turning_points_volt {
@@ -64,11 +57,7 @@ impl Command {
                 }
                 path_volt / speed_volt_per_s
             }
-            Self::Mix {
-                revolution_hz,
-                revolutions,
-                ..
-            } => f64::from(*revolutions) / revolution_hz,
+            Self::Mix { revolution_hz, revolutions, .. } => f64::from(*revolutions) / revolution_hz,
         }
     }
 
@@ -80,15 +69,10 @@ impl Command {
             return bias_volt;
         }
         match self {
-            Self::Sine {
-                frequency_hz,
-                amplitude_volt,
-                ..
-            } => bias_volt + amplitude_volt * (TAU * frequency_hz * time_s).sin(),
-            Self::Ramps {
-                speed_volt_per_s,
-                turning_points_volt,
-            } => {
+            Self::Sine { frequency_hz, amplitude_volt, .. } => {
+                bias_volt + amplitude_volt * (TAU * frequency_hz * time_s).sin()
+            }
+            Self::Ramps { speed_volt_per_s, turning_points_volt } => {
                 let mut left_volt = speed_volt_per_s * time_s;
                 let mut from = bias_volt;
                 for &to in turning_points_volt {
@@ -101,17 +85,10 @@ impl Command {
                 }
                 from
             }
-            Self::Mix {
-                revolution_hz,
-                tones,
-                ..
-            } => {
+            Self::Mix { revolution_hz, tones, .. } => {
                 let azimuth_rad = TAU * revolution_hz * time_s;
-                let fade = if azimuth_rad < TAU {
-                    0.5 - 0.5 * (0.5 * azimuth_rad).cos()
-                } else {
-                    1.0
-                };
+                let fade =
+                    if azimuth_rad < TAU { 0.5 - 0.5 * (0.5 * azimuth_rad).cos() } else { 1.0 };
                 let sum: f64 = tones
                     .iter()
                     .map(|tone| {

@@ -59,36 +59,13 @@ impl Creep {
         const STAGE: &str = "creep";
         let p = parameters;
         let growth = p.growth_per_decade;
-        require(
-            growth >= 0.0,
-            STAGE,
-            "growth_per_decade",
-            growth,
-            "not negative",
-        )?;
-        require(
-            p.first_time_s > 0.0,
-            STAGE,
-            "first_time_s",
-            p.first_time_s,
-            "positive",
-        )?;
+        require(growth >= 0.0, STAGE, "growth_per_decade", growth, "not negative")?;
+        require(p.first_time_s > 0.0, STAGE, "first_time_s", p.first_time_s, "positive")?;
         let density = f64::from(p.elements_per_decade);
-        require(
-            density > 0.0,
-            STAGE,
-            "elements_per_decade",
-            density,
-            "at least 1",
-        )?;
+        require(density > 0.0, STAGE, "elements_per_decade", density, "at least 1")?;
         let times_s = p.retardation_times_s();
         let states_um = vec![0.0; times_s.len()];
-        Ok(Self {
-            compliance: p.element_compliance(),
-            times_s,
-            input_um: 0.0,
-            states_um,
-        })
+        Ok(Self { compliance: p.element_compliance(), times_s, input_um: 0.0, states_um })
     }
 }
 

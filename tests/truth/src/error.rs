@@ -71,11 +71,6 @@ pub(crate) fn require(
     if accepted && value.is_finite() {
         Ok(())
     } else {
-        Err(TruthError::Parameter {
-            stage,
-            parameter,
-            value,
-            expected,
-        })
+        Err(TruthError::Parameter { stage, parameter, value, expected })
     }
 }

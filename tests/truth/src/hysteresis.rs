@@ -91,37 +91,13 @@ impl DomainWallHysteresis {
             require(value > 0.0, STAGE, name, value, "positive")?;
         }
         let share = p.reversible_share;
-        require(
-            (0.0..=1.0).contains(&share),
-            STAGE,
-            "reversible_share",
-            share,
-            "in 0..1",
-        )?;
+        require((0.0..=1.0).contains(&share), STAGE, "reversible_share", share, "in 0..1")?;
         let imprint = p.pinning_imprint;
-        require(
-            imprint.abs() < 1.0,
-            STAGE,
-            "pinning_imprint",
-            imprint,
-            "in -1..1",
-        )?;
-        require(
-            true,
-            STAGE,
-            "langevin_centre_volt",
-            p.langevin_centre_volt,
-            "finite",
-        )?;
+        require(imprint.abs() < 1.0, STAGE, "pinning_imprint", imprint, "in -1..1")?;
+        require(true, STAGE, "langevin_centre_volt", p.langevin_centre_volt, "finite")?;
         require(true, STAGE, "bias_volt", p.bias_volt, "finite")?;
         for walls in &p.populations {
-            require(
-                walls.weight > 0.0,
-                STAGE,
-                "weight",
-                walls.weight,
-                "positive",
-            )?;
+            require(walls.weight > 0.0, STAGE, "weight", walls.weight, "positive")?;
             require(
                 walls.pinning_volt > 0.0,
                 STAGE,
@@ -156,12 +132,8 @@ impl DomainWallHysteresis {
 
     fn displacement_um(&self) -> f64 {
         let p = &self.parameters;
-        let walls: f64 = p
-            .populations
-            .iter()
-            .zip(&self.irreversible)
-            .map(|(walls, m)| walls.weight * m)
-            .sum();
+        let walls: f64 =
+            p.populations.iter().zip(&self.irreversible).map(|(walls, m)| walls.weight * m).sum();
         let irreversible = walls / self.total_weight;
         let share = p.reversible_share;
         let polarisation = share * self.anhysteretic + (1.0 - share) * irreversible;
@@ -184,11 +156,7 @@ impl Stage for DomainWallHysteresis {
             let sense = (input - self.voltage_volt).signum();
             let (from, to) = (self.anhysteretic, self.polarisation(input));
             let strength = 1.0 + sense * self.parameters.pinning_imprint;
-            for (m, walls) in self
-                .irreversible
-                .iter_mut()
-                .zip(&self.parameters.populations)
-            {
+            for (m, walls) in self.irreversible.iter_mut().zip(&self.parameters.populations) {
                 let gap = pinned_gap(
                     sense * (from - *m),
                     sense * (to - from),

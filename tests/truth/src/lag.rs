@@ -25,25 +25,14 @@ impl<'a> LagStudy<'a> {
     /// As [`crate::record::Run::pass_through`].
     pub fn new(actuator: &ActuatorParameters, bench: &'a BenchRun) -> Result<Self, TruthError> {
         let mut chain = actuator.hysteresis_chain()?;
-        let fine = bench
-            .run
-            .pass_through_finely(&mut chain, actuator, INTERNAL_RATE_HZ)?;
+        let fine = bench.run.pass_through_finely(&mut chain, actuator, INTERNAL_RATE_HZ)?;
         let state_um = fine.into_iter().map(|(_, state)| state).collect();
-        Ok(Self {
-            bench,
-            substeps: bench.run.substeps(INTERNAL_RATE_HZ)?,
-            state_um,
-        })
+        Ok(Self { bench, substeps: bench.run.substeps(INTERNAL_RATE_HZ)?, state_um })
     }
 
     /// NRMSE of the rate-independent state itself.
     pub fn nrmse_without_lag(&self) -> f64 {
-        let model: Vec<f64> = self
-            .state_um
-            .iter()
-            .copied()
-            .step_by(self.substeps)
-            .collect();
+        let model: Vec<f64> = self.state_um.iter().copied().step_by(self.substeps).collect();
         self.nrmse(&model)
     }
 

@@ -48,13 +48,7 @@ impl Lvdt {
         const STAGE: &str = "LVDT";
         let p = parameters;
         require(p.range_um > 0.0, STAGE, "range_um", p.range_um, "positive")?;
-        require(
-            p.noise_um >= 0.0,
-            STAGE,
-            "noise_um",
-            p.noise_um,
-            "not negative",
-        )?;
+        require(p.noise_um >= 0.0, STAGE, "noise_um", p.noise_um, "not negative")?;
         let bits = f64::from(p.bits);
         require((1..=32).contains(&p.bits), STAGE, "bits", bits, "in 1..=32")?;
         let mut noise = ChaCha8Rng::seed_from_u64(seed);

@@ -43,10 +43,7 @@ fn main() -> ExitCode {
     let What::Bench { out, seed } = Arguments::parse().what;
     match write_bench(&out, seed) {
         Ok(files) => {
-            println!(
-                "{files} files written to {}; README.md holds the table",
-                out.display()
-            );
+            println!("{files} files written to {}; README.md holds the table", out.display());
             ExitCode::SUCCESS
         }
         Err(error) => {

@@ -29,10 +29,7 @@ pub fn phasor(samples: &[f64], cycles_per_sample: f64) -> Phasor {
         cosine += y * c;
     }
     let scale = 2.0 / samples.len() as f64;
-    Phasor {
-        amplitude: scale * sine.hypot(cosine),
-        phase_deg: cosine.atan2(sine).to_degrees(),
-    }
+    Phasor { amplitude: scale * sine.hypot(cosine), phase_deg: cosine.atan2(sine).to_degrees() }
 }
 
 /// An angle brought into (-180, 180], deg.
@@ -52,28 +49,17 @@ pub fn half_peak_to_peak(samples: &[f64]) -> f64 {
 /// `voltage` and `output` hold one period of a command with one maximum and one minimum.
 pub fn loop_width(voltage: &[f64], output: &[f64]) -> f64 {
     let n = voltage.len();
-    let top = (0..n).fold(
-        0,
-        |best, i| if voltage[i] > voltage[best] { i } else { best },
-    );
-    let bottom = (0..n).fold(
-        0,
-        |best, i| if voltage[i] < voltage[best] { i } else { best },
-    );
+    let top = (0..n).fold(0, |best, i| if voltage[i] > voltage[best] { i } else { best });
+    let bottom = (0..n).fold(0, |best, i| if voltage[i] < voltage[best] { i } else { best });
     let branch = |from: usize, to: usize| -> Vec<(f64, f64)> {
         let length = (to + n - from) % n;
-        (0..=length)
-            .map(|i| (from + i) % n)
-            .map(|i| (voltage[i], output[i]))
-            .collect()
+        (0..=length).map(|i| (from + i) % n).map(|i| (voltage[i], output[i])).collect()
     };
     let rising = branch(bottom, top);
     let mut falling = branch(top, bottom);
     falling.reverse();
-    let widest = rising
-        .iter()
-        .map(|&(u, y)| (interpolate(&falling, u) - y).abs())
-        .fold(0.0, f64::max);
+    let widest =
+        rising.iter().map(|&(u, y)| (interpolate(&falling, u) - y).abs()).fold(0.0, f64::max);
     widest / (2.0 * half_peak_to_peak(output))
 }
 
@@ -91,11 +77,7 @@ fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
 pub fn nrmse(model: &[f64], measured: &[f64]) -> f64 {
     let n = measured.len() as f64;
     let mean = measured.iter().sum::<f64>() / n;
-    let error: f64 = model
-        .iter()
-        .zip(measured)
-        .map(|(a, b)| (a - b).powi(2))
-        .sum();
+    let error: f64 = model.iter().zip(measured).map(|(a, b)| (a - b).powi(2)).sum();
     let variance: f64 = measured.iter().map(|y| (y - mean).powi(2)).sum();
     (error / variance).sqrt()
 }

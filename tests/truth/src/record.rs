@@ -63,11 +63,7 @@ impl Run {
         let substeps = self.substeps(internal_hz)?;
         let fine = self.pass_through_finely(chain, actuator, internal_hz)?;
         let (command_volt, displacement_um) = fine.into_iter().step_by(substeps).unzip();
-        Ok(Record {
-            sample_rate_hz: self.sample_rate_hz,
-            command_volt,
-            displacement_um,
-        })
+        Ok(Record { sample_rate_hz: self.sample_rate_hz, command_volt, displacement_um })
     }
 
     /// As [`Run::pass_through`], with every internal step: pairs of command and output.
@@ -85,9 +81,7 @@ impl Run {
         let mut signal = vec![(actuator.bias_volt, chain.settle(actuator.bias_volt))];
         for step in 1..=steps {
             let time_s = step as f64 * dt_s;
-            let voltage_volt = self
-                .command
-                .voltage_volt(actuator.bias_volt, time_s - self.rest_s);
+            let voltage_volt = self.command.voltage_volt(actuator.bias_volt, time_s - self.rest_s);
             if !(actuator.low_volt..=actuator.high_volt).contains(&voltage_volt) {
                 return Err(TruthError::CommandRange {
                     run: self.id.clone(),
@@ -123,26 +117,14 @@ impl Record {
     /// The record as the sensor sees it.
     #[must_use]
     pub fn measured_by(&self, sensor: &mut Lvdt) -> Self {
-        let displacement_um = self
-            .displacement_um
-            .iter()
-            .map(|&y| sensor.read_um(y))
-            .collect();
-        Self {
-            displacement_um,
-            ..self.clone()
-        }
+        let displacement_um = self.displacement_um.iter().map(|&y| sensor.read_um(y)).collect();
+        Self { displacement_um, ..self.clone() }
     }
 
     /// The record as text: a header with units, then one line a sample.
     pub fn to_csv(&self) -> String {
         let mut text = String::from("time_s,command_V,displacement_um\n");
-        for (i, (u, y)) in self
-            .command_volt
-            .iter()
-            .zip(&self.displacement_um)
-            .enumerate()
-        {
+        for (i, (u, y)) in self.command_volt.iter().zip(&self.displacement_um).enumerate() {
             let time_s = i as f64 / f64::from(self.sample_rate_hz);
             // Adding zero turns a negative zero into a positive one; a String takes every write.
             let _ = writeln!(text, "{time_s:.4},{:.4},{:.4}", u + 0.0, y + 0.0);

@@ -56,55 +56,20 @@ impl Relaxation {
     pub fn new(parameters: RelaxationParameters) -> Result<Self, TruthError> {
         const STAGE: &str = "relaxation";
         let p = &parameters;
-        require(
-            p.reference_um > 0.0,
-            STAGE,
-            "reference_um",
-            p.reference_um,
-            "positive",
-        )?;
+        require(p.reference_um > 0.0, STAGE, "reference_um", p.reference_um, "positive")?;
         let position = p.position_sensitivity;
-        require(
-            position.abs() <= 0.5,
-            STAGE,
-            "position_sensitivity",
-            position,
-            "in -0.5..0.5",
-        )?;
+        require(position.abs() <= 0.5, STAGE, "position_sensitivity", position, "in -0.5..0.5")?;
         let deviation = p.deviation_sensitivity;
-        require(
-            deviation >= 0.0,
-            STAGE,
-            "deviation_sensitivity",
-            deviation,
-            "not negative",
-        )?;
+        require(deviation >= 0.0, STAGE, "deviation_sensitivity", deviation, "not negative")?;
         for channel in &p.channels {
-            require(
-                channel.weight > 0.0,
-                STAGE,
-                "weight",
-                channel.weight,
-                "positive",
-            )?;
+            require(channel.weight > 0.0, STAGE, "weight", channel.weight, "positive")?;
             let time = channel.time_constant_s;
             require(time > 0.0, STAGE, "time_constant_s", time, "positive")?;
         }
         let total_weight: f64 = p.channels.iter().map(|channel| channel.weight).sum();
-        require(
-            total_weight > 0.0,
-            STAGE,
-            "channels (sum of weights)",
-            total_weight,
-            "positive",
-        )?;
+        require(total_weight > 0.0, STAGE, "channels (sum of weights)", total_weight, "positive")?;
         let states_um = vec![0.0; p.channels.len()];
-        Ok(Self {
-            parameters,
-            total_weight,
-            input_um: 0.0,
-            states_um,
-        })
+        Ok(Self { parameters, total_weight, input_um: 0.0, states_um })
     }
 
     /// One clean lag, the same in every state.
@@ -113,10 +78,7 @@ impl Relaxation {
     /// [`TruthError::Parameter`] if the time constant is not positive.
     pub fn single(time_constant_s: f64) -> Result<Self, TruthError> {
         Self::new(RelaxationParameters {
-            channels: vec![RelaxationChannel {
-                weight: 1.0,
-                time_constant_s,
-            }],
+            channels: vec![RelaxationChannel { weight: 1.0, time_constant_s }],
             reference_um: 1.0,
             position_sensitivity: 0.0,
             deviation_sensitivity: 0.0,
@@ -157,8 +119,7 @@ impl Stage for Relaxation {
         for (x, channel) in self.states_um.iter_mut().zip(&self.parameters.channels) {
             // Exact for a constant time; taken at the middle of the step it is of second order.
             let tau = |state: f64, h: f64| {
-                self.parameters
-                    .time_constant_s(channel.time_constant_s, state, h)
+                self.parameters.time_constant_s(channel.time_constant_s, state, h)
             };
             let predicted = first_order_hold(*x, from, input, dt_s, tau(*x, from));
             let middle = tau(0.5 * (*x + predicted), 0.5 * (from + input));

@@ -39,11 +39,7 @@ pub fn dataset_ron(data: &BenchData) -> String {
             run.id, run.note
         );
     }
-    let _ = writeln!(
-        text,
-        "    ],\n    flap_deg_per_um: {:.9},",
-        data.flap_deg_per_um
-    );
+    let _ = writeln!(text, "    ],\n    flap_deg_per_um: {:.9},", data.flap_deg_per_um);
     let (low, high) = (data.actuator.low_volt, data.actuator.high_volt);
     let _ = writeln!(text, "    command_range_V: ({low}, {high}),\n)");
     text
@@ -58,10 +54,7 @@ pub fn achieved_table(data: &BenchData) -> Result<String, TruthError> {
     for bench in &data.runs {
         studies.push(LagStudy::new(&data.actuator, bench)?);
     }
-    let reference = data
-        .runs
-        .iter()
-        .position(|bench| bench.run.id == LAG_REFERENCE_ID);
+    let reference = data.runs.iter().position(|bench| bench.run.id == LAG_REFERENCE_ID);
     let reference_lag_s = reference.map_or(f64::NAN, |index| studies[index].best_lag_s());
     let mut text = format!(
         "| run | half peak to peak, deg | fundamental, deg | lag, deg | loop width, % | no lag, % | \
@@ -93,10 +86,7 @@ fn motion_columns(data: &BenchData, bench: &BenchRun) -> String {
     let component = |frequency_hz: f64| {
         let cycles_per_sample = frequency_hz / f64::from(bench.run.sample_rate_hz);
         let (input, output) = (phasor(u, cycles_per_sample), phasor(y, cycles_per_sample));
-        (
-            gain * output.amplitude,
-            wrap_deg(input.phase_deg - output.phase_deg),
-        )
+        (gain * output.amplitude, wrap_deg(input.phase_deg - output.phase_deg))
     };
     match &bench.run.command {
         Command::Sine { frequency_hz, .. } => {
@@ -104,22 +94,14 @@ fn motion_columns(data: &BenchData, bench: &BenchRun) -> String {
             let width_percent = 100.0 * loop_width(u, y);
             format!("{half_peak_deg:.3} | {amplitude_deg:.3} | {lag_deg:.1} | {width_percent:.1}")
         }
-        Command::Mix {
-            revolution_hz,
-            tones,
-            ..
-        } => {
+        Command::Mix { revolution_hz, tones, .. } => {
             let (mut amplitudes, mut lags) = (Vec::new(), Vec::new());
             for tone in tones {
                 let (amplitude_deg, lag_deg) = component(f64::from(tone.per_rev) * revolution_hz);
                 amplitudes.push(format!("{amplitude_deg:.3}"));
                 lags.push(format!("{lag_deg:.1}"));
             }
-            format!(
-                "{half_peak_deg:.3} | {} | {} | -",
-                amplitudes.join(", "),
-                lags.join(", ")
-            )
+            format!("{half_peak_deg:.3} | {} | {} | -", amplitudes.join(", "), lags.join(", "))
         }
         Command::Ramps { .. } => format!("{half_peak_deg:.3} | - | - | -"),
     }
@@ -130,42 +112,20 @@ pub fn readme(data: &BenchData, achieved_table: &str) -> String {
     let a = &data.actuator;
     let (h, r, c, l) = (&a.hysteresis, &a.relaxation, &a.creep, &a.lvdt);
     let list = |pairs: Vec<(f64, f64)>, unit: &str| -> String {
-        pairs
-            .iter()
-            .map(|(w, x)| format!("{w} at {x} {unit}"))
-            .collect::<Vec<_>>()
-            .join(", ")
+        pairs.iter().map(|(w, x)| format!("{w} at {x} {unit}")).collect::<Vec<_>>().join(", ")
     };
-    let walls = list(
-        h.populations
-            .iter()
-            .map(|p| (p.weight, p.pinning_volt))
-            .collect(),
-        "V",
-    );
-    let times = r
-        .channels
-        .iter()
-        .map(|ch| (ch.weight, 1000.0 * ch.time_constant_s));
+    let walls = list(h.populations.iter().map(|p| (p.weight, p.pinning_volt)).collect(), "V");
+    let times = r.channels.iter().map(|ch| (ch.weight, 1000.0 * ch.time_constant_s));
     let times = list(times.collect(), "ms");
-    let creep_times: Vec<String> = c
-        .retardation_times_s()
-        .iter()
-        .map(|time_s| format!("{time_s:.3}"))
-        .collect();
+    let creep_times: Vec<String> =
+        c.retardation_times_s().iter().map(|time_s| format!("{time_s:.3}")).collect();
     let parameters = [
         (
             "permitted voltage, bias",
             format!("{}..{} V, {} V", a.low_volt, a.high_volt, a.bias_volt),
         ),
-        (
-            "intrinsic gain d",
-            format!("{} um/V", h.intrinsic_um_per_volt),
-        ),
-        (
-            "polarisation stroke S",
-            format!("{} um", h.polarisation_stroke_um),
-        ),
+        ("intrinsic gain d", format!("{} um/V", h.intrinsic_um_per_volt)),
+        ("polarisation stroke S", format!("{} um", h.polarisation_stroke_um)),
         ("reversible share c", format!("{}", h.reversible_share)),
         (
             "Langevin centre u_c, width a",
@@ -194,10 +154,7 @@ pub fn readme(data: &BenchData, achieved_table: &str) -> String {
             "LVDT noise (standard deviation), range",
             format!("{} um, +-{} um", l.noise_um, l.range_um),
         ),
-        (
-            "LVDT resolution",
-            format!("{} bits, {:.7} um", l.bits, l.resolution_um()),
-        ),
+        ("LVDT resolution", format!("{} bits, {:.7} um", l.bits, l.resolution_um())),
         ("rate of integration", format!("{INTERNAL_RATE_HZ} Hz")),
         ("seed of the noise", format!("{}", data.seed)),
         ("flap_deg_per_um", format!("{:.9}", data.flap_deg_per_um)),

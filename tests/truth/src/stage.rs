@@ -39,15 +39,11 @@ impl Chain {
 
 impl Stage for Chain {
     fn settle(&mut self, input: f64) -> f64 {
-        self.stages
-            .iter_mut()
-            .fold(input, |signal, stage| stage.settle(signal))
+        self.stages.iter_mut().fold(input, |signal, stage| stage.settle(signal))
     }
 
     fn step(&mut self, input: f64, dt_s: f64) -> f64 {
-        self.stages
-            .iter_mut()
-            .fold(input, |signal, stage| stage.step(signal, dt_s))
+        self.stages.iter_mut().fold(input, |signal, stage| stage.step(signal, dt_s))
     }
 }
 
@@ -79,11 +75,7 @@ pub struct HeldLag {
 impl HeldLag {
     /// A lag `tau > 0` stepped by `t > 0`, both in seconds.
     pub fn new(dt_s: f64, time_constant_s: f64) -> Self {
-        Self {
-            dt_s,
-            time_constant_s,
-            decay: (-dt_s / time_constant_s).exp(),
-        }
+        Self { dt_s, time_constant_s, decay: (-dt_s / time_constant_s).exp() }
     }
 
     /// The state one step after `x`, the input running from `from` to `to`.

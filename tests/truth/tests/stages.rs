@@ -34,19 +34,12 @@ fn single_lag_has_the_gain_and_phase_of_theory() {
     lag.settle(0.0);
     let mut output = Vec::new();
     for step in 1..=48_000 {
-        let y = lag.step(
-            (TAU * frequency_hz * f64::from(step) / rate).sin(),
-            1.0 / rate,
-        );
+        let y = lag.step((TAU * frequency_hz * f64::from(step) / rate).sin(), 1.0 / rate);
         output.push(y);
     }
     let steady = phasor(&output[output.len() - 9_600..], frequency_hz / rate);
     let omega_tau = TAU * frequency_hz * tau;
-    assert_relative_eq!(
-        steady.amplitude,
-        1.0 / omega_tau.hypot(1.0),
-        max_relative = 1e-5
-    );
+    assert_relative_eq!(steady.amplitude, 1.0 / omega_tau.hypot(1.0), max_relative = 1e-5);
     // Sample 1 was stored first: the phase is that of one step later.
     let lead_deg = 360.0 * frequency_hz / rate;
     let lag_deg = -(steady.phase_deg - lead_deg);
@@ -56,10 +49,7 @@ fn single_lag_has_the_gain_and_phase_of_theory() {
 #[test]
 fn relaxation_time_grows_with_extension_and_shrinks_with_deviation() {
     let parameters = RelaxationParameters {
-        channels: vec![RelaxationChannel {
-            weight: 1.0,
-            time_constant_s: 0.02,
-        }],
+        channels: vec![RelaxationChannel { weight: 1.0, time_constant_s: 0.02 }],
         reference_um: 250.0,
         position_sensitivity: 0.1,
         deviation_sensitivity: 0.2,
@@ -105,9 +95,7 @@ fn creep_grows_by_the_stated_share_per_decade() {
 fn langevin_series_meets_the_closed_form_and_both_are_odd() {
     for x in [0.049_999, 0.050_001, 0.3, 2.0] {
         // Continued fraction x/(3 + x^2/(5 + x^2/(7 + ...))).
-        let fraction = (1..40)
-            .rev()
-            .fold(0.0, |tail, n| x * x / (f64::from(2 * n + 3) + tail));
+        let fraction = (1..40).rev().fold(0.0, |tail, n| x * x / (f64::from(2 * n + 3) + tail));
         assert_relative_eq!(langevin(x), x / (3.0 + fraction), max_relative = 1e-12);
         assert_relative_eq!(langevin(-x), -langevin(x));
     }
@@ -123,10 +111,7 @@ fn one_population(pinning_volt: f64) -> DomainWallHysteresis {
         langevin_centre_volt: 0.0,
         langevin_width_volt: 1e6,
         pinning_imprint: 0.0,
-        populations: vec![WallPopulation {
-            weight: 1.0,
-            pinning_volt,
-        }],
+        populations: vec![WallPopulation { weight: 1.0, pinning_volt }],
         bias_volt: 0.0,
     })
     .unwrap()
@@ -177,11 +162,7 @@ fn small_loops_lose_energy_as_the_fourth_power_of_amplitude() {
 
 #[test]
 fn sensor_has_the_stated_noise_resolution_and_range() {
-    let parameters = LvdtParameters {
-        range_um: 500.0,
-        noise_um: 0.25,
-        bits: 16,
-    };
+    let parameters = LvdtParameters { range_um: 500.0, noise_um: 0.25, bits: 16 };
     let mut sensor = Lvdt::new(parameters, 1, 0).unwrap();
     let n = 40_000;
     let readings: Vec<f64> = (0..n).map(|_| sensor.read_um(12.345)).collect();
@@ -189,28 +170,12 @@ fn sensor_has_the_stated_noise_resolution_and_range() {
     let variance = readings.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / f64::from(n);
     // Standard errors: 0.00125 um of the mean, 0.35 % of the deviation.
     assert!((mean - 12.345).abs() < 0.005, "{mean} um");
-    assert!(
-        (variance.sqrt() / 0.25 - 1.0).abs() < 0.015,
-        "{} um",
-        variance.sqrt()
-    );
+    assert!((variance.sqrt() / 0.25 - 1.0).abs() < 0.015, "{} um", variance.sqrt());
     let count = parameters.resolution_um();
     assert_relative_eq!(count, 1000.0 / 65_536.0);
-    assert!(
-        readings
-            .iter()
-            .all(|y| (y / count - (y / count).round()).abs() < 1e-9)
-    );
+    assert!(readings.iter().all(|y| (y / count - (y / count).round()).abs() < 1e-9));
     assert_relative_eq!(sensor.read_um(1e4), 500.0);
-    let mut quiet = Lvdt::new(
-        LvdtParameters {
-            noise_um: 0.0,
-            ..parameters
-        },
-        1,
-        0,
-    )
-    .unwrap();
+    let mut quiet = Lvdt::new(LvdtParameters { noise_um: 0.0, ..parameters }, 1, 0).unwrap();
     assert!((quiet.read_um(12.345) - 12.345).abs() <= 0.5 * count);
 }
 
@@ -228,10 +193,7 @@ fn an_empty_chain_passes_its_input_and_stages_act_in_order() {
     let (mut walls, mut lag) = (one_population(20.0), Relaxation::single(0.5).unwrap());
     let swapped = walls.step(lag.step(30.0, 0.1), 0.1);
     chain.settle(0.0);
-    assert!(
-        (chain.step(30.0, 0.1) - swapped).abs() > 0.1,
-        "the order matters"
-    );
+    assert!((chain.step(30.0, 0.1) - swapped).abs() > 0.1, "the order matters");
 }
 
 #[test]
@@ -242,26 +204,14 @@ fn measures_recover_what_was_put_in() {
     let output: Vec<f64> = (0..n).map(|i| 2.0 * (angle(i) - 0.1).sin() + 5.0).collect();
     let component = phasor(&output, 1.0 / f64::from(n));
     assert_relative_eq!(component.amplitude, 2.0, max_relative = 1e-12);
-    assert_relative_eq!(
-        component.phase_deg,
-        -0.1_f64.to_degrees(),
-        max_relative = 1e-10
-    );
+    assert_relative_eq!(component.phase_deg, -0.1_f64.to_degrees(), max_relative = 1e-10);
     assert_relative_eq!(half_peak_to_peak(&output), 2.0, max_relative = 1e-4);
     // An ellipse of lag p opens by 2 sin p of its half height, so by sin p of its height.
-    assert_relative_eq!(
-        loop_width(&voltage, &output),
-        0.1_f64.sin(),
-        max_relative = 1e-3
-    );
+    assert_relative_eq!(loop_width(&voltage, &output), 0.1_f64.sin(), max_relative = 1e-3);
     assert_relative_eq!(nrmse(&output, &output), 0.0);
     let mean = vec![5.0; 400];
     assert_relative_eq!(nrmse(&mean, &output), 1.0, max_relative = 1e-12);
     assert_relative_eq!(wrap_deg(-190.0), 170.0);
     assert_relative_eq!(wrap_deg(-180.0), 180.0);
-    assert_relative_eq!(
-        golden_section(0.0, 3.0, |x| (x - 1.25).powi(2)),
-        1.25,
-        epsilon = 1e-5
-    );
+    assert_relative_eq!(golden_section(0.0, 3.0, |x| (x - 1.25).powi(2)), 1.25, epsilon = 1e-5);
 }

@@ -93,9 +93,7 @@ pub fn compare(golden: &Snapshot, now: &Snapshot) -> Vec<Difference> {
         let count = seen.entry((group.name.as_str(), name)).or_default();
         *count += 1;
         if *count == 2 {
-            differences.push(Difference::Twice {
-                channel: channel.clone(),
-            });
+            differences.push(Difference::Twice { channel: channel.clone() });
         }
         match current.get(&(group.name.as_str(), name)) {
             None => differences.push(Difference::Gone { channel }),
@@ -104,9 +102,7 @@ pub fn compare(golden: &Snapshot, now: &Snapshot) -> Vec<Difference> {
     }
     for (group, name, _) in now.channels() {
         if !seen.contains_key(&(group.name.as_str(), name)) {
-            differences.push(Difference::New {
-                channel: format!("{}: {name}", group.name),
-            });
+            differences.push(Difference::New { channel: format!("{}: {name}", group.name) });
         }
     }
     differences
@@ -119,30 +115,18 @@ pub fn unfit_for_a_golden(now: &Snapshot) -> Vec<Difference> {
         .filter_map(|(group, name, value)| {
             let channel = format!("{}: {name}", group.name);
             if !value.is_finite() {
-                return Some(Difference::NotFinite {
-                    channel,
-                    golden: value,
-                    now: value,
-                });
+                return Some(Difference::NotFinite { channel, golden: value, now: value });
             }
             let allowed = group.tolerance.allowed(value);
             let blind = group.tolerance.is_blind_to(value);
-            blind.then_some(Difference::Blind {
-                channel,
-                value,
-                allowed,
-            })
+            blind.then_some(Difference::Blind { channel, value, allowed })
         })
         .collect()
 }
 
 fn moved(channel: String, group: &Group, golden: f64, now: f64) -> Option<Difference> {
     if !golden.is_finite() || !now.is_finite() {
-        return Some(Difference::NotFinite {
-            channel,
-            golden,
-            now,
-        });
+        return Some(Difference::NotFinite { channel, golden, now });
     }
     let allowed = group.tolerance.allowed(golden);
     let unit = group.unit.clone();
@@ -161,23 +145,15 @@ fn labels(golden: &Snapshot, now: &Snapshot) -> Vec<Difference> {
         (golden != now).then_some(Difference::Label { what, golden, now })
     };
     let case = |s: &Snapshot| format!("mu={},n={}", s.advance_ratio, s.harmonic_per_rev);
-    let mut differences: Vec<Difference> = label("case".to_owned(), case(golden), case(now))
-        .into_iter()
-        .collect();
+    let mut differences: Vec<Difference> =
+        label("case".to_owned(), case(golden), case(now)).into_iter().collect();
     for group in &golden.groups {
         let Some(current) = now.groups.iter().find(|g| g.name == group.name) else {
             continue;
         };
         let what = |label: &str| format!("{label} of {}", group.name);
-        differences.extend(label(
-            what("unit"),
-            group.unit.clone(),
-            current.unit.clone(),
-        ));
-        let (old, new) = (
-            show_tolerance(group.tolerance),
-            show_tolerance(current.tolerance),
-        );
+        differences.extend(label(what("unit"), group.unit.clone(), current.unit.clone()));
+        let (old, new) = (show_tolerance(group.tolerance), show_tolerance(current.tolerance));
         differences.extend(label(what("tolerance"), old, new));
     }
     differences
@@ -196,13 +172,7 @@ impl Difference {
         let number = |value: f64| format!("{value:.8e}");
         let none = String::new;
         match self {
-            Self::Moved {
-                channel,
-                unit,
-                golden,
-                now,
-                allowed,
-            } => {
+            Self::Moved { channel, unit, golden, now, allowed } => {
                 let change = if *golden == 0.0 {
                     format!("{:+.2e}", now - golden)
                 } else {
@@ -213,58 +183,28 @@ impl Difference {
                 } else {
                     format!("{:.3} %", 100.0 * allowed / golden.abs())
                 };
-                [
-                    format!("{channel} [{unit}]"),
-                    number(*golden),
-                    number(*now),
-                    change,
-                    allowed,
-                ]
+                [format!("{channel} [{unit}]"), number(*golden), number(*now), change, allowed]
             }
-            Self::NotFinite {
-                channel,
-                golden,
-                now,
-            } => [
+            Self::NotFinite { channel, golden, now } => [
                 channel.clone(),
                 number(*golden),
                 number(*now),
                 "not a finite number".to_owned(),
                 none(),
             ],
-            Self::Gone { channel } => [
-                channel.clone(),
-                none(),
-                none(),
-                "not computed any more".to_owned(),
-                none(),
-            ],
-            Self::New { channel } => [
-                channel.clone(),
-                none(),
-                none(),
-                "not in the golden".to_owned(),
-                none(),
-            ],
-            Self::Twice { channel } => [
-                channel.clone(),
-                none(),
-                none(),
-                "twice in the golden".to_owned(),
-                none(),
-            ],
-            Self::Label { what, golden, now } => [
-                what.clone(),
-                golden.clone(),
-                now.clone(),
-                "changed".to_owned(),
-                none(),
-            ],
-            Self::Blind {
-                channel,
-                value,
-                allowed,
-            } => [
+            Self::Gone { channel } => {
+                [channel.clone(), none(), none(), "not computed any more".to_owned(), none()]
+            }
+            Self::New { channel } => {
+                [channel.clone(), none(), none(), "not in the golden".to_owned(), none()]
+            }
+            Self::Twice { channel } => {
+                [channel.clone(), none(), none(), "twice in the golden".to_owned(), none()]
+            }
+            Self::Label { what, golden, now } => {
+                [what.clone(), golden.clone(), now.clone(), "changed".to_owned(), none()]
+            }
+            Self::Blind { channel, value, allowed } => [
                 channel.clone(),
                 none(),
                 number(*value),
@@ -278,13 +218,9 @@ impl Difference {
                 "missing: check the result, then --bless".to_owned(),
                 none(),
             ],
-            Self::Unreadable { message } => [
-                "golden file".to_owned(),
-                none(),
-                none(),
-                message.clone(),
-                none(),
-            ],
+            Self::Unreadable { message } => {
+                ["golden file".to_owned(), none(), none(), message.clone(), none()]
+            }
             Self::Orphan => [
                 "golden file".to_owned(),
                 none(),
@@ -299,9 +235,6 @@ impl Difference {
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [what, golden, now, change, allowed] = self.cells();
-        write!(
-            f,
-            "{what}: {change} (golden {golden}, now {now}, allowed {allowed})"
-        )
+        write!(f, "{what}: {change} (golden {golden}, now {now}, allowed {allowed})")
     }
 }

@@ -23,31 +23,19 @@ impl Filter {
             available: format!("mu {ADVANCE_RATIOS:?}, n {HARMONICS_PER_REV:?}"),
         };
         let mut filter = Self::default();
-        for part in text
-            .split(',')
-            .map(str::trim)
-            .filter(|part| !part.is_empty())
-        {
-            let (key, value) = part
-                .split_once('=')
-                .ok_or_else(|| refused("no `=` in it"))?;
+        for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+            let (key, value) = part.split_once('=').ok_or_else(|| refused("no `=` in it"))?;
             match key.trim() {
                 "mu" => {
-                    let wanted: f64 = value
-                        .trim()
-                        .parse()
-                        .map_err(|_| refused("mu is not a number"))?;
-                    let known = ADVANCE_RATIOS
-                        .into_iter()
-                        .find(|mu| (mu - wanted).abs() < 1e-9);
+                    let wanted: f64 =
+                        value.trim().parse().map_err(|_| refused("mu is not a number"))?;
+                    let known = ADVANCE_RATIOS.into_iter().find(|mu| (mu - wanted).abs() < 1e-9);
                     let known = known.ok_or_else(|| refused("no case has this mu"))?;
                     filter.advance_ratios.push(known);
                 }
                 "n" => {
-                    let wanted: u32 = value
-                        .trim()
-                        .parse()
-                        .map_err(|_| refused("n is not a whole number"))?;
+                    let wanted: u32 =
+                        value.trim().parse().map_err(|_| refused("n is not a whole number"))?;
                     if !HARMONICS_PER_REV.contains(&wanted) {
                         return Err(refused("no case has this n"));
                     }
@@ -80,22 +68,13 @@ mod tests {
 
     fn count(text: &str) -> usize {
         let filter = Filter::parse(text).unwrap();
-        all_points()
-            .iter()
-            .filter(|point| filter.admits(point))
-            .count()
+        all_points().iter().filter(|point| filter.admits(point)).count()
     }
 
     #[test]
     fn cases_are_chosen() {
-        assert_eq!(
-            [count(""), count("mu=0.30"), count("mu=.3, n=3")],
-            [24, 4, 1]
-        );
-        assert_eq!(
-            [count("n=2"), count("n=2,n=5"), count("mu=0.1,mu=0.35,n=4")],
-            [6, 12, 2]
-        );
+        assert_eq!([count(""), count("mu=0.30"), count("mu=.3, n=3")], [24, 4, 1]);
+        assert_eq!([count("n=2"), count("n=2,n=5"), count("mu=0.1,mu=0.35,n=4")], [6, 12, 2]);
         assert!(Filter::parse("").unwrap().is_everything());
         assert!(!Filter::parse("n=2").unwrap().is_everything());
     }
@@ -104,10 +83,7 @@ mod tests {
     fn what_is_not_understood_is_refused_with_the_remedy() {
         for bad in ["mu", "mu=x", "n=3.5", "n=6", "mu=0.31", "speed=3", "mu=NaN"] {
             let message = Filter::parse(bad).unwrap_err().to_string();
-            assert!(
-                message.contains(bad) && message.contains("0.15"),
-                "{message}"
-            );
+            assert!(message.contains(bad) && message.contains("0.15"), "{message}");
         }
     }
 }

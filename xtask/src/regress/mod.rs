@@ -79,10 +79,8 @@ where
     S: Fn(SweepPoint) -> Result<SweepResult, E> + Sync,
     E: std::error::Error,
 {
-    let points: Vec<SweepPoint> = all_points()
-        .into_iter()
-        .filter(|point| filter.admits(point))
-        .collect();
+    let points: Vec<SweepPoint> =
+        all_points().into_iter().filter(|point| filter.admits(point)).collect();
     let results: Vec<Result<Snapshot, String>> = points
         .par_iter()
         .map(|point| match source(*point) {
@@ -96,10 +94,7 @@ where
             Err(message) => Verdict::Failed(message),
             Ok(now) => judge(&folder.join(point.file_name()), mode, point, &now)?,
         };
-        cases.push(CaseReport {
-            case: point.to_string(),
-            verdict,
-        });
+        cases.push(CaseReport { case: point.to_string(), verdict });
     }
     if filter.is_everything() {
         cases.extend(orphans(folder)?);
@@ -135,9 +130,7 @@ fn judge(
     let differences = if path.exists() {
         match Snapshot::from_ron(&crate::files::read(path)?) {
             Ok(golden) => compare(&golden, now),
-            Err(error) => vec![Difference::Unreadable {
-                message: error.to_string(),
-            }],
+            Err(error) => vec![Difference::Unreadable { message: error.to_string() }],
         }
     } else {
         vec![Difference::NoGolden]
@@ -148,10 +141,9 @@ fn judge(
     if mode == Mode::Compare {
         return Ok(Verdict::Different(differences));
     }
-    let text = now.to_ron().map_err(|source| XtaskError::GoldenText {
-        case: point.to_string(),
-        source,
-    })?;
+    let text = now
+        .to_ron()
+        .map_err(|source| XtaskError::GoldenText { case: point.to_string(), source })?;
     crate::files::write_atomically(path, &text)?;
     Ok(Verdict::Blessed(differences))
 }
@@ -161,34 +153,18 @@ fn orphans(folder: &Path) -> Result<Vec<CaseReport>, XtaskError> {
     if !folder.exists() {
         return Ok(Vec::new());
     }
-    let failed = |source| XtaskError::Read {
-        path: folder.to_path_buf(),
-        source,
-    };
+    let failed = |source| XtaskError::Read { path: folder.to_path_buf(), source };
     let known: Vec<String> = all_points().iter().map(SweepPoint::file_name).collect();
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
-        names.push(
-            entry
-                .map_err(failed)?
-                .file_name()
-                .to_string_lossy()
-                .into_owned(),
-        );
+        names.push(entry.map_err(failed)?.file_name().to_string_lossy().into_owned());
     }
     names.sort();
     Ok(names
         .into_iter()
-        .filter(|name| {
-            Path::new(name)
-                .extension()
-                .is_some_and(|ending| ending == "ron")
-        })
+        .filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "ron"))
         .filter(|name| !known.contains(name))
-        .map(|case| CaseReport {
-            case,
-            verdict: Verdict::Different(vec![Difference::Orphan]),
-        })
+        .map(|case| CaseReport { case, verdict: Verdict::Different(vec![Difference::Orphan]) })
         .collect())
 }
 
@@ -207,10 +183,7 @@ impl Report {
 
     /// Number of cases with a verdict.
     fn count(&self, wanted: fn(&Verdict) -> bool) -> usize {
-        self.cases
-            .iter()
-            .filter(|case| wanted(&case.verdict))
-            .count()
+        self.cases.iter().filter(|case| wanted(&case.verdict)).count()
     }
 
     /// The report as text: a table of all differences, failures, and a summary.
@@ -237,11 +210,7 @@ impl Report {
         let different = self.count(|verdict| matches!(verdict, Verdict::Different(_)));
         let blessed = self.count(|verdict| matches!(verdict, Verdict::Blessed(_)));
         let failed = self.count(|verdict| matches!(verdict, Verdict::Failed(_)));
-        let shown = if different + blessed == 0 {
-            String::new()
-        } else {
-            format!("{table}\n")
-        };
+        let shown = if different + blessed == 0 { String::new() } else { format!("{table}\n") };
         format!(
             "{shown}{}{same} of {} cases as the goldens have them, {different} different, {blessed} \
              blessed, {failed} not computed\n",

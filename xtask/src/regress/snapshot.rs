@@ -71,10 +71,7 @@ impl Snapshot {
     /// Every channel with its group.
     pub fn channels(&self) -> impl Iterator<Item = (&Group, &str, f64)> {
         self.groups.iter().flat_map(|group| {
-            group
-                .channels
-                .iter()
-                .map(move |(name, value)| (group, name.as_str(), *value))
+            group.channels.iter().map(move |(name, value)| (group, name.as_str(), *value))
         })
     }
 
@@ -83,9 +80,7 @@ impl Snapshot {
     /// # Errors
     /// What RON cannot write.
     pub fn to_ron(&self) -> Result<String, ron::Error> {
-        let pretty = ron::ser::PrettyConfig::new()
-            .compact_arrays(false)
-            .depth_limit(4);
+        let pretty = ron::ser::PrettyConfig::new().compact_arrays(false).depth_limit(4);
         let text = ron::ser::to_string_pretty(self, pretty)?;
         Ok(format!("{HEADER}{text}\n"))
     }

@@ -28,21 +28,13 @@ pub struct SweepPoint {
 impl SweepPoint {
     /// Name of the golden file, for example `mu030_n3.ron`.
     pub fn file_name(&self) -> String {
-        format!(
-            "mu{:03.0}_n{}.ron",
-            100.0 * self.advance_ratio,
-            self.harmonic_per_rev
-        )
+        format!("mu{:03.0}_n{}.ron", 100.0 * self.advance_ratio, self.harmonic_per_rev)
     }
 }
 
 impl fmt::Display for SweepPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "mu={:.2},n={}",
-            self.advance_ratio, self.harmonic_per_rev
-        )
+        write!(f, "mu={:.2},n={}", self.advance_ratio, self.harmonic_per_rev)
     }
 }
 
@@ -51,10 +43,7 @@ pub fn all_points() -> Vec<SweepPoint> {
     let of = |advance_ratio| {
         HARMONICS_PER_REV
             .into_iter()
-            .map(move |harmonic_per_rev| SweepPoint {
-                advance_ratio,
-                harmonic_per_rev,
-            })
+            .map(move |harmonic_per_rev| SweepPoint { advance_ratio, harmonic_per_rev })
     };
     ADVANCE_RATIOS.into_iter().flat_map(of).collect()
 }
@@ -108,34 +97,20 @@ const TRIM_FLOOR: f64 = 1e-10;
 impl SweepResult {
     /// The result as named channels.
     pub fn snapshot(&self, point: SweepPoint) -> Snapshot {
-        let scaled = |absolute| Tolerance::Scaled {
-            relative: RELATIVE,
-            absolute,
-        };
+        let scaled = |absolute| Tolerance::Scaled { relative: RELATIVE, absolute };
         let group = |name: &str, unit: &str, tolerance, channels: &[(&str, f64)]| Group {
             name: name.to_owned(),
             unit: unit.to_owned(),
             tolerance,
-            channels: channels
-                .iter()
-                .map(|(name, value)| ((*name).to_owned(), *value))
-                .collect(),
+            channels: channels.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
         };
         let loads = |name: &str, loads: &[f64; 12]| {
             let channels: Vec<_> = HUB_LOADS.into_iter().zip(*loads).collect();
             let half = |kind: &str, unit: &str, part: &[(&str, f64)]| {
-                group(
-                    &format!("{name} hub {kind}, 4/rev"),
-                    unit,
-                    scaled(LOAD_FLOOR),
-                    part,
-                )
+                group(&format!("{name} hub {kind}, 4/rev"), unit, scaled(LOAD_FLOOR), part)
             };
             let (forces, moments) = channels.split_at(6);
-            [
-                half("forces", "m0 Omega^2 R^2", forces),
-                half("moments", "m0 Omega^2 R^3", moments),
-            ]
+            [half("forces", "m0 Omega^2 R^2", forces), half("moments", "m0 Omega^2 R^3", moments)]
         };
         let angles = [
             ("theta0_deg", self.trim.theta0_deg),
@@ -147,35 +122,17 @@ impl SweepResult {
         let inflow = [("inflow", self.trim.inflow)];
         let cost = [("j_before", self.j_before), ("j_after", self.j_after)];
         let norm = [("t_matrix_norm", self.t_matrix_norm_per_volt)];
-        let counts: Vec<(&str, f64)> = self
-            .counts
-            .iter()
-            .map(|(name, count)| (*name, *count as f64))
-            .collect();
+        let counts: Vec<(&str, f64)> =
+            self.counts.iter().map(|(name, count)| (*name, *count as f64)).collect();
         let mut groups = vec![
             group("trim angles", "deg", scaled(TRIM_FLOOR), &angles),
             group("trim inflow", "Omega R", scaled(TRIM_FLOOR), &inflow),
         ];
         groups.extend(loads("baseline", &self.baseline_loads));
         groups.extend(loads("controlled", &self.controlled_loads));
-        groups.push(group(
-            "cost",
-            "squared hub loads",
-            scaled(COST_FLOOR),
-            &cost,
-        ));
-        groups.push(group(
-            "T matrix",
-            "hub loads per volt",
-            scaled(LOAD_FLOOR),
-            &norm,
-        ));
-        groups.push(group(
-            "solver statistics",
-            "count",
-            Tolerance::Exact,
-            &counts,
-        ));
+        groups.push(group("cost", "squared hub loads", scaled(COST_FLOOR), &cost));
+        groups.push(group("T matrix", "hub loads per volt", scaled(LOAD_FLOOR), &norm));
+        groups.push(group("solver statistics", "count", Tolerance::Exact, &counts));
         Snapshot {
             advance_ratio: point.advance_ratio,
             harmonic_per_rev: point.harmonic_per_rev,

@@ -34,16 +34,12 @@ pub fn required(tree: &Tree) -> Vec<Finding> {
         .map(|path| Finding::of_file(path, "is missing"))
         .collect();
     for path in &tree.paths {
-        let data = path
-            .strip_prefix("fixtures/reference/")
-            .and_then(|rest| rest.split_once('/'));
+        let data = path.strip_prefix("fixtures/reference/").and_then(|rest| rest.split_once('/'));
         if let Some((folder, _)) = data {
             let source = format!("fixtures/reference/{folder}/SOURCE.md");
             if missing(&source) {
-                findings.push(Finding::of_file(
-                    &source,
-                    "is missing: say where the numbers are from",
-                ));
+                findings
+                    .push(Finding::of_file(&source, "is missing: say where the numbers are from"));
             }
         }
     }
@@ -60,20 +56,14 @@ pub fn changelog(tree: &Tree) -> Vec<Finding> {
     let mut versions = 0;
     for section in text.split("\n## ").skip(1) {
         versions += 1;
-        if !section
-            .lines()
-            .any(|line| line.trim() == "### Numbers changed")
-        {
+        if !section.lines().any(|line| line.trim() == "### Numbers changed") {
             let version = section.lines().next().unwrap_or_default();
             let fault = format!("version `{version}` has no heading `### Numbers changed`");
             findings.push(Finding::of_file(path, fault));
         }
     }
     if versions == 0 {
-        findings.push(Finding::of_file(
-            path,
-            "has no version: expected a `## ` heading",
-        ));
+        findings.push(Finding::of_file(path, "has no version: expected a `## ` heading"));
     }
     findings
 }
@@ -132,11 +122,8 @@ pub fn summary(tree: &Tree) -> Vec<Finding> {
     let Some(text) = tree.text(path) else {
         return Vec::new();
     };
-    let listed: Vec<String> = text
-        .lines()
-        .flat_map(link_targets)
-        .map(|target| resolve(path, target))
-        .collect();
+    let listed: Vec<String> =
+        text.lines().flat_map(link_targets).map(|target| resolve(path, target)).collect();
     tree.ending_in(".md")
         .map(|file| file.path.as_str())
         .filter(|page| page.starts_with("docs/src/") && *page != path)

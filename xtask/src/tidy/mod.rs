@@ -31,19 +31,11 @@ pub struct Finding {
 
 impl Finding {
     fn of_file(path: &str, fault: impl Into<String>) -> Self {
-        Self {
-            path: path.to_owned(),
-            line: None,
-            fault: fault.into(),
-        }
+        Self { path: path.to_owned(), line: None, fault: fault.into() }
     }
 
     fn at_line(path: &str, line: usize, fault: impl Into<String>) -> Self {
-        Self {
-            path: path.to_owned(),
-            line: Some(line),
-            fault: fault.into(),
-        }
+        Self { path: path.to_owned(), line: Some(line), fault: fault.into() }
     }
 }
 

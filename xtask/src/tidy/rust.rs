@@ -13,36 +13,17 @@ pub const LONG_FILES: &[(&str, &str)] = &[];
 const FORBIDDEN: [(&str, &str); 5] = [
     (concat!("to", "do!("), "finish it or leave it out"),
     (concat!("unimple", "mented!("), "finish it or leave it out"),
-    (
-        concat!("FIX", "ME"),
-        "repair it, or state the limitation in the documentation",
-    ),
-    (
-        concat!("TO", "DO"),
-        "do it, or state the limitation in the documentation",
-    ),
-    (
-        concat!("HA", "CK"),
-        "say what the code does and why it must",
-    ),
+    (concat!("FIX", "ME"), "repair it, or state the limitation in the documentation"),
+    (concat!("TO", "DO"), "do it, or state the limitation in the documentation"),
+    (concat!("HA", "CK"), "say what the code does and why it must"),
 ];
 
 /// Parts of the standard library that pure functions of values have no use for.
-const OUTSIDE_WORLD: [&str; 5] = [
-    "std::fs",
-    "std::env",
-    "std::net",
-    "std::process",
-    "std::time",
-];
+const OUTSIDE_WORLD: [&str; 5] = ["std::fs", "std::env", "std::net", "std::process", "std::time"];
 
 /// Folders that exist on one machine only.
-const MACHINE_FOLDERS: [&str; 4] = [
-    concat!("/ho", "me/"),
-    concat!("/t", "mp/"),
-    concat!("/ro", "ot/"),
-    concat!("/wo", "rk/"),
-];
+const MACHINE_FOLDERS: [&str; 4] =
+    [concat!("/ho", "me/"), concat!("/t", "mp/"), concat!("/ro", "ot/"), concat!("/wo", "rk/")];
 
 /// Rules for every Rust source:
 ///
@@ -62,10 +43,8 @@ fn source(file: &TextFile) -> Vec<Finding> {
     let path = file.path.as_str();
     let mut findings = Vec::new();
     if !file.text.starts_with("//!") {
-        findings.push(Finding::of_file(
-            path,
-            "starts without `//!`: say first what the file holds",
-        ));
+        findings
+            .push(Finding::of_file(path, "starts without `//!`: say first what the file holds"));
     }
     let lines = file.text.lines().count();
     if lines > LINE_LIMIT && !LONG_FILES.iter().any(|(long, _)| *long == path) {
@@ -90,13 +69,10 @@ fn source(file: &TextFile) -> Vec<Finding> {
             }
         }
         let commented = code.starts_with("//");
-        for module in OUTSIDE_WORLD
-            .iter()
-            .filter(|module| pure && !commented && line.contains(**module))
+        for module in
+            OUTSIDE_WORLD.iter().filter(|module| pure && !commented && line.contains(**module))
         {
-            fault(format!(
-                "`{module}` below sim-driver: hand the function values instead"
-            ));
+            fault(format!("`{module}` below sim-driver: hand the function values instead"));
         }
     }
     findings
@@ -123,10 +99,7 @@ fn machine_paths(file: &TextFile) -> Vec<Finding> {
 
 /// Exceptions that have lost their file, or their reason to be.
 fn stale_exceptions(tree: &Tree, exceptions: &[(&str, &str)]) -> Vec<Finding> {
-    let stale = |path: &&str| {
-        tree.text(path)
-            .is_none_or(|text| text.lines().count() <= LINE_LIMIT)
-    };
+    let stale = |path: &&str| tree.text(path).is_none_or(|text| text.lines().count() <= LINE_LIMIT);
     exceptions
         .iter()
         .map(|(path, _)| *path)
@@ -142,10 +115,7 @@ mod tests {
     #[test]
     fn an_exception_must_be_needed() {
         let tree = Tree::of(&[("a.rs", "//! Short.\n")]);
-        assert_eq!(
-            stale_exceptions(&tree, &[("a.rs", "why"), ("gone.rs", "why")]).len(),
-            2
-        );
+        assert_eq!(stale_exceptions(&tree, &[("a.rs", "why"), ("gone.rs", "why")]).len(), 2);
         let long = "//! Long.\n".repeat(LINE_LIMIT + 1);
         let tree = Tree::of(&[("a.rs", &long)]);
         assert!(stale_exceptions(&tree, &[("a.rs", "why")]).is_empty());

@@ -43,10 +43,7 @@ impl Tree {
         let mut tree = Self::default();
         for (path, text) in files {
             tree.add_path(path);
-            tree.texts.push(TextFile {
-                path: (*path).to_owned(),
-                text: (*text).to_owned(),
-            });
+            tree.texts.push(TextFile { path: (*path).to_owned(), text: (*text).to_owned() });
         }
         tree
     }
@@ -62,10 +59,7 @@ impl Tree {
     }
 
     fn load_folder(&mut self, folder: &Path, prefix: &str) -> Result<(), XtaskError> {
-        let failed = |source| XtaskError::Read {
-            path: folder.to_path_buf(),
-            source,
-        };
+        let failed = |source| XtaskError::Read { path: folder.to_path_buf(), source };
         let mut entries = std::fs::read_dir(folder)
             .map_err(failed)?
             .collect::<Result<Vec<_>, _>>()
@@ -73,11 +67,7 @@ impl Tree {
         entries.sort_by_key(std::fs::DirEntry::file_name);
         for entry in entries {
             let name = entry.file_name().to_string_lossy().into_owned();
-            let path = if prefix.is_empty() {
-                name.clone()
-            } else {
-                format!("{prefix}/{name}")
-            };
+            let path = if prefix.is_empty() { name.clone() } else { format!("{prefix}/{name}") };
             let is_folder = entry.file_type().map_err(failed)?.is_dir();
             if is_folder && !SKIPPED_FOLDERS.contains(&name.as_str()) {
                 self.paths.insert(path.clone());
@@ -96,25 +86,17 @@ impl Tree {
 
     /// Adds a path with all folders above it.
     fn add_path(&mut self, path: &str) {
-        let ends = path
-            .match_indices('/')
-            .map(|(end, _)| end)
-            .chain([path.len()]);
+        let ends = path.match_indices('/').map(|(end, _)| end).chain([path.len()]);
         self.paths.extend(ends.map(|end| path[..end].to_owned()));
     }
 
     /// The text at a path.
     pub fn text(&self, path: &str) -> Option<&str> {
-        self.texts
-            .iter()
-            .find(|file| file.path == path)
-            .map(|file| file.text.as_str())
+        self.texts.iter().find(|file| file.path == path).map(|file| file.text.as_str())
     }
 
     /// The texts whose path ends in `ending`.
     pub(super) fn ending_in<'a>(&'a self, ending: &'a str) -> impl Iterator<Item = &'a TextFile> {
-        self.texts
-            .iter()
-            .filter(move |file| file.path.ends_with(ending))
+        self.texts.iter().filter(move |file| file.path.ends_with(ending))
     }
 }

@@ -20,24 +20,15 @@ pub fn validation_ids(tree: &Tree, known: &[&str]) -> Vec<Finding> {
     for id in known {
         *count.entry(id).or_default() += 1;
         if ids_in(id) != [*id] {
-            findings.push(Finding::of_file(
-                "xtask",
-                format!("check id `{id}` is not V-AREA-NN"),
-            ));
+            findings.push(Finding::of_file("xtask", format!("check id `{id}` is not V-AREA-NN")));
         }
     }
     for (id, _) in count.iter().filter(|(_, n)| **n > 1) {
-        findings.push(Finding::of_file(
-            "xtask",
-            format!("two checks share the id {id}"),
-        ));
+        findings.push(Finding::of_file("xtask", format!("two checks share the id {id}")));
     }
     for file in &tree.texts {
         for (index, line) in file.text.lines().enumerate() {
-            for id in ids_in(line)
-                .into_iter()
-                .filter(|id| !count.contains_key(*id))
-            {
+            for id in ids_in(line).into_iter().filter(|id| !count.contains_key(*id)) {
                 let fault = format!("{id} is the id of no validation check");
                 findings.push(Finding::at_line(&file.path, index + 1, fault));
             }
@@ -61,9 +52,7 @@ fn row_id(line: &str) -> Option<&str> {
 
 /// All ids `V-AREA-NN` in a text, in order.
 pub fn ids_in(text: &str) -> Vec<&str> {
-    text.match_indices("V-")
-        .filter_map(|(at, _)| id_at(text, at))
-        .collect()
+    text.match_indices("V-").filter_map(|(at, _)| id_at(text, at)).collect()
 }
 
 fn id_at(text: &str, at: usize) -> Option<&str> {

@@ -183,16 +183,11 @@ fn congruency() -> Result<f64, CheckError> {
             driven(&model, &[wander(seed, 40), vec![low, high, low]].concat());
         let up = (1..=13).map(|i| low + (high - low) * f64::from(i) / 13.0);
         let down = (1..=13).map(|i| high - (high - low) * f64::from(i) / 13.0);
-        up.chain(down)
-            .map(|voltage| model.apply(&mut memory, voltage) - start)
-            .collect()
+        up.chain(down).map(|voltage| model.apply(&mut memory, voltage) - start).collect()
     };
     let first = shape(1);
     let differences = (2..=5).flat_map(|seed| {
-        shape(seed)
-            .into_iter()
-            .zip(first.clone())
-            .map(|(a, b)| Ok((a - b).abs()))
+        shape(seed).into_iter().zip(first.clone()).map(|(a, b)| Ok((a - b).abs()))
     });
     worst("loop points", 100, differences.collect::<Vec<_>>())
 }
@@ -218,15 +213,11 @@ fn staircase() -> Result<f64, CheckError> {
 /// The shipped records, identified once for all checks.
 static RECORDS: LazyLock<Result<Vec<RecordReport>, SimError>> = LazyLock::new(|| {
     let data = read_bench(&Folder::Shipped(SHIPPED_BENCH.to_owned()))?;
-    Ok(identify_bench(&data, &Settings::default())?
-        .identification
-        .records)
+    Ok(identify_bench(&data, &Settings::default())?.identification.records)
 });
 
 fn records() -> Result<&'static [RecordReport], CheckError> {
-    RECORDS
-        .as_deref()
-        .map_err(|error| CheckError::Driver(error.clone()))
+    RECORDS.as_deref().map_err(|error| CheckError::Driver(error.clone()))
 }
 
 fn is_held_out(record: &RecordReport) -> bool {
@@ -254,29 +245,17 @@ fn over(
     figure: fn(&RecordFit) -> f64,
 ) -> Result<f64, CheckError> {
     let chosen = records()?.iter().filter(|record| wanted(record));
-    worst(
-        "records",
-        needed,
-        chosen.map(|record| Ok(figure(&record.dynamic))),
-    )
+    worst("records", needed, chosen.map(|record| Ok(figure(&record.dynamic))))
 }
 
 fn static_at_15_hz() -> Result<f64, CheckError> {
     let at_15 = |record: &&RecordReport| (record.drive.base_hz - 15.0).abs() < 0.5;
-    let figures = records()?
-        .iter()
-        .filter(at_15)
-        .map(|record| record.static_only.nrmse_percent());
-    let (smallest, found) = figures.fold((f64::INFINITY, 0), |(smallest, n), figure| {
-        (figure.min(smallest), n + 1)
-    });
+    let figures = records()?.iter().filter(at_15).map(|record| record.static_only.nrmse_percent());
+    let (smallest, found) =
+        figures.fold((f64::INFINITY, 0), |(smallest, n), figure| (figure.min(smallest), n + 1));
     let needed = 3;
     if found < needed {
-        Err(CheckError::TooFew {
-            what: "records",
-            found,
-            needed,
-        })
+        Err(CheckError::TooFew { what: "records", found, needed })
     } else {
         Ok(smallest)
     }

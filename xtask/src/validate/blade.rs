@@ -44,10 +44,7 @@ pub(super) const AREA: Area = Area {
             quantity: "Table 1 blade, first torsion frequency, 10 elements",
             unit: "per rev",
             source: "independent finite elements, 40 of them; k_m1 .0132, k_m2 .0247, k_A .029",
-            criterion: Criterion::Near {
-                expected: 4.588_073,
-                within: 4.6e-5,
-            },
+            criterion: Criterion::Near { expected: 4.588_073, within: 4.6e-5 },
             repeatability: Repeatability::Everywhere,
             measure: first_torsion,
         },
@@ -95,31 +92,21 @@ pub(super) const AREA: Area = Area {
 
 /// The blade of the paper's Table 1, practically inextensible.
 fn table_1_blade() -> Result<BladeProperties, CheckError> {
-    Ok(BladeProperties::new(BladeSpec::uniform(
-        0.0108, 0.0268, 0.006_15, 1e6,
-    ))?)
+    Ok(BladeProperties::new(BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1e6))?)
 }
 
 /// Relative errors of the eight bending frequencies, coupled modes without gyroscopic terms.
 fn table_1_errors(elements: usize) -> Result<Vec<f64>, CheckError> {
     let table = Table::read("rotor/bo105_uniform_frequencies.csv")?;
-    let count = ModeCount {
-        flap: 4,
-        lag: 4,
-        torsion: 0,
-        axial: 0,
-    };
+    let count = ModeCount { flap: 4, lag: 4, torsion: 0, axial: 0 };
     let model = BladeModel::new(table_1_blade()?, elements)?;
     let found = modes(&model, GyroscopicTerms::Neglected, count)?;
     let mut errors = Vec::new();
     for mode in &found {
         let family = mode.kind.to_string();
         let row = table.row(["family", "method"], [&family, "exact"])?;
-        let column = if mode.number == 1 {
-            "w1_per_rev".into()
-        } else {
-            format!("w{}", mode.number)
-        };
+        let column =
+            if mode.number == 1 { "w1_per_rev".into() } else { format!("w{}", mode.number) };
         let exact = row.number(&column)?;
         errors.push((mode.per_rev - exact).abs() / exact);
     }
@@ -128,41 +115,21 @@ fn table_1_errors(elements: usize) -> Result<Vec<f64>, CheckError> {
 
 fn table_1_error(elements: usize) -> Result<f64, CheckError> {
     let errors = table_1_errors(elements)?;
-    worst(
-        "frequencies",
-        8,
-        errors.into_iter().map(|error| Ok(100.0 * error)),
-    )
+    worst("frequencies", 8, errors.into_iter().map(|error| Ok(100.0 * error)))
 }
 
 fn table_1_order() -> Result<f64, CheckError> {
     let (coarse, fine) = (table_1_errors(20)?, table_1_errors(40)?);
     let ratios = coarse.iter().zip(&fine).map(|(c, f)| c / f);
     let farthest = ratios.max_by(|a, b| (a - 16.0).abs().total_cmp(&(b - 16.0).abs()));
-    farthest.ok_or(CheckError::TooFew {
-        what: "frequencies",
-        found: 0,
-        needed: 8,
-    })
+    farthest.ok_or(CheckError::TooFew { what: "frequencies", found: 0, needed: 8 })
 }
 
 fn first_torsion() -> Result<f64, CheckError> {
-    let count = ModeCount {
-        flap: 0,
-        lag: 0,
-        torsion: 1,
-        axial: 0,
-    };
+    let count = ModeCount { flap: 0, lag: 0, torsion: 1, axial: 0 };
     let set = uncoupled_modes(&table_1_blade()?, 10, count)?;
-    let first = set
-        .of(ModeKind::Torsion)
-        .first()
-        .map(rotor_fem::UncoupledMode::per_rev);
-    first.ok_or(CheckError::TooFew {
-        what: "torsion modes",
-        found: 0,
-        needed: 1,
-    })
+    let first = set.of(ModeKind::Torsion).first().map(rotor_fem::UncoupledMode::per_rev);
+    first.ok_or(CheckError::TooFew { what: "torsion modes", found: 0, needed: 1 })
 }
 
 /// Largest error over the rows of one root condition, %. The table's unit of length is the length L of
@@ -185,12 +152,7 @@ fn rotating_beams(name: &str, root: RootCondition) -> Result<f64, CheckError> {
         })?;
         // the rigid motion of a hinged beam at rest is not in the table
         let rigid = usize::from(root == RootCondition::Hinged && eta == 0.0);
-        let count = ModeCount {
-            flap: 5 + rigid,
-            lag: 0,
-            torsion: 0,
-            axial: 0,
-        };
+        let count = ModeCount { flap: 5 + rigid, lag: 0, torsion: 0, axial: 0 };
         let set = uncoupled_modes(&blade, 20, count)?;
         for (number, mode) in set.modes().iter().skip(rigid).enumerate() {
             let exact = row.number(&format!("mu{}", number + 1))?;
@@ -202,33 +164,15 @@ fn rotating_beams(name: &str, root: RootCondition) -> Result<f64, CheckError> {
 
 /// Largest error of the first lag frequency over the rotor speeds eta, %.
 fn lag_axial(terms: GyroscopicTerms) -> Result<f64, CheckError> {
-    let published = [
-        (2.0, 3.6195),
-        (4.0, 3.888),
-        (6.0, 4.2393),
-        (8.0, 4.6105),
-        (10.0, 4.97),
-    ];
-    let count = ModeCount {
-        flap: 0,
-        lag: 1,
-        torsion: 0,
-        axial: 0,
-    };
+    let published = [(2.0, 3.6195), (4.0, 3.888), (6.0, 4.2393), (8.0, 4.6105), (10.0, 4.97)];
+    let count = ModeCount { flap: 0, lag: 1, torsion: 0, axial: 0 };
     let errors = published.into_iter().map(|(eta, exact): (f64, f64)| {
         // slenderness 70: EA L^2 / EI = 4900
-        let spec = BladeSpec {
-            rotor_speed: eta,
-            ..BladeSpec::uniform(1.0, 1.0, 1.0, 4900.0)
-        };
+        let spec = BladeSpec { rotor_speed: eta, ..BladeSpec::uniform(1.0, 1.0, 1.0, 4900.0) };
         let model = BladeModel::new(BladeProperties::new(spec)?, 20)?;
         let found = modes(&model, terms, count)?;
         let lag = found.iter().find(|mode| mode.kind == ModeKind::Lag);
-        let lag = lag.ok_or(CheckError::TooFew {
-            what: "lag modes",
-            found: 0,
-            needed: 1,
-        })?;
+        let lag = lag.ok_or(CheckError::TooFew { what: "lag modes", found: 0, needed: 1 })?;
         Ok(100.0 * (lag.frequency - exact).abs() / exact)
     });
     worst("rotor speeds", 5, errors)

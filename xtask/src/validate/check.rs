@@ -48,10 +48,9 @@ impl Criterion {
             }
             Self::AtMost(limit) => ["0".to_owned(), format!("≤ {}", figure(limit))],
             Self::AtLeast(limit) => ["–".to_owned(), format!("≥ {}", figure(limit))],
-            Self::Between(low, high) => [
-                "–".to_owned(),
-                format!("{} to {}", figure(low), figure(high)),
-            ],
+            Self::Between(low, high) => {
+                ["–".to_owned(), format!("{} to {}", figure(low), figure(high))]
+            }
         }
     }
 }
@@ -107,18 +106,12 @@ pub struct Row {
 impl Row {
     /// Does a check.
     pub fn of(heading: &'static str, check: Check) -> Self {
-        Self {
-            heading,
-            got: (check.measure)(),
-            check,
-        }
+        Self { heading, got: (check.measure)(), check }
     }
 
     /// Whether the quantity was computed and keeps its bound.
     pub fn passes(&self) -> bool {
-        self.got
-            .as_ref()
-            .is_ok_and(|got| self.check.criterion.admits(*got))
+        self.got.as_ref().is_ok_and(|got| self.check.criterion.admits(*got))
     }
 
     /// The cells of the table: id, quantity, unit, expected, got, bound, pass, source.
@@ -151,9 +144,8 @@ pub(super) const COLUMNS: usize = 8;
 pub(super) const GOT: usize = 4;
 
 /// Titles of the columns.
-pub(super) const TITLES: [&str; COLUMNS] = [
-    "id", "quantity", "unit", "expected", "got", "bound", "pass", "source",
-];
+pub(super) const TITLES: [&str; COLUMNS] =
+    ["id", "quantity", "unit", "expected", "got", "bound", "pass", "source"];
 
 /// A number with three significant digits, without zeros that say nothing.
 pub(super) fn figure(value: f64) -> String {
@@ -164,9 +156,7 @@ pub(super) fn figure(value: f64) -> String {
     if !(1e-3..1e6).contains(&size) {
         let text = format!("{value:.2e}");
         let (digits, exponent) = text.split_once('e').unwrap_or((&text, ""));
-        return format!("{}e{exponent}", without_zeros(digits))
-            .trim_end_matches('e')
-            .to_owned();
+        return format!("{}e{exponent}", without_zeros(digits)).trim_end_matches('e').to_owned();
     }
     fixed(value, 2 - exponent_of(size))
 }
@@ -178,10 +168,7 @@ fn precise(value: f64, within: f64) -> String {
 
 /// Power of ten of the leading digit.
 fn exponent_of(size: f64) -> i32 {
-    (-30..30)
-        .rev()
-        .find(|n| size >= 0.999_999 * 10_f64.powi(*n))
-        .unwrap_or(-30)
+    (-30..30).rev().find(|n| size >= 0.999_999 * 10_f64.powi(*n)).unwrap_or(-30)
 }
 
 fn fixed(value: f64, decimals: i32) -> String {
@@ -190,11 +177,7 @@ fn fixed(value: f64, decimals: i32) -> String {
 }
 
 fn without_zeros(digits: &str) -> &str {
-    if digits.contains('.') {
-        digits.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        digits
-    }
+    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
 #[cfg(test)]
@@ -228,23 +211,13 @@ mod tests {
     #[test]
     fn bounds_hold_on_their_side_and_refuse_what_is_no_number() {
         let criteria = [
-            (
-                Criterion::Near {
-                    expected: 2.0,
-                    within: 0.5,
-                },
-                2.5,
-                1.4,
-            ),
+            (Criterion::Near { expected: 2.0, within: 0.5 }, 2.5, 1.4),
             (Criterion::AtMost(1.0), -3.0, 1.1),
             (Criterion::AtLeast(1.0), 3.0, 0.9),
             (Criterion::Between(15.0, 17.0), 16.0, 17.1),
         ];
         for (criterion, good, bad) in criteria {
-            assert!(
-                criterion.admits(good) && !criterion.admits(bad),
-                "{criterion:?}"
-            );
+            assert!(criterion.admits(good) && !criterion.admits(bad), "{criterion:?}");
             assert!(!criterion.admits(f64::NAN), "{criterion:?}");
             assert!(criterion.width() > 0.0);
         }

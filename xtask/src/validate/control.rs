@@ -20,13 +20,7 @@ pub(super) const AREA: Area = Area {
             source: "normal equations (T'T + rho I) u = -T'Z0, solved by Cholesky",
             criterion: Criterion::AtMost(1e-8),
             repeatability: Repeatability::Everywhere,
-            measure: || {
-                worst(
-                    "weights",
-                    3,
-                    [0.0, 0.3, 3.0].map(|rho| off_optimum(rho, 1.0)),
-                )
-            },
+            measure: || worst("weights", 3, [0.0, 0.3, 3.0].map(|rho| off_optimum(rho, 1.0))),
         },
         Check {
             id: "V-CTRL-02",
@@ -77,10 +71,7 @@ fn t_matrix(scale: f64) -> Result<TMatrix, CheckError> {
 /// Distance of the controls found from the optimum, over the optimum. The controller knows the plant's
 /// T times `scale`.
 fn off_optimum(rho: f64, scale: f64) -> Result<f64, CheckError> {
-    let settings = FeedbackSettings {
-        step_tolerance: 1e-12,
-        ..FeedbackSettings::default()
-    };
+    let settings = FeedbackSettings { step_tolerance: 1e-12, ..FeedbackSettings::default() };
     let controller = FeedbackController::new(&t_matrix(scale)?, &LoadWeights::Identity, settings)?;
     let run = controller.run(&mut plant()?, rho)?;
     let found = DVector::from_column_slice(&run.last().control_volt);

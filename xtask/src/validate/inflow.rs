@@ -14,10 +14,7 @@ pub(super) const AREA: Area = Area {
             quantity: "induced inflow in hover at C_T 0.0049",
             unit: "Omega R",
             source: "momentum theory, sqrt(C_T / 2)",
-            criterion: Criterion::Near {
-                expected: 0.049_497_474_7,
-                within: 1e-9,
-            },
+            criterion: Criterion::Near { expected: 0.049_497_474_7, within: 1e-9 },
             repeatability: Repeatability::Everywhere,
             measure: || Ok(momentum_inflow(&flight(0.0, 0.0), THRUST)?),
         },
@@ -26,10 +23,7 @@ pub(super) const AREA: Area = Area {
             quantity: "induced inflow at mu 0.30, shaft tilt 5 deg, C_T 0.0049",
             unit: "Omega R",
             source: "fixed-point iteration of Glauert's equation, apart from the program",
-            criterion: Criterion::Near {
-                expected: 0.008_113_622_59,
-                within: 1e-9,
-            },
+            criterion: Criterion::Near { expected: 0.008_113_622_59, within: 1e-9 },
             repeatability: Repeatability::Everywhere,
             measure: || Ok(momentum_inflow(&flight(0.30, 5.0), THRUST)?),
         },
@@ -59,10 +53,7 @@ pub(super) const AREA: Area = Area {
 const THRUST: f64 = 0.0049;
 
 fn flight(advance_ratio: f64, tilt_deg: f64) -> FlightState {
-    FlightState {
-        advance_ratio,
-        shaft_tilt_rad: tilt_deg.to_radians(),
-    }
+    FlightState { advance_ratio, shaft_tilt_rad: tilt_deg.to_radians() }
 }
 
 fn glauert_residual() -> Result<f64, CheckError> {
@@ -71,9 +62,7 @@ fn glauert_residual() -> Result<f64, CheckError> {
         for tilt_deg in [-5.0, 0.0, 5.0, 15.0] {
             let state = flight(0.05 * f64::from(i), tilt_deg);
             let inflow = momentum_inflow(&state, THRUST)?;
-            residuals.push(Ok(
-                (momentum_residual(&state, THRUST, inflow) / inflow).abs()
-            ));
+            residuals.push(Ok((momentum_residual(&state, THRUST, inflow) / inflow).abs()));
         }
     }
     worst("flight states", 44, residuals)
@@ -81,13 +70,7 @@ fn glauert_residual() -> Result<f64, CheckError> {
 
 /// The program uses a form that does not divide by zero in hover; here is the printed one.
 fn drees_forms() -> Result<f64, CheckError> {
-    let cases = [
-        (0.05, 0.05),
-        (0.10, 0.03),
-        (0.20, 0.02),
-        (0.30, 0.034),
-        (0.35, 0.001),
-    ];
+    let cases = [(0.05, 0.05), (0.10, 0.03), (0.20, 0.02), (0.30, 0.034), (0.35, 0.001)];
     let differences = cases.into_iter().map(|(mu, lambda): (f64, f64)| {
         let chi = mu.atan2(lambda);
         let printed = 4.0 / 3.0 * (1.0 - chi.cos() - 1.8 * mu * mu) / chi.sin();

@@ -39,11 +39,7 @@ pub const AREAS: &[Area] = &[
 
 /// Ids of all checks, in the order of the page.
 pub fn ids() -> Vec<&'static str> {
-    AREAS
-        .iter()
-        .flat_map(|area| area.checks)
-        .map(|check| check.id)
-        .collect()
+    AREAS.iter().flat_map(|area| area.checks).map(|check| check.id).collect()
 }
 
 /// Does all checks whose id or area contains `filter` (all, if it is empty), in parallel.
@@ -58,15 +54,9 @@ pub fn run(filter: &str) -> Result<Vec<Row>, XtaskError> {
         .collect();
     if wanted.is_empty() {
         let areas: Vec<&str> = AREAS.iter().map(|area| area.heading).collect();
-        return Err(XtaskError::NoSuchCheck {
-            text: filter.to_owned(),
-            areas: areas.join(", "),
-        });
+        return Err(XtaskError::NoSuchCheck { text: filter.to_owned(), areas: areas.join(", ") });
     }
-    Ok(wanted
-        .into_par_iter()
-        .map(|(heading, check)| Row::of(heading, check))
-        .collect())
+    Ok(wanted.into_par_iter().map(|(heading, check)| Row::of(heading, check)).collect())
 }
 
 /// The rows as a table for the terminal, with the reason of each check that could not be computed.
@@ -76,20 +66,11 @@ pub fn text(rows: &[Row]) -> String {
     table.set_header(["id", "quantity", "unit", "expected", "got", "bound", "pass"]);
     let mut failures = Vec::new();
     for row in rows {
-        table.add_row(
-            row.cells()
-                .into_iter()
-                .take(7)
-                .map(|cell| cell.replace('*', "")),
-        );
+        table.add_row(row.cells().into_iter().take(7).map(|cell| cell.replace('*', "")));
         if let Err(error) = &row.got {
             failures.push(format!("{}: {error}\n", row.check.id));
         }
     }
     let passed = rows.iter().filter(|row| row.passes()).count();
-    format!(
-        "{table}\n{}{passed} of {} checks passed\n",
-        failures.concat(),
-        rows.len()
-    )
+    format!("{table}\n{}{passed} of {} checks passed\n", failures.concat(), rows.len())
 }

@@ -60,10 +60,7 @@ pub fn stale_lines(stored: &str, rows: &[Row]) -> Vec<String> {
 /// Whether two table lines differ in the computed figure alone, and in that by little.
 fn same_row(was: &str, is: &str, rows: &[Row]) -> bool {
     let cells = |line: &str| -> Vec<String> {
-        line.trim_matches('|')
-            .split('|')
-            .map(|cell| cell.trim().to_owned())
-            .collect()
+        line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
     };
     let (was, is) = (cells(was), cells(is));
     if was.len() != COLUMNS || is.len() != COLUMNS {

@@ -64,12 +64,7 @@ pub(super) const AREA: Area = Area {
             source: CROSSCHECK,
             criterion: Criterion::AtLeast(50.0),
             repeatability: Repeatability::Everywhere,
-            measure: || {
-                four_per_rev_error(&Crosscheck {
-                    couplings: || Couplings::Linear,
-                    ..S2
-                })
-            },
+            measure: || four_per_rev_error(&Crosscheck { couplings: || Couplings::Linear, ..S2 }),
         },
         Check {
             id: "V-RESP-06",
@@ -136,21 +131,13 @@ struct Crosscheck {
     couplings: fn() -> Couplings,
 }
 
-const S1: Crosscheck = Crosscheck {
-    name: "S1_linear_fixed",
-    couplings: || Couplings::Linear,
-};
-const S2: Crosscheck = Crosscheck {
-    name: "S2_full_fixed",
-    couplings: || Couplings::Full,
-};
+const S1: Crosscheck = Crosscheck { name: "S1_linear_fixed", couplings: || Couplings::Linear };
+const S2: Crosscheck = Crosscheck { name: "S2_full_fixed", couplings: || Couplings::Full };
 
 /// The blade of Table 1 with the twist of the paper's case; `mass` over m0.
 pub(super) fn paper_blade(mass: f64) -> Result<BladeProperties, CheckError> {
     Ok(BladeProperties::new(BladeSpec {
-        twist: Twist::Linear {
-            rate_rad: (-8.0_f64).to_radians(),
-        },
+        twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
         mass: mass.into(),
         ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1000.0)
     })?)
@@ -175,10 +162,7 @@ pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel 
 /// Fixed controls of the crosscheck cases at advance ratio 0.30.
 fn fixed_controls() -> Condition {
     Condition {
-        flight: FlightState {
-            advance_ratio: 0.3,
-            shaft_tilt_rad: 5.0_f64.to_radians(),
-        },
+        flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 5.0_f64.to_radians() },
         controls: Controls {
             theta0_rad: 8.0_f64.to_radians(),
             theta1c_rad: 1.0_f64.to_radians(),
@@ -188,9 +172,7 @@ fn fixed_controls() -> Condition {
     }
 }
 
-const PRESCRIBED: LinearInflow = LinearInflow::Prescribed {
-    induced_inflow: 0.008,
-};
+const PRESCRIBED: LinearInflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
 
 fn response(
     model: RotorModel,
@@ -228,16 +210,11 @@ fn four_per_rev_error(case: &Crosscheck) -> Result<f64, CheckError> {
 
 fn mean_error(case: &Crosscheck, part: std::ops::Range<usize>) -> Result<f64, CheckError> {
     let expected: [f64; 6] = reference::crosscheck(case.name, "hub_mean")?;
-    Ok(percent_off(
-        &solve(case)?.hub.mean()[part.clone()],
-        &expected[part],
-    ))
+    Ok(percent_off(&solve(case)?.hub.mean()[part.clone()], &expected[part]))
 }
 
 fn largest(loads: impl IntoIterator<Item = f64>) -> f64 {
-    loads
-        .into_iter()
-        .fold(0.0, |largest: f64, load| largest.max(load.abs()))
+    loads.into_iter().fold(0.0, |largest: f64, load| largest.max(load.abs()))
 }
 
 /// Content of the hub loads off the multiples of four per rev over the 4/rev level, with the mass of
@@ -246,20 +223,11 @@ fn leak(last_mass: f64) -> Result<f64, CheckError> {
     let root = |mass: f64| -> Result<SixLoads, CheckError> {
         let model = paper_rotor(Couplings::Full, 0.2);
         let d = Discretisation::default();
-        Ok(response(
-            model,
-            &paper_blade(mass)?,
-            d,
-            &fixed_controls(),
-            &PRESCRIBED,
-        )?
-        .root)
+        Ok(response(model, &paper_blade(mass)?, d, &fixed_controls(), &PRESCRIBED)?.root)
     };
     let blade = root(1.0)?;
     let hub = hub_loads(&[blade.clone(), blade.clone(), blade, root(last_mass)?], 12);
-    let off = (1..=11)
-        .filter(|n| n % 4 != 0)
-        .flat_map(|n| hub.harmonic(n));
+    let off = (1..=11).filter(|n| n % 4 != 0).flat_map(|n| hub.harmonic(n));
     Ok(largest(off) / largest(hub.harmonic(4)))
 }
 
@@ -277,21 +245,13 @@ fn hover_thrust(model: &RotorModel, theta0_rad: f64, twist_rad: f64) -> f64 {
 fn hover_thrust_error() -> Result<f64, CheckError> {
     let twist_rad = (-8.0_f64).to_radians();
     let stiff = BladeProperties::new(BladeSpec {
-        twist: Twist::Linear {
-            rate_rad: twist_rad,
-        },
+        twist: Twist::Linear { rate_rad: twist_rad },
         ..BladeSpec::uniform(10.8, 26.8, 6.15, 1000.0)
     })?;
     let errors = [6.0_f64, 10.0].map(|theta0_deg| {
         let condition = Condition {
-            flight: FlightState {
-                advance_ratio: 0.0,
-                shaft_tilt_rad: 0.0,
-            },
-            controls: Controls {
-                theta0_rad: theta0_deg.to_radians(),
-                ..Controls::default()
-            },
+            flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
+            controls: Controls { theta0_rad: theta0_deg.to_radians(), ..Controls::default() },
             flap_angles_rad: vec![],
         };
         let model = paper_rotor(Couplings::Full, 0.2);
@@ -312,23 +272,11 @@ fn bending_gap(flap_modes: usize) -> Result<f64, CheckError> {
         time_elements: 12,
         ..Discretisation::default()
     };
-    let model = RotorModel {
-        modal_damping: 0.0,
-        ..paper_rotor(Couplings::Linear, 0.35)
-    };
+    let model = RotorModel { modal_damping: 0.0, ..paper_rotor(Couplings::Linear, 0.35) };
     let blade = paper_blade(1.0)?;
-    let solution = response(
-        model,
-        &blade,
-        discretisation,
-        &fixed_controls(),
-        &PRESCRIBED,
-    )?;
+    let solution = response(model, &blade, discretisation, &fixed_controls(), &PRESCRIBED)?;
     let bending = solution.root_flap_bending;
-    let (summed, curved) = (
-        bending.force_summation.harmonic(3),
-        bending.curvature.harmonic(3),
-    );
+    let (summed, curved) = (bending.force_summation.harmonic(3), bending.curvature.harmonic(3));
     let gap = (summed.cosine - curved.cosine).hypot(summed.sine - curved.sine);
     Ok(gap / summed.amplitude())
 }

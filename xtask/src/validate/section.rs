@@ -81,10 +81,7 @@ fn incompressible() -> Result<SectionCoefficients, CheckError> {
 }
 
 fn complex(row: &TableRow<'_>, name: &str) -> Result<Complex64, CheckError> {
-    Ok(Complex64::new(
-        row.number(&format!("{name}_re"))?,
-        row.number(&format!("{name}_im"))?,
-    ))
+    Ok(Complex64::new(row.number(&format!("{name}_re"))?, row.number(&format!("{name}_im"))?))
 }
 
 /// Largest error of one load over the table's reduced frequencies up to 1, over the load's magnitude.

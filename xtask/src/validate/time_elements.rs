@@ -78,10 +78,7 @@ fn flap_equation(psi: f64) -> LinearCoefficients {
 /// Harmonics of the solution in degrees.
 fn flap_harmonics(elements: usize, order: usize) -> Result<HarmonicSeries, CheckError> {
     let time = TimeElements::new(elements, order, 8)?;
-    let settings = PeriodicSettings {
-        tolerance: 1e-12,
-        ..PeriodicSettings::default()
-    };
+    let settings = PeriodicSettings { tolerance: 1e-12, ..PeriodicSettings::default() };
     let system = LinearPeriodic::new(DMatrix::identity(1, 1), flap_equation);
     let mut solver = PeriodicSolver::new(time.clone(), settings)?;
     let solution = solver.solve(&system, &Orbit::zero(&time, 1))?;
@@ -103,9 +100,7 @@ fn harmonic_error(
             errors.push(Ok((got.mean - truth.number("b0")?).abs()));
         } else {
             let harmonic = got.harmonic(n);
-            errors.push(Ok(
-                (harmonic.cosine - truth.number(&format!("b{n}c"))?).abs()
-            ));
+            errors.push(Ok((harmonic.cosine - truth.number(&format!("b{n}c"))?).abs()));
             errors.push(Ok((harmonic.sine - truth.number(&format!("b{n}s"))?).abs()));
         }
     }

@@ -58,40 +58,21 @@ const CT_SIGMA: f64 = 0.07;
 fn trimmed(advance_ratio: f64, target: &TrimTarget) -> Result<TrimSolution, CheckError> {
     let model = paper_rotor(Couplings::Full, 0.2);
     let rotor = Rotor::new(model, &paper_blade(1.0)?, Discretisation::default())?;
-    let mut solver = RotorSolver::new(
-        Arc::new(rotor),
-        advance_ratio,
-        ResponseTolerances::default(),
-    )?;
+    let mut solver =
+        RotorSolver::new(Arc::new(rotor), advance_ratio, ResponseTolerances::default())?;
     let settings = TrimSettings::default();
     let inflow = LinearInflow::Drees;
-    Ok(trim(
-        &mut solver,
-        &inflow,
-        advance_ratio,
-        target,
-        &settings,
-        None,
-    )?)
+    Ok(trim(&mut solver, &inflow, advance_ratio, target, &settings, None)?)
 }
 
 fn propulsive_residual(residual: fn(&TrimSolution) -> f64) -> Result<f64, CheckError> {
-    let target = TrimTarget::Propulsive {
-        weight_ct_sigma: CT_SIGMA,
-        vehicle: Vehicle::default(),
-    };
+    let target = TrimTarget::Propulsive { weight_ct_sigma: CT_SIGMA, vehicle: Vehicle::default() };
     let residuals = [0.10, 0.20, 0.30].map(|mu| Ok(residual(&trimmed(mu, &target)?)));
     worst("advance ratios", 3, residuals)
 }
 
 fn wind_tunnel() -> Result<TrimSolution, CheckError> {
-    trimmed(
-        0.25,
-        &TrimTarget::WindTunnel {
-            ct_sigma: CT_SIGMA,
-            shaft_tilt_rad: 0.08,
-        },
-    )
+    trimmed(0.25, &TrimTarget::WindTunnel { ct_sigma: CT_SIGMA, shaft_tilt_rad: 0.08 })
 }
 
 fn wind_tunnel_thrust() -> Result<f64, CheckError> {

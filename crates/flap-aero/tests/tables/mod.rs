@@ -1,8 +1,5 @@
 //! Reader of the reference tables, shared by the tests.
-#![allow(
-    dead_code,
-    reason = "each test program uses its own part of the reader"
-)]
+#![allow(dead_code, reason = "each test program uses its own part of the reader")]
 
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -15,10 +12,7 @@ pub(crate) struct Table {
 impl Table {
     /// Reads a table of `fixtures/reference/aero`.
     pub(crate) fn read(file: &str) -> Self {
-        let path = format!(
-            "{}/../../fixtures/reference/aero/{file}",
-            env!("CARGO_MANIFEST_DIR")
-        );
+        let path = format!("{}/../../fixtures/reference/aero/{file}", env!("CARGO_MANIFEST_DIR"));
         let mut reader = csv::Reader::from_path(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
         let rows: Vec<BTreeMap<String, String>> =
             reader.deserialize().map(|row| row.unwrap()).collect();
@@ -39,9 +33,7 @@ pub(crate) struct Row<'a>(&'a BTreeMap<String, String>);
 impl<'a> Row<'a> {
     /// A text.
     pub(crate) fn text(self, column: &str) -> &'a str {
-        self.0
-            .get(column)
-            .unwrap_or_else(|| panic!("no column {column}"))
+        self.0.get(column).unwrap_or_else(|| panic!("no column {column}"))
     }
 
     /// A number.
@@ -56,19 +48,12 @@ impl<'a> Row<'a> {
 
     /// The columns `{name}_re` and `{name}_im`.
     pub(crate) fn complex(self, name: &str) -> Complex64 {
-        Complex64::new(
-            self.number(&format!("{name}_re")),
-            self.number(&format!("{name}_im")),
-        )
+        Complex64::new(self.number(&format!("{name}_re")), self.number(&format!("{name}_im")))
     }
 
     /// `[Cn, Cm, Ch]`.
     pub(crate) fn loads(self) -> [Complex64; 3] {
-        let moment = if self.0.contains_key("cm25_re") {
-            "cm25"
-        } else {
-            "cm"
-        };
+        let moment = if self.0.contains_key("cm25_re") { "cm25" } else { "cm" };
         [self.complex("cn"), self.complex(moment), self.complex("ch")]
     }
 }

@@ -89,12 +89,7 @@ fn problem() -> Problem {
 }
 
 fn faulty(fault: Fault, at: usize) -> Faulty {
-    Faulty {
-        plant: problem().plant,
-        fault,
-        at,
-        calls: 0,
-    }
+    Faulty { plant: problem().plant, fault, at, calls: 0 }
 }
 
 fn controller(gain: f64) -> FeedbackController {
@@ -104,59 +99,31 @@ fn controller(gain: f64) -> FeedbackController {
 
 #[test]
 fn a_failing_plant_is_quoted_with_the_history() {
-    let error = controller(1.3)
-        .run(&mut faulty(Fault::Fails, 4), 0.0)
-        .unwrap_err();
+    let error = controller(1.3).run(&mut faulty(Fault::Fails, 4), 0.0).unwrap_err();
     let text = error.to_string();
     assert!(text.contains("after 3 recorded control steps"), "{text}");
     let source = std::error::Error::source(&error).unwrap().to_string();
     assert_eq!(source, "the blade flew away");
-    let RunError::Plant {
-        call: PlantCall::Measure { .. },
-        history,
-        ..
-    } = error
-    else {
+    let RunError::Plant { call: PlantCall::Measure { .. }, history, .. } = error else {
         panic!("{text}");
     };
     assert_eq!(history.len(), 3);
     assert!(history[2].cost.total() < history[0].cost.total());
 
     let error = identify_t(&mut faulty(Fault::Fails, 3), &[0.1; 4]).unwrap_err();
-    assert!(matches!(
-        error,
-        RunError::Plant {
-            call: PlantCall::MeasureMany { count: 8 },
-            ..
-        }
-    ));
+    assert!(matches!(error, RunError::Plant { call: PlantCall::MeasureMany { count: 8 }, .. }));
 }
 
 #[test]
 fn bad_measurements_are_named() {
     for at in [1, 2] {
         for (fault, part) in [
-            (
-                Fault::NanLoad,
-                "measured hub loads: element 3 (from 0) is NaN",
-            ),
-            (
-                Fault::ShortLoads,
-                "measured hub loads: found 11 numbers, expected 12",
-            ),
-            (
-                Fault::ShortFlaps,
-                "measured flap harmonics: found 0 numbers, expected 2",
-            ),
-            (
-                Fault::NanMean,
-                "mean flap angle (deg): element 0 (from 0) is NaN",
-            ),
+            (Fault::NanLoad, "measured hub loads: element 3 (from 0) is NaN"),
+            (Fault::ShortLoads, "measured hub loads: found 11 numbers, expected 12"),
+            (Fault::ShortFlaps, "measured flap harmonics: found 0 numbers, expected 2"),
+            (Fault::NanMean, "mean flap angle (deg): element 0 (from 0) is NaN"),
         ] {
-            let text = controller(1.0)
-                .run(&mut faulty(fault, at), 0.0)
-                .unwrap_err()
-                .to_string();
+            let text = controller(1.0).run(&mut faulty(fault, at), 0.0).unwrap_err().to_string();
             assert!(text.contains(part), "{text}");
         }
     }
@@ -172,16 +139,11 @@ fn bad_strokes_and_limits_are_named() {
         (Fault::ShortStrokes, "strokes: found 0 numbers, expected 2"),
         (Fault::FailsStrokes, "asked for its strokes"),
         (Fault::ZeroLimit, "stroke limit (deg) is 0"),
-        (
-            Fault::NanLimit,
-            "stroke limit (deg): element 0 (from 0) is NaN",
-        ),
+        (Fault::NanLimit, "stroke limit (deg): element 0 (from 0) is NaN"),
         (Fault::AdmitsNothing, "no part of the first control step"),
         (Fault::StrokeAtRest, "is the stroke zero at zero voltage?"),
     ] {
-        let error = controller(1.0)
-            .run_within_stroke(&mut faulty(fault, 1))
-            .unwrap_err();
+        let error = controller(1.0).run_within_stroke(&mut faulty(fault, 1)).unwrap_err();
         assert!(error.to_string().contains(part), "{error}");
     }
 }
@@ -191,14 +153,7 @@ fn a_plant_of_another_size_is_refused() {
     let t = DMatrix::from_fn(12, 2, |i, j| (i + j) as f64);
     let mut other = Problem::new(1, &[3], t, &[1.0; 12]).plant;
     let error = controller(1.0).run(&mut other, 0.0).unwrap_err();
-    assert!(matches!(
-        error,
-        RunError::Control(ControlError::Length {
-            found: 2,
-            expected: 4,
-            ..
-        })
-    ));
+    assert!(matches!(error, RunError::Control(ControlError::Length { found: 2, expected: 4, .. })));
 }
 
 #[test]
@@ -207,49 +162,23 @@ fn bad_arguments_are_refused() {
     for effort in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(controller(1.0).run(&mut plant, effort).is_err());
     }
-    assert!(
-        controller(1.0)
-            .run_from(&mut plant, 0.0, &[0.0, f64::NAN, 0.0, 0.0])
-            .is_err()
-    );
-    assert!(
-        controller(1.0)
-            .run_from(&mut plant, 0.0, &[0.0; 3])
-            .is_err()
-    );
+    assert!(controller(1.0).run_from(&mut plant, 0.0, &[0.0, f64::NAN, 0.0, 0.0]).is_err());
+    assert!(controller(1.0).run_from(&mut plant, 0.0, &[0.0; 3]).is_err());
 
     let t = as_t(&problem().t);
     let good = FeedbackSettings::default();
     for settings in [
-        FeedbackSettings {
-            step_tolerance: 0.0,
-            ..good.clone()
-        },
-        FeedbackSettings {
-            stroke_tolerance: f64::NAN,
-            ..good.clone()
-        },
-        FeedbackSettings {
-            cost_rise_allowance: -1.0,
-            ..good.clone()
-        },
-        FeedbackSettings {
-            max_halvings: 61,
-            ..good.clone()
-        },
+        FeedbackSettings { step_tolerance: 0.0, ..good.clone() },
+        FeedbackSettings { stroke_tolerance: f64::NAN, ..good.clone() },
+        FeedbackSettings { cost_rise_allowance: -1.0, ..good.clone() },
+        FeedbackSettings { max_halvings: 61, ..good.clone() },
     ] {
         assert!(FeedbackController::new(&t, &LoadWeights::Identity, settings).is_err());
     }
     let unweighted = LoadWeights::Diagonal(vec![0.0; 12]);
-    assert_eq!(
-        FeedbackLaw::new(&t, &unweighted),
-        Err(ControlError::NoAuthority)
-    );
+    assert_eq!(FeedbackLaw::new(&t, &unweighted), Err(ControlError::NoAuthority));
     let zero = TMatrix::from_columns(&vec![vec![0.0; 12]; 4]).unwrap();
-    assert_eq!(
-        FeedbackLaw::new(&zero, &LoadWeights::Identity),
-        Err(ControlError::NoAuthority)
-    );
+    assert_eq!(FeedbackLaw::new(&zero, &LoadWeights::Identity), Err(ControlError::NoAuthority));
 }
 
 #[test]

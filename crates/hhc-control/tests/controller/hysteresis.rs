@@ -70,23 +70,11 @@ fn feedback_takes_back_what_ignoring_hysteresis_costs() {
     let ignored = plant.measure(&on_ideal.run.last().control_volt).unwrap();
 
     let before = fed_back.run.start.cost.loads;
-    let (ideal_cost, with_feedback, without) = (
-        on_ideal.run.last().cost.loads,
-        fed_back.run.last().cost.loads,
-        loads_cost(&ignored),
-    );
-    assert!(
-        with_feedback < 0.5 * before,
-        "{with_feedback:e} of {before:e}"
-    );
-    assert!(
-        without > 1.5 * with_feedback,
-        "{without:e} against {with_feedback:e}"
-    );
-    assert!(
-        (with_feedback / ideal_cost - 1.0).abs() < 0.05,
-        "{with_feedback:e} {ideal_cost:e}"
-    );
+    let (ideal_cost, with_feedback, without) =
+        (on_ideal.run.last().cost.loads, fed_back.run.last().cost.loads, loads_cost(&ignored));
+    assert!(with_feedback < 0.5 * before, "{with_feedback:e} of {before:e}");
+    assert!(without > 1.5 * with_feedback, "{without:e} against {with_feedback:e}");
+    assert!((with_feedback / ideal_cost - 1.0).abs() < 0.05, "{with_feedback:e} {ideal_cost:e}");
 
     // the flap lags its voltage by the describing function and the pure lag
     let last = fed_back.run.last();
@@ -101,10 +89,7 @@ fn feedback_takes_back_what_ignoring_hysteresis_costs() {
 #[test]
 fn the_fixed_point_and_the_limit_hold_together() {
     for stroke_limit_deg in [0.5, 1.0, 2.0] {
-        let mut plant = RayleighPlant {
-            stroke_limit_deg,
-            ..plant()
-        };
+        let mut plant = RayleighPlant { stroke_limit_deg, ..plant() };
         let t0 = identify_t(&mut plant, &STEP_VOLT).unwrap();
         let controller =
             FeedbackController::new(&t0, &LoadWeights::Identity, FeedbackSettings::default())
@@ -136,10 +121,7 @@ fn the_fixed_point_and_the_limit_hold_together() {
 #[test]
 fn the_same_run_twice_is_the_same_to_the_bit() {
     let run = || {
-        let mut plant = RayleighPlant {
-            stroke_limit_deg: 2.0,
-            ..plant()
-        };
+        let mut plant = RayleighPlant { stroke_limit_deg: 2.0, ..plant() };
         let t0 = identify_t(&mut plant, &STEP_VOLT).unwrap();
         FeedbackController::new(&t0, &LoadWeights::Identity, FeedbackSettings::default())
             .unwrap()

@@ -52,11 +52,7 @@ fn orthogonal() -> Problem {
 }
 
 fn tight() -> FeedbackSettings {
-    FeedbackSettings {
-        max_steps: 400,
-        step_tolerance: 1e-11,
-        ..FeedbackSettings::default()
-    }
+    FeedbackSettings { max_steps: 400, step_tolerance: 1e-11, ..FeedbackSettings::default() }
 }
 
 proptest! {
@@ -139,15 +135,10 @@ fn the_error_shrinks_as_theory_says() {
         let run = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
         let phase = f64::to_radians(phase_deg);
         let theory = (1.0 - phase.cos() / gain).hypot(phase.sin() / gain);
-        let errors: Vec<f64> = run
-            .history()
-            .map(|step| relative_error(&step.control_volt, &exact))
-            .collect();
+        let errors: Vec<f64> =
+            run.history().map(|step| relative_error(&step.control_volt, &exact)).collect();
         for pair in errors.windows(2).take_while(|pair| pair[1] > 1e-9) {
-            assert!(
-                (pair[1] / pair[0] - theory).abs() < 1e-5,
-                "{gain} {phase_deg}: {errors:?}"
-            );
+            assert!((pair[1] / pair[0] - theory).abs() < 1e-5, "{gain} {phase_deg}: {errors:?}");
         }
         assert_eq!((run.outcome, run.halvings()), (Outcome::Converged, 0));
         assert!(errors[errors.len() - 1] <= 1e-8);
@@ -182,10 +173,7 @@ fn the_bound_on_the_phase_error_is_sharp() {
         let problem = Problem::new(1, &[3], t.clone(), &z0);
         let run = |phase_deg: f64| {
             let t0 = problem.distorted_t(1.0, phase_deg);
-            let settings = FeedbackSettings {
-                max_halvings: 40,
-                ..tight()
-            };
+            let settings = FeedbackSettings { max_halvings: 40, ..tight() };
             FeedbackController::new(&t0, &LoadWeights::Identity, settings)
                 .unwrap()
                 .run(&mut problem.plant.clone(), 0.0)
@@ -204,10 +192,7 @@ fn beyond_60_degrees_halving_saves_the_loop() {
     let exact = problem.optimum(&[1.0; LOADS], 0.0);
     let t0 = problem.distorted_t(1.0, 65.0);
     // the cost, by which steps are judged, tells controls apart to the root of rounding only
-    let settings = FeedbackSettings {
-        step_tolerance: 1e-6,
-        ..tight()
-    };
+    let settings = FeedbackSettings { step_tolerance: 1e-6, ..tight() };
     let controller =
         FeedbackController::new(&t0, &LoadWeights::Identity, settings.clone()).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
@@ -216,16 +201,10 @@ fn beyond_60_degrees_halving_saves_the_loop() {
     assert!(relative_error(&run.last().control_volt, &exact) <= 2e-6);
 
     // without halving the same loop is lost
-    let unhalved = FeedbackSettings {
-        max_halvings: 0,
-        ..tight()
-    };
+    let unhalved = FeedbackSettings { max_halvings: 0, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, unhalved).unwrap();
     let lost = controller.run(&mut problem.plant.clone(), 0.0);
-    assert!(matches!(
-        lost,
-        Err(RunError::Control(ControlError::Diverges { .. }))
-    ));
+    assert!(matches!(lost, Err(RunError::Control(ControlError::Diverges { .. }))));
 }
 
 #[test]
@@ -236,13 +215,8 @@ fn beyond_90_degrees_the_loop_diverges_and_says_so() {
         let controller = FeedbackController::new(&t0, &LoadWeights::Identity, tight()).unwrap();
         let error = controller.run(&mut problem.plant.clone(), 0.0).unwrap_err();
         let text = error.to_string();
-        let RunError::Control(ControlError::Diverges {
-            divisor,
-            start,
-            shortest,
-            history,
-            ..
-        }) = error
+        let RunError::Control(ControlError::Diverges { divisor, start, shortest, history, .. }) =
+            error
         else {
             panic!("{text}");
         };
@@ -258,10 +232,7 @@ fn with_weighted_control_a_wrong_t_moves_the_fixed_point() {
     let effort = 0.03;
     let exact = problem.optimum(&[1.0; LOADS], effort);
     let t0 = problem.distorted_t(1.0, 20.0);
-    let settings = FeedbackSettings {
-        cost_rise_allowance: 1.0,
-        ..tight()
-    };
+    let settings = FeedbackSettings { cost_rise_allowance: 1.0, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), effort).unwrap();
     assert_eq!(run.outcome, Outcome::Converged);
@@ -277,10 +248,7 @@ fn with_weighted_control_a_wrong_t_moves_the_fixed_point() {
 fn near_the_least_cost_a_wrong_t_stalls_the_strict_loop() {
     let problem = orthogonal();
     let t0 = problem.distorted_t(0.7, 50.0);
-    let settings = FeedbackSettings {
-        cost_rise_allowance: 0.0,
-        ..tight()
-    };
+    let settings = FeedbackSettings { cost_rise_allowance: 0.0, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.05).unwrap();
     assert_eq!(run.outcome, Outcome::Stalled);
@@ -291,10 +259,7 @@ fn near_the_least_cost_a_wrong_t_stalls_the_strict_loop() {
 fn a_step_limit_is_an_outcome() {
     let problem = orthogonal();
     let t0 = problem.distorted_t(1.0, 30.0);
-    let settings = FeedbackSettings {
-        max_steps: 3,
-        ..tight()
-    };
+    let settings = FeedbackSettings { max_steps: 3, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
     assert_eq!((run.outcome, run.steps.len()), (Outcome::StepLimit, 3));
@@ -321,14 +286,11 @@ fn a_warm_start_ends_where_the_cold_one_does() {
     let t0 = problem.distorted_t(1.1, 15.0);
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, tight()).unwrap();
     let cold = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
-    let warm = controller
-        .run_from(&mut problem.plant.clone(), 0.0, &[0.5, -3.0, 2.0, 1.0])
-        .unwrap();
+    let warm =
+        controller.run_from(&mut problem.plant.clone(), 0.0, &[0.5, -3.0, 2.0, 1.0]).unwrap();
     let exact = DVector::from_column_slice(&cold.last().control_volt);
     assert!(relative_error(&warm.last().control_volt, &exact) < 1e-9);
-    let again = controller
-        .run_from(&mut problem.plant.clone(), 0.0, exact.as_slice())
-        .unwrap();
+    let again = controller.run_from(&mut problem.plant.clone(), 0.0, exact.as_slice()).unwrap();
     assert_eq!((again.outcome, again.steps.len()), (Outcome::Converged, 0));
 }
 

@@ -1,10 +1,6 @@
 //! The controller against closed-form answers, on plants that are known exactly.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::float_cmp,
-    reason = "a test that cannot unwrap has failed"
-)]
+#![expect(clippy::unwrap_used, clippy::float_cmp, reason = "a test that cannot unwrap has failed")]
 
 mod failures;
 mod hysteresis;

@@ -19,11 +19,7 @@ impl Problem {
     pub(crate) fn new(flaps: usize, harmonics: &[u32], t: DMatrix<f64>, z0: &[f64]) -> Self {
         let layout = ControlLayout::new(flaps, harmonics.to_vec()).unwrap();
         let plant = LinearPlant::new(layout, z0.to_vec(), as_t(&t)).unwrap();
-        Self {
-            plant,
-            t,
-            z0: DVector::from_column_slice(z0),
-        }
+        Self { plant, t, z0: DVector::from_column_slice(z0) }
     }
 
     /// The minimum of the cost by the normal equations:
@@ -32,10 +28,7 @@ impl Problem {
         let weighted = DMatrix::from_diagonal(&DVector::from_column_slice(weights)) * &self.t;
         let normal = self.t.transpose() * &weighted
             + DMatrix::identity(self.t.ncols(), self.t.ncols()) * rho;
-        normal
-            .lu()
-            .solve(&(-weighted.transpose() * &self.z0))
-            .unwrap()
+        normal.lu().solve(&(-weighted.transpose() * &self.z0)).unwrap()
     }
 
     /// `J_Z` with unit weights.
@@ -58,10 +51,8 @@ impl Problem {
 }
 
 pub(crate) fn as_t(matrix: &DMatrix<f64>) -> TMatrix {
-    let columns: Vec<Vec<f64>> = matrix
-        .column_iter()
-        .map(|c| c.iter().copied().collect())
-        .collect();
+    let columns: Vec<Vec<f64>> =
+        matrix.column_iter().map(|c| c.iter().copied().collect()).collect();
     TMatrix::from_columns(&columns).unwrap()
 }
 
@@ -79,11 +70,7 @@ pub(crate) struct Counted<P> {
 
 impl<P> Counted<P> {
     pub(crate) fn new(plant: P) -> Self {
-        Self {
-            plant,
-            measurements: 0,
-            stroke_calls: 0,
-        }
+        Self { plant, measurements: 0, stroke_calls: 0 }
     }
 }
 
@@ -134,10 +121,7 @@ impl RayleighPlant {
     /// Gain in phase and gain in quadrature (late) at a voltage amplitude, without the pure lag.
     pub(crate) fn gains(&self, amplitude_volt: f64) -> (f64, f64) {
         let in_phase = self.a_deg_per_volt + self.b_deg_per_volt2 * amplitude_volt;
-        (
-            in_phase,
-            4.0 / (3.0 * PI) * self.b_deg_per_volt2 * amplitude_volt,
-        )
+        (in_phase, 4.0 / (3.0 * PI) * self.b_deg_per_volt2 * amplitude_volt)
     }
 
     pub(crate) fn flaps_deg(&self, control_volt: &[f64]) -> Vec<Harmonic> {
@@ -165,10 +149,7 @@ impl Plant for RayleighPlant {
     fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Self::Error> {
         let flap_motion_deg = self.flaps_deg(control_volt);
         let flaps = DVector::from_vec(self.layout.control_volt(&flap_motion_deg).unwrap());
-        let hub_loads = (&self.z0 + &self.loads_per_deg * flaps)
-            .iter()
-            .copied()
-            .collect();
+        let hub_loads = (&self.z0 + &self.loads_per_deg * flaps).iter().copied().collect();
         Ok(Measurement {
             hub_loads,
             flap_motion_deg,
@@ -177,11 +158,7 @@ impl Plant for RayleighPlant {
     }
 
     fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Self::Error> {
-        Ok(self
-            .flaps_deg(control_volt)
-            .iter()
-            .map(Harmonic::amplitude)
-            .collect())
+        Ok(self.flaps_deg(control_volt).iter().map(Harmonic::amplitude).collect())
     }
 
     fn stroke_limits_deg(&self) -> Vec<f64> {

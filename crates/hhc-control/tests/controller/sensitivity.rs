@@ -19,22 +19,13 @@ impl CubicPlant {
     fn example(threads: usize) -> Self {
         let layout = ControlLayout::new(2, vec![3, 4]).unwrap();
         let part = |seed: f64| DMatrix::from_fn(12, 8, |i, j| (seed + (8 * i + j) as f64).sin());
-        Self {
-            layout,
-            t: part(0.1),
-            q: part(0.2),
-            k: part(0.3),
-            threads,
-        }
+        Self { layout, t: part(0.1), q: part(0.2), k: part(0.3), threads }
     }
 
     fn loads(&self, control_volt: &[f64]) -> Vec<f64> {
         let u = DVector::from_column_slice(control_volt);
         let (u2, u3) = (u.map(|v| v * v), u.map(|v| v * v * v));
-        (&self.t * u + &self.q * u2 + &self.k * u3)
-            .iter()
-            .copied()
-            .collect()
+        (&self.t * u + &self.q * u2 + &self.k * u3).iter().copied().collect()
     }
 
     fn answer(&self, control_volt: &[f64]) -> Measurement {
@@ -68,10 +59,7 @@ impl Plant for CubicPlant {
                 .chunks(share)
                 .map(|part| scope.spawn(|| part.iter().map(|u| this.answer(u)).collect::<Vec<_>>()))
                 .collect();
-            workers
-                .into_iter()
-                .flat_map(|worker| worker.join().unwrap())
-                .collect()
+            workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect()
         }))
     }
 
@@ -89,15 +77,10 @@ fn central_differences_are_of_second_order() {
     let mut plant = CubicPlant::example(1);
     let exact = as_t(&plant.t);
     let error = |plant: &mut CubicPlant, step: f64| {
-        identify_t(plant, &[step; 8])
-            .unwrap()
-            .relative_difference(&exact)
-            .unwrap()
+        identify_t(plant, &[step; 8]).unwrap().relative_difference(&exact).unwrap()
     };
-    let errors: Vec<f64> = [0.4, 0.2, 0.1, 0.05]
-        .iter()
-        .map(|&step| error(&mut plant, step))
-        .collect();
+    let errors: Vec<f64> =
+        [0.4, 0.2, 0.1, 0.05].iter().map(|&step| error(&mut plant, step)).collect();
     for pair in errors.windows(2) {
         // the even part cancels, the cubic part leaves K h^2
         assert!((pair[0] / pair[1] - 4.0).abs() < 1e-9, "{errors:?}");

@@ -13,20 +13,13 @@ use std::f64::consts::TAU;
 const GAIN_DEG_PER_VOLT: f64 = 0.05;
 
 fn settings(stroke_tolerance: f64) -> FeedbackSettings {
-    FeedbackSettings {
-        stroke_tolerance,
-        step_tolerance: 1e-10,
-        ..FeedbackSettings::default()
-    }
+    FeedbackSettings { stroke_tolerance, step_tolerance: 1e-10, ..FeedbackSettings::default() }
 }
 
 fn limited(problem: &Problem, limit_volt: f64, tolerance: f64) -> StrokeLimitedRun {
-    let controller = FeedbackController::new(
-        &as_t(&problem.t),
-        &LoadWeights::Identity,
-        settings(tolerance),
-    )
-    .unwrap();
+    let controller =
+        FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings(tolerance))
+            .unwrap();
     let mut plant = problem
         .plant
         .clone()
@@ -50,11 +43,7 @@ fn best_on_circle(problem: &Problem, limit: f64) -> DVector<f64> {
     let (mut low, mut high) = (start - 0.01, start + 0.01);
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
-        let end = if slope(middle) < 0.0 {
-            &mut low
-        } else {
-            &mut high
-        };
+        let end = if slope(middle) < 0.0 { &mut low } else { &mut high };
         *end = middle;
     }
     control(f64::midpoint(low, high))
@@ -176,19 +165,13 @@ fn the_clipped_step_is_a_trap() {
 #[test]
 fn one_weight_for_two_flaps_is_not_the_optimum_under_separate_limits() {
     // the first flap needs less than the second: it could still move when the second is at its limit
-    let t = DMatrix::from_fn(12, 4, |load, control| {
-        match (load == control, control < 2) {
-            (true, true) => 1.0,
-            (true, false) => 0.5,
-            _ => 0.0,
-        }
+    let t = DMatrix::from_fn(12, 4, |load, control| match (load == control, control < 2) {
+        (true, true) => 1.0,
+        (true, false) => 0.5,
+        _ => 0.0,
     });
-    let problem = Problem::new(
-        2,
-        &[3],
-        t,
-        &[1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    );
+    let problem =
+        Problem::new(2, &[3], t, &[1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     let found = limited(&problem, 0.8, 1e-9);
     let best = constrained_optimum(&problem, 0.8);
     let (weighted, constrained) = (found.run.last().cost.loads, problem.loads_cost(&best));
@@ -237,11 +220,7 @@ fn a_wrong_t_is_no_obstacle() {
         assert_eq!(found.status, StrokeStatus::AtLimit, "{gain} {phase_deg}");
         assert!((0.999..=1.0).contains(&found.largest_stroke_ratio));
         assert!(found.run.last().cost.loads < found.run.start.cost.loads);
-        assert!(
-            found.measurements <= 60,
-            "{gain} {phase_deg}: {}",
-            found.measurements
-        );
+        assert!(found.measurements <= 60, "{gain} {phase_deg}: {}", found.measurements);
     }
 }
 
@@ -268,11 +247,7 @@ impl Plant for Odd {
     fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Self::Error> {
         let amplitudes = self.layout().amplitudes_volt(control_volt).unwrap();
         let stroke = |volt| {
-            if volt > self.beyond_volt {
-                self.stroke_beyond_deg
-            } else {
-                volt
-            }
+            if volt > self.beyond_volt { self.stroke_beyond_deg } else { volt }
         };
         Ok(amplitudes.into_iter().map(stroke).collect())
     }
@@ -288,12 +263,7 @@ impl Plant for Odd {
 }
 
 fn odd(beyond_volt: f64, stroke_beyond_deg: f64, range_volt: f64) -> Odd {
-    Odd {
-        plant: opposed().plant,
-        beyond_volt,
-        stroke_beyond_deg,
-        range_volt,
-    }
+    Odd { plant: opposed().plant, beyond_volt, stroke_beyond_deg, range_volt }
 }
 
 #[test]
@@ -301,9 +271,7 @@ fn a_jump_of_the_stroke_is_approached_from_below() {
     let controller =
         FeedbackController::new(&as_t(&opposed().t), &LoadWeights::Identity, settings(1e-3))
             .unwrap();
-    let found = controller
-        .run_within_stroke(&mut odd(1.5, 2.5, 100.0))
-        .unwrap();
+    let found = controller.run_within_stroke(&mut odd(1.5, 2.5, 100.0)).unwrap();
     assert_eq!(found.status, StrokeStatus::BelowJump);
     assert!((found.largest_stroke_ratio - 0.75).abs() < 1e-9);
 }
@@ -313,9 +281,7 @@ fn an_actuator_without_answer_beyond_full_scale_is_met_there() {
     let controller =
         FeedbackController::new(&as_t(&opposed().t), &LoadWeights::Identity, settings(1e-3))
             .unwrap();
-    let found = controller
-        .run_within_stroke(&mut odd(2.0, f64::INFINITY, 2.0))
-        .unwrap();
+    let found = controller.run_within_stroke(&mut odd(2.0, f64::INFINITY, 2.0)).unwrap();
     assert_eq!(found.status, StrokeStatus::AtLimit);
     assert!((0.999..=1.0).contains(&found.largest_stroke_ratio));
 }
@@ -327,24 +293,14 @@ fn steps_out_of_range_are_halved() {
     let t0 = problem.distorted_t(0.45, 0.0);
     let weights = &LoadWeights::Identity;
     let controller = FeedbackController::new(&t0, weights, FeedbackSettings::default()).unwrap();
-    let found = controller
-        .run_within_stroke(&mut odd(f64::INFINITY, 0.0, 2.001))
-        .unwrap();
+    let found = controller.run_within_stroke(&mut odd(f64::INFINITY, 0.0, 2.001)).unwrap();
     assert_eq!(found.status, StrokeStatus::AtLimit);
     assert!((0.999..=1.0).contains(&found.largest_stroke_ratio));
     assert!(found.run.halvings() > 0);
 
     // with a smaller weight the loop is led out of the range: no result to call free of the limit
-    let run = controller
-        .run(&mut odd(f64::INFINITY, 0.0, 2.001), 0.1 * found.rho)
-        .unwrap();
+    let run = controller.run(&mut odd(f64::INFINITY, 0.0, 2.001), 0.1 * found.rho).unwrap();
     assert_eq!(run.outcome, Outcome::OutOfRange);
-    let lost = controller
-        .run(&mut odd(f64::INFINITY, 0.0, 0.1), 0.0)
-        .unwrap_err();
-    assert!(
-        lost.to_string()
-            .contains("no part of the first control step"),
-        "{lost}"
-    );
+    let lost = controller.run(&mut odd(f64::INFINITY, 0.0, 0.1), 0.0).unwrap_err();
+    assert!(lost.to_string().contains("no part of the first control step"), "{lost}");
 }

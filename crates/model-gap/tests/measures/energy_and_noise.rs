@@ -19,12 +19,9 @@ fn noisy(frequency_hz: f64, count: usize, sigma: f64, seed: u64) -> Vec<f64> {
 #[test]
 fn the_estimate_is_unbiased() {
     // two to five blocks of 100 samples; 15 Hz repeats after 3 cycles of 200 samples
-    for (frequency_hz, count, blocks, cycles_per_block) in [
-        (10.0, 200, 2, 1),
-        (10.0, 300, 3, 1),
-        (10.0, 599, 5, 1),
-        (15.0, 400, 2, 3),
-    ] {
+    for (frequency_hz, count, blocks, cycles_per_block) in
+        [(10.0, 200, 2, 1), (10.0, 300, 3, 1), (10.0, 599, 5, 1), (15.0, 400, 2, 3)]
+    {
         let sigma = 0.05;
         let estimates: Vec<NoiseEstimate> = (0..400)
             .map(|seed| {
@@ -34,10 +31,7 @@ fn the_estimate_is_unbiased() {
             .collect();
         let mean = estimates.iter().map(|e| e.variance).sum::<f64>() / 400.0;
         let first = estimates[0];
-        assert_eq!(
-            (first.blocks, first.cycles_per_block),
-            (blocks, cycles_per_block)
-        );
+        assert_eq!((first.blocks, first.cycles_per_block), (blocks, cycles_per_block));
         assert_eq!(first.degrees_of_freedom, first.block_samples * (blocks - 1));
         // uniform noise: the variance of a squared deviate is 0.8 sigma^4; dividing by N K instead
         // would give (K - 1) / K
@@ -58,11 +52,8 @@ fn without_noise_there_is_none() {
 
 #[test]
 fn a_drift_is_shown() {
-    let record: Vec<f64> = noisy(10.0, 1000, 0.01, 3)
-        .iter()
-        .zip(0..)
-        .map(|(v, i)| v + 1e-4 * f64::from(i))
-        .collect();
+    let record: Vec<f64> =
+        noisy(10.0, 1000, 0.01, 3).iter().zip(0..).map(|(v, i)| v + 1e-4 * f64::from(i)).collect();
     let estimate = NoiseEstimate::from_cycles(&record, STEP_S, 10.0).unwrap();
     assert_abs_diff_eq!(estimate.drift, 0.09, epsilon = 0.01);
     assert!(estimate.drift_in_sigmas() > 4.0);
@@ -72,29 +63,14 @@ fn a_drift_is_shown() {
 fn records_that_repeat_nothing_are_refused() {
     let record = noisy(10.0, 1000, 0.1, 1);
     let estimate = |samples: &[f64], hz| NoiseEstimate::from_cycles(samples, STEP_S, hz);
-    assert!(matches!(
-        estimate(&record[..199], 10.0),
-        Err(GapError::TooFewCycles { .. })
-    ));
+    assert!(matches!(estimate(&record[..199], 10.0), Err(GapError::TooFewCycles { .. })));
     assert!(estimate(&record[..200], 10.0).is_ok());
     // 3 cycles of 15 Hz fill 200 samples: 5 cycles are not two blocks
-    assert!(matches!(
-        estimate(&record[..334], 15.0),
-        Err(GapError::TooFewCycles { .. })
-    ));
+    assert!(matches!(estimate(&record[..334], 15.0), Err(GapError::TooFewCycles { .. })));
     let irrational = 10.0 * 2.0_f64.sqrt();
-    assert!(matches!(
-        estimate(&record, irrational),
-        Err(GapError::NoRepeat { .. })
-    ));
-    assert!(matches!(
-        estimate(&[f64::NAN; 400], 10.0),
-        Err(GapError::NotFinite { .. })
-    ));
-    assert!(matches!(
-        estimate(&record, 0.0),
-        Err(GapError::OutOfRange { .. })
-    ));
+    assert!(matches!(estimate(&record, irrational), Err(GapError::NoRepeat { .. })));
+    assert!(matches!(estimate(&[f64::NAN; 400], 10.0), Err(GapError::NotFinite { .. })));
+    assert!(matches!(estimate(&record, 0.0), Err(GapError::OutOfRange { .. })));
 }
 
 #[test]

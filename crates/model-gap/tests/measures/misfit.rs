@@ -41,31 +41,14 @@ fn the_largest_error_is_found_where_it_is() {
 #[test]
 fn records_that_cannot_be_compared_are_refused() {
     let good = [0.0, 1.0, 0.5];
-    assert!(matches!(
-        Misfit::of(&good, &good[..2]),
-        Err(GapError::Length { found: 2, .. })
-    ));
-    assert!(matches!(
-        Misfit::of(&good[..1], &good[..1]),
-        Err(GapError::TooShort { .. })
-    ));
+    assert!(matches!(Misfit::of(&good, &good[..2]), Err(GapError::Length { found: 2, .. })));
+    assert!(matches!(Misfit::of(&good[..1], &good[..1]), Err(GapError::TooShort { .. })));
     let nan = [0.0, f64::NAN, 0.5];
-    assert!(matches!(
-        Misfit::of(&nan, &good),
-        Err(GapError::NotFinite { index: 1, .. })
-    ));
+    assert!(matches!(Misfit::of(&nan, &good), Err(GapError::NotFinite { index: 1, .. })));
     let error = Misfit::of(&good, &[0.0, 0.0, f64::INFINITY]).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("simulated output: sample 2 (from 0) is inf"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("simulated output: sample 2 (from 0) is inf"), "{error}");
     let constant = Misfit::of(&[0.1; 30], &[0.2; 30]).unwrap_err();
-    assert!(
-        constant.to_string().contains("0.1 throughout"),
-        "{constant}"
-    );
+    assert!(constant.to_string().contains("0.1 throughout"), "{constant}");
 }
 
 proptest! {

@@ -12,12 +12,8 @@ use std::f64::consts::FRAC_PI_2;
 const STEP_S: f64 = 1e-3;
 
 fn record(id: &str, role: Role, input: Vec<f64>) -> Experiment {
-    let output = Channel::new(
-        "displacement",
-        "um",
-        input.iter().map(|v| 0.5 * v).collect(),
-    )
-    .unwrap();
+    let output =
+        Channel::new("displacement", "um", input.iter().map(|v| 0.5 * v).collect()).unwrap();
     let input = Channel::new("command", "V", input).unwrap();
     Experiment::new(id, role, STEP_S, input, output).unwrap()
 }
@@ -39,21 +35,13 @@ fn triangle(id: &str, rate_v_s: f64) -> Experiment {
 /// signal, a step.
 fn bench() -> Vec<Experiment> {
     let slow = wave(&[(85.0, 0.0)], 0.5, STEP_S, 4000);
-    let mut set = vec![
-        record("slow", Role::Reference, slow),
-        triangle("reversals", 68.0),
-    ];
+    let mut set = vec![record("slow", Role::Reference, slow), triangle("reversals", 68.0)];
     for hz in [20.0, 1.0, 10.0, 5.0, 15.0] {
         for amplitude in [85.0, 20.0, 50.0] {
             set.push(sine(&format!("{hz}Hz-{amplitude}V"), hz, amplitude));
         }
     }
-    let mixed = wave(
-        &[(0.0, 0.0), (20.0, 0.1), (30.0, 2.0), (15.0, 1.0)],
-        5.0,
-        STEP_S,
-        3000,
-    );
+    let mixed = wave(&[(0.0, 0.0), (20.0, 0.1), (30.0, 2.0), (15.0, 1.0)], 5.0, STEP_S, 3000);
     set.push(record("mixed", Role::Measured, mixed));
     let step = (0..1000).map(|i| f64::from(u8::from(i > 500))).collect();
     set.push(record("step", Role::Measured, step));
@@ -63,29 +51,14 @@ fn bench() -> Vec<Experiment> {
 
 fn trained(set: &[Experiment]) -> Vec<&str> {
     let uses = SplitRule::SlowAndTwoFrequencies.split(set).unwrap();
-    set.iter()
-        .zip(&uses)
-        .filter(|(_, u)| **u == Use::Train)
-        .map(|(e, _)| e.id())
-        .collect()
+    set.iter().zip(&uses).filter(|(_, u)| **u == Use::Train).map(|(e, _)| e.id()).collect()
 }
 
 #[test]
 fn slow_records_and_two_frequencies_train() {
-    let expected = [
-        "slow",
-        "reversals",
-        "1Hz-85V",
-        "1Hz-20V",
-        "10Hz-85V",
-        "10Hz-20V",
-    ];
+    let expected = ["slow", "reversals", "1Hz-85V", "1Hz-20V", "10Hz-85V", "10Hz-20V"];
     assert_eq!(trained(&bench()), expected);
-    let few = [
-        sine("a", 0.5, 1.0),
-        sine("b", 1.0, 1.0),
-        sine("c", 2.0, 1.0),
-    ];
+    let few = [sine("a", 0.5, 1.0), sine("b", 1.0, 1.0), sine("c", 2.0, 1.0)];
     assert_eq!(trained(&few), ["a", "b"]);
     assert_eq!(trained(&few[..1]), ["a"]);
 }
@@ -95,11 +68,8 @@ fn the_split_does_not_depend_on_the_order() {
     let mut set = bench();
     let rule = SplitRule::SlowAndTwoFrequencies;
     let by_id = |set: &[Experiment]| {
-        let mut pairs: Vec<(String, Use)> = set
-            .iter()
-            .map(|e| e.id().to_string())
-            .zip(rule.split(set).unwrap())
-            .collect();
+        let mut pairs: Vec<(String, Use)> =
+            set.iter().map(|e| e.id().to_string()).zip(rule.split(set).unwrap()).collect();
         pairs.sort();
         pairs
     };
@@ -116,11 +86,8 @@ fn a_stated_use_takes_precedence() {
     let uses = SplitRule::SlowAndTwoFrequencies.split(&set).unwrap();
     assert_eq!((uses[2], uses[0]), (Use::Train, Use::HeldOut));
 
-    let stated: Vec<Experiment> = set
-        .into_iter()
-        .zip(&uses)
-        .map(|(e, used)| e.with_use(*used))
-        .collect();
+    let stated: Vec<Experiment> =
+        set.into_iter().zip(&uses).map(|(e, used)| e.with_use(*used)).collect();
     assert_eq!(SplitRule::Stated.split(&stated).unwrap(), uses);
 }
 
@@ -128,25 +95,13 @@ fn a_stated_use_takes_precedence() {
 fn impossible_splits_are_refused() {
     let rule = SplitRule::SlowAndTwoFrequencies;
     let twice = [sine("a", 5.0, 1.0), sine("a", 10.0, 1.0)];
-    assert_eq!(
-        rule.split(&twice),
-        Err(GapError::DuplicateId { id: "a".into() })
-    );
+    assert_eq!(rule.split(&twice), Err(GapError::DuplicateId { id: "a".into() }));
     let unstated = [sine("a", 5.0, 1.0)];
-    assert_eq!(
-        SplitRule::Stated.split(&unstated),
-        Err(GapError::NoStatedUse { id: "a".into() })
-    );
+    assert_eq!(SplitRule::Stated.split(&unstated), Err(GapError::NoStatedUse { id: "a".into() }));
     let held = [sine("a", 5.0, 1.0).with_use(Use::HeldOut)];
     assert!(rule.split(&[triangle("no sine", 1.0)]).is_err());
-    assert!(matches!(
-        rule.split(&held),
-        Err(GapError::NothingToTrain { experiments: 1, .. })
-    ));
-    assert!(matches!(
-        rule.split(&[]),
-        Err(GapError::NothingToTrain { .. })
-    ));
+    assert!(matches!(rule.split(&held), Err(GapError::NothingToTrain { experiments: 1, .. })));
+    assert!(matches!(rule.split(&[]), Err(GapError::NothingToTrain { .. })));
 }
 
 #[test]
@@ -196,18 +151,10 @@ proptest! {
 fn a_rest_before_and_after_is_left_out() {
     for phase in [0.0, 1.2, -FRAC_PI_2] {
         let mut record = vec![65.0; 250];
-        record.extend(
-            wave(&[(25.0, phase)], 10.0, STEP_S, 1200)
-                .iter()
-                .map(|v| v + 65.0),
-        );
+        record.extend(wave(&[(25.0, phase)], 10.0, STEP_S, 1200).iter().map(|v| v + 65.0));
         record.extend(vec![65.0; 100]);
-        let Stimulus::Sine {
-            frequency_hz,
-            amplitude,
-            mean,
-            samples,
-        } = Stimulus::of(&record, STEP_S)
+        let Stimulus::Sine { frequency_hz, amplitude, mean, samples } =
+            Stimulus::of(&record, STEP_S)
         else {
             panic!("no sine");
         };
@@ -222,46 +169,25 @@ fn a_rest_before_and_after_is_left_out() {
 #[test]
 fn other_signals_are_not_sines() {
     let ramp: Vec<f64> = (0..1000).map(f64::from).collect();
-    let triangle: Vec<f64> = (0..1000)
-        .map(|i| f64::from((i % 200 - 100_i32).abs()))
-        .collect();
+    let triangle: Vec<f64> = (0..1000).map(|i| f64::from((i % 200 - 100_i32).abs())).collect();
     let step: Vec<f64> = (0..1000).map(|i| f64::from(u8::from(i > 500))).collect();
     let mixed = wave(&[(0.0, 0.0), (20.0, 0.1), (30.0, 2.0)], 5.0, STEP_S, 1000);
     let part = wave(&[(1.0, 0.0)], 0.8, STEP_S, 1000);
     let swept: Vec<f64> = (0..2000).map(|i| (1e-5 * f64::from(i * i)).sin()).collect();
-    for samples in [
-        ramp,
-        triangle,
-        step,
-        mixed,
-        part,
-        swept,
-        vec![3.0; 100],
-        vec![1.0],
-    ] {
+    for samples in [ramp, triangle, step, mixed, part, swept, vec![3.0; 100], vec![1.0]] {
         assert_eq!(Stimulus::of(&samples, STEP_S), Stimulus::Other);
     }
 }
 
 #[test]
 fn channels_and_records_are_checked() {
-    assert!(matches!(
-        Channel::new("u", "V", vec![1.0]),
-        Err(GapError::TooShort { .. })
-    ));
+    assert!(matches!(Channel::new("u", "V", vec![1.0]), Err(GapError::TooShort { .. })));
     let error = Channel::new("u", "V", vec![0.0, f64::NAN]).unwrap_err();
     assert!(error.to_string().starts_with("u: sample 1"), "{error}");
     let channel = |n| Channel::new("y", "um", vec![0.0; n]).unwrap();
     let of = |step, n| Experiment::new("a", Role::Measured, step, channel(9), channel(n));
     assert!(of(1e-3, 9).is_ok());
-    assert!(matches!(
-        of(1e-3, 8),
-        Err(GapError::Length {
-            found: 8,
-            expected: 9,
-            ..
-        })
-    ));
+    assert!(matches!(of(1e-3, 8), Err(GapError::Length { found: 8, expected: 9, .. })));
     assert!(of(0.0, 9).is_err() && of(f64::NAN, 9).is_err());
     let good = of(1e-3, 9).unwrap();
     assert_eq!((good.output().name(), good.output().unit()), ("y", "um"));
@@ -288,10 +214,7 @@ fn sets_are_summarised_apart() {
         run("e", Use::HeldOut, 1.8, 0.0),
     ];
     let trained = Summary::of(&errors, Use::Train).unwrap();
-    assert_eq!(
-        (trained.experiments, trained.worst_nrmse.id.as_str()),
-        (2, "b")
-    );
+    assert_eq!((trained.experiments, trained.worst_nrmse.id.as_str()), (2, "b"));
     assert_relative_eq!(
         trained.mean_nrmse,
         0.5 * (errors[0].misfit.nrmse + errors[1].misfit.nrmse),
@@ -308,8 +231,5 @@ fn sets_are_summarised_apart() {
         (run.used, run.first_harmonic) = (Use::Train, None);
     }
     assert_eq!(Summary::of(&errors, Use::HeldOut), None);
-    assert_eq!(
-        Summary::of(&errors, Use::Train).unwrap().worst_phase_deg,
-        None
-    );
+    assert_eq!(Summary::of(&errors, Use::Train).unwrap().worst_phase_deg, None);
 }

@@ -32,13 +32,7 @@ pub(super) fn compare(
     model: &ActuatorModel,
     prepared: &Prepared,
 ) -> Result<RecordFit, PreisachError> {
-    let Prepared {
-        record,
-        drive,
-        spread_deg,
-        cycles,
-        ..
-    } = prepared;
+    let Prepared { record, drive, spread_deg, cycles, .. } = prepared;
     let simulation = model.simulate(&record.voltage_volt, record.time_step_s)?;
     let errors = simulation.output_deg.iter().zip(&record.output_deg);
     let squares: f64 = errors.map(|(a, b)| (a - b).powi(2)).sum();

@@ -48,11 +48,8 @@ pub(super) fn fit(
     };
     let mut normal = DMatrix::zeros(unknowns, unknowns);
     let mut right = DVector::zeros(unknowns);
-    let mut result = FourierFit {
-        series: HarmonicSeries::zero(count),
-        cycles_per_sample,
-        noise: 0.0,
-    };
+    let mut result =
+        FourierFit { series: HarmonicSeries::zero(count), cycles_per_sample, noise: 0.0 };
     let mut row = DVector::zeros(unknowns);
     for index in range.clone() {
         let (sin1, cos1) = result.phase_rad(index).sin_cos();
@@ -66,24 +63,15 @@ pub(super) fn fit(
         normal.ger(1.0, &row, &row, 1.0);
         right.axpy(values[index], &row, 1.0);
     }
-    let Some(factor) = (range.len() >= unknowns)
-        .then(|| normal.cholesky())
-        .flatten()
-    else {
+    let Some(factor) = (range.len() >= unknowns).then(|| normal.cholesky()).flatten() else {
         return Err(too_few);
     };
     let solution = factor.solve(&right);
     result.series.mean = solution[0];
     for (n, h) in result.series.harmonics.iter_mut().enumerate() {
-        *h = Harmonic {
-            cosine: solution[2 * n + 1],
-            sine: solution[2 * n + 2],
-        };
+        *h = Harmonic { cosine: solution[2 * n + 1], sine: solution[2 * n + 2] };
     }
-    let left: f64 = range
-        .clone()
-        .map(|i| (values[i] - result.value_and_rate(i).0).powi(2))
-        .sum();
+    let left: f64 = range.clone().map(|i| (values[i] - result.value_and_rate(i).0).powi(2)).sum();
     let freedom = (range.len() - unknowns).max(1);
     result.noise = (left / freedom as f64).sqrt();
     Ok(result)
@@ -121,25 +109,14 @@ mod tests {
     fn noise_is_measured_and_hardly_reaches_the_derivative() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let noise = Normal::new(0.0, 0.02).unwrap();
-        let values: Vec<f64> = (0..2000)
-            .map(|i| signal(i) + noise.sample(&mut rng))
-            .collect();
+        let values: Vec<f64> = (0..2000).map(|i| signal(i) + noise.sample(&mut rng)).collect();
         let found = fit(&values, 0..2000, 0.015, 10).unwrap();
         assert!((found.noise / 0.02 - 1.0).abs() < 0.1, "{}", found.noise);
-        let exact = fit(
-            &(0..2000).map(signal).collect::<Vec<_>>(),
-            0..2000,
-            0.015,
-            10,
-        )
-        .unwrap();
+        let exact = fit(&(0..2000).map(signal).collect::<Vec<_>>(), 0..2000, 0.015, 10).unwrap();
         let square = |rate: f64, i: usize| (rate - exact.value_and_rate(i).1).powi(2);
         let (series, differences) = (1..1999).fold((0.0, 0.0), |(a, b), i| {
             let central = 0.5 * (values[i + 1] - values[i - 1]);
-            (
-                a + square(found.value_and_rate(i).1, i),
-                b + square(central, i),
-            )
+            (a + square(found.value_and_rate(i).1, i), b + square(central, i))
         });
         // differences of the samples carry far more of the noise
         assert!(series * 100.0 < differences, "{series} {differences}");

@@ -78,9 +78,7 @@ pub struct Identification {
 impl Identification {
     /// The reports of the records of one use.
     pub fn records_of(&self, record_use: RecordUse) -> impl Iterator<Item = &RecordReport> {
-        self.records
-            .iter()
-            .filter(move |report| report.record_use == record_use)
+        self.records.iter().filter(move |report| report.record_use == record_use)
     }
 }
 
@@ -127,26 +125,18 @@ pub fn identify(
     }
 
     let trained = Some(trained_range(&slow, &fast, &prepared));
-    let wrap = |law| ActuatorModel {
-        trained,
-        ..settings.actuator_of(law)
-    };
+    let wrap = |law| ActuatorModel { trained, ..settings.actuator_of(law) };
     let linear = wrap(ActuatorLaw::Linear(fit_linear(&slow)));
     let measured: Vec<Vec<f64>> = slow.iter().map(|r| r.record.output_deg.clone()).collect();
     let mut g0_deg = static_fit::fit(&grid, &slow, &measured, settings)?;
-    let static_only = wrap(ActuatorLaw::StaticPreisach(StaticPreisach::new(
-        grid,
-        g0_deg.clone(),
-    )?));
+    let static_only = wrap(ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, g0_deg.clone())?));
 
     let (mut smoothness, mut validation) = validate::smoothness(&grid, &g0_deg, &fast, settings);
     let mut model = rate_fit::fit(&grid, &g0_deg, &fast, smoothness, settings)?
         .model(&grid, &g0_deg, settings)?;
     for round in 1..settings.rounds {
-        let targets: Vec<Vec<f64>> = slow
-            .iter()
-            .map(|r| without_rate_terms(&model, r.record))
-            .collect();
+        let targets: Vec<Vec<f64>> =
+            slow.iter().map(|r| without_rate_terms(&model, r.record)).collect();
         g0_deg = static_fit::fit(&grid, &slow, &targets, settings)?;
         if round == 1 {
             // again, now that the static map no longer holds the dynamics of the slow records
@@ -200,13 +190,7 @@ fn without_rate_terms(model: &DynamicPreisach, record: &BenchRecord) -> Vec<f64>
         .iter()
         .zip(&record.output_deg)
         .map(|(&u, &measured)| {
-            let output = model.step(
-                &mut memory,
-                &mut history,
-                &mut counts,
-                u,
-                record.time_step_s,
-            );
+            let output = model.step(&mut memory, &mut history, &mut counts, u, record.time_step_s);
             // the simulated output is G0 + d G1 + d^2 G2 by construction
             measured - (output - model.maps(&memory)[0])
         })
@@ -227,10 +211,7 @@ fn fit_linear(slow: &[&Prepared]) -> LinearGain {
         }
     }
     let gain = (w * uy - u1 * y1) / (w * u2 - u1 * u1);
-    LinearGain {
-        gain_deg_per_volt: gain,
-        bias_volt: (u1 - y1 / gain) / w,
-    }
+    LinearGain { gain_deg_per_volt: gain, bias_volt: (u1 - y1 / gain) / w }
 }
 
 /// Mean over the steady cycles of the periodic quasi-static record with the largest amplitude; over
@@ -238,19 +219,12 @@ fn fit_linear(slow: &[&Prepared]) -> LinearGain {
 fn major_loop_mean(slow: &[&Prepared]) -> f64 {
     let by_amplitude =
         |a: &&&Prepared, b: &&&Prepared| a.drive.amplitude_volt.total_cmp(&b.drive.amplitude_volt);
-    let periodic = slow
-        .iter()
-        .filter(|r| r.cycles.is_some())
-        .max_by(by_amplitude);
+    let periodic = slow.iter().filter(|r| r.cycles.is_some()).max_by(by_amplitude);
     match periodic.or_else(|| slow.iter().max_by(by_amplitude)) {
-        Some(Prepared {
-            cycles: Some(cycles),
-            ..
-        }) => cycles.series.mean,
-        Some(Prepared {
-            record: BenchRecord { output_deg, .. },
-            ..
-        }) => output_deg.iter().sum::<f64>() / output_deg.len() as f64,
+        Some(Prepared { cycles: Some(cycles), .. }) => cycles.series.mean,
+        Some(Prepared { record: BenchRecord { output_deg, .. }, .. }) => {
+            output_deg.iter().sum::<f64>() / output_deg.len() as f64
+        }
         None => 0.0,
     }
 }
@@ -283,9 +257,7 @@ pub fn half_stroke_gain_deg_per_um(
 ) -> Result<f64, PreisachError> {
     let (low, high) = displacement_um
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
-            (l.min(v), h.max(v))
-        });
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let half_um = 0.5 * (high - low);
     crate::actuator::check_positive("half stroke (um)", half_um)?;
     Ok(half_stroke_deg / half_um)

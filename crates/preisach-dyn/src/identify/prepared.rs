@@ -38,12 +38,7 @@ impl<'a> Prepared<'a> {
         let cycles = if drive.is_periodic() {
             let count = drive.harmonics_within(record.time_step_s, settings.harmonics);
             let cycles_per_sample = drive.base_hz * record.time_step_s;
-            Some(fourier::fit(
-                &record.output_deg,
-                drive.steady.clone(),
-                cycles_per_sample,
-                count,
-            )?)
+            Some(fourier::fit(&record.output_deg, drive.steady.clone(), cycles_per_sample, count)?)
         } else {
             None
         };
@@ -88,9 +83,6 @@ impl<'a> Prepared<'a> {
 
     /// Sample indices with the play states there.
     pub(super) fn states(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        self.samples
-            .iter()
-            .copied()
-            .zip(self.states.chunks_exact(self.levels))
+        self.samples.iter().copied().zip(self.states.chunks_exact(self.levels))
     }
 }

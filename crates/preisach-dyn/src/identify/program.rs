@@ -119,10 +119,7 @@ impl LeastSquaresProgram {
             column_starts.push(rows.len());
         }
         let matrix = CscMatrix::new(constraints, n, column_starts, rows, values);
-        let cones = [
-            ZeroConeT(self.equalities.len()),
-            NonnegativeConeT(self.lower_bounds.len()),
-        ];
+        let cones = [ZeroConeT(self.equalities.len()), NonnegativeConeT(self.lower_bounds.len())];
 
         let refused = PreisachError::QuadraticProgram {
             stage,
@@ -203,13 +200,7 @@ mod tests {
         program.at_least(vec![(0, -1.0)], 1.0);
         let error = program.solve("test").unwrap_err();
         assert!(
-            matches!(
-                error,
-                PreisachError::QuadraticProgram {
-                    status: QpStatus::Infeasible,
-                    ..
-                }
-            ),
+            matches!(error, PreisachError::QuadraticProgram { status: QpStatus::Infeasible, .. }),
             "{error}"
         );
     }

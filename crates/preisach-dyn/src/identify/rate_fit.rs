@@ -86,12 +86,7 @@ pub(super) fn fit(
         let mut row = Row::with_capacity(2 * sample.hats.len() + 1);
         row.extend(sample.hats.iter().map(|&(i, a)| (i, -a * d * scale.lag_s)));
         let quadratic = d * d * g2_unit;
-        row.extend(
-            sample
-                .hats
-                .iter()
-                .map(|&(i, a)| (unknowns.count + i, a * quadratic)),
-        );
+        row.extend(sample.hats.iter().map(|&(i, a)| (unknowns.count + i, a * quadratic)));
         row.push((first_offset + sample.record, 1.0));
         program.add(&row, sample.beyond_static_deg, sample.weight);
     }
@@ -125,11 +120,7 @@ pub(super) fn fit(
         let g1_s = unknowns.map(&coarse, &lag, -scale.lag_s);
         let mut g2 = unknowns.map(&coarse, &x[unknowns.count..first_offset], g2_unit);
         if literal {
-            return Ok(RateMaps {
-                g1_s,
-                g2_s2_per_deg: g2,
-                unfolded_rate_deg_s,
-            });
+            return Ok(RateMaps { g1_s, g2_s2_per_deg: g2, unfolded_rate_deg_s });
         }
         let mut worst = 0.0_f64;
         for sign in [1.0, -1.0] {
@@ -153,11 +144,7 @@ pub(super) fn fit(
             worst = 0.0;
         }
         if worst <= 0.0 {
-            return Ok(RateMaps {
-                g1_s,
-                g2_s2_per_deg: g2,
-                unfolded_rate_deg_s,
-            });
+            return Ok(RateMaps { g1_s, g2_s2_per_deg: g2, unfolded_rate_deg_s });
         }
         cuts += 1;
     }
@@ -207,11 +194,8 @@ fn equation_samples(
         let count = record.samples.len() as f64;
         for (i, cells) in record.states() {
             let (output_deg, per_sample) = cycles.value_and_rate(i);
-            let static_deg = g0_deg
-                .nodes
-                .iter()
-                .zip(cells)
-                .fold(g0_deg.constant, |sum, (row, &x)| {
+            let static_deg =
+                g0_deg.nodes.iter().zip(cells).fold(g0_deg.constant, |sum, (row, &x)| {
                     sum + crate::play_map::interpolate(row, x)
                 });
             samples.push(Sample {
@@ -223,20 +207,14 @@ fn equation_samples(
             });
         }
     }
-    let fastest = samples
-        .iter()
-        .fold(0.0_f64, |m, s| m.max(s.rate_deg_s.abs()));
+    let fastest = samples.iter().fold(0.0_f64, |m, s| m.max(s.rate_deg_s.abs()));
     let (against, squares) = samples.iter().fold((0.0, 0.0), |(a, b), s| {
         (
             a - s.weight * s.rate_deg_s * s.beyond_static_deg,
             b + s.weight * s.rate_deg_s * s.rate_deg_s,
         )
     });
-    let lag_s = if against > 0.0 {
-        against / squares
-    } else {
-        settings.least_relaxation_s
-    };
+    let lag_s = if against > 0.0 { against / squares } else { settings.least_relaxation_s };
     let lag_s = lag_s.max(settings.least_relaxation_s);
     for sample in &mut samples {
         let record = records[sample.record];
@@ -244,13 +222,7 @@ fn equation_samples(
         let size = record.spread_deg;
         sample.weight /= size * size * (1.0 + (omega * lag_s).powi(2));
     }
-    (
-        samples,
-        Scale {
-            lag_s,
-            rate_deg_s: settings.rate_margin * fastest,
-        },
-    )
+    (samples, Scale { lag_s, rate_deg_s: settings.rate_margin * fastest })
 }
 
 /// Numbering of one rate map: its constant, then all nodes, play by play.
@@ -272,11 +244,7 @@ impl Unknowns {
                 start
             })
             .collect();
-        Self {
-            starts,
-            knots,
-            count,
-        }
+        Self { starts, knots, count }
     }
 
     fn node(&self, j: usize, k: usize) -> usize {
@@ -316,15 +284,9 @@ impl Unknowns {
         let nodes = (0..coarse.levels())
             .map(|j| {
                 let start = self.starts[j];
-                values[start..start + self.knots[j]]
-                    .iter()
-                    .map(|v| v * scale)
-                    .collect()
+                values[start..start + self.knots[j]].iter().map(|v| v * scale).collect()
             })
             .collect();
-        PlayMap {
-            constant: values[0] * scale,
-            nodes,
-        }
+        PlayMap { constant: values[0] * scale, nodes }
     }
 }

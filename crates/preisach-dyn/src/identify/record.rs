@@ -43,11 +43,7 @@ impl BenchRecord {
     pub fn check(&self, range: VoltageRange) -> Result<(), PreisachError> {
         let (voltages, outputs) = (self.voltage_volt.len(), self.output_deg.len());
         if voltages != outputs {
-            return Err(PreisachError::UnequalColumns {
-                id: self.id.clone(),
-                voltages,
-                outputs,
-            });
+            return Err(PreisachError::UnequalColumns { id: self.id.clone(), voltages, outputs });
         }
         if voltages < FEWEST_SAMPLES {
             return Err(PreisachError::TooFew {
@@ -61,12 +57,7 @@ impl BenchRecord {
             check_positive("base_frequency_hz", hz)?;
         }
         let bad = |index: usize, problem: &'static str, value: f64| {
-            Err(PreisachError::BadRecord {
-                id: self.id.clone(),
-                index,
-                problem,
-                value,
-            })
+            Err(PreisachError::BadRecord { id: self.id.clone(), index, problem, value })
         };
         let tolerance = SAMPLE_TOLERANCE * range.span_volt();
         for (index, (&u, &y)) in self.voltage_volt.iter().zip(&self.output_deg).enumerate() {
@@ -138,11 +129,8 @@ const PERIODIC_MISMATCH: f64 = 0.02;
 impl Drive {
     fn of(record: &BenchRecord) -> Self {
         let u = &record.voltage_volt;
-        let (low, high) = u
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
-                (l.min(v), h.max(v))
-            });
+        let (low, high) =
+            u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
         let mut drive = Self {
             waveform: Waveform::Constant,
             base_hz: 0.0,
@@ -166,11 +154,7 @@ impl Drive {
             drive.find_harmonics(record);
         } else {
             let moving: f64 = u.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-            let moves = u
-                .windows(2)
-                .filter(|pair| (pair[1] - pair[0]).abs() > 0.0)
-                .count()
-                .max(1);
+            let moves = u.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > 0.0).count().max(1);
             let speed = moving / (moves as f64 * record.time_step_s);
             drive.waveform = Waveform::Transient;
             drive.base_hz = speed / (4.0 * drive.amplitude_volt);
@@ -189,27 +173,16 @@ impl Drive {
             self.waveform = Waveform::Mix;
             return;
         };
-        let powers: Vec<f64> = fit
-            .series
-            .harmonics
-            .iter()
-            .map(|h| h.amplitude().powi(2))
-            .collect();
+        let powers: Vec<f64> = fit.series.harmonics.iter().map(|h| h.amplitude().powi(2)).collect();
         let total: f64 = powers.iter().sum();
         let (index, power) = powers
             .iter()
             .copied()
             .enumerate()
-            .fold(
-                (0, 0.0),
-                |best, now| if now.1 > best.1 { now } else { best },
-            );
+            .fold((0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
         self.strongest_harmonic = index + 1;
-        self.waveform = if power >= SINGLE_SHARE * total {
-            Waveform::SingleHarmonic
-        } else {
-            Waveform::Mix
-        };
+        self.waveform =
+            if power >= SINGLE_SHARE * total { Waveform::SingleHarmonic } else { Waveform::Mix };
     }
 
     /// Frequency of the strongest harmonic, Hz.
@@ -230,9 +203,7 @@ impl Drive {
         reason = "positive and held below `wanted`"
     )]
     pub(super) fn harmonics_within(&self, time_step_s: f64, wanted: usize) -> usize {
-        let most = (0.4 / (self.base_hz * time_step_s))
-            .floor()
-            .min(wanted as f64);
+        let most = (0.4 / (self.base_hz * time_step_s)).floor().min(wanted as f64);
         (most as usize).max(1)
     }
 }
@@ -265,17 +236,11 @@ fn find_period(u: &[f64], drive: &Drive) -> Option<f64> {
 /// Root mean square of `u(i + period) - u(i)` from `first` on; none if less than half a period is
 /// left to compare.
 fn mismatch(u: &[f64], first: usize, period: f64) -> Option<f64> {
-    let pairs: Vec<f64> = (first..u.len())
-        .map_while(|i| later(u, i, period))
-        .collect();
+    let pairs: Vec<f64> = (first..u.len()).map_while(|i| later(u, i, period)).collect();
     if (pairs.len() as f64) < 0.5 * period {
         return None;
     }
-    let sum: f64 = pairs
-        .iter()
-        .enumerate()
-        .map(|(k, v)| (v - u[first + k]).powi(2))
-        .sum();
+    let sum: f64 = pairs.iter().enumerate().map(|(k, v)| (v - u[first + k]).powi(2)).sum();
     Some((sum / pairs.len() as f64).sqrt())
 }
 
@@ -283,11 +248,7 @@ fn mismatch(u: &[f64], first: usize, period: f64) -> Option<f64> {
 fn later(u: &[f64], index: usize, period: f64) -> Option<f64> {
     let (whole, part) = crate::play_map::split(period);
     let a = u.get(index + whole)?;
-    let b = if part > 0.0 {
-        u.get(index + whole + 1)?
-    } else {
-        a
-    };
+    let b = if part > 0.0 { u.get(index + whole + 1)? } else { a };
     Some(a + part * (b - a))
 }
 
@@ -295,9 +256,7 @@ fn later(u: &[f64], index: usize, period: f64) -> Option<f64> {
 /// there are at least two.
 fn steady_samples(u: &[f64], period: f64, amplitude: f64) -> Option<Range<usize>> {
     let allowed = 3.0 * PERIODIC_MISMATCH * amplitude;
-    let last_pair = (0..u.len())
-        .rev()
-        .find(|&i| later(u, i, period).is_some())?;
+    let last_pair = (0..u.len()).rev().find(|&i| later(u, i, period).is_some())?;
     let repeats = |i: usize| later(u, i, period).is_some_and(|v| (v - u[i]).abs() <= allowed);
     let begin = (0..=last_pair).rev().take_while(|&i| repeats(i)).last()?;
     let (periods, _) = crate::play_map::split((u.len() - begin) as f64 / period + 1e-6);
@@ -326,10 +285,7 @@ pub struct SplitRule {
 impl Default for SplitRule {
     /// Quasi-static to 0.5 Hz; trained at 1 and 10 Hz, the paper's choice.
     fn default() -> Self {
-        Self {
-            quasi_static_hz: 0.5,
-            trained_hz: vec![1.0, 10.0],
-        }
+        Self { quasi_static_hz: 0.5, trained_hz: vec![1.0, 10.0] }
     }
 }
 
@@ -353,10 +309,8 @@ impl SplitRule {
                     return given;
                 }
                 let extreme = self.trained_hz.iter().any(|&hz| {
-                    let amplitudes = drives
-                        .iter()
-                        .filter(|d| near(d, hz))
-                        .map(|d| d.amplitude_volt);
+                    let amplitudes =
+                        drives.iter().filter(|d| near(d, hz)).map(|d| d.amplitude_volt);
                     let (low, high) =
                         amplitudes.fold((f64::INFINITY, 0.0_f64), |(l, h), a| (l.min(a), h.max(a)));
                     let own = drive.amplitude_volt;
@@ -444,9 +398,6 @@ mod tests {
         let mut sine = record(1e-3, 3.0, |t| 65.0 + 50.0 * (TAU * 2.0 * t).sin());
         sine.base_frequency_hz = Some(1.0);
         let drive = sine.drive();
-        assert!(
-            (drive.base_hz - 1.0).abs() < 1e-12 && drive.strongest_harmonic == 2,
-            "{drive:?}"
-        );
+        assert!((drive.base_hz - 1.0).abs() < 1e-12 && drive.strongest_harmonic == 2, "{drive:?}");
     }
 }

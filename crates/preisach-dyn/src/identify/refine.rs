@@ -112,12 +112,7 @@ impl<'a> Problem<'a> {
             let room = room_for_g2(&start.g1_s, &start.g2_s2_per_deg, start.unfolded_rate_deg_s);
             parameters[QUADRATIC] = room.recip().min(0.999).atanh();
         }
-        Self {
-            start,
-            records,
-            parameters,
-            model,
-        }
+        Self { start, records, parameters, model }
     }
 
     /// The model of the present parameters, unless it is not well posed or not finite.
@@ -138,11 +133,8 @@ impl<'a> Problem<'a> {
             for (k, rise) in rises.iter().enumerate() {
                 let (s, r) = place(j, k as f64 + 0.5);
                 let terms = [1.0, s, r, s * s, s * r, r * r];
-                let exponent: f64 = terms
-                    .iter()
-                    .zip(x.iter().skip(STATIC))
-                    .map(|(t, a)| t * a)
-                    .sum();
+                let exponent: f64 =
+                    terms.iter().zip(x.iter().skip(STATIC)).map(|(t, a)| t * a).sum();
                 value += rise * exponent.exp();
                 row[k + 1] = value;
             }
@@ -163,22 +155,14 @@ impl<'a> Problem<'a> {
             RateForm::Literal => 1.0 + x[QUADRATIC],
         };
         let g2_s2_per_deg = g2.combined(factor, g2, 0.0);
-        DynamicPreisach::new(DynamicParameters {
-            g0_deg,
-            g1_s,
-            g2_s2_per_deg,
-            ..start.clone()
-        })
-        .ok()
+        DynamicPreisach::new(DynamicParameters { g0_deg, g1_s, g2_s2_per_deg, ..start.clone() })
+            .ok()
     }
 
     /// Weighted residuals of all records, one after another; none if the model diverges.
     fn residuals_of(&self, model: &DynamicPreisach) -> Option<DVector<f64>> {
         let mut residuals = Vec::new();
-        for &&Prepared {
-            record, spread_deg, ..
-        } in self.records
-        {
+        for &&Prepared { record, spread_deg, .. } in self.records {
             let count = record.output_deg.len();
             let stride = count.div_ceil(MOST_RESIDUALS).max(1);
             let kept = count.div_ceil(stride) as f64 * self.records.len() as f64;
@@ -187,19 +171,10 @@ impl<'a> Problem<'a> {
             let mut memory = PlayMemory::new(model.grid(), first_volt, StartState::Rest);
             let mut history = OutputHistory::at_rest(model.maps(&memory)[0]);
             let mut counts = StepCounts::default();
-            let samples = record
-                .voltage_volt
-                .iter()
-                .zip(&record.output_deg)
-                .enumerate();
+            let samples = record.voltage_volt.iter().zip(&record.output_deg).enumerate();
             for (i, (&u, &measured)) in samples {
-                let output = model.step(
-                    &mut memory,
-                    &mut history,
-                    &mut counts,
-                    u,
-                    record.time_step_s,
-                );
+                let output =
+                    model.step(&mut memory, &mut history, &mut counts, u, record.time_step_s);
                 if i % stride == 0 {
                     residuals.push(weight * (output - measured));
                 }

@@ -93,16 +93,8 @@ impl Default for Settings {
 impl Settings {
     /// An untrained actuator of a law, in the units of the records.
     pub(super) fn actuator_of(&self, law: ActuatorLaw) -> ActuatorModel {
-        let calibration = Calibration {
-            deg_per_um: self.deg_per_um,
-            zero_um: 0.0,
-        };
-        ActuatorModel {
-            law,
-            range_volt: self.range_volt,
-            calibration,
-            trained: None,
-        }
+        let calibration = Calibration { deg_per_um: self.deg_per_um, zero_um: 0.0 };
+        ActuatorModel { law, range_volt: self.range_volt, calibration, trained: None }
     }
 
     pub(super) fn check(&self) -> Result<(), PreisachError> {
@@ -124,11 +116,7 @@ impl Settings {
             ("harmonics", self.harmonics, 3),
         ] {
             if value < least {
-                return Err(PreisachError::TooFew {
-                    quantity,
-                    value,
-                    least,
-                });
+                return Err(PreisachError::TooFew { quantity, value, least });
             }
         }
         if !self.levels.is_multiple_of(self.rate_levels) {

@@ -26,10 +26,7 @@ pub(super) fn fit(
 ) -> Result<PlayMap, PreisachError> {
     let unknowns = Unknowns::new(grid);
     let mut program = LeastSquaresProgram::new(unknowns.count);
-    let spread = targets_deg
-        .iter()
-        .map(|t| super::record::spread(t))
-        .fold(0.0, f64::max);
+    let spread = targets_deg.iter().map(|t| super::record::spread(t)).fold(0.0, f64::max);
     let share = 1.0 / (records.len() as f64 * spread * spread);
     let mut row = Row::new();
     for (record, targets) in records.iter().zip(targets_deg) {
@@ -46,10 +43,7 @@ pub(super) fn fit(
             program.at_least(unknowns.rise(j, k, 1.0), 0.0);
             let neighbours = match j {
                 0 => [Some((0, k + 1)), None],
-                _ => [
-                    Some((j + 1, k)),
-                    k.checked_sub(1).map(|lower| (j + 1, lower)),
-                ],
+                _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
             };
             for (j2, k2) in neighbours.into_iter().flatten() {
                 if j2 < grid.levels() && k2 < grid.levels() - j2 {
@@ -73,10 +67,7 @@ pub(super) fn fit(
             nodes
         })
         .collect();
-    Ok(PlayMap {
-        constant: solution[0],
-        nodes,
-    })
+    Ok(PlayMap { constant: solution[0], nodes })
 }
 
 /// Sums entries of the same column; columns ascend.

@@ -45,28 +45,19 @@ pub(super) fn smoothness(
         let tested = others.remove(index);
         let maps = rate_fit::fit(grid, g0_deg, &others, smoothness, settings)?;
         let model = maps.model(grid, g0_deg, settings)?;
-        Ok(compare::compare(
-            &settings.actuator_of(ActuatorLaw::DynamicPreisach(model)),
-            tested,
-        )?
-        .nrmse)
+        Ok(compare::compare(&settings.actuator_of(ActuatorLaw::DynamicPreisach(model)), tested)?
+            .nrmse)
     };
     let table: Vec<Validation> = CANDIDATES
         .par_iter()
         .map(|&smoothness| {
-            let squares: Result<f64, PreisachError> = (0..fast.len())
-                .map(|i| Ok(left_out(i, smoothness)?.powi(2)))
-                .sum();
+            let squares: Result<f64, PreisachError> =
+                (0..fast.len()).map(|i| Ok(left_out(i, smoothness)?.powi(2))).sum();
             let mean = squares.unwrap_or(f64::INFINITY) / fast.len() as f64;
-            Validation {
-                smoothness,
-                nrmse: mean.sqrt(),
-            }
+            Validation { smoothness, nrmse: mean.sqrt() }
         })
         .collect();
-    let best = table
-        .iter()
-        .fold(f64::INFINITY, |least, v| least.min(v.nrmse));
+    let best = table.iter().fold(f64::INFINITY, |least, v| least.min(v.nrmse));
     let chosen = table.iter().find(|v| v.nrmse <= WITHIN * best);
     (chosen.map_or(UNTESTED, |v| v.smoothness), table)
 }

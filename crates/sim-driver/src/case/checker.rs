@@ -20,10 +20,7 @@ pub(super) struct Number<'a> {
 
 impl<'a> Checker<'a> {
     pub(super) fn new(index: &'a RonIndex) -> Self {
-        Self {
-            index,
-            problems: Problems::default(),
-        }
+        Self { index, problems: Problems::default() }
     }
 
     pub(super) fn fault(&mut self, field: &str, fault: Fault) {
@@ -37,43 +34,17 @@ impl<'a> Checker<'a> {
 
     /// A number from `low` to `high`, both included; NaN is outside.
     pub(super) fn within(&mut self, number: Number<'_>, low: f64, high: f64) {
-        let Number {
-            field,
-            value,
-            unit,
-            remedy,
-        } = number;
+        let Number { field, value, unit, remedy } = number;
         if !(value >= low && value <= high) {
-            self.fault(
-                field,
-                Fault::OutOfRange {
-                    value,
-                    low,
-                    high,
-                    unit,
-                    remedy,
-                },
-            );
+            self.fault(field, Fault::OutOfRange { value, low, high, unit, remedy });
         }
     }
 
     /// A positive finite number.
     pub(super) fn positive(&mut self, number: Number<'_>) {
-        let Number {
-            field,
-            value,
-            unit,
-            remedy,
-        } = number;
+        let Number { field, value, unit, remedy } = number;
         if !(value > 0.0 && value.is_finite()) {
-            self.fault(
-                field,
-                Fault::NotPositive {
-                    value,
-                    unit,
-                    remedy,
-                },
-            );
+            self.fault(field, Fault::NotPositive { value, unit, remedy });
         }
     }
 
@@ -87,15 +58,7 @@ impl<'a> Checker<'a> {
     ) {
         let (low, high) = range;
         if !(low..=high).contains(&value) {
-            self.fault(
-                field,
-                Fault::CountOutOfRange {
-                    value,
-                    low,
-                    high,
-                    remedy,
-                },
-            );
+            self.fault(field, Fault::CountOutOfRange { value, low, high, remedy });
         }
     }
 

@@ -25,11 +25,7 @@ pub(super) fn convert(
     check_case(&mut check, file);
     let problems = check.finish();
     let rotor = &file.rotor;
-    let scales = RotorScales::new(
-        rotor.omega_rpm * TAU / 60.0,
-        rotor.radius_m,
-        rotor.mass_kg_m,
-    );
+    let scales = RotorScales::new(rotor.omega_rpm * TAU / 60.0, rotor.radius_m, rotor.mass_kg_m);
     problems.into_result(scales.ok().map(|scales| build(file, folder, scales)))
 }
 
@@ -132,9 +128,8 @@ fn actuator_source(choice: &ActuatorChoice, folder: &Folder) -> ActuatorSource {
             ActuatorSource::Bench(Folder::Shipped(SHIPPED_BENCH.to_owned()))
         }
         ActuatorChoice::Bench(bench) => ActuatorSource::Bench(folder.join(&bench.dataset)),
-        ActuatorChoice::File(stored) => ActuatorSource::Stored {
-            folder: folder.clone(),
-            file: stored.path.clone(),
-        },
+        ActuatorChoice::File(stored) => {
+            ActuatorSource::Stored { folder: folder.clone(), file: stored.path.clone() }
+        }
     }
 }

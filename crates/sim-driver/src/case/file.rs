@@ -44,16 +44,8 @@ impl Default for CaseFile {
             advance_ratio: 0.30,
             rotor: RotorFile::default(),
             flaps: vec![
-                FlapFile {
-                    start_r: 0.70,
-                    end_r: 0.75,
-                    ..FlapFile::default()
-                },
-                FlapFile {
-                    start_r: 0.80,
-                    end_r: 0.85,
-                    ..FlapFile::default()
-                },
+                FlapFile { start_r: 0.70, end_r: 0.75, ..FlapFile::default() },
+                FlapFile { start_r: 0.80, end_r: 0.85, ..FlapFile::default() },
             ],
             structure: StructureFile::default(),
             aerodynamics: AerodynamicsFile::default(),
@@ -193,11 +185,7 @@ pub struct StructureFile {
 
 impl Default for StructureFile {
     fn default() -> Self {
-        Self {
-            elements: 10,
-            modes: ModesFile::default(),
-            couplings: CouplingsChoice::Full,
-        }
+        Self { elements: 10, modes: ModesFile::default(), couplings: CouplingsChoice::Full }
     }
 }
 
@@ -215,11 +203,7 @@ pub struct ModesFile {
 
 impl Default for ModesFile {
     fn default() -> Self {
-        Self {
-            flap: 4,
-            lag: 4,
-            torsion: 2,
-        }
+        Self { flap: 4, lag: 4, torsion: 2 }
     }
 }
 
@@ -293,9 +277,7 @@ pub struct InflowFile {
 
 impl Default for InflowFile {
     fn default() -> Self {
-        Self {
-            model: InflowChoice::Drees,
-        }
+        Self { model: InflowChoice::Drees }
     }
 }
 

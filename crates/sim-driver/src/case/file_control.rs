@@ -65,10 +65,7 @@ pub struct WindTunnelTrimFile {
 
 impl Default for WindTunnelTrimFile {
     fn default() -> Self {
-        Self {
-            ct_sigma: 0.07,
-            shaft_tilt_deg: 5.0,
-        }
+        Self { ct_sigma: 0.07, shaft_tilt_deg: 5.0 }
     }
 }
 
@@ -111,9 +108,7 @@ pub struct BenchFile {
 
 impl Default for BenchFile {
     fn default() -> Self {
-        Self {
-            dataset: SHIPPED_DATASET.to_owned(),
-        }
+        Self { dataset: SHIPPED_DATASET.to_owned() }
     }
 }
 
@@ -219,14 +214,7 @@ pub struct LoadWeightsFile {
 
 impl Default for LoadWeightsFile {
     fn default() -> Self {
-        Self {
-            fx: 1.0,
-            fy: 1.0,
-            fz: 1.0,
-            mx: 1.0,
-            my: 1.0,
-            mz: 1.0,
-        }
+        Self { fx: 1.0, fy: 1.0, fz: 1.0, mx: 1.0, my: 1.0, mz: 1.0 }
     }
 }
 

@@ -21,36 +21,18 @@ pub(super) fn check_case(check: &mut Checker<'_>, file: &CaseFile) {
 }
 
 fn number<'a>(field: &'a str, value: f64, unit: &'static str, remedy: &'static str) -> Number<'a> {
-    Number {
-        field,
-        value,
-        unit,
-        remedy,
-    }
+    Number { field, value, unit, remedy }
 }
 
 fn check_flight(check: &mut Checker<'_>, file: &CaseFile) {
     if file.title.trim().is_empty() {
-        check.fault(
-            "title",
-            Fault::EmptyText {
-                of: "one line about the case",
-            },
-        );
+        check.fault("title", Fault::EmptyText { of: "one line about the case" });
     }
     let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
-    check.within(
-        number("advance_ratio", file.advance_ratio, "", remedy),
-        0.0,
-        0.5,
-    );
+    check.within(number("advance_ratio", file.advance_ratio, "", remedy), 0.0, 0.5);
     if let InflowChoice::Prescribed { lambda_i } = file.inflow.model {
         let remedy = "give the induced inflow over the tip speed, down positive (0.01 is usual)";
-        check.within(
-            number("inflow.model.lambda_i", lambda_i, "", remedy),
-            -0.2,
-            0.2,
-        );
+        check.within(number("inflow.model.lambda_i", lambda_i, "", remedy), -0.2, 0.2);
     }
 }
 
@@ -58,60 +40,15 @@ fn check_rotor(check: &mut Checker<'_>, file: &CaseFile) {
     let r = &file.rotor;
     check.count("rotor.blades", r.blades, (1, 16), "the paper's rotor has 4");
     for (field, value, unit, remedy) in [
-        (
-            "rotor.radius_m",
-            r.radius_m,
-            "m",
-            "the paper's rotor has 4.94 m",
-        ),
-        (
-            "rotor.omega_rpm",
-            r.omega_rpm,
-            "rpm",
-            "the paper's rotor turns at 383 rpm",
-        ),
-        (
-            "rotor.mass_kg_m",
-            r.mass_kg_m,
-            "kg/m",
-            "the paper's blade has 6.46 kg/m",
-        ),
-        (
-            "rotor.ei_flap",
-            r.ei_flap,
-            "",
-            "a stiffness is positive (paper: 0.0108 m0 Omega^2 R^4)",
-        ),
-        (
-            "rotor.ei_lag",
-            r.ei_lag,
-            "",
-            "a stiffness is positive (paper: 0.0268 m0 Omega^2 R^4)",
-        ),
-        (
-            "rotor.gj",
-            r.gj,
-            "",
-            "a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)",
-        ),
-        (
-            "rotor.ea",
-            r.ea,
-            "",
-            "a stiffness is positive (1000 m0 Omega^2 R^2 is usual)",
-        ),
-        (
-            "rotor.km1_r",
-            r.km1_r,
-            "R",
-            "a radius of gyration is positive (0.0132 R is usual)",
-        ),
-        (
-            "rotor.km2_r",
-            r.km2_r,
-            "R",
-            "a radius of gyration is positive (0.0247 R is usual)",
-        ),
+        ("rotor.radius_m", r.radius_m, "m", "the paper's rotor has 4.94 m"),
+        ("rotor.omega_rpm", r.omega_rpm, "rpm", "the paper's rotor turns at 383 rpm"),
+        ("rotor.mass_kg_m", r.mass_kg_m, "kg/m", "the paper's blade has 6.46 kg/m"),
+        ("rotor.ei_flap", r.ei_flap, "", "a stiffness is positive (paper: 0.0108 m0 Omega^2 R^4)"),
+        ("rotor.ei_lag", r.ei_lag, "", "a stiffness is positive (paper: 0.0268 m0 Omega^2 R^4)"),
+        ("rotor.gj", r.gj, "", "a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)"),
+        ("rotor.ea", r.ea, "", "a stiffness is positive (1000 m0 Omega^2 R^2 is usual)"),
+        ("rotor.km1_r", r.km1_r, "R", "a radius of gyration is positive (0.0132 R is usual)"),
+        ("rotor.km2_r", r.km2_r, "R", "a radius of gyration is positive (0.0247 R is usual)"),
     ] {
         check.positive(number(field, value, unit, remedy));
     }
@@ -122,55 +59,13 @@ fn check_rotor(check: &mut Checker<'_>, file: &CaseFile) {
 fn check_rotor_ranges(check: &mut Checker<'_>, file: &CaseFile) {
     let r = &file.rotor;
     for (field, value, low, high, unit, remedy) in [
-        (
-            "rotor.chord_r",
-            r.chord_r,
-            1e-3,
-            0.5,
-            "R",
-            "the paper's blade has 0.055 R",
-        ),
-        (
-            "rotor.lock_number",
-            r.lock_number,
-            0.0,
-            50.0,
-            "",
-            "the paper's rotor has 5.20",
-        ),
+        ("rotor.chord_r", r.chord_r, 1e-3, 0.5, "R", "the paper's blade has 0.055 R"),
+        ("rotor.lock_number", r.lock_number, 0.0, 50.0, "", "the paper's rotor has 5.20"),
         ("rotor.ka_r", r.ka_r, 0.0, 0.5, "R", "0.029 R is usual"),
-        (
-            "rotor.twist_deg",
-            r.twist_deg,
-            -45.0,
-            45.0,
-            "deg",
-            "nose-down twist is negative",
-        ),
-        (
-            "rotor.precone_deg",
-            r.precone_deg,
-            -10.0,
-            10.0,
-            "deg",
-            "up is positive",
-        ),
-        (
-            "rotor.root_cutout_r",
-            r.root_cutout_r,
-            0.0,
-            0.9,
-            "R",
-            "0.2 R is usual",
-        ),
-        (
-            "rotor.modal_damping",
-            r.modal_damping,
-            0.0,
-            0.5,
-            "",
-            "give a fraction: 0.005 is 0.5 %",
-        ),
+        ("rotor.twist_deg", r.twist_deg, -45.0, 45.0, "deg", "nose-down twist is negative"),
+        ("rotor.precone_deg", r.precone_deg, -10.0, 10.0, "deg", "up is positive"),
+        ("rotor.root_cutout_r", r.root_cutout_r, 0.0, 0.9, "R", "0.2 R is usual"),
+        ("rotor.modal_damping", r.modal_damping, 0.0, 0.5, "", "give a fraction: 0.005 is 0.5 %"),
     ] {
         check.within(number(field, value, unit, remedy), low, high);
     }
@@ -178,22 +73,12 @@ fn check_rotor_ranges(check: &mut Checker<'_>, file: &CaseFile) {
 
 fn check_structure(check: &mut Checker<'_>, file: &CaseFile) {
     let s = &file.structure;
-    check.count(
-        "structure.elements",
-        s.elements,
-        (2, 200),
-        "the paper uses 10",
-    );
+    check.count("structure.elements", s.elements, (2, 200), "the paper uses 10");
     let most = 2 * s.elements;
     let remedy = "as many as the elements resolve: the paper keeps 4, 4 and 2";
     check.count("structure.modes.flap", s.modes.flap, (1, most), remedy);
     check.count("structure.modes.lag", s.modes.lag, (1, most), remedy);
-    check.count(
-        "structure.modes.torsion",
-        s.modes.torsion,
-        (1, most),
-        remedy,
-    );
+    check.count("structure.modes.torsion", s.modes.torsion, (1, most), remedy);
 }
 
 fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
@@ -203,23 +88,10 @@ fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
         if start_r >= from_r && end_r > start_r && end_r <= 1.0 {
             from_r = end_r;
         } else {
-            check.fault(
-                &format!("flaps[{i}].start_r"),
-                Fault::FlapSpan {
-                    start_r,
-                    end_r,
-                    from_r,
-                },
-            );
+            check.fault(&format!("flaps[{i}].start_r"), Fault::FlapSpan { start_r, end_r, from_r });
         }
         for (key, value, low, high, remedy) in [
-            (
-                "chord_fraction",
-                flap.chord_fraction,
-                0.05,
-                0.5,
-                "the paper's flap has 0.20 chord",
-            ),
+            ("chord_fraction", flap.chord_fraction, 0.05, 0.5, "the paper's flap has 0.20 chord"),
             (
                 "mass_fraction",
                 flap.mass_fraction,
@@ -227,19 +99,9 @@ fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
                 1.0,
                 "the flap's mass is part of the blade's",
             ),
-            (
-                "cg_fraction",
-                flap.cg_fraction,
-                -1.0,
-                1.0,
-                "behind the hinge is positive",
-            ),
+            ("cg_fraction", flap.cg_fraction, -1.0, 1.0, "behind the hinge is positive"),
         ] {
-            check.within(
-                number(&format!("flaps[{i}].{key}"), value, "", remedy),
-                low,
-                high,
-            );
+            check.within(number(&format!("flaps[{i}].{key}"), value, "", remedy), low, high);
         }
     }
 }
@@ -247,26 +109,13 @@ fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
 fn check_section(check: &mut Checker<'_>, file: &CaseFile) {
     let a = &file.aerodynamics;
     let remedy = "0.01 is usual";
-    let drag = number(
-        "aerodynamics.drag_coefficient",
-        a.drag_coefficient,
-        "",
-        remedy,
-    );
+    let drag = number("aerodynamics.drag_coefficient", a.drag_coefficient, "", remedy);
     check.within(drag, 0.0, 1.0);
     let field = "aerodynamics.speed_of_sound_m_s";
     let remedy = "340.3 m/s is the standard atmosphere at sea level; the tip must stay subsonic";
     let tip_speed = file.rotor.omega_rpm * TAU / 60.0 * file.rotor.radius_m;
-    let lowest = if tip_speed.is_finite() {
-        (tip_speed / 0.95).max(1.0)
-    } else {
-        1.0
-    };
-    check.within(
-        number(field, a.speed_of_sound_m_s, "m/s", remedy),
-        lowest,
-        2000.0,
-    );
+    let lowest = if tip_speed.is_finite() { (tip_speed / 0.95).max(1.0) } else { 1.0 };
+    check.within(number(field, a.speed_of_sound_m_s, "m/s", remedy), lowest, 2000.0);
     if a.model == SectionModelChoice::Incompressible
         && a.compressibility != CompressibilityChoice::None
     {
@@ -281,30 +130,9 @@ fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
         TrimFile::Propulsive(p) => {
             check.within(number("trim.ct_sigma", p.ct_sigma, "", loading), 1e-3, 0.5);
             for (field, value, low, high, unit, remedy) in [
-                (
-                    "trim.drag_area",
-                    p.drag_area,
-                    0.0,
-                    1.0,
-                    "",
-                    "0.01 disk areas is usual",
-                ),
-                (
-                    "trim.cg_below_hub_r",
-                    p.cg_below_hub_r,
-                    0.0,
-                    2.0,
-                    "R",
-                    "0.2 R is usual",
-                ),
-                (
-                    "trim.hub_aft_of_cg_r",
-                    p.hub_aft_of_cg_r,
-                    -1.0,
-                    1.0,
-                    "R",
-                    "aft is positive",
-                ),
+                ("trim.drag_area", p.drag_area, 0.0, 1.0, "", "0.01 disk areas is usual"),
+                ("trim.cg_below_hub_r", p.cg_below_hub_r, 0.0, 2.0, "R", "0.2 R is usual"),
+                ("trim.hub_aft_of_cg_r", p.hub_aft_of_cg_r, -1.0, 1.0, "R", "aft is positive"),
                 (
                     "trim.hub_starboard_of_cg_r",
                     p.hub_starboard_of_cg_r,
@@ -313,14 +141,7 @@ fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
                     "R",
                     "starboard is positive",
                 ),
-                (
-                    "trim.tail_rotor_arm_r",
-                    p.tail_rotor_arm_r,
-                    0.1,
-                    5.0,
-                    "R",
-                    "1.2 R is usual",
-                ),
+                ("trim.tail_rotor_arm_r", p.tail_rotor_arm_r, 0.1, 5.0, "R", "1.2 R is usual"),
                 (
                     "trim.tail_rotor_height_r",
                     p.tail_rotor_height_r,
@@ -335,11 +156,7 @@ fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
         }
         TrimFile::WindTunnel(w) => {
             check.within(number("trim.ct_sigma", w.ct_sigma, "", loading), 1e-3, 0.5);
-            check.within(
-                number("trim.shaft_tilt_deg", w.shaft_tilt_deg, "deg", tilt),
-                -45.0,
-                45.0,
-            );
+            check.within(number("trim.shaft_tilt_deg", w.shaft_tilt_deg, "deg", tilt), -45.0, 45.0);
         }
         TrimFile::Prescribed(p) => {
             for (field, value) in [
@@ -350,11 +167,7 @@ fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
                 let remedy = "the linear section models mean nothing beyond";
                 check.within(number(field, value, "deg", remedy), -34.0, 34.0);
             }
-            check.within(
-                number("trim.shaft_tilt_deg", p.shaft_tilt_deg, "deg", tilt),
-                -45.0,
-                45.0,
-            );
+            check.within(number("trim.shaft_tilt_deg", p.shaft_tilt_deg, "deg", tilt), -45.0, 45.0);
         }
     }
 }
@@ -362,18 +175,10 @@ fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
 fn check_actuator(check: &mut Checker<'_>, file: &CaseFile) {
     let a = &file.actuator;
     let remedy = "the paper's figures use 5 rev/s, its rotor turns 6.383 rev/s";
-    check.within(
-        number("actuator.bench_rev_hz", a.bench_rev_hz, "rev/s", remedy),
-        1e-3,
-        1e3,
-    );
+    check.within(number("actuator.bench_rev_hz", a.bench_rev_hz, "rev/s", remedy), 1e-3, 1e3);
     let remedy = "flap amplitude at full-scale voltage; the paper's gain gives 10 deg";
     let ideal = a.ideal_amplitude_deg;
-    check.within(
-        number("actuator.ideal_amplitude_deg", ideal, "deg", remedy),
-        1e-3,
-        45.0,
-    );
+    check.within(number("actuator.ideal_amplitude_deg", ideal, "deg", remedy), 1e-3, 45.0);
     match &a.model {
         ActuatorChoice::Bench(bench) if bench.dataset.trim().is_empty() => {
             let of = "the folder of dataset.ron, relative to the case file";
@@ -417,10 +222,7 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
     }
     for (i, set) in c.harmonics.iter().enumerate() {
         if set.is_empty() {
-            check.fault(
-                &format!("control.harmonics[{i}]"),
-                Fault::EmptyList { of: "harmonic" },
-            );
+            check.fault(&format!("control.harmonics[{i}]"), Fault::EmptyList { of: "harmonic" });
         }
         for (j, &harmonic) in set.iter().enumerate() {
             let field = format!("control.harmonics[{i}][{j}]");
@@ -429,32 +231,18 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
             if set[..j].contains(&harmonic) {
                 let name = harmonic.to_string();
                 let first_line = check.line(&format!("control.harmonics[{i}]"));
-                check.fault(
-                    &field,
-                    Fault::Repeated {
-                        name,
-                        of: "harmonic of a set",
-                        first_line,
-                    },
-                );
+                check.fault(&field, Fault::Repeated { name, of: "harmonic of a set", first_line });
             }
         }
     }
     let ideal = file.actuator.model == ActuatorChoice::Ideal;
     for (i, actuator) in c.actuators.iter().enumerate() {
         if ideal && *actuator != ControlActuator::Ideal {
-            check.fault(
-                &format!("control.actuators[{i}]"),
-                Fault::NeedsIdentifiedActuator,
-            );
+            check.fault(&format!("control.actuators[{i}]"), Fault::NeedsIdentifiedActuator);
         }
     }
     let remedy = "0.5 deg is usual";
-    check.within(
-        number("control.t_step_deg", c.t_step_deg, "deg", remedy),
-        1e-3,
-        10.0,
-    );
+    check.within(number("control.t_step_deg", c.t_step_deg, "deg", remedy), 1e-3, 10.0);
     if let StrokeChoice::Given { amplitude_deg } = c.stroke_limit {
         let remedy = "or write FromActuator";
         let field = "control.stroke_limit.amplitude_deg";
@@ -465,28 +253,15 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
         check.within(number("control.effort.rho", rho, "1/V^2", remedy), 0.0, 1e6);
     }
     let w = &c.load_weights;
-    for (key, value) in [
-        ("fx", w.fx),
-        ("fy", w.fy),
-        ("fz", w.fz),
-        ("mx", w.mx),
-        ("my", w.my),
-        ("mz", w.mz),
-    ] {
+    for (key, value) in
+        [("fx", w.fx), ("fy", w.fy), ("fz", w.fz), ("mx", w.mx), ("my", w.my), ("mz", w.mz)]
+    {
         let field = format!("control.load_weights.{key}");
-        check.within(
-            number(&field, value, "", "1 is the paper's identity weight"),
-            0.0,
-            1e12,
-        );
+        check.within(number(&field, value, "", "1 is the paper's identity weight"), 0.0, 1e12);
     }
     check.count("control.max_steps", c.max_steps, (1, 10_000), "40 is usual");
     let remedy = "1e-4 is usual";
-    check.within(
-        number("control.step_tolerance", c.step_tolerance, "", remedy),
-        1e-12,
-        0.1,
-    );
+    check.within(number("control.step_tolerance", c.step_tolerance, "", remedy), 1e-12, 0.1);
 }
 
 fn check_numerics(check: &mut Checker<'_>, file: &CaseFile) {
@@ -495,26 +270,11 @@ fn check_numerics(check: &mut Checker<'_>, file: &CaseFile) {
     check.count("response.time_elements", r.time_elements, (1, 200), remedy);
     check.count("response.time_order", r.time_order, (1, 12), remedy);
     let remedy = "8 is usual; at least the order of the elements";
-    check.count(
-        "response.time_gauss_points",
-        r.time_gauss_points,
-        (r.time_order, 32),
-        remedy,
-    );
-    check.count(
-        "response.span_points_per_piece",
-        r.span_points_per_piece,
-        (1, 16),
-        "4 is usual",
-    );
+    check.count("response.time_gauss_points", r.time_gauss_points, (r.time_order, 32), remedy);
+    check.count("response.span_points_per_piece", r.span_points_per_piece, (1, 16), "4 is usual");
     let least = file.rotor.blades.min(64);
     let remedy = "12 is usual; at least the blade number, whose harmonic reaches the hub";
-    check.count(
-        "response.load_harmonics",
-        r.load_harmonics,
-        (least, 64),
-        remedy,
-    );
+    check.count("response.load_harmonics", r.load_harmonics, (least, 64), remedy);
     let t = &file.tolerances;
     for (field, value, high) in [
         ("tolerances.trim", t.trim, 1e-3),

@@ -37,11 +37,7 @@ pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problem
             None
         }
     };
-    problems.into_result(case.map(|case| LoadedCase {
-        case,
-        file,
-        index: read.index,
-    }))
+    problems.into_result(case.map(|case| LoadedCase { case, file, index: read.index }))
 }
 
 /// Reads and validates a case on disk.

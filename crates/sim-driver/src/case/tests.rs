@@ -8,10 +8,7 @@ use crate::files::{Folder, Source, ron_text};
 use approx::assert_relative_eq;
 
 fn read(text: &str) -> Result<LoadedCase, String> {
-    let source = Source {
-        name: "case.ron".into(),
-        text: text.into(),
-    };
+    let source = Source { name: "case.ron".into(), text: text.into() };
     read_case(&source, &Folder::Shipped("fixtures/cases".into())).map_err(|p| p.to_string())
 }
 
@@ -28,12 +25,7 @@ fn shipped_cases_are_valid_and_complete() {
     assert_eq!(short.case.actuator, paper.case.actuator);
     assert_eq!(short.case.response, paper.case.response);
     assert_eq!(short.case.tolerances, paper.case.tolerances);
-    for field in [
-        "rotor.ka_r",
-        "flaps[1].cg_fraction",
-        "trim.tail_rotor_arm_r",
-        "control.effort",
-    ] {
+    for field in ["rotor.ka_r", "flaps[1].cg_fraction", "trim.tail_rotor_arm_r", "control.effort"] {
         assert!(paper.index.contains(field), "{field}");
     }
     let case = &paper.case;
@@ -45,11 +37,7 @@ fn shipped_cases_are_valid_and_complete() {
         ActuatorSource::Bench(Folder::Shipped("fixtures/bench/apa500l_synthetic".into()))
     );
     let physical = shipped_case("paper_mu030_6p383hz.ron").unwrap().case;
-    assert_relative_eq!(
-        physical.bench_frequency_hz(4),
-        25.533_333,
-        max_relative = 1e-7
-    );
+    assert_relative_eq!(physical.bench_frequency_hz(4), 25.533_333, max_relative = 1e-7);
     assert_relative_eq!(
         physical.actuator.bench_rev_hz,
         physical.scales.rev_hz(),
@@ -60,9 +48,7 @@ fn shipped_cases_are_valid_and_complete() {
     assert_eq!(s1.section.model, SectionModelChoice::QuasiSteady);
     assert_eq!(s1.section.compressibility, CompressibilityChoice::None);
     assert_eq!(s1.inflow, InflowChoice::Prescribed { lambda_i: 0.008 });
-    let TrimValues::Prescribed { shaft_tilt_rad, .. } = s1.trim else {
-        panic!("{:?}", s1.trim)
-    };
+    let TrimValues::Prescribed { shaft_tilt_rad, .. } = s1.trim else { panic!("{:?}", s1.trim) };
     assert_relative_eq!(shaft_tilt_rad, 5.0_f64.to_radians());
 }
 
@@ -100,14 +86,8 @@ fn every_problem_is_reported_with_its_line() {
 #[test]
 fn single_problems_name_the_remedy() {
     for (text, expected) in [
-        (
-            "(advance_ratio: -0.1)",
-            "case.ron:1:2: advance_ratio: is -0.1, expected 0 to 0.5",
-        ),
-        (
-            "(advance_ratio: NaN)",
-            "advance_ratio: is NaN, expected 0 to 0.5",
-        ),
+        ("(advance_ratio: -0.1)", "case.ron:1:2: advance_ratio: is -0.1, expected 0 to 0.5"),
+        ("(advance_ratio: NaN)", "advance_ratio: is NaN, expected 0 to 0.5"),
         (
             "(control: (amplitude_V: 90))",
             "control.amplitude_V: the voltage 65 V +- 90 V leaves the actuator's range -20 V to 150 V; lower control.amplitude_V to 85 V",
@@ -129,10 +109,7 @@ fn single_problems_name_the_remedy() {
             "(aerodynamics: (speed_of_sound_m_s: 150))",
             "aerodynamics.speed_of_sound_m_s: is 150 m/s, expected 208",
         ),
-        (
-            "(trim: Propulsive(ct_sigma: 0.9))",
-            "trim.ct_sigma: is 0.9, expected 0.001 to 0.5",
-        ),
+        ("(trim: Propulsive(ct_sigma: 0.9))", "trim.ct_sigma: is 0.9, expected 0.001 to 0.5"),
         (
             "(trim: WindTunnel(shaft_tilt_deg: 80))",
             "trim.shaft_tilt_deg: is 80 deg, expected -45 to 45 deg",
@@ -144,14 +121,8 @@ fn single_problems_name_the_remedy() {
             "(control: (harmonics: [[]]))",
             "control.harmonics[0]: is empty; give at least one harmonic",
         ),
-        (
-            "(control: (harmonics: [[0]]))",
-            "control.harmonics[0][0]: is 0, expected 1 to 12",
-        ),
-        (
-            "(structure: (modes: (flap: 40)))",
-            "structure.modes.flap: is 40, expected 1 to 20",
-        ),
+        ("(control: (harmonics: [[0]]))", "control.harmonics[0][0]: is 0, expected 1 to 12"),
+        ("(structure: (modes: (flap: 40)))", "structure.modes.flap: is 40, expected 1 to 20"),
         (
             "(response: (time_gauss_points: 3))",
             "response.time_gauss_points: is 3, expected 5 to 32",
@@ -161,26 +132,17 @@ fn single_problems_name_the_remedy() {
             "(inflow: (model: Prescribed(lambda_i: 3)))",
             "inflow.model.lambda_i: is 3, expected -0.2 to 0.2",
         ),
-        (
-            "(rotor: (blades: \"four\"))",
-            "rotor.blades: has the wrong type",
-        ),
+        ("(rotor: (blades: \"four\"))", "rotor.blades: has the wrong type"),
         (
             "(rotor: (omega_rpm: inf))",
             "rotor.omega_rpm: is inf rpm, expected a positive finite number",
         ),
-        (
-            "(title: \"\")",
-            "title: is empty; give one line about the case",
-        ),
+        ("(title: \"\")", "title: is empty; give one line about the case"),
         ("(rotor: (blades: 4)", "is not valid RON"),
         ("", "is not valid RON"),
     ] {
         let message = read(text).expect_err(text);
-        assert!(
-            message.contains(expected),
-            "{text}\n  gave {message}\n  wanted {expected}"
-        );
+        assert!(message.contains(expected), "{text}\n  gave {message}\n  wanted {expected}");
         assert!(message.starts_with("case.ron"), "{message}");
     }
 }

@@ -126,12 +126,7 @@ pub struct ModesArgs {
     #[arg(long)]
     pub no_gyroscopic: bool,
     /// Pitch angle at 0.75 R, deg.
-    #[arg(
-        long,
-        value_name = "DEG",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     pub pitch_deg: f64,
     /// Further rotor speeds over the nominal one, such as 0,0.25,0.5,0.75,1: a fan plot.
     #[arg(long, value_name = "RATIOS", value_delimiter = ',')]
@@ -196,12 +191,7 @@ pub struct SectionArgs {
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub reduced_frequency: f64,
     /// Flap chord over chord.
-    #[arg(
-        long,
-        value_name = "E",
-        default_value_t = 0.2,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "E", default_value_t = 0.2, allow_negative_numbers = true)]
     pub flap_chord: f64,
     /// What moves.
     #[arg(long, value_enum, default_value_t = MotionArg::Flap)]

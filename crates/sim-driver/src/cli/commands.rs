@@ -34,12 +34,7 @@ const RESULT_FILE: &str = "result.json";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
-    run_and_store(
-        &loaded,
-        &args.out,
-        args.format.format,
-        Scope::WithSensitivity,
-    )
+    run_and_store(&loaded, &args.out, args.format.format, Scope::WithSensitivity)
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
@@ -64,11 +59,7 @@ fn run_and_store(
     format: Format,
     scope: Scope,
 ) -> Result<(), SimError> {
-    let more = if scope == Scope::WithSensitivity {
-        SENSITIVITY_ROWS
-    } else {
-        0
-    };
+    let more = if scope == Scope::WithSensitivity { SENSITIVITY_ROWS } else { 0 };
     let progress = Progress::new(steps_of(loaded) + more);
     let computed = run_case(loaded, &progress).and_then(|outcome| {
         progress.doing("sensitivity");
@@ -91,24 +82,16 @@ fn run_and_store(
     let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
     let report = study_report(loaded, &outcome, &stored, &sensitivity)?;
     stored.write(&out.join(RESULT_FILE))?;
-    write_atomic(
-        &out.join(HISTORIES_FILE),
-        histories_csv(&outcome.studies).as_bytes(),
-    )?;
-    let numbers = serde_json::to_string(&report).map_err(|e| SimError::NotWritten {
-        path: out.join(STUDY_FILE),
-        reason: e.to_string(),
-    })?;
+    write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
+    let numbers = serde_json::to_string(&report)
+        .map_err(|e| SimError::NotWritten { path: out.join(STUDY_FILE), reason: e.to_string() })?;
     write_atomic(&out.join(STUDY_FILE), numbers.as_bytes())?;
     write_atomic(&out.join(REPORT_FILE), report_html(&report).as_bytes())?;
     match format {
         Format::Json => print(&outcome.result.render(format)?),
         Format::Text => {
             let text = outcome.result.render(format)? + &report.text();
-            print(&format!(
-                "{text}\nResults, histories and report in {}\n",
-                out.display()
-            ))
+            print(&format!("{text}\nResults, histories and report in {}\n", out.display()))
         }
     }
 }
@@ -143,17 +126,9 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
         Some(path) => load_case(path)?,
         None => shipped_case(PAPER_CASE)?,
     };
-    let terms = if args.no_gyroscopic {
-        GyroscopicTerms::Neglected
-    } else {
-        GyroscopicTerms::Included
-    };
-    let result = rotating_modes(
-        &loaded.case,
-        terms,
-        args.pitch_deg.to_radians(),
-        &args.speeds,
-    )?;
+    let terms =
+        if args.no_gyroscopic { GyroscopicTerms::Neglected } else { GyroscopicTerms::Included };
+    let result = rotating_modes(&loaded.case, terms, args.pitch_deg.to_radians(), &args.speeds)?;
     print(&result.render(args.format.format)?)
 }
 
@@ -184,9 +159,7 @@ pub(super) fn init(args: &InitArgs) -> Result<(), SimError> {
 
 /// The shipped paper case with its data set named so that it is found from any folder.
 fn starting_case() -> Result<String, Problem> {
-    let text = Folder::Shipped(SHIPPED_CASES.to_owned())
-        .read(PAPER_CASE)?
-        .text;
+    let text = Folder::Shipped(SHIPPED_CASES.to_owned()).read(PAPER_CASE)?.text;
     Ok(text.replace("../bench/apa500l_synthetic", "shipped:apa500l_synthetic"))
 }
 
@@ -194,12 +167,7 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
     let source = Source::read(&args.dir.join(STUDY_FILE))?;
     let report: StudyReport = serde_json::from_str(&source.text).map_err(|e| {
         let place = Place::at(&source.name, e.line(), e.column());
-        Problem::new(
-            place,
-            Fault::Syntax {
-                message: e.to_string(),
-            },
-        )
+        Problem::new(place, Fault::Syntax { message: e.to_string() })
     })?;
     let path = args.dir.join(REPORT_FILE);
     write_atomic(&path, report_html(&report).as_bytes())?;

@@ -70,9 +70,6 @@ mod tests {
     #[test]
     fn a_bug_is_called_a_bug() {
         let text = bug_message("panicked at somewhere");
-        assert!(
-            text.contains("bug") && text.contains("panicked at somewhere"),
-            "{text}"
-        );
+        assert!(text.contains("bug") && text.contains("panicked at somewhere"), "{text}");
     }
 }

@@ -73,19 +73,11 @@ pub fn read_bench(folder: &Folder) -> Result<BenchData, Problems> {
     for (i, run) in dataset.runs.iter().enumerate() {
         let place = file.index.place(&format!("runs[{i}].file"));
         if !is_plain(&run.file) {
-            problems.push(
-                place,
-                Fault::NotPlainFile {
-                    path: run.file.clone(),
-                },
-            );
+            problems.push(place, Fault::NotPlainFile { path: run.file.clone() });
             continue;
         }
         if !folder.contains(&run.file) {
-            let fault = Fault::MissingFile {
-                file: run.file.clone(),
-                folder: folder.display(""),
-            };
+            let fault = Fault::MissingFile { file: run.file.clone(), folder: folder.display("") };
             problems.push(place, fault);
             continue;
         }
@@ -141,10 +133,7 @@ fn check_range(
     if low.is_finite() && high.is_finite() && low < high {
         return Some((low, high));
     }
-    problems.push(
-        index.place("command_range_V"),
-        Fault::EmptyRange { low, high },
-    );
+    problems.push(index.place("command_range_V"), Fault::EmptyRange { low, high });
     None
 }
 
@@ -156,25 +145,17 @@ fn check_fields(dataset: &DatasetFile, index: &RonIndex, problems: &mut Problems
     if dataset.runs.is_empty() {
         problems.push(index.place("runs"), Fault::EmptyList { of: "run" });
     }
-    if let Some(value) = dataset
-        .flap_deg_per_um
-        .filter(|v| !(v.is_finite() && *v > 0.0))
-    {
+    if let Some(value) = dataset.flap_deg_per_um.filter(|v| !(v.is_finite() && *v > 0.0)) {
         let remedy = "leave it out to have identification set the gain";
-        let fault = Fault::NotPositive {
-            value,
-            unit: "deg/um",
-            remedy,
-        };
+        let fault = Fault::NotPositive { value, unit: "deg/um", remedy };
         problems.push(index.place("flap_deg_per_um"), fault);
     }
     let mut ids = BTreeMap::new();
     let mut files = BTreeMap::new();
     for (i, run) in dataset.runs.iter().enumerate() {
-        for (key, value, seen, of) in [
-            ("id", &run.id, &mut ids, "run"),
-            ("file", &run.file, &mut files, "run file"),
-        ] {
+        for (key, value, seen, of) in
+            [("id", &run.id, &mut ids, "run"), ("file", &run.file, &mut files, "run file")]
+        {
             let path = format!("runs[{i}].{key}");
             if value.trim().is_empty() {
                 problems.push(index.place(&path), Fault::EmptyText { of: "a name" });
@@ -182,24 +163,14 @@ fn check_fields(dataset: &DatasetFile, index: &RonIndex, problems: &mut Problems
             }
             let line = index.line(&path).unwrap_or_default();
             if let Some(first_line) = seen.insert(value.clone(), line) {
-                let fault = Fault::Repeated {
-                    name: value.clone(),
-                    of,
-                    first_line,
-                };
+                let fault = Fault::Repeated { name: value.clone(), of, first_line };
                 problems.push(index.place(&path), fault);
             }
         }
         if let Some(value) = run.start_s.filter(|v| !(v.is_finite() && *v >= 0.0)) {
             let (low, high, unit) = (0.0, 1e9, "s");
             let remedy = "give the seconds since switch-on, or leave it out";
-            let fault = Fault::OutOfRange {
-                value,
-                low,
-                high,
-                unit,
-                remedy,
-            };
+            let fault = Fault::OutOfRange { value, low, high, unit, remedy };
             problems.push(index.place(&format!("runs[{i}].start_s")), fault);
         }
     }
@@ -211,11 +182,7 @@ fn check_commands(file: &str, table: &MeasuredTable, range: (f64, f64), problems
     let mut listing = Listing::default();
     for (&voltage_volt, &line) in table.command_volt.iter().zip(&table.lines) {
         if voltage_volt < low_volt - slack || voltage_volt > high_volt + slack {
-            let fault = Fault::CommandOutsideRange {
-                voltage_volt,
-                low_volt,
-                high_volt,
-            };
+            let fault = Fault::CommandOutsideRange { voltage_volt, low_volt, high_volt };
             listing.push(problems, Place::at(file, line, 1).field("command_V"), fault);
         }
     }

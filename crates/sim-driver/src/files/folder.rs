@@ -64,10 +64,7 @@ impl Folder {
             Problem::new(Place::file(&name), Fault::NotText { offset })
         })?;
         // a byte-order mark belongs to no format read here
-        let text = text
-            .strip_prefix('\u{feff}')
-            .map(str::to_owned)
-            .unwrap_or(text);
+        let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
         Ok(Source { name, text })
     }
 
@@ -96,19 +93,10 @@ impl Source {
     }
 }
 
-#[expect(
-    clippy::disallowed_methods,
-    reason = "the one place of the program that reads files"
-)]
+#[expect(clippy::disallowed_methods, reason = "the one place of the program that reads files")]
 fn read_bytes(path: &Path, name: &str) -> Result<Vec<u8>, Problem> {
-    std::fs::read(path).map_err(|e| {
-        Problem::new(
-            Place::file(name),
-            Fault::Unreadable {
-                reason: e.to_string(),
-            },
-        )
-    })
+    std::fs::read(path)
+        .map_err(|e| Problem::new(Place::file(name), Fault::Unreadable { reason: e.to_string() }))
 }
 
 /// A path with `.` and `..` resolved and `/` between its parts.
@@ -134,26 +122,15 @@ mod tests {
     fn shipped_paths_resolve_dots() {
         let cases = Folder::Shipped("fixtures/cases".into());
         let bench = cases.join("../bench/apa500l_synthetic");
-        assert_eq!(
-            bench,
-            Folder::Shipped("fixtures/bench/apa500l_synthetic".into())
-        );
+        assert_eq!(bench, Folder::Shipped("fixtures/bench/apa500l_synthetic".into()));
         assert!(bench.contains("dataset.ron"));
         assert!(!bench.contains("none.csv"));
-        assert!(matches!(
-            bench.read("none.csv").unwrap_err().fault,
-            Fault::NotShipped { .. }
-        ));
+        assert!(matches!(bench.read("none.csv").unwrap_err().fault, Fault::NotShipped { .. }));
     }
 
     #[test]
     fn a_missing_file_is_named() {
         let problem = Source::read(Path::new("no/such/case.ron")).unwrap_err();
-        assert!(
-            problem
-                .to_string()
-                .starts_with("no/such/case.ron: cannot be read"),
-            "{problem}"
-        );
+        assert!(problem.to_string().starts_with("no/such/case.ron: cannot be read"), "{problem}");
     }
 }

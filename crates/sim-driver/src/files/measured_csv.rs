@@ -27,12 +27,7 @@ const QUANTITIES: [Quantity; 6] = [
         column: "time_s",
         unit: "s",
         spellings: &["s", "sec"],
-        others: &[
-            ("ms", Some(1e-3)),
-            ("us", Some(1e-6)),
-            ("min", Some(60.0)),
-            ("h", Some(3600.0)),
-        ],
+        others: &[("ms", Some(1e-3)), ("us", Some(1e-6)), ("min", Some(60.0)), ("h", Some(3600.0))],
         required: true,
     },
     Quantity {
@@ -48,12 +43,7 @@ const QUANTITIES: [Quantity; 6] = [
         column: "displacement_um",
         unit: "um",
         spellings: &["um", "µm", "μm"],
-        others: &[
-            ("nm", Some(1e-3)),
-            ("mm", Some(1e3)),
-            ("cm", Some(1e4)),
-            ("m", Some(1e6)),
-        ],
+        others: &[("nm", Some(1e-3)), ("mm", Some(1e3)), ("cm", Some(1e4)), ("m", Some(1e6))],
         required: true,
     },
     Quantity {
@@ -186,59 +176,34 @@ fn read_header(
     problems: &mut Problems,
 ) -> (Vec<usize>, usize) {
     let Some(header) = lines.first() else {
-        let fault = Fault::TooFewRows {
-            rows: 0,
-            least: LEAST_ROWS,
-        };
+        let fault = Fault::TooFewRows { rows: 0, least: LEAST_ROWS };
         problems.push(Place::file(&source.name), fault);
         return (vec![], 0);
     };
     let names = header.fields();
-    let units = lines
-        .get(1)
-        .map(|l| l.fields())
-        .filter(|f| f.iter().all(|(t, _)| is_unit_cell(t)));
+    let units = lines.get(1).map(|l| l.fields()).filter(|f| f.iter().all(|(t, _)| is_unit_cell(t)));
     let first_row = if units.is_some() { 2 } else { 1 };
     let place = |at: usize| Place::at(&source.name, header.number, at);
     let known = || QUANTITIES.map(|q| q.column).join(", ");
     let mut columns = Vec::new();
     for (index, (name, at)) in names.iter().enumerate() {
-        let second = units
-            .as_ref()
-            .and_then(|u| u.get(index))
-            .map(|(t, _)| strip_brackets(t));
+        let second = units.as_ref().and_then(|u| u.get(index)).map(|(t, _)| strip_brackets(t));
         let Some((quantity, unit)) = split_name(name, second) else {
             let nearest = nearest(name, QUANTITIES.iter().flat_map(|q| [q.column, q.name]));
-            let fault = Fault::UnknownColumn {
-                found: (*name).into(),
-                known: known(),
-                nearest,
-            };
+            let fault = Fault::UnknownColumn { found: (*name).into(), known: known(), nearest };
             problems.push(place(*at), fault);
             continue;
         };
         let q = &QUANTITIES[quantity];
         match unit {
             None => {
-                let fault = Fault::MissingUnit {
-                    found: (*name).into(),
-                    expected: q.column,
-                };
+                let fault = Fault::MissingUnit { found: (*name).into(), expected: q.column };
                 problems.push(place(*at), fault);
             }
             Some(unit) if !q.spellings.contains(&unit) => {
-                let factor = q
-                    .others
-                    .iter()
-                    .find(|(u, _)| *u == unit)
-                    .and_then(|(_, f)| *f);
+                let factor = q.others.iter().find(|(u, _)| *u == unit).and_then(|(_, f)| *f);
                 let (column, expected) = (q.column, q.unit);
-                let fault = Fault::WrongUnit {
-                    column,
-                    found: unit.into(),
-                    expected,
-                    factor,
-                };
+                let fault = Fault::WrongUnit { column, found: unit.into(), expected, factor };
                 problems.push(place(*at).field(*name), fault);
             }
             Some(_) if columns.contains(&quantity) => {
@@ -251,13 +216,7 @@ fn read_header(
     for (index, quantity) in QUANTITIES.iter().enumerate() {
         if quantity.required && !columns.contains(&index) {
             let found = names.iter().map(|(n, _)| *n).collect::<Vec<_>>().join(", ");
-            problems.push(
-                place(1),
-                Fault::MissingColumn {
-                    column: quantity.column,
-                    found,
-                },
-            );
+            problems.push(place(1), Fault::MissingColumn { column: quantity.column, found });
         }
     }
     (columns, first_row)
@@ -273,11 +232,7 @@ fn strip_brackets(text: &str) -> &str {
 
 /// The quantity and unit of a header cell; none if it names no known quantity.
 fn split_name<'a>(cell: &'a str, second_row: Option<&'a str>) -> Option<(usize, Option<&'a str>)> {
-    let find = |name: &str| {
-        QUANTITIES
-            .iter()
-            .position(|q| q.name.eq_ignore_ascii_case(name))
-    };
+    let find = |name: &str| QUANTITIES.iter().position(|q| q.name.eq_ignore_ascii_case(name));
     if let Some(open) = cell.find(['[', '(']) {
         return find(cell[..open].trim()).map(|q| (q, Some(strip_brackets(&cell[open..]))));
     }
@@ -301,10 +256,7 @@ impl Rows {
         columns: &[usize],
         problems: &mut Problems,
     ) -> Self {
-        let mut rows = Self {
-            values: vec![Vec::new(); columns.len()],
-            lines: Vec::new(),
-        };
+        let mut rows = Self { values: vec![Vec::new(); columns.len()], lines: Vec::new() };
         let mut lists = [Listing::default(), Listing::default(), Listing::default()];
         let [field_counts, words, infinities] = &mut lists;
         let last = lines.len().saturating_sub(1);
@@ -312,18 +264,13 @@ impl Rows {
             let fields = line.fields();
             let before = i.checked_sub(1).map(|b| lines[b].fields());
             if i == last && is_cut_off(line, &fields, before.as_deref(), columns.len()) {
-                let fault = Fault::Truncated {
-                    text: line.text.to_owned(),
-                    expected: columns.len(),
-                };
+                let fault =
+                    Fault::Truncated { text: line.text.to_owned(), expected: columns.len() };
                 problems.push(Place::at(&source.name, line.number, 1), fault);
                 break;
             }
             if fields.len() != columns.len() {
-                let fault = Fault::FieldCount {
-                    found: fields.len(),
-                    expected: columns.len(),
-                };
+                let fault = Fault::FieldCount { found: fields.len(), expected: columns.len() };
                 field_counts.push(problems, Place::at(&source.name, line.number, 1), fault);
                 continue;
             }
@@ -338,9 +285,7 @@ impl Rows {
                     Ok(value) if value.is_finite() => {}
                     Ok(value) => infinities.push(problems, place(), Fault::NotFinite { value }),
                     Err(_) => {
-                        let fault = Fault::NotANumber {
-                            text: (*text).to_owned(),
-                        };
+                        let fault = Fault::NotANumber { text: (*text).to_owned() };
                         words.push(problems, place(), fault);
                     }
                 }
@@ -362,10 +307,7 @@ impl Rows {
     ) -> Option<MeasuredTable> {
         let rows = self.lines.len();
         if rows < LEAST_ROWS {
-            let fault = Fault::TooFewRows {
-                rows,
-                least: LEAST_ROWS,
-            };
+            let fault = Fault::TooFewRows { rows, least: LEAST_ROWS };
             problems.push(Place::file(&source.name), fault);
             return None;
         }
@@ -399,11 +341,8 @@ fn is_cut_off(
     if line.ended {
         return false;
     }
-    let decimals = |f: &[(&str, usize)]| {
-        f.last()
-            .and_then(|(t, _)| t.split_once('.'))
-            .map(|(_, d)| d.len())
-    };
+    let decimals =
+        |f: &[(&str, usize)]| f.last().and_then(|(t, _)| t.split_once('.')).map(|(_, d)| d.len());
     let shorter = match before.and_then(decimals) {
         Some(usual) => decimals(fields).is_none_or(|d| d < usual),
         None => false,
@@ -421,18 +360,12 @@ fn check_time(source: &Source, time_s: &[f64], lines: &[usize], problems: &mut P
     for (i, &step) in steps.iter().enumerate() {
         let place = || Place::at(&source.name, lines[i + 1], 1).field(QUANTITIES[TIME].column);
         if step <= 0.0 {
-            let fault = Fault::TimeNotIncreasing {
-                time_s: time_s[i + 1],
-                before_s: time_s[i],
-            };
+            let fault = Fault::TimeNotIncreasing { time_s: time_s[i + 1], before_s: time_s[i] };
             back.push(problems, place(), fault);
         } else if i > 0 && steps[i - 1] <= 0.0 {
             // the step out of a time that ran back is long for that reason alone
         } else if (step - usual).abs() > STEP_TOLERANCE * usual {
-            let fault = Fault::TimeStepUneven {
-                step_s: step,
-                usual_s: usual,
-            };
+            let fault = Fault::TimeStepUneven { step_s: step, usual_s: usual };
             uneven.push(problems, place(), fault);
         }
     }
@@ -461,12 +394,7 @@ impl Listing {
 
     pub(crate) fn finish(self, problems: &mut Problems) {
         if let Some(place) = self.next {
-            problems.push(
-                place,
-                Fault::More {
-                    count: self.count - LISTED,
-                },
-            );
+            problems.push(place, Fault::More { count: self.count - LISTED });
         }
     }
 }

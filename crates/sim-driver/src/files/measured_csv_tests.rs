@@ -3,10 +3,7 @@
 use super::*;
 
 fn parse(text: &str) -> Result<MeasuredTable, Problems> {
-    parse_measured_csv(&Source {
-        name: "r.csv".into(),
-        text: text.into(),
-    })
+    parse_measured_csv(&Source { name: "r.csv".into(), text: text.into() })
 }
 
 fn error(text: &str) -> String {
@@ -18,20 +15,18 @@ const GOOD: &str = "time_s,command_V,displacement_um\n0.0,1,2\n0.1,1.5,2.5\n0.2,
 #[test]
 fn three_ways_to_give_units() {
     let a = parse(GOOD).unwrap();
-    let b = parse(&GOOD.replace(
-        "time_s,command_V,displacement_um",
-        "time [s], command [V], displacement [µm]",
-    ));
-    let c = parse(&GOOD.replace(
-        "time_s,command_V,displacement_um",
-        "Time,command,displacement\n(s),(V),(um)",
-    ))
+    let b =
+        parse(&GOOD.replace(
+            "time_s,command_V,displacement_um",
+            "time [s], command [V], displacement [µm]",
+        ));
+    let c = parse(
+        &GOOD
+            .replace("time_s,command_V,displacement_um", "Time,command,displacement\n(s),(V),(um)"),
+    )
     .unwrap();
     assert_eq!(b.unwrap(), a);
-    assert_eq!(
-        (c.time_s, c.displacement_um),
-        (a.time_s.clone(), a.displacement_um.clone())
-    );
+    assert_eq!((c.time_s, c.displacement_um), (a.time_s.clone(), a.displacement_um.clone()));
     assert_eq!(a.lines, [2, 3, 4]);
     assert!((a.time_step_s - 0.1).abs() < 1e-15);
     assert_eq!(a.load_newton, None);
@@ -59,29 +54,17 @@ fn a_missing_column_is_named() {
 fn wrong_units_come_with_the_factor() {
     let text = error("time_s,command_mV,displacement_mm\n0,1,1\n1,2,1\n2,3,1\n");
     assert!(text.contains("r.csv:1:8: command_mV: the unit is mV, expected V; multiply the column by 0.001 and name it `command_V`"), "{text}");
-    assert!(
-        text.contains("the unit is mm, expected um; multiply the column by 1000"),
-        "{text}"
-    );
+    assert!(text.contains("the unit is mm, expected um; multiply the column by 1000"), "{text}");
     let text = error("time_s,command_V,displacement_furlong\n0,1,1\n1,2,1\n2,3,1\n");
-    assert!(
-        text.contains("the unit is furlong, expected um; give the column as"),
-        "{text}"
-    );
+    assert!(text.contains("the unit is furlong, expected um; give the column as"), "{text}");
     let text = error("time_s,command,displacement_um\n0,1,1\n1,2,1\n2,3,1\n");
-    assert!(
-        text.contains("`command` has no unit; name it `command_V`"),
-        "{text}"
-    );
+    assert!(text.contains("`command` has no unit; name it `command_V`"), "{text}");
 }
 
 #[test]
 fn unknown_and_repeated_columns() {
     let text = error("time_s,comand_V,displacement_um\n0,1,1\n1,2,1\n2,3,1\n");
-    assert!(
-        text.contains("unknown column `comand_V`, did you mean `command_V`?"),
-        "{text}"
-    );
+    assert!(text.contains("unknown column `comand_V`, did you mean `command_V`?"), "{text}");
     let text = error("time_s,command_V,command_V,displacement_um\n0,1,1,1\n1,2,1,1\n");
     assert!(text.contains("there twice"), "{text}");
 }
@@ -89,28 +72,16 @@ fn unknown_and_repeated_columns() {
 #[test]
 fn bad_numbers_have_line_and_column() {
     let text = error("time_s,command_V,displacement_um\n0.0,1,2\n0.1, NaN,2.5\n0.2,2,x3\n");
-    assert!(
-        text.contains("r.csv:3:6: command_V: the value is NaN, expected a finite"),
-        "{text}"
-    );
-    assert!(
-        text.contains("r.csv:4:7: displacement_um: `x3` is not a number"),
-        "{text}"
-    );
+    assert!(text.contains("r.csv:3:6: command_V: the value is NaN, expected a finite"), "{text}");
+    assert!(text.contains("r.csv:4:7: displacement_um: `x3` is not a number"), "{text}");
 }
 
 #[test]
 fn many_alike_are_counted() {
     let rows: Vec<String> = (0..20).map(|i| format!("{i},NaN,1")).collect();
-    let text = error(&format!(
-        "time_s,command_V,displacement_um\n{}\n",
-        rows.join("\n")
-    ));
+    let text = error(&format!("time_s,command_V,displacement_um\n{}\n", rows.join("\n")));
     assert_eq!(text.lines().count(), 7, "{text}");
-    assert!(
-        text.contains("r.csv:7:3: command_V: 15 more problems of this kind"),
-        "{text}"
-    );
+    assert!(text.contains("r.csv:7:3: command_V: 15 more problems of this kind"), "{text}");
 }
 
 #[test]
@@ -119,16 +90,10 @@ fn truncated_files_are_recognised() {
         assert!(parse(&GOOD[..cut]).is_err(), "cut at {cut}");
     }
     let fixed = "time_s,command_V,displacement_um\n0.00,1.00,2.00\n0.10,1.50,2.50\n0.20,2.00,3.00\n0.30,2.00,3.00";
-    assert!(
-        parse(fixed).is_ok(),
-        "a last line without line end is no truncation by itself"
-    );
+    assert!(parse(fixed).is_ok(), "a last line without line end is no truncation by itself");
     for cut in 1..14 {
         let text = error(&fixed[..fixed.len() - cut]);
-        assert!(
-            text.contains("r.csv:5:1: the last line is cut off"),
-            "{cut}: {text}"
-        );
+        assert!(text.contains("r.csv:5:1: the last line is cut off"), "{cut}: {text}");
     }
 }
 

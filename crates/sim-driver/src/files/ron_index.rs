@@ -30,28 +30,13 @@ pub struct RonIndex {
 impl RonIndex {
     /// Indexes a text; of a malformed one, whatever comes before the flaw.
     pub fn new(file: &str, text: &str) -> Self {
-        let mut scanner = Scanner {
-            bytes: text.as_bytes(),
-            at: 0,
-            entries: Vec::new(),
-            depth: 0,
-        };
+        let mut scanner = Scanner { bytes: text.as_bytes(), at: 0, entries: Vec::new(), depth: 0 };
         scanner.skip_blank();
         scanner.value("");
         let line_starts = std::iter::once(0)
-            .chain(
-                text.bytes()
-                    .enumerate()
-                    .filter(|(_, b)| *b == b'\n')
-                    .map(|(i, _)| i + 1),
-            )
+            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1))
             .collect();
-        Self {
-            file: file.to_owned(),
-            line_starts,
-            text: text.to_owned(),
-            entries: scanner.entries,
-        }
+        Self { file: file.to_owned(), line_starts, text: text.to_owned(), entries: scanner.entries }
     }
 
     /// The name of the file.
@@ -81,10 +66,7 @@ impl RonIndex {
 
     /// The text of a field's value.
     pub fn value_text(&self, path: &str) -> Option<&str> {
-        self.entries
-            .iter()
-            .find(|e| e.path == path)
-            .map(|e| self.text(&e.value))
+        self.entries.iter().find(|e| e.path == path).map(|e| self.text(&e.value))
     }
 
     /// Whether the text has a field.
@@ -96,26 +78,17 @@ impl RonIndex {
     pub(crate) fn place_of_byte(&self, byte: usize) -> Place {
         let line = self.line_starts.partition_point(|&start| start <= byte);
         let start = self.line_starts[line - 1];
-        let column = self
-            .text
-            .get(start..byte)
-            .map_or(byte - start, |t| t.chars().count())
-            + 1;
+        let column = self.text.get(start..byte).map_or(byte - start, |t| t.chars().count()) + 1;
         Place::at(&self.file, line, column)
     }
 
     /// The byte of a line and column, both from 1.
     pub(crate) fn byte(&self, line: usize, column: usize) -> usize {
-        let start = line
-            .checked_sub(1)
-            .and_then(|i| self.line_starts.get(i))
-            .copied();
+        let start = line.checked_sub(1).and_then(|i| self.line_starts.get(i)).copied();
         let Some(start) = start else {
             return self.text.len();
         };
-        let into = self.text[start..]
-            .char_indices()
-            .nth(column.saturating_sub(1));
+        let into = self.text[start..].char_indices().nth(column.saturating_sub(1));
         into.map_or(self.text.len(), |(i, _)| start + i)
     }
 
@@ -290,11 +263,7 @@ impl Scanner<'_> {
             };
             let value_start = self.at;
             let slot = self.entries.len();
-            self.entries.push(Entry {
-                path: path.clone(),
-                start,
-                value: value_start..value_start,
-            });
+            self.entries.push(Entry { path: path.clone(), start, value: value_start..value_start });
             self.value(&path);
             self.entries[slot].value = value_start..self.at;
             index += 1;

@@ -41,11 +41,7 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
     for _ in 0..MOST_PROBLEMS {
         match options.from_str::<T>(&text) {
             Ok(value) => {
-                return RonFile {
-                    value: Some(value),
-                    index,
-                    problems,
-                };
+                return RonFile { value: Some(value), index, problems };
             }
             Err(error) => {
                 let field = note(&error, &index, &blanked, &mut problems);
@@ -58,11 +54,7 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
             }
         }
     }
-    RonFile {
-        value: None,
-        index,
-        problems,
-    }
+    RonFile { value: None, index, problems }
 }
 
 /// Writes a value as readable RON.
@@ -70,13 +62,9 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
 /// # Errors
 /// The error of the RON writer: a value that RON cannot express.
 pub fn ron_text<T: Serialize>(value: &T) -> Result<String, RonError> {
-    let pretty = PrettyConfig::new()
-        .separate_tuple_members(false)
-        .compact_arrays(true);
+    let pretty = PrettyConfig::new().separate_tuple_members(false).compact_arrays(true);
     let text = options().to_string_pretty(value, pretty)?;
-    Ok(format!(
-        "#![enable(implicit_some, unwrap_variant_newtypes)]\n{text}\n"
-    ))
+    Ok(format!("#![enable(implicit_some, unwrap_variant_newtypes)]\n{text}\n"))
 }
 
 /// Notes an error; returns the path and the bytes of the field it belongs to, if it is confined to one.
@@ -87,9 +75,7 @@ fn note(
     problems: &mut Problems,
 ) -> Option<(String, Range<usize>)> {
     let start = index.byte(error.span.start.line, error.span.start.col);
-    let end = index
-        .byte(error.span.end.line, error.span.end.col)
-        .max(start);
+    let end = index.byte(error.span.end.line, error.span.end.col).max(start);
     let ranges = [start..end, start..start, end..end];
     let entry = ranges.iter().find_map(|r| index.innermost(r));
     let section = || match entry {
@@ -103,22 +89,12 @@ fn note(
             let suffix = format!(".{field}");
             // a field blanked out above is not missing
             if !blanked.iter().any(|b| b == name || b.ends_with(&suffix)) {
-                problems.push(
-                    section(),
-                    Fault::MissingKey {
-                        key: (*field).to_owned(),
-                    },
-                );
+                problems.push(section(), Fault::MissingKey { key: (*field).to_owned() });
             }
             None
         }
         (RonError::DuplicateStructField { field, .. }, _) => {
-            problems.push(
-                section(),
-                Fault::RepeatedKey {
-                    key: (*field).to_owned(),
-                },
-            );
+            problems.push(section(), Fault::RepeatedKey { key: (*field).to_owned() });
             None
         }
         (code, Some(entry)) => {
@@ -146,16 +122,12 @@ fn note(
 /// What is wrong with a field, if the error is about one field alone.
 fn field_fault(code: &RonError) -> Option<Fault> {
     match code {
-        RonError::NoSuchStructField {
-            expected, found, ..
-        } => Some(Fault::UnknownKey {
+        RonError::NoSuchStructField { expected, found, .. } => Some(Fault::UnknownKey {
             found: found.clone(),
             known: expected.join(", "),
             nearest: nearest(found, expected.iter().copied()),
         }),
-        RonError::NoSuchEnumVariant {
-            expected, found, ..
-        } => Some(Fault::UnknownChoice {
+        RonError::NoSuchEnumVariant { expected, found, .. } => Some(Fault::UnknownChoice {
             found: found.clone(),
             known: expected.join(", "),
             nearest: nearest(found, expected.iter().copied()),
@@ -173,45 +145,32 @@ fn field_fault(code: &RonError) -> Option<Fault> {
         | RonError::ExpectedOption
         | RonError::ExpectedUnit
         | RonError::IntegerOutOfBounds
-        | RonError::InvalidIntegerDigit { .. } => Some(Fault::WrongType {
-            message: sentence(code),
-        }),
-        RonError::Message(message) => Some(Fault::Refused {
-            message: message.clone(),
-        }),
+        | RonError::InvalidIntegerDigit { .. } => {
+            Some(Fault::WrongType { message: sentence(code) })
+        }
+        RonError::Message(message) => Some(Fault::Refused { message: message.clone() }),
         _ => None,
     }
 }
 
 fn syntax(code: &RonError) -> Fault {
-    Fault::Syntax {
-        message: sentence(code),
-    }
+    Fault::Syntax { message: sentence(code) }
 }
 
 /// The RON reader's own words, beginning in lower case.
 fn sentence(code: &RonError) -> String {
     let text = code.to_string();
     let mut chars = text.chars();
-    chars
-        .next()
-        .map(|c| c.to_lowercase().collect::<String>() + chars.as_str())
-        .unwrap_or_default()
+    chars.next().map(|c| c.to_lowercase().collect::<String>() + chars.as_str()).unwrap_or_default()
 }
 
 /// Replaces bytes and the comma behind them by blanks; lines stay where they are.
 fn blank(text: &mut String, range: Range<usize>) {
     let behind = &text[range.end..];
-    let comma = behind
-        .trim_start()
-        .starts_with(',')
-        .then(|| behind.find(','))
-        .flatten();
+    let comma = behind.trim_start().starts_with(',').then(|| behind.find(',')).flatten();
     let end = range.end + comma.map_or(0, |c| c + 1);
-    let blanks: String = text[range.start..end]
-        .bytes()
-        .map(|b| if b == b'\n' { '\n' } else { ' ' })
-        .collect();
+    let blanks: String =
+        text[range.start..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }).collect();
     text.replace_range(range.start..end, &blanks);
 }
 
@@ -229,10 +188,7 @@ mod tests {
 
     impl Default for Inner {
         fn default() -> Self {
-            Self {
-                radius_m: 4.94,
-                blades: 4,
-            }
+            Self { radius_m: 4.94, blades: 4 }
         }
     }
 
@@ -253,10 +209,7 @@ mod tests {
     }
 
     fn read(text: &str) -> RonFile<Outer> {
-        read_ron(&Source {
-            name: "t.ron".into(),
-            text: text.into(),
-        })
+        read_ron(&Source { name: "t.ron".into(), text: text.into() })
     }
 
     #[test]
@@ -265,13 +218,7 @@ mod tests {
             read("(rotor: (radius_m: 5), choice: Given(blades: 2), optional: 3, list: [(), ()])");
         assert!(file.problems.is_empty(), "{}", file.problems);
         let value = file.value.unwrap();
-        assert_eq!(
-            value.choice,
-            Choice::Given(Inner {
-                radius_m: 4.94,
-                blades: 2
-            })
-        );
+        assert_eq!(value.choice, Choice::Given(Inner { radius_m: 4.94, blades: 2 }));
         let again = read(&ron_text(&value).unwrap());
         assert_eq!(again.value.unwrap(), value);
     }
@@ -290,24 +237,15 @@ mod tests {
             ),
             "{text}"
         );
-        assert!(
-            lines[1].starts_with("t.ron:4:5: rotor.blades: has the wrong type"),
-            "{text}"
-        );
+        assert!(lines[1].starts_with("t.ron:4:5: rotor.blades: has the wrong type"), "{text}");
         assert!(
             lines[2].starts_with(
                 "t.ron:6:3: choice: unknown choice `Unifrom`, did you mean `Uniform`?"
             ),
             "{text}"
         );
-        assert!(
-            lines[3].starts_with("t.ron:7:11: list[0].radius_m: has the wrong type"),
-            "{text}"
-        );
-        assert!(
-            lines[4].starts_with("t.ron:8:3: flaps: unknown key"),
-            "{text}"
-        );
+        assert!(lines[3].starts_with("t.ron:7:11: list[0].radius_m: has the wrong type"), "{text}");
+        assert!(lines[4].starts_with("t.ron:8:3: flaps: unknown key"), "{text}");
         assert!(file.value.is_some(), "the rest is read");
     }
 
@@ -320,16 +258,8 @@ mod tests {
             "{text}"
         );
         let file = read("(rotor: (radius_m: 5) choice: Uniform)");
-        assert!(
-            file.problems.to_string().contains("expected comma"),
-            "{}",
-            file.problems
-        );
+        assert!(file.problems.to_string().contains("expected comma"), "{}", file.problems);
         let file = read("(optional: 1, optional: 2)");
-        assert!(
-            file.problems.to_string().contains("given twice"),
-            "{}",
-            file.problems
-        );
+        assert!(file.problems.to_string().contains("given twice"), "{}", file.problems);
     }
 }

@@ -44,10 +44,7 @@ shipped![
 
 /// Content of a shipped file by its name, such as `fixtures/cases/paper_mu030.ron`.
 pub fn shipped_file(name: &str) -> Option<&'static [u8]> {
-    FILES
-        .iter()
-        .find(|(n, _)| *n == name)
-        .map(|(_, bytes)| *bytes)
+    FILES.iter().find(|(n, _)| *n == name).map(|(_, bytes)| *bytes)
 }
 
 /// Name and content of every shipped file.
@@ -76,9 +73,6 @@ mod tests {
         let shipped: Vec<String> = FILES.iter().map(|(n, _)| (*n).to_owned()).collect();
         assert_eq!(shipped, on_disk);
         let total: usize = FILES.iter().map(|(_, b)| b.len()).sum();
-        assert!(
-            total < 8_000_000,
-            "{total} bytes are too many to ship in the binary"
-        );
+        assert!(total < 8_000_000, "{total} bytes are too many to ship in the binary");
     }
 }

@@ -19,9 +19,7 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), SimError> {
 /// # Errors
 /// [`SimError::WouldOverwrite`] or [`SimError::NotWritten`].
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), SimError> {
-    let taken = || SimError::WouldOverwrite {
-        path: path.to_path_buf(),
-    };
+    let taken = || SimError::WouldOverwrite { path: path.to_path_buf() };
     if path.exists() {
         return Err(taken());
     }
@@ -56,10 +54,7 @@ fn prepare(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile
 }
 
 fn not_written(path: &Path, error: &std::io::Error) -> SimError {
-    SimError::NotWritten {
-        path: path.to_path_buf(),
-        reason: error.to_string(),
-    }
+    SimError::NotWritten { path: path.to_path_buf(), reason: error.to_string() }
 }
 
 #[cfg(test)]

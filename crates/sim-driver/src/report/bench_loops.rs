@@ -28,22 +28,15 @@ pub fn bench_loops(
             continue;
         }
         let simulate = |model: &ActuatorModel| {
-            model
-                .simulate(&record.voltage_volt, record.time_step_s)
-                .map_err(|source| SimError::Actuator {
-                    place: Place::file(&data.folder).field(&record.id),
-                    source,
-                })
+            model.simulate(&record.voltage_volt, record.time_step_s).map_err(|source| {
+                SimError::Actuator { place: Place::file(&data.folder).field(&record.id), source }
+            })
         };
         let dynamic = simulate(&identification.dynamic)?.output_deg;
         let quasi_static = simulate(&identification.static_only)?.output_deg;
         let samples = last_cycle(drive.steady.end, drive.base_hz, record.time_step_s);
         let pick = |values: &[f64], shift: f64| -> Vec<f64> {
-            samples
-                .iter()
-                .filter_map(|&i| values.get(i))
-                .map(|v| v - shift)
-                .collect()
+            samples.iter().filter_map(|&i| values.get(i)).map(|v| v - shift).collect()
         };
         charts.push(LoopChart {
             id: record.id.clone(),
@@ -69,19 +62,10 @@ pub fn bench_loops(
 /// Indices of the last cycle before `end`, thinned to [`MOST_POINTS`] and closed.
 fn last_cycle(end: usize, base_hz: f64, time_step_s: f64) -> Vec<usize> {
     let samples = 1.0 / (base_hz * time_step_s);
-    let first = (0..end)
-        .rev()
-        .take_while(|&i| ((end - i) as f64) <= samples + 1.0)
-        .last();
+    let first = (0..end).rev().take_while(|&i| ((end - i) as f64) <= samples + 1.0).last();
     let Some(first) = first else { return vec![] };
     let stride = (end - first).div_ceil(MOST_POINTS).max(1);
-    (first..end)
-        .rev()
-        .step_by(stride)
-        .collect::<Vec<_>>()
-        .into_iter()
-        .rev()
-        .collect()
+    (first..end).rev().step_by(stride).collect::<Vec<_>>().into_iter().rev().collect()
 }
 
 #[cfg(test)]

@@ -15,14 +15,9 @@ const SERIES: [&str; 5] = ["#8c8c8c", "#0e86d4", "#d55e00", "#009e73", "#cc79a7"
 
 /// The legend stands below the axis title: the top is left to the zoom buttons.
 fn layout() -> Layout {
-    let legend = Legend::new()
-        .orientation(Orientation::Horizontal)
-        .x(0.0)
-        .y(-0.2)
-        .y_anchor(Anchor::Top);
-    Layout::new()
-        .margin(Margin::new().left(56).right(16).top(28).bottom(84))
-        .legend(legend)
+    let legend =
+        Legend::new().orientation(Orientation::Horizontal).x(0.0).y(-0.2).y_anchor(Anchor::Top);
+    Layout::new().margin(Margin::new().left(56).right(16).top(28).bottom(84)).legend(legend)
 }
 
 fn axis(title: &str) -> Axis {
@@ -47,32 +42,12 @@ pub(super) fn loop_chart(chart: &LoopChart) -> Plot {
     let mut plot = Plot::new();
     let u = &chart.voltage_volt;
     if !chart.static_deg.is_empty() {
-        plot.add_trace(line(
-            u,
-            &chart.static_deg,
-            "static model",
-            STATIC,
-            DashType::Dot,
-        ));
+        plot.add_trace(line(u, &chart.static_deg, "static model", STATIC, DashType::Dot));
     }
-    plot.add_trace(line(
-        u,
-        &chart.measured_deg,
-        "measured",
-        MEASURED,
-        DashType::Solid,
-    ));
-    plot.add_trace(line(
-        u,
-        &chart.simulated_deg,
-        "dynamic model",
-        MODEL,
-        DashType::Dash,
-    ));
+    plot.add_trace(line(u, &chart.measured_deg, "measured", MEASURED, DashType::Solid));
+    plot.add_trace(line(u, &chart.simulated_deg, "dynamic model", MODEL, DashType::Dash));
     plot.set_layout(
-        layout()
-            .x_axis(axis("voltage, V"))
-            .y_axis(axis("flap angle, deg").zero_line(false)),
+        layout().x_axis(axis("voltage, V")).y_axis(axis("flap angle, deg").zero_line(false)),
     );
     plot
 }
@@ -83,13 +58,7 @@ pub(super) fn azimuth_chart(chart: &AzimuthChart) -> Plot {
     for (i, flap) in chart.flaps.iter().enumerate() {
         let colour = SERIES[1 + i % (SERIES.len() - 1)];
         let psi = &chart.azimuth_deg;
-        plot.add_trace(line(
-            psi,
-            &flap.voltage_volt,
-            &flap.name,
-            colour,
-            DashType::Solid,
-        ));
+        plot.add_trace(line(psi, &flap.voltage_volt, &flap.name, colour, DashType::Solid));
         let angle = line(psi, &flap.flap_deg, &flap.name, colour, DashType::Solid)
             .y_axis("y2")
             .show_legend(false);
@@ -98,12 +67,7 @@ pub(super) fn azimuth_chart(chart: &AzimuthChart) -> Plot {
     let ticks: Vec<f64> = (0..=4).map(|i| 90.0 * f64::from(i)).collect();
     plot.set_layout(
         layout()
-            .x_axis(
-                axis("azimuth, deg")
-                    .range(vec![0.0, 360.0])
-                    .tick_values(ticks)
-                    .anchor("y2"),
-            )
+            .x_axis(axis("azimuth, deg").range(vec![0.0, 360.0]).tick_values(ticks).anchor("y2"))
             .y_axis(axis("voltage, V").domain(&[0.54, 1.0]))
             .y_axis2(axis("flap, deg").domain(&[0.0, 0.46]).anchor("x")),
     );
@@ -134,10 +98,7 @@ pub(super) fn load_chart(bars: &LoadBars) -> Plot {
         );
     }
     plot.set_layout(
-        layout()
-            .bar_mode(BarMode::Group)
-            .x_axis(axis(""))
-            .y_axis(axis("amplitude, 1e-4")),
+        layout().bar_mode(BarMode::Group).x_axis(axis("")).y_axis(axis("amplitude, 1e-4")),
     );
     plot
 }

@@ -128,16 +128,10 @@ impl StudyReport {
                 actuators.push(actuator);
             }
         }
-        let rows: Vec<&HeadlineRow> = self
-            .headline
-            .iter()
-            .filter(|r| !r.ours.is_empty())
-            .collect();
+        let rows: Vec<&HeadlineRow> = self.headline.iter().filter(|r| !r.ours.is_empty()).collect();
         if !rows.is_empty() {
-            let header: Vec<&str> = ["quantity", "paper"]
-                .into_iter()
-                .chain(actuators.iter().copied())
-                .collect();
+            let header: Vec<&str> =
+                ["quantity", "paper"].into_iter().chain(actuators.iter().copied()).collect();
             text +=
                 "\nBeside the paper (its numbers are for feedback on the hysteretic actuator)\n";
             text += &table(
@@ -147,10 +141,7 @@ impl StudyReport {
                         let found = row.ours.iter().find(|(actuator, _)| actuator == wanted);
                         found.map_or_else(String::new, |(_, number)| number.clone())
                     });
-                    [row.quantity.clone(), row.paper.clone()]
-                        .into_iter()
-                        .chain(ours)
-                        .collect()
+                    [row.quantity.clone(), row.paper.clone()].into_iter().chain(ours).collect()
                 }),
             );
         }

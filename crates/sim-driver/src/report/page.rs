@@ -90,10 +90,8 @@ pub fn report_html(report: &StudyReport) -> String {
 }
 
 fn headline(rows: &[HeadlineRow]) -> Markup {
-    let names: Vec<&String> = rows
-        .first()
-        .map(|r| r.ours.iter().map(|(n, _)| n).collect())
-        .unwrap_or_default();
+    let names: Vec<&String> =
+        rows.first().map(|r| r.ours.iter().map(|(n, _)| n).collect()).unwrap_or_default();
     html! {
         @if !rows.is_empty() {
             section {
@@ -119,11 +117,7 @@ fn state(report: &StudyReport) -> Markup {
         ("shaft tilt, deg", t.alpha_s_deg),
         ("bank, deg", t.phi_s_deg),
     ];
-    let residuals = [
-        ("trim", r.trim),
-        ("periodicity", r.periodicity),
-        ("inflow", r.inflow),
-    ];
+    let residuals = [("trim", r.trim), ("periodicity", r.periodicity), ("inflow", r.inflow)];
     html! {
         section {
             h2 { "Trim and residuals" }
@@ -143,16 +137,7 @@ fn state(report: &StudyReport) -> Markup {
 
 fn fits(report: &StudyReport) -> Markup {
     let optional = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:+.2}"));
-    let header = [
-        "run",
-        "side",
-        "Hz",
-        "V",
-        "NRMSE %",
-        "static only %",
-        "amplitude %",
-        "phase deg",
-    ];
+    let header = ["run", "side", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg"];
     let rows: Vec<Vec<String>> = report
         .fits
         .iter()
@@ -237,9 +222,7 @@ impl Charts {
 /// The plotting library alone, of the scripts plotly brings.
 fn plotly_script() -> String {
     let sources = Plot::offline_js_sources();
-    let end = sources
-        .find("</script>")
-        .map_or(sources.len(), |i| i + "</script>".len());
+    let end = sources.find("</script>").map_or(sources.len(), |i| i + "</script>".len());
     sources[..end].to_owned()
 }
 

@@ -11,18 +11,11 @@ use preisach_dyn::identify::Settings;
 /// A report with every part, the loops from the shipped bench.
 fn example() -> StudyReport {
     let data = read_bench(&Folder::Shipped(SHIPPED_BENCH.to_owned())).unwrap();
-    let settings = Settings {
-        refinement_patience: 0,
-        rounds: 1,
-        ..Settings::default()
-    };
+    let settings = Settings { refinement_patience: 0, rounds: 1, ..Settings::default() };
     let found = identify_bench(&data, &settings).unwrap();
     let azimuth_deg: Vec<f64> = (0..=72).map(|i| 5.0 * f64::from(i)).collect();
     let wave = |amplitude: f64, phase: f64| -> Vec<f64> {
-        azimuth_deg
-            .iter()
-            .map(|p| amplitude * ((3.0 * p).to_radians() - phase).cos())
-            .collect()
+        azimuth_deg.iter().map(|p| amplitude * ((3.0 * p).to_radians() - phase).cos()).collect()
     };
     let flap = |name: &str, phase: f64| FlapTrace {
         name: name.to_owned(),
@@ -40,18 +33,12 @@ fn example() -> StudyReport {
             HeadlineRow {
                 quantity: "3/rev: reduction of J, %".to_owned(),
                 paper: "about 78".to_owned(),
-                ours: vec![
-                    ("ideal".into(), "71".into()),
-                    ("hysteretic".into(), "68".into()),
-                ],
+                ours: vec![("ideal".into(), "71".into()), ("hysteretic".into(), "68".into())],
             },
             HeadlineRow {
                 quantity: "3/rev: lag, deg".to_owned(),
                 paper: "about 41".to_owned(),
-                ours: vec![
-                    ("ideal".into(), "0".into()),
-                    ("hysteretic".into(), "65".into()),
-                ],
+                ours: vec![("ideal".into(), "0".into()), ("hysteretic".into(), "65".into())],
             },
         ],
         fits: found.stored(&data).runs,
@@ -70,21 +57,9 @@ fn example() -> StudyReport {
                 title: (*title).to_owned(),
                 before: [4.0e-4, 4.2e-4, 3.1e-4, 8.8e-5, 9.6e-5, 9.3e-6],
                 after: vec![
-                    (
-                        "ideal".into(),
-                        [2.0e-4, 2.2e-4, 1.1e-4, 5.8e-5, 6.6e-5, 7.3e-6],
-                        71.0,
-                    ),
-                    (
-                        "ignored".into(),
-                        [3.5e-4, 3.2e-4, 3.0e-4, 7.8e-5, 8.6e-5, 9.9e-6],
-                        30.0,
-                    ),
-                    (
-                        "hysteretic".into(),
-                        [2.1e-4, 2.4e-4, 1.2e-4, 5.9e-5, 6.7e-5, 7.5e-6],
-                        68.0,
-                    ),
+                    ("ideal".into(), [2.0e-4, 2.2e-4, 1.1e-4, 5.8e-5, 6.6e-5, 7.3e-6], 71.0),
+                    ("ignored".into(), [3.5e-4, 3.2e-4, 3.0e-4, 7.8e-5, 8.6e-5, 9.9e-6], 30.0),
+                    ("hysteretic".into(), [2.1e-4, 2.4e-4, 1.2e-4, 5.9e-5, 6.7e-5, 7.5e-6], 68.0),
                 ],
             })
             .collect(),
@@ -104,26 +79,15 @@ fn the_page_is_complete_and_loads_nothing() {
     let page = report_html(&report);
     assert_eq!(report.loops.len(), 17, "every periodic run of the bench");
     let boxes = page.matches("<div class=\"chart").count();
-    assert_eq!(
-        boxes,
-        report.loops.len() + report.azimuth.len() + report.loads.len()
-    );
-    for text in [
-        "Beside the paper",
-        "about 78",
-        "Read first",
-        "25.5 Hz",
-        "Sensitivity",
-        "Synthetic",
-    ] {
+    assert_eq!(boxes, report.loops.len() + report.azimuth.len() + report.loads.len());
+    for text in
+        ["Beside the paper", "about 78", "Read first", "25.5 Hz", "Sensitivity", "Synthetic"]
+    {
         assert!(page.contains(text), "{text}");
     }
     // the plotting library is inside, the page's own part asks no network for anything
     assert!(page.contains("plotly.js v"), "plotly is embedded");
-    let own = page
-        .rsplit_once("plotly.js v")
-        .map(|(_, rest)| rest)
-        .unwrap();
+    let own = page.rsplit_once("plotly.js v").map(|(_, rest)| rest).unwrap();
     let own = own.split_once("</script>").map(|(_, rest)| rest).unwrap();
     for word in ["http://", "https://", "src=", "<link", "@import"] {
         assert!(!own.contains(word), "{word}");
@@ -138,11 +102,7 @@ fn titles_cannot_break_the_page() {
     // two scripts open and two close: library and charts
     assert!(!page.contains("</script><b>"), "title is escaped");
     let own = page.rfind("const charts").map(|i| &page[i..]).unwrap();
-    assert_eq!(
-        own.matches("</script>").count(),
-        1,
-        "only the end of the script itself"
-    );
+    assert_eq!(own.matches("</script>").count(), 1, "only the end of the script itself");
 }
 
 #[test]
@@ -156,9 +116,6 @@ fn a_stored_report_gives_the_same_page() {
 
 #[test]
 fn an_empty_report_is_a_page() {
-    let page = report_html(&StudyReport {
-        title: "empty".into(),
-        ..StudyReport::default()
-    });
+    let page = report_html(&StudyReport { title: "empty".into(), ..StudyReport::default() });
     assert!(page.contains("Trim and residuals") && !page.contains("Beside the paper"));
 }

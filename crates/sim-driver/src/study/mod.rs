@@ -3,15 +3,15 @@
 mod drive;
 mod error;
 mod lines;
-mod plant;
 mod paper;
+mod plant;
 mod run;
 mod sensitivity;
 mod tables;
 
 pub use drive::{FlapDrive, FlapMotion, MEAN_FLAP_TOLERANCE_DEG};
-pub use lines::control_line;
 pub use error::{PlantError, StudyError};
+pub use lines::control_line;
 pub use plant::{PlantState, RotorPlant, TrimmedRotor};
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
 pub use sensitivity::{SENSITIVITY_ROWS, Sensitivity, sensitivities};

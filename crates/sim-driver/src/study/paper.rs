@@ -63,9 +63,12 @@ pub(super) fn headline(result: &RunResult) -> Vec<HeadlineRow> {
     };
     for paper in &HARMONICS {
         let n = paper.per_rev;
-        rows.push(row(format!("{n}/rev: reduction of J, %"), paper.reduction, lines(result, n), |l| {
-            format!("{:.1}", l.reduction_percent)
-        }));
+        rows.push(row(
+            format!("{n}/rev: reduction of J, %"),
+            paper.reduction,
+            lines(result, n),
+            |l| format!("{:.1}", l.reduction_percent),
+        ));
         rows.push(row(
             format!("{n}/rev: flap lags voltage, deg, inboard / outboard"),
             paper.lag,
@@ -76,7 +79,11 @@ pub(super) fn headline(result: &RunResult) -> Vec<HeadlineRow> {
             format!("{n}/rev: outboard leads inboard, deg"),
             paper.lead,
             lines(result, n),
-            |l| l.flaps.get(1).map_or_else(String::new, |f| format!("{:.0}", f.lead_over_inboard_deg)),
+            |l| {
+                l.flaps
+                    .get(1)
+                    .map_or_else(String::new, |f| format!("{:.0}", f.lead_over_inboard_deg))
+            },
         ));
         rows.push(row(
             format!("{n}/rev: flap amplitude, deg, inboard / outboard"),

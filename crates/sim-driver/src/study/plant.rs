@@ -30,7 +30,8 @@ impl TrimmedRotor {
         let case = &loaded.case;
         let at_rotor = |source| SimError::Response { place: loaded.index.place("rotor"), source };
         let blade = case.blade_properties()?;
-        let rotor = Rotor::new(case.rotor_model(), &blade, case.discretisation()).map_err(at_rotor)?;
+        let rotor =
+            Rotor::new(case.rotor_model(), &blade, case.discretisation()).map_err(at_rotor)?;
         let mu = case.advance_ratio;
         let tolerances = case.response_tolerances();
         let mut solver = RotorSolver::new(Arc::new(rotor), mu, tolerances).map_err(at_rotor)?;
@@ -201,10 +202,7 @@ impl Plant for RotorPlant {
         self.answer(control_volt)
     }
 
-    fn measure_many(
-        &mut self,
-        controls_volt: &[Vec<f64>],
-    ) -> Result<Vec<Measurement>, PlantError> {
+    fn measure_many(&mut self, controls_volt: &[Vec<f64>]) -> Result<Vec<Measurement>, PlantError> {
         let plant = &*self;
         controls_volt.par_iter().map(|control| plant.answer(control)).collect()
     }

@@ -1,8 +1,6 @@
 //! One case from trim to controlled vibration.
 
-use super::{
-    FlapDrive, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor,
-};
+use super::{FlapDrive, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor};
 use crate::case::{Case, ControlActuator, EffortChoice, StrokeChoice};
 use hhc_control::{
     ControlRun, FeedbackController, FeedbackSettings, LoadWeights, Outcome, Plant, RunError,
@@ -288,8 +286,8 @@ impl ControlSet<'_> {
             step_tolerance: control.step_tolerance,
             ..FeedbackSettings::default()
         };
-        let controller = FeedbackController::new(&t, &self.weights(), settings)
-            .map_err(|e| failed(e.into()))?;
+        let controller =
+            FeedbackController::new(&t, &self.weights(), settings).map_err(|e| failed(e.into()))?;
         let (run, rho) = match control.effort {
             EffortChoice::MeetStroke => {
                 let limited = controller.run_within_stroke(&mut plant).map_err(failed)?;

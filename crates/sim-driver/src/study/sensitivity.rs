@@ -5,6 +5,11 @@ use crate::SimError;
 use crate::case::{ControlActuator, InflowChoice, LoadedCase, SectionModelChoice};
 use rayon::prelude::*;
 
+/// Tolerances of the table: a tenth of a percent is printed.
+const TABLE_TRIM_TOLERANCE: f64 = 1e-7;
+const TABLE_PERIODICITY_TOLERANCE: f64 = 1e-9;
+const TABLE_INFLOW_TOLERANCE: f64 = 1e-8;
+
 /// One assumption changed, and what becomes of the reductions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
@@ -15,10 +20,20 @@ pub struct Sensitivity {
     pub reduction_percent: Vec<f64>,
 }
 
+/// Whether an assumption changes the rotor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum RotorOf {
+    /// The rotor and its trim are those of the case.
+    TheCase,
+    /// They are built and trimmed anew.
+    TheChange,
+}
+
 /// A change of the case and of the stroke.
 struct Assumption {
     text: &'static str,
     stroke_factor: f64,
+    rotor: RotorOf,
     change: Box<dyn Fn(&mut LoadedCase) + Sync + Send>,
 }
 
@@ -26,7 +41,8 @@ fn assume(
     text: &'static str,
     change: impl Fn(&mut LoadedCase) + Sync + Send + 'static,
 ) -> Assumption {
-    Assumption { text, stroke_factor: 1.0, change: Box::new(change) }
+    let change = Box::new(change);
+    Assumption { text, stroke_factor: 1.0, rotor: RotorOf::TheChange, change }
 }
 
 fn shift_flaps(loaded: &mut LoadedCase, by_r: f64) {
@@ -44,7 +60,7 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
         if square > 0.0 { 1.0 / square } else { 1.0 }
     };
     vec![
-        assume("as the case", |_| {}),
+        Assumption { rotor: RotorOf::TheCase, ..assume("as the case", |_| {}) },
         assume("flaps .05 R further in", |c| shift_flaps(c, -0.05)),
         assume("flaps .05 R further out", |c| shift_flaps(c, 0.05)),
         assume("twist -4 deg", |c| c.case.blade.twist_rad = (-4.0_f64).to_radians()),
@@ -54,12 +70,19 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
         assume("modal damping 1 % of critical", |c| c.case.blade.modal_damping = 0.01),
         assume("uniform inflow", |c| c.case.inflow = InflowChoice::Uniform),
         assume("quasi-steady sections", |c| c.case.section.model = SectionModelChoice::QuasiSteady),
-        assume("each load weighted by its own baseline", move |c| {
-            let w = &mut c.case.control.load_weights;
-            (w.fx, w.fy, w.fz) = (weight(0), weight(1), weight(2));
-            (w.mx, w.my, w.mz) = (weight(3), weight(4), weight(5));
-        }),
-        Assumption { stroke_factor: 0.5, ..assume("half the stroke", |_| {}) },
+        Assumption {
+            rotor: RotorOf::TheCase,
+            ..assume("each load weighted by its own baseline", move |c| {
+                let w = &mut c.case.control.load_weights;
+                (w.fx, w.fy, w.fz) = (weight(0), weight(1), weight(2));
+                (w.mx, w.my, w.mz) = (weight(3), weight(4), weight(5));
+            })
+        },
+        Assumption {
+            stroke_factor: 0.5,
+            rotor: RotorOf::TheCase,
+            ..assume("half the stroke", |_| {})
+        },
     ]
 }
 
@@ -83,7 +106,13 @@ pub fn sensitivities(
             (assumption.change)(&mut varied);
             varied.case.control.actuators = vec![ControlActuator::Ideal];
             let limited = drives.with_strokes_scaled(assumption.stroke_factor);
-            let rotor = TrimmedRotor::new(&varied, Some(base.trim()))?;
+            varied.case.tolerances.trim = TABLE_TRIM_TOLERANCE;
+            varied.case.tolerances.periodicity = TABLE_PERIODICITY_TOLERANCE;
+            varied.case.tolerances.inflow = TABLE_INFLOW_TOLERANCE;
+            let rotor = match assumption.rotor {
+                RotorOf::TheCase => base.clone(),
+                RotorOf::TheChange => TrimmedRotor::new(&varied, Some(base.trim()))?,
+            };
             let reduction_percent = varied
                 .case
                 .control

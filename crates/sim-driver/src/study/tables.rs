@@ -3,9 +3,7 @@
 use super::{ControlStudy, Sensitivity, paper};
 use crate::SimError;
 use crate::case::LoadedCase;
-use crate::report::{
-    AzimuthChart, FlapTrace, LoadBars, ResultSection, StudyReport, bench_loops,
-};
+use crate::report::{AzimuthChart, FlapTrace, LoadBars, ResultSection, StudyReport, bench_loops};
 use crate::results::{RunResult, StoredResult};
 use crate::run::RunOutcome;
 use rotor_base::uniform_azimuths_rad;

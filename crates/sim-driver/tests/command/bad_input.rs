@@ -20,9 +20,7 @@ fn refused(place: &Place, parts: &[&str]) {
     place.hhc(&["check", "bench"]).rejected(parts);
     place.hhc(&["check", "bench/dataset.ron"]).rejected(parts);
     let before = place.listing();
-    place
-        .hhc(&["identify", "bench", "-o", "actuator.ron"])
-        .rejected(parts);
+    place.hhc(&["identify", "bench", "-o", "actuator.ron"]).rejected(parts);
     assert_eq!(place.listing(), before, "nothing is written");
 }
 
@@ -54,12 +52,7 @@ fn a_wrong_unit() {
         "displacement [mm]",
         &["the unit is mm, expected um; multiply the column by 1000"],
     );
-    spoiled(
-        "five.csv",
-        "command_V",
-        "command",
-        &["the column `command` has no unit"],
-    );
+    spoiled("five.csv", "command_V", "command", &["the column `command` has no unit"]);
 }
 
 #[test]
@@ -88,10 +81,7 @@ fn a_truncated_record() {
         let lines = text.lines().count();
         refused(
             &place,
-            &[
-                &format!("bench/five.csv:{lines}:1: the last line is cut off"),
-                "truncated",
-            ],
+            &[&format!("bench/five.csv:{lines}:1: the last line is cut off"), "truncated"],
         );
     }
 }
@@ -108,10 +98,7 @@ fn time_that_runs_back_or_jumps() {
         "slow.csv",
         "\n0.0400,",
         "\n0.0310,",
-        &[
-            "bench/slow.csv:4:1: time_s: the time step is 0.01",
-            "expected uniform sampling",
-        ],
+        &["bench/slow.csv:4:1: time_s: the time step is 0.01", "expected uniform sampling"],
     );
 }
 
@@ -136,17 +123,12 @@ fn all_problems_of_a_data_folder_in_one_report() {
     write_bench(&place, "bench");
     let dataset = place
         .read("bench/dataset.ron")
-        .replace(
-            "title: \"a test's own bench\"",
-            "titel: \"x\", title: \"\", flap_deg_per_um: -1",
-        )
+        .replace("title: \"a test's own bench\"", "titel: \"x\", title: \"\", flap_deg_per_um: -1")
         .replace("file: \"one_small.csv\"", "file: \"one_smal.csv\"")
         .replace("id: \"five\"", "id: \"slow\"")
         .replace("role: Reference),\n    ]", "role: Refrence),\n    ]");
     place.write("bench/dataset.ron", &dataset);
-    let slow = place
-        .read("bench/slow.csv")
-        .replacen("\n0.0400,", "\n0.0100,", 1);
+    let slow = place.read("bench/slow.csv").replacen("\n0.0400,", "\n0.0100,", 1);
     place.write("bench/slow.csv", &slow);
     let text = place
         .hhc(&["check", "bench"])
@@ -160,9 +142,7 @@ fn all_problems_of_a_data_folder_in_one_report() {
     // the unknown role leaves a run without one: the records wait until that is mended
     place.write(
         "bench/dataset.ron",
-        &dataset
-            .replace("Refrence", "Reference")
-            .replace("titel: \"x\", ", ""),
+        &dataset.replace("Refrence", "Reference").replace("titel: \"x\", ", ""),
     );
     let text = place.hhc(&["check", "bench"]).rejected(&[
         "dataset.ron:3:5: title: is empty",
@@ -183,18 +163,11 @@ fn data_folders_that_are_none() {
         "dataset.ron: cannot be read",
         "a data folder is described by its dataset.ron",
     ]);
-    place
-        .hhc(&["identify", "nowhere", "-o", "a.ron"])
-        .rejected(&["cannot be read"]);
+    place.hhc(&["identify", "nowhere", "-o", "a.ron"]).rejected(&["cannot be read"]);
     write_bench(&place, "bench");
     let dataset = place.read("bench/dataset.ron");
-    place.write(
-        "bench/dataset.ron",
-        &dataset.replace("slow.csv", "../case.ron"),
-    );
-    place
-        .hhc(&["check", "bench"])
-        .rejected(&["is not a plain file name inside the data folder"]);
+    place.write("bench/dataset.ron", &dataset.replace("slow.csv", "../case.ron"));
+    place.hhc(&["check", "bench"]).rejected(&["is not a plain file name inside the data folder"]);
 }
 
 /// A case with one wrong value: `check` and `run` refuse it in the same words.
@@ -234,14 +207,8 @@ fn an_advance_ratio_outside_the_models() {
         "(\n  advance_ratio: 0.55,\n)",
         &["case.ron:2:3: advance_ratio: is 0.55, expected 0 to 0.5"],
     );
-    bad_case(
-        "(advance_ratio: -0.01)",
-        &["advance_ratio: is -0.01, expected 0 to 0.5"],
-    );
-    bad_case(
-        "(advance_ratio: NaN)",
-        &["advance_ratio: is NaN, expected 0 to 0.5"],
-    );
+    bad_case("(advance_ratio: -0.01)", &["advance_ratio: is -0.01, expected 0 to 0.5"]);
+    bad_case("(advance_ratio: NaN)", &["advance_ratio: is NaN, expected 0 to 0.5"]);
 }
 
 #[test]
@@ -260,19 +227,13 @@ fn broken_ron() {
         "(\n  advance_ratio: 0.3\n  rotor: (),\n)",
         &["case.ron:3:3: is not valid RON: expected comma"],
     );
-    bad_case(
-        "(\n  rotor: (blades: 4,\n",
-        &["case.ron:", "is not valid RON"],
-    );
+    bad_case("(\n  rotor: (blades: 4,\n", &["case.ron:", "is not valid RON"]);
 }
 
 #[test]
 fn a_trim_out_of_reach() {
     let place = Place::new();
-    place.write(
-        "case.ron",
-        &QUICK_CASE.replace("ct_sigma: 0.07", "ct_sigma: 0.45"),
-    );
+    place.write("case.ron", &QUICK_CASE.replace("ct_sigma: 0.07", "ct_sigma: 0.45"));
     place.hhc(&["check", "case.ron"]).done();
     place.hhc(&["run", "case.ron"]).rejected(&[
         "case.ron:7:22: trim.ct_sigma: trim is out of reach",
@@ -291,11 +252,7 @@ fn numerics_that_fail_exit_with_1() {
     place.write("case.ron", &text);
     let ran = place.hhc(&["run", "case.ron"]);
     assert_eq!(ran.code, 1, "{}", ran.err);
-    assert!(
-        ran.err.contains("trim stopped after 1 iteration"),
-        "{}",
-        ran.err
-    );
+    assert!(ran.err.contains("trim stopped after 1 iteration"), "{}", ran.err);
     assert!(ran.err.contains("residual"), "{}", ran.err);
     assert_eq!(place.listing(), ["case.ron"]);
 }
@@ -303,58 +260,33 @@ fn numerics_that_fail_exit_with_1() {
 #[test]
 fn files_that_are_none() {
     let place = Place::new();
-    place
-        .hhc(&["run", "missing.ron"])
-        .rejected(&["missing.ron: cannot be read", "check the path"]);
+    place.hhc(&["run", "missing.ron"]).rejected(&["missing.ron: cannot be read", "check the path"]);
     place.write("table.csv", "time_s,command_V\n1,2\n");
-    place
-        .hhc(&["check", "table.csv"])
-        .rejected(&["neither a case, a dataset.ron nor an actuator"]);
+    place.hhc(&["check", "table.csv"]).rejected(&["neither a case, a dataset.ron nor an actuator"]);
     place.write("out", "a file where a folder should be");
     place.write("case.ron", QUICK_CASE);
-    place
-        .hhc(&["run", "case.ron"])
-        .rejected(&["cannot be written", "check the folder"]);
+    place.hhc(&["run", "case.ron"]).rejected(&["cannot be written", "check the folder"]);
 }
 
 #[test]
 fn an_actuator_file_that_was_tampered_with() {
     let place = Place::new();
     write_bench(&place, "bench");
-    place
-        .hhc(&["identify", "bench", "-o", "actuator.ron"])
-        .done();
+    place.hhc(&["identify", "bench", "-o", "actuator.ron"]).done();
     place.hhc(&["check", "actuator.ron"]).done();
     let text = place.read("actuator.ron");
-    place.write(
-        "actuator.ron",
-        &text.replacen("zero_um: ", "zero_um: NaN, x: ", 1),
-    );
-    place
-        .hhc(&["check", "actuator.ron"])
-        .rejected(&["model.calibration.x: unknown key `x`"]);
-    place.write(
-        "actuator.ron",
-        &text.replacen("zero_um: ", "zero_um: inf, // ", 1),
-    );
+    place.write("actuator.ron", &text.replacen("zero_um: ", "zero_um: NaN, x: ", 1));
+    place.hhc(&["check", "actuator.ron"]).rejected(&["model.calibration.x: unknown key `x`"]);
+    place.write("actuator.ron", &text.replacen("zero_um: ", "zero_um: inf, // ", 1));
     place
         .hhc(&["check", "actuator.ron"])
         .rejected(&["model.calibration.zero_um: is refused: inf is no actuator's number"]);
-    place.write(
-        "actuator.ron",
-        &text.replacen("(-20.0, 150.0)", "(150.0, -20.0)", 1),
-    );
-    place
-        .hhc(&["check", "actuator.ron"])
-        .rejected(&["actuator.ron:", "is empty or not finite"]);
+    place.write("actuator.ron", &text.replacen("(-20.0, 150.0)", "(150.0, -20.0)", 1));
+    place.hhc(&["check", "actuator.ron"]).rejected(&["actuator.ron:", "is empty or not finite"]);
     place.write("actuator.ron", &text[..text.len() / 2]);
-    place
-        .hhc(&["check", "actuator.ron"])
-        .rejected(&["actuator.ron:"]);
+    place.hhc(&["check", "actuator.ron"]).rejected(&["actuator.ron:"]);
     place.write("case.ron", "(actuator: (model: File(path: \"gone.ron\")))");
-    place
-        .hhc(&["run", "case.ron"])
-        .rejected(&["gone.ron: cannot be read"]);
+    place.hhc(&["run", "case.ron"]).rejected(&["gone.ron: cannot be read"]);
 }
 
 #[test]

@@ -21,25 +21,10 @@ fn close(found: f64, expected: f64, relative: f64) {
 #[test]
 fn modes_of_the_table_1_blade() {
     let place = Place::new();
-    place.write(
-        "case.ron",
-        "(rotor: (ea: 1e6, twist_deg: 0), structure: (elements: 20))",
-    );
-    let args = [
-        "modes",
-        "case.ron",
-        "--no-gyroscopic",
-        "--format",
-        "json",
-        "--speeds",
-        "0,0.5,1",
-    ];
+    place.write("case.ron", "(rotor: (ea: 1e6, twist_deg: 0), structure: (elements: 20))");
+    let args = ["modes", "case.ron", "--no-gyroscopic", "--format", "json", "--speeds", "0,0.5,1"];
     let json = place.hhc(&args).json();
-    close(
-        json["rotor_speed_rad_s"].as_f64().unwrap(),
-        40.107_666,
-        1e-7,
-    );
+    close(json["rotor_speed_rad_s"].as_f64().unwrap(), 40.107_666, 1e-7);
     let modes = json["modes"].as_array().unwrap();
     let expected = [
         ("flap", 1.125_789_21),
@@ -61,16 +46,9 @@ fn modes_of_the_table_1_blade() {
     }
     let fan = json["fan"].as_array().unwrap();
     assert_eq!(fan.len(), 3);
-    assert!(
-        fan[0]["modes"][0]["per_rev"].is_null(),
-        "no per rev at rest"
-    );
+    assert!(fan[0]["modes"][0]["per_rev"].is_null(), "no per rev at rest");
     // non-rotating first flap frequency 0.3654 per nominal rev
-    close(
-        fan[0]["modes"][0]["hz"].as_f64().unwrap(),
-        0.3654 * 383.0 / 60.0,
-        2e-4,
-    );
+    close(fan[0]["modes"][0]["hz"].as_f64().unwrap(), 0.3654 * 383.0 / 60.0, 2e-4);
     assert_eq!(fan[2]["modes"], json["modes"]);
 }
 
@@ -78,27 +56,14 @@ fn modes_of_the_table_1_blade() {
 fn modes_without_a_case_are_the_papers() {
     let place = Place::new();
     let text = place.hhc(&["modes"]).done();
-    assert!(
-        text.contains("flap 1") && text.contains("torsion 2"),
-        "{text}"
-    );
+    assert!(text.contains("flap 1") && text.contains("torsion 2"), "{text}");
     assert!(text.starts_with("Rotor speed 40.1"), "{text}");
     let with = place.hhc(&["modes", "--format", "json"]).json();
-    let without = place
-        .hhc(&["modes", "--no-gyroscopic", "--format", "json"])
-        .json();
+    let without = place.hhc(&["modes", "--no-gyroscopic", "--format", "json"]).json();
     let lag = |json: &Value| json["modes"][4]["per_rev"].as_f64().unwrap();
-    assert!(
-        (lag(&with) - lag(&without)).abs() > 1e-4,
-        "the Coriolis terms act on the lag mode"
-    );
-    let pitched = place
-        .hhc(&["modes", "--pitch-deg", "15", "--format", "json"])
-        .json();
-    assert!(
-        (lag(&pitched) - lag(&with)).abs() > 1e-3,
-        "pitch couples flap and lag"
-    );
+    assert!((lag(&with) - lag(&without)).abs() > 1e-4, "the Coriolis terms act on the lag mode");
+    let pitched = place.hhc(&["modes", "--pitch-deg", "15", "--format", "json"]).json();
+    assert!((lag(&pitched) - lag(&with)).abs() > 1e-3, "pitch couples flap and lag");
 }
 
 /// Exact coefficients of a flapped section, reduced frequency 0.1 (Theodorsen, E = 0.2).
@@ -136,15 +101,9 @@ fn section_against_exact_theory() {
         let json = ask(model, "0", "flap");
         close(pair(&json["cn"])[0], 3.454_59, 1e-6);
         close(pair(&json["ch"])[0], -0.036_915, 2e-5);
-        close(
-            pair(&ask(model, "0", "plunge")["cn"])[0],
-            std::f64::consts::TAU,
-            1e-12,
-        );
+        close(pair(&ask(model, "0", "plunge")["cn"])[0], std::f64::consts::TAU, 1e-12);
     }
-    let text = place
-        .hhc(&["section", "--reduced-frequency", "0.1", "--mach", "0.5"])
-        .done();
+    let text = place.hhc(&["section", "--reduced-frequency", "0.1", "--mach", "0.5"]).done();
     assert!(text.contains("Cn") && text.contains("Ch"), "{text}");
 }
 
@@ -156,9 +115,7 @@ fn init_check_and_the_refusal_to_overwrite() {
     assert!(text.matches("//").count() > 40, "every field is commented");
     let checked = place.hhc(&["check", "case.ron", "--format", "json"]).json();
     assert_eq!(checked["kind"], "case");
-    place
-        .hhc(&["init"])
-        .rejected(&["case.ron exists already and is not overwritten"]);
+    place.hhc(&["init"]).rejected(&["case.ron exists already and is not overwritten"]);
     assert_eq!(place.read("case.ron"), text);
     place.hhc(&["init", "deep/other.ron"]).done();
     place.hhc(&["check", "deep/other.ron"]).done();
@@ -168,24 +125,12 @@ fn init_check_and_the_refusal_to_overwrite() {
 fn identify_writes_an_actuator_that_checks_and_can_be_started_from() {
     let place = Place::new();
     write_bench(&place, "bench");
-    let json = place
-        .hhc(&[
-            "identify",
-            "bench",
-            "-o",
-            "out/actuator.ron",
-            "--format",
-            "json",
-        ])
-        .json();
+    let json =
+        place.hhc(&["identify", "bench", "-o", "out/actuator.ron", "--format", "json"]).json();
     let runs = json["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 4);
-    let side = |id: &str| {
-        runs.iter().find(|r| r["id"] == id).unwrap()["use"]
-            .as_str()
-            .unwrap()
-            .to_owned()
-    };
+    let side =
+        |id: &str| runs.iter().find(|r| r["id"] == id).unwrap()["use"].as_str().unwrap().to_owned();
     assert_eq!(
         (side("slow"), side("one_large"), side("five")),
         ("trained".into(), "trained".into(), "held_out".into())
@@ -195,23 +140,11 @@ fn identify_writes_an_actuator_that_checks_and_can_be_started_from() {
     }
     // no gain in the data set: the slow loop is made +-10 deg
     close(json["deg_per_um"].as_f64().unwrap(), 10.0 / 200.0, 0.01);
-    let checked = place
-        .hhc(&["check", "out/actuator.ron", "--format", "json"])
-        .json();
+    let checked = place.hhc(&["check", "out/actuator.ron", "--format", "json"]).json();
     assert_eq!(checked["kind"], "actuator");
-    let again = [
-        "identify",
-        "bench",
-        "-o",
-        "again.ron",
-        "--start",
-        "out/actuator.ron",
-    ];
+    let again = ["identify", "bench", "-o", "again.ron", "--start", "out/actuator.ron"];
     let text = place.hhc(&again).done();
-    assert!(
-        text.contains("Trained runs") && text.contains("Held-out runs"),
-        "{text}"
-    );
+    assert!(text.contains("Trained runs") && text.contains("Held-out runs"), "{text}");
     assert_eq!(place.read("again.ron"), place.read("out/actuator.ron"));
     let checked = place.hhc(&["check", "bench", "--format", "json"]).json();
     assert_eq!(checked["kind"], "bench");
@@ -221,16 +154,8 @@ fn identify_writes_an_actuator_that_checks_and_can_be_started_from() {
 fn run_prints_and_stores_the_same_result() {
     let place = Place::new();
     place.write("cases/quick.ron", QUICK_CASE);
-    let json = place
-        .hhc(&["run", "cases/quick.ron", "--format", "json"])
-        .json();
-    for key in [
-        "theta0_deg",
-        "theta1c_deg",
-        "theta1s_deg",
-        "alpha_s_deg",
-        "phi_s_deg",
-    ] {
+    let json = place.hhc(&["run", "cases/quick.ron", "--format", "json"]).json();
+    for key in ["theta0_deg", "theta1c_deg", "theta1s_deg", "alpha_s_deg", "phi_s_deg"] {
         assert!(json["trim"][key].is_f64(), "{key}");
     }
     close(json["trim"]["alpha_s_deg"].as_f64().unwrap(), 3.0, 1e-12);
@@ -250,32 +175,14 @@ fn run_prints_and_stores_the_same_result() {
     assert!(stored["program"].as_str().unwrap().starts_with("hhc "));
 
     // uniform is this case's inflow anyway; Drees is not
-    let same = place.hhc(&[
-        "run",
-        "cases/quick.ron",
-        "--inflow",
-        "uniform",
-        "--format",
-        "json",
-    ]);
+    let same = place.hhc(&["run", "cases/quick.ron", "--inflow", "uniform", "--format", "json"]);
     assert_eq!(same.json(), json);
-    let args = [
-        "run",
-        "cases/quick.ron",
-        "--inflow",
-        "drees",
-        "--out",
-        "drees",
-        "--format",
-        "json",
-    ];
+    let args =
+        ["run", "cases/quick.ron", "--inflow", "drees", "--out", "drees", "--format", "json"];
     let drees = place.hhc(&args).json();
     assert_ne!(drees["trim"], json["trim"]);
     let other: Value = serde_json::from_str(&place.read("drees/result.json")).unwrap();
-    assert_ne!(
-        other["key"], stored["key"],
-        "the override is part of the case"
-    );
+    assert_ne!(other["key"], stored["key"], "the override is part of the case");
     let text = place.hhc(&["run", "cases/quick.ron"]).done();
     assert!(text.contains("Residuals  trim"), "{text}");
 }
@@ -284,21 +191,10 @@ fn run_prints_and_stores_the_same_result() {
 fn help_and_usage() {
     let place = Place::new();
     let text = place.hhc(&["--help"]).done();
-    for word in [
-        "run",
-        "identify",
-        "modes",
-        "section",
-        "check",
-        "init",
-        "report",
-        "Exit codes",
-    ] {
+    for word in ["run", "identify", "modes", "section", "check", "init", "report", "Exit codes"] {
         assert!(text.contains(word), "{word} in {text}");
     }
     assert!(place.hhc(&["--version"]).done().starts_with("hhc "));
     place.hhc(&["fly"]).rejected(&["fly"]);
-    place
-        .hhc(&["report", "."])
-        .rejected(&["study.json: cannot be read"]);
+    place.hhc(&["report", "."]).rejected(&["study.json: cannot be read"]);
 }

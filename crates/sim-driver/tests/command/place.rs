@@ -1,12 +1,6 @@
 //! Running `hhc` in a folder of its own.
-#![expect(
-    clippy::disallowed_methods,
-    reason = "tests write the files they try the command on"
-)]
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test that cannot set up its folder fails"
-)]
+#![expect(clippy::disallowed_methods, reason = "tests write the files they try the command on")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot set up its folder fails")]
 
 use std::fmt::Write;
 use std::path::Path;
@@ -19,9 +13,7 @@ pub(crate) struct Place {
 
 impl Place {
     pub(crate) fn new() -> Self {
-        Self {
-            folder: tempfile::tempdir().unwrap(),
-        }
+        Self { folder: tempfile::tempdir().unwrap() }
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -90,11 +82,7 @@ impl Ran {
     /// Asserts success and returns what was printed.
     #[track_caller]
     pub(crate) fn done(self) -> String {
-        assert_eq!(
-            self.code, 0,
-            "hhc {}\n{}\n{}",
-            self.args, self.out, self.err
-        );
+        assert_eq!(self.code, 0, "hhc {}\n{}\n{}", self.args, self.out, self.err);
         self.out
     }
 
@@ -111,29 +99,11 @@ impl Ran {
     /// Asserts exit code 2, nothing on standard output, and that the message holds every part.
     #[track_caller]
     pub(crate) fn rejected(self, parts: &[&str]) -> String {
-        assert_eq!(
-            self.code, 2,
-            "hhc {}\n{}\n{}",
-            self.args, self.out, self.err
-        );
-        assert!(
-            self.out.is_empty(),
-            "hhc {} printed\n{}",
-            self.args,
-            self.out
-        );
-        assert!(
-            !self.err.contains("panicked") && !self.err.contains("bug"),
-            "{}",
-            self.err
-        );
+        assert_eq!(self.code, 2, "hhc {}\n{}\n{}", self.args, self.out, self.err);
+        assert!(self.out.is_empty(), "hhc {} printed\n{}", self.args, self.out);
+        assert!(!self.err.contains("panicked") && !self.err.contains("bug"), "{}", self.err);
         for part in parts {
-            assert!(
-                self.err.contains(part),
-                "hhc {}: no `{part}` in\n{}",
-                self.args,
-                self.err
-            );
+            assert!(self.err.contains(part), "hhc {}: no `{part}` in\n{}", self.args, self.err);
         }
         self.err
     }
@@ -176,11 +146,7 @@ pub(crate) fn write_bench(place: &Place, folder: &str) {
             writeln!(text, "{time:.4},{u:.5},{x:.5}").unwrap();
         }
         place.write(&format!("{folder}/{id}.csv"), &text);
-        writeln!(
-            runs,
-            "        (id: \"{id}\", file: \"{id}.csv\", role: Reference),"
-        )
-        .unwrap();
+        writeln!(runs, "        (id: \"{id}\", file: \"{id}.csv\", role: Reference),").unwrap();
     }
     place.write(
         &format!("{folder}/dataset.ron"),
