@@ -307,6 +307,7 @@ fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>) -> String {
                 format!("{:.1}", r.static_nrmse_percent),
                 optional(r.amplitude_error_percent),
                 optional(r.phase_error_deg),
+                r.structured_percent.map_or_else(|| "-".into(), |v| format!("{v:.3}")),
             ]
         }),
     )
