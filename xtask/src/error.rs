@@ -70,4 +70,17 @@ pub enum XtaskError {
         /// The areas there are.
         areas: String,
     },
+    /// The program to sweep could not be set up.
+    #[error(transparent)]
+    Program(#[from] sim_driver::SimError),
+}
+
+impl XtaskError {
+    /// Exit code: 1 for failed numerics, 2 for everything that was wrong before them.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Program(error) => error.exit_code(),
+            _ => 2,
+        }
+    }
 }

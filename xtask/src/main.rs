@@ -53,7 +53,7 @@ fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             say(&mut std::io::stderr(), &format!("error: {error}\n"));
-            ExitCode::from(2)
+            ExitCode::from(error.exit_code())
         }
     }
 }
@@ -77,7 +77,8 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             let folder = golden.unwrap_or_else(|| root.join("fixtures/golden"));
             let mode = if bless { regress::Mode::Bless } else { regress::Mode::Compare };
             let filter = regress::Filter::parse(&filter)?;
-            let report = regress::run(&folder, mode, &filter, regress::sweep_point)?;
+            let program = regress::Program::new()?;
+            let report = regress::run(&folder, mode, &filter, |point| program.sweep_point(point))?;
             say(&mut std::io::stdout(), &report.text());
             Ok(ExitCode::from(report.exit_code()))
         }

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 pub use compare::{Difference, compare, unfit_for_a_golden};
 pub use filter::Filter;
 pub use snapshot::{GUARDED_CHANGE, Group, Snapshot, Tolerance};
-pub use source::{SweepError, sweep_point};
+pub use source::{Program, SweepError};
 pub use sweep::{
     ADVANCE_RATIOS, HARMONICS_PER_REV, HUB_LOADS, SweepPoint, SweepResult, TrimChannels, all_points,
 };

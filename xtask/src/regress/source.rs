@@ -1,6 +1,6 @@
 //! Computes a case of the sweep with the program.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use preisach_dyn::ActuatorModel;
 use sim_driver::SimError;
@@ -28,60 +28,67 @@ pub enum SweepError {
     },
 }
 
-/// The paper's case with its identified actuator.
-struct Paper {
-    loaded: LoadedCase,
+/// The program, ready to compute the cases of the sweep.
+///
+/// Holds the paper's case and the actuator identified for it. Both are made once, before cases run in
+/// parallel: the identification is parallel itself.
+#[derive(Debug, Clone)]
+pub struct Program {
+    paper: LoadedCase,
     actuator: Option<Arc<ActuatorModel>>,
 }
 
-/// Identified once: all cases of the sweep share it.
-static PAPER: LazyLock<Result<Paper, SimError>> = LazyLock::new(|| {
-    let loaded = shipped_case(PAPER_CASE)?;
-    let actuator = case_actuators(&loaded)?.real.map(Arc::new);
-    Ok(Paper { loaded, actuator })
-});
+impl Program {
+    /// Reads the paper's case and identifies its actuator.
+    ///
+    /// # Errors
+    /// [`SimError`] if the shipped files are at fault or the identification fails.
+    pub fn new() -> Result<Self, SimError> {
+        let paper = shipped_case(PAPER_CASE)?;
+        let actuator = case_actuators(&paper)?.real.map(Arc::new);
+        Ok(Self { paper, actuator })
+    }
 
-/// Computes one case: the paper's rotor with Drees inflow at another advance ratio, one harmonic of
-/// control, the identified actuator.
-///
-/// # Errors
-/// [`SweepError`]: what the driver or the study could not do.
-pub fn sweep_point(point: SweepPoint) -> Result<SweepResult, SweepError> {
-    let paper = PAPER.as_ref().map_err(Clone::clone)?;
-    let harmonics = [point.harmonic_per_rev as usize];
-    let mut loaded = paper.loaded.clone();
-    let case = &mut loaded.case;
-    case.advance_ratio = point.advance_ratio;
-    case.inflow = InflowChoice::Drees;
-    case.control.harmonics = vec![harmonics.to_vec()];
-    case.control.actuators = vec![ControlActuator::Hysteretic];
-    let rotor = TrimmedRotor::new(&loaded, None)?;
-    let case = &loaded.case;
-    let drives = Drives::new(case, paper.actuator.clone())?;
-    let studies = control_set(case, &rotor, &drives, &harmonics, &|| ())?;
-    let study = studies.first().ok_or(SweepError::NoControl { point })?;
-    let trim = rotor.trim();
-    let counts = &trim.rotor.residuals;
-    Ok(SweepResult {
-        trim: TrimChannels {
-            theta0_deg: trim.controls.theta0_rad.to_degrees(),
-            theta1c_deg: trim.controls.theta1c_rad.to_degrees(),
-            theta1s_deg: trim.controls.theta1s_rad.to_degrees(),
-            alpha_s_deg: trim.attitude.shaft_tilt_rad.to_degrees(),
-            phi_s_deg: trim.attitude.roll_rad.to_degrees(),
-            inflow: trim.flight.normal_inflow() + trim.rotor.inflow.mean(),
-        },
-        baseline_loads: trim.rotor.hub.harmonic(case.blades),
-        controlled_loads: study.state.rotor.hub.harmonic(case.blades),
-        j_before: study.j_before,
-        j_after: study.j_after,
-        t_matrix_norm_per_volt: study.t_norm,
-        counts: vec![
-            ("trim_iterations", trim.iterations),
-            ("response_iterations", counts.response_iterations),
-            ("inflow_iterations", counts.inflow_iterations),
-            ("control_steps", study.steps()),
-            ("control_halvings", study.halvings() as usize),
-        ],
-    })
+    /// Computes one case: the paper's rotor with Drees inflow at another advance ratio, one harmonic of
+    /// control, the identified actuator.
+    ///
+    /// # Errors
+    /// [`SweepError`]: what the driver or the study could not do.
+    pub fn sweep_point(&self, point: SweepPoint) -> Result<SweepResult, SweepError> {
+        let harmonics = [point.harmonic_per_rev as usize];
+        let mut loaded = self.paper.clone();
+        loaded.case.advance_ratio = point.advance_ratio;
+        loaded.case.inflow = InflowChoice::Drees;
+        loaded.case.control.harmonics = vec![harmonics.to_vec()];
+        loaded.case.control.actuators = vec![ControlActuator::Hysteretic];
+        let case = &loaded.case;
+        let rotor = TrimmedRotor::new(&loaded, None)?;
+        let drives = Drives::new(case, self.actuator.clone())?;
+        let studies = control_set(case, &rotor, &drives, &harmonics, &|| ())?;
+        let study = studies.first().ok_or(SweepError::NoControl { point })?;
+        let trim = rotor.trim();
+        let counts = &trim.rotor.residuals;
+        Ok(SweepResult {
+            trim: TrimChannels {
+                theta0_deg: trim.controls.theta0_rad.to_degrees(),
+                theta1c_deg: trim.controls.theta1c_rad.to_degrees(),
+                theta1s_deg: trim.controls.theta1s_rad.to_degrees(),
+                alpha_s_deg: trim.attitude.shaft_tilt_rad.to_degrees(),
+                phi_s_deg: trim.attitude.roll_rad.to_degrees(),
+                inflow: trim.flight.normal_inflow() + trim.rotor.inflow.mean(),
+            },
+            baseline_loads: trim.rotor.hub.harmonic(case.blades),
+            controlled_loads: study.state.rotor.hub.harmonic(case.blades),
+            j_before: study.j_before,
+            j_after: study.j_after,
+            t_matrix_norm_per_volt: study.t_norm,
+            counts: vec![
+                ("trim_iterations", trim.iterations),
+                ("response_iterations", counts.response_iterations),
+                ("inflow_iterations", counts.inflow_iterations),
+                ("control_steps", study.steps()),
+                ("control_halvings", study.halvings() as usize),
+            ],
+        })
+    }
 }
