@@ -21,3 +21,8 @@ pub use frames::rotating_to_fixed;
 pub use harmonics::{Harmonic, HarmonicSeries, uniform_azimuths_rad, wrap_degrees};
 pub use quadrature::{LagrangeBasis, QuadratureRule, gauss_legendre, gauss_lobatto_nodes};
 pub use scales::RotorScales;
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

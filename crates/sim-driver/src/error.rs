@@ -120,9 +120,9 @@ impl SimError {
             Self::Rejected(_)
             | Self::WouldOverwrite { .. }
             | Self::NotWritten { .. }
-            | Self::Section(_) => Family::RejectedInput,
+            | Self::Section(_)
+            | Self::Misfit { .. } => Family::RejectedInput,
             Self::Actuator { source, .. } => actuator_family(source),
-            Self::Misfit { .. } => Family::RejectedInput,
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),
             Self::Trim { source, .. } => trim_family(source),

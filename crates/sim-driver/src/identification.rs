@@ -294,7 +294,8 @@ impl Printable for IdentifyResult {
     }
 }
 
-fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>) -> String {
+/// How the model fits the runs given.
+pub(crate) fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>) -> String {
     let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
     table(
         &["run", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg", "structured %"],

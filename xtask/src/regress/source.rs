@@ -84,7 +84,6 @@ impl Program {
             t_matrix_norm_per_volt: study.t_norm,
             counts: vec![
                 ("trim_iterations", trim.iterations),
-                ("response_iterations", counts.response_iterations),
                 ("inflow_iterations", counts.inflow_iterations),
                 ("control_steps", study.steps()),
                 ("control_halvings", study.halvings() as usize),

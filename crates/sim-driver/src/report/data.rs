@@ -1,5 +1,6 @@
 //! What a report shows: plain numbers, stored beside the report so that it can be written again.
 
+use crate::identification::fit_table;
 use crate::output::table;
 use crate::results::{Residuals, TrimLine};
 use crate::stored_actuator::StoredFit;
@@ -119,9 +120,13 @@ pub struct ResultSection {
 }
 
 impl StudyReport {
-    /// The comparison with the paper and the further tables, for the terminal.
+    /// The bench fits, the comparison with the paper and the further tables, for the terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
+        if !self.fits.is_empty() {
+            text += &["\nActuator: ", &self.data_title, "\n"].concat();
+            text += &fit_table(self.fits.iter());
+        }
         let mut actuators: Vec<&str> = Vec::new();
         for (actuator, _) in self.headline.iter().flat_map(|row| &row.ours) {
             if !actuators.contains(&actuator.as_str()) {
@@ -145,6 +150,7 @@ impl StudyReport {
                 }),
             );
         }
+        text += "\nReduction counts J_Z alone. The hysteretic actuator can beat the ideal one at the same stroke: its flap\nmotion holds harmonics of its own, and they shake the hub too.\n";
         for section in &self.sections {
             let header: Vec<&str> = section.header.iter().map(String::as_str).collect();
             text.push_str(&["\n", &section.title, ". ", &section.text, "\n"].concat());

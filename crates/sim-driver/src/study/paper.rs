@@ -7,6 +7,9 @@
 use crate::report::HeadlineRow;
 use crate::results::{ControlLine, RunResult};
 
+/// Advance ratio of every number the paper reports.
+pub(super) const ADVANCE_RATIO: f64 = 0.30;
+
 /// What the paper reports of one harmonic.
 struct PaperHarmonic {
     per_rev: usize,

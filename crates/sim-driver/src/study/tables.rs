@@ -33,7 +33,7 @@ pub fn study_report(
         setting: setting(loaded),
         warnings: result.warnings.clone(),
         data_title: outcome.actuators.data_title.clone(),
-        headline: paper::headline(result),
+        headline: if at_paper_condition(loaded) { paper::headline(result) } else { vec![] },
         trim: result.trim,
         residuals: result.residuals,
         fits: outcome.actuators.fits.clone(),
@@ -46,6 +46,11 @@ pub fn study_report(
             vec![sensitivity_section(loaded, sensitivity)]
         },
     })
+}
+
+/// Whether the case flies at the one advance ratio the paper reports.
+fn at_paper_condition(loaded: &LoadedCase) -> bool {
+    (loaded.case.advance_ratio - paper::ADVANCE_RATIO).abs() < 1e-9
 }
 
 fn setting(loaded: &LoadedCase) -> Vec<String> {
