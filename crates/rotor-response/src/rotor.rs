@@ -193,7 +193,7 @@ impl RotorSolver {
     ///
     /// # Errors
     /// [`ResponseError::FlapMotions`], [`ResponseError::Parameter`] for an advance ratio other than
-    /// the solver's; [`ResponseError::ResponseNotConverged`] and
+    /// the solver's; [`ResponseError::Periodic`] and
     /// [`ResponseError::InflowNotConverged`] with what was reached.
     pub fn solve(
         &mut self,
