@@ -157,20 +157,21 @@ pub fn control_set(
         .map(|&n| drives.limit(n).map_or_else(|| drives.full_scale(case, n), Ok))
         .collect::<Result<Vec<FullScale>, _>>()?;
     let set = ControlSet { case, rotor, drives, harmonics, limits };
-    let ideal = set.feedback(ControlActuator::Ideal)?;
-    case.control
-        .actuators
-        .iter()
-        .map(|&actuator| {
-            let study = match actuator {
-                ControlActuator::Ideal => ideal.clone(),
-                ControlActuator::Ignored => set.taken_over(&ideal)?,
-                ControlActuator::Hysteretic => set.feedback(actuator)?,
-            };
-            done();
-            Ok(study)
-        })
-        .collect()
+    // the ideal actuator's run serves two actuators and is made only for them
+    let mut ideal: Option<ControlStudy> = None;
+    let mut studies = Vec::with_capacity(case.control.actuators.len());
+    for &actuator in &case.control.actuators {
+        if actuator != ControlActuator::Hysteretic && ideal.is_none() {
+            ideal = Some(set.feedback(ControlActuator::Ideal)?);
+        }
+        studies.push(match (actuator, &ideal) {
+            (ControlActuator::Ideal, Some(ideal)) => ideal.clone(),
+            (ControlActuator::Ignored, Some(ideal)) => set.taken_over(ideal)?,
+            _ => set.feedback(actuator)?,
+        });
+        done();
+    }
+    Ok(studies)
 }
 
 /// Controls every set of harmonics of the case; sets in parallel, results in the order of the case.
