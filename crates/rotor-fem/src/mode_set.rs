@@ -87,8 +87,8 @@ impl UncoupledMode {
 
     /// Value, first and second radial derivative of the shape at station r/R; zero inboard of the root.
     ///
-    /// The second derivative is that of the element's polynomial: of first order in the element length
-    /// and discontinuous between elements.
+    /// The second derivative is that of the element's polynomial, discontinuous between elements: its
+    /// error is of second order in the element length for bending, of first order for torsion.
     ///
     /// # Errors
     /// [`FemError::Station`] outside 0 to 1.

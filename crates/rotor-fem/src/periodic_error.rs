@@ -57,8 +57,8 @@ pub enum PeriodicError<E: std::error::Error + 'static> {
     /// A mode is in resonance without damping: the orbit is not determined.
     #[error(
         "degree of freedom {dof} resonates at {per_rev} per rev without damping: the smallest dynamic \
-         stiffness of the revolution is {dynamic_stiffness:e} per unit mass (rotor speed squared), not \
-         distinguishable from zero with a time discretisation error of {resolution:e}; give the mode \
+         stiffness of the revolution is {dynamic_stiffness:.2e} per unit mass (rotor speed squared), not \
+         distinguishable from zero with a time discretisation error of {resolution:.1e}; give the mode \
          damping or move its frequency off the integer"
     )]
     Resonance {
@@ -73,8 +73,8 @@ pub enum PeriodicError<E: std::error::Error + 'static> {
     },
     /// The residual did not fall below the tolerance.
     #[error(
-        "no periodic orbit after {iterations} iterations: residual {residual:e}, tolerance \
-         {tolerance:e} (best {}); start nearer, add damping, or raise max_iterations; history: {}",
+        "no periodic orbit after {iterations} iterations: residual {residual:.1e}, tolerance \
+         {tolerance:.1e} (best {:.1e}); start nearer, add damping, or allow more iterations; history: {}",
         .history.iter().copied().fold(f64::INFINITY, f64::min), show(.history)
     )]
     NotConverged {

@@ -8,6 +8,7 @@ mod lag;
 mod loads;
 mod model;
 mod motion;
+mod rigid;
 mod rotor;
 mod span;
 mod structure;

@@ -133,9 +133,28 @@ pub struct ControlLine {
     pub residuals: Residuals,
 }
 
+impl ControlLine {
+    /// The set of harmonics as a title: `2` or `2+3`.
+    pub fn set_name(&self) -> String {
+        let all: Vec<String> = self.harmonics.iter().map(usize::to_string).collect();
+        all.join("+")
+    }
+}
+
+/// Name of a flap, counted from 0 at the root.
+pub fn flap_name(index: usize) -> String {
+    match index {
+        0 => "inboard".to_owned(),
+        1 => "outboard".to_owned(),
+        more => format!("flap {}", more + 1),
+    }
+}
+
 /// Voltage and motion of a flap at one harmonic.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct FlapLine {
+    /// The flap, counted from 0 at the root.
+    pub flap: usize,
     /// Harmonic per rev.
     pub harmonic: usize,
     /// Voltage amplitude, V.

@@ -5,7 +5,7 @@ use crate::actuator::{CaseActuators, case_actuators};
 use crate::case::LoadedCase;
 use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
-use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine};
+use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine, flap_name};
 use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line};
 use std::sync::Arc;
 use trim::TrimSolution;
@@ -120,9 +120,11 @@ impl Printable for RunResult {
         ));
         if !self.control.is_empty() {
             sheet.line(format_args!(
-                "\nControl (reduction of J = 100 (1 - J/J0); flaps from root to tip)"
+                "\nControl: reduction of J = 100 (1 - J/J0) and of the loads, percent"
             ));
             sheet.block(&self.control_table());
+            sheet.line(format_args!("\nFlaps"));
+            sheet.block(&self.flap_table());
         }
         sheet.finish()
     }
@@ -133,32 +135,12 @@ impl RunResult {
         let before = self.baseline.hub_4_per_rev.amplitudes();
         table(
             &[
-                "per rev",
-                "actuator",
-                "J %",
-                "FX %",
-                "FY %",
-                "FZ %",
-                "MX %",
-                "MY %",
-                "MZ %",
-                "flaps deg",
-                "volt",
-                "lag deg",
-                "lead deg",
-                "steps",
+                "per rev", "actuator", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %", "MZ %",
+                "steps", "halved", "ended",
             ],
             self.control.iter().map(|line| {
-                let joined = |pick: fn(&crate::results::FlapLine) -> f64| {
-                    line.flaps
-                        .iter()
-                        .map(|f| format!("{:.1}", pick(f)))
-                        .collect::<Vec<_>>()
-                        .join(" ")
-                };
-                let sets: Vec<String> = line.harmonics.iter().map(usize::to_string).collect();
                 let mut cells = vec![
-                    sets.join("+"),
+                    line.set_name(),
                     line.actuator.clone(),
                     format!("{:.1}", line.reduction_percent),
                 ];
@@ -167,14 +149,43 @@ impl RunResult {
                     after.iter().zip(&before).map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
                 );
                 cells.extend([
-                    joined(|f| f.flap_amplitude_deg),
-                    joined(|f| f.voltage_amplitude_volt),
-                    joined(|f| f.lag_deg),
-                    joined(|f| f.lead_over_inboard_deg),
                     line.steps.to_string(),
+                    line.halvings.to_string(),
+                    line.outcome.clone(),
                 ]);
                 cells
             }),
+        )
+    }
+
+    /// One row per set of harmonics, actuator, harmonic and flap.
+    fn flap_table(&self) -> String {
+        let rows = self.control.iter().flat_map(|line| {
+            line.flaps.iter().map(|f| {
+                vec![
+                    line.set_name(),
+                    line.actuator.clone(),
+                    format!("{}/rev {}", f.harmonic, flap_name(f.flap)),
+                    format!("{:.2}", f.flap_amplitude_deg),
+                    format!("{:.2}", f.voltage_amplitude_volt),
+                    format!("{:.1}", f.lag_deg),
+                    format!("{:.1}", f.lead_over_inboard_deg),
+                    format!("{:.2}", f.bias_volt),
+                ]
+            })
+        });
+        table(
+            &[
+                "per rev",
+                "actuator",
+                "motion of",
+                "flap deg",
+                "volt",
+                "lag deg",
+                "lead deg",
+                "bias V",
+            ],
+            rows,
         )
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_response::{Condition, Controls, RotorSolution, RotorSolver};
-use rotor_wake::{FlightState, InflowModel};
+use rotor_wake::{FlightState, InflowModel, momentum_inflow};
 
 /// What the rotor is trimmed to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,12 +79,21 @@ const PITCH_LIMIT: f64 = 0.6;
 /// Shaft tilt and bank beyond which level flight is not meant, rad.
 const ATTITUDE_LIMIT: f64 = 0.8;
 
+/// Halvings of a step that does not lower the residuals.
+const LARGEST_HALVINGS: i32 = 6;
+/// A step of which no larger part stays within the limits leads out of reach.
+const LEAST_PART: f64 = 1e-3;
+
+/// A step that lowers the residuals, with the response and the residuals after it.
+type Descent = (DVector<f64>, (RotorSolution, DVector<f64>));
+
 const VARIABLES: [&str; 6] = ["theta0", "theta1c", "theta1s", "shaft tilt", "bank", "tail thrust"];
 
 /// Trims the rotor at one advance ratio with given flap motions (none: flaps at rest).
 ///
 /// Newton's method with a finite-difference Jacobian kept by Broyden's update and renewed when it
-/// stops paying.
+/// stops paying. A step that raises the residuals is halved; one that leads beyond the range of a
+/// control stops at its limit, and out of reach is what still points beyond it from there.
 ///
 /// # Errors
 /// [`TrimError::Parameter`] for a bad target, [`TrimError::OutOfReach`],
@@ -107,7 +116,6 @@ struct Problem<'a> {
     inflow: &'a dyn InflowModel,
     advance_ratio: f64,
     target: TrimTarget,
-    ct_sigma: f64,
     weight: f64,
     thrust_coefficient: f64,
     density_chord: f64,
@@ -148,7 +156,6 @@ impl<'a> Problem<'a> {
             inflow,
             advance_ratio,
             target: *target,
-            ct_sigma: loading,
             weight: model.thrust_of_loading(loading),
             thrust_coefficient: model.thrust_coefficient(model.thrust_of_loading(loading)),
             density_chord: model.density_chord(),
@@ -158,16 +165,23 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Starting values: blade-element mean pitch, tilt that balances the drag, torque guess.
-    fn first_guess(&self) -> DVector<f64> {
+    /// Starting values: the controls of a rigid blade under momentum inflow, the tilt that balances the
+    /// drag, a torque guess.
+    fn first_guess(&self, solver: &RotorSolver) -> DVector<f64> {
         let mu = self.advance_ratio;
-        let drag = self.drag(0.0);
-        let tilt = drag / self.weight;
-        let ct = self.thrust_coefficient;
-        let lambda = mu * tilt + 0.5 * ct / mu.max((0.5 * ct).sqrt());
-        let lift_slope = std::f64::consts::TAU;
-        let theta0 = (6.0 * self.ct_sigma / lift_slope + 1.5 * lambda) / (1.0 + 1.5 * mu * mu);
-        let guess = [theta0, 0.01, -2.0 * mu * theta0, tilt, -0.03, 0.03 * self.weight];
+        let tilt = match self.target {
+            TrimTarget::Propulsive { .. } => self.drag(0.0) / self.weight,
+            TrimTarget::WindTunnel { shaft_tilt_rad, .. }
+            | TrimTarget::Prescribed { shaft_tilt_rad, .. } => shaft_tilt_rad,
+        };
+        let flight = FlightState { advance_ratio: mu, shaft_tilt_rad: tilt };
+        let hover = (0.5 * self.thrust_coefficient).sqrt();
+        let induced = momentum_inflow(&flight, self.thrust_coefficient).unwrap_or(hover);
+        let lambda = flight.normal_inflow() + induced;
+        let c = solver.rotor().rigid_blade_controls(mu, lambda, self.weight).unwrap_or_default();
+        let pitch = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad]
+            .map(|angle| angle.clamp(-PITCH_LIMIT, PITCH_LIMIT));
+        let guess = [pitch[0], pitch[1], pitch[2], tilt, -0.03, 0.03 * self.weight];
         DVector::from_column_slice(&guess[..self.unknowns])
     }
 
@@ -246,21 +260,14 @@ impl<'a> Problem<'a> {
         Ok(DMatrix::from_columns(&columns))
     }
 
-    fn check_range(x: &DVector<f64>, iteration: usize, history: &[f64]) -> Result<(), TrimError> {
-        for (j, &value) in x.iter().enumerate().take(5) {
+    /// The part of a step, at most 1, after which the first unknown meets its limit, and which.
+    fn part_within_limits(x: &DVector<f64>, step: &DVector<f64>) -> (f64, usize) {
+        let ratios = x.iter().zip(step).enumerate().take(5).map(|(j, (&value, &change))| {
             let limit = if j < 3 { PITCH_LIMIT } else { ATTITUDE_LIMIT };
-            if !(-limit..=limit).contains(&value) {
-                return Err(TrimError::OutOfReach {
-                    variable: VARIABLES[j],
-                    value_deg: value.to_degrees(),
-                    limit_deg: limit.to_degrees().round(),
-                    iteration,
-                    residual: history.last().copied().unwrap_or(f64::NAN),
-                    history: history.to_vec(),
-                });
-            }
-        }
-        Ok(())
+            let room = (limit - value * change.signum()).max(0.0);
+            (if change == 0.0 { f64::INFINITY } else { room / change.abs() }, j)
+        });
+        ratios.fold((1.0, 0), |least, ratio| if ratio.0 < least.0 { ratio } else { least })
     }
 
     fn solve(
@@ -269,48 +276,89 @@ impl<'a> Problem<'a> {
         settings: &TrimSettings,
         start: Option<&TrimSolution>,
     ) -> Result<TrimSolution, TrimError> {
-        let mut x = start.map_or_else(|| self.first_guess(), |s| self.unknowns_of(s));
+        let mut x = start.map_or_else(|| self.first_guess(solver), |s| self.unknowns_of(s));
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
         let mut history = vec![current.1.amax()];
         let mut jacobian: Option<DMatrix<f64>> =
             start.and_then(|s| s.jacobian.clone()).filter(|j| j.nrows() == self.unknowns);
-        let mut fresh = false;
         for iteration in 0..=settings.max_iterations {
             let residual = current.1.amax();
             if self.unknowns == 0 || residual <= settings.tolerance {
                 return Ok(self.finish(&x, current, (history, iteration), jacobian));
             }
-            let matrix = if let Some(kept) = jacobian.take() {
-                kept
-            } else {
-                fresh = true;
-                self.jacobian(solver, &x, &current)?
+            let (matrix, fresh) = match jacobian.take() {
+                Some(kept) => (kept, false),
+                None => (self.jacobian(solver, &x, &current)?, true),
             };
             let singular = || TrimError::Singular { iteration, residual };
             let step = -matrix.clone().lu().solve(&current.1).ok_or_else(singular)?;
             // a Newton step far from trim may not turn a control by more than 0.2 rad
             let largest = step.iter().take(5).fold(0.0_f64, |m, s| m.max(s.abs()));
             let step = step * (0.2 / largest.max(0.2));
-            let next = &x + &step;
-            Self::check_range(&next, iteration, &history)?;
-            let new = self.evaluate(solver, &next, Some(&current.0))?;
+            let (part, limited) = Self::part_within_limits(&x, &step);
+            if part < LEAST_PART {
+                if !fresh {
+                    continue;
+                }
+                return Err(Self::out_of_reach(limited, x[limited], iteration, history));
+            }
+            let Some((step, new)) = self.descend(solver, &x, &(step * part), &current)? else {
+                if !fresh {
+                    continue;
+                }
+                break;
+            };
             let gained = new.1.amax() <= 0.3 * residual;
             // Broyden's rank-one update; a matrix that stopped paying is computed anew
             let predicted = &current.1 + &matrix * &step;
             let updated = &matrix + (&new.1 - predicted) * step.transpose() / step.norm_squared();
             jacobian = (gained || fresh).then_some(updated);
-            fresh = false;
-            x = next;
+            x += &step;
             current = new;
             history.push(current.1.amax());
         }
         Err(TrimError::NotConverged {
-            iterations: settings.max_iterations,
+            iterations: history.len() - 1,
             residual: current.1.amax(),
             tolerance: settings.tolerance,
             history,
             theta0_deg: self.state(&x).0.theta0_rad.to_degrees(),
         })
+    }
+
+    /// The longest of the step, its half, its quarter... that lowers the norm of the residuals;
+    /// none if no part does. A part at which the rotor has no periodic response is too long too,
+    /// unless none has one: that is the response's error.
+    fn descend(
+        &self,
+        solver: &mut RotorSolver,
+        x: &DVector<f64>,
+        step: &DVector<f64>,
+        current: &(RotorSolution, DVector<f64>),
+    ) -> Result<Option<Descent>, TrimError> {
+        let norm = current.1.norm();
+        let mut failure = None;
+        for halvings in 0..=LARGEST_HALVINGS {
+            let step = step * 0.5_f64.powi(halvings);
+            match self.evaluate(solver, &(x + &step), Some(&current.0)) {
+                Ok(new) if new.1.norm() < norm => return Ok(Some((step, new))),
+                Ok(_) => failure = None,
+                Err(error) => failure = Some(error),
+            }
+        }
+        failure.map_or(Ok(None), Err)
+    }
+
+    fn out_of_reach(limited: usize, value: f64, iteration: usize, history: Vec<f64>) -> TrimError {
+        let limit: f64 = if limited < 3 { PITCH_LIMIT } else { ATTITUDE_LIMIT };
+        TrimError::OutOfReach {
+            variable: VARIABLES[limited],
+            value_deg: value.to_degrees(),
+            limit_deg: limit.to_degrees().round(),
+            iteration,
+            residual: history.last().copied().unwrap_or(f64::NAN),
+            history,
+        }
     }
 
     fn unknowns_of(&self, solution: &TrimSolution) -> DVector<f64> {

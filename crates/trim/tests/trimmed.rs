@@ -112,3 +112,15 @@ fn a_thrust_out_of_reach_is_an_error_with_its_history() {
     assert!(matches!(solve(0.7, &propulsive(0.07)), Err(TrimError::Parameter { .. })));
     assert!(matches!(solve(0.2, &propulsive(-1.0)), Err(TrimError::Parameter { .. })));
 }
+
+/// Every advance ratio trims from the first guess, and in few iterations: a guess far from trim once
+/// sent some of them wandering.
+#[test]
+fn every_advance_ratio_trims_from_the_first_guess() {
+    for k in 0..=10 {
+        let mu = 0.05 * f64::from(k);
+        let t = solve(mu, &propulsive(0.07)).unwrap();
+        assert!(t.iterations <= 12, "mu {mu}: {:?}", t.residual_history);
+        assert!(t.residual <= 1e-9);
+    }
+}

@@ -40,7 +40,7 @@ pub struct CaseFile {
 impl Default for CaseFile {
     fn default() -> Self {
         Self {
-            title: "Paper rotor, mu = 0.30".to_owned(),
+            title: "Untitled case: whatever the file leaves out is the paper rotor's".to_owned(),
             advance_ratio: 0.30,
             rotor: RotorFile::default(),
             flaps: vec![

@@ -27,6 +27,7 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
                         _ => 0.0,
                     };
                     FlapLine {
+                        flap: k,
                         harmonic: n,
                         voltage_amplitude_volt: voltage.amplitude(),
                         flap_amplitude_deg: angle.amplitude(),

@@ -4,7 +4,7 @@ use super::{ControlStudy, Sensitivity, paper};
 use crate::SimError;
 use crate::case::LoadedCase;
 use crate::report::{AzimuthChart, FlapTrace, LoadBars, ResultSection, StudyReport, bench_loops};
-use crate::results::{RunResult, StoredResult};
+use crate::results::{RunResult, StoredResult, flap_name};
 use crate::run::RunOutcome;
 use rotor_base::uniform_azimuths_rad;
 
@@ -75,14 +75,6 @@ fn setting(loaded: &LoadedCase) -> Vec<String> {
 pub(super) fn set_name(harmonics: &[usize]) -> String {
     let all: Vec<String> = harmonics.iter().map(usize::to_string).collect();
     format!("{}/rev", all.join("+"))
-}
-
-fn flap_name(index: usize) -> String {
-    match index {
-        0 => "inboard".to_owned(),
-        1 => "outboard".to_owned(),
-        more => format!("flap {}", more + 1),
-    }
 }
 
 fn azimuth_chart(study: &ControlStudy) -> AzimuthChart {
