@@ -7,13 +7,13 @@
 //! ```
 //! and the four section inputs as velocities: `U_T th - U_P`, `c om`, `U_T delta`, `c delta'`.
 //! The lift is normal to the local flow: a lift per tangential speed `L/|U_T|` gives
-//! `F_z = L`, `F_y = -sgn(U_T) (L/|U_T|) U_P`, which stays finite where the tangential speed vanishes.
-//! It jumps there; where reverse flow begins is therefore taken from the rigid blade, `x + mu sin psi`,
-//! so that the jump does not move with the motion (it would keep the response from converging).
+//! `F_z = L`, `F_y = -s (L/|U_T|) U_P`, which stays finite where the tangential speed vanishes. The
+//! sense `s` of the circulation is the matter of [`ReverseFlow`].
 //!
 //! Source: Johnson, Helicopter Theory (1980), chapter 5, for the velocities; section loads by
 //! `flap-aero`.
 
+use crate::ReverseFlow;
 use crate::blade::ResponseBlade;
 use crate::motion::{Motion, RootPitch};
 use flap_aero::{FreeStream, loads_of_outputs};
@@ -26,8 +26,8 @@ pub(crate) type FlapAngle = [f64; 3];
 pub(crate) struct SectionFlow {
     pub(crate) u_t: f64,
     pub(crate) u_p: f64,
-    /// 1 where the rigid blade meets the air with its leading edge, -1 in reverse flow.
-    pub(crate) direction: f64,
+    /// Sense of the circulation: 1 in flow from the leading edge, -1 in reverse flow.
+    pub(crate) sense: f64,
     /// `[U alpha, c om, U delta, c delta']`.
     pub(crate) input: [f64; 4],
     /// Azimuth derivative of the inputs.
@@ -41,6 +41,7 @@ pub(crate) struct AirPoint {
     pub(crate) cos: f64,
     pub(crate) advance_ratio: f64,
     pub(crate) pitch: RootPitch,
+    pub(crate) reverse_flow: ReverseFlow,
 }
 
 /// Flow at station `i` for a total inflow `lambda` (down positive, tip speed).
@@ -66,7 +67,10 @@ pub(crate) fn section_flow(
     SectionFlow {
         u_t,
         u_p,
-        direction: (blade.grid.x()[i] + mu_sin).signum(),
+        sense: match point.reverse_flow {
+            ReverseFlow::Gradual => u_t / u_t.hypot(u_p).max(f64::MIN_POSITIVE),
+            ReverseFlow::Abrupt => (blade.grid.x()[i] + mu_sin).signum(),
+        },
         input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
         input_rate: [
             u_t_rate * theta + u_t * theta_rate - u_p_rate,
@@ -127,8 +131,7 @@ pub(crate) fn section_loads(
     SectionLoads {
         fz: loads.lift,
         fy: -half
-            * flow.direction
-            * (circulating[0] * flow.u_p + scales.drag * flow.u_t * flow.u_t),
+            * (flow.sense * circulating[0] * flow.u_p + scales.drag * flow.u_t.abs() * flow.u_t),
         moment: loads.moment,
         hinge: loads.hinge,
     }

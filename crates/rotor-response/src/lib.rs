@@ -17,7 +17,7 @@ mod system;
 pub use blade::{Couplings, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;
 pub use loads::{SixLoads, hub_loads};
-pub use model::{Compressibility, Controls, Discretisation, RotorModel};
+pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};
 pub use rotor::{
     Condition, ResponseResiduals, ResponseTolerances, RootBending, Rotor, RotorSolution,
     RotorSolver,

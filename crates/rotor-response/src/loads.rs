@@ -36,7 +36,8 @@ impl SixLoads {
     }
 }
 
-/// Root loads of one blade at one azimuth, rotating frame, about the rotor centre.
+/// Root loads of one blade at one azimuth, rotating shaft axes, about the rotor centre; summed in coned
+/// blade axes by
 ///
 /// ```text
 /// f_x = m (x + u + 2 v' - u'') + F_x      F_x = -w_x F_z - v_x F_y (aerodynamic)
@@ -98,7 +99,20 @@ pub(crate) fn root_loads(
             *t += weight * part;
         }
     }
-    total
+    let [fx, fy, fz, mx, my, mz] = total;
+    let [force, moment] = [[fx, fy, fz], [mx, my, mz]].map(|v| coned_to_shaft(blade.precone, v));
+    [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
+}
+
+/// A vector of the coned blade axes in the rotating shaft axes: x outboard in the plane of the hub, z
+/// along the shaft. Without it the centrifugal force of a coned blade would pull the hub down.
+///
+/// ```text
+/// X = x cos bp - z sin bp,   Y = y,   Z = x sin bp + z cos bp
+/// ```
+fn coned_to_shaft(precone_rad: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let (sin, cos) = precone_rad.sin_cos();
+    [x * cos - z * sin, y, x * sin + z * cos]
 }
 
 /// Flap bending moment at the root by force summation, `int x f_z - N w_x dx`, tip up positive.

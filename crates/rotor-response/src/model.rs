@@ -15,6 +15,27 @@ pub enum Compressibility {
     },
 }
 
+/// How the circulation of a section, and with it the in-plane part of its lift, changes sense where
+/// the tangential speed does.
+///
+/// ```text
+/// F_y = -s (L / |U_T|) U_P - (rho c / 2) c_d0 |U_T| U_T
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ReverseFlow {
+    /// `s = U_T / sqrt(U_T^2 + U_P^2)`, the cosine of the inflow angle: as the flow turns normal to the
+    /// chord the edge at which the circulation is fixed changes, and the circulation passes through
+    /// zero. Continuous, so that the loads converge with the mesh; equal to the small-angle form to
+    /// `(U_P / U_T)^2 / 2`.
+    #[default]
+    Gradual,
+    /// `s = sgn(x + mu sin psi)` of the rigid blade: the small-angle form, whose in-plane load jumps by
+    /// `2 (L / |U_T|) U_P` at the edge of the reverse-flow region. The 4/rev loads then converge slowly
+    /// with the mesh. It follows the rigid blade because a jump that moves with the motion keeps the
+    /// response from converging.
+    Abrupt,
+}
+
 /// The rotor apart from the structure of its blades. Rotor units: length R, mass per length `m0`,
 /// time 1/Omega.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +59,8 @@ pub struct RotorModel {
     pub section_model: AttachedFlowModel,
     /// Mach number.
     pub compressibility: Compressibility,
+    /// Circulation at the edge of the reverse-flow region.
+    pub reverse_flow: ReverseFlow,
     /// Trailing-edge flaps from root to tip.
     pub flaps: Vec<TrailingEdgeFlap>,
 }

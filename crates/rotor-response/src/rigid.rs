@@ -64,7 +64,7 @@ impl Rotor {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Compressibility, Couplings, Discretisation, Rotor, RotorModel};
+    use crate::{Compressibility, Couplings, Discretisation, ReverseFlow, Rotor, RotorModel};
     use approx::assert_relative_eq;
     use flap_aero::AttachedFlowModel;
     use rotor_fem::{BladeProperties, BladeSpec, Twist};
@@ -86,6 +86,7 @@ mod tests {
             couplings: Couplings::Linear,
             section_model: AttachedFlowModel::QuasiSteady,
             compressibility: Compressibility::None,
+            reverse_flow: ReverseFlow::default(),
             flaps: vec![],
         };
         Rotor::new(model, &blade, Discretisation::default()).unwrap()

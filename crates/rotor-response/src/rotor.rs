@@ -298,6 +298,7 @@ impl RotorSolver {
         let stations = &self.rotor.blade.grid.x()[first..];
         let mu = condition.flight.advance_ratio;
         let through = mu * condition.flight.shaft_tilt_rad.tan();
+        let reverse_flow = self.rotor.model().reverse_flow;
         self.time
             .points()
             .iter()
@@ -307,7 +308,7 @@ impl RotorSolver {
                 let flap: Vec<FlapAngle> =
                     condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
                 PointInput {
-                    air: AirPoint { sin, cos, advance_ratio: mu, pitch },
+                    air: AirPoint { sin, cos, advance_ratio: mu, pitch, reverse_flow },
                     inflow: stations.iter().map(|&x| through + inflow.at(azimuth, x)).collect(),
                     flap,
                 }

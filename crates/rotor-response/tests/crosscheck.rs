@@ -8,8 +8,8 @@ mod common;
 use common::{paper_blade, paper_model};
 use rotor_base::HarmonicSeries;
 use rotor_response::{
-    Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
-    RotorSolution, RotorSolver,
+    Condition, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow, Rotor,
+    RotorModel, RotorSolution, RotorSolver,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::sync::Arc;
@@ -44,7 +44,7 @@ fn reference(case: &str) -> Reference {
 }
 
 fn model(couplings: Couplings) -> RotorModel {
-    RotorModel { root_cutout: 0.35, ..paper_model(couplings) }
+    RotorModel { root_cutout: 0.35, reverse_flow: ReverseFlow::Abrupt, ..paper_model(couplings) }
 }
 
 fn solve(couplings: Couplings, discretisation: Discretisation) -> RotorSolution {

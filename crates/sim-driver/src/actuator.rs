@@ -4,7 +4,7 @@ use crate::SimError;
 use crate::case::{ActuatorSource, LoadedCase};
 use crate::files::{BenchData, read_bench};
 use crate::identification::{BenchIdentification, identify_bench};
-use crate::problem::Place;
+use crate::problem::{Fault, Place, Problem};
 use crate::stored_actuator::{StoredFit, read_actuator};
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, VoltageRange};
@@ -73,9 +73,33 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
             actuators.real = Some(stored.model);
         }
     }
+    if let Some(model) = &actuators.real {
+        within_model(loaded, range, model.range_volt)?;
+    }
     let place = loaded.index.place("actuator.bench_rev_hz");
     actuators.warnings = extrapolation_warnings(loaded, actuators.real.as_ref(), &place);
     Ok(actuators)
+}
+
+/// Refuses a range of voltages wider than the actuator model's: what the records do not cover the model
+/// does not know.
+fn within_model(
+    loaded: &LoadedCase,
+    range: VoltageRange,
+    known: VoltageRange,
+) -> Result<(), SimError> {
+    let slack = 1e-9 * known.span_volt();
+    let ends = [range.lowest_volt(), range.highest_volt()];
+    if ends.iter().all(|&volt| known.excess_volt(volt) <= slack) {
+        return Ok(());
+    }
+    let fault = Fault::RangeBeyondRecords {
+        low_volt: ends[0],
+        high_volt: ends[1],
+        known_low_volt: known.lowest_volt(),
+        known_high_volt: known.highest_volt(),
+    };
+    Err(Problem::new(loaded.index.place("actuator.range_V"), fault).into())
 }
 
 /// One warning per harmonic whose frequency lies above everything the bench has seen.

@@ -173,7 +173,9 @@ fn study_family(error: &StudyError) -> Family {
 /// A trim out of reach asks for more than the rotor can give: the case is at fault, not the solver.
 fn trim_family(error: &TrimError) -> Family {
     match error {
-        TrimError::Parameter { .. } | TrimError::OutOfReach { .. } => Family::RejectedInput,
+        TrimError::Parameter { .. }
+        | TrimError::OutOfReach { .. }
+        | TrimError::NoDescent { .. } => Family::RejectedInput,
         TrimError::Response(source) => response_family(source),
         _ => Family::NumericalFailure,
     }

@@ -2,14 +2,15 @@
 
 use crate::SimError;
 use crate::case::{
-    Case, CompressibilityChoice, CouplingsChoice, InflowChoice, SectionModelChoice, TrimValues,
+    Case, CompressibilityChoice, CouplingsChoice, InflowChoice, ReverseFlowChoice,
+    SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, ModeCount, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, RotorModel,
-    TrailingEdgeFlap,
+    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow,
+    RotorModel, TrailingEdgeFlap,
 };
 use rotor_wake::LinearInflow;
 use trim::{TrimSettings, TrimTarget, Vehicle};
@@ -58,6 +59,10 @@ impl Case {
                 CompressibilityChoice::LocalMach => {
                     Compressibility::LocalMach { tip_mach: self.tip_mach() }
                 }
+            },
+            reverse_flow: match self.section.reverse_flow {
+                ReverseFlowChoice::Gradual => ReverseFlow::Gradual,
+                ReverseFlowChoice::Abrupt => ReverseFlow::Abrupt,
             },
             flaps: self
                 .flaps

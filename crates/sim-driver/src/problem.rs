@@ -238,6 +238,23 @@ pub enum Fault {
         "Ignored and Hysteretic need an identified actuator; set actuator.model to Bench(...) or File(...)"
     )]
     NeedsIdentifiedActuator,
+    /// Harmonics are to be controlled, but the blade has no flap.
+    #[error("the blade has no flap to control with; give flaps, or write harmonics: []")]
+    ControlWithoutFlaps,
+    /// A range of voltages reaches beyond what the actuator's records cover.
+    #[error(
+        "({low_volt}, {high_volt}) V reaches beyond the ({known_low_volt}, {known_high_volt}) V the actuator was identified over; narrow the range, or record wider ones"
+    )]
+    RangeBeyondRecords {
+        /// Lower limit, V.
+        low_volt: f64,
+        /// Upper limit, V.
+        high_volt: f64,
+        /// Lower limit of the actuator model, V.
+        known_low_volt: f64,
+        /// Upper limit of the actuator model, V.
+        known_high_volt: f64,
+    },
     /// A range is upside down.
     #[error("({low}, {high}) is no range; give the lower limit first, both finite")]
     EmptyRange {

@@ -129,7 +129,8 @@ pub struct ControlLine {
     pub rho_per_volt2: f64,
     /// Largest flap amplitude allowed at each harmonic of the set, deg.
     pub stroke_limit_deg: Vec<f64>,
-    /// Residuals of the controlled response; the trim is that of the baseline.
+    /// Residuals of the controlled response. Controls and attitude stay as trimmed, so `trim` here is
+    /// what the moving flaps leave unbalanced.
     pub residuals: Residuals,
 }
 

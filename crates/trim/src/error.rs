@@ -1,5 +1,12 @@
 //! The errors of this crate.
 
+/// The last few residuals, for a message.
+fn show(history: &[f64]) -> String {
+    let tail = &history[history.len().saturating_sub(6)..];
+    let shown: Vec<String> = tail.iter().map(|r| format!("{r:.1e}")).collect();
+    shown.join(" ")
+}
+
 /// Why a rotor could not be trimmed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -16,7 +23,8 @@ pub enum TrimError {
     },
     /// A trim variable left the range in which the model means anything.
     #[error(
-        "trim is out of reach: {variable} went to {value_deg:.2} deg (limit {limit_deg} deg) in iteration {iteration} at residual {residual:.3e}; residuals so far {history:?}. Remedy: lower the thrust, the drag area or the advance ratio"
+        "trim is out of reach: {variable} went to {value_deg:.2} deg (limit {limit_deg} deg) in iteration {iteration} at residual {residual:.3e}; residuals so far {}. Remedy: lower the thrust, the drag area or the advance ratio",
+        show(.history)
     )]
     OutOfReach {
         /// Name of the variable.
@@ -32,9 +40,25 @@ pub enum TrimError {
         /// Residuals of all iterations.
         history: Vec<f64>,
     },
+    /// No change of the trim variables lowers the residual any more.
+    #[error(
+        "trim is out of reach: near theta0 {theta0_deg:.2} deg no change of the controls brings the residual below {residual:.2e} of the weight (iteration {iteration}); residuals so far {}. Remedy: lower the thrust, the drag area or the advance ratio",
+        show(.history)
+    )]
+    NoDescent {
+        /// Newton iteration.
+        iteration: usize,
+        /// Residual there, relative to the weight.
+        residual: f64,
+        /// Residuals of all iterations.
+        history: Vec<f64>,
+        /// Collective there, degrees.
+        theta0_deg: f64,
+    },
     /// Newton's method did not converge.
     #[error(
-        "trim stopped after {iterations} iterations at residual {residual:.3e} of the weight (wanted {tolerance:.1e}); residuals {history:?}, last theta0 {theta0_deg:.3} deg. Remedy: start from a nearby trimmed case or relax the tolerance"
+        "trim stopped after {iterations} iterations at residual {residual:.3e} of the weight (wanted {tolerance:.1e}); residuals {}, last theta0 {theta0_deg:.3} deg. Remedy: start from a nearby trimmed case or relax the tolerance",
+        show(.history)
     )]
     NotConverged {
         /// Iterations spent.

@@ -5,7 +5,7 @@ mod solve;
 mod vehicle;
 
 pub use error::TrimError;
-pub use solve::{TrimSettings, TrimSolution, TrimTarget, trim};
+pub use solve::{TrimSettings, TrimSolution, TrimTarget, imbalance, trim};
 pub use vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
 
 /// The example of the crate's README, run as a documentation test.

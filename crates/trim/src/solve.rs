@@ -79,6 +79,8 @@ const PITCH_LIMIT: f64 = 0.6;
 /// Shaft tilt and bank beyond which level flight is not meant, rad.
 const ATTITUDE_LIMIT: f64 = 0.8;
 
+/// Shaft tilt at which a trim starts at most, rad: a larger one is approached by the steps.
+const LARGEST_FIRST_TILT: f64 = 0.4;
 /// Halvings of a step that does not lower the residuals.
 const LARGEST_HALVINGS: i32 = 6;
 /// A step of which no larger part stays within the limits leads out of reach.
@@ -109,6 +111,24 @@ pub fn trim(
 ) -> Result<TrimSolution, TrimError> {
     let problem = Problem::new(solver, inflow, advance_ratio, target)?;
     problem.solve(solver, settings, start)
+}
+
+/// Largest force (moment) left over the weight (weight times R) by another response at the controls
+/// and attitude of a trim: with the flaps at work the trim is not what it was. Zero for prescribed
+/// controls, which ask for no balance.
+///
+/// # Errors
+/// [`TrimError::Parameter`] for a bad target.
+pub fn imbalance(
+    solver: &RotorSolver,
+    inflow: &dyn InflowModel,
+    target: &TrimTarget,
+    trimmed: &TrimSolution,
+    response: &RotorSolution,
+) -> Result<f64, TrimError> {
+    let problem = Problem::new(solver, inflow, trimmed.flight.advance_ratio, target)?;
+    let residual = problem.residual(response, &trimmed.attitude);
+    Ok(if residual.is_empty() { 0.0 } else { residual.amax() })
 }
 
 /// Trim equations at one advance ratio.
@@ -170,7 +190,7 @@ impl<'a> Problem<'a> {
     fn first_guess(&self, solver: &RotorSolver) -> DVector<f64> {
         let mu = self.advance_ratio;
         let tilt = match self.target {
-            TrimTarget::Propulsive { .. } => self.drag(0.0) / self.weight,
+            TrimTarget::Propulsive { .. } => (self.drag(0.0) / self.weight).min(LARGEST_FIRST_TILT),
             TrimTarget::WindTunnel { shaft_tilt_rad, .. }
             | TrimTarget::Prescribed { shaft_tilt_rad, .. } => shaft_tilt_rad,
         };
@@ -229,16 +249,22 @@ impl<'a> Problem<'a> {
         let flap_angles_rad = vec![HarmonicSeries::default(); self.flaps];
         let condition = Condition { flight, controls, flap_angles_rad };
         let rotor = solver.solve(&condition, self.inflow, start)?;
+        let residual = self.residual(&rotor, &attitude);
+        Ok((rotor, residual))
+    }
+
+    /// Trim residuals over the weight of a response at an attitude; empty for prescribed controls.
+    fn residual(&self, rotor: &RotorSolution, attitude: &Attitude) -> DVector<f64> {
         let mean = rotor.hub.mean();
         let residual = match &self.target {
             TrimTarget::Prescribed { .. } => vec![],
             TrimTarget::WindTunnel { .. } => vec![mean[2] - self.weight, mean[3], mean[4]],
             TrimTarget::Propulsive { vehicle, .. } => {
                 let drag = self.drag(attitude.shaft_tilt_rad);
-                equilibrium(mean, &attitude, vehicle, self.weight, drag).to_vec()
+                equilibrium(mean, attitude, vehicle, self.weight, drag).to_vec()
             }
         };
-        Ok((rotor, DVector::from_vec(residual) / self.weight))
+        DVector::from_vec(residual) / self.weight
     }
 
     /// Columns are independent and computed in parallel from the same starting point.
@@ -306,7 +332,8 @@ impl<'a> Problem<'a> {
                 if !fresh {
                     continue;
                 }
-                break;
+                let theta0_deg = self.state(&x).0.theta0_rad.to_degrees();
+                return Err(TrimError::NoDescent { iteration, residual, history, theta0_deg });
             };
             let gained = new.1.amax() <= 0.3 * residual;
             // Broyden's rank-one update; a matrix that stopped paying is computed anew
@@ -318,7 +345,7 @@ impl<'a> Problem<'a> {
             history.push(current.1.amax());
         }
         Err(TrimError::NotConverged {
-            iterations: history.len() - 1,
+            iterations: settings.max_iterations,
             residual: current.1.amax(),
             tolerance: settings.tolerance,
             history,

@@ -5,8 +5,8 @@
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
-    RotorSolver,
+    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow, Rotor,
+    RotorModel, RotorSolver,
 };
 use rotor_wake::LinearInflow;
 use std::sync::Arc;
@@ -28,6 +28,7 @@ fn solver(advance_ratio: f64) -> RotorSolver {
         couplings: Couplings::Full,
         section_model: AttachedFlowModel::QuasiSteady,
         compressibility: Compressibility::None,
+        reverse_flow: ReverseFlow::default(),
         flaps: vec![],
     };
     let rotor = Rotor::new(model, &blade, Discretisation::default()).unwrap();
@@ -106,7 +107,7 @@ fn prescribed_controls_are_left_alone() {
 fn a_thrust_out_of_reach_is_an_error_with_its_history() {
     let error = solve(0.3, &propulsive(0.45)).unwrap_err();
     assert!(
-        matches!(&error, TrimError::OutOfReach { history, .. } | TrimError::NotConverged { history, .. } if !history.is_empty()),
+        matches!(&error, TrimError::OutOfReach { history, .. } | TrimError::NoDescent { history, .. } if !history.is_empty()),
         "{error}"
     );
     assert!(matches!(solve(0.7, &propulsive(0.07)), Err(TrimError::Parameter { .. })));

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor,
-    RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
+    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
+    ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
 };
 use rotor_wake::{FlightState, InflowModel, LinearInflow};
 
@@ -155,6 +155,7 @@ pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel 
         couplings,
         section_model: AttachedFlowModel::QuasiSteady,
         compressibility: Compressibility::None,
+        reverse_flow: ReverseFlow::default(),
         flaps: vec![],
     }
 }
@@ -188,7 +189,8 @@ fn response(
 }
 
 fn solve(case: &Crosscheck) -> Result<RotorSolution, CheckError> {
-    let model = paper_rotor((case.couplings)(), 0.35);
+    let reverse_flow = ReverseFlow::Abrupt; // the small-angle form, as the crosscheck has it
+    let model = RotorModel { reverse_flow, ..paper_rotor((case.couplings)(), 0.35) };
     let d = Discretisation::default();
     response(model, &paper_blade(1.0)?, d, &fixed_controls(), &PRESCRIBED)
 }

@@ -3,7 +3,7 @@
 
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
-use rotor_response::{Compressibility, Couplings, RotorModel, TrailingEdgeFlap};
+use rotor_response::{Compressibility, Couplings, ReverseFlow, RotorModel, TrailingEdgeFlap};
 
 /// Table 1 with the documented defaults where the paper is silent.
 pub(crate) fn paper_spec() -> BladeSpec {
@@ -30,6 +30,7 @@ pub(crate) fn paper_model(couplings: Couplings) -> RotorModel {
         couplings,
         section_model: AttachedFlowModel::QuasiSteady,
         compressibility: Compressibility::None,
+        reverse_flow: ReverseFlow::default(),
         flaps: vec![],
     }
 }

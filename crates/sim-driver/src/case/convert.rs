@@ -69,6 +69,7 @@ fn build(file: &CaseFile, folder: &Folder, scales: RotorScales) -> Case {
         section: SectionValues {
             model: file.aerodynamics.model,
             compressibility: file.aerodynamics.compressibility,
+            reverse_flow: file.aerodynamics.reverse_flow,
             drag_coefficient: file.aerodynamics.drag_coefficient,
             speed_of_sound_m_s: file.aerodynamics.speed_of_sound_m_s,
         },

@@ -227,6 +227,16 @@ pub enum CompressibilityChoice {
     LocalMach,
 }
 
+/// Circulation of a section where its tangential speed changes sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ReverseFlowChoice {
+    /// It passes through zero as the flow turns normal to the chord.
+    Gradual,
+    /// It jumps, as in small-angle theory.
+    Abrupt,
+}
+
 /// Section aerodynamics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -235,6 +245,8 @@ pub struct AerodynamicsFile {
     pub model: SectionModelChoice,
     /// Mach number.
     pub compressibility: CompressibilityChoice,
+    /// Circulation at the edge of the reverse-flow region.
+    pub reverse_flow: ReverseFlowChoice,
     /// Profile drag coefficient.
     pub drag_coefficient: f64,
     /// Speed of sound, m/s.
@@ -246,6 +258,7 @@ impl Default for AerodynamicsFile {
         Self {
             model: SectionModelChoice::HariharanLeishman,
             compressibility: CompressibilityChoice::LocalMach,
+            reverse_flow: ReverseFlowChoice::Gradual,
             drag_coefficient: 0.01,
             speed_of_sound_m_s: 340.3,
         }

@@ -2,7 +2,8 @@
 
 use super::{
     CompressibilityChoice, ControlActuator, CouplingsChoice, EffortChoice, InflowChoice,
-    LoadWeightsFile, ResponseFile, SectionModelChoice, StrokeChoice, TolerancesFile,
+    LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice, StrokeChoice,
+    TolerancesFile,
 };
 use crate::files::Folder;
 use rotor_base::RotorScales;
@@ -109,6 +110,8 @@ pub struct SectionValues {
     pub model: SectionModelChoice,
     /// Mach number.
     pub compressibility: CompressibilityChoice,
+    /// Circulation at the edge of the reverse-flow region.
+    pub reverse_flow: ReverseFlowChoice,
     /// Profile drag coefficient.
     pub drag_coefficient: f64,
     /// Speed of sound, m/s.

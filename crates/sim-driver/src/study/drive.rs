@@ -27,11 +27,15 @@ pub enum FlapDrive {
         gain_deg_per_volt: f64,
         /// Bias, V.
         bias_volt: f64,
+        /// Voltages it may see, V.
+        range_volt: VoltageRange,
     },
     /// An actuator model with memory.
     Model {
         /// The model.
         model: Arc<ActuatorModel>,
+        /// Voltages it may see, V: within the range of the model.
+        range_volt: VoltageRange,
         /// Revolutions per second in the actuator's time.
         rev_hz: f64,
         /// Where the search for the bias starts, V.
@@ -51,7 +55,8 @@ impl FlapDrive {
             voltage.set_harmonic(n, harmonic);
         }
         match self {
-            Self::Ideal { gain_deg_per_volt, bias_volt } => {
+            Self::Ideal { gain_deg_per_volt, bias_volt, range_volt } => {
+                bias_window(*range_volt, alternating_volt(&voltage), Some(*bias_volt))?;
                 let mut flap_deg = HarmonicSeries::zero(0);
                 for &(n, h) in voltages {
                     let scaled = Harmonic {
@@ -63,11 +68,10 @@ impl FlapDrive {
                 voltage.mean = *bias_volt;
                 Ok(FlapMotion { voltage_volt: voltage, flap_deg })
             }
-            Self::Model { model, rev_hz, bias_volt } => {
+            Self::Model { model, range_volt, rev_hz, bias_volt } => {
                 let settings = PeriodicSettings::default();
-                let (low, high) = extremes_volt(&voltage, settings.steps_per_rev);
                 let solver = BiasSolver {
-                    range_volt: bias_window(model.range_volt, low, high)?,
+                    range_volt: bias_window(*range_volt, alternating_volt(&voltage), None)?,
                     guess_volt: *bias_volt,
                     slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
                     tolerance_deg: MEAN_FLAP_TOLERANCE_DEG,
@@ -99,6 +103,24 @@ impl FlapDrive {
         }
     }
 
+    /// The swing of the voltage over what the range leaves it: above 1 it cannot be asked for. About
+    /// its fixed bias for the ideal actuator; over the whole range where the bias is free.
+    pub fn range_ratio(&self, voltages: &[(usize, Harmonic)]) -> f64 {
+        let mut voltage = HarmonicSeries::zero(0);
+        for &(n, harmonic) in voltages {
+            voltage.set_harmonic(n, harmonic);
+        }
+        let (low, high) = alternating_volt(&voltage);
+        match self {
+            Self::Ideal { bias_volt, range_volt, .. } => {
+                let below = bias_volt - range_volt.lowest_volt();
+                let above = range_volt.highest_volt() - bias_volt;
+                f64::max(-low / below, high / above)
+            }
+            Self::Model { range_volt, .. } => (high - low) / range_volt.span_volt(),
+        }
+    }
+
     /// Largest amplitude of one harmonic that stays inside the range of voltages with the bias that
     /// centres the flap, and the stroke it gives.
     ///
@@ -113,15 +135,21 @@ impl FlapDrive {
         harmonic: usize,
         amplitude_volt: f64,
     ) -> Result<FullScale, PlantError> {
-        let Self::Model { model, .. } = self else {
+        let Self::Model { range_volt: range, .. } = self else {
             let motion = self.motion(&[(harmonic, cosine(amplitude_volt))])?;
             let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
             return Ok(FullScale { amplitude_volt, stroke_deg });
         };
-        let range = model.range_volt;
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
         for _ in 0..FULL_SCALE_PASSES {
-            let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
+            let motion = match self.motion(&[(harmonic, cosine(amplitude))]) {
+                // no room for the bias that centres the flap: a smaller amplitude leaves more
+                Err(PlantError::Bias(_)) => {
+                    amplitude *= 0.8;
+                    continue;
+                }
+                motion => motion?,
+            };
             let bias = motion.voltage_volt.mean;
             let room = (range.highest_volt() - bias).min(bias - range.lowest_volt());
             let next = amplitude_volt.min(room - FULL_SCALE_MARGIN_VOLT);
@@ -148,21 +176,34 @@ fn cosine(amplitude: f64) -> Harmonic {
 }
 
 /// Lowest and highest value of the voltage's harmonics over a revolution, bias apart.
-fn extremes_volt(voltage: &HarmonicSeries, steps: usize) -> (f64, f64) {
+fn alternating_volt(voltage: &HarmonicSeries) -> (f64, f64) {
     let alternating = HarmonicSeries { mean: 0.0, ..voltage.clone() };
-    uniform_azimuths_rad(steps)
+    uniform_azimuths_rad(PeriodicSettings::default().steps_per_rev)
         .into_iter()
         .map(|azimuth| alternating.value(azimuth))
         .fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)))
 }
 
-/// The biases that keep the whole voltage inside its range.
-fn bias_window(range: VoltageRange, low: f64, high: f64) -> Result<[f64; 2], PlantError> {
+/// The biases that keep the whole voltage inside its range, `bias_volt` alone if one is given.
+fn bias_window(
+    range: VoltageRange,
+    (low, high): (f64, f64),
+    bias_volt: Option<f64>,
+) -> Result<[f64; 2], PlantError> {
     let window = [range.lowest_volt() - low, range.highest_volt() - high];
-    if window[0] <= window[1] {
-        Ok(window)
-    } else {
-        let (swing_volt, span_volt) = (high - low, range.span_volt());
-        Err(PlantError::VoltageSwing { swing_volt, span_volt })
+    let slack = 1e-9 * range.span_volt();
+    let fits = match bias_volt {
+        Some(bias) => window[0] - slack <= bias && bias <= window[1] + slack,
+        None => window[0] <= window[1],
+    };
+    if fits {
+        return Ok(window);
     }
+    // the swing about a fixed bias counts from the nearer limit
+    let (swing_volt, span_volt) = match bias_volt {
+        Some(bias) if window[0] > bias => (-low, bias - range.lowest_volt()),
+        Some(bias) => (high, range.highest_volt() - bias),
+        None => (high - low, range.span_volt()),
+    };
+    Err(PlantError::VoltageSwing { swing_volt, span_volt })
 }

@@ -20,14 +20,14 @@ pub enum PlantError {
     /// The search for the bias voltage ended for a reason unknown here.
     #[error("the search for the bias voltage failed")]
     BiasSearch,
-    /// The harmonics of the voltage alone are larger than the range.
+    /// The harmonics of the voltage are larger than the range.
     #[error(
         "the voltage swings over {swing_volt:.2} V, the actuator takes {span_volt:.2} V: lower the amplitudes"
     )]
     VoltageSwing {
-        /// Peak to peak of the command, V.
+        /// Peak to peak of the command; from a fixed bias to its furthest peak, V.
         swing_volt: f64,
-        /// Width of the actuator's range, V.
+        /// What the range leaves for that, V.
         span_volt: f64,
     },
 }
@@ -56,6 +56,12 @@ pub enum StudyError {
         /// What went wrong.
         source: PlantError,
     },
+    /// The range of voltages of the case is none.
+    #[error(transparent)]
+    Range(PreisachError),
+    /// The trim target of the case is none.
+    #[error(transparent)]
+    Trim(#[from] trim::TrimError),
     /// The case asks for an actuator it does not have.
     #[error(
         "the case asks for the {actuator} actuator but its actuator model is Ideal: give a bench or an actuator file, or control with ideal alone"

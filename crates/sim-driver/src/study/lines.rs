@@ -56,7 +56,7 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
         rho_per_volt2: study.rho,
         stroke_limit_deg: study.stroke_limit_deg.clone(),
         residuals: Residuals {
-            trim: 0.0,
+            trim: study.trim_imbalance,
             periodicity: rotor.residuals.periodicity,
             inflow: rotor.residuals.inflow,
         },

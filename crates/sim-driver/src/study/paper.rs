@@ -22,7 +22,7 @@ const HARMONICS: [PaperHarmonic; 3] = [
     PaperHarmonic {
         per_rev: 2,
         reduction: "about 29",
-        lag: "about 47 (94 if read as azimuth)",
+        lag: "about 47 (94 if read as azimuth; 32 to 40 in the conclusions)",
         lead: "about 65",
     },
     PaperHarmonic {

@@ -9,7 +9,7 @@ use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{Condition, ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_wake::LinearInflow;
 use std::sync::Arc;
-use trim::{TrimSolution, trim};
+use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};
 
 /// A rotor in trim, flaps at rest: where every control run starts.
 #[derive(Debug, Clone)]
@@ -55,6 +55,19 @@ impl TrimmedRotor {
     /// The rotor.
     pub fn rotor(&self) -> &Rotor {
         self.solver.rotor()
+    }
+
+    /// What another response leaves unbalanced at the controls and attitude of this trim, over the
+    /// weight.
+    ///
+    /// # Errors
+    /// As [`trim::imbalance`].
+    pub fn imbalance(
+        &self,
+        target: &TrimTarget,
+        response: &RotorSolution,
+    ) -> Result<f64, TrimError> {
+        imbalance(&self.solver, &self.inflow, target, &self.trim, response)
     }
 
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
@@ -221,10 +234,26 @@ impl Plant for RotorPlant {
         if amplitudes.iter().zip(&self.full_scale_volt).any(|(volt, full)| volt > full) {
             return Ok(scaled());
         }
+        // harmonics that share a flap share its range of voltages
+        let ratios: Vec<f64> =
+            self.voltages(control_volt)?.iter().map(|v| self.drive.range_ratio(v)).collect();
+        let in_range = |strokes: Vec<f64>| {
+            let pairs = strokes.into_iter().zip(&self.stroke_limits_deg).enumerate();
+            pairs
+                .map(|(pair, (stroke, limit))| {
+                    let flap = self.layout.flap_and_harmonic(pair).map_or(0, |(flap, _)| flap);
+                    stroke.max(limit * ratios[flap])
+                })
+                .collect()
+        };
         match self.flap_motion(control_volt) {
-            Ok(flaps) => Ok(self.pair_motion(&flaps).iter().map(Harmonic::amplitude).collect()),
-            Err(PlantError::Bias(_) | PlantError::VoltageSwing { .. }) => {
-                // several harmonics together leave the range though each alone does not
+            Ok(flaps) => {
+                let motion = self.pair_motion(&flaps);
+                Ok(in_range(motion.iter().map(Harmonic::amplitude).collect()))
+            }
+            Err(PlantError::VoltageSwing { .. }) => Ok(in_range(scaled())),
+            // no bias centres the flap inside the range, though the swing alone fits
+            Err(PlantError::Bias(_)) => {
                 let excess = amplitudes.len() as f64;
                 Ok(scaled().iter().map(|s| s * excess).collect())
             }

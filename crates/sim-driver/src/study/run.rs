@@ -6,7 +6,7 @@ use hhc_control::{
     ControlRun, FeedbackController, FeedbackSettings, LoadWeights, Outcome, Plant, RunError,
     identify_t, reduction_percent,
 };
-use preisach_dyn::ActuatorModel;
+use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -34,6 +34,8 @@ pub struct ControlStudy {
     pub j_after: f64,
     /// Rotor and flaps at the end.
     pub state: PlantState,
+    /// Force (moment) the moving flaps leave unbalanced at the trimmed controls, over the weight.
+    pub trim_imbalance: f64,
 }
 
 impl ControlStudy {
@@ -88,10 +90,13 @@ impl Drives {
         let control = &case.control;
         let gain = case.actuator.ideal_amplitude_deg / control.amplitude_volt;
         let bias_volt = control.bias_volt;
+        let (low, high) = case.actuator.range_volt;
+        let range_volt = VoltageRange::new(low, high).map_err(StudyError::Range)?;
         let mut drives = Self {
-            ideal: FlapDrive::Ideal { gain_deg_per_volt: gain, bias_volt },
+            ideal: FlapDrive::Ideal { gain_deg_per_volt: gain, bias_volt, range_volt },
             hysteretic: model.map(|model| FlapDrive::Model {
                 model,
+                range_volt,
                 rev_hz: case.actuator.bench_rev_hz,
                 bias_volt,
             }),
@@ -259,9 +264,12 @@ impl ControlSet<'_> {
         })?;
         let blades = self.case.blades;
         let before = self.rotor.trim().rotor.hub.harmonic(blades);
+        let target = self.case.trim_target();
+        let trim_imbalance = self.rotor.imbalance(&target, &state.rotor)?;
         Ok(ControlStudy {
             harmonics: self.harmonics.to_vec(),
             actuator,
+            trim_imbalance,
             control_volt,
             run,
             t_norm,
