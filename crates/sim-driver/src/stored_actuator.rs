@@ -112,6 +112,9 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
             numbers.push(("model.law", gain.gain_deg_per_volt, gain.gain_deg_per_volt != 0.0));
             numbers.push(("model.law", gain.bias_volt, true));
         }
+        if let Err(error) = stored.model.check_stages() {
+            problems.push(index.place("model"), Fault::Refused { message: error.to_string() });
+        }
         for (field, value, ok) in numbers {
             if !(ok && value.is_finite()) {
                 let message = format!("{value} is no actuator's number");
