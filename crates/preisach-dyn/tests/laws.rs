@@ -1,7 +1,6 @@
 //! Every law: storing and taking up, shift, starting states; Prandtl-Ishlinskii and Bouc-Wen
 //! against exact solutions.
 #![expect(clippy::float_cmp, reason = "results are claimed to be equal to the last bit")]
-#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 mod common;
 

@@ -138,12 +138,14 @@ fn every_stage_has_its_identity_and_its_effect() {
     }
 }
 
+type Family = Box<dyn Fn(f64) -> ActuatorModel>;
+
 #[test]
 fn effects_vanish_in_proportion_to_their_parameter() {
     // half the parameter, half the effect, where the effect is smooth in it
     let step_s = 1e-3;
     let input = sampled(1500, step_s, |t| 65.0 + 80.0 * (TAU * 3.0 * t).sin());
-    let families: Vec<(&str, Box<dyn Fn(f64) -> ActuatorModel>)> = vec![
+    let families: Vec<(&str, Family)> = vec![
         ("lag", Box::new(|x| amplifier(AmplifierStage::Lag(Lag { tau_s: 1e-5 * x })))),
         ("delay", Box::new(|x| amplifier(AmplifierStage::Delay(Delay { delay_s: 1e-5 * x })))),
         (

@@ -11,15 +11,15 @@ use preisach_dyn::{
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-pub const LOW: f64 = -20.0;
-pub const HIGH: f64 = 150.0;
+pub(crate) const LOW: f64 = -20.0;
+pub(crate) const HIGH: f64 = 150.0;
 
 /// Written to a file and read back.
-pub fn stored<T: Serialize + DeserializeOwned>(value: &T) -> T {
+pub(crate) fn stored<T: Serialize + DeserializeOwned>(value: &T) -> T {
     serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
 }
 
-pub fn map(levels: usize) -> (PreisachGrid, PlayMap) {
+pub(crate) fn map(levels: usize) -> (PreisachGrid, PlayMap) {
     let grid = PreisachGrid::new(VoltageRange::amplified_stack(), levels).unwrap();
     let n = levels as f64;
     let rises: Vec<Vec<f64>> = (0..levels)
@@ -36,7 +36,7 @@ pub fn map(levels: usize) -> (PreisachGrid, PlayMap) {
     (grid, PlayMap::from_rises(&grid, 0.5, &rises).unwrap())
 }
 
-pub fn plays() -> Vec<WeightedPlay> {
+pub(crate) fn plays() -> Vec<WeightedPlay> {
     (1..8_u32)
         .map(|i| WeightedPlay {
             threshold_volt: 4.0 * f64::from(i),
@@ -45,7 +45,7 @@ pub fn plays() -> Vec<WeightedPlay> {
         .collect()
 }
 
-pub fn prandtl(
+pub(crate) fn prandtl(
     plays: Vec<WeightedPlay>,
     threshold_growth_s: f64,
     envelope: Envelope,
@@ -59,7 +59,7 @@ pub fn prandtl(
     }
 }
 
-pub fn bouc_wen(exponent: f64, sigma: f64) -> BoucWen {
+pub(crate) fn bouc_wen(exponent: f64, sigma: f64) -> BoucWen {
     BoucWen::new(BoucWenParameters {
         range_volt: VoltageRange::amplified_stack(),
         gain_deg_per_volt: 0.12,
@@ -72,16 +72,16 @@ pub fn bouc_wen(exponent: f64, sigma: f64) -> BoucWen {
     .unwrap()
 }
 
-pub fn linear_law() -> ActuatorLaw {
+pub(crate) fn linear_law() -> ActuatorLaw {
     ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 0.12, bias_volt: 65.0 })
 }
 
-pub fn static_law() -> ActuatorLaw {
+pub(crate) fn static_law() -> ActuatorLaw {
     let (grid, map) = map(12);
     ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, map).unwrap())
 }
 
-pub fn dynamic_law(form: RateForm) -> ActuatorLaw {
+pub(crate) fn dynamic_law(form: RateForm) -> ActuatorLaw {
     let (grid, g0_deg) = map(12);
     ActuatorLaw::DynamicPreisach(
         DynamicPreisach::new(DynamicParameters {
@@ -98,7 +98,7 @@ pub fn dynamic_law(form: RateForm) -> ActuatorLaw {
 }
 
 /// One of every law.
-pub fn every_law() -> Vec<ActuatorLaw> {
+pub(crate) fn every_law() -> Vec<ActuatorLaw> {
     let (grid, map) = map(12);
     let envelope = Envelope { offset_deg: 0.2, quadratic: 0.1, cubic: -0.05 };
     vec![
@@ -114,7 +114,7 @@ pub fn every_law() -> Vec<ActuatorLaw> {
     ]
 }
 
-pub fn plain(law: ActuatorLaw) -> ActuatorModel {
+pub(crate) fn plain(law: ActuatorLaw) -> ActuatorModel {
     let calibration = Calibration { deg_per_um: 0.04, zero_um: 3.0 };
     ActuatorModel::new(law, VoltageRange::amplified_stack(), calibration)
 }
