@@ -140,7 +140,7 @@ fn the_starting_states_stand_in_order() {
 // ---- Prandtl-Ishlinskii ----
 
 #[test]
-fn one_play_under_a_sine_has_the_area_of_its_parallelogram() {
+fn one_play_under_a_triangle_has_the_area_of_its_parallelogram() {
     // loop of play r under amplitude A: 4 r (A - r); under a ramp the half-width grows by b |rate|
     let (r, amplitude) = (12.0, 60.0);
     let law = PrandtlIshlinskii::new(common::prandtl(
