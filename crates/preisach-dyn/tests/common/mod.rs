@@ -1,12 +1,15 @@
-//! Actuators of every law, small.
+//! Actuators of every law, small, and every stage alone.
 #![allow(dead_code, reason = "every test file uses its own part")]
 #![allow(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, BoucWen, BoucWenParameters, Calibration, DynamicParameters,
-    DynamicPreisach, Envelope, EverettStaircase, LinearGain, PlayMap, PrandtlIshlinskii,
-    PrandtlParameters, PreisachGrid, RateForm, RelayGrid, StaticPreisach, TimeOrder, VoltageRange,
-    WeightedPlay,
+    ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen, BoucWenParameters, Calibration,
+    CoulombFriction, CurrentLimit, Delay, Depolarisation, DielectricHeating, Drive,
+    DynamicParameters, DynamicPreisach, Envelope, EverettStaircase, KelvinVoigt,
+    KelvinVoigtElement, Lag, LinearGain, LinkageStage, LoadStiffness, LogCreep, MainsHum,
+    Nonlinearity, NonlinearityShape, PlayMap, PrandtlIshlinskii, PrandtlParameters, PreisachGrid,
+    Quantisation, RateForm, RelayGrid, Resonance, Saturation, SensorStage, StaticPreisach,
+    TimeOrder, VoltageRange, WeightedPlay,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -117,4 +120,77 @@ pub(crate) fn every_law() -> Vec<ActuatorLaw> {
 pub(crate) fn plain(law: ActuatorLaw) -> ActuatorModel {
     let calibration = Calibration { deg_per_um: 0.04, zero_um: 3.0 };
     ActuatorModel::new(law, VoltageRange::amplified_stack(), calibration)
+}
+
+/// Gain 1 deg/V, zero at 0 V, 1 deg/um: a stage's output can be read off in its own unit.
+pub(crate) fn unit() -> ActuatorModel {
+    let range = VoltageRange::new(-1e4, 1e4).unwrap();
+    ActuatorModel {
+        calibration: Calibration { deg_per_um: 1.0, zero_um: 0.0 },
+        ..ActuatorModel::linear(range, 1e4, 1.0)
+    }
+}
+
+pub(crate) fn amplifier(stage: AmplifierStage) -> ActuatorModel {
+    ActuatorModel { amplifier: vec![stage], ..unit() }
+}
+
+pub(crate) fn linkage(stage: LinkageStage) -> ActuatorModel {
+    ActuatorModel { linkage: vec![stage], ..unit() }
+}
+
+pub(crate) fn sensor(stage: SensorStage) -> ActuatorModel {
+    ActuatorModel { sensor: vec![stage], ..unit() }
+}
+
+/// What the bench reads.
+pub(crate) fn measured(model: &ActuatorModel, input: &[f64], step_s: f64) -> Vec<f64> {
+    model.simulate_bench(&Drive::new(input, step_s)).unwrap().measured_deg
+}
+
+pub(crate) fn sampled(samples: u32, step_s: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    (0..samples).map(|i| f(f64::from(i) * step_s)).collect()
+}
+
+pub(crate) fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).fold(0.0, |m, (x, y)| f64::max(m, (x - y).abs()))
+}
+
+/// Every stage, alone, doing something.
+pub(crate) fn effects() -> Vec<ActuatorModel> {
+    let element = KelvinVoigtElement { compliance_ratio: 0.05, time_constant_s: 0.03 };
+    vec![
+        amplifier(AmplifierStage::Lag(Lag { tau_s: 2e-3 })),
+        amplifier(AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: 2e3 })),
+        amplifier(AmplifierStage::Saturation(Saturation { v_min_volt: -5.0, v_max_volt: 120.0 })),
+        amplifier(AmplifierStage::Delay(Delay { delay_s: 1.7e-3 })),
+        amplifier(AmplifierStage::DielectricHeating(DielectricHeating::new(0.2, 2e-3))),
+        amplifier(AmplifierStage::Depolarisation(Depolarisation {
+            repoling_volt: Some(60.0),
+            ..Depolarisation::new(20.0)
+        })),
+        linkage(LinkageStage::LogCreep(LogCreep::new(0.02))),
+        linkage(LinkageStage::KelvinVoigt(KelvinVoigt { elements: vec![element] })),
+        linkage(LinkageStage::Resonance(Resonance { frequency_hz: 90.0, damping_ratio: 0.03 })),
+        linkage(LinkageStage::Backlash(Backlash { width_um: 3.0 })),
+        linkage(LinkageStage::CoulombFriction(CoulombFriction { width_um: 3.0 })),
+        linkage(LinkageStage::LoadStiffness(LoadStiffness {
+            stiffness_ratio: 0.1,
+            compliance_um_per_newton: 0.0,
+        })),
+        sensor(SensorStage::Filter(Lag { tau_s: 1e-3 })),
+        sensor(SensorStage::Nonlinearity(Nonlinearity {
+            amplitude_um: 0.5,
+            half_range_um: 150.0,
+            shape: NonlinearityShape::Cubic,
+        })),
+        sensor(SensorStage::Quantisation(Quantisation { step_um: 0.5 })),
+        sensor(SensorStage::Delay(Delay { delay_s: 2.2e-3 })),
+        sensor(SensorStage::MainsHum(MainsHum {
+            amplitude_um: 0.3,
+            frequency_hz: 50.0,
+            phase_rad: 0.4,
+        })),
+    ]
 }
