@@ -1,6 +1,5 @@
 //! The chain around a law: order, load, bench, batch, storing and taking up, refused input.
 #![expect(clippy::float_cmp, reason = "results are claimed to be equal to the last bit")]
-#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 mod common;
 

@@ -1,6 +1,5 @@
 //! Every stage alone: its identity, and its exact solution.
 #![expect(clippy::float_cmp, reason = "results are claimed to be equal to the last bit")]
-#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 mod common;
 
