@@ -121,7 +121,7 @@ impl Step for FrictionStep {
 /// delta = ( delta_free - deg_per_um F / k_a ) / ( 1 + stiffness_ratio ),   stiffness_ratio = k_load / k_a
 /// ```
 /// `F` is the external load along the actuator, positive against a growing displacement; see
-/// [`crate::ActuatorModel::simulate_loaded`] and
+/// [`crate::ActuatorModel::simulate_drive`] and
 /// [`crate::Calibration::load_newton`] for a hinge moment. The load spring is unstrained at zero
 /// flap angle. `stiffness_ratio = 0` without a load is the identity.
 ///
