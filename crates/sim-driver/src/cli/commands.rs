@@ -1,7 +1,7 @@
 //! What each command does.
 
 use super::args::{
-    CheckArgs, IdentifyArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs,
+    CheckArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs,
     StudyArgs,
 };
 use crate::SimError;
@@ -9,6 +9,7 @@ use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::check::check_file;
 use crate::files::{Folder, SHIPPED_CASES, Source, read_bench, write_atomic, write_new};
 use crate::identification::identify_bench;
+use crate::import::{ColumnOptions, ImportRequest, default_folder};
 use crate::modes::rotating_modes;
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
@@ -119,6 +120,33 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let text = summary.render(args.format.format)?;
     found.stored(&data).write(&args.output)?;
     print(&text)
+}
+
+pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
+    let first = args.files.first().map(PathBuf::as_path).unwrap_or(Path::new("data"));
+    let request = ImportRequest {
+        files: args.files.clone(),
+        out: args.out.clone().unwrap_or_else(|| default_folder(first)),
+        source: args.source,
+        kind: args.kind,
+        columns: ColumnOptions {
+            columns: args.columns.clone(),
+            input: args.input.clone(),
+            response: args.response.clone(),
+            convert: args.convert.clone(),
+        },
+        variable: args.variable.clone(),
+        range: args.range,
+        sampling_hz: args.sampling_hz,
+        reduce_to_hz: args.reduce_to_hz,
+        most_samples: args.max_samples,
+        title: args.title.clone(),
+    };
+    let result = crate::import::import(&request)?;
+    for warning in &result.warnings {
+        eprintln!("{warning}");
+    }
+    print(&result.render(args.format.format)?)
 }
 
 pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
