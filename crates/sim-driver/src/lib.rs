@@ -7,6 +7,7 @@
 //! |---|---|
 //! | problems of user files, each with file, line, field and remedy | [`problem`] |
 //! | reading and atomic writing, RON, measured tables, shipped files | [`files`] |
+//! | data of the figures of an identification | [`figures`] |
 //! | measured data of other formats into data folders | [`import`] |
 //! | case files and the validated case | [`case`], its hand-over to the models in `models` |
 //! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
@@ -20,6 +21,7 @@ pub mod case;
 pub mod check;
 pub mod cli;
 mod error;
+pub mod figures;
 pub mod files;
 pub mod identification;
 pub mod import;

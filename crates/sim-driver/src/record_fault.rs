@@ -250,7 +250,7 @@ pub enum RecordFault {
     // ---- warnings ----
     /// A record was brought onto even steps.
     #[error(
-        "warning: the time steps differ by up to {jitter_percent} %; resampled to {step_s} s by straight lines"
+        "the time steps differ by up to {jitter_percent} %; resampled to {step_s} s by straight lines"
     )]
     Resampled {
         /// Largest deviation, percent of the step.
@@ -260,7 +260,7 @@ pub enum RecordFault {
     },
     /// Long flat tops at the limit of the output.
     #[error(
-        "warning: the output stays at its {end} {value} {unit} for {samples} samples while the input moves through {input_percent:.0} % of its range: the record looks clipped; check the range of sensor and amplifier (a wide backlash looks the same)"
+        "the output stays at its {end} {value} {unit} for {samples} samples while the input moves through {input_percent:.0} % of its range: the record looks clipped; check the range of sensor and amplifier (a wide backlash looks the same)"
     )]
     Clipped {
         /// `largest` or `smallest`.
@@ -276,7 +276,7 @@ pub enum RecordFault {
     },
     /// No record comes near the range.
     #[error(
-        "warning: no command uses more than {percent:.2} % of command_range_V ({low}, {high}): are the commands in kV, or in V over a divider?"
+        "no command uses more than {percent:.2} % of command_range_V ({low}, {high}): are the commands in kV, or in V over a divider?"
     )]
     RangeUnused {
         /// Share of the range used, percent.
@@ -287,9 +287,7 @@ pub enum RecordFault {
         high: f64,
     },
     /// Samples at the end that fill no block of an average.
-    #[error(
-        "warning: {count} samples at the end fill no block of {block} and are left out"
-    )]
+    #[error("{count} samples at the end fill no block of {block} and are left out")]
     Remainder {
         /// Samples left out.
         count: usize,

@@ -106,7 +106,7 @@ pub struct RunArgs {
 #[derive(Debug, Clone, Args)]
 pub struct IdentifyArgs {
     /// Folder with dataset.ron and its records.
-    #[arg(value_name = "BENCH_DIR")]
+    #[arg(value_name = "DATA_DIR")]
     pub bench: PathBuf,
     /// Actuator file to write.
     #[arg(short, long, value_name = "ACTUATOR.ron")]
@@ -114,6 +114,9 @@ pub struct IdentifyArgs {
     /// Actuator file whose settings (levels, form, split rule) are taken up.
     #[arg(long, value_name = "ACTUATOR.ron")]
     pub start: Option<PathBuf>,
+    /// Folder for the data of the figures: loops with residuals, density; CSV.
+    #[arg(long, value_name = "DIR")]
+    pub figures: Option<PathBuf>,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

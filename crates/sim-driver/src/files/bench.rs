@@ -159,4 +159,3 @@ fn check_commands(record: &Record<'_>, range: (f64, f64), problems: &mut Problem
     listing.finish(problems);
     problems.as_slice().len() == before
 }
-

@@ -108,11 +108,7 @@ pub fn read_curves(folder: &Folder) -> Result<CurveData, Problems> {
 }
 
 /// The rows of each curve; curve numbers must not decrease.
-fn split(
-    source: &Source,
-    rows: &CurveRows,
-    problems: &mut Problems,
-) -> Vec<(f64, ReversalCurve)> {
+fn split(source: &Source, rows: &CurveRows, problems: &mut Problems) -> Vec<(f64, ReversalCurve)> {
     let mut curves: Vec<(f64, ReversalCurve)> = Vec::new();
     for (i, &number) in rows.curve.iter().enumerate() {
         let place = || Place::at(&source.name, rows.lines[i], 1).field("curve");

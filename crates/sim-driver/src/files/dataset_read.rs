@@ -27,6 +27,26 @@ pub enum DataSet {
     Curves(CurveData),
 }
 
+impl DataSet {
+    /// What a reader should know about the data.
+    pub fn warnings(&self) -> &[Problem] {
+        match self {
+            Self::Bench(data) => &data.warnings,
+            Self::Loops(data) => &data.warnings,
+            Self::Curves(data) => &data.warnings,
+        }
+    }
+
+    /// Number of runs.
+    pub fn run_count(&self) -> usize {
+        match self {
+            Self::Bench(data) => data.runs.len(),
+            Self::Loops(data) => data.runs.len(),
+            Self::Curves(data) => data.runs.len(),
+        }
+    }
+}
+
 /// Reads a data folder of any kind.
 ///
 /// # Errors

@@ -108,7 +108,8 @@ impl Source {
 #[expect(clippy::disallowed_methods, reason = "beside `read_bytes` the one place that reads files")]
 pub fn open_reader(path: &Path) -> Result<std::io::BufReader<std::fs::File>, Problem> {
     let name = path.display().to_string();
-    let unreadable = |reason: String| Problem::new(Place::file(&name), Fault::Unreadable { reason });
+    let unreadable =
+        |reason: String| Problem::new(Place::file(&name), Fault::Unreadable { reason });
     let file = std::fs::File::open(path).map_err(|e| unreadable(e.to_string()))?;
     // a folder opens but cannot be read
     if file.metadata().is_ok_and(|m| m.is_dir()) {

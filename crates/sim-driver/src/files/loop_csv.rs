@@ -1,5 +1,6 @@
 //! Tables of generic loops and curves: any columns, each with its unit in the header.
 
+use super::Source;
 use super::dataset::ChannelFile;
 use super::measured_csv::{is_unit_cell, strip_brackets};
 use super::table_text::{
@@ -7,7 +8,6 @@ use super::table_text::{
     resampled, split_lines,
 };
 use super::units::{Channel, Unit};
-use super::Source;
 use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
 
 /// A record of a generic system, uniformly sampled, every number finite.
@@ -147,9 +147,12 @@ impl Header<'_> {
         };
         // with one of two columns declared, the other one is the other
         let rest = |taken: Option<usize>, default: usize| {
-            others.iter().copied().find(|i| Some(*i) != taken).filter(|_| taken.is_some()).or_else(|| {
-                others.get(default).copied()
-            })
+            others
+                .iter()
+                .copied()
+                .find(|i| Some(*i) != taken)
+                .filter(|_| taken.is_some())
+                .or_else(|| others.get(default).copied())
         };
         let (input, output) = if declared.output.is_some() && declared.input.is_none() {
             let output = find(declared.output, 0);

@@ -132,7 +132,8 @@ pub fn read_loops(folder: &Folder) -> Result<LoopData, Problems> {
         });
     }
     let all = runs.iter().flat_map(|run| run.table.input.iter().copied());
-    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let (low, high) =
+        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     let input_range =
         given.map_or(InputRange::OfAllRuns(low, high), |(low, high)| InputRange::Given(low, high));
     let data = channels.map(|channels| LoopData {

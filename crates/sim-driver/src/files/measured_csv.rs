@@ -229,7 +229,8 @@ fn finish(
     let before = problems.as_slice().len();
     let sampling = check_time(&source.name, label, &time_s, &rows.lines, problems);
     if problems.as_slice().len() > before && increases_evenly(&command_volt) {
-        let fault = RecordFault::TimeSwapped { other: QUANTITIES[COMMAND].column.to_owned() }.into();
+        let fault =
+            RecordFault::TimeSwapped { other: QUANTITIES[COMMAND].column.to_owned() }.into();
         problems.push(Place::at(&source.name, rows.lines[0], 1).field(label), fault);
     }
     let mut displacement_um = take(DISPLACEMENT)?;

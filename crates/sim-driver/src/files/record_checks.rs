@@ -170,7 +170,8 @@ mod tests {
     fn sine(lag_deg: f64, offset: f64) -> (Vec<f64>, Vec<f64>) {
         let phase = |i: u32| TAU * f64::from(i) / 500.0;
         let u = (0..=2000).map(|i| 65.0 + 80.0 * phase(i).sin()).collect();
-        let y = (0..=2000).map(|i| offset + 9.0 * (phase(i) - lag_deg.to_radians()).sin()).collect();
+        let y =
+            (0..=2000).map(|i| offset + 9.0 * (phase(i) - lag_deg.to_radians()).sin()).collect();
         (u, y)
     }
 

@@ -88,8 +88,7 @@ impl Rows {
             for ((text, at), (values, label)) in
                 fields.iter().zip(rows.values.iter_mut().zip(labels))
             {
-                let place =
-                    || Place::at(&source.name, line.number, *at).field(*label);
+                let place = || Place::at(&source.name, line.number, *at).field(*label);
                 let value = text.parse::<f64>();
                 match value {
                     Ok(value) if value.is_finite() => {}
@@ -189,10 +188,7 @@ pub(crate) fn resampled(file: &str, label: &str, sampling: Sampling) -> Problem 
 pub(crate) fn increases_evenly(values: &[f64]) -> bool {
     let span = values.last().zip(values.first()).map_or(0.0, |(b, a)| b - a);
     let step = span / (values.len().max(2) - 1) as f64;
-    step > 0.0
-        && values
-            .windows(2)
-            .all(|w| ((w[1] - w[0]) / step - 1.0).abs() < RESAMPLED_JITTER)
+    step > 0.0 && values.windows(2).all(|w| ((w[1] - w[0]) / step - 1.0).abs() < RESAMPLED_JITTER)
 }
 
 /// Brings columns from uneven times onto equal steps between the first and the last, by straight

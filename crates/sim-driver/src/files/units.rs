@@ -129,8 +129,7 @@ impl Unit {
         // 1e-3/1e-6 is not quite 1000: the short decimal within rounding is the one meant
         let exact = self.to_si / other.to_si;
         let short = significant(exact, 14);
-        let factor =
-            if (short / exact - 1.0).abs() <= 4.0 * f64::EPSILON { short } else { exact };
+        let factor = if (short / exact - 1.0).abs() <= 4.0 * f64::EPSILON { short } else { exact };
         (self.dimension != Dimension::Temperature).then_some(factor)
     }
 

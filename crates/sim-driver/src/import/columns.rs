@@ -161,13 +161,12 @@ pub(super) fn choose(
     };
     let has = |name: &str, d: Dimension| data.iter().any(|(_, c)| is(c, name, d));
     let bench = has("command", Dimension::Voltage) && has("displacement", Dimension::Length);
-    let shape = wanted.unwrap_or(
-        if bench && options.input.is_none() && options.response.is_none() {
+    let shape =
+        wanted.unwrap_or(if bench && options.input.is_none() && options.response.is_none() {
             Shape::Bench
         } else {
             Shape::Loop
-        },
-    );
+        });
     let columns = match shape {
         Shape::Bench => bench_columns(&data, &mut left_out)?,
         Shape::Loop => loop_columns(&data, options, &mut left_out)?,
@@ -267,7 +266,8 @@ fn loop_columns(
         .into_iter()
         .map(|i| {
             let (source, channel) = &data[i];
-            let unit = wanted.iter().find(|w| w.name == channel.name).map_or(channel.unit, |w| w.unit);
+            let unit =
+                wanted.iter().find(|w| w.name == channel.name).map_or(channel.unit, |w| w.unit);
             converted(*source, channel, unit.symbol)
         })
         .collect()
@@ -280,8 +280,10 @@ pub(super) fn wanted_units(options: &ColumnOptions) -> Result<Vec<Channel>, Reco
     };
     text.split(',')
         .map(|entry| {
-            let unknown =
-                || RecordFault::UnknownUnit { found: entry.trim().to_owned(), known: Unit::known() };
+            let unknown = || RecordFault::UnknownUnit {
+                found: entry.trim().to_owned(),
+                known: Unit::known(),
+            };
             Channel::parse(entry).ok_or_else(unknown)
         })
         .collect()

@@ -95,8 +95,7 @@ pub(super) fn read_csv(
     shape: Option<Shape>,
     reduction: Reduction,
 ) -> Result<Table, Problems> {
-    let mut lines =
-        Lines { reader, file, buffer: Vec::new(), number: 0, offset: 0, ended: false };
+    let mut lines = Lines { reader, file, buffer: Vec::new(), number: 0, offset: 0, ended: false };
     let Some(first) = lines.next()? else {
         let fault = Fault::TooFewRows { rows: 0, least: 3 };
         return Err(Problem::new(Place::file(file), fault).into());

@@ -186,7 +186,8 @@ mod tests {
 
     #[test]
     fn other_json_and_damage_are_refused() {
-        let error = |text: &str| read(text, &ColumnOptions::default()).map(|_| ()).unwrap_err().to_string();
+        let error =
+            |text: &str| read(text, &ColumnOptions::default()).map(|_| ()).unwrap_err().to_string();
         assert!(error("{\"rows\": []}").contains("missing field `data`"));
         assert!(error("[1, 2]").contains("expected an object with the key data"));
         assert!(error(&GOOD.replace("-0.5, 0, 1, 2", "-0.5")).contains("line 1 column"));

@@ -6,8 +6,8 @@ use super::{ImportRequest, Imported, ReadSource, SourceKind, Table, folder_kind}
 use crate::SimError;
 use crate::files::{
     Channel, ChannelFile, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind,
-    MeasuredTable, Record, RunFile, RunRole, check_bench_record, check_record, check_unit, ron_text,
-    significant, write_folder,
+    MeasuredTable, Record, RunFile, RunRole, check_bench_record, check_record, check_unit,
+    ron_text, significant, write_folder,
 };
 use crate::output::{Printable, Sheet, table};
 use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
@@ -146,7 +146,10 @@ pub(super) fn write(
     let dataset = dataset(kind, &title, entries, &runs, (request.range, range));
     let text = ron_text(&dataset)
         .map_err(|e| SimError::NotWritten { path: request.out.clone(), reason: e.to_string() })?;
-    let comment = format!("// Written by `hhc import` {}: what was done stands in the notes of the runs.\n", crate::VERSION);
+    let comment = format!(
+        "// Written by `hhc import` {}: what was done stands in the notes of the runs.\n",
+        crate::VERSION
+    );
     let text = text.replacen('\n', &format!("\n{comment}"), 1);
     files.insert(0, (DATASET.to_owned(), text.into_bytes()));
     write_folder(&request.out, &files)?;
@@ -311,9 +314,9 @@ impl Parts {
         let Table { gathered, choice } = record;
         let channels: [&Channel; 2] = [&choice.columns[0].channel, &choice.columns[1].channel];
         let labels = channels.map(Channel::label);
-        let part = |i: usize| (labels[i].as_str(), channels[i].unit.symbol, &gathered.columns[i][..]);
-        let record =
-            Record { file: name, lines: &gathered.lines, input: part(0), output: part(1) };
+        let part =
+            |i: usize| (labels[i].as_str(), channels[i].unit.symbol, &gathered.columns[i][..]);
+        let record = Record { file: name, lines: &gathered.lines, input: part(0), output: part(1) };
         check_record(&record, &mut self.problems, &mut self.warnings);
         if let Some((low, high)) = range {
             let input = span("", gathered.columns[0].iter().copied());
@@ -332,8 +335,12 @@ impl Parts {
         let labels = [found.input.label(), found.output.label()];
         let points = || found.curves.iter().flat_map(|c| c.points.iter().copied());
         let count = points().count();
-        let calibrations: Vec<(usize, (f64, f64))> =
-            found.curves.iter().enumerate().filter_map(|(i, c)| Some((i, c.calibration?))).collect();
+        let calibrations: Vec<(usize, (f64, f64))> = found
+            .curves
+            .iter()
+            .enumerate()
+            .filter_map(|(i, c)| Some((i, c.calibration?)))
+            .collect();
         let header = format!("curve,{},{}\n", labels[0], labels[1]);
         let mut text = header.clone();
         for (i, curve) in found.curves.iter().enumerate() {
@@ -424,7 +431,10 @@ fn record_csv(labels: &[String], gathered: &Gathered) -> Vec<u8> {
 impl Printable for ImportResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
-        sheet.line(format_args!("{}: data set of kind {}, \"{}\"", self.folder, self.kind, self.title));
+        sheet.line(format_args!(
+            "{}: data set of kind {}, \"{}\"",
+            self.folder, self.kind, self.title
+        ));
         for run in &self.runs {
             sheet.line(format_args!("\n{}: {}", run.source, run.recognised));
             let samples = match (run.curves, run.step_s) {
@@ -438,9 +448,10 @@ impl Printable for ImportResult {
                 }
             };
             sheet.line(format_args!("run {}: {samples}", run.id));
-            let rows = run.columns.iter().map(|c| {
-                vec![c.column.clone(), number_text(c.least), number_text(c.largest)]
-            });
+            let rows = run
+                .columns
+                .iter()
+                .map(|c| vec![c.column.clone(), number_text(c.least), number_text(c.largest)]);
             sheet.block(&table(&["column", "smallest", "largest"], rows));
             if !run.left_out.is_empty() {
                 sheet.line(format_args!(" left out: {}", run.left_out.join(", ")));
@@ -449,7 +460,10 @@ impl Printable for ImportResult {
         if let Some((low, high)) = self.range {
             sheet.line(format_args!("\nRange of the input {low} to {high}: {}", self.range_rule));
         }
-        sheet.line(format_args!("Written to {0}; check the roles and uses of its runs, then `hhc check {0}`", self.folder));
+        sheet.line(format_args!(
+            "Written to {0}; check the roles and uses of its runs, then `hhc check {0}`",
+            self.folder
+        ));
         sheet.finish()
     }
 }

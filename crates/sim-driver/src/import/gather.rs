@@ -277,7 +277,11 @@ mod tests {
     fn jitter_is_rounded_resampled_or_refused() {
         assert!(gather(reduction(1000, None), 99, 0.005).unwrap().warnings.is_empty());
         let some = gather(reduction(1000, None), 99, 0.08).unwrap();
-        assert!(some.warnings[0].to_string().contains("differ by up to 8 %"), "{:?}", some.warnings);
+        assert!(
+            some.warnings[0].to_string().contains("differ by up to 8 %"),
+            "{:?}",
+            some.warnings
+        );
         for (t, u) in some.time_s.iter().zip(&some.columns[0]) {
             assert!((u - 2.0 * t).abs() < 1e-12, "a straight line stays one");
         }

@@ -188,7 +188,8 @@ fn blocks(
     }
     if !closed {
         let text = lines.last().copied().unwrap_or_default().to_owned();
-        problems.push(Place::at(file, lines.len().max(1), 1), Fault::Truncated { text, expected: 2 });
+        problems
+            .push(Place::at(file, lines.len().max(1), 1), Fault::Truncated { text, expected: 2 });
     }
     blocks.retain(|block| !block.is_empty());
     blocks
@@ -207,7 +208,10 @@ mod tests {
     #[test]
     fn curves_calibrations_and_units() {
         let found = read(GOOD).unwrap();
-        assert_eq!((found.input.label(), found.output.label()), ("field_Oe".into(), "moment_emu".into()));
+        assert_eq!(
+            (found.input.label(), found.output.label()),
+            ("field_Oe".into(), "moment_emu".into())
+        );
         assert_eq!(found.title, "a test's wire");
         assert_eq!(found.curves.len(), 2);
         assert_eq!(found.curves[0].calibration, Some((1001.0, 1e-3)));
@@ -221,12 +225,22 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_named() {
-        let text = |from: &str, to: &str| read(&GOOD.replacen(from, to, 1)).unwrap_err().to_string();
+        let text =
+            |from: &str, to: &str| read(&GOOD.replacen(from, to, 1)).unwrap_err().to_string();
         assert!(text("NCrv", "Ncrv").contains("no line `NCrv`"));
-        assert!(text("NCrv           = 2", "NCrv = 3").contains("2 curves are there, the header promises 3"));
+        assert!(
+            text("NCrv           = 2", "NCrv = 3")
+                .contains("2 curves are there, the header promises 3")
+        );
         assert!(text("NData          = 7", "NData = 8").contains("7 rows of numbers are there"));
-        assert!(text("+5.0E-04", "+5.0x-04").contains("f:12:1: field,moment: `+1.0E+02,+5.0x-04` is not a number"));
-        assert!(text(": cgs", ": furlongs").contains("f:3:1: Units of measure: unknown choice `furlongs`"));
+        assert!(
+            text("+5.0E-04", "+5.0x-04")
+                .contains("f:12:1: field,moment: `+1.0E+02,+5.0x-04` is not a number")
+        );
+        assert!(
+            text(": cgs", ": furlongs")
+                .contains("f:3:1: Units of measure: unknown choice `furlongs`")
+        );
         let cut = read(&GOOD[..GOOD.len() - 60]).unwrap_err().to_string();
         assert!(cut.contains("truncated"), "{cut}");
     }

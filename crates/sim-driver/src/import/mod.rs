@@ -236,7 +236,8 @@ fn read_whole(reader: &mut impl BufRead, name: &str) -> Result<Vec<u8>, Problem>
         Problem::new(Place::file(name), fault)
     })?;
     if bytes.len() as u64 > LARGEST_WHOLE {
-        let (megabytes, limit_megabytes) = (bytes.len() as u64 / 1_000_000, LARGEST_WHOLE / 1_000_000);
+        let (megabytes, limit_megabytes) =
+            (bytes.len() as u64 / 1_000_000, LARGEST_WHOLE / 1_000_000);
         let fault = RecordFault::TooLarge { megabytes, limit_megabytes };
         return Err(Problem::new(Place::file(name), fault.into()));
     }

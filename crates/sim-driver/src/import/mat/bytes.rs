@@ -46,10 +46,6 @@ impl<'a> Bytes<'a> {
         self.at >= self.data.len()
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.data.len() - self.at
-    }
-
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.data[self.at..]
     }
@@ -65,7 +61,8 @@ impl<'a> Bytes<'a> {
 
     fn take(&mut self, count: usize) -> Result<&'a [u8], RecordFault> {
         let end = self.at.checked_add(count).filter(|end| *end <= self.data.len());
-        let end = end.ok_or_else(|| self.fault("it ends inside an element: the file is truncated"))?;
+        let end =
+            end.ok_or_else(|| self.fault("it ends inside an element: the file is truncated"))?;
         let bytes = &self.data[self.at..end];
         self.at = end;
         Ok(bytes)
@@ -87,7 +84,8 @@ impl<'a> Bytes<'a> {
         let tag = self.u32()?;
         let (little_endian, compressed) = (self.little_endian, self.compressed);
         // a short element has its size in the upper half of the first word, its data in the second
-        let (kind, size) = if tag >> 16 == 0 { (tag, self.u32()?) } else { (tag & 0xffff, tag >> 16) };
+        let (kind, size) =
+            if tag >> 16 == 0 { (tag, self.u32()?) } else { (tag & 0xffff, tag >> 16) };
         let short = tag >> 16 != 0;
         if short && size > 4 {
             return Err(self.fault("a short element has more than four bytes"));
@@ -96,7 +94,13 @@ impl<'a> Bytes<'a> {
         let base = self.base + self.at;
         let data = self.take(size)?;
         // compressed elements alone are not padded; at the end of the file padding may be missing
-        let padding = if short { 4 - size } else if kind == COMPRESSED { 0 } else { (8 - size % 8) % 8 };
+        let padding = if short {
+            4 - size
+        } else if kind == COMPRESSED {
+            0
+        } else {
+            (8 - size % 8) % 8
+        };
         self.at = (self.at + padding).min(self.data.len());
         Ok(Element { kind, bytes: Bytes { data, at: 0, base, little_endian, compressed } })
     }
@@ -110,7 +114,9 @@ impl Element<'_> {
         macro_rules! read {
             ($type:ty, $size:literal, $convert:expr) => {{
                 if data.len() % $size != 0 {
-                    return Err(self.bytes.fault("the size of an element is no whole number of values"));
+                    return Err(self
+                        .bytes
+                        .fault("the size of an element is no whole number of values"));
                 }
                 let convert = $convert;
                 data.chunks_exact($size)

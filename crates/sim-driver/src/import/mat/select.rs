@@ -24,7 +24,8 @@ const LISTED: usize = 12;
 /// rows. A structure gives its numeric vectors, named by their fields.
 pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatColumns, RecordFault> {
     let found = || listing(variables);
-    let refused = |path: &str, what| RecordFault::MatVariable { path: path.into(), what, found: found() };
+    let refused =
+        |path: &str, what| RecordFault::MatVariable { path: path.into(), what, found: found() };
     let (value, name) = match path {
         Some(path) => (walk(variables, path).map_err(|what| refused(path, what))?, path.to_owned()),
         None => match variables.as_slice() {
@@ -90,11 +91,8 @@ fn vectors(fields: &[(&str, &MatValue)], name: &str) -> Option<MatColumns> {
     let all: Vec<(&str, Vec<f64>)> =
         fields.iter().filter_map(|(n, v)| Some((*n, vector(v)?))).collect();
     let longest = all.iter().map(|(_, v)| v.len()).max()?;
-    let (names, columns): (Vec<String>, Vec<Vec<f64>>) = all
-        .into_iter()
-        .filter(|(_, v)| v.len() == longest)
-        .map(|(n, v)| (n.to_owned(), v))
-        .unzip();
+    let (names, columns): (Vec<String>, Vec<Vec<f64>>) =
+        all.into_iter().filter(|(_, v)| v.len() == longest).map(|(n, v)| (n.to_owned(), v)).unzip();
     let taken = format!("{name}: {} of {longest} samples", names.join(", "));
     (columns.len() > 1).then_some(MatColumns { names: Some(names), columns, taken })
 }
