@@ -230,3 +230,7 @@ impl Row<'_> {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "csv_tests.rs"]
+mod tests;

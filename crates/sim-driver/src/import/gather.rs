@@ -289,6 +289,23 @@ mod tests {
         assert!(text.contains("expected uniform sampling"), "{text}");
     }
 
+    /// Ten million samples: what is kept stays small, and is right.
+    #[test]
+    fn ten_million_samples_stay_bounded() {
+        let labels = vec!["time_s".to_owned(), "u_V".to_owned()];
+        let mut gather = Gather::new("r.csv", labels, reduction(4096, None));
+        let mut problems = Problems::default();
+        let mut largest = 0;
+        for i in 0..10_000_000_usize {
+            gather.push(&[i as f64 * 1e-4, (i % 7) as f64], i + 1, &mut problems);
+            largest = largest.max(gather.columns[0].capacity() + gather.lines.capacity());
+        }
+        assert!(largest <= 4 * 4096, "{largest} numbers kept");
+        let found = gather.finish(&mut problems).unwrap();
+        assert_eq!((found.count, found.block), (10_000_000, 4096));
+        assert!(found.columns[0].iter().all(|u| (u - 3.0).abs() < 4e-3), "means of 0 to 6");
+    }
+
     #[test]
     fn one_sample_is_too_few() {
         let text = gather(reduction(1000, None), 1, 0.0).unwrap_err().to_string();
