@@ -92,7 +92,11 @@ fn kind_of(source: &Source, index: &RonIndex) -> Option<FileKind> {
 fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
     let missing = |folder: &Folder, file: &str| {
         let place = loaded.index.place("actuator.model");
-        let fault = Fault::MissingFile { file: file.to_owned(), folder: folder.display("") };
+        let folder = match folder.display("") {
+            here if here.is_empty() => "this folder".to_owned(),
+            folder => folder,
+        };
+        let fault = Fault::MissingFile { file: file.to_owned(), folder };
         Problems::from(Problem::new(place, fault))
     };
     match &loaded.case.actuator.source {

@@ -158,10 +158,10 @@ pub struct ImportArgs {
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<(f64, f64)>,
     /// Sampling frequency of files without a time column, Hz.
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub sampling_hz: Option<f64>,
     /// Average whole blocks of samples down to this sampling frequency, Hz.
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub reduce_to_hz: Option<f64>,
     /// Most samples of a run; longer ones are averaged in blocks of 2, 4, 8 ...
     #[arg(long, value_name = "N", default_value_t = MOST_SAMPLES)]

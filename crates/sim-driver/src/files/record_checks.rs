@@ -43,7 +43,8 @@ pub(crate) fn check_record(
     for ((label, unit, values), role) in [(record.input, "input"), (record.output, "output")] {
         let (low, high) = limits(values);
         if low >= high {
-            let fault = RecordFault::Constant { value: low, unit, role };
+            // minus zero is zero
+            let fault = RecordFault::Constant { value: low + 0.0, unit, role };
             problems.push(record.place(0, label), fault.into());
             moves = false;
         }

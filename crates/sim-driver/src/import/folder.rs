@@ -20,6 +20,9 @@ const DIGITS: usize = 9;
 /// Significant digits of the times written.
 const TIME_DIGITS: usize = 14;
 
+/// Voltages that piezo stacks, benders and their amplifiers reach, V.
+const PLAUSIBLE_RANGE_VOLT: (f64, f64) = (-1000.0, 1000.0);
+
 /// What `hhc import` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ImportResult {
@@ -292,15 +295,16 @@ impl Parts {
         if range.is_some() {
             return;
         }
-        // without a range, that of a common stack tells volts from their thousandths and thousands
-        let (low, high) = DEFAULT_COMMAND_RANGE_VOLT;
+        // without a range, what piezo actuators see at all tells volts from their thousandths, and the
+        // range of a common stack from their thousands
         let record = Record {
             file: name,
             lines: &measured.lines,
             input: ("command_V", "V", &measured.command_volt),
             output: ("displacement_um", "um", &measured.displacement_um),
         };
-        if check_unit(&record, (low, high), problems) {
+        if check_unit(&record, PLAUSIBLE_RANGE_VOLT, problems) {
+            let (low, high) = DEFAULT_COMMAND_RANGE_VOLT;
             let command = span("", measured.command_volt.iter().copied());
             let percent = 100.0 * (command.largest - command.least) / (high - low);
             if percent < 0.5 && percent > 0.0 {

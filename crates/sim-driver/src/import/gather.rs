@@ -206,22 +206,29 @@ impl Gather {
         Some(Gathered { time_s, columns, lines, count, block, sampling, warnings })
     }
 
-    /// Largest deviation of a step from the mean one; a problem if it is no jitter.
+    /// Largest deviation of a step from the usual one; a problem if it is no jitter.
+    ///
+    /// The usual step is the mean; where a gap spoils the mean, the median of the steps kept.
     fn jitter(&self, mean_s: f64, label: &str, problems: &mut Problems) -> f64 {
-        let mut jitter = 0.0_f64;
-        for (step_s, line) in [self.time.shortest, self.time.longest].into_iter().flatten() {
-            let deviation = (step_s - mean_s).abs() / mean_s;
-            jitter = jitter.max(deviation);
-            if deviation > RESAMPLED_JITTER && step_s > 0.0 && mean_s > 0.0 {
-                let place = match line {
-                    0 => Place::file(&self.file),
-                    line => Place::at(&self.file, line, 1),
-                };
-                let fault = Fault::TimeStepUneven { step_s, usual_s: mean_s };
-                problems.push(place.field(label), fault);
-            }
+        let (Some(shortest), Some(longest)) = (self.time.shortest, self.time.longest) else {
+            return 0.0;
+        };
+        let mut steps: Vec<f64> = self.columns[0].windows(2).map(|w| w[1] - w[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let median_s = steps.get(steps.len() / 2).map_or(mean_s, |s| s / self.block as f64);
+        let usual_s = if longest.0 > 2.0 * median_s { median_s } else { mean_s };
+        let deviation = |step: (f64, usize)| (step.0 - usual_s).abs() / usual_s;
+        let worst = if deviation(shortest) > deviation(longest) { shortest } else { longest };
+        let (step_s, line) = worst;
+        // steps that go back are reported already
+        if deviation(worst) > RESAMPLED_JITTER && shortest.0 > 0.0 {
+            let place = match line {
+                0 => Place::file(&self.file),
+                line => Place::at(&self.file, line, 1),
+            };
+            problems.push(place.field(label), Fault::TimeStepUneven { step_s, usual_s });
         }
-        jitter
+        deviation(worst)
     }
 
     /// Says it if another column than the time looks like the time.
