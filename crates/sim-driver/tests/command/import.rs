@@ -407,3 +407,54 @@ fn a_mat_file_of_another_program() {
         "`bench` is a structure without vectors of one length; the file has: bench.run(1).t 400x1",
     ]);
 }
+
+/// A generic loop goes the whole way: identified in its own units, figures' data beside it.
+#[test]
+fn a_generic_loop_is_identified_in_its_own_units() {
+    let place = Place::new();
+    crate::place::write_bench(&place, "bench");
+    for id in ["slow", "one_large", "one_small", "five"] {
+        let text = place.read(&format!("bench/{id}.csv"));
+        let text = text.replacen("command_V,displacement_um", "field_Oe,moment_emu", 1);
+        place.write(&format!("loops/{id}.csv"), &text);
+    }
+    let dataset = place.read("bench/dataset.ron");
+    let dataset = dataset
+        .replace("ActuatorBench", "GenericLoop")
+        .replace("    command_range_V: (-20, 150),\n", "");
+    place.write("loops/dataset.ron", &dataset);
+    let args = ["identify", "loops", "-o", "model.ron", "--figures", "figures", "--format", "json"];
+    let json = place.hhc(&args).json();
+    assert_eq!(json["channels"]["output"], "moment_emu");
+    assert_eq!(json["range_rule"], "from the smallest to the largest input of all runs");
+    assert_eq!(json["zero_deg"], 0.0, "zero output stays where it was recorded");
+    for run in json["runs"].as_array().unwrap() {
+        assert!(run["nrmse_percent"].as_f64().unwrap() < 10.0, "{run}");
+    }
+    let text = place.hhc(&args[..4]).done();
+    assert!(text.contains("Model  field_Oe to moment_emu, field_Oe -15 to 145 (from"), "{text}");
+    let figures = place.listing().into_iter().filter(|f| f.starts_with("figures/"));
+    let expected = ["density", "loop_five", "loop_one_large", "loop_one_small", "loop_slow"];
+    assert!(figures.eq(expected.map(|f| format!("figures/{f}.csv"))));
+    let table = place.read("figures/loop_five.csv");
+    let mut lines = table.lines();
+    assert_eq!(
+        lines.next().unwrap(),
+        "time_s,field_Oe,measured_moment_emu,simulated_moment_emu,residual_emu"
+    );
+    for line in lines {
+        let v: Vec<f64> = line.split(',').map(|f| f.parse().unwrap()).collect();
+        assert!((v[3] - v[2] - v[4]).abs() < 1e-3 * v[4].abs() + 1e-6, "{line}");
+    }
+    assert!(
+        place
+            .read("figures/density.csv")
+            .starts_with("half_width_field_Oe,centre_field_Oe,rise_emu,density\n")
+    );
+    // it is a model, but no actuator
+    place.hhc(&["check", "model.ron"]).done();
+    place.write("case.ron", "(actuator: (model: File(path: \"model.ron\")))");
+    place
+        .hhc(&["run", "case.ron"])
+        .rejected(&["a model from field_Oe to moment_emu: a case needs an actuator"]);
+}
