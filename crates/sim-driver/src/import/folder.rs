@@ -224,10 +224,13 @@ impl Parts {
             .collect();
         let plain = if plain.trim_matches('.').is_empty() { "run".to_owned() } else { plain };
         let taken = |id: &str| self.entries.iter().any(|e| e.id == id);
-        (2..)
+        if !taken(&plain) {
+            return plain;
+        }
+        // one of one more name than there are runs is free
+        (2..self.entries.len() + 3)
             .map(|n| format!("{plain}_{n}"))
-            .find(|id| taken(&plain) && !taken(id))
-            .filter(|_| taken(&plain))
+            .find(|id| !taken(id))
             .unwrap_or(plain)
     }
 

@@ -72,6 +72,12 @@ fn generic_loops_several_files_and_json() {
     assert_eq!(json["runs"][1]["columns"][0]["column"], "displacement_in");
     assert_eq!(json["runs"][1]["columns"][0]["largest"], 0.5);
     assert_eq!(json["runs"][0]["block"], 1);
+    let twice =
+        place.hhc(&["import", "wide.csv", "wide.csv", "-o", "twice", "--format", "json"]).json();
+    assert_eq!(
+        (&twice["runs"][0]["id"], &twice["runs"][1]["id"]),
+        (&"wide".into(), &"wide_2".into())
+    );
     let json = place.hhc(&["check", "damper", "--format", "json"]).json();
     assert_eq!(json["kind"], "generic_loop");
     let summary = json["summary"].as_str().unwrap();
