@@ -221,7 +221,7 @@ pub enum RecordFault {
     },
     /// A file without a header whose columns are not named.
     #[error(
-        "the first line holds numbers, not names; name the {count} columns: --columns time_s,... with units, - for a column to leave out"
+        "the {count} columns have no names; name them: --columns time_s,... with units, - for a column to leave out"
     )]
     NoHeader {
         /// Columns of the file.

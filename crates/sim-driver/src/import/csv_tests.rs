@@ -70,7 +70,7 @@ fn bad_rows_are_named() {
     assert!(changed("3,3,41", "9,3,41").contains("r.csv:5:1: time_s: the time step is 7 s"));
     assert!(error("time_s,u_V,x_um\n0,1,10\n", "").contains("has 1 rows of numbers"));
     assert!(error("", "").contains("has 0 rows of numbers"));
-    assert!(error("0,1\n1,2\n2,3\n", "").contains("name the 2 columns: --columns time_s,..."));
+    assert!(error("0,1\n1,2\n2,3\n", "").contains("the 2 columns have no names"));
     let fixed = "time_s,u_V,x_um\n0.0,1.0,10.0\n1.0,2.0,20.0\n2.0,3.0,40.0\n3.0,3.0,41.5";
     assert!(read(fixed, "").is_ok());
     for cut in 1..11 {

@@ -299,7 +299,7 @@ fn formats_that_are_not_read() {
     place.write("a.csv", "0,1,2\n1,2,3\n2,3,4\n");
     place
         .hhc(&["import", "a.csv"])
-        .rejected(&["a.csv:1:1: the first line holds numbers, not names; name the 3 columns"]);
+        .rejected(&["a.csv:1:1: the 3 columns have no names; name them: --columns time_s,..."]);
     place.write("b.csv", "time_s,a_V,b_V,c_V\n0,1,2,3\n1,2,3,4\n2,3,4,4\n");
     place
         .hhc(&["import", "b.csv"])

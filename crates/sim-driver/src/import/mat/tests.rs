@@ -200,7 +200,7 @@ fn a_record_with_units_of_its_own() {
     let error = read(Some("bench.run(1)"), &ColumnOptions::default()).err().unwrap().to_string();
     assert!(error.contains("b.mat: the column `t` has no known unit"), "{error}");
     let error = read(Some("flat"), &ColumnOptions::default()).err().unwrap().to_string();
-    assert!(error.contains("name the 3 columns"), "{error}");
+    assert!(error.contains("the 3 columns have no names"), "{error}");
 }
 
 #[test]
