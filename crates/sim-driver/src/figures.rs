@@ -105,8 +105,7 @@ mod tests {
     #[test]
     fn the_density_adds_up_to_the_stroke() {
         let grid = PreisachGrid::new(VoltageRange::new(-1.0, 3.0).unwrap(), 4).unwrap();
-        let rises: Vec<Vec<f64>> =
-            (0..4).map(|j| vec![0.5 + f64::from(j); 4 - j as usize]).collect();
+        let rises: Vec<Vec<f64>> = (0..4).map(|j| vec![0.5 + j as f64; 4 - j]).collect();
         let map = PlayMap::from_rises(&grid, 0.0, &rises).unwrap();
         let text = density_csv(&grid, &map, "field_Oe", "_emu");
         assert!(text.starts_with("half_width_field_Oe,centre_field_Oe,rise_emu,density\n"));

@@ -138,8 +138,8 @@ pub struct ImportArgs {
     /// generic loop, if left out.
     #[arg(long, value_enum)]
     pub kind: Option<ImportKind>,
-    /// Names and units of the columns: time_s,displacement_um,command_V in the order of the file, with
-    /// - for a column to leave out; or NAME_UNIT=SOURCE with a header, a MAT field or #number.
+    /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
+    /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub columns: Option<String>,
     /// Variable of a MAT file: bench.run(2).x, runs{3}.
@@ -151,7 +151,7 @@ pub struct ImportArgs {
     /// Name of the output of a generic loop.
     #[arg(long, value_name = "NAME")]
     pub response: Option<String>,
-    /// Units to convert into, for generic loops: displacement_mm,force_N.
+    /// Units to convert into, for generic loops: `displacement_mm,force_N`.
     #[arg(long, value_name = "LIST")]
     pub convert: Option<String>,
     /// Range of the command in V, or of the input in its unit: LOW,HIGH.

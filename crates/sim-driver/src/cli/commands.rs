@@ -153,7 +153,7 @@ fn no_record(folder: &str) -> Problem {
 }
 
 pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
-    let first = args.files.first().map(PathBuf::as_path).unwrap_or(Path::new("data"));
+    let first = args.files.first().map_or(Path::new("data"), PathBuf::as_path);
     let request = ImportRequest {
         files: args.files.clone(),
         out: args.out.clone().unwrap_or_else(|| default_folder(first)),

@@ -142,13 +142,13 @@ fn calibrate(
     problems: &mut Problems,
 ) {
     for (i, number) in points.curve.iter().enumerate() {
-        match curves.iter_mut().find(|c| c.0 == *number) {
-            Some((_, curve)) => curve.calibration = Some((points.input[i], points.output[i])),
-            None => {
-                let message = format!("there is no curve {number}");
-                let place = Place::at(&source.name, points.lines[i], 1).field("curve");
-                problems.push(place, Fault::Refused { message });
-            }
+        let curve = curves.iter_mut().find(|c| c.0.total_cmp(number).is_eq());
+        if let Some((_, curve)) = curve {
+            curve.calibration = Some((points.input[i], points.output[i]));
+        } else {
+            let message = format!("there is no curve {number}");
+            let place = Place::at(&source.name, points.lines[i], 1).field("curve");
+            problems.push(place, Fault::Refused { message });
         }
     }
 }

@@ -68,9 +68,10 @@ fn clipped(record: &Record<'_>) -> Vec<Problem> {
     for (end, limit) in [("largest", high), ("smallest", low)] {
         let mut longest: Option<(usize, usize, f64)> = None;
         let mut at = 0;
-        for flat in output.chunk_by(|a, b| (*a == limit) == (*b == limit)) {
+        let is_limit = |v: &f64| v.total_cmp(&limit).is_eq();
+        for flat in output.chunk_by(|a, b| is_limit(a) == is_limit(b)) {
             let samples = flat.len();
-            if flat[0] == limit && samples >= CLIPPED_SAMPLES {
+            if is_limit(&flat[0]) && samples >= CLIPPED_SAMPLES {
                 let (l, h) = limits(&input[at..at + samples]);
                 let movement = (h - l) / (input_high - input_low);
                 if movement > CLIPPED_MOVEMENT && longest.is_none_or(|best| best.1 < samples) {

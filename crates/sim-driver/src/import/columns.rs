@@ -249,7 +249,7 @@ fn loop_columns(
         return Err(RecordFault::AmbiguousColumns { columns: names(data), remedy });
     };
     let wanted = wanted_units(options)?;
-    for unknown in wanted.iter().filter(|w| data.iter().all(|(_, c)| c.name != w.name)) {
+    if let Some(unknown) = wanted.iter().find(|w| data.iter().all(|(_, c)| c.name != w.name)) {
         return Err(RecordFault::NoSuchColumn {
             wanted: unknown.name.clone(),
             found: names(data),

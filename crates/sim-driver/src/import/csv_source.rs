@@ -22,7 +22,7 @@ struct Lines<'a, R> {
 
 /// A line that holds data.
 #[derive(Clone, Copy)]
-struct Text<'a> {
+struct TableLine<'a> {
     text: &'a str,
     /// Its number in the file, from 1.
     number: usize,
@@ -32,7 +32,7 @@ struct Text<'a> {
 
 impl<R: BufRead> Lines<'_, R> {
     /// The next line that holds data; none at the end of the file.
-    fn next(&mut self) -> Result<Option<Text<'_>>, Problems> {
+    fn next(&mut self) -> Result<Option<TableLine<'_>>, Problems> {
         loop {
             self.buffer.clear();
             let read = (&mut self.reader).take(LONGEST_LINE).read_until(b'\n', &mut self.buffer);
@@ -61,7 +61,7 @@ impl<R: BufRead> Lines<'_, R> {
         // checked just now; a byte-order mark belongs to no table
         let text = std::str::from_utf8(&self.buffer).unwrap_or_default();
         let text = text.trim_start_matches('\u{feff}').trim_end_matches(['\n', '\r']);
-        Ok(Some(Text { text, number: self.number, ended: self.ended }))
+        Ok(Some(TableLine { text, number: self.number, ended: self.ended }))
     }
 }
 

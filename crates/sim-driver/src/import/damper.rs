@@ -174,7 +174,7 @@ mod tests {
         };
         let table = read(&GOOD.replace("\"in\"", "\"mm\""), &options).unwrap();
         assert!((table.gathered.columns[0][2] - 0.3).abs() < 1e-15, "the file's own unit counts");
-        assert!((table.gathered.columns[1][0] + 4448.221_615_260_5).abs() < 1e-9);
+        assert!((table.gathered.columns[1][0] + 4_448.221_615_260_5).abs() < 1e-9);
         let options = ColumnOptions {
             input: Some("velocity".into()),
             response: Some("actuator_force_2".into()),

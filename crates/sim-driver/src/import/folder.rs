@@ -146,7 +146,7 @@ pub(super) fn write(
         format!("imported from {}", names.join(", "))
     });
     let (range, range_rule) = range_of(request, kind, &runs);
-    let dataset = dataset(kind, &title, entries, &runs, (request.range, range));
+    let dataset = dataset(kind, &title, entries, &runs, request.range, range);
     let text = ron_text(&dataset)
         .map_err(|e| SimError::NotWritten { path: request.out.clone(), reason: e.to_string() })?;
     let comment = format!(
@@ -194,7 +194,8 @@ fn dataset(
     title: &str,
     runs: Vec<RunFile>,
     imported: &[ImportedRun],
-    (given, range): (Option<(f64, f64)>, Option<(f64, f64)>),
+    given: Option<(f64, f64)>,
+    range: Option<(f64, f64)>,
 ) -> DatasetFile {
     let column = |i: usize| {
         let column = imported.first()?.columns.get(i)?.column.clone();
@@ -465,6 +466,7 @@ impl Printable for ImportResult {
             }
         }
         if let Some((low, high)) = self.range {
+            let (low, high) = (number_text(low), number_text(high));
             sheet.line(format_args!("\nRange of the input {low} to {high}: {}", self.range_rule));
         }
         sheet.line(format_args!(

@@ -83,7 +83,7 @@ pub(super) fn read_micromag(source: &Source) -> Result<MicroMag, Problems> {
             && line.split(',').take(2).all(|f| f.trim().parse::<f64>().is_ok())
             && line.contains(',')
     };
-    let data = all.iter().position(|line| is_row(line)).unwrap_or(all.len());
+    let data = all.iter().position(is_row).unwrap_or(all.len());
     let lines = all[..data].iter().enumerate().map(|(i, l)| (i + 1, *l)).collect();
     let header = Header { lines, data };
     let curves_promised = header.number(file, "NCrv", &mut problems);
@@ -142,7 +142,7 @@ fn units(header: &Header<'_>, file: &str, problems: &mut Problems) -> Option<(Un
         "cgs" => ("Oe", "emu"),
         "si" | "hybrid si" => ("T", "A_m2"),
         _ => {
-            let known = vec!["cgs".to_owned(), "SI".to_owned(), "Hybrid SI".to_owned()].join(", ");
+            let known = "cgs, SI, Hybrid SI".to_owned();
             let fault = Fault::UnknownChoice { found: text.to_owned(), known, nearest: None };
             problems.push(Place::at(file, line, 1).field(key), fault);
             return None;

@@ -184,9 +184,8 @@ fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Probl
     if let Some(Err(fault)) = &recognised {
         return Err(refused(fault.clone()).into());
     }
-    let kind = match (request.source, recognised) {
-        (Some(kind), _) | (None, Some(Ok(kind))) => kind,
-        _ => return Err(refused(RecordFault::UnknownSource).into()),
+    let ((Some(kind), _) | (None, Some(Ok(kind)))) = (request.source, recognised) else {
+        return Err(refused(RecordFault::UnknownSource).into());
     };
     let reduction = Reduction {
         // halving needs an even number

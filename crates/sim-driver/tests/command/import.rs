@@ -20,7 +20,7 @@ fn csv(header: &str, rows: &[[f64; 3]], scale: [f64; 3]) -> String {
     let mut text = header.to_owned();
     for row in rows {
         let [t, u, y] = [0, 1, 2].map(|i| row[i] * scale[i]);
-        writeln!(text, "{t:.6},{u:.6},{y:.6}").unwrap();
+        let _ = writeln!(text, "{t:.6},{u:.6},{y:.6}");
     }
     text
 }
@@ -197,7 +197,7 @@ fn millivolts_that_call_themselves_volts() {
         &rows,
         [1.0, 80_000.0, 200.0],
         &[
-            "command_V: reaches -80000 V, 5",
+            "command_V: reaches -80000 V, ",
             "times the largest of the range",
             "would fit as mV: name the column `command_mV`",
             "multiply it by 0.001",
@@ -398,7 +398,7 @@ fn the_measured_friction_damper() {
     assert_eq!(json["warnings"].as_array().unwrap().len(), 0, "{json}");
 }
 
-/// A structure written by another program: SciPy, compressed, little-endian.
+/// A structure written by another program: `SciPy`, compressed, little-endian.
 #[test]
 fn a_mat_file_of_another_program() {
     let place = Place::new();

@@ -113,13 +113,13 @@ impl Element<'_> {
         let little = self.bytes.is_little_endian();
         macro_rules! read {
             ($type:ty, $size:literal, $convert:expr) => {{
-                if data.len() % $size != 0 {
-                    return Err(self
-                        .bytes
-                        .fault("the size of an element is no whole number of values"));
+                let chunks = data.chunks_exact($size);
+                if !chunks.remainder().is_empty() {
+                    let what = "the size of an element is no whole number of values";
+                    return Err(self.bytes.fault(what));
                 }
                 let convert = $convert;
-                data.chunks_exact($size)
+                chunks
                     .map(|chunk| {
                         let mut bytes = [0; $size];
                         bytes.copy_from_slice(chunk);

@@ -2,7 +2,7 @@
 //! compressed or not, in either byte order. Nothing in them can make the reader panic: every size is
 //! checked against the bytes that are there.
 //!
-//! Source: MathWorks, MAT-File Format, level 5.
+//! Source: The `MathWorks`, MAT-File Format, level 5.
 
 mod bytes;
 mod select;
