@@ -56,8 +56,9 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         ActuatorSource::Ideal => {}
         ActuatorSource::Bench(folder) => {
             let data = read_bench(folder)?;
+            actuators.warnings.extend(data.warnings.iter().map(Problem::to_string));
             let found = identify_bench(&data, &Settings::default())?;
-            let stored = found.stored(&data);
+            let stored = found.stored();
             actuators.inputs.push(data.content_hash.clone());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;
@@ -67,6 +68,14 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         ActuatorSource::Stored { folder, file } => {
             let source = folder.read(file)?;
             let stored = read_actuator(&source)?;
+            if let Some(channels) = &stored.channels {
+                let message = format!(
+                    "a model from {} to {}: a case needs an actuator, from command_V to displacement_um",
+                    channels.input, channels.output
+                );
+                let place = Place::file(source.name).field("channels");
+                return Err(Problem::new(place, Fault::Refused { message }).into());
+            }
             actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;
@@ -77,7 +86,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         within_model(loaded, range, model.range_volt)?;
     }
     let place = loaded.index.place("actuator.bench_rev_hz");
-    actuators.warnings = extrapolation_warnings(loaded, actuators.real.as_ref(), &place);
+    actuators.warnings.extend(extrapolation_warnings(loaded, actuators.real.as_ref(), &place));
     Ok(actuators)
 }
 

@@ -1,9 +1,9 @@
 //! `hhc check`: what kind of file it is, and every problem in it.
 
-use crate::case::read_case;
-use crate::files::{Folder, RonIndex, Source, read_bench};
+use crate::case::{ActuatorSource, LoadedCase, read_case};
+use crate::files::{Channel, DATASET, DataSet, Folder, RonIndex, Source, read_bench, read_dataset};
 use crate::output::Printable;
-use crate::problem::{Fault, Place, Problems};
+use crate::problem::{Fault, Place, Problem, Problems};
 use crate::stored_actuator::read_actuator;
 use serde::Serialize;
 use std::path::Path;
@@ -16,6 +16,10 @@ pub enum FileKind {
     Case,
     /// A bench data folder: `dataset.ron` and its records.
     Bench,
+    /// A data folder of generic loops.
+    GenericLoop,
+    /// A data folder of first-order reversal curves.
+    ReversalCurves,
     /// An actuator written by `hhc identify`.
     Actuator,
 }
@@ -29,6 +33,8 @@ pub struct CheckResult {
     pub kind: FileKind,
     /// What it holds, in one line.
     pub summary: String,
+    /// What is no problem, but should be known.
+    pub warnings: Vec<String>,
 }
 
 /// Checks a case, a data folder (or its `dataset.ron`) or an actuator file.
@@ -38,20 +44,24 @@ pub struct CheckResult {
 pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
     let name = path.display().to_string();
     if path.is_dir() {
-        return check_bench(&Folder::Disk(path.to_path_buf()), name);
+        return check_data(&Folder::Disk(path.to_path_buf()), name);
     }
     let source = Source::read(path)?;
     let index = RonIndex::new(&source.name, &source.text);
     match kind_of(&source, &index) {
-        Some(FileKind::Bench) => check_bench(&Folder::of_file(path), name),
+        Some(FileKind::Bench | FileKind::GenericLoop | FileKind::ReversalCurves) => {
+            check_data(&Folder::of_file(path), name)
+        }
         Some(FileKind::Actuator) => {
             let stored = read_actuator(&source)?;
             let summary = format!("{}, {} runs", stored.title, stored.runs.len());
-            Ok(CheckResult { file: name, kind: FileKind::Actuator, summary })
+            Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings: vec![] })
         }
         Some(FileKind::Case) => {
-            let summary = read_case(&source, &Folder::of_file(path))?.case.title;
-            Ok(CheckResult { file: name, kind: FileKind::Case, summary })
+            let loaded = read_case(&source, &Folder::of_file(path))?;
+            let warnings = check_actuator_source(&loaded)?;
+            let summary = loaded.case.title;
+            Ok(CheckResult { file: name, kind: FileKind::Case, summary, warnings })
         }
         None => {
             let mut problems = Problems::default();
@@ -78,11 +88,61 @@ fn kind_of(source: &Source, index: &RonIndex) -> Option<FileKind> {
     begins.then_some(FileKind::Case)
 }
 
-fn check_bench(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
-    let data = read_bench(folder)?;
-    let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
-    let summary = format!("{}: {} runs, {samples} samples", data.title, data.runs.len());
-    Ok(CheckResult { file, kind: FileKind::Bench, summary })
+/// Checks the data folder or actuator file a case names; warnings about it.
+fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
+    let missing = |folder: &Folder, file: &str| {
+        let place = loaded.index.place("actuator.model");
+        let folder = match folder.display("") {
+            here if here.is_empty() => "this folder".to_owned(),
+            folder => folder,
+        };
+        let fault = Fault::MissingFile { file: file.to_owned(), folder };
+        Problems::from(Problem::new(place, fault))
+    };
+    match &loaded.case.actuator.source {
+        ActuatorSource::Ideal => Ok(vec![]),
+        ActuatorSource::Bench(folder) if !folder.contains(DATASET) => Err(missing(folder, DATASET)),
+        ActuatorSource::Bench(folder) => {
+            Ok(read_bench(folder)?.warnings.iter().map(Problem::to_string).collect())
+        }
+        ActuatorSource::Stored { folder, file } if !folder.contains(file) => {
+            Err(missing(folder, file))
+        }
+        ActuatorSource::Stored { folder, file } => {
+            read_actuator(&folder.read(file)?)?;
+            Ok(vec![])
+        }
+    }
+}
+
+fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
+    let data = read_dataset(folder)?;
+    let warnings = data.warnings().iter().map(Problem::to_string).collect();
+    let runs = data.run_count();
+    let (kind, summary) = match &data {
+        DataSet::Bench(data) => {
+            let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
+            (FileKind::Bench, format!("{}: {runs} runs, {samples} samples", data.title))
+        }
+        DataSet::Loops(data) => {
+            let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
+            let [input, output] = data.channels.both().map(Channel::label);
+            let (low, high) = data.input_range.limits();
+            let summary = format!(
+                "{}: {input} to {output}, {runs} runs, {samples} samples, input {low} to {high} ({})",
+                data.title,
+                data.input_range.rule()
+            );
+            (FileKind::GenericLoop, summary)
+        }
+        DataSet::Curves(data) => {
+            let curves: usize = data.runs.iter().map(|run| run.curves.len()).sum();
+            let [input, output] = data.channels.both().map(Channel::label);
+            let summary = format!("{}: {input} to {output}, {curves} curves", data.title);
+            (FileKind::ReversalCurves, summary)
+        }
+    };
+    Ok(CheckResult { file, kind, summary, warnings })
 }
 
 impl Printable for CheckResult {
@@ -90,6 +150,8 @@ impl Printable for CheckResult {
         let kind = match self.kind {
             FileKind::Case => "case",
             FileKind::Bench => "bench data",
+            FileKind::GenericLoop => "generic loops",
+            FileKind::ReversalCurves => "reversal curves",
             FileKind::Actuator => "actuator",
         };
         format!("{}: {kind}, no problems ({})", self.file, self.summary)

@@ -1,13 +1,13 @@
 //! `hhc identify`: bench data in, actuator model out.
 
 use crate::SimError;
-use crate::files::{BenchData, RunUse};
+use crate::files::{BenchData, LoopData, RunUse, significant};
 use crate::output::{Printable, Sheet, table};
 use crate::problem::Place;
-use crate::stored_actuator::{FitUse, StoredActuator, StoredFit, StoredKind};
+use crate::stored_actuator::{FitUse, StoredActuator, StoredChannels, StoredFit, StoredKind};
 use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, NoiseEstimate, RunError, Use};
 use preisach_dyn::identify::{
-    BenchRecord, Identification, RecordUse, Refinement, Settings, identify,
+    BenchRecord, FlapZero, Identification, RecordUse, Refinement, Settings, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
 use rayon::prelude::*;
@@ -18,9 +18,28 @@ use serde::Serialize;
 /// Source: the paper scales the displacement so that the quasi-static response is +-10 deg.
 pub const QUASI_STATIC_AMPLITUDE_DEG: f64 = 10.0;
 
+/// What the reports say about the data of an identification.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataHeading {
+    /// Title of the data.
+    pub title: String,
+    /// Folder of the data.
+    pub folder: String,
+    /// blake3 of the data.
+    pub content_hash: String,
+    /// Whether a run leaves its side of the split to the rule.
+    pub split_by_rule: bool,
+    /// Input and output of a generic loop; none for an actuator: V and deg.
+    pub channels: Option<StoredChannels>,
+    /// Where the range of the inputs comes from.
+    pub range_rule: &'static str,
+}
+
 /// An identification with the data it came from.
 #[derive(Debug, Clone)]
 pub struct BenchIdentification {
+    /// What the data are.
+    pub heading: DataHeading,
     /// The models and how they fit.
     pub identification: Identification,
     /// The settings used, range and gain included.
@@ -59,22 +78,83 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
             time_step_s: run.table.time_step_s,
             voltage_volt: run.table.command_volt.clone(),
             output_deg: run.table.displacement_um.iter().map(|x| deg_per_um * x).collect(),
-            record_use: run.use_as.map(|given| match given {
-                RunUse::Train => RecordUse::Train,
-                RunUse::HeldOut => RecordUse::HeldOut,
-            }),
+            record_use: run.use_as.map(record_use),
             base_frequency_hz: None,
         })
         .collect();
+    let heading = DataHeading {
+        title: data.title.clone(),
+        folder: data.folder.clone(),
+        content_hash: data.content_hash.clone(),
+        split_by_rule: data.runs.iter().any(|run| run.use_as.is_none()),
+        channels: None,
+        range_rule: "command_range_V",
+    };
+    identified(heading, records, settings)
+}
+
+/// Identifies a model of a generic loop, in the units of its data.
+///
+/// The models see the input where an actuator has its voltage, and the output where it has its flap
+/// angle, with a gain of 1: their unit names stand for those of the channels. The range is the data
+/// set's; zero output stays where it was recorded.
+///
+/// # Errors
+/// [`SimError::Actuator`] at the place of the data set.
+pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentification, SimError> {
+    let place = Place::file(format!("{}/dataset.ron", data.folder)).field("input_range");
+    let (low, high) = data.input_range.limits();
+    let range_volt =
+        VoltageRange::new(low, high).map_err(|source| SimError::Actuator { place, source })?;
+    let zero = FlapZero::AsRecorded;
+    let settings = Settings { range_volt, deg_per_um: 1.0, zero, ..base.clone() };
+    let records = data
+        .runs
+        .iter()
+        .map(|run| BenchRecord {
+            id: run.id.clone(),
+            time_step_s: run.table.time_step_s,
+            voltage_volt: run.table.input.clone(),
+            output_deg: run.table.output.clone(),
+            record_use: run.use_as.map(record_use),
+            base_frequency_hz: None,
+        })
+        .collect();
+    let [input, output] = data.channels.both().map(crate::files::Channel::label);
+    let heading = DataHeading {
+        title: data.title.clone(),
+        folder: data.folder.clone(),
+        content_hash: data.content_hash.clone(),
+        split_by_rule: data.runs.iter().any(|run| run.use_as.is_none()),
+        channels: Some(StoredChannels { input, output }),
+        range_rule: data.input_range.rule(),
+    };
+    identified(heading, records, settings)
+}
+
+fn record_use(given: RunUse) -> RecordUse {
+    match given {
+        RunUse::Train => RecordUse::Train,
+        RunUse::HeldOut => RecordUse::HeldOut,
+    }
+}
+
+/// Identifies from records and judges the models by them.
+fn identified(
+    heading: DataHeading,
+    records: Vec<BenchRecord>,
+    settings: Settings,
+) -> Result<BenchIdentification, SimError> {
+    let dataset = format!("{}/dataset.ron", heading.folder);
+    let fail = |source: PreisachError| SimError::Actuator { place: Place::file(&dataset), source };
     let identification = identify(&records, &settings).map_err(fail)?;
     let fits = judge(&records, &identification).map_err(|e| match e {
         Judged::Model(source) => fail(source),
-        Judged::Misfit { id, source } => SimError::Misfit {
-            place: Place::file(format!("{}/dataset.ron", data.folder)).field(&id),
-            source,
-        },
+        Judged::Misfit { id, source } => {
+            SimError::Misfit { place: Place::file(&dataset).field(&id), source }
+        }
     })?;
-    Ok(BenchIdentification { identification, settings, records, fits })
+    Ok(BenchIdentification { heading, identification, settings, records, fits })
 }
 
 /// Why a record cannot be judged.
@@ -184,13 +264,14 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> f64 {
 
 impl BenchIdentification {
     /// The actuator file of this identification.
-    pub fn stored(&self, data: &BenchData) -> StoredActuator {
+    pub fn stored(&self) -> StoredActuator {
         StoredActuator {
             kind: StoredKind::Actuator,
-            title: data.title.clone(),
-            dataset: data.folder.clone(),
-            data_hash: data.content_hash.clone(),
+            title: self.heading.title.clone(),
+            dataset: self.heading.folder.clone(),
+            data_hash: self.heading.content_hash.clone(),
             program_version: crate::VERSION.to_owned(),
+            channels: self.heading.channels.clone(),
             settings: self.settings.clone(),
             runs: self.fits.iter().map(stored_fit).collect(),
             model: self.identification.dynamic.clone(),
@@ -198,14 +279,17 @@ impl BenchIdentification {
     }
 
     /// What `hhc identify` prints.
-    pub fn summary(&self, data: &BenchData, written_to: Option<String>) -> IdentifyResult {
+    pub fn summary(&self, written_to: Option<String>) -> IdentifyResult {
         let base = Settings::default().split;
-        let by_rule = data.runs.iter().any(|run| run.use_as.is_none());
+        let range = self.settings.range_volt;
         let rule = &self.settings.split;
         IdentifyResult {
-            title: data.title.clone(),
-            dataset: data.folder.clone(),
-            split: if by_rule {
+            title: self.heading.title.clone(),
+            dataset: self.heading.folder.clone(),
+            channels: self.heading.channels.clone(),
+            input_range: (range.lowest_volt(), range.highest_volt()),
+            range_rule: self.heading.range_rule.to_owned(),
+            split: if self.heading.split_by_rule {
                 format!(
                     "trained: quasi-static records (up to {} Hz) and, at {} Hz, the largest and the smallest amplitude; held out: all others{}",
                     rule.quasi_static_hz,
@@ -249,6 +333,13 @@ pub struct IdentifyResult {
     pub title: String,
     /// Folder of the data.
     pub dataset: String,
+    /// Input and output of a generic loop; none for an actuator, V and deg.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub channels: Option<StoredChannels>,
+    /// Range of the inputs, V or the unit of the input.
+    pub input_range: (f64, f64),
+    /// Where the range comes from.
+    pub range_rule: String,
     /// How the runs were split.
     pub split: String,
     /// Gain from displacement to flap angle, deg/um.
@@ -268,10 +359,17 @@ impl Printable for IdentifyResult {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("{}", self.title));
         sheet.line(format_args!("Data   {}\nSplit  {}", self.dataset, self.split));
-        sheet.line(format_args!(
-            "Gain   {:.6} deg/um; {:.3} deg of the records is zero flap angle",
-            self.deg_per_um, self.zero_deg
-        ));
+        let (low, high) = self.input_range;
+        match &self.channels {
+            Some(channels) => sheet.line(format_args!(
+                "Model  {} to {}, {} {low} to {high} ({})",
+                channels.input, channels.output, channels.input, self.range_rule
+            )),
+            None => sheet.line(format_args!(
+                "Gain   {:.6} deg/um; {:.3} deg of the records is zero flap angle",
+                self.deg_per_um, self.zero_deg
+            )),
+        }
         sheet.line(format_args!(
             "Output-error refinement {:?}: rms NRMSE of the trained runs {:.2} % before, {:.2} % after",
             self.refinement.outcome,
@@ -282,7 +380,8 @@ impl Printable for IdentifyResult {
             [("Trained runs", FitUse::Trained), ("Held-out runs", FitUse::HeldOut)]
         {
             sheet.line(format_args!("\n{title}"));
-            sheet.block(&fit_table(self.runs.iter().filter(|r| r.use_as == use_as)));
+            let unit = self.channels.as_ref().map_or("V", |c| c.input.as_str());
+            sheet.block(&fit_table(self.runs.iter().filter(|r| r.use_as == use_as), unit));
         }
         sheet.line(format_args!(
             "\nNRMSE: rms error / standard deviation of the measured output. Amplitude and phase error at\nthe strongest harmonic of the command, steady cycles; positive phase: the model lags too much.\nStructured: share of the output's energy that is neither explained nor noise of repeated cycles."
@@ -295,15 +394,26 @@ impl Printable for IdentifyResult {
 }
 
 /// How the model fits the runs given.
-pub(crate) fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>) -> String {
+///
+/// `input` heads the column of the input's amplitude.
+pub(crate) fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> String {
     let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
     table(
-        &["run", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg", "structured %"],
+        &[
+            "run",
+            "Hz",
+            input,
+            "NRMSE %",
+            "static only %",
+            "amplitude %",
+            "phase deg",
+            "structured %",
+        ],
         runs.map(|r| {
             vec![
                 r.id.clone(),
-                format!("{:.1}", r.frequency_hz),
-                format!("{:.0}", r.amplitude_volt),
+                format!("{}", significant(r.frequency_hz, 3)),
+                format!("{}", significant(r.amplitude_volt, 3)),
                 format!("{:.2}", r.nrmse_percent),
                 format!("{:.1}", r.static_nrmse_percent),
                 optional(r.amplitude_error_percent),

@@ -7,6 +7,8 @@
 //! |---|---|
 //! | problems of user files, each with file, line, field and remedy | [`problem`] |
 //! | reading and atomic writing, RON, measured tables, shipped files | [`files`] |
+//! | data of the figures of an identification | [`figures`] |
+//! | measured data of other formats into data folders | [`import`] |
 //! | case files and the validated case | [`case`], its hand-over to the models in `models` |
 //! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
 //! | one physics alone | [`modes`], [`section`] |
@@ -19,13 +21,16 @@ pub mod case;
 pub mod check;
 pub mod cli;
 mod error;
+pub mod figures;
 pub mod files;
 pub mod identification;
+pub mod import;
 mod models;
 pub mod modes;
 pub mod output;
 pub mod problem;
 pub mod progress;
+mod record_fault;
 pub mod report;
 pub mod results;
 pub mod run;

@@ -1,5 +1,6 @@
 //! Problems of user files: what is wrong, where, what was expected and the remedy.
 
+pub use crate::record_fault::RecordFault;
 use std::fmt;
 
 /// A place in a file.
@@ -82,7 +83,7 @@ pub enum Fault {
     },
     /// A file is of no kind the program knows.
     #[error(
-        "is neither a case, a dataset.ron nor an actuator file; a case has sections such as rotor: and trim:, a data set begins with kind: ActuatorBench, an actuator file with kind: Actuator"
+        "is neither a case, a dataset.ron nor an actuator file; a case has sections such as rotor: and trim:, a data set begins with kind: ActuatorBench, GenericLoop or ReversalCurves, an actuator file with kind: Actuator"
     )]
     UnknownKind,
 
@@ -394,6 +395,9 @@ pub enum Fault {
         /// Upper limit, V.
         high_volt: f64,
     },
+    /// A measured record or its import.
+    #[error(transparent)]
+    Record(#[from] RecordFault),
     /// Problems of one kind that are not listed one by one.
     #[error("{count} more problems of this kind follow")]
     More {

@@ -33,6 +33,10 @@ pub struct StoredActuator {
     /// Version of the program that wrote the file.
     #[serde(default)]
     pub program_version: String,
+    /// Input and output of a model that is no actuator, with their units: they stand where the model
+    /// says volt and deg. None for an actuator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channels: Option<StoredChannels>,
     /// How it was identified.
     #[serde(default)]
     pub settings: Settings,
@@ -41,6 +45,16 @@ pub struct StoredActuator {
     pub runs: Vec<StoredFit>,
     /// The model.
     pub model: ActuatorModel,
+}
+
+/// Input and output of a generic loop, names with units such as `displacement_in`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredChannels {
+    /// The input.
+    pub input: String,
+    /// The output.
+    pub output: String,
 }
 
 /// How the model fits one run.

@@ -1,6 +1,7 @@
 //! The arguments of `hhc`.
 
 use crate::case::InflowChoice;
+use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flap_aero::{AttachedFlowModel, Motion};
@@ -30,6 +31,8 @@ pub enum Command {
     Run(RunArgs),
     /// Identify an actuator from bench data.
     Identify(IdentifyArgs),
+    /// Import measured data (CSV, MAT, FORC, JSON) into a data folder.
+    Import(ImportArgs),
     /// Rotating frequencies of a blade, and the data of a fan plot.
     Modes(ModesArgs),
     /// Harmonic response of a section with a trailing-edge flap.
@@ -103,7 +106,7 @@ pub struct RunArgs {
 #[derive(Debug, Clone, Args)]
 pub struct IdentifyArgs {
     /// Folder with dataset.ron and its records.
-    #[arg(value_name = "BENCH_DIR")]
+    #[arg(value_name = "DATA_DIR")]
     pub bench: PathBuf,
     /// Actuator file to write.
     #[arg(short, long, value_name = "ACTUATOR.ron")]
@@ -111,9 +114,73 @@ pub struct IdentifyArgs {
     /// Actuator file whose settings (levels, form, split rule) are taken up.
     #[arg(long, value_name = "ACTUATOR.ron")]
     pub start: Option<PathBuf>,
+    /// Folder for the data of the figures: loops with residuals, density; CSV.
+    #[arg(long, value_name = "DIR")]
+    pub figures: Option<PathBuf>,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// `hhc import`.
+#[derive(Debug, Clone, Args)]
+pub struct ImportArgs {
+    /// Files to import; each becomes a run of the data folder.
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Folder to write, never overwritten; the name of the first file without its ending if left out.
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// What the files are; recognised by their first bytes if left out.
+    #[arg(long = "as", value_enum, value_name = "FORMAT")]
+    pub source: Option<SourceKind>,
+    /// Kind of the data folder; an actuator bench if there are command and displacement, else a
+    /// generic loop, if left out.
+    #[arg(long, value_enum)]
+    pub kind: Option<ImportKind>,
+    /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
+    /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub columns: Option<String>,
+    /// Variable of a MAT file: bench.run(2).x, runs{3}.
+    #[arg(long, value_name = "PATH")]
+    pub variable: Option<String>,
+    /// Name of the input of a generic loop.
+    #[arg(long, value_name = "NAME")]
+    pub input: Option<String>,
+    /// Name of the output of a generic loop.
+    #[arg(long, value_name = "NAME")]
+    pub response: Option<String>,
+    /// Units to convert into, for generic loops: `displacement_mm,force_N`.
+    #[arg(long, value_name = "LIST")]
+    pub convert: Option<String>,
+    /// Range of the command in V, or of the input in its unit: LOW,HIGH.
+    #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
+    pub range: Option<(f64, f64)>,
+    /// Sampling frequency of files without a time column, Hz.
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub sampling_hz: Option<f64>,
+    /// Average whole blocks of samples down to this sampling frequency, Hz.
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub reduce_to_hz: Option<f64>,
+    /// Most samples of a run; longer ones are averaged in blocks of 2, 4, 8 ...
+    #[arg(long, value_name = "N", default_value_t = MOST_SAMPLES)]
+    pub max_samples: usize,
+    /// Title of the data set.
+    #[arg(long)]
+    pub title: Option<String>,
+    /// Form of the output.
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// Two numbers with a comma between them.
+fn range(text: &str) -> Result<(f64, f64), String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|t| t.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[low, high]) => Ok((low, high)),
+        _ => Err("expected LOW,HIGH, such as -20,150".to_owned()),
+    }
 }
 
 /// `hhc modes`.

@@ -1,17 +1,22 @@
 //! What each command does.
 
 use super::args::{
-    CheckArgs, IdentifyArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs,
-    StudyArgs,
+    CheckArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs,
+    SectionArgs, StudyArgs,
 };
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::check::check_file;
-use crate::files::{Folder, SHIPPED_CASES, Source, read_bench, write_atomic, write_new};
-use crate::identification::identify_bench;
+use crate::figures::figure_files;
+use crate::files::{
+    DATASET, DataSet, DatasetKind, Folder, SHIPPED_CASES, Source, read_dataset, write_atomic,
+    write_new,
+};
+use crate::identification::{identify_bench, identify_loops};
+use crate::import::{ColumnOptions, ImportRequest, default_folder};
 use crate::modes::rotating_modes;
 use crate::output::{Format, Printable, print};
-use crate::problem::{Fault, Place, Problem};
+use crate::problem::{Fault, Place, Problem, RecordFault};
 use crate::progress::Progress;
 use crate::report::{StudyReport, report_html};
 use crate::results::StoredResult;
@@ -109,16 +114,69 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         Some(path) => read_actuator(&Source::read(path)?)?.settings,
         None => Settings::default(),
     };
-    let data = read_bench(&Folder::Disk(args.bench.clone()))?;
+    let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
+    for warning in data.warnings() {
+        eprintln!("warning: {warning}");
+    }
     let progress = Progress::new(1);
-    progress.doing(format!("identifying from {} runs", data.runs.len()));
-    let found = identify_bench(&data, &base);
+    progress.doing(format!("identifying from {} runs", data.run_count()));
+    let found = match &data {
+        DataSet::Bench(data) => identify_bench(data, &base),
+        DataSet::Loops(data) => identify_loops(data, &base),
+        DataSet::Curves(data) => Err(no_record(&data.folder).into()),
+    };
     progress.finish();
     let found = found?;
-    let summary = found.summary(&data, Some(args.output.display().to_string()));
+    let summary = found.summary(Some(args.output.display().to_string()));
     let text = summary.render(args.format.format)?;
-    found.stored(&data).write(&args.output)?;
+    let figures = match &args.figures {
+        Some(_) => figure_files(&found)?,
+        None => vec![],
+    };
+    found.stored().write(&args.output)?;
+    if let Some(folder) = &args.figures {
+        for (name, text) in figures {
+            write_atomic(&folder.join(name), text.as_bytes())?;
+        }
+    }
     print(&text)
+}
+
+/// Reversal curves have no time: no record of theirs can be identified from.
+fn no_record(folder: &str) -> Problem {
+    let fault = RecordFault::OtherKind {
+        found: DatasetKind::ReversalCurves.word(),
+        expected: "ActuatorBench or GenericLoop",
+        remedy: "reversal curves have no time; give records of input and output over time",
+    };
+    Problem::new(Place::file(format!("{folder}/{DATASET}")).field("kind"), fault.into())
+}
+
+pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
+    let first = args.files.first().map_or(Path::new("data"), PathBuf::as_path);
+    let request = ImportRequest {
+        files: args.files.clone(),
+        out: args.out.clone().unwrap_or_else(|| default_folder(first)),
+        source: args.source,
+        kind: args.kind,
+        columns: ColumnOptions {
+            columns: args.columns.clone(),
+            input: args.input.clone(),
+            response: args.response.clone(),
+            convert: args.convert.clone(),
+        },
+        variable: args.variable.clone(),
+        range: args.range,
+        sampling_hz: args.sampling_hz,
+        reduce_to_hz: args.reduce_to_hz,
+        most_samples: args.max_samples,
+        title: args.title.clone(),
+    };
+    let result = crate::import::import(&request)?;
+    for warning in &result.warnings {
+        eprintln!("warning: {warning}");
+    }
+    print(&result.render(args.format.format)?)
 }
 
 pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
@@ -145,6 +203,9 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
 
 pub(super) fn check(args: &CheckArgs) -> Result<(), SimError> {
     let result = check_file(&args.file)?;
+    for warning in &result.warnings {
+        eprintln!("warning: {warning}");
+    }
     print(&result.render(args.format.format)?)
 }
 

@@ -1,12 +1,12 @@
-//! A whole bench: `dataset.ron` and every record it names, all problems in one report.
+//! A whole actuator bench: `dataset.ron` and every record it names, all problems in one report.
 
-use super::measured_csv::Listing;
-use super::{
-    DatasetFile, Folder, MeasuredTable, RonIndex, RunRole, RunUse, parse_measured_csv, read_ron,
-};
-use crate::problem::{Fault, Place, Problems};
-use std::collections::BTreeMap;
-use std::path::{Component, Path};
+use super::dataset::DEFAULT_COMMAND_RANGE_VOLT;
+use super::dataset_read::{OpenDataset, numbered, run_field};
+use super::record_checks::{Record, check_lag, check_record, check_unit};
+use super::table_text::Listing;
+use super::{DatasetKind, Folder, MeasuredTable, RunRole, RunUse, parse_measured_csv};
+use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
+use std::ops::Range;
 
 /// A bench data set, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +21,8 @@ pub struct BenchData {
     pub flap_deg_per_um: Option<f64>,
     /// Voltages the actuator may see, V: lower and upper limit.
     pub command_range_volt: (f64, f64),
+    /// What a reader should know: resampled, clipped or suspect records.
+    pub warnings: Vec<Problem>,
     /// blake3 of `dataset.ron` and of every record, in order.
     pub content_hash: String,
 }
@@ -40,151 +42,120 @@ pub struct BenchRun {
     pub start_s: Option<f64>,
     /// Side of the split, if the data set fixes it.
     pub use_as: Option<RunUse>,
+    /// Times of the record, s, between which it trains or is judged; none: all of it.
+    pub window_s: Option<(f64, f64)>,
     /// The numbers.
     pub table: MeasuredTable,
 }
 
-/// Name of the file that describes a data folder.
-const DATASET: &str = "dataset.ron";
+impl BenchRun {
+    /// The samples that train or are judged.
+    pub fn window(&self) -> Range<usize> {
+        super::samples_within(&self.table.time_s, self.window_s)
+    }
+}
+
 /// Part of the command range by which a command may exceed it: digits of the converter.
 const COMMAND_TOLERANCE: f64 = 1e-4;
+/// Share of the command range below which no record of a bench stays.
+const LEAST_RANGE_USED: f64 = 0.005;
 
 /// Reads a bench data folder.
 ///
 /// # Errors
 /// Every problem of `dataset.ron` and of every record, ordered by file and line.
 pub fn read_bench(folder: &Folder) -> Result<BenchData, Problems> {
-    let source = folder.read(DATASET).map_err(|mut problem| {
-        if let Fault::Unreadable { reason } = &mut problem.fault {
-            reason.push_str("; a data folder is described by its dataset.ron");
-        }
-        problem
-    })?;
-    let mut hash = blake3::Hasher::new();
-    hash.update(source.text.as_bytes());
-    let file = read_ron::<DatasetFile>(&source);
-    let mut problems = file.problems;
-    let Some(dataset) = file.value else {
-        return problems.into_result(None);
-    };
-    let range = check_range(&dataset, &file.index, &mut problems);
-    check_fields(&dataset, &file.index, &mut problems);
-    let mut runs = Vec::with_capacity(dataset.runs.len());
-    for (i, run) in dataset.runs.iter().enumerate() {
-        let place = file.index.place(&format!("runs[{i}].file"));
-        if !is_plain(&run.file) {
-            problems.push(place, Fault::NotPlainFile { path: run.file.clone() });
-            continue;
-        }
-        if !folder.contains(&run.file) {
-            let fault = Fault::MissingFile { file: run.file.clone(), folder: folder.display("") };
-            problems.push(place, fault);
-            continue;
-        }
-        let source = match folder.read(&run.file) {
-            Ok(source) => source,
-            Err(problem) => {
-                problems.push(problem.place, problem.fault);
-                continue;
-            }
-        };
-        hash.update(source.text.as_bytes());
+    let mut open = OpenDataset::open(folder, DatasetKind::ActuatorBench)?;
+    let given = open.dataset.command_range_volt.unwrap_or(DEFAULT_COMMAND_RANGE_VOLT);
+    let range = open.check_range("command_range_V", given);
+    if let Some(value) = open.dataset.flap_deg_per_um.filter(|v| !(v.is_finite() && *v > 0.0)) {
+        let remedy = "leave it out to have identification set the gain";
+        let fault = Fault::NotPositive { value, unit: "deg/um", remedy };
+        open.problems.push(open.index.place("flap_deg_per_um"), fault);
+    }
+    let mut runs = Vec::with_capacity(open.dataset.runs.len());
+    let mut warnings = Vec::new();
+    for (number, run) in numbered(&open.dataset.runs) {
+        let Some(source) = open.read(&run.file, &run_field(number, "file")) else { continue };
         match parse_measured_csv(&source) {
-            Ok(table) => {
-                if let Some(range) = range {
-                    check_commands(&source.name, &table, range, &mut problems);
-                }
+            Ok(mut table) => {
+                warnings.append(&mut table.warnings);
+                check_bench_record(&source.name, &table, range, &mut open.problems, &mut warnings);
+                open.check_window(number, &table.time_s);
                 runs.push(BenchRun {
-                    id: run.id.clone(),
-                    file: run.file.clone(),
+                    id: run.id,
+                    file: run.file,
                     role: run.role,
-                    note: run.note.clone(),
+                    note: run.note,
                     start_s: run.start_s,
                     use_as: run.use_as,
+                    window_s: run.window_s,
                     table,
                 });
             }
-            Err(more) => problems.append(more),
+            Err(more) => open.problems.append(more),
+        }
+    }
+    if let Some((low, high)) = range {
+        let used = runs.iter().map(|run| span(&run.table.command_volt)).fold(0.0, f64::max);
+        let percent = 100.0 * used / (high - low);
+        if used > 0.0 && percent < 100.0 * LEAST_RANGE_USED {
+            let fault = RecordFault::RangeUnused { percent, low, high };
+            warnings.push(Problem::new(open.index.place("command_range_V"), fault.into()));
         }
     }
     let data = BenchData {
-        title: dataset.title,
-        folder: folder.display("").trim_end_matches('/').to_owned(),
+        folder: open.folder_name(),
         runs,
-        flap_deg_per_um: dataset.flap_deg_per_um,
-        command_range_volt: dataset.command_range_volt,
-        content_hash: hash.finalize().to_hex().to_string(),
+        flap_deg_per_um: open.dataset.flap_deg_per_um,
+        command_range_volt: given,
+        warnings,
+        content_hash: open.content_hash(),
+        title: open.dataset.title,
     };
-    problems.into_result(Some(data))
+    open.problems.into_result(Some(data))
 }
 
-fn is_plain(file: &str) -> bool {
-    let mut components = Path::new(file).components();
-    matches!(components.next(), Some(Component::Normal(_)))
-        && components.all(|c| matches!(c, Component::Normal(_)))
+fn span(values: &[f64]) -> f64 {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    high - low
 }
 
-fn check_range(
-    dataset: &DatasetFile,
-    index: &RonIndex,
+/// The checks of an actuator's record: movement, clipping, range and unit of the command, lag.
+pub(crate) fn check_bench_record(
+    file: &str,
+    table: &MeasuredTable,
+    range: Option<(f64, f64)>,
     problems: &mut Problems,
-) -> Option<(f64, f64)> {
-    let (low, high) = dataset.command_range_volt;
-    if low.is_finite() && high.is_finite() && low < high {
-        return Some((low, high));
-    }
-    problems.push(index.place("command_range_V"), Fault::EmptyRange { low, high });
-    None
-}
-
-fn check_fields(dataset: &DatasetFile, index: &RonIndex, problems: &mut Problems) {
-    if dataset.title.trim().is_empty() {
-        let of = "one line about the data: what was measured, where, on what";
-        problems.push(index.place("title"), Fault::EmptyText { of });
-    }
-    if dataset.runs.is_empty() {
-        problems.push(index.place("runs"), Fault::EmptyList { of: "run" });
-    }
-    if let Some(value) = dataset.flap_deg_per_um.filter(|v| !(v.is_finite() && *v > 0.0)) {
-        let remedy = "leave it out to have identification set the gain";
-        let fault = Fault::NotPositive { value, unit: "deg/um", remedy };
-        problems.push(index.place("flap_deg_per_um"), fault);
-    }
-    let mut ids = BTreeMap::new();
-    let mut files = BTreeMap::new();
-    for (i, run) in dataset.runs.iter().enumerate() {
-        for (key, value, seen, of) in
-            [("id", &run.id, &mut ids, "run"), ("file", &run.file, &mut files, "run file")]
-        {
-            let path = format!("runs[{i}].{key}");
-            if value.trim().is_empty() {
-                problems.push(index.place(&path), Fault::EmptyText { of: "a name" });
-                continue;
-            }
-            let line = index.line(&path).unwrap_or_default();
-            if let Some(first_line) = seen.insert(value.clone(), line) {
-                let fault = Fault::Repeated { name: value.clone(), of, first_line };
-                problems.push(index.place(&path), fault);
-            }
-        }
-        if let Some(value) = run.start_s.filter(|v| !(v.is_finite() && *v >= 0.0)) {
-            let (low, high, unit) = (0.0, 1e9, "s");
-            let remedy = "give the seconds since switch-on, or leave it out";
-            let fault = Fault::OutOfRange { value, low, high, unit, remedy };
-            problems.push(index.place(&format!("runs[{i}].start_s")), fault);
-        }
+    warnings: &mut Vec<Problem>,
+) {
+    let record = Record {
+        file,
+        lines: &table.lines,
+        input: ("command_V", "V", &table.command_volt),
+        output: ("displacement_um", "um", &table.displacement_um),
+    };
+    let moves = check_record(&record, problems, warnings);
+    let in_range = range.is_none_or(|range| {
+        check_unit(&record, range, problems) && check_commands(&record, range, problems)
+    });
+    if moves && in_range {
+        check_lag(&record, problems);
     }
 }
 
-fn check_commands(file: &str, table: &MeasuredTable, range: (f64, f64), problems: &mut Problems) {
+fn check_commands(record: &Record<'_>, range: (f64, f64), problems: &mut Problems) -> bool {
     let (low_volt, high_volt) = range;
     let slack = COMMAND_TOLERANCE * (high_volt - low_volt);
     let mut listing = Listing::default();
-    for (&voltage_volt, &line) in table.command_volt.iter().zip(&table.lines) {
+    let before = problems.as_slice().len();
+    for (&voltage_volt, &line) in record.input.2.iter().zip(record.lines) {
         if voltage_volt < low_volt - slack || voltage_volt > high_volt + slack {
             let fault = Fault::CommandOutsideRange { voltage_volt, low_volt, high_volt };
-            listing.push(problems, Place::at(file, line, 1).field("command_V"), fault);
+            listing.push(problems, Place::at(record.file, line, 1).field("command_V"), fault);
         }
     }
     listing.finish(problems);
+    problems.as_slice().len() == before
 }

@@ -7,6 +7,21 @@ use serde::{Deserialize, Serialize};
 pub enum DatasetKind {
     /// Voltage and displacement of a piezo actuator on a bench.
     ActuatorBench,
+    /// Any input and any output of a hysteretic system, in the units of the header.
+    GenericLoop,
+    /// First-order reversal curves, quasi-static: a curve number instead of a time.
+    ReversalCurves,
+}
+
+impl DatasetKind {
+    /// The word in `dataset.ron`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::ActuatorBench => "ActuatorBench",
+            Self::GenericLoop => "GenericLoop",
+            Self::ReversalCurves => "ReversalCurves",
+        }
+    }
 }
 
 /// What a run is for.
@@ -38,12 +53,34 @@ pub struct DatasetFile {
     /// The records.
     pub runs: Vec<RunFile>,
     /// Equivalent flap angle per displacement, deg/um, positive; without it, identification sets the
-    /// gain so that the slowest full-scale loop is +-10 deg.
+    /// gain so that the slowest full-scale loop is +-10 deg. `ActuatorBench` only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flap_deg_per_um: Option<f64>,
-    /// Voltages the actuator may see, V, lower limit first.
-    #[serde(default = "apa500l_range", rename = "command_range_V")]
-    pub command_range_volt: (f64, f64),
+    /// Voltages the actuator may see, V, lower limit first; without it those of an APA500L-like
+    /// stack, -20 to 150 V. `ActuatorBench` only.
+    #[serde(default, rename = "command_range_V", skip_serializing_if = "Option::is_none")]
+    pub command_range_volt: Option<(f64, f64)>,
+    /// Which column is the input; without it the first one besides the time. Not `ActuatorBench`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input: Option<ChannelFile>,
+    /// Which column is the output; without it the second one besides the time. Not `ActuatorBench`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output: Option<ChannelFile>,
+    /// Inputs the system may see, in the unit of the input, lower limit first; without it from the
+    /// smallest to the largest input of all runs. Not `ActuatorBench`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_range: Option<(f64, f64)>,
+}
+
+/// A column of the records, named in `dataset.ron`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelFile {
+    /// The column as the header names it, with or without its unit.
+    pub column: String,
+    /// Its unit, where the header gives none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
 }
 
 /// One record.
@@ -65,9 +102,14 @@ pub struct RunFile {
     /// Side of the split; without it, identification splits by the rule it prints.
     #[serde(default, rename = "use", skip_serializing_if = "Option::is_none")]
     pub use_as: Option<RunUse>,
+    /// Times of the record, s, between which it trains or is judged; simulations still begin at its
+    /// first sample. A file may be used by several runs with different windows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<(f64, f64)>,
+    /// Table of the drift calibration, one row per curve. `ReversalCurves` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
 }
 
-/// Range of an APA500L-like stack, V.
-fn apa500l_range() -> (f64, f64) {
-    (-20.0, 150.0)
-}
+/// Range of an APA500L-like stack, V: that of an `ActuatorBench` which names none.
+pub const DEFAULT_COMMAND_RANGE_VOLT: (f64, f64) = (-20.0, 150.0);

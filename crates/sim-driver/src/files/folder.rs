@@ -68,6 +68,14 @@ impl Folder {
         Ok(Source { name, text })
     }
 
+    /// Size of a file of this folder, bytes; 0 if it cannot be told.
+    pub fn size_bytes(&self, file: &str) -> u64 {
+        match self {
+            Self::Disk(folder) => std::fs::metadata(folder.join(file)).map_or(0, |m| m.len()),
+            Self::Shipped(_) => shipped_file(&self.display(file)).map_or(0, |b| b.len() as u64),
+        }
+    }
+
     /// Whether a file exists in this folder.
     pub fn contains(&self, file: &str) -> bool {
         match self {
@@ -91,6 +99,23 @@ impl Source {
         let place = Place::file(path.display().to_string());
         Err(Problem::new(place, Fault::Unreadable { reason }))
     }
+}
+
+/// Opens a file to be read piece by piece.
+///
+/// # Errors
+/// [`Fault::Unreadable`].
+#[expect(clippy::disallowed_methods, reason = "beside `read_bytes` the one place that reads files")]
+pub fn open_reader(path: &Path) -> Result<std::io::BufReader<std::fs::File>, Problem> {
+    let name = path.display().to_string();
+    let unreadable =
+        |reason: String| Problem::new(Place::file(&name), Fault::Unreadable { reason });
+    let file = std::fs::File::open(path).map_err(|e| unreadable(e.to_string()))?;
+    // a folder opens but cannot be read
+    if file.metadata().is_ok_and(|m| m.is_dir()) {
+        return Err(unreadable("it is a folder".into()));
+    }
+    Ok(std::io::BufReader::with_capacity(1 << 16, file))
 }
 
 #[expect(clippy::disallowed_methods, reason = "the one place of the program that reads files")]

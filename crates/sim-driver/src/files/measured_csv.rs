@@ -1,7 +1,11 @@
 //! Measured tables: CSV with a header that carries units.
 
 use super::Source;
-use crate::problem::{Fault, Place, Problems, nearest};
+use super::table_text::{
+    LEAST_ROWS, Line, ROUNDING_JITTER, Rows, check_time, increases_evenly, resample, resampled,
+    split_lines,
+};
+use crate::problem::{Fault, Place, Problem, Problems, RecordFault, nearest};
 
 /// A quantity a measured table may hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,14 +107,9 @@ pub struct MeasuredTable {
     pub load_newton: Option<Vec<f64>>,
     /// Line of every row in its file, from 1.
     pub lines: Vec<usize>,
+    /// What was done to it that a reader should know: times brought onto even steps.
+    pub warnings: Vec<Problem>,
 }
-
-/// Problems of one kind listed one by one before the rest is only counted.
-const LISTED: usize = 5;
-/// Rows below which nothing can be said about sampling.
-const LEAST_ROWS: usize = 3;
-/// Deviation of a time step from the median step that is still uniform, as a fraction of it.
-const STEP_TOLERANCE: f64 = 0.02;
 
 /// Reads a measured table.
 ///
@@ -127,46 +126,10 @@ pub fn parse_measured_csv(source: &Source) -> Result<MeasuredTable, Problems> {
     if !problems.is_empty() {
         return problems.into_result(None);
     }
-    let table = Rows::read(source, &lines[first_row..], &columns, &mut problems);
-    let table = table.finish(source, &columns, &mut problems);
+    let labels: Vec<&str> = columns.iter().map(|&c| QUANTITIES[c].column).collect();
+    let rows = Rows::read(source, &lines[first_row..], &labels, &mut problems);
+    let table = finish(rows, source, &columns, &mut problems);
     problems.into_result(table)
-}
-
-/// A line of the file that holds data.
-#[derive(Debug, Clone, Copy)]
-struct Line<'a> {
-    number: usize,
-    text: &'a str,
-    /// Whether a line end follows.
-    ended: bool,
-}
-
-impl<'a> Line<'a> {
-    /// Fields with the column of their first character, from 1.
-    fn fields(self) -> Vec<(&'a str, usize)> {
-        let mut column = 1;
-        self.text
-            .split(',')
-            .map(|raw| {
-                let blanks = raw.chars().take_while(|c| c.is_whitespace()).count();
-                let at = column + blanks;
-                column += raw.chars().count() + 1;
-                (raw.trim().trim_matches('"').trim(), at)
-            })
-            .collect()
-    }
-}
-
-fn split_lines(text: &str) -> Vec<Line<'_>> {
-    text.split_inclusive('\n')
-        .enumerate()
-        .map(|(i, line)| Line {
-            number: i + 1,
-            ended: line.ends_with('\n'),
-            text: line.trim_end_matches(['\n', '\r']),
-        })
-        .filter(|line| !line.text.trim().is_empty() && !line.text.starts_with('#'))
-        .collect()
 }
 
 /// For every column of the file its index in [`QUANTITIES`], and the number of header lines.
@@ -222,11 +185,11 @@ fn read_header(
     (columns, first_row)
 }
 
-fn is_unit_cell(text: &str) -> bool {
+pub(super) fn is_unit_cell(text: &str) -> bool {
     (text.starts_with('(') && text.ends_with(')')) || (text.starts_with('[') && text.ends_with(']'))
 }
 
-fn strip_brackets(text: &str) -> &str {
+pub(super) fn strip_brackets(text: &str) -> &str {
     text.trim_matches(['(', ')', '[', ']']).trim()
 }
 
@@ -243,160 +206,53 @@ fn split_name<'a>(cell: &'a str, second_row: Option<&'a str>) -> Option<(usize, 
     find(name).map(|q| (q, Some(unit)))
 }
 
-/// The numbers of a table while it is read.
-struct Rows {
-    values: Vec<Vec<f64>>,
-    lines: Vec<usize>,
-}
-
-impl Rows {
-    fn read(
-        source: &Source,
-        lines: &[Line<'_>],
-        columns: &[usize],
-        problems: &mut Problems,
-    ) -> Self {
-        let mut rows = Self { values: vec![Vec::new(); columns.len()], lines: Vec::new() };
-        let mut lists = [Listing::default(), Listing::default(), Listing::default()];
-        let [field_counts, words, infinities] = &mut lists;
-        let last = lines.len().saturating_sub(1);
-        for (i, line) in lines.iter().enumerate() {
-            let fields = line.fields();
-            let before = i.checked_sub(1).map(|b| lines[b].fields());
-            if i == last && is_cut_off(line, &fields, before.as_deref(), columns.len()) {
-                let fault =
-                    Fault::Truncated { text: line.text.to_owned(), expected: columns.len() };
-                problems.push(Place::at(&source.name, line.number, 1), fault);
-                break;
-            }
-            if fields.len() != columns.len() {
-                let fault = Fault::FieldCount { found: fields.len(), expected: columns.len() };
-                field_counts.push(problems, Place::at(&source.name, line.number, 1), fault);
-                continue;
-            }
-            rows.lines.push(line.number);
-            for ((text, at), (values, &quantity)) in
-                fields.iter().zip(rows.values.iter_mut().zip(columns))
-            {
-                let place =
-                    || Place::at(&source.name, line.number, *at).field(QUANTITIES[quantity].column);
-                let value = text.parse::<f64>();
-                match value {
-                    Ok(value) if value.is_finite() => {}
-                    Ok(value) => infinities.push(problems, place(), Fault::NotFinite { value }),
-                    Err(_) => {
-                        let fault = Fault::NotANumber { text: (*text).to_owned() };
-                        words.push(problems, place(), fault);
-                    }
-                }
-                values.push(value.unwrap_or(f64::NAN));
-            }
-        }
-        for list in lists {
-            list.finish(problems);
-        }
-        rows
+/// Checks the time column and hands out the columns by name.
+fn finish(
+    mut rows: Rows,
+    source: &Source,
+    columns: &[usize],
+    problems: &mut Problems,
+) -> Option<MeasuredTable> {
+    let count = rows.lines.len();
+    if count < LEAST_ROWS {
+        let fault = Fault::TooFewRows { rows: count, least: LEAST_ROWS };
+        problems.push(Place::file(&source.name), fault);
+        return None;
     }
-
-    /// Checks the time column and hands out the columns by name.
-    fn finish(
-        mut self,
-        source: &Source,
-        columns: &[usize],
-        problems: &mut Problems,
-    ) -> Option<MeasuredTable> {
-        let rows = self.lines.len();
-        if rows < LEAST_ROWS {
-            let fault = Fault::TooFewRows { rows, least: LEAST_ROWS };
-            problems.push(Place::file(&source.name), fault);
-            return None;
-        }
-        let mut take = |quantity: usize| {
-            let column = columns.iter().position(|c| *c == quantity)?;
-            Some(std::mem::take(&mut self.values[column]))
-        };
-        let time_s = take(TIME)?;
-        let time_step_s = check_time(source, &time_s, &self.lines, problems);
-        Some(MeasuredTable {
-            time_step_s,
-            command_volt: take(COMMAND)?,
-            displacement_um: take(DISPLACEMENT)?,
-            amplifier_volt: take(3),
-            temperature_celsius: take(4),
-            load_newton: take(5),
-            time_s,
-            lines: self.lines,
-        })
-    }
-}
-
-/// Whether the last line of a file stops early: too few fields, or no line end behind a last number
-/// that has fewer decimals than all the table's lines before promise.
-fn is_cut_off(
-    line: &Line<'_>,
-    fields: &[(&str, usize)],
-    before: Option<&[(&str, usize)]>,
-    expected: usize,
-) -> bool {
-    if line.ended {
-        return false;
-    }
-    let decimals =
-        |f: &[(&str, usize)]| f.last().and_then(|(t, _)| t.split_once('.')).map(|(_, d)| d.len());
-    let shorter = match before.and_then(decimals) {
-        Some(usual) => decimals(fields).is_none_or(|d| d < usual),
-        None => false,
+    let mut take = |quantity: usize| {
+        let column = columns.iter().position(|c| *c == quantity)?;
+        Some(std::mem::take(&mut rows.values[column]))
     };
-    fields.len() < expected || fields.last().is_some_and(|(t, _)| t.is_empty()) || shorter
-}
-
-/// Median time step; problems for steps that go back or differ from it.
-fn check_time(source: &Source, time_s: &[f64], lines: &[usize], problems: &mut Problems) -> f64 {
-    let steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    let mut sorted: Vec<f64> = steps.iter().copied().filter(|s| *s > 0.0).collect();
-    sorted.sort_by(f64::total_cmp);
-    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN);
-    let (mut back, mut uneven) = (Listing::default(), Listing::default());
-    for (i, &step) in steps.iter().enumerate() {
-        let place = || Place::at(&source.name, lines[i + 1], 1).field(QUANTITIES[TIME].column);
-        if step <= 0.0 {
-            let fault = Fault::TimeNotIncreasing { time_s: time_s[i + 1], before_s: time_s[i] };
-            back.push(problems, place(), fault);
-        } else if i > 0 && steps[i - 1] <= 0.0 {
-            // the step out of a time that ran back is long for that reason alone
-        } else if (step - usual).abs() > STEP_TOLERANCE * usual {
-            let fault = Fault::TimeStepUneven { step_s: step, usual_s: usual };
-            uneven.push(problems, place(), fault);
-        }
+    let mut time_s = take(TIME)?;
+    let label = QUANTITIES[TIME].column;
+    let mut command_volt = take(COMMAND)?;
+    let before = problems.as_slice().len();
+    let sampling = check_time(&source.name, label, &time_s, &rows.lines, problems);
+    if problems.as_slice().len() > before && increases_evenly(&command_volt) {
+        let fault =
+            RecordFault::TimeSwapped { other: QUANTITIES[COMMAND].column.to_owned() }.into();
+        problems.push(Place::at(&source.name, rows.lines[0], 1).field(label), fault);
     }
-    back.finish(problems);
-    uneven.finish(problems);
-    let span = time_s.last().zip(time_s.first()).map(|(b, a)| b - a);
-    span.map_or(f64::NAN, |s| s / steps.len() as f64)
-}
-
-/// Lists the first few problems of one kind and counts the rest.
-#[derive(Debug, Default)]
-pub(crate) struct Listing {
-    count: usize,
-    next: Option<Place>,
-}
-
-impl Listing {
-    pub(crate) fn push(&mut self, problems: &mut Problems, place: Place, fault: Fault) {
-        self.count += 1;
-        if self.count <= LISTED {
-            problems.push(place, fault);
-        } else if self.next.is_none() {
-            self.next = Some(place);
-        }
+    let mut displacement_um = take(DISPLACEMENT)?;
+    let (mut amplifier, mut temperature, mut load) = (take(3), take(4), take(5));
+    let mut warnings = Vec::new();
+    if problems.is_empty() && sampling.jitter > ROUNDING_JITTER {
+        let mut all = vec![&mut command_volt, &mut displacement_um];
+        all.extend([&mut amplifier, &mut temperature, &mut load].into_iter().flatten());
+        resample(&mut time_s, &mut all);
+        warnings.push(resampled(&source.name, label, sampling));
     }
-
-    pub(crate) fn finish(self, problems: &mut Problems) {
-        if let Some(place) = self.next {
-            problems.push(place, Fault::More { count: self.count - LISTED });
-        }
-    }
+    Some(MeasuredTable {
+        time_step_s: sampling.step_s,
+        command_volt,
+        displacement_um,
+        amplifier_volt: amplifier,
+        temperature_celsius: temperature,
+        load_newton: load,
+        time_s,
+        lines: rows.lines,
+        warnings,
+    })
 }
 
 #[cfg(test)]

@@ -33,11 +33,47 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), SimError> {
     })
 }
 
-fn prepare(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> {
-    let folder = match path.parent() {
+/// Writes a new folder with its files: it appears whole or not at all.
+///
+/// # Errors
+/// [`SimError::WouldOverwrite`] if something is at `path` already, [`SimError::NotWritten`].
+pub fn write_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<(), SimError> {
+    if path.exists() {
+        return Err(SimError::WouldOverwrite { path: path.to_path_buf() });
+    }
+    let parent = parent_of(path);
+    let whole = || -> std::io::Result<()> {
+        std::fs::create_dir_all(parent)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".hhc-");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o777));
+        }
+        let folder = builder.tempdir_in(parent)?;
+        for (name, bytes) in files {
+            prepare(&folder.path().join(name), bytes)?
+                .persist_noclobber(folder.path().join(name))
+                .map_err(|e| e.error)?;
+        }
+        // renamed last; an error leaves the temporary folder to be removed
+        std::fs::rename(folder.path(), path)?;
+        let _moved_away = folder.keep();
+        Ok(())
+    };
+    whole().map_err(|e| not_written(path, &e))
+}
+
+fn parent_of(path: &Path) -> &Path {
+    match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
-    };
+    }
+}
+
+fn prepare(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> {
+    let folder = parent_of(path);
     std::fs::create_dir_all(folder)?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hhc-");
@@ -74,6 +110,23 @@ mod tests {
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
         let left: Vec<_> = std::fs::read_dir(path.parent().unwrap()).unwrap().collect();
         assert_eq!(left.len(), 1, "no temporary file stays behind");
+    }
+
+    #[test]
+    fn a_folder_appears_whole_or_not_at_all() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a/data");
+        let files = [("x.csv".to_owned(), b"1".to_vec()), ("y.csv".to_owned(), b"2".to_vec())];
+        write_folder(&path, &files).unwrap();
+        assert!(path.join("x.csv").is_file() && path.join("y.csv").is_file());
+        let error = write_folder(&path, &files).unwrap_err();
+        assert!(matches!(error, SimError::WouldOverwrite { .. }));
+        // the second file cannot be written: nothing stays
+        let bad = [files[0].clone(), ("x.csv/below".to_owned(), vec![])];
+        let error = write_folder(&place.path().join("b"), &bad).unwrap_err();
+        assert!(matches!(error, SimError::NotWritten { .. }));
+        let left: Vec<_> = std::fs::read_dir(place.path()).unwrap().collect();
+        assert_eq!(left.len(), 1, "{left:?}");
     }
 
     #[test]

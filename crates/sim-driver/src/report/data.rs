@@ -125,7 +125,7 @@ impl StudyReport {
         let mut text = String::new();
         if !self.fits.is_empty() {
             text += &["\nActuator: ", &self.data_title, "\n"].concat();
-            text += &fit_table(self.fits.iter());
+            text += &fit_table(self.fits.iter(), "V");
         }
         let mut actuators: Vec<&str> = Vec::new();
         for (actuator, _) in self.headline.iter().flat_map(|row| &row.ours) {

@@ -41,7 +41,7 @@ fn example() -> StudyReport {
                 ours: vec![("ideal".into(), "0".into()), ("hysteretic".into(), "65".into())],
             },
         ],
-        fits: found.stored(&data).runs,
+        fits: found.stored().runs,
         loops: bench_loops(&data, &found).unwrap(),
         azimuth: ["2/rev, hysteretic", "3/rev, hysteretic", "4/rev </script>"]
             .iter()

@@ -1,0 +1,125 @@
+//! Data of the figures of an identification, as CSV tables for any plotting program.
+//!
+//! | file | columns |
+//! |---|---|
+//! | `loop_RUN.csv` | time, input, measured and simulated output, residual (simulated less measured) |
+//! | `density.csv` | half-width and centre of the cells of the Preisach triangle, rise and density |
+//!
+//! Columns carry their units: V and deg for an actuator, those of the data for a generic loop.
+
+use crate::SimError;
+use crate::identification::BenchIdentification;
+use crate::problem::Place;
+use preisach_dyn::{ActuatorLaw, PlayMap, PreisachError, PreisachGrid};
+use rayon::prelude::*;
+use std::fmt::Write;
+
+/// Names and texts of the tables.
+///
+/// # Errors
+/// [`SimError::Actuator`] if the model cannot be simulated on one of its records.
+pub fn figure_files(found: &BenchIdentification) -> Result<Vec<(String, String)>, SimError> {
+    let fail = |source: PreisachError| SimError::Actuator {
+        place: Place::file(format!("{}/dataset.ron", found.heading.folder)),
+        source,
+    };
+    let loops: Result<Vec<(String, String)>, PreisachError> =
+        (0..found.records.len()).into_par_iter().map(|number| loop_table(found, number)).collect();
+    let mut files = loops.map_err(fail)?;
+    files.extend(density_table(found).map_err(fail)?);
+    Ok(files)
+}
+
+/// Labels of input and output, and the unit of the output alone with its underscore.
+fn labels(found: &BenchIdentification) -> (String, String, String) {
+    match &found.heading.channels {
+        Some(channels) => {
+            let output = &channels.output;
+            let unit = crate::files::Channel::parse(output)
+                .map_or_else(String::new, |c| format!("_{}", c.unit.symbol));
+            (channels.input.clone(), output.clone(), unit)
+        }
+        None => ("command_V".to_owned(), "flap_deg".to_owned(), "_deg".to_owned()),
+    }
+}
+
+/// One record against its simulation, from its first sample on.
+fn loop_table(
+    found: &BenchIdentification,
+    number: usize,
+) -> Result<(String, String), PreisachError> {
+    let record = &found.records[number];
+    let identification = &found.identification;
+    let model = &identification.dynamic;
+    let simulated = model.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
+    let (input, output, unit) = labels(found);
+    let mut text = format!("time_s,{input},measured_{output},simulated_{output},residual{unit}\n");
+    let samples = record.voltage_volt.iter().zip(&record.output_deg).zip(simulated);
+    for (i, ((u, measured), simulated)) in samples.enumerate() {
+        let time_s = record.time_step_s * i as f64;
+        let measured = measured - identification.zero_deg;
+        let residual = simulated - measured;
+        let _ = writeln!(text, "{time_s:.9},{u:.9e},{measured:.9e},{simulated:.9e},{residual:.3e}");
+    }
+    Ok((format!("loop_{}.csv", record.id), text))
+}
+
+/// The static density of the model, cell by cell; none for a law that has none.
+fn density_table(found: &BenchIdentification) -> Result<Option<(String, String)>, PreisachError> {
+    let model = match &found.identification.dynamic.law {
+        ActuatorLaw::StaticPreisach(model) => model.clone(),
+        ActuatorLaw::DynamicPreisach(model) => model.static_part()?,
+        _ => return Ok(None),
+    };
+    let (input, _, unit) = labels(found);
+    let text = density_csv(model.grid(), model.map(), &input, &unit);
+    Ok(Some(("density.csv".to_owned(), text)))
+}
+
+/// The cells of a Preisach triangle.
+///
+/// `rise` is the output's rise when the play crosses the cell, the integral of `2 mu`; `density` is
+/// `mu = rise / (2 c^2)` with the cell's side `c`. The cells of half-width 0 are the reversible part:
+/// their density is the same rise spread over a whole cell.
+fn density_csv(grid: &PreisachGrid, map: &PlayMap, input: &str, unit: &str) -> String {
+    let cell = grid.cell_volt();
+    let mut text = format!("half_width_{input},centre_{input},rise{unit},density\n");
+    for (play, rises) in map.rises().iter().enumerate() {
+        for (knot, rise) in rises.iter().enumerate() {
+            let centre = 0.5 * (grid.knot_volt(play, knot) + grid.knot_volt(play, knot + 1));
+            let half_width = grid.half_width_volt(play);
+            let density = rise / (2.0 * cell * cell);
+            let _ = writeln!(text, "{half_width:.9e},{centre:.9e},{rise:.9e},{density:.9e}");
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use preisach_dyn::VoltageRange;
+
+    /// The rises of all cells add up to the output between the saturations, and the density times
+    /// twice the area to the same.
+    #[test]
+    fn the_density_adds_up_to_the_stroke() {
+        let grid = PreisachGrid::new(VoltageRange::new(-1.0, 3.0).unwrap(), 4).unwrap();
+        let rises: Vec<Vec<f64>> = (0..4).map(|j| vec![0.5 + j as f64; 4 - j]).collect();
+        let map = PlayMap::from_rises(&grid, 0.0, &rises).unwrap();
+        let text = density_csv(&grid, &map, "field_Oe", "_emu");
+        assert!(text.starts_with("half_width_field_Oe,centre_field_Oe,rise_emu,density\n"));
+        let rows: Vec<Vec<f64>> = text
+            .lines()
+            .skip(1)
+            .map(|l| l.split(',').map(|f| f.parse().unwrap()).collect())
+            .collect();
+        assert_eq!(rows.len(), 10);
+        let stroke: f64 = rises.iter().flatten().sum();
+        let (rise, twice): (f64, f64) =
+            (rows.iter().map(|r| r[2]).sum(), rows.iter().map(|r| 2.0 * r[3]).sum());
+        assert!((rise - stroke).abs() < 1e-8 && (twice - stroke).abs() < 1e-8);
+        // the first cell of play 1: half-width c/2, between u_min + c/2 and u_min + 3c/2
+        assert_eq!(rows[4][..2], [0.5, 0.0]);
+    }
+}

@@ -1,0 +1,210 @@
+//! Checks of a measured record against what hysteretic systems and their recorders can do.
+
+use crate::problem::{Place, Problem, Problems, RecordFault};
+
+/// A record to be checked: input and output with label, unit and samples.
+pub(crate) struct Record<'a> {
+    pub(crate) file: &'a str,
+    /// Line of every sample; may be empty where the source has no lines.
+    pub(crate) lines: &'a [usize],
+    pub(crate) input: (&'a str, &'static str, &'a [f64]),
+    pub(crate) output: (&'a str, &'static str, &'a [f64]),
+}
+
+impl Record<'_> {
+    fn place(&self, sample: usize, label: &str) -> Place {
+        match self.lines.get(sample) {
+            Some(&line) => Place::at(self.file, line, 1).field(label),
+            None => Place::file(self.file).field(label),
+        }
+    }
+}
+
+/// Samples of a flat top that counts as clipping.
+const CLIPPED_SAMPLES: usize = 8;
+/// Movement of the input over a flat top that counts as clipping, as a share of the input's range.
+const CLIPPED_MOVEMENT: f64 = 0.05;
+/// Commands so many times beyond the range are in a thousand times smaller unit.
+const UNIT_EXCESS: f64 = 20.0;
+/// Lead of the output from which it cannot be an actuator's, deg.
+const LEAST_LEAD_DEG: f64 = 2.0;
+
+fn limits(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)))
+}
+
+/// Refuses columns that never change and warns of clipped outputs; whether both columns move.
+pub(crate) fn check_record(
+    record: &Record<'_>,
+    problems: &mut Problems,
+    warnings: &mut Vec<Problem>,
+) -> bool {
+    let mut moves = true;
+    for ((label, unit, values), role) in [(record.input, "input"), (record.output, "output")] {
+        let (low, high) = limits(values);
+        if low >= high {
+            // minus zero is zero
+            let fault = RecordFault::Constant { value: low + 0.0, unit, role };
+            problems.push(record.place(0, label), fault.into());
+            moves = false;
+        }
+    }
+    if moves {
+        warnings.extend(clipped(record));
+    }
+    moves
+}
+
+/// The longest flat top at either limit of the output while the input moves on.
+///
+/// A flat top is a row of samples equal to the limit; it counts from [`CLIPPED_SAMPLES`] samples and
+/// [`CLIPPED_MOVEMENT`] of the input's range. An input that is held keeps the output flat too: that
+/// is no clipping.
+fn clipped(record: &Record<'_>) -> Vec<Problem> {
+    let ((_, _, input), (label, unit, output)) = (record.input, record.output);
+    let (low, high) = limits(output);
+    let (input_low, input_high) = limits(input);
+    let mut found = Vec::new();
+    for (end, limit) in [("largest", high), ("smallest", low)] {
+        let mut longest: Option<(usize, usize, f64)> = None;
+        let mut at = 0;
+        let is_limit = |v: &f64| v.total_cmp(&limit).is_eq();
+        for flat in output.chunk_by(|a, b| is_limit(a) == is_limit(b)) {
+            let samples = flat.len();
+            if is_limit(&flat[0]) && samples >= CLIPPED_SAMPLES {
+                let (l, h) = limits(&input[at..at + samples]);
+                let movement = (h - l) / (input_high - input_low);
+                if movement > CLIPPED_MOVEMENT && longest.is_none_or(|best| best.1 < samples) {
+                    longest = Some((at, samples, movement));
+                }
+            }
+            at += samples;
+        }
+        if let Some((sample, samples, movement)) = longest {
+            let input_percent = 100.0 * movement;
+            let fault = RecordFault::Clipped { end, value: limit, unit, samples, input_percent };
+            found.push(Problem::new(record.place(sample, label), fault.into()));
+        }
+    }
+    found
+}
+
+/// Refuses millivolts declared as volts: commands far outside the range that would fit into it as a
+/// thousandth. Whether the unit is plausible.
+pub(crate) fn check_unit(
+    record: &Record<'_>,
+    range_volt: (f64, f64),
+    problems: &mut Problems,
+) -> bool {
+    let (low, high) = range_volt;
+    let (label, unit, values) = record.input;
+    let largest = low.abs().max(high.abs());
+    let (at, reached) = values
+        .iter()
+        .enumerate()
+        .fold((0, 0.0_f64), |best, (i, v)| if v.abs() > best.1.abs() { (i, *v) } else { best });
+    let times = reached.abs() / largest;
+    let slack = 0.01 * (high - low);
+    let (least, most) = limits(values);
+    let fits = 1e-3 * least >= low - slack && 1e-3 * most <= high + slack;
+    if times < UNIT_EXCESS || !fits {
+        return true;
+    }
+    let column = "command";
+    let fault = RecordFault::UnitByRange {
+        column,
+        reached,
+        unit,
+        low,
+        high,
+        times,
+        likely: "mV",
+        factor: 1e-3,
+    };
+    problems.push(record.place(at, label), fault.into());
+    false
+}
+
+/// Refuses a displacement that leads its command.
+pub(crate) fn check_lag(record: &Record<'_>, problems: &mut Problems) {
+    let lead_deg = lead_deg(record.input.2, record.output.2);
+    if lead_deg > LEAST_LEAD_DEG {
+        let label = record.input.0;
+        problems.push(record.place(0, label), RecordFault::OutputLeads { lead_deg }.into());
+    }
+}
+
+/// Lead of the output over the input, deg of the sine with the same loop area per path.
+///
+/// ```text
+/// r = y - (g u + c)                     what a straight line leaves
+/// s = sum r du / (sum |du| std y)       = sqrt(2) pi/4 sin(lead) for a sine
+/// ```
+/// The straight line takes off what an open path would add; a loop's area does not feel it.
+fn lead_deg(input: &[f64], output: &[f64]) -> f64 {
+    let n = input.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (u0, y0) = (mean(input), mean(output));
+    let (mut uu, mut uy, mut yy) = (0.0, 0.0, 0.0);
+    for (u, y) in input.iter().zip(output) {
+        uu += (u - u0) * (u - u0);
+        uy += (u - u0) * (y - y0);
+        yy += (y - y0) * (y - y0);
+    }
+    let gain = uy / uu;
+    let rest = |i: usize| output[i] - y0 - gain * (input[i] - u0);
+    let (mut area, mut path) = (0.0, 0.0);
+    for (i, pair) in input.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        area += 0.5 * (rest(i) + rest(i + 1)) * step;
+        path += step.abs();
+    }
+    let share = area * gain.signum() / (path * (yy / n).sqrt());
+    let sine = share / (std::f64::consts::SQRT_2 * std::f64::consts::FRAC_PI_4);
+    sine.clamp(-1.0, 1.0).asin().to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn sine(lag_deg: f64, offset: f64) -> (Vec<f64>, Vec<f64>) {
+        let phase = |i: u32| TAU * f64::from(i) / 500.0;
+        let u = (0..=2000).map(|i| 65.0 + 80.0 * phase(i).sin()).collect();
+        let y =
+            (0..=2000).map(|i| offset + 9.0 * (phase(i) - lag_deg.to_radians()).sin()).collect();
+        (u, y)
+    }
+
+    #[test]
+    fn the_lead_of_a_sine_is_found() {
+        for lag in [-40.0, -5.0, 0.0, 5.0, 40.0] {
+            let (u, y) = sine(lag, 12.0);
+            assert!((lead_deg(&u, &y) + lag).abs() < 0.05, "{lag}: {}", lead_deg(&u, &y));
+            let turned: Vec<f64> = y.iter().map(|y| -y).collect();
+            assert!((lead_deg(&u, &turned) + lag).abs() < 0.05, "an inverting sensor");
+            assert!((lead_deg(&y, &u) - lag).abs() < 0.05, "swapped");
+        }
+    }
+
+    fn warned(input: &[f64], output: &[f64]) -> usize {
+        let (input, output) = (("u", "V", input), ("y", "um", output));
+        clipped(&Record { file: "r.csv", lines: &[], input, output }).len()
+    }
+
+    #[test]
+    fn clipping_is_told_from_a_held_input_and_from_rounding() {
+        let (u, y) = sine(8.0, 0.0);
+        assert_eq!(warned(&u, &y), 0);
+        let rounded: Vec<f64> = y.iter().map(|y| (y * 100.0).round() / 100.0).collect();
+        assert_eq!(warned(&u, &rounded), 0);
+        let upper: Vec<f64> = y.iter().map(|y| y.min(8.0)).collect();
+        assert_eq!(warned(&u, &upper), 1);
+        let both: Vec<f64> = y.iter().map(|y| y.clamp(-8.0, 8.0)).collect();
+        assert_eq!(warned(&u, &both), 2);
+        let held_u: Vec<f64> = u.iter().map(|u| u.min(120.0)).collect();
+        let held_y: Vec<f64> = held_u.iter().map(|u| 0.1 * u).collect();
+        assert_eq!(warned(&held_u, &held_y), 0);
+    }
+}

@@ -1,0 +1,165 @@
+//! Text tables as people have them, damaged ones, and ones that are too long to be kept.
+
+use super::*;
+use proptest::prelude::*;
+use std::io::Read;
+
+const REDUCTION: Reduction =
+    Reduction { most_samples: 1024, reduce_to_hz: None, sampling_hz: None };
+
+fn options(columns: &str) -> ColumnOptions {
+    let columns = (!columns.is_empty()).then(|| columns.to_owned());
+    ColumnOptions { columns, ..ColumnOptions::default() }
+}
+
+fn read(text: &str, columns: &str) -> Result<Table, Problems> {
+    read_csv(text.as_bytes(), "r.csv", &options(columns), None, REDUCTION)
+}
+
+fn error(text: &str, columns: &str) -> String {
+    read(text, columns).err().unwrap().to_string()
+}
+
+#[test]
+fn separators_headers_and_units() {
+    let rows = [[0.0, 0.001, 0.002], [1.0, 2.0, 3.0], [10.0, 20.0, 40.0]];
+    for (text, columns) in [
+        ("time_s,u_V,x_um\n0,1,10\n0.001,2,20\n0.002,3,40\n", ""),
+        ("# bench\nTime [ms]; u [V]; x [µm]\n0;1;10\n1;2;20\n2;3;40\n", ""),
+        ("time\tu\tx\n(ms)\t(V)\t(um)\n0\t1\t10\n1\t2\t20\n2\t3\t40", ""),
+        ("0 1 10\n1 2 20\n2 3 40\n", "time_ms,u_V,x_um"),
+        ("\u{feff},10,1,0\r\n,20,2,0.001\r\n,40,3,0.002\r\n", "-,x_um,u_V,time_s"),
+        (
+            "t,volts,travel,spare\n0,1,10,a\n0.001,2,20,b\n0.002,3,40,c\n",
+            "time_s=t,u_V=volts,x_um=#3",
+        ),
+    ] {
+        let mut options = options(columns);
+        options.input = Some("u".into());
+        let table = read_csv(text.as_bytes(), "r.csv", &options, None, REDUCTION).unwrap();
+        assert_eq!(table.choice.labels(), ["time_s", "u_V", "x_um"], "{text}");
+        assert_eq!(table.gathered.columns, rows[1..], "{text}");
+        for (found, expected) in table.gathered.time_s.iter().zip(rows[0]) {
+            assert!((found - expected).abs() < 1e-15, "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_file_without_time_needs_a_frequency() {
+    let text = "u_V,x_um\n1,2\n2,3\n3,5\n";
+    assert!(
+        error(text, "").contains(
+            "r.csv:1:1: there is no time column; name one `time_s`, or give --sampling-hz"
+        )
+    );
+    let reduction = Reduction { sampling_hz: Some(50.0), ..REDUCTION };
+    let table = read_csv(text.as_bytes(), "r.csv", &options(""), None, reduction).unwrap();
+    assert_eq!(table.gathered.time_s, [0.0, 0.02, 0.04]);
+    assert!(error("t,u_V,x_um\n1,2,3\n", "").contains("the column `t` has no known unit"));
+}
+
+#[test]
+fn bad_rows_are_named() {
+    let good = "time_s,u_V,x_um\n0,1,10\n1,2,20\n2,3,40\n3,3,41\n";
+    let changed = |from: &str, to: &str| error(&good.replacen(from, to, 1), "");
+    assert!(changed("1,2,20", "1,2").contains("r.csv:3:1: the row has 2 fields, the header has 3"));
+    assert!(changed("1,2,20", "1,NaN,20").contains("r.csv:3:1: u_V: the value is NaN"));
+    assert!(changed("1,2,20", "1,2,2O").contains("r.csv:3:1: x_um: `2O` is not a number"));
+    assert!(changed("2,3,40", "0.5,3,40").contains("r.csv:4:1: time_s: time 0.5 s follows 1 s"));
+    assert!(changed("3,3,41", "9,3,41").contains("r.csv:5:1: time_s: the time step is 7 s"));
+    assert!(error("time_s,u_V,x_um\n0,1,10\n", "").contains("has 1 rows of numbers"));
+    assert!(error("", "").contains("has 0 rows of numbers"));
+    assert!(error("0,1\n1,2\n2,3\n", "").contains("the 2 columns have no names"));
+    let fixed = "time_s,u_V,x_um\n0.0,1.0,10.0\n1.0,2.0,20.0\n2.0,3.0,40.0\n3.0,3.0,41.5";
+    assert!(read(fixed, "").is_ok());
+    for cut in 1..11 {
+        let text = error(&fixed[..fixed.len() - cut], "");
+        assert!(text.contains("r.csv:5:1: the last line is cut off"), "{cut}: {text}");
+    }
+    let swapped = error("time_s,u_V,x_um\n1,0,10\n2,1,20\n1,2,40\n2,3,41\n", "");
+    assert!(
+        swapped.contains("time_s: does not increase, but `u_V` increases in equal steps"),
+        "{swapped}"
+    );
+    let bytes =
+        read_csv(&b"time_s,u_V,x_um\n0,1,\xff\n"[..], "r.csv", &options(""), None, REDUCTION);
+    assert!(bytes.err().unwrap().to_string().contains("is not UTF-8 text (byte 20)"));
+}
+
+/// A text table that is made while it is read: `rows` rows, 1 kHz.
+struct Endless {
+    rows: usize,
+    next: usize,
+    buffer: Vec<u8>,
+    at: usize,
+}
+
+impl Read for Endless {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+        let available = self.fill_buf()?;
+        let count = available.len().min(out.len());
+        out[..count].copy_from_slice(&available[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}
+
+impl BufRead for Endless {
+    fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
+        if self.at == self.buffer.len() {
+            self.buffer.clear();
+            self.at = 0;
+            for _ in 0..500.min(self.rows - self.next) {
+                let (i, x) = (self.next, self.next % 1000);
+                self.buffer.extend(format!("{}.{:03},{x},{}\n", i / 1000, i % 1000, 2 * x).bytes());
+                self.next += 1;
+            }
+        }
+        Ok(&self.buffer[self.at..])
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.at += count;
+    }
+}
+
+/// However long the table, no more than `most_samples` of it are kept, and they are its means.
+#[test]
+fn a_million_rows_stream_through() {
+    let rows = 1_000_000;
+    let reader = Endless { rows, next: 0, buffer: vec![], at: 0 };
+    let table = read_csv(reader, "r.csv", &options("time_s,u_V,x_um"), None, REDUCTION).unwrap();
+    let found = table.gathered;
+    assert_eq!((found.count, found.block), (rows, 1024));
+    assert_eq!(found.time_s.len(), rows / 1024);
+    for (block, u) in found.columns[0].iter().enumerate() {
+        let mean =
+            (1024 * block..1024 * (block + 1)).map(|i| (i % 1000) as f64).sum::<f64>() / 1024.0;
+        assert!((u - mean).abs() < 1e-9, "{block}");
+        assert!((found.columns[1][block] - 2.0 * u).abs() < 1e-9);
+    }
+    for column in &found.columns {
+        assert!(column.capacity() <= 2 * 1024, "{}", column.capacity());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damaged_tables_never_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let mut bytes = b"time_s,u_V,x_um\n0.0,1,10\n0.1,2,20\n0.2,3,40\n0.3,3,41\n".to_vec();
+        for (index, byte) in changes {
+            let at = index.index(bytes.len());
+            bytes[at] = byte;
+        }
+        bytes.truncate(cut.index(bytes.len()) + 1);
+        for columns in ["", "time_s,u_V,x_um", "-,time_s=#1"] {
+            let _ = read_csv(bytes.as_slice(), "r.csv", &options(columns), None, REDUCTION);
+        }
+    }
+}
