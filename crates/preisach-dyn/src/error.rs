@@ -183,6 +183,30 @@ pub enum PreisachError {
         remedy: &'static str,
     },
 
+    // ---- reversal curves ----
+    /// A reversal curve cannot be used.
+    #[error("reversal curve {curve}, point {index}: {problem} ({value})")]
+    ForcCurve {
+        /// Place of the curve in the family, from 0.
+        curve: usize,
+        /// Index of the point.
+        index: usize,
+        /// What is wrong with it.
+        problem: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// Calibration readings and curves do not go together.
+    #[error(
+        "{readings} calibration readings for {curves} reversal curves: give one before each curve, or none"
+    )]
+    ForcCalibration {
+        /// Readings found.
+        readings: usize,
+        /// Curves found.
+        curves: usize,
+    },
+
     // ---- numerical failure ----
     /// The output became infinite or NaN: the model has left its domain.
     #[error(

@@ -20,6 +20,7 @@ mod actuator;
 mod dynamics;
 mod error;
 mod everett;
+pub mod forc;
 mod grid;
 pub mod identify;
 mod memory;

@@ -13,12 +13,12 @@
 mod compare;
 mod fourier;
 mod prepared;
-mod program;
+pub(crate) mod program;
 mod rate_fit;
 mod record;
 mod refine;
 mod settings;
-mod static_fit;
+pub(crate) mod static_fit;
 mod validate;
 
 pub use compare::RecordFit;

@@ -25,11 +25,11 @@ pub enum QpStatus {
 }
 
 /// A sparse row: unknown and coefficient.
-pub(super) type Row = Vec<(usize, f64)>;
+pub(crate) type Row = Vec<(usize, f64)>;
 
 /// `min sum_i w_i (a_i x - b_i)^2` subject to `c_k x >= d_k` and `e_k x = 0`.
 #[derive(Debug, Clone)]
-pub(super) struct LeastSquaresProgram {
+pub(crate) struct LeastSquaresProgram {
     unknowns: usize,
     /// Upper triangle of `sum w a a'`, column by column.
     normal: Vec<f64>,
@@ -44,7 +44,7 @@ fn packed(row: usize, column: usize) -> usize {
 }
 
 impl LeastSquaresProgram {
-    pub(super) fn new(unknowns: usize) -> Self {
+    pub(crate) fn new(unknowns: usize) -> Self {
         Self {
             unknowns,
             normal: vec![0.0; unknowns * (unknowns + 1) / 2],
@@ -55,7 +55,7 @@ impl LeastSquaresProgram {
     }
 
     /// Adds `weight (row x - target)^2`. Columns of `row` ascend.
-    pub(super) fn add(&mut self, row: &[(usize, f64)], target: f64, weight: f64) {
+    pub(crate) fn add(&mut self, row: &[(usize, f64)], target: f64, weight: f64) {
         for (i, &(column, b)) in row.iter().enumerate() {
             let scaled = weight * b;
             for &(r, a) in &row[..=i] {
@@ -66,12 +66,12 @@ impl LeastSquaresProgram {
     }
 
     /// Demands `row x >= bound`.
-    pub(super) fn at_least(&mut self, row: Row, bound: f64) {
+    pub(crate) fn at_least(&mut self, row: Row, bound: f64) {
         self.lower_bounds.push((row, bound));
     }
 
     /// Demands `row x = 0`.
-    pub(super) fn equal_zero(&mut self, row: Row) {
+    pub(crate) fn equal_zero(&mut self, row: Row) {
         self.equalities.push(row);
     }
 
@@ -79,7 +79,7 @@ impl LeastSquaresProgram {
     ///
     /// Rows must have been weighted so that their weights sum to about one: unscaled normal
     /// equations made the solver stop far from the minimum.
-    pub(super) fn solve(&self, stage: &'static str) -> Result<Vec<f64>, PreisachError> {
+    pub(crate) fn solve(&self, stage: &'static str) -> Result<Vec<f64>, PreisachError> {
         let n = self.unknowns;
         let (mut column_starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for column in 0..n {

@@ -71,7 +71,7 @@ pub(super) fn fit(
 }
 
 /// Sums entries of the same column; columns ascend.
-pub(super) fn merged(mut row: Row) -> Row {
+pub(crate) fn merged(mut row: Row) -> Row {
     row.sort_by_key(|entry| entry.0);
     let mut result: Row = Vec::with_capacity(row.len());
     for (column, value) in row {
