@@ -207,6 +207,54 @@ pub enum PreisachError {
         curves: usize,
     },
 
+    // ---- inverse ----
+    /// A static model cannot reach an output with its next sample.
+    #[error(
+        "an output of {wanted_deg} deg is wanted, but the next sample can reach {lowest_deg} to {highest_deg} deg only; lower the target or widen the voltage range"
+    )]
+    OutputOutOfReach {
+        /// The output wanted, deg.
+        wanted_deg: f64,
+        /// Output at the lower end of the range, deg.
+        lowest_deg: f64,
+        /// Output at the upper end of the range, deg.
+        highest_deg: f64,
+    },
+    /// A periodic motion needs more voltage than there is.
+    #[error(
+        "a flap motion of {wanted_deg:.4} deg (half peak to peak) at {rev_hz} rev/s is out of reach: harmonic {harmonic} takes most of the voltage, which reaches {voltage_volt:.2} V at azimuth {azimuth_deg:.1} deg, outside {lowest_volt} V to {highest_volt} V; about {reachable_deg:.4} deg of the same shape can be reached"
+    )]
+    MotionOutOfReach {
+        /// Half peak to peak of the wanted motion, deg.
+        wanted_deg: f64,
+        /// Half peak to peak of the largest motion of this shape that was found, deg.
+        reachable_deg: f64,
+        /// The harmonic that takes the largest voltage.
+        harmonic: usize,
+        /// Revolutions per second.
+        rev_hz: f64,
+        /// Azimuth at which the voltage leaves the range, deg.
+        azimuth_deg: f64,
+        /// The voltage there, V.
+        voltage_volt: f64,
+        /// Lower limit, V.
+        lowest_volt: f64,
+        /// Upper limit, V.
+        highest_volt: f64,
+    },
+    /// Newton's method for a periodic voltage stopped.
+    #[error(
+        "the periodic inverse stopped after {iterations} Newton steps with {residual_deg:e} deg left at {share} of the wanted motion; raise tolerance_deg or lower voltage_harmonics"
+    )]
+    InverseNotConverged {
+        /// Newton steps done at the last amplitude.
+        iterations: usize,
+        /// Largest error of a coefficient, deg.
+        residual_deg: f64,
+        /// Share of the wanted motion that was solved.
+        share: f64,
+    },
+
     // ---- numerical failure ----
     /// The output became infinite or NaN: the model has left its domain.
     #[error(

@@ -23,6 +23,7 @@ mod everett;
 pub mod forc;
 mod grid;
 pub mod identify;
+mod inverse;
 mod memory;
 mod periodic;
 mod play_map;
@@ -38,6 +39,7 @@ pub use dynamics::{
 pub use error::PreisachError;
 pub use everett::EverettStaircase;
 pub use grid::{PreisachGrid, VoltageRange};
+pub use inverse::{InverseSettings, PeriodicInverse};
 pub use memory::{PlayMemory, StartState};
 pub use periodic::{PeriodicResponse, PeriodicSettings};
 pub use play_map::PlayMap;
