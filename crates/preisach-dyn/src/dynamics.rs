@@ -1,7 +1,9 @@
 //! The dynamic Preisach actuator, paper equation (5).
 
 use crate::play_map::NodeTable;
-use crate::{PlayMap, PlayMemory, PreisachError, PreisachGrid, StaticPreisach};
+use crate::{
+    HysteresisLaw, PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach,
+};
 use serde::{Deserialize, Serialize};
 
 /// How equation (5) is kept solvable.
@@ -308,10 +310,45 @@ impl DynamicPreisach {
         *history = OutputHistory { output_deg, earlier: Some((history.output_deg, time_step_s)) };
         output_deg
     }
+}
 
-    /// The same model with its output moved by `shift_deg`.
-    #[must_use]
-    pub(crate) fn shifted(mut self, shift_deg: f64) -> Self {
+/// What a [`DynamicPreisach`] remembers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DynamicMemory {
+    /// The plays.
+    pub plays: PlayMemory,
+    /// The past outputs.
+    pub history: OutputHistory,
+    /// What happened to the steps.
+    pub counts: StepCounts,
+}
+
+impl HysteresisLaw for DynamicPreisach {
+    type Memory = DynamicMemory;
+
+    fn start(&self, voltage_volt: f64, state: StartState) -> (DynamicMemory, f64) {
+        let plays = PlayMemory::new(self.grid(), voltage_volt, state);
+        let [output_deg, ..] = self.maps(&plays);
+        let history = OutputHistory::at_rest(output_deg);
+        (DynamicMemory { plays, history, counts: StepCounts::default() }, output_deg)
+    }
+
+    #[inline]
+    fn step(&self, memory: &mut DynamicMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
+        let DynamicMemory { plays, history, counts } = memory;
+        self.step(plays, history, counts, voltage_volt, time_step_s)
+    }
+
+    fn check_memory(&self, memory: &DynamicMemory) -> Result<(), PreisachError> {
+        memory.plays.check(self.grid())
+    }
+
+    fn counts(&self, memory: &DynamicMemory) -> StepCounts {
+        memory.counts
+    }
+
+    fn shifted(mut self, shift_deg: f64) -> Self {
         self.parameters.g0_deg.constant += shift_deg;
         self
     }

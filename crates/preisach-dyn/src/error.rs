@@ -15,6 +15,26 @@ pub enum PreisachError {
         /// The value found.
         value: f64,
     },
+    /// A quantity that must not be negative is, or is not finite.
+    #[error("{quantity} is {value}, expected a finite number that is not negative")]
+    Negative {
+        /// Name of the quantity, with its unit.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// A quantity lies outside the values it may have.
+    #[error("{quantity} is {value}, expected {least} to {most}")]
+    OutOfRange {
+        /// Name of the quantity, with its unit.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// Smallest value allowed.
+        least: f64,
+        /// Largest value allowed.
+        most: f64,
+    },
     /// A number is NaN or infinite.
     #[error("{quantity} at index {index} is {value}, expected a finite number")]
     NotFinite {
@@ -118,6 +138,61 @@ pub enum PreisachError {
         found: usize,
         /// Plays in the model.
         expected: usize,
+    },
+    /// A memory was made by another law, or is no memory at all.
+    #[error("the memory does not belong to the law {expected}; start a memory from this model")]
+    MemoryOfAnotherLaw {
+        /// The law of the model.
+        expected: &'static str,
+    },
+    /// A memory was made for another chain of stages.
+    #[error(
+        "the memory's {part} stages are not those of the model ({found} against {expected}, or of other kinds); start a memory from this model"
+    )]
+    StageMismatch {
+        /// The part of the chain.
+        part: &'static str,
+        /// Stages in the memory.
+        found: usize,
+        /// Stages in the model.
+        expected: usize,
+    },
+    /// An output curve falls somewhere.
+    #[error("the output curve falls: its least slope is {least_slope}; lower quadratic or cubic")]
+    EnvelopeFalls {
+        /// Least slope, that of the straight line being 1.
+        least_slope: f64,
+    },
+    /// A Bouc-Wen loop would give energy back.
+    #[error(
+        "sigma = {sigma} with exponent {exponent} is not dissipative: expected sigma >= 1/2 and an exponent of 1 to 10"
+    )]
+    NotDissipative {
+        /// Shape found.
+        sigma: f64,
+        /// Exponent found.
+        exponent: f64,
+    },
+    /// A Bouc-Wen output would fall with a rising voltage.
+    #[error(
+        "the loop is as steep as {steepest_deg_per_volt} deg/V, the gain only {gain_deg_per_volt} deg/V: the output would fall while the voltage rises; raise rise_volt or lower half_height_deg"
+    )]
+    OutputFalls {
+        /// Steepest change of the hysteretic part, deg/V.
+        steepest_deg_per_volt: f64,
+        /// Gain, deg/V.
+        gain_deg_per_volt: f64,
+    },
+    /// Loads were given to an actuator that has nothing to feel them.
+    #[error("loads are given, but the linkage has no LoadStiffness stage; add one")]
+    NoLoadStage,
+    /// Two histories that belong together differ in length.
+    #[error("{voltages} voltages but {loads} loads; give one load for every voltage")]
+    UnequalLoads {
+        /// Number of voltages.
+        voltages: usize,
+        /// Number of loads.
+        loads: usize,
     },
     /// A sampled voltage leaves the actuator's range.
     #[error(

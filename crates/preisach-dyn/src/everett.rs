@@ -1,99 +1,217 @@
 //! The classical form: Everett's integral and the staircase of past extremes.
 
-use crate::play_map::interpolate;
-use crate::{PlayMap, PreisachError, PreisachGrid};
+use crate::{HysteresisLaw, PlayMap, PreisachError, PreisachGrid, StartState};
+use serde::{Deserialize, Serialize};
 
-/// A static Preisach model in its classical form, kept beside the play form as its cross-check.
+/// A static Preisach model in its classical form.
 ///
 /// ```text
 /// E(alpha, beta) = integral of 2 mu over the triangle between beta and alpha
 ///                = sum_j max(0, R_j(alpha - r_j) - R_j(beta + r_j)),   R_j(s) = int_{-inf}^{s} 2 mu_j ds
-/// output = lowest + sum_k [ E(M_k, m_{k-1}) - E(M_k, m_k) ]
+/// rising from the turn (m, y):   y + E(u, m)
+/// falling from the turn (M, y):  y - E(M, u)
 /// ```
-/// with the alternating past maxima `M_k` and minima `m_k` that no later excursion has wiped out,
-/// and `m_0 = u_min`. The memory here is that list of extremes, not a set of plays; only the
-/// density is shared.
+/// over the alternating past maxima `M_k` and minima `m_k` that no later excursion has wiped out.
+/// The memory is that list of extremes, not a set of plays; only the density is shared with
+/// [`crate::StaticPreisach`], with which it agrees to rounding. Input in volt, output in degrees.
 ///
-/// Assumes: the voltage started at the lower limit.
+/// The density sits on the half-widths of the grid, so inside a cell of the plane (alpha, beta) `E`
+/// is linear but for the line of half-width that crosses the cell: one look into four tables gives
+/// it exactly, whatever the number of levels.
+///
 /// Source: Mayergoyz, *Mathematical Models of Hysteresis* (1991), chapter 1, section 3.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "EverettFile", into = "EverettFile")]
 pub struct EverettStaircase {
     grid: PreisachGrid,
-    /// `R_j` at the knots, zero at the first.
-    cumulative: Vec<Vec<f64>>,
-    lowest_output: f64,
-    /// `m_0, M_1, m_1, M_2 ...` in cells, the last being the present voltage.
-    turns: Vec<f64>,
+    map: PlayMap,
+    lowest_deg: f64,
+    /// Cell `(floor alpha, floor beta)`: `E` at its lower corner, slopes in `alpha` and `beta`
+    /// without the crossing half-width, and the slope of that one in `alpha - beta`.
+    cells: Vec<[f64; 4]>,
+}
+
+/// The model as it is written to files.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EverettFile {
+    grid: PreisachGrid,
+    g0_deg: PlayMap,
+}
+
+impl TryFrom<EverettFile> for EverettStaircase {
+    type Error = PreisachError;
+
+    fn try_from(file: EverettFile) -> Result<Self, PreisachError> {
+        Self::new(file.grid, file.g0_deg)
+    }
+}
+
+impl From<EverettStaircase> for EverettFile {
+    fn from(model: EverettStaircase) -> Self {
+        Self { grid: model.grid, g0_deg: model.map }
+    }
+}
+
+/// A turning point of the voltage: where, in cells above the lower limit, and the output there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Turn {
+    cells: f64,
+    output_deg: f64,
+}
+
+/// The staircase: past extremes that still matter, a minimum first, the present voltage last.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct StaircaseMemory {
+    turns: Vec<Turn>,
+}
+
+impl StaircaseMemory {
+    /// Number of extremes remembered, the present voltage included.
+    pub fn turns(&self) -> usize {
+        self.turns.len()
+    }
 }
 
 impl EverettStaircase {
-    /// The model of the density of `map`, at the lower voltage limit.
+    /// The model of the density of `map` (deg).
     ///
     /// # Errors
-    /// [`PreisachError::NodeCount`] or [`PreisachError::NotFinite`] if the map does not fit the
-    /// grid.
-    pub fn new(grid: PreisachGrid, map: &PlayMap) -> Result<Self, PreisachError> {
-        map.check(&grid, "static map")?;
-        let cumulative =
-            map.nodes.iter().map(|row| row.iter().map(|v| v - row[0]).collect()).collect();
-        let lowest_output = map.nodes.iter().fold(map.constant, |sum, row| sum + row[0]);
-        Ok(Self { grid, cumulative, lowest_output, turns: vec![0.0] })
+    /// [`PreisachError::NodeCount`], [`PreisachError::NotFinite`] or
+    /// [`PreisachError::NegativeDensity`].
+    pub fn new(grid: PreisachGrid, map: PlayMap) -> Result<Self, PreisachError> {
+        map.check(&grid, "g0_deg")?;
+        map.check_rising()?;
+        let lowest_deg = map.nodes.iter().fold(map.constant, |sum, row| sum + row[0]);
+        let levels = grid.levels();
+        let rise = |play: usize, knot: usize| map.nodes[play][knot + 1] - map.nodes[play][knot];
+        let mut cells = vec![[0.0; 4]; levels * levels];
+        for top in 0..levels {
+            for low in 0..=top {
+                let cell = &mut cells[top * levels + low];
+                for play in 0..top - low {
+                    cell[0] += map.nodes[play][top - play] - map.nodes[play][low];
+                    cell[1] += rise(play, top - play);
+                    cell[2] += rise(play, low);
+                }
+                cell[3] = rise(top - low, low);
+            }
+        }
+        Ok(Self { grid, map, lowest_deg, cells })
     }
 
-    /// Everett's integral between two voltages, in the unit of the map.
+    /// Its grid.
+    pub fn grid(&self) -> &PreisachGrid {
+        &self.grid
+    }
+
+    /// Its output map, deg.
+    pub fn map(&self) -> &PlayMap {
+        &self.map
+    }
+
+    /// Everett's integral between two voltages, deg; zero unless the first is the higher.
     pub fn everett(&self, upper_volt: f64, lower_volt: f64) -> f64 {
         self.everett_cells(self.grid.coordinate(upper_volt), self.grid.coordinate(lower_volt))
     }
 
     fn everett_cells(&self, upper: f64, lower: f64) -> f64 {
-        let rows = self.cumulative.iter().enumerate();
-        rows.map(|(j, row)| {
-            // s = alpha - r and s = beta + r, in cells above the first centre of the play
-            let top = (upper - j as f64).max(0.0);
-            if top > lower { interpolate(row, top) - interpolate(row, lower) } else { 0.0 }
-        })
-        .sum()
+        if upper <= lower {
+            return 0.0;
+        }
+        let last = self.grid.levels() - 1;
+        let (top, s) = crate::play_map::split_at_most(upper, last);
+        let (low, t) = crate::play_map::split_at_most(lower, last);
+        let [corner, by_upper, by_lower, crossing] = self.cells[top * (last + 1) + low];
+        corner + s * by_upper - t * by_lower + crossing * f64::max(s - t, 0.0)
     }
 
-    /// Moves to a new voltage and returns the output, in the unit of the map.
-    pub fn apply(&mut self, voltage_volt: f64) -> f64 {
-        let u = self.grid.coordinate(voltage_volt);
-        let last = self.turns.len() - 1;
-        let (ends_a_rise, rises, falls) =
-            (last % 2 == 1, u > self.turns[last], u < self.turns[last]);
-        if !(rises || falls) {
-            return self.output();
+    /// Moves to a voltage in cells and returns the output, deg.
+    fn move_to(&self, turns: &mut Vec<Turn>, u: f64) -> f64 {
+        let Some(&last) = turns.last() else {
+            let output_deg = self.lowest_deg;
+            turns.push(Turn { cells: 0.0, output_deg });
+            return if u > 0.0 { self.move_to(turns, u) } else { output_deg };
+        };
+        let rises = u > last.cells;
+        if !(rises || u < last.cells) {
+            return last.output_deg;
         }
-        if ends_a_rise == rises {
-            self.turns[last] = u;
-        } else {
-            self.turns.push(u);
+        // a minimum stands at every even place: a rise ends at an odd one
+        if rises == turns.len().is_multiple_of(2) {
+            turns.pop();
         }
         // wiping out: an excursion that reaches past an earlier extreme of its kind erases it
-        while let [.., same_kind, _, now] = *self.turns.as_slice() {
-            let passed = if rises { now >= same_kind } else { now <= same_kind };
+        while let [.., same_kind, _] = *turns.as_slice() {
+            let passed = if rises { u >= same_kind.cells } else { u <= same_kind.cells };
             if !passed {
                 break;
             }
-            let keep = self.turns.len() - 3;
-            self.turns.truncate(keep);
-            self.turns.push(now);
+            turns.truncate(turns.len() - 2);
         }
-        self.output()
+        let output_deg = match turns.last() {
+            Some(from) if rises => from.output_deg + self.everett_cells(u, from.cells),
+            Some(from) => from.output_deg - self.everett_cells(from.cells, u),
+            None => self.lowest_deg,
+        };
+        turns.push(Turn { cells: u, output_deg });
+        output_deg
     }
+}
 
-    /// The output in the present state.
-    pub fn output(&self) -> f64 {
-        let mut sum = self.lowest_output;
-        for pair in self.turns.chunks(2).zip(self.turns[1..].chunks(2)) {
-            let ([minimum, ..], [maximum, then @ ..]) = pair else {
-                continue;
-            };
-            sum += self.everett_cells(*maximum, *minimum);
-            if let Some(next) = then.first() {
-                sum -= self.everett_cells(*maximum, *next);
+impl HysteresisLaw for EverettStaircase {
+    type Memory = StaircaseMemory;
+
+    fn start(&self, voltage_volt: f64, state: StartState) -> (StaircaseMemory, f64) {
+        let top = self.grid.coordinate(voltage_volt);
+        let levels = self.grid.levels();
+        let mut turns = Vec::new();
+        self.move_to(&mut turns, 0.0);
+        match state {
+            StartState::RisingFromLowest => {}
+            StartState::FallingFromHighest => {
+                self.move_to(&mut turns, levels as f64);
+            }
+            StartState::Rest => {
+                // a swing that dies away about the voltage: its extreme u + r_j or u - r_j centres
+                // play j, and no later one moves it
+                if top > 0.5 * levels as f64 {
+                    self.move_to(&mut turns, levels as f64);
+                }
+                let mut below = turns.len().is_multiple_of(2);
+                for play in (1..levels).rev() {
+                    let half = 0.5 * play as f64;
+                    let extreme = if below { top - half } else { top + half };
+                    if (top - half >= 0.0) && (top + half <= levels as f64) {
+                        self.move_to(&mut turns, extreme);
+                        below = !below;
+                    }
+                }
             }
         }
-        sum
+        let output_deg = self.move_to(&mut turns, top);
+        (StaircaseMemory { turns }, output_deg)
+    }
+
+    #[inline]
+    fn step(&self, memory: &mut StaircaseMemory, voltage_volt: f64, _: f64) -> f64 {
+        self.move_to(&mut memory.turns, self.grid.coordinate(voltage_volt))
+    }
+
+    fn check_memory(&self, memory: &StaircaseMemory) -> Result<(), PreisachError> {
+        let levels = self.grid.levels() as f64;
+        let outside =
+            |turn: &Turn| !((0.0..=levels).contains(&turn.cells) && turn.output_deg.is_finite());
+        if memory.turns.is_empty() || memory.turns.iter().any(outside) {
+            return Err(PreisachError::MemoryOfAnotherLaw { expected: "Everett staircase" });
+        }
+        Ok(())
+    }
+
+    fn shifted(mut self, shift_deg: f64) -> Self {
+        self.map.constant += shift_deg;
+        self.lowest_deg += shift_deg;
+        self
     }
 }

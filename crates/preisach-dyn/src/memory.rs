@@ -73,9 +73,14 @@ impl PlayMemory {
         Self { cells }
     }
 
-    /// The memory of an actuator that has none.
-    pub(crate) fn empty() -> Self {
-        Self { cells: Vec::new() }
+    /// Refuses a memory of another grid.
+    pub(crate) fn check(&self, grid: &PreisachGrid) -> Result<(), PreisachError> {
+        let (found, expected) = (self.levels(), grid.levels());
+        if found == expected {
+            Ok(())
+        } else {
+            Err(PreisachError::MemoryMismatch { found, expected })
+        }
     }
 
     /// Number of plays.

@@ -1,7 +1,7 @@
 //! Response to a periodic command: closed orbits, the bias of zero mean, the stroke limit.
 
 use crate::actuator::check_positive;
-use crate::{ActuatorModel, PreisachError, StartState, StepCounts};
+use crate::{ActuatorModel, Drive, PreisachError, StartState, StepCounts};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use serde::{Deserialize, Serialize};
 
@@ -53,12 +53,31 @@ impl ActuatorModel {
     /// them agree. Wide plays that the command never reaches therefore stay where the mean voltage
     /// left them: the orbit belongs to an actuator brought to its bias and then driven.
     ///
+    /// Slow linear states of the stages (creep, heat) are not waited for: after each revolution they
+    /// are taken to the values that the revolution just marched would leave unchanged. The sensor
+    /// stages have no part in it.
+    ///
     /// # Errors
     /// [`PreisachError::CommandOutOfRange`] names the azimuth of the largest excess;
     /// [`PreisachError::OrbitNotClosed`], [`PreisachError::Diverged`], or refused settings.
     pub fn periodic_response(
         &self,
         voltage_volt: &HarmonicSeries,
+        rev_hz: f64,
+        settings: &PeriodicSettings,
+    ) -> Result<PeriodicResponse, PreisachError> {
+        self.periodic_response_loaded(voltage_volt, &HarmonicSeries::zero(0), rev_hz, settings)
+    }
+
+    /// The closed orbit under a periodic voltage and a periodic external load, N, both against
+    /// azimuth; see [`crate::LoadStiffness`] and [`crate::Calibration::load_newton`].
+    ///
+    /// # Errors
+    /// As [`Self::periodic_response`]; [`PreisachError::NoLoadStage`].
+    pub fn periodic_response_loaded(
+        &self,
+        voltage_volt: &HarmonicSeries,
+        load_newton: &HarmonicSeries,
         rev_hz: f64,
         settings: &PeriodicSettings,
     ) -> Result<PeriodicResponse, PreisachError> {
@@ -69,13 +88,18 @@ impl ActuatorModel {
             return Err(PreisachError::TooFew { quantity: "steps_per_rev", value, least });
         }
         let commands = self.sampled_command(voltage_volt, settings.steps_per_rev)?;
+        let azimuths = uniform_azimuths_rad(settings.steps_per_rev);
+        let loads: Vec<f64> = azimuths.iter().map(|&psi| load_newton.value(psi)).collect();
         let time_step_s = 1.0 / (rev_hz * settings.steps_per_rev as f64);
-        let mut memory = self.start(voltage_volt.mean, StartState::Rest)?;
-        let mut orbit = self.continue_from(&mut memory, &commands, time_step_s)?;
+        let revolution = Drive { voltages_volt: &commands, loads_newton: &loads, time_step_s };
+        let chain = self.chain(time_step_s)?;
+        let mut memory =
+            self.start_loaded(voltage_volt.mean, load_newton.mean, StartState::Rest)?;
+        let mut orbit = self.continue_drive(&mut memory, &revolution)?;
         let mut closure_deg = f64::INFINITY;
         for revolutions_used in 2..=settings.largest_revolutions.max(2) {
-            let counts_before = memory.counts();
-            let next = self.continue_from(&mut memory, &commands, time_step_s)?;
+            let before = memory.clone();
+            let next = self.continue_drive(&mut memory, &revolution)?;
             closure_deg = orbit.iter().zip(&next).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
             orbit = next;
             if closure_deg <= settings.closure_deg {
@@ -86,9 +110,10 @@ impl ActuatorModel {
                     samples_deg: orbit,
                     revolutions_used,
                     closure_deg,
-                    counts: memory.counts().since(counts_before),
+                    counts: memory.counts().since(before.counts()),
                 });
             }
+            memory.settle(&chain, &before, 1.0 / rev_hz);
         }
         Err(PreisachError::OrbitNotClosed {
             revolutions: settings.largest_revolutions,

@@ -202,6 +202,13 @@ pub(crate) fn split(x: f64) -> (usize, f64) {
     (knot as usize, x - f64::from(knot))
 }
 
+/// As [`split`], the knot held at `last`: at the upper end the remainder is 1.
+#[inline]
+pub(crate) fn split_at_most(x: f64, last: usize) -> (usize, f64) {
+    let (knot, t) = split(x);
+    if knot > last { (last, t + (knot - last) as f64) } else { (knot, t) }
+}
+
 /// Numbers at every knot of every play, laid out for speed: rows of equal length.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct NodeTable<const N: usize> {

@@ -1,7 +1,7 @@
 //! The static (classical) Preisach actuator, paper equation (2).
 
 use crate::play_map::NodeTable;
-use crate::{PlayMap, PlayMemory, PreisachError, PreisachGrid};
+use crate::{HysteresisLaw, PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState};
 use serde::{Deserialize, Serialize};
 
 /// A static Preisach actuator with an output continuous in the voltage.
@@ -101,10 +101,27 @@ impl StaticPreisach {
         }
         (sums[0] + sums[1]) + (sums[2] + sums[3])
     }
+}
 
-    /// The same model with its output moved by `shift_deg`.
-    #[must_use]
-    pub(crate) fn shifted(mut self, shift_deg: f64) -> Self {
+impl HysteresisLaw for StaticPreisach {
+    type Memory = PlayMemory;
+
+    fn start(&self, voltage_volt: f64, state: StartState) -> (PlayMemory, f64) {
+        let memory = PlayMemory::new(&self.grid, voltage_volt, state);
+        let output_deg = self.output_deg(&memory);
+        (memory, output_deg)
+    }
+
+    #[inline]
+    fn step(&self, memory: &mut PlayMemory, voltage_volt: f64, _: f64) -> f64 {
+        self.apply(memory, voltage_volt)
+    }
+
+    fn check_memory(&self, memory: &PlayMemory) -> Result<(), PreisachError> {
+        memory.check(&self.grid)
+    }
+
+    fn shifted(mut self, shift_deg: f64) -> Self {
         self.map.constant += shift_deg;
         self
     }

@@ -53,12 +53,9 @@ fn parameters(time_order: TimeOrder) -> DynamicParameters {
 }
 
 fn actuator(parameters: DynamicParameters) -> ActuatorModel {
-    ActuatorModel {
-        range_volt: parameters.grid.range(),
-        law: ActuatorLaw::DynamicPreisach(DynamicPreisach::new(parameters).unwrap()),
-        calibration: Calibration { deg_per_um: 0.04, zero_um: 0.0 },
-        trained: None,
-    }
+    let range_volt = parameters.grid.range();
+    let law = ActuatorLaw::DynamicPreisach(DynamicPreisach::new(parameters).unwrap());
+    ActuatorModel::new(law, range_volt, Calibration { deg_per_um: 0.04, zero_um: 0.0 })
 }
 
 /// A linear static part of 0.1 deg/V (the reversible play alone), zero at 65 V, behind a lag.

@@ -28,12 +28,8 @@ fn static_model(levels: usize) -> StaticPreisach {
 }
 
 fn actuator(law: ActuatorLaw) -> ActuatorModel {
-    ActuatorModel {
-        law,
-        range_volt: VoltageRange::amplified_stack(),
-        calibration: Calibration { deg_per_um: 0.04, zero_um: 0.0 },
-        trained: None,
-    }
+    let calibration = Calibration { deg_per_um: 0.04, zero_um: 0.0 };
+    ActuatorModel::new(law, VoltageRange::amplified_stack(), calibration)
 }
 
 fn dynamic() -> ActuatorModel {
@@ -104,7 +100,7 @@ fn inverse_then_forward_meets_a_mix_within_half_a_percent() {
 #[test]
 fn a_motion_out_of_reach_says_what_is_in_reach() {
     let model = dynamic();
-    let settings = InverseSettings::default();
+    let settings = InverseSettings { voltage_harmonics: 12, ..InverseSettings::default() };
     let error = model.periodic_inverse(&target(9.0), REV_HZ, &settings).unwrap_err();
     let PreisachError::MotionOutOfReach { wanted_deg, reachable_deg, harmonic, .. } = error else {
         panic!("{error}");

@@ -39,12 +39,8 @@ fn hysteretic_map(grid: &PreisachGrid) -> PlayMap {
 }
 
 fn wrap(law: ActuatorLaw) -> ActuatorModel {
-    ActuatorModel {
-        law,
-        range_volt: VoltageRange::amplified_stack(),
-        calibration: Calibration { deg_per_um: 0.04, zero_um: 3.0 },
-        trained: None,
-    }
+    let calibration = Calibration { deg_per_um: 0.04, zero_um: 3.0 };
+    ActuatorModel::new(law, VoltageRange::amplified_stack(), calibration)
 }
 
 fn dynamic(g0_deg: PlayMap, lag_s: f64) -> ActuatorModel {

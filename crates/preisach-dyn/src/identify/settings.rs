@@ -94,7 +94,7 @@ impl Settings {
     /// An untrained actuator of a law, in the units of the records.
     pub(super) fn actuator_of(&self, law: ActuatorLaw) -> ActuatorModel {
         let calibration = Calibration { deg_per_um: self.deg_per_um, zero_um: 0.0 };
-        ActuatorModel { law, range_volt: self.range_volt, calibration, trained: None }
+        ActuatorModel::new(law, self.range_volt, calibration)
     }
 
     pub(super) fn check(&self) -> Result<(), PreisachError> {

@@ -1,0 +1,324 @@
+//! What the amplifier and the ceramic do to the voltage: slew, limits, heat, depolarisation.
+
+use super::Step;
+use super::lag::LagStep;
+use crate::PreisachError;
+use crate::actuator::{check_not_negative, check_positive};
+use serde::{Deserialize, Serialize};
+
+/// An amplifier whose current is limited, into a capacitance: a slew limit.
+///
+/// ```text
+/// |dV/dt| <= slew_rate = I_max / C;   V follows u as fast as it may and then stays with it
+/// ```
+/// Exact for an input straight between samples. A slew rate above that of the input is the identity.
+/// Source: elementary; 0.5 to 500 V/ms for piezo stacks (80 mA into 40 uF: 2 V/ms).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CurrentLimit {
+    /// Largest rate of the voltage, V/s, `> 0`.
+    pub slew_rate_volt_per_s: f64,
+}
+
+impl CurrentLimit {
+    pub(super) fn check(&self) -> Result<(), PreisachError> {
+        check_positive("slew_rate_volt_per_s", self.slew_rate_volt_per_s)
+    }
+
+    pub(super) fn prepared(&self, step_s: f64) -> CurrentStep {
+        CurrentStep { most_volt: self.slew_rate_volt_per_s * step_s }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CurrentStep {
+    /// Largest change over a step, V.
+    most_volt: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LimitMemory {
+    input: f64,
+    output: f64,
+}
+
+impl Step for CurrentStep {
+    type Memory = LimitMemory;
+
+    fn start(&self, input: f64) -> (LimitMemory, f64) {
+        (LimitMemory { input, output: input }, input)
+    }
+
+    #[inline]
+    fn advance(&self, memory: &mut LimitMemory, input: f64) -> f64 {
+        let most = self.most_volt;
+        let (gap, change) = (memory.input - memory.output, input - memory.input);
+        // the input may run through the output within the step, faster than the output can turn
+        let toward = most.copysign(gap);
+        let met = gap / (toward - change);
+        let crosses = gap * change < 0.0 && change.abs() > most && met < 1.0;
+        memory.output = if crosses {
+            memory.output + toward * (2.0 * met - 1.0)
+        } else if (input - memory.output).abs() <= most {
+            input
+        } else {
+            memory.output + most.copysign(input - memory.output)
+        };
+        memory.input = input;
+        memory.output
+    }
+}
+
+/// Voltage limits of the amplifier.
+///
+/// ```text
+/// V = max(v_min, min(v_max, u))
+/// ```
+/// Limits beyond the command's are the identity. Source: elementary.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Saturation {
+    /// Lowest voltage, V.
+    pub v_min_volt: f64,
+    /// Highest voltage, V, above the lowest.
+    pub v_max_volt: f64,
+}
+
+impl Saturation {
+    pub(super) fn check(&self) -> Result<(), PreisachError> {
+        crate::VoltageRange::new(self.v_min_volt, self.v_max_volt).map(|_| ())
+    }
+
+    pub(super) fn prepared(&self) -> SaturationStep {
+        SaturationStep { low: self.v_min_volt, high: self.v_max_volt }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SaturationStep {
+    low: f64,
+    high: f64,
+}
+
+impl Step for SaturationStep {
+    type Memory = ();
+
+    fn start(&self, input: f64) -> ((), f64) {
+        ((), input.clamp(self.low, self.high))
+    }
+
+    #[inline]
+    fn advance(&self, (): &mut (), input: f64) -> f64 {
+        input.clamp(self.low, self.high)
+    }
+}
+
+/// Warming of the ceramic by dielectric loss, and the gain it adds.
+///
+/// ```text
+/// T_c dT/dt + T = (rise / 4) |dV/dt| |V - V_turn|        gain = 1 + coefficient T
+/// ```
+/// `T` is the temperature above the start, `V_turn` the voltage of the last reversal. Over one cycle
+/// of a sine of amplitude `A` about any bias the right side has the mean `rise f A^2`, the law of
+/// the loss tangent, `P = pi f C tan(d) A^2` times a thermal resistance; every smaller swing adds
+/// its own part. The voltage passes unchanged; the gain acts on the law's output, about that at
+/// 0 V. `coefficient_per_k = 0` is the identity.
+///
+/// Assumes: one lumped temperature, constant loss tangent. Not modelled: thermal expansion.
+/// Source: J. Zheng, S. Takahashi, S. Yoshikawa, K. Uchino, *Heat generation in multilayer
+/// piezoelectric actuators*, Journal of the American Ceramic Society 79 (1996); the form in time is
+/// this project's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DielectricHeating {
+    /// Thermal time constant `T_c`, s, `> 0`; 30 to 600 s is usual.
+    pub time_constant_s: f64,
+    /// Relative gain per temperature, 1/K; 0.0005 to 0.003 is usual.
+    pub coefficient_per_k: f64,
+    /// Steady temperature rise per squared amplitude and frequency, K/(V^2 Hz), `>= 0`. The default
+    /// 6e-5 is 40 uF, a loss tangent of 0.05 and 10 K/W.
+    #[serde(default = "usual_rise")]
+    pub rise_k_per_volt2_hz: f64,
+}
+
+fn usual_rise() -> f64 {
+    6e-5
+}
+
+impl DielectricHeating {
+    /// Heating with the usual temperature rise.
+    pub fn new(time_constant_s: f64, coefficient_per_k: f64) -> Self {
+        Self { time_constant_s, coefficient_per_k, rise_k_per_volt2_hz: usual_rise() }
+    }
+
+    pub(super) fn check(&self) -> Result<(), PreisachError> {
+        check_positive("time_constant_s", self.time_constant_s)?;
+        check_not_negative("rise_k_per_volt2_hz", self.rise_k_per_volt2_hz)?;
+        let value = self.coefficient_per_k;
+        if value.abs() <= 1.0 {
+            Ok(())
+        } else {
+            let quantity = "coefficient_per_k";
+            Err(PreisachError::OutOfRange { quantity, value, least: -1.0, most: 1.0 })
+        }
+    }
+
+    pub(super) fn prepared(&self, step_s: f64) -> HeatStep {
+        HeatStep {
+            lag: LagStep::new(self.time_constant_s, step_s),
+            coefficient_per_k: self.coefficient_per_k,
+            rate_k: 0.25 * self.rise_k_per_volt2_hz / step_s,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HeatStep {
+    lag: LagStep,
+    coefficient_per_k: f64,
+    /// Forcing per change over the step and distance from the turn, K/V^2.
+    rate_k: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct HeatMemory {
+    temperature_k: f64,
+    voltage: f64,
+    turn: f64,
+    /// Sign of the last change, 0 before the first.
+    direction: f64,
+}
+
+impl HeatMemory {
+    pub(super) fn settle(&mut self, before: &Self, step: &HeatStep, period_s: f64) {
+        self.temperature_k = step.lag.settled(before.temperature_k, self.temperature_k, period_s);
+    }
+
+    pub(crate) fn temperature_k(&self) -> f64 {
+        self.temperature_k
+    }
+}
+
+impl HeatStep {
+    #[inline]
+    pub(super) fn gain(&self, memory: &HeatMemory) -> f64 {
+        1.0 + self.coefficient_per_k * memory.temperature_k
+    }
+}
+
+impl Step for HeatStep {
+    type Memory = HeatMemory;
+
+    fn start(&self, input: f64) -> (HeatMemory, f64) {
+        (HeatMemory { temperature_k: 0.0, voltage: input, turn: input, direction: 0.0 }, input)
+    }
+
+    fn advance(&self, memory: &mut HeatMemory, input: f64) -> f64 {
+        let change = input - memory.voltage;
+        if change * memory.direction < 0.0 {
+            memory.turn = memory.voltage;
+        }
+        if change != 0.0 {
+            memory.direction = change.signum();
+        }
+        // the forcing is straight over the step, from the old voltage's value to the new one's
+        let forcing = self.rate_k * change.abs();
+        let first = forcing * (memory.voltage - memory.turn).abs();
+        let last = forcing * (input - memory.turn).abs();
+        memory.temperature_k =
+            last + self.lag.deviation(memory.temperature_k - first, last - first);
+        memory.voltage = input;
+        input
+    }
+}
+
+/// Polarisation lost under reverse voltage, and the gain lost with it.
+///
+/// ```text
+/// q <- max( loss (threshold - V), min( loss (repoling - V), q ) ),   each term held inside 0 .. 1
+/// gain = 1 - q
+/// ```
+/// Below the threshold domains turn against the poling direction, more of them the deeper the
+/// voltage goes; they stay turned until a voltage above the threshold turns them back, those that
+/// turned last coming back first, all of them by `repoling_volt`. The small-signal coefficient is
+/// proportional to the polarisation left (`d33 = 2 Q33 eps33 P3`), so the law's output shrinks by
+/// the share lost, about that at 0 V. The voltage passes unchanged. Rate-independent.
+///
+/// `loss_per_volt = 0`, or a threshold never reached, is the identity.
+/// Assumes: a uniform strip of switching voltages. Not modelled: the butterfly loop beyond the
+/// coercive field, the strain of the turning domains themselves, slow ageing.
+/// Source: D. Damjanovic, *Ferroelectric, dielectric and piezoelectric properties of ferroelectric
+/// thin films and ceramics*, Reports on Progress in Physics 61 (1998), sections 2 and 6: `d33`
+/// from the polarisation, domain switching under reverse field. The play form is this project's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Depolarisation {
+    /// Voltage below which polarisation is lost, V; some -0.2 to -0.3 of the highest voltage.
+    pub threshold_volt: f64,
+    /// Share of the polarisation lost per volt below the threshold, 1/V, 0 to 1.
+    #[serde(default = "usual_loss")]
+    pub loss_per_volt: f64,
+    /// Voltage at which all of it has come back, V, above the threshold; none: it never does.
+    #[serde(default)]
+    pub repoling_volt: Option<f64>,
+}
+
+fn usual_loss() -> f64 {
+    0.005
+}
+
+impl Depolarisation {
+    /// Depolarisation below a threshold with the usual loss and no repoling.
+    pub fn new(threshold_volt: f64) -> Self {
+        Self { threshold_volt, loss_per_volt: usual_loss(), repoling_volt: None }
+    }
+
+    pub(super) fn check(&self) -> Result<(), PreisachError> {
+        let value = self.threshold_volt;
+        if !value.is_finite() {
+            return Err(PreisachError::NotFinite { quantity: "threshold_volt", index: 0, value });
+        }
+        if !(0.0..=1.0).contains(&self.loss_per_volt) {
+            let (quantity, value) = ("loss_per_volt", self.loss_per_volt);
+            return Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 1.0 });
+        }
+        match self.repoling_volt {
+            Some(above) if !(above.is_finite() && above > value) => {
+                let (quantity, least, most) = ("repoling_volt", value, f64::MAX);
+                Err(PreisachError::OutOfRange { quantity, value: above, least, most })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn prepared(&self) -> DepolarisationStep {
+        let Self { threshold_volt, loss_per_volt, repoling_volt } = *self;
+        DepolarisationStep { threshold_volt, loss_per_volt, repoling_volt }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct DepolarisationStep {
+    threshold_volt: f64,
+    loss_per_volt: f64,
+    repoling_volt: Option<f64>,
+}
+
+impl Step for DepolarisationStep {
+    /// Share of the polarisation lost.
+    type Memory = f64;
+
+    fn start(&self, input: f64) -> (f64, f64) {
+        let mut lost = 0.0;
+        self.advance(&mut lost, input);
+        (lost, input)
+    }
+
+    #[inline]
+    fn advance(&self, lost: &mut f64, input: f64) -> f64 {
+        let share = |depth_volt: f64| (self.loss_per_volt * depth_volt).clamp(0.0, 1.0);
+        let most = self.repoling_volt.map_or(1.0, |volt| share(volt - input));
+        *lost = lost.min(most).max(share(self.threshold_volt - input));
+        input
+    }
+}

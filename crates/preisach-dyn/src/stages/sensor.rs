@@ -1,0 +1,191 @@
+//! What the sensor adds: an error of its characteristic, rounding, hum.
+
+use super::Step;
+use crate::actuator::{check_not_negative, check_positive};
+use crate::{Calibration, PreisachError};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Shape of a characteristic's error over its range, `|x| <= 1`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum NonlinearityShape {
+    /// `2 x^2 - 1`: one side reads more than the other.
+    Quadratic,
+    /// `4 x^3 - 3 x`: both ends bend, as those of an LVDT do.
+    #[default]
+    Cubic,
+}
+
+/// Error of a sensor's characteristic.
+///
+/// ```text
+/// y = x + amplitude T_n( x / half_range )     T_n: Chebyshev polynomial, n = 2 or 3
+/// ```
+/// with `x` the displacement from zero flap angle. The Chebyshev polynomial makes `amplitude` the
+/// largest error inside the range. `amplitude_um = 0` is the identity.
+/// Source: elementary; 0.1 to 0.5 % of full scale for an LVDT.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Nonlinearity {
+    /// Largest error inside the range, um, of either sign.
+    pub amplitude_um: f64,
+    /// Half the measuring range, um, `> 0`.
+    pub half_range_um: f64,
+    /// Its shape.
+    #[serde(default)]
+    pub shape: NonlinearityShape,
+}
+
+impl Nonlinearity {
+    pub(super) fn check(&self) -> Result<(), PreisachError> {
+        check_positive("half_range_um", self.half_range_um)?;
+        let value = self.amplitude_um;
+        if value.is_finite() {
+            Ok(())
+        } else {
+            Err(PreisachError::NotFinite { quantity: "amplitude_um", index: 0, value })
+        }
+    }
+
+    pub(super) fn prepared(&self, calibration: &Calibration) -> NonlinearityStep {
+        NonlinearityStep {
+            amplitude_deg: self.amplitude_um * calibration.deg_per_um,
+            per_deg: 1.0 / (self.half_range_um * calibration.deg_per_um),
+            shape: self.shape,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NonlinearityStep {
+    amplitude_deg: f64,
+    per_deg: f64,
+    shape: NonlinearityShape,
+}
+
+impl Step for NonlinearityStep {
+    type Memory = ();
+
+    fn start(&self, input: f64) -> ((), f64) {
+        ((), self.advance(&mut (), input))
+    }
+
+    #[inline]
+    fn advance(&self, (): &mut (), input: f64) -> f64 {
+        let x = input * self.per_deg;
+        let error = match self.shape {
+            NonlinearityShape::Quadratic => 2.0 * x * x - 1.0,
+            NonlinearityShape::Cubic => x * (4.0 * x * x - 3.0),
+        };
+        input + self.amplitude_deg * error
+    }
+}
+
+/// Rounding to whole steps of the displacement from zero flap angle.
+///
+/// ```text
+/// y = step round( x / step )
+/// ```
+/// `step_um = 0` is the identity. The error is at most half a step. Source: elementary.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Quantisation {
+    /// Least step, um, `>= 0`.
+    pub step_um: f64,
+}
+
+impl Quantisation {
+    pub(super) fn check(&self) -> Result<(), PreisachError> {
+        check_not_negative("step_um", self.step_um)
+    }
+
+    pub(super) fn prepared(&self, calibration: &Calibration) -> QuantisationStep {
+        QuantisationStep { step_deg: self.step_um * calibration.deg_per_um.abs() }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct QuantisationStep {
+    step_deg: f64,
+}
+
+impl Step for QuantisationStep {
+    type Memory = ();
+
+    fn start(&self, input: f64) -> ((), f64) {
+        ((), self.advance(&mut (), input))
+    }
+
+    #[inline]
+    fn advance(&self, (): &mut (), input: f64) -> f64 {
+        if self.step_deg == 0.0 { input } else { (input / self.step_deg).round() * self.step_deg }
+    }
+}
+
+/// A line of the mains, or of any other machine, in the reading.
+///
+/// ```text
+/// y = x + amplitude sin( 2 pi frequency t + phase ),   t = 0 at the first sample
+/// ```
+/// `amplitude_um = 0` is the identity. Source: elementary; 0.1 to 2 % of the reading.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MainsHum {
+    /// Amplitude, um, `>= 0`.
+    pub amplitude_um: f64,
+    /// Frequency, Hz, `> 0`.
+    pub frequency_hz: f64,
+    /// Phase at the first sample, rad.
+    #[serde(default)]
+    pub phase_rad: f64,
+}
+
+impl MainsHum {
+    pub(super) fn check(&self) -> Result<(), PreisachError> {
+        check_not_negative("amplitude_um", self.amplitude_um)?;
+        check_positive("frequency_hz", self.frequency_hz)?;
+        let value = self.phase_rad;
+        if value.is_finite() {
+            Ok(())
+        } else {
+            Err(PreisachError::NotFinite { quantity: "phase_rad", index: 0, value })
+        }
+    }
+
+    pub(super) fn prepared(&self, step_s: f64, calibration: &Calibration) -> HumStep {
+        HumStep {
+            amplitude_deg: self.amplitude_um * calibration.deg_per_um,
+            turns_per_step: self.frequency_hz * step_s,
+            first_turns: self.phase_rad / TAU,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HumStep {
+    amplitude_deg: f64,
+    turns_per_step: f64,
+    first_turns: f64,
+}
+
+impl HumStep {
+    fn reading(&self, turns: f64, input: f64) -> f64 {
+        input + self.amplitude_deg * (TAU * turns).sin()
+    }
+}
+
+impl Step for HumStep {
+    /// Phase in turns, 0 to 1.
+    type Memory = f64;
+
+    fn start(&self, input: f64) -> (f64, f64) {
+        let turns = self.first_turns.rem_euclid(1.0);
+        (turns, self.reading(turns, input))
+    }
+
+    #[inline]
+    fn advance(&self, turns: &mut f64, input: f64) -> f64 {
+        *turns = (*turns + self.turns_per_step).fract();
+        self.reading(*turns, input)
+    }
+}
