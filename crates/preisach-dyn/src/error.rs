@@ -249,6 +249,44 @@ pub enum PreisachError {
         /// The value found.
         value: f64,
     },
+    /// A training or judging window does not lie in its record, or is too short.
+    #[error(
+        "record {id}: the window of samples {start}..{end} does not hold 16 samples of the {samples} there are"
+    )]
+    BadWindow {
+        /// The record.
+        id: String,
+        /// First sample of the window.
+        start: usize,
+        /// Sample after the last of the window.
+        end: usize,
+        /// Samples of the record.
+        samples: usize,
+    },
+    /// The commands cannot be in volt.
+    #[error(
+        "the commands span {found_volt} V, the declared range {declared_volt} V: they look like {likely}; convert the column to volt or correct the declared range"
+    )]
+    UnitMismatch {
+        /// Largest span of a command as read, V.
+        found_volt: f64,
+        /// Span of the declared range, V.
+        declared_volt: f64,
+        /// The unit they look like.
+        likely: &'static str,
+    },
+    /// Command and output of a record have changed places.
+    #[error(
+        "record {id}: the command column spans {command_volt} V and leaves the declared range, the output column spans {output_um} um and looks like the command; exchange the columns"
+    )]
+    SwappedColumns {
+        /// The record.
+        id: String,
+        /// Span of the command column, V.
+        command_volt: f64,
+        /// Span of the output column, um.
+        output_um: f64,
+    },
     /// No record can train a part of the model.
     #[error("no training record for {part}; {remedy}")]
     NoTrainingRecord {

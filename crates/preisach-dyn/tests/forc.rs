@@ -108,7 +108,8 @@ fn between_nodes_everett_values_and_plays_agree_exactly() {
     let data = family(&truth(9), 0.31);
     let settings = ForcSettings { levels: 7, ..ForcSettings::default() };
     let found = fit(&data, &settings).unwrap();
-    let classical = EverettStaircase::new(*found.everett.grid(), found.model.map().clone()).unwrap();
+    let classical =
+        EverettStaircase::new(*found.everett.grid(), found.model.map().clone()).unwrap();
     for i in 0..60 {
         let upper = -3.9 + 0.16 * f64::from(i);
         let lower = -3.9 + 0.09 * f64::from(i);

@@ -32,8 +32,7 @@ fn records() -> Vec<BenchRecord> {
                 time_step_s: (rows[last][0] - rows[0][0]) / last as f64,
                 voltage_volt: rows.iter().map(|row| row[1]).collect(),
                 output_deg: rows.iter().map(|row| row[2] * DEG_PER_UM).collect(),
-                record_use: None,
-                base_frequency_hz: None,
+                ..BenchRecord::default()
             }
         })
         .collect()
@@ -83,7 +82,7 @@ fn commands_are_recognised() {
             assert_eq!(report.drive.strongest_harmonic, 2);
         }
         // the noise of the set is 0.25 um
-        if let (Some(noise), true) = (report.noise_deg, report.drive.base_hz < 1.5) {
+        if let (Some(noise), true) = (report.noise.map(|n| n.std_deg), report.drive.base_hz < 1.5) {
             assert!((0.9..1.5).contains(&(noise / (0.25 * DEG_PER_UM))), "{report:?}");
         }
     }

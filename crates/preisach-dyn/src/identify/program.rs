@@ -65,6 +65,42 @@ impl LeastSquaresProgram {
         }
     }
 
+    /// The number of directions of the unknowns that the rows added so far determine: the rank of
+    /// their normal matrix by Cholesky's method with pivoting, down to `relative` of the largest
+    /// pivot.
+    pub(crate) fn rank(&self, relative: f64) -> usize {
+        let n = self.unknowns;
+        let at = |a: &[f64], r: usize, c: usize| a[packed(r.min(c), r.max(c))];
+        let mut rest: Vec<f64> = (0..n).map(|i| self.normal[packed(i, i)]).collect();
+        let largest = rest.iter().copied().fold(0.0, f64::max);
+        let mut columns: Vec<Vec<f64>> = Vec::new();
+        while columns.len() < n {
+            let (pivot, value) = rest
+                .iter()
+                .copied()
+                .enumerate()
+                .fold((0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+            if value <= relative * largest {
+                break;
+            }
+            let root = value.sqrt();
+            let mut column: Vec<f64> = (0..n).map(|i| at(&self.normal, i, pivot)).collect();
+            for earlier in &columns {
+                let factor = earlier[pivot];
+                for (c, e) in column.iter_mut().zip(earlier) {
+                    *c -= factor * e;
+                }
+            }
+            column.iter_mut().for_each(|c| *c /= root);
+            for (left, c) in rest.iter_mut().zip(&column) {
+                *left -= c * c;
+            }
+            rest[pivot] = 0.0;
+            columns.push(column);
+        }
+        columns.len()
+    }
+
     /// Demands `row x >= bound`.
     pub(crate) fn at_least(&mut self, row: Row, bound: f64) {
         self.lower_bounds.push((row, bound));
@@ -178,6 +214,18 @@ mod tests {
         let x = line().solve("test").unwrap();
         assert_abs_diff_eq!(x[0], 13.0 / 12.0, epsilon = 1e-7);
         assert_abs_diff_eq!(x[1], -1.25, epsilon = 1e-7);
+    }
+
+    #[test]
+    fn the_rank_counts_what_the_rows_determine() {
+        assert_eq!(line().rank(1e-9), 2);
+        let mut program = LeastSquaresProgram::new(4);
+        for (a, b) in [(1.0, 2.0), (0.5, -1.0), (3.0, 0.1)] {
+            // x0 and x1 only in the combination x0 + 2 x1; x3 never
+            program.add(&[(0, a), (1, 2.0 * a), (2, b)], 0.0, 1.0);
+        }
+        assert_eq!(program.rank(1e-9), 2);
+        assert_eq!(LeastSquaresProgram::new(3).rank(1e-9), 0);
     }
 
     #[test]

@@ -30,6 +30,14 @@ pub struct Refinement {
     pub outcome: RefinementOutcome,
 }
 
+impl Refinement {
+    /// A model that was not refined.
+    pub(super) fn left_out(nrmse: f64) -> Self {
+        let outcome = RefinementOutcome::LeftOut;
+        Self { nrmse_before: nrmse, nrmse_after: nrmse, steps: 0, outcome }
+    }
+}
+
 /// How a refinement ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RefinementOutcome {
@@ -163,7 +171,8 @@ impl<'a> Problem<'a> {
     fn residuals_of(&self, model: &DynamicPreisach) -> Option<DVector<f64>> {
         let mut residuals = Vec::new();
         for &&Prepared { record, spread_deg, .. } in self.records {
-            let count = record.output_deg.len();
+            let trained = record.trained_samples();
+            let count = trained.len();
             let stride = count.div_ceil(MOST_RESIDUALS).max(1);
             let kept = count.div_ceil(stride) as f64 * self.records.len() as f64;
             let weight = 1.0 / (spread_deg * kept.sqrt());
@@ -172,10 +181,10 @@ impl<'a> Problem<'a> {
             let mut history = OutputHistory::at_rest(model.maps(&memory)[0]);
             let mut counts = StepCounts::default();
             let samples = record.voltage_volt.iter().zip(&record.output_deg).enumerate();
-            for (i, (&u, &measured)) in samples {
+            for (i, (&u, &measured)) in samples.take(trained.end) {
                 let output =
                     model.step(&mut memory, &mut history, &mut counts, u, record.time_step_s);
-                if i % stride == 0 {
+                if trained.contains(&i) && (i - trained.start).is_multiple_of(stride) {
                     residuals.push(weight * (output - measured));
                 }
             }

@@ -70,6 +70,23 @@ pub(super) fn fit(
     Ok(PlayMap { constant: solution[0], nodes })
 }
 
+/// Numbers of the density that records determine, and how many there are.
+pub(super) fn determined(grid: &PreisachGrid, records: &[&Prepared]) -> [usize; 2] {
+    let unknowns = Unknowns::new(grid);
+    let mut program = LeastSquaresProgram::new(unknowns.count);
+    let mut row = Row::new();
+    for record in records {
+        for (_, cells) in record.states() {
+            unknowns.hats(cells, &mut row);
+            program.add(&row, 0.0, 1.0 / record.samples.len() as f64);
+        }
+    }
+    [program.rank(RANK), unknowns.count]
+}
+
+/// Information of a direction below this share of the largest counts as none.
+const RANK: f64 = 1e-6;
+
 /// Sums entries of the same column; columns ascend.
 pub(crate) fn merged(mut row: Row) -> Row {
     row.sort_by_key(|entry| entry.0);
