@@ -393,6 +393,14 @@ pub enum PreisachError {
         /// Allowed change, deg.
         allowed_deg: f64,
     },
+    /// No start of a fit led to a model.
+    #[error(
+        "{family}: no start of the fit gave a model of the family; check the sign of the output and the voltage range"
+    )]
+    NotFitted {
+        /// The family of models.
+        family: &'static str,
+    },
     /// The quadratic program of an identification stage was not solved.
     #[error(
         "{stage}: the quadratic program ended as {status:?} after {iterations} iterations with primal residual {primal_residual:e}; check the scaling of the records"

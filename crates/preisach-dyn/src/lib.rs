@@ -64,7 +64,8 @@ pub use simulate::{BenchSimulation, Drive, Simulation};
 pub use stages::{
     AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
     DielectricHeating, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep,
-    MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Resonance, Saturation, SensorStage,
+    MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Relaxation, RelaxationElement,
+    Resonance, Saturation, SensorStage,
 };
 pub use statics::StaticPreisach;
 

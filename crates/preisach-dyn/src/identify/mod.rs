@@ -11,9 +11,13 @@
 //! last two steps. Refinement must lower the error of the training records or it is dropped.
 
 mod compare;
+mod comparison;
+mod families;
 mod findings;
 mod fourier;
+mod layered;
 mod noise;
+mod output_error;
 mod plausibility;
 mod prepared;
 pub(crate) mod program;
@@ -26,8 +30,11 @@ pub(crate) mod static_fit;
 mod validate;
 
 pub use compare::RecordFit;
+pub use comparison::{Candidates, FittedModel, ModelComparison, ModelRow, Order, compare_models};
+pub use families::Family;
 pub use findings::{Finding, Identifiability, Severity};
 pub use noise::CycleNoise;
+pub use output_error::{Covariance, Estimate};
 pub use program::QpStatus;
 pub use record::{BenchRecord, Drive, RecordUse, RecordWindows, SplitRule, Waveform};
 pub use refine::{Refinement, RefinementOutcome};
@@ -81,6 +88,11 @@ pub struct Identification {
     pub validation: Vec<Validation>,
     /// What the refinement did.
     pub refinement: Refinement,
+    /// The refined parameters, as corrections to the model of the fits before it, with their standard
+    /// deviations; empty for a static model.
+    pub parameters: Vec<Estimate>,
+    /// Their covariance; none for a static model or where a parameter has no influence.
+    pub covariance: Option<Covariance>,
     /// What the records cannot tell.
     pub summary: Identifiability,
 }
@@ -129,6 +141,8 @@ pub fn identify(
             smoothness: 0.0,
             validation: Vec::new(),
             refinement: Refinement::left_out((squares / slow.len() as f64).sqrt()),
+            parameters: Vec::new(),
+            covariance: None,
         }
     } else {
         RateFit::new(&grid, g0_deg, &slow, &fast, settings)?
@@ -162,6 +176,8 @@ pub fn identify(
         rate_smoothness: rate.smoothness,
         validation: rate.validation,
         refinement: rate.refinement,
+        parameters: rate.parameters,
+        covariance: rate.covariance,
         summary,
     })
 }
@@ -172,6 +188,8 @@ struct RateFit {
     smoothness: f64,
     validation: Vec<Validation>,
     refinement: Refinement,
+    parameters: Vec<Estimate>,
+    covariance: Option<Covariance>,
 }
 
 impl RateFit {
@@ -198,8 +216,10 @@ impl RateFit {
             model = maps.model(grid, &g0_deg, settings)?;
         }
         let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
-        let (model, refinement) = refine::refine(model, &all, settings)?;
-        Ok(Self { law: ActuatorLaw::DynamicPreisach(model), smoothness, validation, refinement })
+        let refine::Refined { model, refinement, parameters, covariance } =
+            refine::refine(model, &all, settings)?;
+        let law = ActuatorLaw::DynamicPreisach(model);
+        Ok(Self { law, smoothness, validation, refinement, parameters, covariance })
     }
 }
 

@@ -9,6 +9,8 @@ use rotor_base::wrap_degrees;
 const TOO_LARGE: f64 = 50.0;
 /// The largest command of all records must span this share of the declared range.
 const TOO_SMALL: f64 = 0.005;
+/// Share of the samples outside the range that is more than spikes.
+const OFTEN: f64 = 0.1;
 /// Samples in a row at an extreme that make a flat top.
 const FLAT_RUN: usize = 4;
 /// How far the command must move during a flat top of the output, as a share of its span.
@@ -58,7 +60,10 @@ pub(super) fn check_units(
         let um = |deg: f64| deg / settings.deg_per_um;
         let [y_low, y_high] = extremes(&record.output_deg).map(um);
         let fills = (y_high - y_low) > 0.05 * declared;
-        if fills && !outside(y_low) && !outside(y_high) {
+        let beyond = record.voltage_volt.iter().filter(|&&u| outside(u)).count();
+        // a spike is no exchange of columns
+        let often = beyond as f64 > OFTEN * record.voltage_volt.len() as f64;
+        if often && fills && !outside(y_low) && !outside(y_high) {
             return Err(PreisachError::SwappedColumns {
                 id: record.id.clone(),
                 command_volt: found,

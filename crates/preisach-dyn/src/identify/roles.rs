@@ -75,6 +75,11 @@ impl<'a> Bench<'a> {
         Ok(Self { records, drives, uses, slow, findings })
     }
 
+    /// The use of every record.
+    pub(super) fn uses(&self) -> &[RecordUse] {
+        &self.uses
+    }
+
     /// The records made ready for the fits.
     pub(super) fn prepared(
         &self,
