@@ -1,14 +1,18 @@
 //! Cost of one sample at 40 levels, on an input that sweeps and reverses like a bench mix.
 //!
 //! Budget: static model 100 ns per sample, dynamic model (three maps, second order in time) 300 ns.
+//! The other laws, the stages and the batch have no bar of their own: theirs is the bar of the law.
 //! Prints the best figure of all batches beside its bar.
 #![expect(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 #![expect(clippy::print_stdout, reason = "a benchmark reports")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use preisach_dyn::{
-    DynamicParameters, DynamicPreisach, OutputHistory, PlayMap, PlayMemory, PreisachError,
-    PreisachGrid, RateForm, StartState, StaticPreisach, StepCounts, TimeOrder, VoltageRange,
+    ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen, BoucWenParameters, Calibration,
+    CurrentLimit, Drive, DynamicParameters, DynamicPreisach, Envelope, EverettStaircase, Lag,
+    LinkageStage, LogCreep, OutputHistory, PlayMap, PlayMemory, PrandtlIshlinskii,
+    PrandtlParameters, PreisachError, PreisachGrid, RateForm, RelayGrid, Resonance, StartState,
+    StaticPreisach, StepCounts, TimeOrder, VoltageRange, WeightedPlay,
 };
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -71,6 +75,115 @@ fn report(name: &str, best_ns: f64, bar_ns: f64) {
     );
 }
 
+/// Times a law through the whole actuator, without stages and with some.
+fn actuators(c: &mut Criterion) {
+    let Ok((fixed, dynamic)) = models() else {
+        return;
+    };
+    let volts = voltages();
+    let (grid, g0_deg) = (*fixed.grid(), fixed.map().clone());
+    let range_volt = grid.range();
+    let plain = |law| {
+        let calibration = Calibration { deg_per_um: 0.04, zero_um: 0.0 };
+        ActuatorModel::new(law, range_volt, calibration)
+    };
+    let stages = |law| ActuatorModel {
+        amplifier: vec![
+            AmplifierStage::Lag(Lag { tau_s: 5e-4 }),
+            AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: 4000.0 }),
+        ],
+        linkage: vec![
+            LinkageStage::Resonance(Resonance { frequency_hz: 150.0, damping_ratio: 0.02 }),
+            LinkageStage::Backlash(Backlash { width_um: 1.0 }),
+        ],
+        ..plain(law)
+    };
+    let plays = (1..LEVELS)
+        .map(|i| WeightedPlay { threshold_volt: i as f64, weight_deg_per_volt: 1e-3 })
+        .collect();
+    let prandtl = PrandtlIshlinskii::new(PrandtlParameters {
+        range_volt,
+        gain_deg_per_volt: 0.06,
+        plays,
+        threshold_growth_s: 1e-4,
+        envelope: Envelope::default(),
+    });
+    let bouc_wen = BoucWen::new(BoucWenParameters {
+        range_volt,
+        gain_deg_per_volt: 0.12,
+        half_height_deg: 0.9,
+        rise_volt: 30.0,
+        sigma: 0.8,
+        exponent: 1.0,
+        envelope: Envelope::default(),
+    });
+    let (Ok(prandtl), Ok(bouc_wen)) = (prandtl, bouc_wen) else {
+        return;
+    };
+    let (Ok(everett), Ok(relays)) =
+        (EverettStaircase::new(grid, g0_deg.clone()), RelayGrid::new(grid, g0_deg, 2))
+    else {
+        return;
+    };
+    let fixed = ActuatorLaw::StaticPreisach(fixed);
+    let dynamic = ActuatorLaw::DynamicPreisach(dynamic);
+    let creep = ActuatorModel {
+        linkage: vec![LinkageStage::LogCreep(LogCreep::new(0.015))],
+        ..plain(fixed.clone())
+    };
+    let table = [
+        ("actuator: static", plain(fixed.clone()), STATIC_BAR_NS),
+        ("actuator: static, four stages", stages(fixed), STATIC_BAR_NS),
+        ("actuator: static, creep of 8 lags", creep, STATIC_BAR_NS),
+        ("actuator: Everett", plain(ActuatorLaw::Everett(everett)), STATIC_BAR_NS),
+        ("actuator: relays", plain(ActuatorLaw::RelayGrid(relays)), STATIC_BAR_NS),
+        ("actuator: Prandtl", plain(ActuatorLaw::PrandtlIshlinskii(prandtl)), STATIC_BAR_NS),
+        ("actuator: Bouc-Wen", plain(ActuatorLaw::BoucWen(bouc_wen)), STATIC_BAR_NS),
+        ("actuator: dynamic", plain(dynamic.clone()), DYNAMIC_BAR_NS),
+        ("actuator: dynamic, four stages", stages(dynamic.clone()), DYNAMIC_BAR_NS),
+    ];
+    let mut group = c.benchmark_group("sample at 40 levels");
+    group.throughput(Throughput::Elements(volts.len() as u64));
+    for (name, model, bar_ns) in table {
+        let mut best = f64::INFINITY;
+        group.bench_function(name, |b| {
+            b.iter_custom(|rounds| {
+                timed(rounds, volts.len(), &mut best, || {
+                    black_box(model.simulate(black_box(&volts), TIME_STEP_S).is_ok());
+                })
+            });
+        });
+        report(name, best, bar_ns);
+    }
+    // a batch on all cores, against the same histories one after another
+    let drives = [Drive::new(&volts, TIME_STEP_S); BATCH];
+    let model = plain(dynamic);
+    let samples = BATCH * volts.len();
+    let (mut single, mut batch) = (f64::INFINITY, f64::INFINITY);
+    group.throughput(Throughput::Elements(samples as u64));
+    group.bench_function("64 histories, one by one", |b| {
+        b.iter_custom(|rounds| {
+            timed(rounds, samples, &mut single, || {
+                for drive in &drives {
+                    black_box(model.simulate_drive(drive).is_ok());
+                }
+            })
+        });
+    });
+    group.bench_function("64 histories, batch", |b| {
+        b.iter_custom(|rounds| {
+            timed(rounds, samples, &mut batch, || {
+                black_box(model.simulate_batch(&drives).is_ok());
+            })
+        });
+    });
+    report("batch", batch, DYNAMIC_BAR_NS);
+    println!("batch: {:.2} times as fast as one by one", single / batch);
+    group.finish();
+}
+
+const BATCH: usize = 64;
+
 fn samples(c: &mut Criterion) {
     let Ok((fixed, dynamic)) = models() else {
         return;
@@ -109,5 +222,5 @@ fn samples(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, samples);
+criterion_group!(benches, samples, actuators);
 criterion_main!(benches);

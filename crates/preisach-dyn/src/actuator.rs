@@ -125,7 +125,7 @@ impl ActuatorModel {
     }
 
     /// The same actuator with its free flap angle moved by `shift_deg`; displacements stay what they
-    /// were.
+    /// were, unless a stage knows zero flap angle (load spring, nonlinearity of the sensor).
     #[must_use]
     pub fn shifted(mut self, shift_deg: f64) -> Self {
         self.law = self.law.shifted(shift_deg);

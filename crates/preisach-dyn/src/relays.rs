@@ -116,7 +116,7 @@ impl RelayGrid {
         let reached = whole((parts * top + 0.5).floor());
         let mut sum = self.map.constant;
         for ((count, row), play) in up.iter_mut().zip(&self.sums).zip(0_i64..) {
-            let most = row.len() as i64 - 1;
+            let most = i64::try_from(row.len()).unwrap_or(i64::MAX) - 1;
             let least = (reached - per_cell * play).clamp(0, most);
             let now = i64::from(*count).max(least).min(above.clamp(0, most));
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0..=most")]

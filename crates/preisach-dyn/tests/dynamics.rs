@@ -5,10 +5,11 @@
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, OutputHistory,
-    PlayMap, PlayMemory, PreisachError, PreisachGrid, RateForm, StartState, StepCounts, TimeOrder,
-    VoltageRange, output_rate,
+    OutputRate, PlayMap, PlayMemory, PreisachError, PreisachGrid, RateForm, StartState, StepCounts,
+    TimeOrder, VoltageRange, output_rate,
 };
 use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
 use std::f64::consts::TAU;
 
 fn grid(levels: usize) -> PreisachGrid {
@@ -291,6 +292,106 @@ proptest! {
         prop_assert_eq!(parts, whole.output_deg);
         prop_assert_eq!(restored.counts(), whole.counts);
     }
+}
+
+/// A million steps to random voltages, some small, some over the whole range, at steps of 0.05 to
+/// 5 ms: what `each` sees of every step is `G`, base and weight of its quadratic, and the rate.
+fn a_million_random_steps(
+    model: &DynamicPreisach,
+    mut each: impl FnMut([f64; 3], f64, f64, OutputRate),
+) -> StepCounts {
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(20_260_117);
+    let mut memory = PlayMemory::new(model.grid(), 65.0, StartState::Rest);
+    let mut history = OutputHistory::at_rest(model.maps(&memory)[0]);
+    let mut counts = StepCounts::default();
+    let mut u = 65.0_f64;
+    for _ in 0..1_000_000 {
+        let reach = 10.0_f64.powf(random.random_range(-2.0..2.0));
+        u = (u + reach * random.random_range(-1.0..1.0)).clamp(-20.0, 150.0);
+        let step_s = 5e-5 * 10.0_f64.powf(random.random_range(0.0..2.0));
+        let before = history.output_deg;
+        let output = model.step(&mut memory, &mut history, &mut counts, u, step_s);
+        assert!(output.is_finite());
+        // implicit Euler, so base and weight are the output before and the step
+        let g = model.maps(&memory);
+        each(g, before, step_s, output_rate(g, before, step_s));
+    }
+    counts
+}
+
+#[test]
+fn a_well_posed_model_keeps_its_promise_over_a_million_random_steps() {
+    let model = DynamicPreisach::new(parameters(TimeOrder::First)).unwrap();
+    let covered = model.parameters().unfolded_rate_deg_s;
+    let (mut largest_g1, mut least_discriminant, mut folds) = (f64::MIN, f64::MAX, 0);
+    let counts = a_million_random_steps(&model, |[g0, g1, g2], base, h, found| {
+        largest_g1 = largest_g1.max(g1);
+        let b = h - g1;
+        let discriminant = b * b - 4.0 * g2 * (g0 - base);
+        // rates of the output up to the covered one belong to a positive discriminant
+        if found.rate_deg_s.abs() <= covered {
+            least_discriminant = least_discriminant.min(discriminant / (b * b));
+        }
+        // beyond it the fold is taken, at b / (2 G2), and counted
+        if discriminant < 0.0 {
+            folds += 1;
+            assert!(found.folded && (found.rate_deg_s - b / (2.0 * g2)).abs() < 1e-9);
+            assert!(found.rate_deg_s.abs() > covered);
+        }
+    });
+    println!(
+        "largest G1 {largest_g1:.4} s, least relative discriminant up to {covered} deg/s: {least_discriminant:.3}, folds {folds}"
+    );
+    assert!(largest_g1 < 0.0, "{largest_g1}");
+    assert!(least_discriminant >= 0.0, "{least_discriminant}");
+    assert_eq!(counts, StepCounts { steps: 1_000_000, g1_not_negative: 0, folds });
+}
+
+#[test]
+fn folds_beyond_the_covered_rate_are_taken_and_counted() {
+    // a stronger quadratic term, still unfolded up to its own smaller rate
+    let p = parameters(TimeOrder::First);
+    let g2_s2_per_deg = PlayMap::constant(&p.grid, 6e-5);
+    let model =
+        DynamicPreisach::new(DynamicParameters { g2_s2_per_deg, unfolded_rate_deg_s: 120.0, ..p })
+            .unwrap();
+    let mut folds = 0;
+    let counts = a_million_random_steps(&model, |[_, g1, g2], _, h, found| {
+        if found.folded {
+            folds += 1;
+            assert!((found.rate_deg_s - (h - g1) / (2.0 * g2)).abs() < 1e-9);
+            assert!(found.rate_deg_s > 120.0);
+        }
+    });
+    assert!(folds > 1000, "{folds}");
+    assert_eq!(counts.folds, folds);
+}
+
+#[test]
+fn the_literal_form_reports_what_it_meets() {
+    let p = parameters(TimeOrder::First);
+    // G1 rises with the voltage, above zero towards the upper saturation
+    let g1_s = PlayMap::from_rises(
+        &p.grid,
+        -0.006,
+        &rises(&p.grid, |s, r| 1.2e-4 * (1.0 - r) * (1.5 + s)),
+    )
+    .unwrap();
+    let refused = DynamicPreisach::new(DynamicParameters { g1_s: g1_s.clone(), ..p.clone() });
+    assert!(matches!(refused, Err(PreisachError::NotWellPosed { .. })));
+    let literal =
+        DynamicPreisach::new(DynamicParameters { g1_s, form: RateForm::Literal, ..p }).unwrap();
+    let mut memory = PlayMemory::new(literal.grid(), -20.0, StartState::Rest);
+    let mut history = OutputHistory::at_rest(literal.maps(&memory)[0]);
+    let mut counts = StepCounts::default();
+    let mut positive = 0;
+    for i in 0..2000_u32 {
+        let u = 65.0 - 85.0 * (TAU * f64::from(i) / 2000.0).cos();
+        literal.step(&mut memory, &mut history, &mut counts, u, 5e-3);
+        positive += usize::from(literal.maps(&memory)[1] >= 0.0);
+    }
+    assert!(positive > 0, "no step met G1 >= 0");
+    assert_eq!((counts.steps, counts.g1_not_negative), (2000, positive));
 }
 
 #[test]

@@ -3,8 +3,11 @@
 
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, PeriodicSettings,
-    PlayMap, PreisachError, PreisachGrid, RateForm, StaticPreisach, TimeOrder, VoltageRange,
+    ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Calibration, CurrentLimit, Delay,
+    DielectricHeating, DynamicParameters, DynamicPreisach, KelvinVoigt, KelvinVoigtElement, Lag,
+    LinkageStage, LoadStiffness, LogCreep, MainsHum, PeriodicSettings, PlayMap, PreisachError,
+    PreisachGrid, RateForm, Resonance, SensorStage, StartState, StaticPreisach, TimeOrder,
+    VoltageRange,
 };
 use rotor_base::{Harmonic, HarmonicSeries};
 use std::f64::consts::TAU;
@@ -188,4 +191,145 @@ fn shifting_the_angle_leaves_the_displacement() {
             );
         }
     }
+}
+
+/// The orbit by plain marching over so many revolutions that everything has settled.
+fn marched(
+    model: &ActuatorModel,
+    volts: &HarmonicSeries,
+    rev_hz: f64,
+    revolutions: u32,
+) -> Vec<f64> {
+    let steps = 720;
+    let commands: Vec<f64> =
+        rotor_base::uniform_azimuths_rad(steps).iter().map(|&psi| volts.value(psi)).collect();
+    let mut memory = model.start(volts.mean, StartState::Rest).unwrap();
+    let step_s = 1.0 / (rev_hz * steps as f64);
+    let mut orbit = Vec::new();
+    for _ in 0..revolutions {
+        orbit = model.continue_from(&mut memory, &commands, step_s).unwrap();
+    }
+    orbit
+}
+
+#[test]
+fn orbits_close_with_stages_and_are_those_of_patient_marching() {
+    let element = |time_constant_s| KelvinVoigtElement { compliance_ratio: 0.04, time_constant_s };
+    let model = ActuatorModel {
+        amplifier: vec![
+            AmplifierStage::Lag(Lag { tau_s: 1e-3 }),
+            AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: 3000.0 }),
+            AmplifierStage::Delay(Delay { delay_s: 7e-4 }),
+            AmplifierStage::DielectricHeating(DielectricHeating {
+                rise_k_per_volt2_hz: 6e-4,
+                ..DielectricHeating::new(1.5, 1e-3)
+            }),
+        ],
+        linkage: vec![
+            LinkageStage::KelvinVoigt(KelvinVoigt { elements: vec![element(0.3), element(2.0)] }),
+            LinkageStage::Resonance(Resonance { frequency_hz: 90.0, damping_ratio: 0.02 }),
+            LinkageStage::Backlash(Backlash { width_um: 1.0 }),
+        ],
+        sensor: vec![SensorStage::MainsHum(MainsHum {
+            amplitude_um: 5.0,
+            frequency_hz: 50.3,
+            phase_rad: 0.0,
+        })],
+        ..static_model()
+    };
+    let volts = command(62.0, &[(2, 30.0, 0.0), (3, 0.0, 25.0)]);
+    let settings = PeriodicSettings::default();
+    let orbit = model.periodic_response(&volts, REV_HZ, &settings).unwrap();
+    println!("{} revolutions", orbit.revolutions_used);
+    assert!(orbit.revolutions_used <= 40 && orbit.closure_deg <= 1e-9);
+    // 2 s is ten revolutions: 400 are twenty of the slowest time constant
+    let patient = marched(&model, &volts, REV_HZ, 400);
+    let off =
+        orbit.samples_deg.iter().zip(&patient).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+    // the two ways differ by what e^-20 leaves
+    assert!(off < 1e-6, "{off:e}");
+    // without the leap the slow states are still under way after as many revolutions
+    let hasty = marched(&model, &volts, REV_HZ, 20);
+    let off = hasty.iter().zip(&patient).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+    assert!(off > 1e-3, "{off:e}");
+}
+
+#[test]
+fn creep_over_minutes_does_not_keep_an_orbit_from_closing() {
+    let creep = LinkageStage::LogCreep(LogCreep::new(0.02));
+    let model = ActuatorModel { linkage: vec![creep], ..static_model() };
+    let volts = command(60.0, &[(3, 40.0, 0.0)]);
+    let orbit = model.periodic_response(&volts, REV_HZ, &PeriodicSettings::default()).unwrap();
+    assert!(orbit.revolutions_used <= 5, "{}", orbit.revolutions_used);
+    // fast motion does not creep, the mean has crept by all there is: 4 decades of 2 %
+    let still =
+        static_model().periodic_response(&volts, REV_HZ, &PeriodicSettings::default()).unwrap();
+    let (with, without) = (orbit.flap_deg.harmonic(3), still.flap_deg.harmonic(3));
+    assert!((with.amplitude() / without.amplitude() - 1.0).abs() < 2e-3);
+    let start = static_model().start(60.0, StartState::Rest).unwrap().output_deg();
+    let crept = orbit.flap_deg.mean - still.flap_deg.mean;
+    assert_abs_diff_eq!(crept, 0.08 * (still.flap_deg.mean - start), epsilon = 1e-9);
+}
+
+#[test]
+fn a_resonance_gives_each_harmonic_its_exact_amplitude_and_phase() {
+    let resonance = Resonance { frequency_hz: 60.0, damping_ratio: 0.05 };
+    let model = ActuatorModel {
+        linkage: vec![LinkageStage::Resonance(resonance)],
+        ..ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04)
+    };
+    let volts = command(65.0, &[(2, 30.0, 0.0), (3, 0.0, 30.0), (4, -10.0, 15.0)]);
+    let worst = |steps_per_rev: usize| -> f64 {
+        let settings = PeriodicSettings { steps_per_rev, ..PeriodicSettings::default() };
+        let orbit = model.periodic_response(&volts, REV_HZ, &settings).unwrap();
+        [2, 3, 4]
+            .map(|n| {
+                let r = REV_HZ * n as f64 / 60.0;
+                let (re, im) = (1.0 - r * r, 2.0 * 0.05 * r);
+                let volt = volts.harmonic(n);
+                let exact = Harmonic::from_amplitude_phase(
+                    10.0 / 85.0 * volt.amplitude() / re.hypot(im),
+                    volt.phase_rad() + im.atan2(re),
+                );
+                let got = orbit.flap_deg.harmonic(n);
+                (got.cosine - exact.cosine).hypot(got.sine - exact.sine)
+            })
+            .into_iter()
+            .fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (worst(180), worst(720));
+    let order = (coarse / fine).log2() / 2.0;
+    assert!(fine < 2e-3 && (order - 2.0).abs() < 0.1, "{coarse:e} {fine:e} order {order}");
+}
+
+#[test]
+fn a_hinge_moment_bends_the_orbit() {
+    let stage = LoadStiffness { stiffness_ratio: 0.1, compliance_um_per_newton: 0.9 };
+    let model =
+        ActuatorModel { linkage: vec![LinkageStage::LoadStiffness(stage)], ..static_model() };
+    let volts = command(60.0, &[(2, 40.0, 0.0)]);
+    let settings = PeriodicSettings::default();
+    let free = static_model().periodic_response(&volts, REV_HZ, &settings).unwrap();
+    // 0.02 N m mean and 0.01 N m at 1/rev
+    let newton = |moment: f64| model.calibration.load_newton(moment);
+    let load = command(newton(0.02), &[(1, newton(0.01), 0.0)]);
+    let bent = model.periodic_response_loaded(&volts, &load, REV_HZ, &settings).unwrap();
+    let give_deg = |moment: f64| 0.04 * 0.9 * newton(moment);
+    assert_abs_diff_eq!(
+        bent.flap_deg.mean,
+        (free.flap_deg.mean - give_deg(0.02)) / 1.1,
+        epsilon = 1e-9
+    );
+    assert_abs_diff_eq!(
+        bent.flap_deg.harmonic(1).cosine,
+        (free.flap_deg.harmonic(1).cosine - give_deg(0.01)) / 1.1,
+        epsilon = 1e-9
+    );
+    assert_abs_diff_eq!(
+        bent.flap_deg.harmonic(2).amplitude(),
+        free.flap_deg.harmonic(2).amplitude() / 1.1,
+        epsilon = 1e-9
+    );
+    let error = static_model().periodic_response_loaded(&volts, &load, REV_HZ, &settings);
+    assert!(matches!(error, Err(PreisachError::NoLoadStage)));
 }

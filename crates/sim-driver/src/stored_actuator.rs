@@ -15,7 +15,8 @@ pub enum StoredKind {
     Actuator,
 }
 
-/// An actuator file, as `hhc identify` writes it.
+/// An actuator file, as `hhc identify` writes it, or written by hand: then the kind, a title and the
+/// model are enough.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredActuator {
@@ -24,14 +25,19 @@ pub struct StoredActuator {
     /// Title of the data it was identified from.
     pub title: String,
     /// Folder of the data.
+    #[serde(default)]
     pub dataset: String,
     /// blake3 of the data.
+    #[serde(default)]
     pub data_hash: String,
     /// Version of the program that wrote the file.
+    #[serde(default)]
     pub program_version: String,
     /// How it was identified.
+    #[serde(default)]
     pub settings: Settings,
     /// How it fits.
+    #[serde(default)]
     pub runs: Vec<StoredFit>,
     /// The model.
     pub model: ActuatorModel,
@@ -112,6 +118,9 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
             numbers.push(("model.law", gain.gain_deg_per_volt, gain.gain_deg_per_volt != 0.0));
             numbers.push(("model.law", gain.bias_volt, true));
         }
+        if let Err(error) = stored.model.check_stages() {
+            problems.push(index.place("model"), Fault::Refused { message: error.to_string() });
+        }
         for (field, value, ok) in numbers {
             if !(ok && value.is_finite()) {
                 let message = format!("{value} is no actuator's number");
@@ -120,4 +129,80 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
         }
     }
     problems.into_result(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use preisach_dyn::{AmplifierStage, LinkageStage, SensorStage};
+
+    fn source(text: &str) -> Source {
+        Source { name: "actuator.ron".into(), text: text.into() }
+    }
+
+    const BY_HAND: &str = r#"(
+    kind: Actuator,
+    title: "written by hand",
+    model: (
+        law: BoucWen(
+            range_volt: (-20, 150), gain_deg_per_volt: 0.12,
+            half_height_deg: 0.9, rise_volt: 30, sigma: 0.8, exponent: 2,
+        ),
+        range_volt: (-20, 150),
+        calibration: (deg_per_um: 0.04, zero_um: 0),
+        amplifier: [
+            Lag(tau_s: 0.0005),
+            CurrentLimit(slew_rate_volt_per_s: 2000),
+            Saturation(v_min_volt: -20, v_max_volt: 150),
+            Delay(delay_s: 0.0003),
+            DielectricHeating(time_constant_s: 120, coefficient_per_k: 0.001),
+            Depolarisation(threshold_volt: -15, repoling_volt: 60),
+        ],
+        linkage: [
+            LogCreep(rate_per_decade: 0.015),
+            KelvinVoigt(elements: [(compliance_ratio: 0.01, time_constant_s: 2)]),
+            Resonance(frequency_hz: 150, damping_ratio: 0.02),
+            Backlash(width_um: 1),
+            CoulombFriction(width_um: 1),
+            LoadStiffness(stiffness_ratio: 0.1),
+        ],
+        sensor: [
+            Filter(tau_s: 0.0001),
+            Nonlinearity(amplitude_um: 0.5, half_range_um: 250),
+            Quantisation(step_um: 0.01),
+            Delay(delay_s: 0.0002),
+            MainsHum(amplitude_um: 0.1, frequency_hz: 50),
+        ],
+    ),
+)"#;
+
+    #[test]
+    fn an_actuator_written_by_hand_has_its_law_and_stages() {
+        let stored = read_actuator(&source(BY_HAND)).unwrap();
+        let model = &stored.model;
+        assert!(matches!(model.law, ActuatorLaw::BoucWen(_)));
+        assert!(matches!(model.amplifier[4], AmplifierStage::DielectricHeating(_)));
+        assert!(matches!(model.linkage[2], LinkageStage::Resonance(_)));
+        assert!(matches!(model.sensor[4], SensorStage::MainsHum(_)));
+        assert_eq!((model.amplifier.len(), model.linkage.len(), model.sensor.len()), (6, 6, 5));
+        // written and read again: the same
+        let text = ron_text(&stored).unwrap();
+        assert_eq!(read_actuator(&source(&text)).unwrap(), stored);
+    }
+
+    #[test]
+    fn a_stage_or_law_outside_its_range_is_a_problem_of_the_file() {
+        for (good, bad, name) in [
+            ("tau_s: 0.0005", "tau_s: -0.0005", "tau_s"),
+            ("damping_ratio: 0.02", "damping_ratio: 0", "damping_ratio"),
+            ("sigma: 0.8", "sigma: 0.3", "dissipative"),
+            ("width_um: 1)", "breadth_um: 1)", "breadth_um"),
+        ] {
+            let text = BY_HAND.replacen(good, bad, 1);
+            assert_ne!(text, BY_HAND);
+            let problems = read_actuator(&source(&text)).unwrap_err();
+            let all = format!("{problems:?}");
+            assert!(all.contains(name), "{name}: {all}");
+        }
+    }
 }

@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use preisach_dyn::identify::{RecordFit, RecordReport, RecordUse, Settings};
 use preisach_dyn::{
-    EverettStaircase, PlayMap, PlayMemory, PreisachGrid, StartState, StaticPreisach, VoltageRange,
+    EverettStaircase, HysteresisLaw, PlayMap, PlayMemory, PreisachGrid, StartState, StaticPreisach,
+    VoltageRange,
 };
 use sim_driver::SimError;
 use sim_driver::files::{Folder, SHIPPED_BENCH, read_bench};
@@ -195,16 +196,14 @@ fn congruency() -> Result<f64, CheckError> {
 fn staircase() -> Result<f64, CheckError> {
     let (grid, map) = grid_and_map()?;
     let model = StaticPreisach::new(grid, map.clone())?;
-    let mut classical = EverettStaircase::new(grid, &map)?;
-    // from negative saturation both start alike
-    let mut memory = PlayMemory::new(&grid, LOWEST, StartState::RisingFromLowest);
-    let from = model.apply(&mut memory, LOWEST);
-    let classical_from = classical.apply(LOWEST);
+    let classical = EverettStaircase::new(grid, map)?;
+    let (mut memory, _) = model.start(LOWEST, StartState::RisingFromLowest);
+    let (mut turns, _) = classical.start(LOWEST, StartState::RisingFromLowest);
     let differences: Vec<_> = wander(7, 200)
         .into_iter()
         .map(|voltage| {
-            let rise = model.apply(&mut memory, voltage) - from;
-            Ok((rise - (classical.apply(voltage) - classical_from)).abs())
+            let plays = model.step(&mut memory, voltage, 1.0);
+            Ok((plays - classical.step(&mut turns, voltage, 1.0)).abs())
         })
         .collect();
     worst("voltages", 200, differences)

@@ -21,11 +21,11 @@ pub struct CurrentLimit {
 }
 
 impl CurrentLimit {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(super) fn check(self) -> Result<(), PreisachError> {
         check_positive("slew_rate_volt_per_s", self.slew_rate_volt_per_s)
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> CurrentStep {
+    pub(super) fn prepared(self, step_s: f64) -> CurrentStep {
         CurrentStep { most_volt: self.slew_rate_volt_per_s * step_s }
     }
 }
@@ -292,16 +292,13 @@ impl Depolarisation {
     }
 
     pub(super) fn prepared(&self) -> DepolarisationStep {
-        let Self { threshold_volt, loss_per_volt, repoling_volt } = *self;
-        DepolarisationStep { threshold_volt, loss_per_volt, repoling_volt }
+        DepolarisationStep { stage: *self }
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DepolarisationStep {
-    threshold_volt: f64,
-    loss_per_volt: f64,
-    repoling_volt: Option<f64>,
+    stage: Depolarisation,
 }
 
 impl Step for DepolarisationStep {
@@ -316,9 +313,10 @@ impl Step for DepolarisationStep {
 
     #[inline]
     fn advance(&self, lost: &mut f64, input: f64) -> f64 {
-        let share = |depth_volt: f64| (self.loss_per_volt * depth_volt).clamp(0.0, 1.0);
-        let most = self.repoling_volt.map_or(1.0, |volt| share(volt - input));
-        *lost = lost.min(most).max(share(self.threshold_volt - input));
+        let Depolarisation { threshold_volt, loss_per_volt, repoling_volt } = self.stage;
+        let share = |depth_volt: f64| (loss_per_volt * depth_volt).clamp(0.0, 1.0);
+        let most = repoling_volt.map_or(1.0, |volt| share(volt - input));
+        *lost = lost.min(most).max(share(threshold_volt - input));
         input
     }
 }

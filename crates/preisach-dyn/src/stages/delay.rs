@@ -20,7 +20,7 @@ pub struct Delay {
 }
 
 impl Delay {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(super) fn check(self) -> Result<(), PreisachError> {
         if (0.0..=1.0).contains(&self.delay_s) {
             return Ok(());
         }
@@ -28,7 +28,7 @@ impl Delay {
         Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 1.0 })
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> DelayStep {
+    pub(super) fn prepared(self, step_s: f64) -> DelayStep {
         DelayStep { delay_s: self.delay_s, step_s }
     }
 }

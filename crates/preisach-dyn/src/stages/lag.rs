@@ -20,7 +20,7 @@ pub struct Lag {
 }
 
 impl Lag {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(super) fn check(self) -> Result<(), PreisachError> {
         check_not_negative("tau_s", self.tau_s)
     }
 }

@@ -21,7 +21,7 @@ pub struct Backlash {
 }
 
 impl Backlash {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(super) fn check(self) -> Result<(), PreisachError> {
         check_not_negative("width_um", self.width_um)
     }
 }
@@ -72,7 +72,7 @@ pub struct CoulombFriction {
 }
 
 impl CoulombFriction {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(super) fn check(self) -> Result<(), PreisachError> {
         check_not_negative("width_um", self.width_um)
     }
 }

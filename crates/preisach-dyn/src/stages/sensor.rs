@@ -95,11 +95,11 @@ pub struct Quantisation {
 }
 
 impl Quantisation {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(super) fn check(self) -> Result<(), PreisachError> {
         check_not_negative("step_um", self.step_um)
     }
 
-    pub(super) fn prepared(&self, calibration: &Calibration) -> QuantisationStep {
+    pub(super) fn prepared(self, calibration: &Calibration) -> QuantisationStep {
         QuantisationStep { step_deg: self.step_um * calibration.deg_per_um.abs() }
     }
 }
