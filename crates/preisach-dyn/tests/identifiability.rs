@@ -162,7 +162,7 @@ fn clipped_records_are_suspect() {
     let identified = found(&records);
     let clipped = |f: &Finding| {
         matches!(f, Finding::ClippedOutput { id, level_deg, share_percent }
-            if id == "0.2 Hz 85 V" && *level_deg == 5.0 && *share_percent > 5.0)
+            if id == "0.2 Hz 85 V" && (*level_deg - 5.0).abs() < 1e-12 && *share_percent > 5.0)
     };
     assert!(identified.summary.findings.iter().any(clipped), "{:?}", identified.summary);
     assert_eq!(identified.summary.worst(), Some(Severity::Suspect));

@@ -68,13 +68,8 @@ pub struct ForcFit {
 pub fn fit(data: &ForcData, settings: &ForcSettings) -> Result<ForcFit, PreisachError> {
     data.check()?;
     check_positive("smoothness", settings.smoothness)?;
-    let range = match settings.range {
-        Some(range) => range,
-        None => {
-            let [low, high] = data.input_range();
-            VoltageRange::new(low, high)?
-        }
-    };
+    let [low, high] = data.input_range();
+    let range = settings.range.map_or_else(|| VoltageRange::new(low, high), Ok)?;
     if settings.levels < 2 {
         let quantity = "levels";
         return Err(PreisachError::TooFew { quantity, value: settings.levels, least: 2 });

@@ -5,8 +5,8 @@ use super::output_error::Estimate;
 use super::prepared::Prepared;
 use super::roles::{Bench, Sorted};
 use super::{
-    BenchRecord, FlapZero, Identifiability, RecordFit, RecordUse, Settings, compare, layered,
-    static_fit, validate,
+    BenchRecord, FlapZero, Identifiability, RecordFit, RecordUse, Settings, compare, static_fit,
+    validate,
 };
 use crate::{ActuatorModel, PreisachError, PreisachGrid};
 use rayon::prelude::*;
@@ -15,18 +15,28 @@ use serde::{Deserialize, Serialize};
 /// A simpler family is preferred if its error is at most this much larger.
 const WITHIN: f64 = 1.03;
 
-/// Levels of the memory and of the rate maps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// Levels of the memory and of the rate maps, smoothness of the density.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Order {
     /// Levels of the memory and of `mu0`.
     pub levels: usize,
     /// Levels of `mu1` and `mu2`; a divisor of `levels`.
     pub rate_levels: usize,
+    /// Weight of the smoothness of `mu0`.
+    pub static_smoothness: f64,
+}
+
+impl Order {
+    /// The order of some settings.
+    pub fn of(settings: &Settings) -> Self {
+        let Settings { levels, rate_levels, static_smoothness, .. } = *settings;
+        Self { levels, rate_levels, static_smoothness }
+    }
 }
 
 /// What a comparison tries.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Candidates {
     /// The families, the simplest first.
@@ -36,10 +46,12 @@ pub struct Candidates {
 }
 
 impl Default for Candidates {
-    /// All families; for the chosen one 12, 24 and 36 levels.
+    /// All families; for the chosen one 12 and 24 levels, the density smooth and less so.
     fn default() -> Self {
-        let order = |levels, rate_levels| Order { levels, rate_levels };
-        Self { families: Family::ALL.to_vec(), orders: vec![order(12, 4), order(36, 4)] }
+        let order =
+            |(levels, static_smoothness)| Order { levels, rate_levels: 4, static_smoothness };
+        let orders = [(12, 1e-4), (12, 1e-6), (24, 1e-4), (24, 1e-6)].map(order);
+        Self { families: Family::ALL.to_vec(), orders: orders.to_vec() }
     }
 }
 
@@ -48,9 +60,10 @@ impl Default for Candidates {
 pub struct ModelRow {
     /// The family.
     pub family: Family,
-    /// Levels of its memory, where it has one.
+    /// Order of its memory, where it has one.
     pub order: Order,
-    /// Root mean square of the NRMSE of training experiments that were left out of the fit in turn;
+    /// Root mean square of the NRMSE of training records that were left out of the fit, a frequency or
+    /// an amplitude at a time;
     /// none if there were too few to leave one out.
     pub cross_validation: Option<f64>,
     /// The model fitted to all training records, or why there is none.
@@ -72,10 +85,15 @@ pub struct FittedModel {
 /// The table of all models.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelComparison {
-    /// One row per family, in the order asked for; the orders tried for the chosen one follow.
+    /// One row per family, as asked for.
     pub rows: Vec<ModelRow>,
-    /// The row to use.
+    /// The row of the family chosen.
     pub chosen: usize,
+    /// The chosen family on several grids, by levels; here slow records are left out in turn too, so
+    /// that the errors of cross-validation stand apart from those of `rows`.
+    pub orders: Vec<ModelRow>,
+    /// The row of the order chosen; means nothing if `orders` is empty.
+    pub chosen_order: usize,
     /// Ids of the records and their uses, in the order given.
     pub records: Vec<(String, RecordUse)>,
     /// Output of the records that is zero flap angle of the models, deg.
@@ -87,7 +105,12 @@ pub struct ModelComparison {
 impl ModelComparison {
     /// The model to use; none if no family could be fitted.
     pub fn model(&self) -> Option<&ActuatorModel> {
-        Some(&self.rows.get(self.chosen)?.fitted.as_ref().ok()?.model)
+        Some(&self.best()?.fitted.as_ref().ok()?.model)
+    }
+
+    /// The row to use: family and order.
+    pub fn best(&self) -> Option<&ModelRow> {
+        self.orders.get(self.chosen_order).or_else(|| self.rows.get(self.chosen))
     }
 
     /// Root mean square and largest NRMSE of a row over the records of one use; none without any.
@@ -107,8 +130,9 @@ impl ModelComparison {
 
 /// Fits every family to the same training records and chooses by cross-validation over experiments.
 ///
-/// Each fast training record (each slow one where there are no fast ones) is left out of the fit in
-/// turn and simulated. The family with the smallest error is chosen, a simpler one if it is within
+/// All fast training records of one frequency are left out of the fit in turn and simulated, then all
+/// of one amplitude: conditions, because the model will be used at others than the bench ran. Where no
+/// record is fast, each slow one is left out in turn. The family with the smallest error is chosen, a simpler one if it is within
 /// 3 %; then the order of the memory likewise. Held-out records are never looked at for choosing:
 /// they only stand in the table.
 ///
@@ -120,39 +144,51 @@ pub fn compare_models(
     candidates: &Candidates,
 ) -> Result<ModelComparison, PreisachError> {
     let contest = Contest::new(records, settings)?;
-    let own = Order { levels: settings.levels, rate_levels: settings.rate_levels };
+    let own = Order::of(settings);
     let mut rows: Vec<ModelRow> = candidates
         .families
         .par_iter()
-        .map(|&family| contest.row(family, own))
+        .map(|&family| contest.row(family, own, Folds::Conditions))
         .collect::<Result<_, _>>()?;
-    let mut chosen = best(&rows);
-    if let Some(family) = rows.get(chosen).filter(|r| has_memory(r.family)).map(|r| r.family) {
-        let others: Vec<ModelRow> = candidates
-            .orders
+    let chosen = best(&rows);
+    let (mut orders, mut chosen_order) = (Vec::new(), 0);
+    let family = rows.get(chosen).filter(|row| has_memory(row.family)).map(|row| row.family);
+    if let (Some(family), false) = (family, candidates.orders.is_empty()) {
+        let mut tried = candidates.orders.clone();
+        tried.push(own);
+        // the simplest first: few levels, smooth
+        tried.sort_by(|a, b| {
+            let levels = (a.levels, a.rate_levels).cmp(&(b.levels, b.rate_levels));
+            levels.then(b.static_smoothness.total_cmp(&a.static_smoothness))
+        });
+        tried.dedup();
+        orders = tried
             .par_iter()
-            .filter(|order| **order != own)
-            .map(|&order| contest.row(family, order))
-            .collect::<Result<_, _>>()?;
-        rows.extend(others);
-        let mut by_levels: Vec<usize> =
-            (0..rows.len()).filter(|&i| rows[i].family == family).collect();
-        by_levels.sort_by_key(|&i| (rows[i].order.levels, rows[i].order.rate_levels));
-        let ordered: Vec<ModelRow> = by_levels.iter().map(|&i| rows[i].clone()).collect();
+            .map(|&order| contest.row(family, order, Folds::All))
+            .collect::<Result<Vec<_>, _>>()?;
         // nothing to choose by: the order asked for stands
-        if ordered.iter().any(|row| row.cross_validation.is_some()) {
-            chosen = by_levels[best(&ordered)];
-        }
+        let by_error = orders.iter().any(|row| row.cross_validation.is_some());
+        let asked_for = tried.iter().position(|order| *order == own);
+        chosen_order = if by_error { best(&orders) } else { asked_for.unwrap_or(0) };
     }
     let Contest { bench, zero_deg, summary, .. } = contest;
-    for row in &mut rows {
+    for row in rows.iter_mut().chain(&mut orders) {
         if let Ok(fitted) = &mut row.fitted {
             fitted.model = fitted.model.clone().shifted(-zero_deg);
         }
     }
     let ids = records.iter().map(|r| r.id.clone());
     let records = ids.zip(bench.uses().iter().copied()).collect();
-    Ok(ModelComparison { rows, chosen, records, zero_deg, summary })
+    Ok(ModelComparison { rows, chosen, orders, chosen_order, records, zero_deg, summary })
+}
+
+/// What is left out in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Folds {
+    /// Frequencies and amplitudes of the fast records.
+    Conditions,
+    /// Slow records too.
+    All,
 }
 
 fn has_memory(family: Family) -> bool {
@@ -203,46 +239,84 @@ impl<'a> Contest<'a> {
         Ok(Self { bench, settings, zero_deg, summary, smoothness })
     }
 
-    fn row(&self, family: Family, order: Order) -> Result<ModelRow, PreisachError> {
-        let Order { levels, rate_levels } = order;
-        let settings = Settings { levels, rate_levels, ..self.settings.clone() };
+    fn row(&self, family: Family, order: Order, which: Folds) -> Result<ModelRow, PreisachError> {
+        let Order { levels, rate_levels, static_smoothness } = order;
+        let settings = Settings { levels, rate_levels, static_smoothness, ..self.settings.clone() };
         settings.check()?;
         let grid = PreisachGrid::new(settings.range_volt, levels)?;
         let prepared = self.bench.prepared(&grid, &settings)?;
         let Sorted { slow, fast } = Sorted::of(&prepared)?;
-        let fit = |slow: &[&Prepared], fast: &[&Prepared], creep_per_decade: Option<f64>| {
+        let fit = |slow: &[&Prepared], fast: &[&Prepared], whole: Option<&Fitted>| {
             let training = Training { grid: &grid, slow, fast, settings: &settings };
-            let given = Given { smoothness: self.smoothness, creep_per_decade };
-            families::fit(family, training, given)
+            families::fit(family, training, Given { smoothness: self.smoothness, whole })
         };
-        let fitted = fit(&slow, &fast, None).and_then(|Fitted { mut model, parameters }| {
+        let whole = fit(&slow, &fast, None);
+        // places in the slow and the fast records, one after another
+        let left_out = |fold: &Vec<usize>, whole: &Fitted| -> Result<f64, PreisachError> {
+            let mut own: [Vec<&Prepared>; 2] = [Vec::new(), Vec::new()];
+            let mut tested: Vec<&Prepared> = Vec::new();
+            for (place, record) in slow.iter().chain(&fast).enumerate() {
+                if fold.contains(&place) {
+                    tested.push(record);
+                } else {
+                    own[usize::from(place >= slow.len())].push(record);
+                }
+            }
+            let model = fit(&own[0], &own[1], Some(whole))?.model;
+            let errors = tested.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
+            Ok(errors.sum::<Result<f64, PreisachError>>()? / fold.len() as f64)
+        };
+        let mut folds = conditions(&fast, slow.len());
+        if slow.len() >= 3 && (fast.is_empty() || which == Folds::All) {
+            folds.extend((0..slow.len()).map(|place| vec![place]));
+        }
+        let cross_validation = match &whole {
+            Ok(whole) if !folds.is_empty() => {
+                let errors: Vec<f64> = folds
+                    .par_iter()
+                    .map(|fold| left_out(fold, whole).unwrap_or(f64::INFINITY))
+                    .collect();
+                Some((errors.iter().sum::<f64>() / folds.len() as f64).sqrt())
+            }
+            _ => None,
+        };
+        let fitted = whole.and_then(|Fitted { mut model, parameters }| {
             model.trained = Some(super::trained_range(&slow, &fast, &prepared));
             let fits = prepared.iter().map(|r| compare::compare(&model, r));
             let fits = fits.collect::<Result<Vec<_>, _>>()?;
             Ok(FittedModel { model, fits, parameters })
         });
-        // left out in turn: a fast record, or a slow one where there are no fast ones
-        let folds = if fast.len() >= 2 { fast.len() } else { 0 };
-        let folds = if fast.is_empty() && slow.len() >= 3 { slow.len() } else { folds };
-        let creep = fitted.as_ref().ok().and_then(|f| layered::creep_per_decade(&f.model));
-        let left_out = |index: usize| -> Result<f64, PreisachError> {
-            let drop = |part: &[&_], is_part: bool| -> Vec<usize> {
-                (0..part.len()).filter(|&i| !(is_part && i == index)).collect()
-            };
-            let (keep_slow, keep_fast) =
-                (drop(&slow, fast.is_empty()), drop(&fast, !fast.is_empty()));
-            let own_slow: Vec<&Prepared> = keep_slow.iter().map(|&i| slow[i]).collect();
-            let own_fast: Vec<&Prepared> = keep_fast.iter().map(|&i| fast[i]).collect();
-            let tested = if fast.is_empty() { slow[index] } else { fast[index] };
-            compare::training_nrmse(&fit(&own_slow, &own_fast, creep)?.model, tested)
-        };
-        let cross_validation = (folds > 0 && fitted.is_ok()).then(|| {
-            let errors: Vec<f64> = (0..folds)
-                .into_par_iter()
-                .map(|index| left_out(index).unwrap_or(f64::INFINITY).powi(2))
-                .collect();
-            (errors.iter().sum::<f64>() / folds as f64).sqrt()
-        });
         Ok(ModelRow { family, order, cross_validation, fitted })
     }
 }
+
+/// What is left out of the fast records in turn, as places from `first` on: all records of one
+/// frequency, and all of one amplitude, because a model is used at frequencies and amplitudes the bench
+/// did not run. Single records where there is only one frequency and one amplitude.
+fn conditions(fast: &[&Prepared], first: usize) -> Vec<Vec<usize>> {
+    let groups = |value: &dyn Fn(&Prepared) -> f64| {
+        let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+        for (place, record) in fast.iter().enumerate() {
+            let own = value(record);
+            match groups.iter_mut().find(|(v, _)| (own / *v - 1.0).abs() <= SAME) {
+                Some((_, members)) => members.push(first + place),
+                None => groups.push((own, vec![first + place])),
+            }
+        }
+        let members: Vec<Vec<usize>> = groups.into_iter().map(|(_, members)| members).collect();
+        if members.len() < 2 { Vec::new() } else { members }
+    };
+    let mut folds = groups(&|r| r.drive.strongest_hz());
+    for group in groups(&|r| r.drive.amplitude_volt) {
+        if !folds.contains(&group) {
+            folds.push(group);
+        }
+    }
+    if folds.is_empty() && fast.len() >= 2 {
+        folds = (0..fast.len()).map(|place| vec![first + place]).collect();
+    }
+    folds
+}
+
+/// Frequencies and amplitudes that differ by less than this share are one.
+const SAME: f64 = 0.05;

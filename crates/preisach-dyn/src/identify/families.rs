@@ -98,11 +98,21 @@ impl Training<'_> {
 /// What a fit takes as given: found once on all training records, it is not sought again in every
 /// fold of a cross-validation.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Given {
+pub(super) struct Given<'a> {
     /// Smoothness of the rate maps.
     pub(super) smoothness: f64,
-    /// Creep per decade; none has it found.
-    pub(super) creep_per_decade: Option<f64>,
+    /// A model of the family fitted to all training records, if there is one already.
+    pub(super) whole: Option<&'a Fitted>,
+}
+
+impl Given<'_> {
+    /// Where to start a minimisation: at the parameters of the whole fit, or else everywhere.
+    pub(super) fn starts(&self, everywhere: &[DVector<f64>]) -> Vec<DVector<f64>> {
+        let at = |f: &Fitted| {
+            DVector::from_iterator(f.parameters.len(), f.parameters.iter().map(|p| p.value))
+        };
+        self.whole.map_or_else(|| everywhere.to_vec(), |fitted| vec![at(fitted)])
+    }
 }
 
 /// Fits a family.
@@ -113,7 +123,7 @@ pub(super) struct Given {
 pub(super) fn fit(
     family: Family,
     training: Training<'_>,
-    given: Given,
+    given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
     if family.needs_rate() && training.fast.is_empty() {
         return Err(PreisachError::NoTrainingRecord {
@@ -140,9 +150,9 @@ pub(super) fn fit(
             let rate = RateFit::new(grid, training.static_map()?, slow, fast, &settings)?;
             Ok(Fitted { model: settings.actuator_of(rate.law), parameters: rate.parameters })
         }
-        Family::DynamicPreisachCreep => layered::dynamic_creep(training, given.creep_per_decade),
-        Family::StaticPreisachRelaxation => layered::relaxation(training),
-        _ => by_output_error(family, training),
+        Family::DynamicPreisachCreep => layered::dynamic_creep(training, given),
+        Family::StaticPreisachRelaxation => layered::relaxation(training, given),
+        _ => by_output_error(family, training, given),
     }
 }
 
@@ -150,7 +160,11 @@ pub(super) fn fit(
 const PLAYS: usize = 8;
 
 /// Fits a family of few parameters to all records at once.
-fn by_output_error(family: Family, training: Training<'_>) -> Result<Fitted, PreisachError> {
+fn by_output_error(
+    family: Family,
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
     let all: Vec<&Prepared> = training.slow.iter().chain(training.fast).copied().collect();
     let line = super::fit_linear(training.slow);
     let range = training.settings.range_volt;
@@ -205,7 +219,7 @@ fn by_output_error(family: Family, training: Training<'_>) -> Result<Fitted, Pre
         Family::Linear => {
             let build = |x: &DVector<f64>| Some(linear(x));
             let names = ["gain, relative", "bias, tenths of the range"];
-            finish(family, &build, &all, &[DVector::zeros(2)], &names)
+            finish(family, &build, &all, &given.starts(&[DVector::zeros(2)]), &names)
         }
         Family::LinearLag => {
             let build = |x: &DVector<f64>| {
@@ -215,11 +229,12 @@ fn by_output_error(family: Family, training: Training<'_>) -> Result<Fitted, Pre
             };
             let start = |tau_s: f64| DVector::from_vec(vec![0.0, 0.0, tau_s.ln()]);
             let names = ["gain, relative", "bias, tenths of the range", "ln time constant, s"];
-            finish(family, &build, &all, &[1e-3, 1e-2, 5e-2].map(start), &names)
+            let starts = given.starts(&[1e-3, 1e-2, 5e-2].map(start));
+            finish(family, &build, &all, &starts, &names)
         }
         Family::BoucWen => {
             let start = |rise: f64| DVector::from_vec(vec![0.1, 0.0, 0.0, 0.0, 0.0, rise, 0.0]);
-            let starts = [-0.7, 0.5].map(start);
+            let starts = given.starts(&[-0.7, 0.5].map(start));
             let mut names = common.to_vec();
             names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
             let with = |exponent: f64| {
@@ -240,7 +255,8 @@ fn by_output_error(family: Family, training: Training<'_>) -> Result<Fitted, Pre
             names.push("ln growth of the half-widths, s");
             let plays: Vec<String> = (1..=PLAYS).map(|i| format!("root of weight {i}")).collect();
             names.extend(plays.iter().map(String::as_str));
-            finish(family, &prandtl, &all, &[1e-3, 1e-2].map(start), &names)
+            let starts = given.starts(&[1e-3, 1e-2].map(start));
+            finish(family, &prandtl, &all, &starts, &names)
         }
     }
 }
@@ -251,7 +267,7 @@ pub(super) fn share(x: f64) -> f64 {
 }
 
 /// Steps the minimisation may try for each parameter.
-pub(super) const PATIENCE: usize = 8;
+pub(super) const PATIENCE: usize = 4;
 
 fn finish<'a>(
     family: Family,

@@ -1,6 +1,6 @@
 //! Fits of Preisach laws with linear stages behind them.
 
-use super::families::{Family, Fitted, Training, finish_with_error, share};
+use super::families::{Family, Fitted, Given, Training, finish_with_error, share};
 use super::prepared::Prepared;
 use super::refine::{SHAPE, reshaped};
 use super::{BenchRecord, RateFit, compare, static_fit};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Rates of creep per decade that are tried.
 const CREEP_RATES: [f64; 5] = [0.005, 0.01, 0.015, 0.02, 0.03];
 /// Rounds of static map and stages.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 5;
 /// Largest creep per decade of a fit.
 const MOST_CREEP: f64 = 0.06;
 
@@ -41,7 +41,7 @@ fn without_stage(record: &BenchRecord, stage: &StageStep) -> BenchRecord {
 }
 
 /// Creep per decade of a model with that stage.
-pub(super) fn creep_per_decade(model: &ActuatorModel) -> Option<f64> {
+fn creep_per_decade(model: &ActuatorModel) -> Option<f64> {
     model.linkage.iter().find_map(|stage| match stage {
         LinkageStage::LogCreep(creep) => Some(creep.rate_per_decade),
         _ => None,
@@ -52,10 +52,11 @@ pub(super) fn creep_per_decade(model: &ActuatorModel) -> Option<f64> {
 /// fitted to the records with that creep taken off.
 pub(super) fn dynamic_creep(
     training: Training<'_>,
-    given_rate: Option<f64>,
+    given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
     let Training { grid, slow, fast, settings } = training;
     let unit = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+    let given_rate = given.whole.and_then(|whole| creep_per_decade(&whole.model));
     let rates = given_rate.map_or(CREEP_RATES.to_vec(), |rate| vec![rate]);
     let tried: Vec<Result<(f64, Fitted), PreisachError>> = rates
         .par_iter()
@@ -102,29 +103,39 @@ pub(super) fn dynamic_creep(
 }
 
 /// Parameters of the stages of [`relaxation`].
-const STAGES: usize = 5;
+const STAGES: usize = 4;
 
 /// Static Preisach before two relaxation times in parallel and creep.
 ///
 /// ```text
-/// y = creep[ f_0 u + f_1 x_1 + f_2 x_2 ],   u = G_0,   T_i dx_i/dt + x_i = u,   f_0 + f_1 + f_2 = 1
+/// y = creep[ (1 - f) x_1 + f x_2 ],   T_i dx_i/dt + x_i = G_0,   T_1 / 50 <= T_2 <= T_1,   f < 1/2
 /// ```
-/// Rounds of two steps: output error over the stages and twelve numbers in all with the shape of the
-/// density held to a quadratic form; then the density anew from the slow records with what the stages
+/// Rounds of two steps: output error over the stages, eleven numbers in all, with the change of the
+/// density held to the exponential of a quadratic form; then the density anew from the slow records with what the stages
 /// add taken off.
-pub(super) fn relaxation(training: Training<'_>) -> Result<Fitted, PreisachError> {
+pub(super) fn relaxation(
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
     let Training { grid, slow, fast, settings } = training;
     let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
     let mut map = training.static_map()?;
-    let mut starts: Vec<DVector<f64>> = [(0.02, 0.002), (0.02, 0.2), (0.004, 0.04)]
-        .map(|(first_s, second_s): (f64, f64)| {
+    let everywhere =
+        [(0.02, 0.002), (0.02, 0.2), (0.004, 0.04)].map(|(first_s, second_s): (f64, f64)| {
             let mut x = vec![first_s.ln(), second_s.ln(), -2.0, -4.0, -1.0];
             x.resize(STAGES + SHAPE, 0.0);
             DVector::from_vec(x)
-        })
-        .to_vec();
+        });
+    let mut starts = given.starts(&everywhere);
+    for start in &mut starts {
+        start.rows_mut(STAGES, SHAPE).fill(0.0);
+    }
+    let rounds = if given.whole.is_some() { 2 } else { ROUNDS };
+    if let Some(whole) = given.whole {
+        map = remapped(training, &whole.model)?;
+    }
     let mut best: Option<(f64, Fitted)> = None;
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         let held = map.clone();
         let build = |x: &DVector<f64>| {
             let law = StaticPreisach::new(*grid, reshaped(&held, &x.as_slice()[STAGES..])).ok()?;
@@ -146,11 +157,13 @@ pub(super) fn relaxation(training: Training<'_>) -> Result<Fitted, PreisachError
     best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family })
 }
 
+/// Largest ratio of the two relaxation times: a lag shorter than this acts at once.
+const MOST_RATIO: f64 = 50.0;
+
 const NAMES: [&str; STAGES + SHAPE] = [
-    "ln first relaxation time, s",
-    "ln second relaxation time, s",
-    "share of the second, logit",
-    "share at once, logit",
+    "ln longer relaxation time, s",
+    "log of longer over shorter relaxation time, arc sine",
+    "half the share of the shorter, logit",
     "creep per decade, logit",
     "offset, deg",
     "ln mu0",
@@ -162,11 +175,13 @@ const NAMES: [&str; STAGES + SHAPE] = [
 ];
 
 fn with_stages(mut model: ActuatorModel, x: &DVector<f64>) -> ActuatorModel {
-    let (second, at_once) = (0.5 * share(x[2]), 0.3 * share(x[3]));
+    let (longer_s, second) = (x[0].exp(), 0.5 * share(x[2]));
+    // a sine keeps the ratio inside its bounds and never runs off to where nothing changes any more
+    let shorter_s = longer_s * MOST_RATIO.powf(-0.5 * (1.0 + x[1].sin()));
     let element = |share: f64, time_constant_s: f64| RelaxationElement { share, time_constant_s };
-    let elements = vec![element(1.0 - second - at_once, x[0].exp()), element(second, x[1].exp())];
+    let elements = vec![element(1.0 - second, longer_s), element(second, shorter_s)];
     model.linkage.push(LinkageStage::Relaxation(Relaxation { elements }));
-    model.linkage.push(LinkageStage::LogCreep(LogCreep::new(MOST_CREEP * share(x[4]))));
+    model.linkage.push(LinkageStage::LogCreep(LogCreep::new(MOST_CREEP * share(x[3]))));
     model
 }
 

@@ -27,6 +27,7 @@ mod refine;
 mod roles;
 mod settings;
 pub(crate) mod static_fit;
+mod stream;
 mod validate;
 
 pub use compare::RecordFit;
@@ -39,6 +40,7 @@ pub use program::QpStatus;
 pub use record::{BenchRecord, Drive, RecordUse, RecordWindows, SplitRule, Waveform};
 pub use refine::{Refinement, RefinementOutcome};
 pub use settings::{FlapZero, RateSmoothness, Settings};
+pub use stream::StaticAccumulator;
 pub use validate::Validation;
 
 use crate::{
@@ -217,7 +219,7 @@ impl RateFit {
         }
         let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
         let refine::Refined { model, refinement, parameters, covariance } =
-            refine::refine(model, &all, settings)?;
+            refine::refine(&model, &all, settings)?;
         let law = ActuatorLaw::DynamicPreisach(model);
         Ok(Self { law, smoothness, validation, refinement, parameters, covariance })
     }

@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 const MOST_RESIDUALS: usize = 800;
 /// Residuals outside the domain over the best ones.
 const PENALTY: f64 = 10.0;
+/// A parameter whose influence is below this share of the largest has none.
+const DEAD: f64 = 1e-10;
 /// Step of the difference quotients.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -145,13 +147,18 @@ impl<'a> OutputError<'a> {
         found.into_iter().flatten().reduce(|a, b| if b.nrmse < a.nrmse { b } else { a })
     }
 
-    /// The covariance of the parameters where the problem stands; none outside the domain or if a
-    /// parameter has no influence at all.
+    /// The covariance of the parameters where the problem stands; none outside the domain or if
+    /// parameters act alike.
     pub(super) fn covariance(&self) -> Option<Covariance> {
         let here = self.here.as_ref()?;
-        let jacobian = self.jacobian()?;
+        let whole = self.jacobian()?;
+        // what has no influence is left out: its variance is infinite
+        let largest = whole.column_iter().map(|c| c.norm()).fold(0.0, f64::max);
+        let active: Vec<usize> =
+            (0..self.x.len()).filter(|&k| whole.column(k).norm() > DEAD * largest).collect();
+        let jacobian = whole.select_columns(&active);
         let inverse = (jacobian.transpose() * &jacobian).cholesky()?.inverse();
-        let mut middle = DMatrix::zeros(self.x.len(), self.x.len());
+        let mut middle = DMatrix::zeros(active.len(), active.len());
         let (mut first, mut effective_samples) = (0, 0.0);
         for prepared in self.records {
             let count = Self::kept(prepared).count();
@@ -164,7 +171,13 @@ impl<'a> OutputError<'a> {
             first += count;
         }
         let matrix = &inverse * middle * &inverse;
-        let rows = matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
+        let mut rows = vec![vec![0.0; self.x.len()]; self.x.len()];
+        (0..self.x.len()).for_each(|k| rows[k][k] = f64::INFINITY);
+        for (i, &row) in active.iter().enumerate() {
+            for (j, &column) in active.iter().enumerate() {
+                rows[row][column] = matrix[(i, j)];
+            }
+        }
         Some(Covariance { rows, samples: first, effective_samples })
     }
 }

@@ -65,6 +65,16 @@ impl LeastSquaresProgram {
         }
     }
 
+    /// Numbers kept: the normal equations.
+    pub(crate) fn kept_numbers(&self) -> usize {
+        self.normal.len() + self.right.len()
+    }
+
+    /// Multiplies the weights of all rows added so far.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        self.normal.iter_mut().chain(&mut self.right).for_each(|value| *value *= factor);
+    }
+
     /// The number of directions of the unknowns that the rows added so far determine: the rank of
     /// their normal matrix by Cholesky's method with pivoting, down to `relative` of the largest
     /// pivot.
@@ -91,9 +101,9 @@ impl LeastSquaresProgram {
                     *c -= factor * e;
                 }
             }
-            column.iter_mut().for_each(|c| *c /= root);
-            for (left, c) in rest.iter_mut().zip(&column) {
-                *left -= c * c;
+            for (left, c) in rest.iter_mut().zip(&mut column) {
+                *c /= root;
+                *left -= *c * *c;
             }
             rest[pivot] = 0.0;
             columns.push(column);

@@ -62,7 +62,7 @@ pub(super) struct Refined {
 /// `s` in -1..1 is the centre, `r` in 0..1 the half-width of a play, over half the range. The
 /// exponentials and the hyperbolic tangent keep every parameter inside the cone of the model.
 pub(super) fn refine(
-    start: DynamicPreisach,
+    start: &DynamicPreisach,
     records: &[&Prepared],
     settings: &Settings,
 ) -> Result<Refined, PreisachError> {

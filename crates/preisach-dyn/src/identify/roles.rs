@@ -55,7 +55,9 @@ impl<'a> Bench<'a> {
                     remedy: "record a slow major loop and reversal curves, and mark them for training",
                 });
             }
-            taken.iter().for_each(|&i| uses[i] = RecordUse::Train);
+            for &i in &taken {
+                uses[i] = RecordUse::Train;
+            }
             findings.push(Finding::TrainedByDefault { records: taken.len() });
         }
         let trains = |i: &usize| uses[*i] == RecordUse::Train && moves(*i);

@@ -111,6 +111,9 @@ pub struct IdentifyArgs {
     /// Actuator file whose settings (levels, form, split rule) are taken up.
     #[arg(long, value_name = "ACTUATOR.ron")]
     pub start: Option<PathBuf>,
+    /// Write the model that cross-validation chooses, not the dynamic Preisach model.
+    #[arg(long)]
+    pub best: bool,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

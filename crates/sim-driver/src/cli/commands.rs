@@ -112,7 +112,14 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let data = read_bench(&Folder::Disk(args.bench.clone()))?;
     let progress = Progress::new(1);
     progress.doing(format!("identifying from {} runs", data.runs.len()));
-    let found = identify_bench(&data, &base);
+    let found = identify_bench(&data, &base).and_then(|mut found| {
+        progress.doing("comparing all models".to_owned());
+        found.compare(&data)?;
+        if args.best {
+            found.adopt_best(&data)?;
+        }
+        Ok(found)
+    });
     progress.finish();
     let found = found?;
     let summary = found.summary(&data, Some(args.output.display().to_string()));
