@@ -31,7 +31,7 @@ pub enum Family {
     DynamicPreisach,
     /// Dynamic Preisach before creep along the logarithm of time.
     DynamicPreisachCreep,
-    /// Static Preisach before two relaxation times in parallel and creep.
+    /// Static Preisach before one relaxation time, a share that follows at once, and creep.
     StaticPreisachRelaxation,
 }
 

@@ -103,14 +103,15 @@ pub(super) fn dynamic_creep(
 }
 
 /// Parameters of the stages of [`relaxation`].
-const STAGES: usize = 4;
+const STAGES: usize = 3;
 
-/// Static Preisach before two relaxation times in parallel and creep.
+/// Static Preisach before one relaxation time, a share that follows at once, and creep. A second time
+/// is left out: runs at two frequencies do not carry it beyond them.
 ///
 /// ```text
-/// y = creep[ (1 - f) x_1 + f x_2 ],   T_i dx_i/dt + x_i = G_0,   T_1 / 50 <= T_2 <= T_1,   f < 1/2
+/// y = creep[ (1 - f) x + f G_0 ],   T dx/dt + x = G_0,   0 < f < 0.3
 /// ```
-/// Rounds of two steps: output error over the stages, eleven numbers in all, with the change of the
+/// Rounds of two steps: output error over the stages, ten numbers in all, with the change of the
 /// density held to the exponential of a quadratic form; then the density anew from the slow records with what the stages
 /// add taken off.
 pub(super) fn relaxation(
@@ -157,13 +158,12 @@ pub(super) fn relaxation(
     best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family })
 }
 
-/// Largest ratio of the two relaxation times: a lag shorter than this acts at once.
-const MOST_RATIO: f64 = 50.0;
+/// Largest share that follows at once.
+const MOST_AT_ONCE: f64 = 0.3;
 
 const NAMES: [&str; STAGES + SHAPE] = [
-    "ln longer relaxation time, s",
-    "log of longer over shorter relaxation time, arc sine",
-    "half the share of the shorter, logit",
+    "ln relaxation time, s",
+    "share at once, logit",
     "creep per decade, logit",
     "offset, deg",
     "ln mu0",
@@ -175,13 +175,10 @@ const NAMES: [&str; STAGES + SHAPE] = [
 ];
 
 fn with_stages(mut model: ActuatorModel, x: &DVector<f64>) -> ActuatorModel {
-    let (longer_s, second) = (x[0].exp(), 0.5 * share(x[2]));
-    // a sine keeps the ratio inside its bounds and never runs off to where nothing changes any more
-    let shorter_s = longer_s * MOST_RATIO.powf(-0.5 * (1.0 + x[1].sin()));
-    let element = |share: f64, time_constant_s: f64| RelaxationElement { share, time_constant_s };
-    let elements = vec![element(1.0 - second, longer_s), element(second, shorter_s)];
+    let at_once = MOST_AT_ONCE * share(x[1]);
+    let elements = vec![RelaxationElement { share: 1.0 - at_once, time_constant_s: x[0].exp() }];
     model.linkage.push(LinkageStage::Relaxation(Relaxation { elements }));
-    model.linkage.push(LinkageStage::LogCreep(LogCreep::new(MOST_CREEP * share(x[3]))));
+    model.linkage.push(LinkageStage::LogCreep(LogCreep::new(MOST_CREEP * share(x[2]))));
     model
 }
 
