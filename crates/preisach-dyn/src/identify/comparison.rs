@@ -132,9 +132,10 @@ impl ModelComparison {
 ///
 /// All fast training records of one frequency are left out of the fit in turn and simulated, then all
 /// of one amplitude: conditions, because the model will be used at others than the bench ran. Where no
-/// record is fast, each slow one is left out in turn. The family with the smallest error is chosen, a simpler one if it is within
-/// 3 %; then the order of the memory likewise. Held-out records are never looked at for choosing:
-/// they only stand in the table.
+/// record is fast, each slow one is left out in turn. The family with the smallest error is chosen, a
+/// simpler one if it is within 3 %; then the order of the memory with the smallest error: there
+/// smoothness keeps large grids in check. Held-out records are never looked at for choosing: they only
+/// stand in the table.
 ///
 /// # Errors
 /// As [`super::identify`] for the records; a family that cannot be fitted has its error in its row.
@@ -150,7 +151,7 @@ pub fn compare_models(
         .par_iter()
         .map(|&family| contest.row(family, own, Folds::Conditions))
         .collect::<Result<_, _>>()?;
-    let chosen = best(&rows);
+    let chosen = best(&rows, WITHIN);
     let (mut orders, mut chosen_order) = (Vec::new(), 0);
     let family = rows.get(chosen).filter(|row| has_memory(row.family)).map(|row| row.family);
     if let (Some(family), false) = (family, candidates.orders.is_empty()) {
@@ -169,7 +170,7 @@ pub fn compare_models(
         // nothing to choose by: the order asked for stands
         let by_error = orders.iter().any(|row| row.cross_validation.is_some());
         let asked_for = tried.iter().position(|order| *order == own);
-        chosen_order = if by_error { best(&orders) } else { asked_for.unwrap_or(0) };
+        chosen_order = if by_error { best(&orders, 1.0) } else { asked_for.unwrap_or(0) };
     }
     let Contest { bench, zero_deg, summary, .. } = contest;
     for row in rows.iter_mut().chain(&mut orders) {
@@ -198,12 +199,12 @@ fn has_memory(family: Family) -> bool {
     )
 }
 
-/// The row with the smallest cross-validated error, an earlier one if it is nearly as good; without
+/// The row with the smallest cross-validated error, an earlier one if it is at most `within` times it; without
 /// cross-validation the static Preisach model, or what could be fitted at all.
-fn best(rows: &[ModelRow]) -> usize {
+fn best(rows: &[ModelRow], within: f64) -> usize {
     let error = |row: &ModelRow| row.fitted.as_ref().ok().and(row.cross_validation);
     let least = rows.iter().filter_map(error).fold(f64::INFINITY, f64::min);
-    let near = rows.iter().position(|row| error(row).is_some_and(|e| e <= WITHIN * least));
+    let near = rows.iter().position(|row| error(row).is_some_and(|e| e <= within * least));
     let of = |family: Family| move |row: &ModelRow| row.family == family && row.fitted.is_ok();
     near.filter(|_| least.is_finite())
         .or_else(|| rows.iter().position(of(Family::DynamicPreisach)))
