@@ -249,6 +249,44 @@ pub enum PreisachError {
         /// The value found.
         value: f64,
     },
+    /// A training or judging window does not lie in its record, or is too short.
+    #[error(
+        "record {id}: the window of samples {start}..{end} does not hold 16 samples of the {samples} there are"
+    )]
+    BadWindow {
+        /// The record.
+        id: String,
+        /// First sample of the window.
+        start: usize,
+        /// Sample after the last of the window.
+        end: usize,
+        /// Samples of the record.
+        samples: usize,
+    },
+    /// The commands cannot be in volt.
+    #[error(
+        "the commands span {found_volt} V, the declared range {declared_volt} V: they look like {likely}; convert the column to volt or correct the declared range"
+    )]
+    UnitMismatch {
+        /// Largest span of a command as read, V.
+        found_volt: f64,
+        /// Span of the declared range, V.
+        declared_volt: f64,
+        /// The unit they look like.
+        likely: &'static str,
+    },
+    /// Command and output of a record have changed places.
+    #[error(
+        "record {id}: the command column spans {command_volt} V and leaves the declared range, the output column spans {output_um} um and looks like the command; exchange the columns"
+    )]
+    SwappedColumns {
+        /// The record.
+        id: String,
+        /// Span of the command column, V.
+        command_volt: f64,
+        /// Span of the output column, um.
+        output_um: f64,
+    },
     /// No record can train a part of the model.
     #[error("no training record for {part}; {remedy}")]
     NoTrainingRecord {
@@ -256,6 +294,78 @@ pub enum PreisachError {
         part: &'static str,
         /// What to record or mark for training.
         remedy: &'static str,
+    },
+
+    // ---- reversal curves ----
+    /// A reversal curve cannot be used.
+    #[error("reversal curve {curve}, point {index}: {problem} ({value})")]
+    ForcCurve {
+        /// Place of the curve in the family, from 0.
+        curve: usize,
+        /// Index of the point.
+        index: usize,
+        /// What is wrong with it.
+        problem: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// Calibration readings and curves do not go together.
+    #[error(
+        "{readings} calibration readings for {curves} reversal curves: give one before each curve, or none"
+    )]
+    ForcCalibration {
+        /// Readings found.
+        readings: usize,
+        /// Curves found.
+        curves: usize,
+    },
+
+    // ---- inverse ----
+    /// A static model cannot reach an output with its next sample.
+    #[error(
+        "an output of {wanted_deg} deg is wanted, but the next sample can reach {lowest_deg} to {highest_deg} deg only; lower the target or widen the voltage range"
+    )]
+    OutputOutOfReach {
+        /// The output wanted, deg.
+        wanted_deg: f64,
+        /// Output at the lower end of the range, deg.
+        lowest_deg: f64,
+        /// Output at the upper end of the range, deg.
+        highest_deg: f64,
+    },
+    /// A periodic motion needs more voltage than there is.
+    #[error(
+        "a flap motion of {wanted_deg:.4} deg (half peak to peak) at {rev_hz} rev/s is out of reach: harmonic {harmonic} takes most of the voltage, which reaches {voltage_volt:.2} V at azimuth {azimuth_deg:.1} deg, outside {lowest_volt} V to {highest_volt} V; about {reachable_deg:.4} deg of the same shape can be reached"
+    )]
+    MotionOutOfReach {
+        /// Half peak to peak of the wanted motion, deg.
+        wanted_deg: f64,
+        /// Half peak to peak of the largest motion of this shape that was found, deg.
+        reachable_deg: f64,
+        /// The harmonic that takes the largest voltage.
+        harmonic: usize,
+        /// Revolutions per second.
+        rev_hz: f64,
+        /// Azimuth at which the voltage leaves the range, deg.
+        azimuth_deg: f64,
+        /// The voltage there, V.
+        voltage_volt: f64,
+        /// Lower limit, V.
+        lowest_volt: f64,
+        /// Upper limit, V.
+        highest_volt: f64,
+    },
+    /// Newton's method for a periodic voltage stopped.
+    #[error(
+        "the periodic inverse stopped after {iterations} Newton steps with {residual_deg:e} deg left at {share} of the wanted motion; raise tolerance_deg or lower voltage_harmonics"
+    )]
+    InverseNotConverged {
+        /// Newton steps done at the last amplitude.
+        iterations: usize,
+        /// Largest error of a coefficient, deg.
+        residual_deg: f64,
+        /// Share of the wanted motion that was solved.
+        share: f64,
     },
 
     // ---- numerical failure ----
@@ -282,6 +392,14 @@ pub enum PreisachError {
         closure_deg: f64,
         /// Allowed change, deg.
         allowed_deg: f64,
+    },
+    /// No start of a fit led to a model.
+    #[error(
+        "{family}: no start of the fit gave a model of the family; check the sign of the output and the voltage range"
+    )]
+    NotFitted {
+        /// The family of models.
+        family: &'static str,
     },
     /// The quadratic program of an identification stage was not solved.
     #[error(

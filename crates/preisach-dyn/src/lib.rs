@@ -12,7 +12,8 @@
 //! | other families | [`PrandtlIshlinskii`], [`BoucWen`] |
 //! | what stands around the law | [`AmplifierStage`], [`LinkageStage`], [`SensorStage`] |
 //! | one actuator: simulation, bench, batch | [`ActuatorModel`], [`Drive`], [`Stepper`] |
-//! | closed orbits | [`PeriodicResponse`] |
+//! | closed orbits, and the voltage for a wanted one | [`PeriodicResponse`], [`PeriodicInverse`] |
+//! | reversal curves: density, FORC diagram | [`forc`] |
 //! | identification from bench records | [`identify`](mod@identify) |
 //!
 //! Source: S. R. Viswamurthy and R. Ganguli, *Experimental and computational investigation of
@@ -27,8 +28,10 @@ mod dynamics;
 mod envelope;
 mod error;
 mod everett;
+pub mod forc;
 mod grid;
 pub mod identify;
+mod inverse;
 mod law;
 mod memory;
 mod periodic;
@@ -50,6 +53,7 @@ pub use envelope::Envelope;
 pub use error::PreisachError;
 pub use everett::{EverettStaircase, StaircaseMemory};
 pub use grid::{PreisachGrid, VoltageRange};
+pub use inverse::{InverseSettings, PeriodicInverse};
 pub use law::{ActuatorLaw, HysteresisLaw, LawMemory, LinearGain};
 pub use memory::{PlayMemory, StartState};
 pub use periodic::{PeriodicResponse, PeriodicSettings};
@@ -60,7 +64,8 @@ pub use simulate::{BenchSimulation, Drive, Simulation};
 pub use stages::{
     AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
     DielectricHeating, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep,
-    MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Resonance, Saturation, SensorStage,
+    MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Relaxation, RelaxationElement,
+    Resonance, Saturation, SensorStage,
 };
 pub use statics::StaticPreisach;
 

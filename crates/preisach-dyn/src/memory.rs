@@ -114,7 +114,7 @@ impl PlayMemory {
 
 /// A play of full width `width` cells after its input moved to `top` cells.
 #[inline]
-fn moved(x: f64, top: f64, width: f64) -> f64 {
+pub(crate) fn moved(x: f64, top: f64, width: f64) -> f64 {
     let lifted = if x < top { x } else { top };
     let floor = top - width;
     if lifted > floor { lifted } else { floor }

@@ -108,8 +108,7 @@ fn bench(
                 time_step_s: run.time_step_s,
                 voltage_volt,
                 output_deg,
-                record_use: None,
-                base_frequency_hz: None,
+                ..BenchRecord::default()
             }
         })
         .collect()
@@ -229,9 +228,39 @@ fn a_truth_outside_the_class_is_approximated_and_noise_does_no_harm() {
 }
 
 #[test]
+fn the_held_out_error_grows_smoothly_with_the_noise() {
+    let held_out = |noise_deg: f64| {
+        let clean = dahl_truth(0.0);
+        let identified = identify(&dahl_truth(noise_deg), &settings()).unwrap();
+        // against the clean records: what the model misses, not what no model can know
+        let errors = identified.records.iter().zip(&clean).filter_map(|(report, record)| {
+            let model = &identified.dynamic;
+            let output =
+                model.simulate(&record.voltage_volt, record.time_step_s).unwrap().output_deg;
+            let n = output.len() as f64;
+            let mean = record.output_deg.iter().sum::<f64>() / n;
+            let spread: f64 = record.output_deg.iter().map(|y| (y - mean).powi(2)).sum();
+            let pairs = output.iter().zip(&record.output_deg);
+            let squares: f64 = pairs.map(|(a, b)| (a + identified.zero_deg - b).powi(2)).sum();
+            (report.record_use == RecordUse::HeldOut).then_some(squares / spread)
+        });
+        let all: Vec<f64> = errors.collect();
+        100.0 * (all.iter().sum::<f64>() / all.len() as f64).sqrt()
+    };
+    let found = [0.0, 0.02, 0.04, 0.06, 0.08, 0.1].map(held_out);
+    println!("held-out error over noise of 0 to 0.1 deg: {found:.3?} %");
+    for pair in found.windows(2) {
+        assert!((pair[1] - pair[0]).abs() < 0.6, "{found:?}");
+    }
+    assert!(found[5] < found[0] + 1.5 && found[5] < 6.0, "{found:?}");
+}
+
+#[test]
 fn a_strong_quadratic_term_is_held_at_the_limit_of_the_reachable_states() {
     // the truth folds above 400 deg/s, the model is not allowed to below 1.5 x the trained rate
-    let identified = identify(&preisach_truth(3e-5, 400.0), &settings()).unwrap();
+    // the constrained fit itself: the refinement may leave the limit again
+    let settings = Settings { refinement_patience: 0, ..settings() };
+    let identified = identify(&preisach_truth(3e-5, 400.0), &settings).unwrap();
     let preisach_dyn::ActuatorLaw::DynamicPreisach(model) = &identified.dynamic.law else {
         panic!("law")
     };
@@ -281,15 +310,13 @@ fn records_that_cannot_be_used_are_named() {
     assert!(matches!(error, PreisachError::NotPositive { .. }), "{error}");
     let error = with(&|r| r[2].base_frequency_hz = Some(-5.0));
     assert!(matches!(error, PreisachError::NotPositive { .. }), "{error}");
-    let error = with(&|r| r.retain(|r| !r.id.starts_with("1 ") && !r.id.starts_with("10 ")));
-    assert!(matches!(error, PreisachError::NoTrainingRecord { .. }), "{error}");
-    let error = with(&|r| r.retain(|r| r.id.contains("Hz") && !r.id.starts_with("0.2")));
-    assert!(matches!(error, PreisachError::NoTrainingRecord { .. }), "{error}");
     let error = with(&|r| {
         let rest = r[0].voltage_volt[0];
+        r.truncate(1);
         r[0].voltage_volt.iter_mut().for_each(|u| *u = rest);
-        r.remove(1);
     });
+    assert!(matches!(error, PreisachError::NoTrainingRecord { .. }), "{error}");
+    let error = with(&|r| r.iter_mut().for_each(|r| r.record_use = Some(RecordUse::HeldOut)));
     assert!(matches!(error, PreisachError::NoTrainingRecord { .. }), "{error}");
     assert!(identify(&[], &settings).is_err());
     let odd = Settings { rate_levels: 5, ..settings };

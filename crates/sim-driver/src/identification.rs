@@ -1,17 +1,19 @@
 //! `hhc identify`: bench data in, actuator model out.
 
 use crate::SimError;
-use crate::files::{BenchData, LoopData, RunUse, significant};
+use crate::files::{BenchData, LoopData, RunRole, RunUse, significant};
 use crate::output::{Printable, Sheet, table};
 use crate::problem::Place;
 use crate::stored_actuator::{FitUse, StoredActuator, StoredChannels, StoredFit, StoredKind};
 use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, NoiseEstimate, RunError, Use};
 use preisach_dyn::identify::{
-    BenchRecord, FlapZero, Identification, RecordUse, Refinement, Settings, identify,
+    BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
+    RecordWindows, Refinement, Settings, Severity, compare_models, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::ops::Range;
 
 /// Half peak to peak of the slowest full-scale loop where the data set gives no gain, deg.
 ///
@@ -48,6 +50,8 @@ pub struct BenchIdentification {
     pub records: Vec<BenchRecord>,
     /// How the models fit each record.
     pub fits: Vec<RunFit>,
+    /// The table of all models, once it was asked for.
+    pub comparison: Option<ModelComparison>,
 }
 
 /// Identifies an actuator from a bench.
@@ -78,8 +82,9 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
             time_step_s: run.table.time_step_s,
             voltage_volt: run.table.command_volt.clone(),
             output_deg: run.table.displacement_um.iter().map(|x| deg_per_um * x).collect(),
-            record_use: run.use_as.map(record_use),
-            base_frequency_hz: None,
+            record_use: record_use(run.use_as, run.role),
+            windows: windows(run.window_s, run.window()),
+            ..BenchRecord::default()
         })
         .collect();
     let heading = DataHeading {
@@ -116,8 +121,9 @@ pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentific
             time_step_s: run.table.time_step_s,
             voltage_volt: run.table.input.clone(),
             output_deg: run.table.output.clone(),
-            record_use: run.use_as.map(record_use),
-            base_frequency_hz: None,
+            record_use: record_use(run.use_as, run.role),
+            windows: windows(run.window_s, run.window()),
+            ..BenchRecord::default()
         })
         .collect();
     let [input, output] = data.channels.both().map(crate::files::Channel::label);
@@ -132,11 +138,20 @@ pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentific
     identified(heading, records, settings)
 }
 
-fn record_use(given: RunUse) -> RecordUse {
-    match given {
-        RunUse::Train => RecordUse::Train,
-        RunUse::HeldOut => RecordUse::HeldOut,
+/// Side of the split that the data set fixes: what it says of the run, and otherwise that measured
+/// runs, which are there to be explained, never train.
+fn record_use(given: Option<RunUse>, role: RunRole) -> Option<RecordUse> {
+    match (given, role) {
+        (Some(RunUse::Train), _) => Some(RecordUse::Train),
+        (Some(RunUse::HeldOut), _) | (None, RunRole::Measured) => Some(RecordUse::HeldOut),
+        (None, RunRole::Reference) => None,
     }
+}
+
+/// A window of a run trains and judges alike; without one all of the run does.
+fn windows(window_s: Option<(f64, f64)>, samples: Range<usize>) -> RecordWindows {
+    let window = window_s.map(|_| samples);
+    RecordWindows { train: window.clone(), judge: window }
 }
 
 /// Identifies from records and judges the models by them.
@@ -148,13 +163,20 @@ fn identified(
     let dataset = format!("{}/dataset.ron", heading.folder);
     let fail = |source: PreisachError| SimError::Actuator { place: Place::file(&dataset), source };
     let identification = identify(&records, &settings).map_err(fail)?;
-    let fits = judge(&records, &identification).map_err(|e| match e {
-        Judged::Model(source) => fail(source),
-        Judged::Misfit { id, source } => {
-            SimError::Misfit { place: Place::file(&dataset).field(&id), source }
-        }
-    })?;
-    Ok(BenchIdentification { heading, identification, settings, records, fits })
+    let fits = judged(&heading, &records, &identification)?;
+    Ok(BenchIdentification { heading, identification, settings, records, fits, comparison: None })
+}
+
+fn judged(
+    heading: &DataHeading,
+    records: &[BenchRecord],
+    identification: &Identification,
+) -> Result<Vec<RunFit>, SimError> {
+    let place = || Place::file(format!("{}/dataset.ron", heading.folder));
+    judge(records, identification).map_err(|e| match e {
+        Judged::Model(source) => SimError::Actuator { place: place(), source },
+        Judged::Misfit { id, source } => SimError::Misfit { place: place().field(&id), source },
+    })
 }
 
 /// Why a record cannot be judged.
@@ -250,8 +272,7 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> f64 {
                 time_step_s: run.table.time_step_s,
                 voltage_volt: run.table.command_volt.clone(),
                 output_deg: run.table.displacement_um.clone(),
-                record_use: None,
-                base_frequency_hz: None,
+                ..BenchRecord::default()
             };
             let drive = record.drive();
             drive.is_periodic() && base.split.is_quasi_static(&drive)
@@ -263,6 +284,32 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> f64 {
 }
 
 impl BenchIdentification {
+    /// Fits all families of models to the same records and keeps the table.
+    ///
+    /// # Errors
+    /// [`SimError::Actuator`] at the place of the data set.
+    pub fn compare(&mut self) -> Result<(), SimError> {
+        let table = compare_models(&self.records, &self.settings, &Candidates::default());
+        self.comparison = Some(table.map_err(|source| SimError::Actuator {
+            place: Place::file(format!("{}/dataset.ron", self.heading.folder)),
+            source,
+        })?);
+        Ok(())
+    }
+
+    /// Puts the model that cross-validation chose in the place of the dynamic Preisach model. Nothing
+    /// happens before [`Self::compare`].
+    ///
+    /// # Errors
+    /// As [`identify_bench`].
+    pub fn adopt_best(&mut self) -> Result<(), SimError> {
+        if let Some(model) = self.comparison.as_ref().and_then(ModelComparison::model) {
+            self.identification.dynamic = model.clone();
+            self.fits = judged(&self.heading, &self.records, &self.identification)?;
+        }
+        Ok(())
+    }
+
     /// The actuator file of this identification.
     pub fn stored(&self) -> StoredActuator {
         StoredActuator {
@@ -303,7 +350,73 @@ impl BenchIdentification {
             zero_deg: self.identification.zero_deg,
             refinement: self.identification.refinement,
             runs: self.fits.iter().map(stored_fit).collect(),
+            models: self.comparison.as_ref().map_or_else(Vec::new, model_lines),
+            findings: self.identification.summary.findings.iter().map(FindingLine::of).collect(),
+            density_determined: self.identification.summary.density_determined,
             written_to,
+        }
+    }
+}
+
+/// One family of models in the table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelLine {
+    /// Its name.
+    pub model: String,
+    /// Levels of its memory.
+    pub levels: usize,
+    /// Whether cross-validation chose it.
+    pub chosen: bool,
+    /// RMS of the NRMSE of training runs left out of the fit, percent; none if none could be left out.
+    pub cross_validation_percent: Option<f64>,
+    /// RMS of the NRMSE of the training runs, percent.
+    pub trained_percent: Option<f64>,
+    /// RMS of the NRMSE of the held-out runs, percent.
+    pub held_out_percent: Option<f64>,
+    /// Largest NRMSE of a held-out run, percent.
+    pub worst_held_out_percent: Option<f64>,
+    /// Why there is no fit.
+    pub failure: Option<String>,
+}
+
+fn model_lines(table: &ModelComparison) -> Vec<ModelLine> {
+    let percent = |v: f64| 100.0 * v;
+    let line = |(index, row): (usize, &preisach_dyn::identify::ModelRow)| {
+        let held_out = table.error_over(row, RecordUse::HeldOut);
+        ModelLine {
+            model: row.family.name().to_owned(),
+            levels: row.order.levels,
+            chosen: index == table.chosen,
+            cross_validation_percent: row.cross_validation.filter(|v| v.is_finite()).map(percent),
+            trained_percent: table.error_over(row, RecordUse::Train).map(|e| percent(e.0)),
+            held_out_percent: held_out.map(|e| percent(e.0)),
+            worst_held_out_percent: held_out.map(|e| percent(e.1)),
+            failure: row.fitted.as_ref().err().map(ToString::to_string),
+        }
+    };
+    table.rows.iter().enumerate().map(line).collect()
+}
+
+/// One thing the data cannot tell, or that is wrong with them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FindingLine {
+    /// What it means for the model.
+    pub severity: Severity,
+    /// What was found, with its numbers.
+    pub finding: Finding,
+    /// The same as a sentence.
+    pub message: String,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+impl FindingLine {
+    fn of(finding: &Finding) -> Self {
+        Self {
+            severity: finding.severity(),
+            finding: finding.clone(),
+            message: finding.to_string(),
+            remedy: finding.remedy(),
         }
     }
 }
@@ -350,6 +463,12 @@ pub struct IdentifyResult {
     pub refinement: Refinement,
     /// Fit of every run.
     pub runs: Vec<StoredFit>,
+    /// All families of models on the same split; empty if they were not compared.
+    pub models: Vec<ModelLine>,
+    /// What the data cannot tell.
+    pub findings: Vec<FindingLine>,
+    /// Numbers of the static density that the training runs determine, of how many.
+    pub density_determined: [usize; 2],
     /// File the model was written to.
     pub written_to: Option<String>,
 }
@@ -386,11 +505,42 @@ impl Printable for IdentifyResult {
         sheet.line(format_args!(
             "\nNRMSE: rms error / standard deviation of the measured output. Amplitude and phase error at\nthe strongest harmonic of the command, steady cycles; positive phase: the model lags too much.\nStructured: share of the output's energy that is neither explained nor noise of repeated cycles."
         ));
+        if !self.models.is_empty() {
+            sheet.line(format_args!("\nModels on the same split, NRMSE in %"));
+            sheet.block(&model_table(&self.models));
+            sheet.line(format_args!(
+                "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen. Held-out runs are never looked at for choosing."
+            ));
+        }
+        let [determined, unknowns] = self.density_determined;
+        sheet.line(format_args!(
+            "\nThe training runs determine {determined} of {unknowns} numbers of the static density."
+        ));
+        for line in &self.findings {
+            sheet.line(format_args!("{:?}: {}\n  {}", line.severity, line.message, line.remedy));
+        }
         if let Some(path) = &self.written_to {
             sheet.line(format_args!("Actuator written to {path}"));
         }
         sheet.finish()
     }
+}
+
+fn model_table(models: &[ModelLine]) -> String {
+    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:.2}"));
+    table(
+        &["model", "levels", "left out", "trained", "held out", "worst held out"],
+        models.iter().map(|m| {
+            vec![
+                format!("{}{}", if m.chosen { "* " } else { "" }, m.model),
+                m.levels.to_string(),
+                m.failure.clone().unwrap_or_else(|| optional(m.cross_validation_percent)),
+                optional(m.trained_percent),
+                optional(m.held_out_percent),
+                optional(m.worst_held_out_percent),
+            ]
+        }),
+    )
 }
 
 /// How the model fits the runs given.

@@ -11,28 +11,44 @@
 //! last two steps. Refinement must lower the error of the training records or it is dropped.
 
 mod compare;
+mod comparison;
+mod families;
+mod findings;
 mod fourier;
+mod layered;
+mod noise;
+mod output_error;
+mod plausibility;
 mod prepared;
-mod program;
+pub(crate) mod program;
 mod rate_fit;
 mod record;
 mod refine;
+mod roles;
 mod settings;
-mod static_fit;
+pub(crate) mod static_fit;
+mod stream;
 mod validate;
 
 pub use compare::RecordFit;
+pub use comparison::{Candidates, FittedModel, ModelComparison, ModelRow, Order, compare_models};
+pub use families::Family;
+pub use findings::{Finding, Identifiability, Severity};
+pub use noise::CycleNoise;
+pub use output_error::{Covariance, Estimate};
 pub use program::QpStatus;
-pub use record::{BenchRecord, Drive, RecordUse, SplitRule, Waveform};
+pub use record::{BenchRecord, Drive, RecordUse, RecordWindows, SplitRule, Waveform};
 pub use refine::{Refinement, RefinementOutcome};
 pub use settings::{FlapZero, RateSmoothness, Settings};
+pub use stream::StaticAccumulator;
 pub use validate::Validation;
 
 use crate::{
-    ActuatorLaw, ActuatorModel, DynamicPreisach, LinearGain, PlayMemory, PreisachError,
+    ActuatorLaw, ActuatorModel, DynamicPreisach, LinearGain, PlayMap, PlayMemory, PreisachError,
     PreisachGrid, StartState, StaticPreisach, TrainedRange,
 };
 use prepared::Prepared;
+use roles::{Bench, Sorted};
 
 /// What the identification says about one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,8 +59,8 @@ pub struct RecordReport {
     pub record_use: RecordUse,
     /// Its command.
     pub drive: Drive,
-    /// Standard deviation of what does not repeat from cycle to cycle, deg; none for transients.
-    pub noise_deg: Option<f64>,
+    /// Scatter of its repeated cycles; none for transients and where only one cycle is steady.
+    pub noise: Option<CycleNoise>,
     /// The linear gain against it.
     pub linear: RecordFit,
     /// The static Preisach model against it.
@@ -56,7 +72,8 @@ pub struct RecordReport {
 /// An identified actuator, its baselines, and how they fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identification {
-    /// The dynamic Preisach model.
+    /// The dynamic Preisach model; the static one where the records say nothing about rate, which
+    /// the summary then states.
     pub dynamic: ActuatorModel,
     /// Baseline: the static Preisach model fitted to the same quasi-static records.
     pub static_only: ActuatorModel,
@@ -73,6 +90,13 @@ pub struct Identification {
     pub validation: Vec<Validation>,
     /// What the refinement did.
     pub refinement: Refinement,
+    /// The refined parameters, as corrections to the model of the fits before it, with their standard
+    /// deviations; empty for a static model.
+    pub parameters: Vec<Estimate>,
+    /// Their covariance; none for a static model or where a parameter has no influence.
+    pub covariance: Option<Covariance>,
+    /// What the records cannot tell.
+    pub summary: Identifiability,
 }
 
 impl Identification {
@@ -84,70 +108,48 @@ impl Identification {
 
 /// Identifies an actuator from bench records.
 ///
+/// Where the training records say nothing about rate (one frequency, no periodic run beyond the slow
+/// ones) the dynamic model returned is the static one, and [`Identification::summary`] says why.
+///
 /// Assumes: every record starts at rest at its first voltage; equally spaced samples.
 ///
 /// # Errors
-/// Refused settings or records; [`PreisachError::NoTrainingRecord`] if no quasi-static or no faster
-/// periodic record trains; [`PreisachError::QuadraticProgram`] if a fit is not solved;
-/// [`PreisachError::Diverged`] if a Literal model runs away on a record.
+/// Refused settings or records; [`PreisachError::UnitMismatch`] or [`PreisachError::SwappedColumns`]
+/// for columns that cannot be what they are called; [`PreisachError::NoTrainingRecord`] if no record
+/// moves; [`PreisachError::QuadraticProgram`] if a fit is not solved; [`PreisachError::Diverged`] if
+/// a Literal model runs away on a record.
 pub fn identify(
     records: &[BenchRecord],
     settings: &Settings,
 ) -> Result<Identification, PreisachError> {
-    settings.check()?;
-    for record in records {
-        record.check(settings.range_volt)?;
-    }
-    let grid = PreisachGrid::new(settings.range_volt, settings.levels)?;
-    let drives: Vec<Drive> = records.iter().map(BenchRecord::drive).collect();
-    let uses = settings.split.uses(records, &drives);
-    let prepared = records
-        .iter()
-        .zip(drives.iter().zip(&uses))
-        .map(|(record, (drive, &record_use))| {
-            Prepared::new(record, drive.clone(), record_use, &grid, settings)
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    let trained = || prepared.iter().filter(|r| !r.samples.is_empty());
-    let slow: Vec<&Prepared> = trained().filter(|r| r.is_slow).collect();
-    let fast: Vec<&Prepared> = trained().filter(|r| !r.is_slow).collect();
-    if slow.is_empty() {
-        return Err(PreisachError::NoTrainingRecord {
-            part: "the static density mu0",
-            remedy: "record a slow major loop and reversal curves, or raise quasi_static_hz",
-        });
-    }
-    if fast.is_empty() {
-        return Err(PreisachError::NoTrainingRecord {
-            part: "the rate densities mu1 and mu2",
-            remedy: "record periodic runs at trained_hz (1 and 10 Hz), or mark runs for training",
-        });
-    }
+    let grid = PreisachGrid::new(settings.range_volt, settings.levels.max(1))?;
+    let bench = Bench::new(records, settings)?;
+    let prepared = bench.prepared(&grid, settings)?;
+    let Sorted { slow, fast } = Sorted::of(&prepared)?;
+    let summary = bench.summary(&grid, &prepared, settings);
 
     let trained = Some(trained_range(&slow, &fast, &prepared));
     let wrap = |law| ActuatorModel { trained, ..settings.actuator_of(law) };
     let linear = wrap(ActuatorLaw::Linear(fit_linear(&slow)));
     let measured: Vec<Vec<f64>> = slow.iter().map(|r| r.record.output_deg.clone()).collect();
-    let mut g0_deg = static_fit::fit(&grid, &slow, &measured, settings)?;
-    let static_only = wrap(ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, g0_deg.clone())?));
-
-    let (mut smoothness, mut validation) = validate::smoothness(&grid, &g0_deg, &fast, settings);
-    let mut model = rate_fit::fit(&grid, &g0_deg, &fast, smoothness, settings)?
-        .model(&grid, &g0_deg, settings)?;
-    for round in 1..settings.rounds {
-        let targets: Vec<Vec<f64>> =
-            slow.iter().map(|r| without_rate_terms(&model, r.record)).collect();
-        g0_deg = static_fit::fit(&grid, &slow, &targets, settings)?;
-        if round == 1 {
-            // again, now that the static map no longer holds the dynamics of the slow records
-            (smoothness, validation) = validate::smoothness(&grid, &g0_deg, &fast, settings);
+    let g0_deg = static_fit::fit(&grid, &slow, &measured, settings)?;
+    let statics = StaticPreisach::new(grid, g0_deg.clone())?;
+    let static_only = wrap(ActuatorLaw::StaticPreisach(statics));
+    let rate = if fast.is_empty() {
+        let errors = slow.iter().map(|r| Ok(compare::training_nrmse(&static_only, r)?.powi(2)));
+        let squares = errors.sum::<Result<f64, PreisachError>>()?;
+        RateFit {
+            law: static_only.law.clone(),
+            smoothness: 0.0,
+            validation: Vec::new(),
+            refinement: Refinement::left_out((squares / slow.len() as f64).sqrt()),
+            parameters: Vec::new(),
+            covariance: None,
         }
-        let maps = rate_fit::fit(&grid, &g0_deg, &fast, smoothness, settings)?;
-        model = maps.model(&grid, &g0_deg, settings)?;
-    }
-    let all: Vec<&Prepared> = slow.iter().chain(&fast).copied().collect();
-    let (model, refinement) = refine::refine(model, &all, settings)?;
-    let dynamic = wrap(ActuatorLaw::DynamicPreisach(model));
+    } else {
+        RateFit::new(&grid, g0_deg, &slow, &fast, settings)?
+    };
+    let dynamic = wrap(rate.law);
 
     let reports = prepared
         .iter()
@@ -156,7 +158,7 @@ pub fn identify(
                 id: r.record.id.clone(),
                 record_use: r.record_use,
                 drive: r.drive.clone(),
-                noise_deg: r.cycles.as_ref().map(|c| c.noise),
+                noise: r.noise,
                 linear: compare::compare(&linear, r)?,
                 static_only: compare::compare(&static_only, r)?,
                 dynamic: compare::compare(&dynamic, r)?,
@@ -173,10 +175,54 @@ pub fn identify(
         linear: linear.shifted(-zero_deg),
         zero_deg,
         records: reports,
-        rate_smoothness: smoothness,
-        validation,
-        refinement,
+        rate_smoothness: rate.smoothness,
+        validation: rate.validation,
+        refinement: rate.refinement,
+        parameters: rate.parameters,
+        covariance: rate.covariance,
+        summary,
     })
+}
+
+/// A dynamic Preisach law with what its fit rests on.
+struct RateFit {
+    law: ActuatorLaw,
+    smoothness: f64,
+    validation: Vec<Validation>,
+    refinement: Refinement,
+    parameters: Vec<Estimate>,
+    covariance: Option<Covariance>,
+}
+
+impl RateFit {
+    /// The rounds of `mu0` and `mu1, mu2` and the refinement, from a first static map.
+    fn new(
+        grid: &PreisachGrid,
+        mut g0_deg: PlayMap,
+        slow: &[&Prepared],
+        fast: &[&Prepared],
+        settings: &Settings,
+    ) -> Result<Self, PreisachError> {
+        let (mut smoothness, mut validation) = validate::smoothness(grid, &g0_deg, fast, settings);
+        let mut model = rate_fit::fit(grid, &g0_deg, fast, smoothness, settings)?
+            .model(grid, &g0_deg, settings)?;
+        for round in 1..settings.rounds {
+            let targets: Vec<Vec<f64>> =
+                slow.iter().map(|r| without_rate_terms(&model, r.record)).collect();
+            g0_deg = static_fit::fit(grid, slow, &targets, settings)?;
+            if round == 1 {
+                // again, now that the static map no longer holds the dynamics of the slow records
+                (smoothness, validation) = validate::smoothness(grid, &g0_deg, fast, settings);
+            }
+            let maps = rate_fit::fit(grid, &g0_deg, fast, smoothness, settings)?;
+            model = maps.model(grid, &g0_deg, settings)?;
+        }
+        let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
+        let refine::Refined { model, refinement, parameters, covariance } =
+            refine::refine(&model, &all, settings)?;
+        let law = ActuatorLaw::DynamicPreisach(model);
+        Ok(Self { law, smoothness, validation, refinement, parameters, covariance })
+    }
 }
 
 /// Output of a record with `d G1 + d^2 G2` taken off, `d` from the simulated model: smooth, and

@@ -1,6 +1,7 @@
 //! Records made ready for the fits.
 
 use super::fourier::{self, FourierFit};
+use super::noise::CycleNoise;
 use super::record::spread;
 use super::{BenchRecord, Drive, RecordUse, Settings, Waveform};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState};
@@ -18,8 +19,10 @@ pub(crate) struct Prepared<'a> {
     pub(super) record_use: RecordUse,
     /// Whether it trains the static map; if not it trains the rate maps.
     pub(super) is_slow: bool,
-    /// Fourier series of the steady cycles; none for transients.
+    /// Fourier series of the steady cycles that train; none for transients.
     pub(super) cycles: Option<FourierFit>,
+    /// Scatter of the repeated cycles; none for transients and single cycles.
+    pub(super) noise: Option<CycleNoise>,
     /// Samples the fits look at; empty for held-out records.
     pub(super) samples: Vec<usize>,
     levels: usize,
@@ -32,31 +35,36 @@ impl<'a> Prepared<'a> {
         record: &'a BenchRecord,
         drive: Drive,
         record_use: RecordUse,
+        is_slow: bool,
         grid: &PreisachGrid,
         settings: &Settings,
     ) -> Result<Self, PreisachError> {
-        let cycles = if drive.is_periodic() {
-            let count = drive.harmonics_within(record.time_step_s, settings.harmonics);
-            let cycles_per_sample = drive.base_hz * record.time_step_s;
-            Some(fourier::fit(&record.output_deg, drive.steady.clone(), cycles_per_sample, count)?)
-        } else {
-            None
+        let steady = drive.steady_within(&record.trained_samples(), record.time_step_s);
+        let cycles = match &steady {
+            Some(steady) => {
+                let count = drive.harmonics_within(record.time_step_s, settings.harmonics);
+                let per_sample = drive.base_hz * record.time_step_s;
+                Some(fourier::fit(&record.output_deg, steady.clone(), per_sample, count)?)
+            }
+            None => None,
         };
-        let is_slow = settings.split.is_quasi_static(&drive);
+        let period = 1.0 / (drive.base_hz * record.time_step_s);
+        let noise = steady.clone().and_then(|s| CycleNoise::of(&record.output_deg[s], period));
         let trains = record_use == RecordUse::Train && drive.waveform != Waveform::Constant;
         let (range, most) = match (trains, is_slow) {
             (false, _) => (0..0, 1),
-            (true, true) => (0..record.output_deg.len(), MOST_STATIC_SAMPLES),
-            (true, false) => (drive.steady.clone(), MOST_RATE_SAMPLES),
+            (true, true) => (record.trained_samples(), MOST_STATIC_SAMPLES),
+            (true, false) => (steady.unwrap_or(0..0), MOST_RATE_SAMPLES),
         };
         let stride = range.len().div_ceil(most).max(1);
         let mut prepared = Self {
             record,
-            spread_deg: spread(&record.output_deg),
+            spread_deg: spread(&record.output_deg[record.trained_samples()]),
             drive,
             record_use,
             is_slow,
             cycles,
+            noise,
             samples: range.step_by(stride).collect(),
             levels: grid.levels(),
             states: Vec::new(),

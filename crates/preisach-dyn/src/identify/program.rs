@@ -25,11 +25,11 @@ pub enum QpStatus {
 }
 
 /// A sparse row: unknown and coefficient.
-pub(super) type Row = Vec<(usize, f64)>;
+pub(crate) type Row = Vec<(usize, f64)>;
 
 /// `min sum_i w_i (a_i x - b_i)^2` subject to `c_k x >= d_k` and `e_k x = 0`.
 #[derive(Debug, Clone)]
-pub(super) struct LeastSquaresProgram {
+pub(crate) struct LeastSquaresProgram {
     unknowns: usize,
     /// Upper triangle of `sum w a a'`, column by column.
     normal: Vec<f64>,
@@ -44,7 +44,7 @@ fn packed(row: usize, column: usize) -> usize {
 }
 
 impl LeastSquaresProgram {
-    pub(super) fn new(unknowns: usize) -> Self {
+    pub(crate) fn new(unknowns: usize) -> Self {
         Self {
             unknowns,
             normal: vec![0.0; unknowns * (unknowns + 1) / 2],
@@ -55,7 +55,7 @@ impl LeastSquaresProgram {
     }
 
     /// Adds `weight (row x - target)^2`. Columns of `row` ascend.
-    pub(super) fn add(&mut self, row: &[(usize, f64)], target: f64, weight: f64) {
+    pub(crate) fn add(&mut self, row: &[(usize, f64)], target: f64, weight: f64) {
         for (i, &(column, b)) in row.iter().enumerate() {
             let scaled = weight * b;
             for &(r, a) in &row[..=i] {
@@ -65,13 +65,59 @@ impl LeastSquaresProgram {
         }
     }
 
+    /// Numbers kept: the normal equations.
+    pub(crate) fn kept_numbers(&self) -> usize {
+        self.normal.len() + self.right.len()
+    }
+
+    /// Multiplies the weights of all rows added so far.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        self.normal.iter_mut().chain(&mut self.right).for_each(|value| *value *= factor);
+    }
+
+    /// The number of directions of the unknowns that the rows added so far determine: the rank of
+    /// their normal matrix by Cholesky's method with pivoting, down to `relative` of the largest
+    /// pivot.
+    pub(crate) fn rank(&self, relative: f64) -> usize {
+        let n = self.unknowns;
+        let at = |a: &[f64], r: usize, c: usize| a[packed(r.min(c), r.max(c))];
+        let mut rest: Vec<f64> = (0..n).map(|i| self.normal[packed(i, i)]).collect();
+        let largest = rest.iter().copied().fold(0.0, f64::max);
+        let mut columns: Vec<Vec<f64>> = Vec::new();
+        while columns.len() < n {
+            let (pivot, value) = rest
+                .iter()
+                .copied()
+                .enumerate()
+                .fold((0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+            if value <= relative * largest {
+                break;
+            }
+            let root = value.sqrt();
+            let mut column: Vec<f64> = (0..n).map(|i| at(&self.normal, i, pivot)).collect();
+            for earlier in &columns {
+                let factor = earlier[pivot];
+                for (c, e) in column.iter_mut().zip(earlier) {
+                    *c -= factor * e;
+                }
+            }
+            for (left, c) in rest.iter_mut().zip(&mut column) {
+                *c /= root;
+                *left -= *c * *c;
+            }
+            rest[pivot] = 0.0;
+            columns.push(column);
+        }
+        columns.len()
+    }
+
     /// Demands `row x >= bound`.
-    pub(super) fn at_least(&mut self, row: Row, bound: f64) {
+    pub(crate) fn at_least(&mut self, row: Row, bound: f64) {
         self.lower_bounds.push((row, bound));
     }
 
     /// Demands `row x = 0`.
-    pub(super) fn equal_zero(&mut self, row: Row) {
+    pub(crate) fn equal_zero(&mut self, row: Row) {
         self.equalities.push(row);
     }
 
@@ -79,7 +125,7 @@ impl LeastSquaresProgram {
     ///
     /// Rows must have been weighted so that their weights sum to about one: unscaled normal
     /// equations made the solver stop far from the minimum.
-    pub(super) fn solve(&self, stage: &'static str) -> Result<Vec<f64>, PreisachError> {
+    pub(crate) fn solve(&self, stage: &'static str) -> Result<Vec<f64>, PreisachError> {
         let n = self.unknowns;
         let (mut column_starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for column in 0..n {
@@ -178,6 +224,18 @@ mod tests {
         let x = line().solve("test").unwrap();
         assert_abs_diff_eq!(x[0], 13.0 / 12.0, epsilon = 1e-7);
         assert_abs_diff_eq!(x[1], -1.25, epsilon = 1e-7);
+    }
+
+    #[test]
+    fn the_rank_counts_what_the_rows_determine() {
+        assert_eq!(line().rank(1e-9), 2);
+        let mut program = LeastSquaresProgram::new(4);
+        for (a, b) in [(1.0, 2.0), (0.5, -1.0), (3.0, 0.1)] {
+            // x0 and x1 only in the combination x0 + 2 x1; x3 never
+            program.add(&[(0, a), (1, 2.0 * a), (2, b)], 0.0, 1.0);
+        }
+        assert_eq!(program.rank(1e-9), 2);
+        assert_eq!(LeastSquaresProgram::new(3).rank(1e-9), 0);
     }
 
     #[test]

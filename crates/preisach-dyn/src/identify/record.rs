@@ -14,8 +14,21 @@ pub enum RecordUse {
     HeldOut,
 }
 
+/// The parts of a record that train and that judge, as samples.
+///
+/// Whatever they are, a record is always simulated from its first sample, so that the memory is what
+/// the whole history made of it.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RecordWindows {
+    /// Samples that train; none: all of them.
+    pub train: Option<Range<usize>>,
+    /// Samples the model is judged by; none: all of them.
+    pub judge: Option<Range<usize>>,
+}
+
 /// One bench record: equally spaced samples of command and output.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct BenchRecord {
     /// Name, used in reports and messages.
     pub id: String,
@@ -29,6 +42,8 @@ pub struct BenchRecord {
     pub record_use: Option<RecordUse>,
     /// Frequency of the command's period, Hz; none has it found from the command.
     pub base_frequency_hz: Option<f64>,
+    /// Parts that train and judge.
+    pub windows: RecordWindows,
 }
 
 /// The fewest samples a record may have.
@@ -74,7 +89,27 @@ impl BenchRecord {
         if spread(&self.output_deg) == 0.0 {
             return bad(0, "the output never changes", self.output_deg[0]);
         }
+        for window in [&self.windows.train, &self.windows.judge].into_iter().flatten() {
+            if window.end > outputs || window.len() < FEWEST_SAMPLES {
+                return Err(PreisachError::BadWindow {
+                    id: self.id.clone(),
+                    start: window.start,
+                    end: window.end,
+                    samples: outputs,
+                });
+            }
+        }
         Ok(())
+    }
+
+    /// The samples that train.
+    pub fn trained_samples(&self) -> Range<usize> {
+        self.windows.train.clone().unwrap_or(0..self.output_deg.len())
+    }
+
+    /// The samples the model is judged by.
+    pub fn judged_samples(&self) -> Range<usize> {
+        self.windows.judge.clone().unwrap_or(0..self.output_deg.len())
     }
 
     /// What the command does.
@@ -183,6 +218,24 @@ impl Drive {
         self.strongest_harmonic = index + 1;
         self.waveform =
             if power >= SINGLE_SHARE * total { Waveform::SingleHarmonic } else { Waveform::Mix };
+    }
+
+    /// The last whole steady periods inside a window; none if there is not one.
+    pub(super) fn steady_within(
+        &self,
+        window: &Range<usize>,
+        time_step_s: f64,
+    ) -> Option<Range<usize>> {
+        if !self.is_periodic() {
+            return None;
+        }
+        let (start, end) = (self.steady.start.max(window.start), self.steady.end.min(window.end));
+        let period = 1.0 / (self.base_hz * time_step_s);
+        let available = end.saturating_sub(start);
+        // a period found from samples is a little off: a sample short still counts as whole
+        let (periods, _) = crate::play_map::split((available as f64 + 1.0) / period);
+        let (samples, _) = crate::play_map::split(periods as f64 * period + 0.5);
+        (periods > 0).then(|| end - samples.min(available)..end)
     }
 
     /// Frequency of the strongest harmonic, Hz.
@@ -342,8 +395,7 @@ mod tests {
             time_step_s,
             output_deg: voltage_volt.clone(),
             voltage_volt,
-            record_use: None,
-            base_frequency_hz: None,
+            ..BenchRecord::default()
         }
     }
 

@@ -1,21 +1,15 @@
 //! Output-error refinement: the training records are simulated and compared.
 
 use super::Settings;
+use super::output_error::{Covariance, Estimate, OutputError};
 use super::prepared::Prepared;
 use super::rate_fit::room_for_g2;
 use crate::{
-    DynamicParameters, DynamicPreisach, OutputHistory, PlayMemory, PreisachError, RateForm,
-    StartState, StepCounts,
+    ActuatorLaw, ActuatorModel, DynamicParameters, DynamicPreisach, PlayMap, PreisachError,
+    RateForm,
 };
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{DMatrix, DVector, Dyn, Owned};
-use rayon::prelude::*;
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
-
-/// Residuals kept of one record at most; all samples are simulated.
-const MOST_RESIDUALS: usize = 800;
-/// Step of the difference quotients.
-const DIFFERENCE: f64 = 1e-5;
 
 /// What the refinement did.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -30,6 +24,14 @@ pub struct Refinement {
     pub outcome: RefinementOutcome,
 }
 
+impl Refinement {
+    /// A model that was not refined.
+    pub(super) fn left_out(nrmse: f64) -> Self {
+        let outcome = RefinementOutcome::LeftOut;
+        Self { nrmse_before: nrmse, nrmse_after: nrmse, steps: 0, outcome }
+    }
+}
+
 /// How a refinement ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RefinementOutcome {
@@ -39,6 +41,15 @@ pub enum RefinementOutcome {
     Dropped,
     /// It was not asked for.
     LeftOut,
+}
+
+/// A refined model with the uncertainty of its parameters.
+pub(super) struct Refined {
+    pub(super) model: DynamicPreisach,
+    pub(super) refinement: Refinement,
+    /// The parameters where the refinement ended, as corrections to the model it began with.
+    pub(super) parameters: Vec<Estimate>,
+    pub(super) covariance: Option<Covariance>,
 }
 
 /// Refines a model on the training records.
@@ -51,174 +62,122 @@ pub enum RefinementOutcome {
 /// `s` in -1..1 is the centre, `r` in 0..1 the half-width of a play, over half the range. The
 /// exponentials and the hyperbolic tangent keep every parameter inside the cone of the model.
 pub(super) fn refine(
-    start: DynamicPreisach,
+    start: &DynamicPreisach,
     records: &[&Prepared],
     settings: &Settings,
-) -> Result<(DynamicPreisach, Refinement), PreisachError> {
-    let problem = Problem::new(&start, records);
-    let before = problem.error().ok_or(PreisachError::Diverged {
+) -> Result<Refined, PreisachError> {
+    let first = start.parameters();
+    let mut x = DVector::zeros(PARAMETERS);
+    if first.form == RateForm::WellPosed {
+        let room = room_for_g2(&first.g1_s, &first.g2_s2_per_deg, first.unfolded_rate_deg_s);
+        x[QUADRATIC] = room.recip().min(0.999).atanh();
+    }
+    let wrap = |law: DynamicPreisach| settings.actuator_of(ActuatorLaw::DynamicPreisach(law));
+    // the model as it came, not as its parameters rebuild it
+    let origin = x.clone();
+    let build = |x: &DVector<f64>| -> Option<ActuatorModel> {
+        if *x == origin { Some(wrap(start.clone())) } else { Some(wrap(corrected(first, x)?)) }
+    };
+    let problem = OutputError::new(&build, records, x.clone());
+    let before = problem.nrmse().ok_or(PreisachError::Diverged {
         index: 0,
         last_output_deg: f64::NAN,
         bad_steps: 0,
     })?;
-    let mut result = Refinement {
-        nrmse_before: before,
-        nrmse_after: before,
-        steps: 0,
-        outcome: RefinementOutcome::LeftOut,
-    };
-    if settings.refinement_patience == 0 {
-        return Ok((start, result));
+    let mut refinement = Refinement::left_out(before);
+    let mut model = start.clone();
+    if settings.refinement_patience > 0 {
+        refinement.outcome = RefinementOutcome::Dropped;
+        if let Some(minimum) = problem.minimise(settings.refinement_patience) {
+            refinement.steps = minimum.steps;
+            if let (true, ActuatorLaw::DynamicPreisach(law)) =
+                (minimum.nrmse < before, minimum.model.law)
+            {
+                refinement.nrmse_after = minimum.nrmse;
+                refinement.outcome = RefinementOutcome::Kept;
+                (model, x) = (law, minimum.x);
+            }
+        }
     }
-    let (problem, report) = LevenbergMarquardt::new()
-        .with_patience(settings.refinement_patience)
-        .with_ftol(1e-4)
-        .with_xtol(1e-4)
-        .minimize(problem);
-    result.steps = report.number_of_evaluations;
-    let refined = problem.model();
-    let after = problem.error();
-    if let (Some(model), Some(after)) = (refined, after.filter(|&after| after < before)) {
-        result.nrmse_after = after;
-        result.outcome = RefinementOutcome::Kept;
-        return Ok((model, result));
-    }
-    result.outcome = RefinementOutcome::Dropped;
-    Ok((start, result))
+    let covariance = OutputError::new(&build, records, x.clone()).covariance();
+    let deviation =
+        |k: usize| covariance.as_ref().map_or(f64::INFINITY, |matrix| matrix.std_deviation(k));
+    let parameters = NAMES.iter().zip(x.iter()).enumerate().map(|(k, (name, &value))| Estimate {
+        name: (*name).to_owned(),
+        value,
+        std_deviation: deviation(k),
+    });
+    Ok(Refined { model, refinement, parameters: parameters.collect(), covariance })
 }
 
 /// Place of each parameter in the vector.
-const OFFSET: usize = 0;
-const STATIC: usize = 1;
 const LAG_CONSTANT: usize = 7;
 const LAG: usize = 8;
 const QUADRATIC: usize = 11;
 const PARAMETERS: usize = 12;
+/// Parameters of [`reshaped`]: offset, then the shape.
+pub(super) const SHAPE: usize = 7;
 
-struct Problem<'a> {
-    start: &'a DynamicParameters,
-    records: &'a [&'a Prepared<'a>],
-    parameters: DVector<f64>,
-    /// The model of the present parameters; none outside the model's domain.
-    model: Option<DynamicPreisach>,
+/// What the parameters do, in their order.
+const NAMES: [&str; PARAMETERS] = [
+    "offset, deg",
+    "ln mu0",
+    "ln mu0 per centre",
+    "ln mu0 per half-width",
+    "ln mu0 per centre^2",
+    "ln mu0 per centre x half-width",
+    "ln mu0 per half-width^2",
+    "ln tau0",
+    "ln lag of the plays",
+    "ln lag of the plays per centre",
+    "ln lag of the plays per half-width",
+    "share of the room for mu2, artanh",
+];
+
+/// Centre in -1..1 and half-width in 0..1 of knot `k` of play `j`.
+fn place(levels: usize, j: usize, k: f64) -> (f64, f64) {
+    let levels = levels as f64;
+    ((2.0 * k + j as f64) / levels - 1.0, j as f64 / levels)
 }
 
-impl<'a> Problem<'a> {
-    fn new(start: &'a DynamicPreisach, records: &'a [&'a Prepared<'a>]) -> Self {
-        let model = Some(start.clone());
-        let start = start.parameters();
-        let mut parameters = DVector::zeros(PARAMETERS);
-        if start.form == RateForm::WellPosed {
-            let room = room_for_g2(&start.g1_s, &start.g2_s2_per_deg, start.unfolded_rate_deg_s);
-            parameters[QUADRATIC] = room.recip().min(0.999).atanh();
+/// A static map moved by `x[0]` degrees, its density scaled by the exponential of a quadratic form.
+pub(super) fn reshaped(map: &PlayMap, x: &[f64]) -> PlayMap {
+    let levels = map.nodes.len();
+    let mut map = map.clone();
+    map.constant += x[0];
+    for (j, row) in map.nodes.iter_mut().enumerate() {
+        let rises: Vec<f64> = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mut value = row[0];
+        for (k, rise) in rises.iter().enumerate() {
+            let (s, r) = place(levels, j, k as f64 + 0.5);
+            let terms = [1.0, s, r, s * s, s * r, r * r];
+            let exponent: f64 = terms.iter().zip(&x[1..SHAPE]).map(|(t, a)| t * a).sum();
+            value += rise * exponent.exp();
+            row[k + 1] = value;
         }
-        Self { start, records, parameters, model }
     }
-
-    /// The model of the present parameters, unless it is not well posed or not finite.
-    fn model(&self) -> Option<DynamicPreisach> {
-        self.model.clone()
-    }
-
-    fn build(&self, x: &DVector<f64>) -> Option<DynamicPreisach> {
-        let start = self.start;
-        let levels = start.grid.levels() as f64;
-        // centre in -1..1 and half-width in 0..1 of knot k of play j
-        let place = |j: usize, k: f64| ((2.0 * k + j as f64) / levels - 1.0, j as f64 / levels);
-        let mut g0_deg = start.g0_deg.clone();
-        g0_deg.constant += x[OFFSET];
-        for (j, row) in g0_deg.nodes.iter_mut().enumerate() {
-            let rises: Vec<f64> = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
-            let mut value = row[0];
-            for (k, rise) in rises.iter().enumerate() {
-                let (s, r) = place(j, k as f64 + 0.5);
-                let terms = [1.0, s, r, s * s, s * r, r * r];
-                let exponent: f64 =
-                    terms.iter().zip(x.iter().skip(STATIC)).map(|(t, a)| t * a).sum();
-                value += rise * exponent.exp();
-                row[k + 1] = value;
-            }
-        }
-        let mut g1_s = start.g1_s.clone();
-        g1_s.constant *= x[LAG_CONSTANT].exp();
-        for (j, row) in g1_s.nodes.iter_mut().enumerate() {
-            for (k, value) in row.iter_mut().enumerate() {
-                let (s, r) = place(j, k as f64);
-                *value *= (x[LAG] + x[LAG + 1] * s + x[LAG + 2] * r).exp();
-            }
-        }
-        let g2 = &start.g2_s2_per_deg;
-        let factor = match start.form {
-            RateForm::WellPosed => {
-                room_for_g2(&g1_s, g2, start.unfolded_rate_deg_s) * x[QUADRATIC].tanh()
-            }
-            RateForm::Literal => 1.0 + x[QUADRATIC],
-        };
-        let g2_s2_per_deg = g2.combined(factor, g2, 0.0);
-        DynamicPreisach::new(DynamicParameters { g0_deg, g1_s, g2_s2_per_deg, ..start.clone() })
-            .ok()
-    }
-
-    /// Weighted residuals of all records, one after another; none if the model diverges.
-    fn residuals_of(&self, model: &DynamicPreisach) -> Option<DVector<f64>> {
-        let mut residuals = Vec::new();
-        for &&Prepared { record, spread_deg, .. } in self.records {
-            let count = record.output_deg.len();
-            let stride = count.div_ceil(MOST_RESIDUALS).max(1);
-            let kept = count.div_ceil(stride) as f64 * self.records.len() as f64;
-            let weight = 1.0 / (spread_deg * kept.sqrt());
-            let first_volt = record.voltage_volt[0];
-            let mut memory = PlayMemory::new(model.grid(), first_volt, StartState::Rest);
-            let mut history = OutputHistory::at_rest(model.maps(&memory)[0]);
-            let mut counts = StepCounts::default();
-            let samples = record.voltage_volt.iter().zip(&record.output_deg).enumerate();
-            for (i, (&u, &measured)) in samples {
-                let output =
-                    model.step(&mut memory, &mut history, &mut counts, u, record.time_step_s);
-                if i % stride == 0 {
-                    residuals.push(weight * (output - measured));
-                }
-            }
-        }
-        let residuals = DVector::from_vec(residuals);
-        residuals.iter().all(|r| r.is_finite()).then_some(residuals)
-    }
-
-    /// Root mean square of the NRMSE of the records.
-    fn error(&self) -> Option<f64> {
-        Some(self.residuals_of(self.model.as_ref()?)?.norm())
-    }
+    map
 }
 
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
-    type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, Dyn>;
-    type ParameterStorage = Owned<f64, Dyn>;
-
-    fn set_params(&mut self, x: &DVector<f64>) {
-        self.parameters.copy_from(x);
-        self.model = self.build(x);
+/// The model of corrected parameters, unless it is not well posed or not finite.
+fn corrected(start: &DynamicParameters, x: &DVector<f64>) -> Option<DynamicPreisach> {
+    let levels = start.grid.levels();
+    let g0_deg = reshaped(&start.g0_deg, x.as_slice());
+    let mut g1_s = start.g1_s.clone();
+    g1_s.constant *= x[LAG_CONSTANT].exp();
+    for (j, row) in g1_s.nodes.iter_mut().enumerate() {
+        for (k, value) in row.iter_mut().enumerate() {
+            let (s, r) = place(levels, j, k as f64);
+            *value *= (x[LAG] + x[LAG + 1] * s + x[LAG + 2] * r).exp();
+        }
     }
-
-    fn params(&self) -> DVector<f64> {
-        self.parameters.clone()
-    }
-
-    fn residuals(&self) -> Option<DVector<f64>> {
-        self.residuals_of(self.model.as_ref()?)
-    }
-
-    fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let here = self.residuals()?;
-        let columns = (0..PARAMETERS)
-            .into_par_iter()
-            .map(|k| {
-                let mut x = self.parameters.clone();
-                x[k] += DIFFERENCE;
-                let there = self.residuals_of(&self.build(&x)?)?;
-                Some((there - &here) / DIFFERENCE)
-            })
-            .collect::<Option<Vec<_>>>()?;
-        Some(DMatrix::from_columns(&columns))
-    }
+    let g2 = &start.g2_s2_per_deg;
+    let factor = match start.form {
+        RateForm::WellPosed => {
+            room_for_g2(&g1_s, g2, start.unfolded_rate_deg_s) * x[QUADRATIC].tanh()
+        }
+        RateForm::Literal => 1.0 + x[QUADRATIC],
+    };
+    let g2_s2_per_deg = g2.combined(factor, g2, 0.0);
+    DynamicPreisach::new(DynamicParameters { g0_deg, g1_s, g2_s2_per_deg, ..start.clone() }).ok()
 }

@@ -36,42 +36,29 @@ pub(super) fn fit(
             program.add(&row, targets[index], weight);
         }
     }
-    let cells = unknowns.count - 1;
-    let penalty = settings.static_smoothness * cells as f64 / (spread * spread);
-    for j in 0..grid.levels() {
-        for k in 0..grid.levels() - j {
-            program.at_least(unknowns.rise(j, k, 1.0), 0.0);
-            let neighbours = match j {
-                0 => [Some((0, k + 1)), None],
-                _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
-            };
-            for (j2, k2) in neighbours.into_iter().flatten() {
-                if j2 < grid.levels() && k2 < grid.levels() - j2 {
-                    let mut difference = unknowns.rise(j, k, 1.0);
-                    difference.extend(unknowns.rise(j2, k2, -1.0));
-                    program.add(&merged(difference), 0.0, penalty);
-                }
-            }
-        }
-    }
-    let solution = program.solve("static map")?;
-    let nodes = (0..grid.levels())
-        .map(|j| {
-            // the solver meets the bounds to its tolerance only: no density below zero is kept
-            let mut value = 0.0_f64;
-            let mut nodes = vec![value];
-            for k in 1..grid.knots(j) {
-                value = value.max(solution[unknowns.node(j, k)]);
-                nodes.push(value);
-            }
-            nodes
-        })
-        .collect();
-    Ok(PlayMap { constant: solution[0], nodes })
+    unknowns.regularise(grid, settings.static_smoothness / (spread * spread), &mut program);
+    Ok(unknowns.map(grid, &program.solve("static map")?))
 }
 
+/// Numbers of the density that records determine, and how many there are.
+pub(super) fn determined(grid: &PreisachGrid, records: &[&Prepared]) -> [usize; 2] {
+    let unknowns = Unknowns::new(grid);
+    let mut program = LeastSquaresProgram::new(unknowns.count);
+    let mut row = Row::new();
+    for record in records {
+        for (_, cells) in record.states() {
+            unknowns.hats(cells, &mut row);
+            program.add(&row, 0.0, 1.0 / record.samples.len() as f64);
+        }
+    }
+    [program.rank(RANK), unknowns.count]
+}
+
+/// Information of a direction below this share of the largest counts as none.
+const RANK: f64 = 1e-6;
+
 /// Sums entries of the same column; columns ascend.
-pub(super) fn merged(mut row: Row) -> Row {
+pub(crate) fn merged(mut row: Row) -> Row {
     row.sort_by_key(|entry| entry.0);
     let mut result: Row = Vec::with_capacity(row.len());
     for (column, value) in row {
@@ -84,13 +71,57 @@ pub(super) fn merged(mut row: Row) -> Row {
 }
 
 /// Numbering of the unknowns: the offset, then `v_jk` for `k >= 1`, play by play.
-struct Unknowns {
+#[derive(Debug, Clone)]
+pub(super) struct Unknowns {
     starts: Vec<usize>,
-    count: usize,
+    pub(super) count: usize,
 }
 
 impl Unknowns {
-    fn new(grid: &PreisachGrid) -> Self {
+    /// Adds smoothness of weight `penalty` per cell, and the bounds of the density.
+    pub(super) fn regularise(
+        &self,
+        grid: &PreisachGrid,
+        penalty: f64,
+        program: &mut LeastSquaresProgram,
+    ) {
+        let penalty = penalty * (self.count - 1) as f64;
+        for j in 0..grid.levels() {
+            for k in 0..grid.levels() - j {
+                program.at_least(self.rise(j, k, 1.0), 0.0);
+                let neighbours = match j {
+                    0 => [Some((0, k + 1)), None],
+                    _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
+                };
+                for (j2, k2) in neighbours.into_iter().flatten() {
+                    if j2 < grid.levels() && k2 < grid.levels() - j2 {
+                        let mut difference = self.rise(j, k, 1.0);
+                        difference.extend(self.rise(j2, k2, -1.0));
+                        program.add(&merged(difference), 0.0, penalty);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The map of a solution.
+    pub(super) fn map(&self, grid: &PreisachGrid, solution: &[f64]) -> PlayMap {
+        let nodes = (0..grid.levels())
+            .map(|j| {
+                // the solver meets the bounds to its tolerance only: no density below zero is kept
+                let mut value = 0.0_f64;
+                let mut nodes = vec![value];
+                for k in 1..grid.knots(j) {
+                    value = value.max(solution[self.node(j, k)]);
+                    nodes.push(value);
+                }
+                nodes
+            })
+            .collect();
+        PlayMap { constant: solution[0], nodes }
+    }
+
+    pub(super) fn new(grid: &PreisachGrid) -> Self {
         let mut count = 1;
         let starts = (0..grid.levels())
             .map(|j| {
@@ -118,7 +149,7 @@ impl Unknowns {
     }
 
     /// The row of the offset and all hat functions in a memory state.
-    fn hats(&self, cells: &[f64], row: &mut Row) {
+    pub(super) fn hats(&self, cells: &[f64], row: &mut Row) {
         row.clear();
         row.push((0, 1.0));
         for (j, &x) in cells.iter().enumerate() {

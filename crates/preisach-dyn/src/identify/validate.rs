@@ -45,8 +45,8 @@ pub(super) fn smoothness(
         let tested = others.remove(index);
         let maps = rate_fit::fit(grid, g0_deg, &others, smoothness, settings)?;
         let model = maps.model(grid, g0_deg, settings)?;
-        Ok(compare::compare(&settings.actuator_of(ActuatorLaw::DynamicPreisach(model)), tested)?
-            .nrmse)
+        let actuator = settings.actuator_of(ActuatorLaw::DynamicPreisach(model));
+        compare::training_nrmse(&actuator, tested)
     };
     let table: Vec<Validation> = CANDIDATES
         .par_iter()

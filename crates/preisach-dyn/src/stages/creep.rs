@@ -153,6 +153,11 @@ impl CreepStep {
         Self { terms, total }
     }
 
+    /// `y = u + sum_i w_i d_i`: lags whose gain at rest is 1.
+    pub(super) fn relaxing(terms: Vec<(f64, LagStep)>) -> Self {
+        Self { terms, total: 0.0 }
+    }
+
     pub(super) fn owns(&self, memory: &CreepMemory) -> bool {
         memory.deviations.len() == self.terms.len()
     }

@@ -14,6 +14,7 @@ mod creep;
 mod delay;
 mod lag;
 mod linkage;
+mod relaxation;
 mod resonance;
 mod sensor;
 
@@ -22,6 +23,7 @@ pub use creep::{KelvinVoigt, KelvinVoigtElement, LogCreep};
 pub use delay::Delay;
 pub use lag::Lag;
 pub use linkage::{Backlash, CoulombFriction, LoadStiffness};
+pub use relaxation::{Relaxation, RelaxationElement};
 pub use resonance::Resonance;
 pub use sensor::{MainsHum, Nonlinearity, NonlinearityShape, Quantisation};
 
@@ -63,6 +65,8 @@ pub enum LinkageStage {
     LogCreep(LogCreep),
     /// Creep as a chain of Kelvin-Voigt elements.
     KelvinVoigt(KelvinVoigt),
+    /// A distribution of relaxation times.
+    Relaxation(Relaxation),
     /// One mechanical mode.
     Resonance(Resonance),
     /// Lost motion.
@@ -270,6 +274,7 @@ impl LinkageStage {
         match self {
             Self::LogCreep(stage) => stage.check(),
             Self::KelvinVoigt(stage) => stage.check(),
+            Self::Relaxation(stage) => stage.check(),
             Self::Resonance(stage) => stage.check(),
             Self::Backlash(stage) => stage.check(),
             Self::CoulombFriction(stage) => stage.check(),
@@ -282,6 +287,7 @@ impl LinkageStage {
         match self {
             Self::LogCreep(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::KelvinVoigt(stage) => StageStep::Creep(stage.prepared(step_s)),
+            Self::Relaxation(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Resonance(stage) => StageStep::Resonance(stage.prepared(step_s)),
             Self::Backlash(stage) => StageStep::Play(PlayStep::new(0.5 * stage.width_um * deg)),
             Self::CoulombFriction(stage) => {

@@ -117,6 +117,9 @@ pub struct IdentifyArgs {
     /// Folder for the data of the figures: loops with residuals, density; CSV.
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
+    /// Write the model that cross-validation chooses, not the dynamic Preisach model.
+    #[arg(long)]
+    pub best: bool,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

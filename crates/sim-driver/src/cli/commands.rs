@@ -123,8 +123,16 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let found = match &data {
         DataSet::Bench(data) => identify_bench(data, &base),
         DataSet::Loops(data) => identify_loops(data, &base),
-        DataSet::Curves(data) => Err(no_record(&data.folder).into()),
+        DataSet::Curves(data) => identify_curves(data),
     };
+    let found = found.and_then(|mut found| {
+        progress.doing("comparing all models".to_owned());
+        found.compare()?;
+        if args.best {
+            found.adopt_best()?;
+        }
+        Ok(found)
+    });
     progress.finish();
     let found = found?;
     let summary = found.summary(Some(args.output.display().to_string()));

@@ -1,0 +1,299 @@
+//! The families of models that the same records can be fitted with.
+
+use super::output_error::{Estimate, OutputError};
+use super::prepared::Prepared;
+use super::{RateFit, RateSmoothness, Settings, layered, static_fit};
+use crate::{
+    ActuatorLaw, ActuatorModel, AmplifierStage, BoucWen, BoucWenParameters, Envelope, Lag,
+    LinearGain, PlayMap, PrandtlIshlinskii, PrandtlParameters, PreisachError, PreisachGrid,
+    StaticPreisach, TimeOrder, WeightedPlay,
+};
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+
+/// A family of actuator models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Family {
+    /// A gain.
+    Linear,
+    /// A gain behind a first-order lag of the voltage.
+    LinearLag,
+    /// Bouc-Wen hysteresis, rate-independent.
+    BoucWen,
+    /// Prandtl-Ishlinskii hysteresis whose half-widths grow with the voltage rate.
+    PrandtlIshlinskii,
+    /// Static Preisach.
+    StaticPreisach,
+    /// Dynamic Preisach, implicit Euler in time.
+    DynamicPreisachFirst,
+    /// Dynamic Preisach, second order in time.
+    DynamicPreisach,
+    /// Dynamic Preisach before creep along the logarithm of time.
+    DynamicPreisachCreep,
+    /// Static Preisach before one relaxation time, a share that follows at once, and creep.
+    StaticPreisachRelaxation,
+}
+
+impl Family {
+    /// All of them, from the simplest.
+    pub const ALL: [Self; 9] = [
+        Self::Linear,
+        Self::LinearLag,
+        Self::BoucWen,
+        Self::PrandtlIshlinskii,
+        Self::StaticPreisach,
+        Self::DynamicPreisachFirst,
+        Self::DynamicPreisach,
+        Self::DynamicPreisachCreep,
+        Self::StaticPreisachRelaxation,
+    ];
+
+    /// Name for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear gain",
+            Self::LinearLag => "linear gain + lag",
+            Self::BoucWen => "Bouc-Wen",
+            Self::PrandtlIshlinskii => "rate-dependent Prandtl-Ishlinskii",
+            Self::StaticPreisach => "static Preisach",
+            Self::DynamicPreisachFirst => "dynamic Preisach, first order",
+            Self::DynamicPreisach => "dynamic Preisach, second order",
+            Self::DynamicPreisachCreep => "dynamic Preisach + creep",
+            Self::StaticPreisachRelaxation => "static Preisach + relaxation + creep",
+        }
+    }
+
+    /// Whether a fit needs records at several frequencies.
+    pub fn needs_rate(self) -> bool {
+        !matches!(self, Self::Linear | Self::BoucWen | Self::StaticPreisach)
+    }
+}
+
+/// A fitted member of a family.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Fitted {
+    pub(super) model: ActuatorModel,
+    pub(super) parameters: Vec<Estimate>,
+}
+
+/// Records to fit to.
+#[derive(Clone, Copy)]
+pub(super) struct Training<'a> {
+    pub(super) grid: &'a PreisachGrid,
+    pub(super) slow: &'a [&'a Prepared<'a>],
+    pub(super) fast: &'a [&'a Prepared<'a>],
+    pub(super) settings: &'a Settings,
+}
+
+impl Training<'_> {
+    /// The static map of the slow records as they stand.
+    pub(super) fn static_map(&self) -> Result<PlayMap, PreisachError> {
+        let measured: Vec<Vec<f64>> =
+            self.slow.iter().map(|r| r.record.output_deg.clone()).collect();
+        static_fit::fit(self.grid, self.slow, &measured, self.settings)
+    }
+}
+
+/// What a fit takes as given: found once on all training records, it is not sought again in every
+/// fold of a cross-validation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Given<'a> {
+    /// Smoothness of the rate maps.
+    pub(super) smoothness: f64,
+    /// A model of the family fitted to all training records, if there is one already.
+    pub(super) whole: Option<&'a Fitted>,
+}
+
+impl Given<'_> {
+    /// Where to start a minimisation: at the parameters of the whole fit, or else everywhere.
+    pub(super) fn starts(&self, everywhere: &[DVector<f64>]) -> Vec<DVector<f64>> {
+        let at = |f: &Fitted| {
+            DVector::from_iterator(f.parameters.len(), f.parameters.iter().map(|p| p.value))
+        };
+        self.whole.map_or_else(|| everywhere.to_vec(), |fitted| vec![at(fitted)])
+    }
+}
+
+/// Fits a family.
+///
+/// # Errors
+/// [`PreisachError::NoTrainingRecord`] without the records a family needs, [`PreisachError::NotFitted`]
+/// if no start led anywhere, or those of the fits.
+pub(super) fn fit(
+    family: Family,
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
+    if family.needs_rate() && training.fast.is_empty() {
+        return Err(PreisachError::NoTrainingRecord {
+            part: "what depends on rate",
+            remedy: "record periodic runs at two or more frequencies, for instance 1 and 10 Hz",
+        });
+    }
+    let mut settings = training.settings.clone();
+    settings.rate_smoothness = RateSmoothness::Fixed(given.smoothness);
+    let training = Training { settings: &settings, ..training };
+    match family {
+        Family::StaticPreisach => {
+            let law = StaticPreisach::new(*training.grid, training.static_map()?)?;
+            let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
+            Ok(Fitted { model, parameters: Vec::new() })
+        }
+        Family::DynamicPreisachFirst | Family::DynamicPreisach => {
+            let time_order = match family {
+                Family::DynamicPreisachFirst => TimeOrder::First,
+                _ => TimeOrder::Second,
+            };
+            let settings = Settings { time_order, ..settings.clone() };
+            let Training { grid, slow, fast, .. } = training;
+            let rate = RateFit::new(grid, training.static_map()?, slow, fast, &settings)?;
+            Ok(Fitted { model: settings.actuator_of(rate.law), parameters: rate.parameters })
+        }
+        Family::DynamicPreisachCreep => layered::dynamic_creep(training, given),
+        Family::StaticPreisachRelaxation => layered::relaxation(training, given),
+        _ => by_output_error(family, training, given),
+    }
+}
+
+/// Plays of the Prandtl-Ishlinskii model.
+const PLAYS: usize = 8;
+
+/// Fits a family of few parameters to all records at once.
+fn by_output_error(
+    family: Family,
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
+    let all: Vec<&Prepared> = training.slow.iter().chain(training.fast).copied().collect();
+    let line = super::fit_linear(training.slow);
+    let range = training.settings.range_volt;
+    let middle_deg = line.output_deg(range.middle_volt());
+    let wrap = |law: ActuatorLaw| training.settings.actuator_of(law);
+    let linear = |x: &DVector<f64>| {
+        let gain_deg_per_volt = line.gain_deg_per_volt * (1.0 + x[0]);
+        let bias_volt = line.bias_volt + 0.1 * range.span_volt() * x[1];
+        wrap(ActuatorLaw::Linear(LinearGain { gain_deg_per_volt, bias_volt }))
+    };
+    // a rising law: the families below know no falling ones
+    let gain = line.gain_deg_per_volt.abs();
+    let envelope = |x: &DVector<f64>| Envelope {
+        offset_deg: middle_deg + 0.1 * gain * range.span_volt() * x[1],
+        quadratic: 0.45 * x[2].tanh(),
+        cubic: 0.3 * x[3].tanh(),
+    };
+    let bouc_wen = |x: &DVector<f64>, exponent: f64| {
+        let gain_deg_per_volt = gain * x[0].exp();
+        let rise_volt = 20.0 * x[5].exp();
+        let sigma = 0.5 + 0.5 * x[6].exp();
+        let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
+        let parameters = BoucWenParameters {
+            range_volt: range,
+            gain_deg_per_volt,
+            half_height_deg: most_deg * share(x[4]),
+            rise_volt,
+            sigma,
+            exponent,
+            envelope: envelope(x),
+        };
+        Some(wrap(ActuatorLaw::BoucWen(BoucWen::new(parameters).ok()?)))
+    };
+    let prandtl = |x: &DVector<f64>| {
+        let step_volt = 0.5 * range.span_volt() / (PLAYS + 1) as f64;
+        let parameters = PrandtlParameters {
+            range_volt: range,
+            gain_deg_per_volt: gain * x[0].exp(),
+            plays: (0..PLAYS)
+                .map(|i| WeightedPlay {
+                    threshold_volt: (i + 1) as f64 * step_volt,
+                    weight_deg_per_volt: gain * x[5 + i] * x[5 + i],
+                })
+                .collect(),
+            threshold_growth_s: x[4].exp(),
+            envelope: envelope(x),
+        };
+        Some(wrap(ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).ok()?)))
+    };
+    let common = ["ln gain", "offset, tenths of the stroke", "quadratic, artanh", "cubic, artanh"];
+    match family {
+        Family::Linear => {
+            let build = |x: &DVector<f64>| Some(linear(x));
+            let names = ["gain, relative", "bias, tenths of the range"];
+            finish(family, &build, &all, &given.starts(&[DVector::zeros(2)]), &names)
+        }
+        Family::LinearLag => {
+            let build = |x: &DVector<f64>| {
+                let mut model = linear(x);
+                model.amplifier.push(AmplifierStage::Lag(Lag { tau_s: x[2].exp() }));
+                Some(model)
+            };
+            let start = |tau_s: f64| DVector::from_vec(vec![0.0, 0.0, tau_s.ln()]);
+            let names = ["gain, relative", "bias, tenths of the range", "ln time constant, s"];
+            let starts = given.starts(&[1e-3, 1e-2, 5e-2].map(start));
+            finish(family, &build, &all, &starts, &names)
+        }
+        Family::BoucWen => {
+            let start = |rise: f64| DVector::from_vec(vec![0.1, 0.0, 0.0, 0.0, 0.0, rise, 0.0]);
+            let starts = given.starts(&[-0.7, 0.5].map(start));
+            let mut names = common.to_vec();
+            names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
+            let with = |exponent: f64| {
+                let build = move |x: &DVector<f64>| bouc_wen(x, exponent);
+                finish_with_error(family, &build, &all, &starts, &names)
+            };
+            // the exponents with a closed solution
+            let (first, second) = (with(1.0)?, with(2.0)?);
+            Ok(if second.0 < first.0 { second.1 } else { first.1 })
+        }
+        _ => {
+            let start = |growth_s: f64| {
+                let mut x = vec![-0.5, 0.0, 0.0, 0.0, growth_s.ln()];
+                x.resize(5 + PLAYS, 0.2);
+                DVector::from_vec(x)
+            };
+            let mut names = common.to_vec();
+            names.push("ln growth of the half-widths, s");
+            let plays: Vec<String> = (1..=PLAYS).map(|i| format!("root of weight {i}")).collect();
+            names.extend(plays.iter().map(String::as_str));
+            let starts = given.starts(&[1e-3, 1e-2].map(start));
+            finish(family, &prandtl, &all, &starts, &names)
+        }
+    }
+}
+
+/// A number in 0..1 from any number.
+pub(super) fn share(x: f64) -> f64 {
+    1.0 / (1.0 + (-x).exp())
+}
+
+/// Steps the minimisation may try for each parameter.
+pub(super) const PATIENCE: usize = 4;
+
+fn finish<'a>(
+    family: Family,
+    build: &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> + Sync),
+    records: &'a [&'a Prepared<'a>],
+    starts: &[DVector<f64>],
+    names: &[&str],
+) -> Result<Fitted, PreisachError> {
+    Ok(finish_with_error(family, build, records, starts, names)?.1)
+}
+
+/// The best of the starts, its error and the uncertainty of its parameters.
+pub(super) fn finish_with_error<'a>(
+    family: Family,
+    build: &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> + Sync),
+    records: &'a [&'a Prepared<'a>],
+    starts: &[DVector<f64>],
+    names: &[&str],
+) -> Result<(f64, Fitted), PreisachError> {
+    let minimum = OutputError::best_of(build, records, starts, PATIENCE)
+        .ok_or(PreisachError::NotFitted { family: family.name() })?;
+    let covariance = OutputError::new(build, records, minimum.x.clone()).covariance();
+    let parameters = names.iter().zip(minimum.x.iter()).enumerate().map(|(k, (name, &value))| {
+        let deviation = covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k));
+        Estimate { name: (*name).to_owned(), value, std_deviation: deviation }
+    });
+    let fitted = Fitted { model: minimum.model, parameters: parameters.collect() };
+    Ok((minimum.nrmse, fitted))
+}

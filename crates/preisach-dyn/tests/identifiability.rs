@@ -1,0 +1,265 @@
+//! What records cannot tell must be said, and records that cannot be right must be refused.
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
+
+use preisach_dyn::identify::{
+    BenchRecord, Finding, Identification, RecordUse, RecordWindows, Settings, Severity, identify,
+};
+use preisach_dyn::{ActuatorLaw, PreisachError, VoltageRange};
+use std::f64::consts::TAU;
+
+const BIAS_VOLT: f64 = 65.0;
+
+/// Dahl's hysteresis before a lag, finely stepped: outside the identified class.
+fn respond(voltage_volt: &[f64], time_step_s: f64) -> Vec<f64> {
+    let (mut z, mut x, mut last) = (0.0_f64, 0.0_f64, voltage_volt[0]);
+    voltage_volt
+        .iter()
+        .map(|&u| {
+            for part in 1..=10 {
+                let now = last + (u - last) * f64::from(part) / 10.0;
+                let du = (u - last) / 10.0;
+                z += du - du.abs() * z / 25.0;
+                let target = 0.13 * (now - BIAS_VOLT) - 0.03 * z;
+                x += (target - x) * (1.0 - (-time_step_s / 10.0 / 0.02).exp());
+            }
+            last = u;
+            // the last digits of a sensor, the same every time
+            x + 0.002 * (1e4 * x).sin()
+        })
+        .collect()
+}
+
+fn record(id: &str, seconds: f64, time_step_s: f64, voltage: impl Fn(f64) -> f64) -> BenchRecord {
+    let mut voltage_volt = Vec::new();
+    while voltage_volt.len() as f64 * time_step_s <= seconds {
+        voltage_volt.push(voltage(voltage_volt.len() as f64 * time_step_s));
+    }
+    let output_deg = respond(&voltage_volt, time_step_s);
+    BenchRecord { id: id.into(), time_step_s, voltage_volt, output_deg, ..BenchRecord::default() }
+}
+
+fn sine(hz: f64, amplitude_volt: f64, cycles: f64) -> BenchRecord {
+    let id = format!("{hz} Hz {amplitude_volt} V");
+    let wave = move |t: f64| BIAS_VOLT + amplitude_volt * (TAU * hz * t).sin();
+    record(&id, cycles / hz, if hz < 0.5 { 5e-3 } else { 1e-3 }, wave)
+}
+
+/// Sweeps from one end to ever higher turning points.
+fn reversals() -> BenchRecord {
+    let sweep = |t: f64| {
+        let (index, phase) = ((t / 5.0).floor(), (t / 5.0).fract());
+        let depth = (170.0 - 12.0 * index).max(10.0);
+        150.0 - depth * (1.0 - (2.0 * phase - 1.0).abs())
+    };
+    record("reversals", 60.0, 1e-2, sweep)
+}
+
+fn full() -> Vec<BenchRecord> {
+    vec![
+        sine(0.2, 85.0, 4.0),
+        reversals(),
+        sine(1.0, 85.0, 5.0),
+        sine(1.0, 25.0, 5.0),
+        sine(10.0, 85.0, 12.0),
+        sine(10.0, 25.0, 12.0),
+    ]
+}
+
+fn settings() -> Settings {
+    Settings { levels: 12, ..Settings::default() }
+}
+
+fn found(records: &[BenchRecord]) -> Identification {
+    identify(records, &settings()).unwrap()
+}
+
+fn is_static(identified: &Identification) -> bool {
+    matches!(identified.dynamic.law, ActuatorLaw::StaticPreisach(_))
+}
+
+#[test]
+fn a_full_set_has_nothing_to_complain_of() {
+    let identified = found(&full());
+    assert_eq!(identified.summary.findings, [], "{:?}", identified.summary);
+    assert_eq!(identified.summary.worst(), None);
+    assert_eq!(identified.summary.trained_hz.len(), 3);
+    assert!(!is_static(&identified));
+    let [determined, unknowns] = identified.summary.density_determined;
+    assert!(2 * determined > unknowns, "{determined} of {unknowns}");
+}
+
+#[test]
+fn one_frequency_gives_a_static_model_and_says_so() {
+    let identified = found(&[sine(1.0, 85.0, 6.0)]);
+    assert!(is_static(&identified));
+    let summary = &identified.summary;
+    let one = |f: &Finding| matches!(f, Finding::OneFrequency { hz } if (hz - 1.0).abs() < 1e-3);
+    assert!(summary.findings.iter().any(one), "{summary:?}");
+    let slow = |f: &Finding| matches!(f, Finding::NoSlowRecords { .. });
+    assert!(summary.findings.iter().any(slow), "{summary:?}");
+    let free = |f: &Finding| matches!(f, Finding::DensityNotUnique { .. });
+    assert!(summary.findings.iter().any(free), "{summary:?}");
+    assert_eq!(summary.worst(), Some(Severity::Limits));
+    // it is good on what it saw
+    assert!(identified.records[0].static_only.nrmse < 0.02, "{:?}", identified.records[0]);
+    assert_eq!(identified.records[0].static_only, identified.records[0].dynamic);
+    // a frequency the split rule does not name trains all the same, and that is said
+    let identified = found(&[sine(3.0, 85.0, 6.0)]);
+    let taken = |f: &Finding| matches!(f, Finding::TrainedByDefault { records: 1 });
+    assert!(identified.summary.findings.iter().any(taken), "{:?}", identified.summary);
+}
+
+#[test]
+fn slow_records_alone_leave_rate_unknown() {
+    let identified = found(&full()[..2]);
+    assert!(is_static(&identified));
+    let none =
+        |f: &Finding| matches!(f, Finding::NoRateRecords { .. } | Finding::OneFrequency { .. });
+    assert!(identified.summary.findings.iter().any(none), "{:?}", identified.summary);
+}
+
+#[test]
+fn without_reversal_curves_the_density_is_not_unique() {
+    let mut records = full();
+    records.remove(1);
+    let identified = found(&records);
+    let [Finding::DensityNotUnique { determined, unknowns }] =
+        identified.summary.findings.as_slice()
+    else {
+        panic!("{:?}", identified.summary)
+    };
+    assert!(*unknowns == 79 && 2 * determined < *unknowns, "{determined}");
+}
+
+#[test]
+fn one_amplitude_and_no_slow_record_are_named() {
+    let mut records = full();
+    records.retain(|r| !r.id.contains("25 V"));
+    let one = |f: &Finding| matches!(f, Finding::OneAmplitude { amplitude_volt } if (amplitude_volt - 85.0).abs() < 0.5);
+    let identified = found(&records);
+    assert!(identified.summary.findings.iter().any(one), "{:?}", identified.summary);
+    let slow = |f: &Finding| matches!(f, Finding::NoSlowRecords { lowest_hz, .. } if (lowest_hz - 1.0).abs() < 1e-3);
+    let identified = found(&full()[2..]);
+    assert!(identified.summary.findings.iter().any(slow), "{:?}", identified.summary);
+    assert!(!is_static(&identified));
+}
+
+#[test]
+fn a_constant_command_is_a_remark() {
+    let mut records = full();
+    let mut rest = record("rest", 2.0, 1e-3, |_| BIAS_VOLT);
+    rest.output_deg.iter_mut().enumerate().for_each(|(i, y)| *y = 1e-3 * (i as f64).sin());
+    records.push(rest);
+    let identified = found(&records);
+    assert_eq!(identified.summary.findings, [Finding::ConstantCommand { id: "rest".into() }]);
+    assert_eq!(identified.summary.worst(), Some(Severity::Remark));
+}
+
+#[test]
+fn clipped_records_are_suspect() {
+    let mut records = full();
+    records[0].output_deg.iter_mut().for_each(|y| *y = y.min(5.0));
+    let identified = found(&records);
+    let clipped = |f: &Finding| {
+        matches!(f, Finding::ClippedOutput { id, level_deg, share_percent }
+            if id == "0.2 Hz 85 V" && (*level_deg - 5.0).abs() < 1e-12 && *share_percent > 5.0)
+    };
+    assert!(identified.summary.findings.iter().any(clipped), "{:?}", identified.summary);
+    assert_eq!(identified.summary.worst(), Some(Severity::Suspect));
+    let mut records = full();
+    let clip = |t: f64| (BIAS_VOLT + 85.0 * (TAU * t).sin()).min(120.0);
+    records[2] = record("clipped", 5.0, 1e-3, clip);
+    let identified = found(&records);
+    let clipped = |f: &Finding| {
+        matches!(f, Finding::ClippedCommand { id, level_volt, .. }
+            if id == "clipped" && (level_volt - 120.0).abs() < 1e-9)
+    };
+    assert!(identified.summary.findings.iter().any(clipped), "{:?}", identified.summary);
+}
+
+#[test]
+fn swapped_columns_are_refused_or_suspect() {
+    // the output in um leaves the range of the command: refused
+    let deg_per_um = 0.04;
+    let settings = Settings { deg_per_um, ..settings() };
+    let mut records = full();
+    for r in &mut records {
+        let um: Vec<f64> = r.output_deg.iter().map(|y| y / deg_per_um).collect();
+        r.output_deg = r.voltage_volt.iter().map(|u| u * deg_per_um).collect();
+        r.voltage_volt = um;
+    }
+    let error = identify(&records, &settings).unwrap_err();
+    assert!(matches!(error, PreisachError::SwappedColumns { .. }), "{error}");
+    // inside the range the output then leads
+    let mut records = full();
+    for r in &mut records {
+        let scaled: Vec<f64> = r.output_deg.iter().map(|y| BIAS_VOLT + 6.0 * y).collect();
+        r.output_deg = r.voltage_volt.iter().map(|u| 0.1 * (u - BIAS_VOLT)).collect();
+        r.voltage_volt = scaled;
+    }
+    let identified = identify(&records, &settings).unwrap();
+    let leads = |f: &Finding| matches!(f, Finding::OutputLeads { lead_deg, .. } if *lead_deg > 5.0);
+    assert!(identified.summary.findings.iter().any(leads), "{:?}", identified.summary);
+}
+
+#[test]
+fn a_wrong_unit_is_refused() {
+    let scaled = |factor: f64| {
+        let mut records = full();
+        for r in &mut records {
+            r.voltage_volt.iter_mut().for_each(|u| *u *= factor);
+        }
+        identify(&records, &settings()).unwrap_err()
+    };
+    let error = scaled(1000.0);
+    assert!(matches!(error, PreisachError::UnitMismatch { likely: "millivolt", .. }), "{error}");
+    let error = scaled(1e-3);
+    assert!(matches!(error, PreisachError::UnitMismatch { .. }), "{error}");
+    // a little out of range is not a matter of units
+    let error = scaled(1.05);
+    assert!(matches!(error, PreisachError::BadRecord { .. }), "{error}");
+}
+
+#[test]
+fn single_samples_empty_sets_and_bad_windows_are_errors() {
+    let one = BenchRecord {
+        id: "one".into(),
+        time_step_s: 1e-3,
+        voltage_volt: vec![1.0],
+        output_deg: vec![1.0],
+        ..BenchRecord::default()
+    };
+    assert!(matches!(identify(&[one], &settings()), Err(PreisachError::TooFew { .. })));
+    assert!(matches!(identify(&[], &settings()), Err(PreisachError::NoTrainingRecord { .. })));
+    for window in [5..10, 10..900_000] {
+        let mut records = full();
+        records[0].windows.train = Some(window);
+        let error = identify(&records, &settings()).unwrap_err();
+        assert!(matches!(error, PreisachError::BadWindow { .. }), "{error}");
+    }
+}
+
+#[test]
+fn windows_train_and_judge_apart_while_the_memory_runs_from_the_first_sample() {
+    // 3 s of rest, then cycles of 1 Hz: trained on two, judged on later ones
+    let wave = |t: f64| if t < 3.0 { 0.0 } else { 85.0 * (TAU * t).sin() };
+    let mut single = record("single", 10.0, 1e-3, wave);
+    // the first cycle is spoilt, and so is the time between the windows
+    for i in (0..3900).chain(6100..6900) {
+        single.output_deg[i] += 3.0;
+    }
+    single.windows = RecordWindows { train: Some(4000..6000), judge: Some(7000..10_000) };
+    let range_volt = VoltageRange::new(-100.0, 100.0).unwrap();
+    let settings = Settings { range_volt, levels: 24, ..Settings::default() };
+    let identified = identify(&[single.clone()], &settings).unwrap();
+    let fit = identified.records[0].static_only;
+    assert_eq!(identified.records[0].record_use, RecordUse::Train);
+    assert!(fit.range_percent < 0.3, "{fit:?}");
+    assert!(fit.start_up_percent.unwrap() > 5.0, "{fit:?}");
+    let noise = identified.records[0].noise.unwrap();
+    assert!(noise.pairs == 1 && noise.std_deg < 0.01, "{noise:?}");
+    // trained on everything it is worse: the window keeps what is spoilt out
+    let all = BenchRecord { windows: RecordWindows::default(), ..single };
+    let whole = identify(&[all], &settings).unwrap().records[0].static_only;
+    assert!(whole.range_percent > 3.0 * fit.range_percent, "{whole:?}");
+}
