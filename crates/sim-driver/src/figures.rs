@@ -3,6 +3,7 @@
 //! | file | columns |
 //! |---|---|
 //! | `loop_RUN.csv` | time, input, measured and simulated output, residual (simulated less measured) |
+//! | `forc_diagram.csv` | of reversal curves: reversal, input, half-width, centre, density |
 //! | `density.csv` | half-width and centre of the cells of the Preisach triangle, rise and density |
 //!
 //! Columns carry their units: V and deg for an actuator, those of the data for a generic loop.
@@ -10,6 +11,7 @@
 use crate::SimError;
 use crate::identification::BenchIdentification;
 use crate::problem::Place;
+use preisach_dyn::forc::DiagramPoint;
 use preisach_dyn::{ActuatorLaw, PlayMap, PreisachError, PreisachGrid};
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -81,7 +83,7 @@ fn density_table(found: &BenchIdentification) -> Result<Option<(String, String)>
 /// `rise` is the output's rise when the play crosses the cell, the integral of `2 mu`; `density` is
 /// `mu = rise / (2 c^2)` with the cell's side `c`. The cells of half-width 0 are the reversible part:
 /// their density is the same rise spread over a whole cell.
-fn density_csv(grid: &PreisachGrid, map: &PlayMap, input: &str, unit: &str) -> String {
+pub(crate) fn density_csv(grid: &PreisachGrid, map: &PlayMap, input: &str, unit: &str) -> String {
     let cell = grid.cell_volt();
     let mut text = format!("half_width_{input},centre_{input},rise{unit},density\n");
     for (play, rises) in map.rises().iter().enumerate() {
@@ -91,6 +93,20 @@ fn density_csv(grid: &PreisachGrid, map: &PlayMap, input: &str, unit: &str) -> S
             let density = rise / (2.0 * cell * cell);
             let _ = writeln!(text, "{half_width:.9e},{centre:.9e},{rise:.9e},{density:.9e}");
         }
+    }
+    text
+}
+
+/// A FORC diagram: reversal and input of every point, half-width and centre of the relays there, and
+/// the density, output per squared input.
+pub(crate) fn diagram_csv(points: &[DiagramPoint], input: &str) -> String {
+    let mut text = format!("reversal_{input},{input},half_width_{input},centre_{input},density\n");
+    for p in points {
+        let _ = writeln!(
+            text,
+            "{:.9e},{:.9e},{:.9e},{:.9e},{:.9e}",
+            p.reversal_input, p.input, p.half_width, p.centre, p.density
+        );
     }
     text
 }

@@ -214,9 +214,12 @@ fn judge(records: &[BenchRecord], identification: &Identification) -> Result<Vec
             let noise = drive.is_periodic().then(|| {
                 NoiseEstimate::from_cycles(&measured[steady], record.time_step_s, drive.base_hz)
             });
+            // simulated from the first sample, judged inside the window
+            let window = record.judged_samples();
+            let judged = &measured[window.clone()];
             let structured = match noise {
                 Some(Ok(noise)) => {
-                    let split = EnergySplit::of(&measured, &simulated, noise.variance);
+                    let split = EnergySplit::of(judged, &simulated[window.clone()], noise.variance);
                     Some(split.map_err(failed)?.structured)
                 }
                 _ => None,
@@ -228,10 +231,10 @@ fn judge(records: &[BenchRecord], identification: &Identification) -> Result<Vec
                         RecordUse::Train => Use::Train,
                         RecordUse::HeldOut => Use::HeldOut,
                     },
-                    misfit: Misfit::of(&measured, &simulated).map_err(failed)?,
+                    misfit: Misfit::of(judged, &simulated[window.clone()]).map_err(failed)?,
                     first_harmonic,
                 },
-                static_nrmse: Misfit::of(&measured, &quasi_static).map_err(failed)?.nrmse,
+                static_nrmse: Misfit::of(judged, &quasi_static[window]).map_err(failed)?.nrmse,
                 structured,
                 frequency_hz: drive.strongest_hz(),
                 amplitude_volt: drive.amplitude_volt,

@@ -20,6 +20,7 @@ pub mod actuator;
 pub mod case;
 pub mod check;
 pub mod cli;
+pub mod curve_identification;
 mod error;
 pub mod figures;
 pub mod files;

@@ -7,22 +7,22 @@ use super::args::{
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::check::check_file;
+use crate::curve_identification::identify_curves;
 use crate::figures::figure_files;
 use crate::files::{
-    DATASET, DataSet, DatasetKind, Folder, SHIPPED_CASES, Source, read_dataset, write_atomic,
-    write_new,
+    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_inside, write_atomic, write_new,
 };
-use crate::identification::{identify_bench, identify_loops};
+use crate::identification::{BenchIdentification, identify_bench, identify_loops};
 use crate::import::{ColumnOptions, ImportRequest, default_folder};
 use crate::modes::rotating_modes;
 use crate::output::{Format, Printable, print};
-use crate::problem::{Fault, Place, Problem, RecordFault};
+use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::report::{StudyReport, report_html};
 use crate::results::StoredResult;
 use crate::run::{run_case, steps_of};
 use crate::section::{SectionQuestion, section_response};
-use crate::stored_actuator::read_actuator;
+use crate::stored_actuator::{StoredActuator, read_actuator};
 use crate::study::{SENSITIVITY_ROWS, histories_csv, sensitivities, study_report};
 use preisach_dyn::identify::Settings;
 use rotor_fem::GyroscopicTerms;
@@ -114,35 +114,31 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         Some(path) => read_actuator(&Source::read(path)?)?.settings,
         None => Settings::default(),
     };
+    refuse_inside(&args.bench, &args.output)?;
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     for warning in data.warnings() {
         eprintln!("warning: {warning}");
     }
     let progress = Progress::new(1);
     progress.doing(format!("identifying from {} runs", data.run_count()));
-    let found = match &data {
-        DataSet::Bench(data) => identify_bench(data, &base),
-        DataSet::Loops(data) => identify_loops(data, &base),
-        DataSet::Curves(data) => identify_curves(data),
-    };
-    let found = found.and_then(|mut found| {
-        progress.doing("comparing all models".to_owned());
-        found.compare()?;
-        if args.best {
-            found.adopt_best()?;
+    let written = Some(args.output.display().to_string());
+    let (stored, text, figures) = match &data {
+        DataSet::Curves(curves) => {
+            let found = identify_curves(curves);
+            progress.finish();
+            let found = found?;
+            let figures = args.figures.as_ref().map(|_| found.figure_files()).transpose()?;
+            (found.stored(), found.summary(written).render(args.format.format)?, figures)
         }
-        Ok(found)
-    });
-    progress.finish();
-    let found = found?;
-    let summary = found.summary(Some(args.output.display().to_string()));
-    let text = summary.render(args.format.format)?;
-    let figures = match &args.figures {
-        Some(_) => figure_files(&found)?,
-        None => vec![],
+        DataSet::Bench(bench) => {
+            record_files(&compared(identify_bench(bench, &base), args, &progress)?, written, args)?
+        }
+        DataSet::Loops(loops) => {
+            record_files(&compared(identify_loops(loops, &base), args, &progress)?, written, args)?
+        }
     };
-    found.stored().write(&args.output)?;
-    if let Some(folder) = &args.figures {
+    stored.write(&args.output)?;
+    if let (Some(folder), Some(figures)) = (&args.figures, figures) {
         for (name, text) in figures {
             write_atomic(&folder.join(name), text.as_bytes())?;
         }
@@ -150,14 +146,34 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     print(&text)
 }
 
-/// Reversal curves have no time: no record of theirs can be identified from.
-fn no_record(folder: &str) -> Problem {
-    let fault = RecordFault::OtherKind {
-        found: DatasetKind::ReversalCurves.word(),
-        expected: "ActuatorBench or GenericLoop",
-        remedy: "reversal curves have no time; give records of input and output over time",
-    };
-    Problem::new(Place::file(format!("{folder}/{DATASET}")).field("kind"), fault.into())
+/// Model file, printed text and tables of the figures.
+type IdentifiedFiles = (StoredActuator, String, Option<Vec<(String, String)>>);
+
+fn record_files(
+    found: &BenchIdentification,
+    written: Option<String>,
+    args: &IdentifyArgs,
+) -> Result<IdentifiedFiles, SimError> {
+    let figures = args.figures.as_ref().map(|_| figure_files(found)).transpose()?;
+    Ok((found.stored(), found.summary(written).render(args.format.format)?, figures))
+}
+
+/// The identification with the table of all models, its best one in place if that is asked for.
+fn compared(
+    found: Result<BenchIdentification, SimError>,
+    args: &IdentifyArgs,
+    progress: &Progress,
+) -> Result<BenchIdentification, SimError> {
+    progress.doing("comparing all models".to_owned());
+    let found = found.and_then(|mut found| {
+        found.compare()?;
+        if args.best {
+            found.adopt_best()?;
+        }
+        Ok(found)
+    });
+    progress.finish();
+    found
 }
 
 pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {

@@ -33,6 +33,21 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), SimError> {
     })
 }
 
+/// Refuses to replace a file of a data folder with a result.
+///
+/// # Errors
+/// [`SimError::WouldOverwrite`] if `path` is a file that lies directly in `data`.
+pub fn refuse_inside(data: &Path, path: &Path) -> Result<(), SimError> {
+    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    };
+    if path.exists() && same(data, parent_of(path)) {
+        return Err(SimError::WouldOverwrite { path: path.to_path_buf() });
+    }
+    Ok(())
+}
+
 /// Writes a new folder with its files: it appears whole or not at all.
 ///
 /// # Errors

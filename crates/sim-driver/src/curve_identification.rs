@@ -1,0 +1,206 @@
+//! `hhc identify` of reversal curves: a measured family of first-order reversal curves in, a static
+//! model out.
+
+use crate::SimError;
+use crate::figures::{density_csv, diagram_csv};
+use crate::files::{Channel, CurveData};
+use crate::output::{Printable, Sheet, table};
+use crate::problem::Place;
+use crate::stored_actuator::{StoredActuator, StoredChannels, StoredKind};
+use preisach_dyn::forc::{
+    CalibrationPoint, CurveMisfit, DriftKind, ForcCurve, ForcData, ForcFit, ForcSettings,
+    HeldOutCurves, diagram, fit, held_out,
+};
+use preisach_dyn::identify::Settings;
+use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, PreisachError};
+use serde::Serialize;
+
+/// Every so many curves one is held out to judge the fit; the stored model is fitted to all.
+const HELD_OUT_EVERY: usize = 4;
+/// Calibration readings on either side in the moving average of the drift.
+const DRIFT_HALF_WINDOW: usize = 4;
+/// Smoothing factor of the FORC diagram.
+const SMOOTHING_FACTOR: usize = 3;
+
+/// A static model from reversal curves, with the data it came from.
+#[derive(Debug, Clone)]
+pub struct CurveIdentification {
+    title: String,
+    folder: String,
+    content_hash: String,
+    input: Channel,
+    output: Channel,
+    data: ForcData,
+    drift_corrected: bool,
+    fit: ForcFit,
+    held_out: HeldOutCurves,
+}
+
+/// Identifies a static model from a data set of reversal curves: drift taken off by the calibration
+/// readings, density by constrained least squares, every fourth curve held out once to judge it.
+///
+/// # Errors
+/// [`SimError::Actuator`] at the place of the data set.
+pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, SimError> {
+    let place = || Place::file(format!("{}/dataset.ron", data.folder));
+    let fail = |source: PreisachError| SimError::Actuator { place: place(), source };
+    let all: Vec<_> = data.runs.iter().flat_map(|run| &run.curves).collect();
+    let readings: Vec<CalibrationPoint> = all
+        .iter()
+        .filter_map(|c| c.calibration)
+        .map(|(input, output)| CalibrationPoint { input, output })
+        .collect();
+    let curves = all
+        .iter()
+        .map(|c| ForcCurve { input: c.input.clone(), output: c.output.clone() })
+        .collect();
+    // a reading before each curve, or none: a few of them tell no drift
+    let drift_corrected = readings.len() == all.len() && !readings.is_empty();
+    let calibration = if drift_corrected { readings } else { vec![] };
+    let measured = ForcData { curves, calibration };
+    let corrected = measured.without_drift(DriftKind::Gain, DRIFT_HALF_WINDOW).map_err(fail)?;
+    let settings = ForcSettings::default();
+    let held_out = held_out(&corrected, &settings, HELD_OUT_EVERY, 1).map_err(fail)?;
+    let fit = fit(&corrected, &settings).map_err(fail)?;
+    let [input, output] = data.channels.both().map(Clone::clone);
+    Ok(CurveIdentification {
+        title: data.title.clone(),
+        folder: data.folder.clone(),
+        content_hash: data.content_hash.clone(),
+        input,
+        output,
+        data: corrected,
+        drift_corrected,
+        fit,
+        held_out,
+    })
+}
+
+impl CurveIdentification {
+    /// The model file of this identification.
+    pub fn stored(&self) -> StoredActuator {
+        let range = self.fit.model.grid().range();
+        let law = ActuatorLaw::StaticPreisach(self.fit.model.clone());
+        let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+        StoredActuator {
+            kind: StoredKind::Actuator,
+            title: self.title.clone(),
+            dataset: self.folder.clone(),
+            data_hash: self.content_hash.clone(),
+            program_version: crate::VERSION.to_owned(),
+            channels: Some(StoredChannels {
+                input: self.input.label(),
+                output: self.output.label(),
+            }),
+            settings: Settings::default(),
+            runs: vec![],
+            model: ActuatorModel::new(law, range, calibration),
+        }
+    }
+
+    /// Names and texts of the figures' tables: FORC diagram, density, curves against the model.
+    ///
+    /// # Errors
+    /// [`SimError::Actuator`] if the family is too small for a diagram.
+    pub fn figure_files(&self) -> Result<Vec<(String, String)>, SimError> {
+        let points =
+            diagram(&self.data, SMOOTHING_FACTOR).map_err(|source| SimError::Actuator {
+                place: Place::file(format!("{}/dataset.ron", self.folder)),
+                source,
+            })?;
+        let (input, unit) = (self.input.label(), format!("_{}", self.output.unit.symbol));
+        let model = &self.fit.model;
+        Ok(vec![
+            ("forc_diagram.csv".to_owned(), diagram_csv(&points, &input)),
+            ("density.csv".to_owned(), density_csv(model.grid(), model.map(), &input, &unit)),
+        ])
+    }
+
+    /// What `hhc identify` prints.
+    pub fn summary(&self, written_to: Option<String>) -> CurvesResult {
+        CurvesResult {
+            title: self.title.clone(),
+            dataset: self.folder.clone(),
+            input: self.input.label(),
+            output: self.output.label(),
+            drift_corrected: self.drift_corrected,
+            curves: self.data.curves.len(),
+            fitted_worst_percent: worst(&self.fit.curves),
+            held_out_curves: self.held_out.curves.len(),
+            held_out_rms_percent: self.held_out.rms_percent,
+            held_out_worst_percent: self.held_out.worst_curve_percent,
+            written_to,
+        }
+    }
+}
+
+fn worst(curves: &[CurveMisfit]) -> f64 {
+    curves.iter().map(|c| c.rms_percent).fold(0.0, f64::max)
+}
+
+/// What `hhc identify` prints of reversal curves. Errors are root mean squares over the range of all
+/// outputs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CurvesResult {
+    /// Title of the data.
+    pub title: String,
+    /// Folder of the data.
+    pub dataset: String,
+    /// Input, with its unit.
+    pub input: String,
+    /// Output, with its unit.
+    pub output: String,
+    /// Whether drift was taken off by calibration readings.
+    pub drift_corrected: bool,
+    /// Number of curves.
+    pub curves: usize,
+    /// Worst curve of the fit to all, percent.
+    pub fitted_worst_percent: f64,
+    /// Curves held out of the fit that judges.
+    pub held_out_curves: usize,
+    /// Over all curves held out, percent.
+    pub held_out_rms_percent: f64,
+    /// Worst curve held out, percent.
+    pub held_out_worst_percent: f64,
+    /// File the model was written to.
+    pub written_to: Option<String>,
+}
+
+impl Printable for CurvesResult {
+    fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!("{}", self.title));
+        sheet.line(format_args!("Data   {}: {} against {}", self.dataset, self.output, self.input));
+        let drift = if self.drift_corrected {
+            "taken off by the calibration readings"
+        } else {
+            "left as measured: not every curve has a calibration reading"
+        };
+        sheet.line(format_args!("Drift  {drift}\n"));
+        sheet.block(&table(
+            &["curves", "number", "rms %", "worst curve %"],
+            [
+                vec![
+                    "all, fitted".to_owned(),
+                    self.curves.to_string(),
+                    "-".to_owned(),
+                    format!("{:.2}", self.fitted_worst_percent),
+                ],
+                vec![
+                    "every fourth, held out".to_owned(),
+                    self.held_out_curves.to_string(),
+                    format!("{:.2}", self.held_out_rms_percent),
+                    format!("{:.2}", self.held_out_worst_percent),
+                ],
+            ]
+            .into_iter(),
+        ));
+        sheet.line(format_args!(
+            "\nPercent of the range of all outputs. Reversal curves are quasi-static: they say nothing about rate."
+        ));
+        if let Some(path) = &self.written_to {
+            sheet.line(format_args!("Model written to {path}"));
+        }
+        sheet.finish()
+    }
+}
