@@ -24,6 +24,19 @@ pub enum AeroError {
         /// The value found.
         ratio: f64,
     },
+    /// A flap chord ratio outside the calibration.
+    #[error(
+        "flap chord ratio {ratio}: the calibrated model holds for {from} to {to}, or 0 (no flap); \
+         choose another model for other flaps"
+    )]
+    FlapChordNotCalibrated {
+        /// The value found.
+        ratio: f64,
+        /// Smallest flap chord of the calibration.
+        from: f64,
+        /// Largest flap chord of the calibration.
+        to: f64,
+    },
     /// A hinge that is not on the chord.
     #[error(
         "hinge position {semichords} semichords aft of mid-chord: expected -1 (leading edge) to 1 \
@@ -36,7 +49,7 @@ pub enum AeroError {
     /// A compressible flow was asked of the incompressible model.
     #[error(
         "the incompressible model holds at Mach 0 only, got Mach {mach}; set the Mach number to 0 \
-         or choose the Hariharan-Leishman model"
+         or choose the calibrated or the Hariharan-Leishman model"
     )]
     CompressibleFlow {
         /// The Mach number asked for.

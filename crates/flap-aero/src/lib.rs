@@ -35,9 +35,10 @@
 //! The flap is plain: no gap, no aerodynamic balance, its leading edge is the hinge.
 //!
 //! # Modules
-//! `theodorsen` the flap functions; `quasi_steady`, `incompressible`, `hariharan_leishman` the
-//! models; `section` the structure they share; `response`, `march`, `free_stream` its uses.
+//! `theodorsen` the flap functions; `quasi_steady`, `incompressible`, `hariharan_leishman`,
+//! `calibrated` the models; `section` the structure they share; `response`, `march`, `free_stream` its uses.
 
+mod calibrated;
 mod decay;
 mod error;
 mod free_stream;
@@ -50,6 +51,7 @@ mod section;
 mod theodorsen;
 mod values;
 
+pub use calibrated::CalibratedSection;
 pub use error::AeroError;
 pub use free_stream::{FreeStream, SectionLoads, lag_rates, loads_of_outputs, section_loads};
 pub use hariharan_leishman::{MIN_NONCIRCULATORY_MACH, initial_slopes, piston_start};

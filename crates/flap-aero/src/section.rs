@@ -1,6 +1,8 @@
 //! The structure all attached-flow models share: a linear section with lag states.
 
-use crate::{AeroError, FlapChord, Mach, hariharan_leishman, incompressible, quasi_steady};
+use crate::{
+    AeroError, CalibratedSection, FlapChord, Mach, hariharan_leishman, incompressible, quasi_steady,
+};
 
 /// The four inputs of a section, in the order of every array over inputs.
 ///
@@ -122,6 +124,8 @@ pub struct ModelRemarks {
     /// The Mach number lay below the smallest the noncirculatory loads are formed with, which was
     /// used for them instead.
     pub mach_floored: bool,
+    /// The Mach number lay above the calibration; the coefficients are those of its upper end.
+    pub mach_capped: bool,
     /// Pairs `[output][input]` whose time constant could not be had by matching the initial slope,
     /// and is the floor instead.
     pub slope_unmatched: [[bool; 4]; 3],
@@ -149,11 +153,15 @@ pub enum AttachedFlowModel {
     ///
     /// A *reconstruction*: the text of the 1996 paper was not available to this project.
     HariharanLeishman,
+    /// Compressible, poles and gains fitted to exact linear theory: see [`CalibratedSection`].
+    /// Flap chords 0.1 to 0.4, or no flap.
+    Calibrated,
 }
 
 impl AttachedFlowModel {
     /// All models.
-    pub const ALL: [Self; 3] = [Self::QuasiSteady, Self::Incompressible, Self::HariharanLeishman];
+    pub const ALL: [Self; 4] =
+        [Self::QuasiSteady, Self::Incompressible, Self::HariharanLeishman, Self::Calibrated];
 
     /// Short name, as case files and the command line spell it.
     pub fn name(self) -> &'static str {
@@ -161,6 +169,7 @@ impl AttachedFlowModel {
             Self::QuasiSteady => "quasi-steady",
             Self::Incompressible => "incompressible",
             Self::HariharanLeishman => "hariharan-leishman",
+            Self::Calibrated => "calibrated",
         }
     }
 
@@ -168,7 +177,8 @@ impl AttachedFlowModel {
     ///
     /// # Errors
     /// [`AeroError::CompressibleFlow`] for [`AttachedFlowModel::Incompressible`] at a Mach number
-    /// other than 0.
+    /// other than 0; [`AeroError::FlapChordNotCalibrated`] for [`AttachedFlowModel::Calibrated`] with
+    /// a flap outside its calibration.
     pub fn coefficients(
         self,
         mach: Mach,
@@ -181,6 +191,7 @@ impl AttachedFlowModel {
             }
             Self::Incompressible => Ok(incompressible::coefficients(flap)),
             Self::HariharanLeishman => Ok(hariharan_leishman::coefficients(mach, flap)),
+            Self::Calibrated => Ok(CalibratedSection::new(flap)?.coefficients(mach)),
         }
     }
 }
