@@ -55,6 +55,38 @@ pub enum AeroError {
         /// The Mach number asked for.
         mach: f64,
     },
+    /// A C81 file is not understood.
+    #[error("C81 table, line {line}, column {column}: expected {expected}")]
+    C81Text {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Column of the line, from 1.
+        column: usize,
+        /// What should have been there.
+        expected: &'static str,
+    },
+    /// An axis of a table does not ascend, is empty, or has a number that is none.
+    #[error("C81 table: the {what} must ascend, entry {index} (from 0) does not; sort them")]
+    C81Order {
+        /// The axis.
+        what: &'static str,
+        /// First entry that is not above the one before it.
+        index: usize,
+    },
+    /// A table has too few values, too many, or some that are not finite.
+    #[error("C81 table: {found} finite values for {expected} pairs of incidence and Mach number")]
+    C81Shape {
+        /// Finite values found.
+        found: usize,
+        /// Pairs of the axes.
+        expected: usize,
+    },
+    /// An aerofoil cannot be written in the format.
+    #[error("C81 table: cannot write {what}; round the aerofoil first")]
+    C81NotWritable {
+        /// What the format cannot hold.
+        what: &'static str,
+    },
     /// A state was used with coefficients of another structure.
     #[error(
         "the section state has {state} lag states, the coefficients have {coefficients} lag \

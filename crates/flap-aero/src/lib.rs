@@ -38,6 +38,7 @@
 //! `theodorsen` the flap functions; `quasi_steady`, `incompressible`, `hariharan_leishman`,
 //! `calibrated` the models; `section` the structure they share; `response`, `march`, `free_stream` its uses.
 
+mod c81;
 mod calibrated;
 mod decay;
 mod error;
@@ -51,6 +52,7 @@ mod section;
 mod theodorsen;
 mod values;
 
+pub use c81::{AirfoilSpan, C81Airfoil, C81Table, SteadyCoefficients, SteadyPoint};
 pub use calibrated::CalibratedSection;
 pub use error::AeroError;
 pub use free_stream::{FreeStream, SectionLoads, lag_rates, loads_of_outputs, section_loads};

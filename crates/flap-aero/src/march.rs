@@ -1,7 +1,7 @@
 //! Time marching of a section: recurrence exact for inputs that change linearly over a step.
 
 use crate::decay::{Decay, LANES, Lanes, decay};
-use crate::{AeroError, SectionCoefficients};
+use crate::{AeroError, LagChannel, SectionCoefficients};
 
 /// A step shorter than this, semichords, is none: its inverse would leave the range of numbers.
 const NO_STEP: f64 = 1e-200;
@@ -27,42 +27,96 @@ struct Block {
     output: [Lanes; 3],
 }
 
+/// Four lags of one pole, the first for the first input, the second for the second, and so on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shared {
+    /// `[output][input]`
+    output: [Lanes; 3],
+}
+
+/// How the lags lie side by side.
+#[derive(Debug, Clone, PartialEq)]
+enum Layout {
+    /// Any lags.
+    General(Vec<Block>),
+    /// Poles that all four inputs share: one decay serves four lags, and what they follow are the
+    /// inputs themselves.
+    Shared {
+        /// The poles, four side by side; `input` and `output` are not used.
+        poles: Vec<Block>,
+        lags: Vec<Shared>,
+    },
+}
+
 /// Section coefficients laid out for marching.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarchingSection {
     direct: [[f64; 4]; 3],
     rate: [[f64; 4]; 3],
-    blocks: Vec<Block>,
+    layout: Layout,
     lags: usize,
+}
+
+/// The block of up to four lags.
+fn block(lags: &[LagChannel]) -> Block {
+    let mut block = Block {
+        pole: [1.0; LANES],
+        time: [1.0; LANES],
+        input: [[0.0; LANES]; 4],
+        output: [[0.0; LANES]; 3],
+    };
+    for (lane, lag) in lags.iter().enumerate() {
+        block.pole[lane] = lag.pole;
+        block.time[lane] = 1.0 / lag.pole;
+        for (row, weight) in block.input.iter_mut().zip(lag.input) {
+            row[lane] = weight;
+        }
+        for (row, weight) in block.output.iter_mut().zip(lag.output) {
+            row[lane] = weight;
+        }
+    }
+    block
+}
+
+/// Whether four lags share their pole and follow one input each, in order.
+fn is_shared(lags: &[LagChannel]) -> bool {
+    const UNIT: [[f64; 4]; 4] =
+        [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    let same = |lag: &LagChannel| lag.pole.to_bits() == lags[0].pole.to_bits();
+    lags.len() == LANES && lags.iter().zip(UNIT).all(|(lag, unit)| same(lag) && lag.input == unit)
 }
 
 impl MarchingSection {
     /// Lays out the coefficients of a section.
     pub fn new(section: &SectionCoefficients) -> Self {
-        let blocks = section
-            .lags
-            .chunks(LANES)
-            .map(|lags| {
-                let mut block = Block {
-                    pole: [1.0; LANES],
-                    time: [1.0; LANES],
-                    input: [[0.0; LANES]; 4],
-                    output: [[0.0; LANES]; 3],
-                };
-                for (lane, lag) in lags.iter().enumerate() {
-                    block.pole[lane] = lag.pole;
-                    block.time[lane] = 1.0 / lag.pole;
-                    for (row, weight) in block.input.iter_mut().zip(lag.input) {
-                        row[lane] = weight;
-                    }
-                    for (row, weight) in block.output.iter_mut().zip(lag.output) {
-                        row[lane] = weight;
-                    }
-                }
-                block
-            })
-            .collect();
-        Self { direct: section.direct, rate: section.rate, blocks, lags: section.lags.len() }
+        let chunks = || section.lags.chunks(LANES);
+        let layout = if !section.lags.is_empty() && chunks().all(is_shared) {
+            let firsts: Vec<LagChannel> = chunks().map(|lags| lags[0]).collect();
+            Layout::Shared {
+                poles: firsts.chunks(LANES).map(block).collect(),
+                lags: chunks().map(|lags| Shared { output: block(lags).output }).collect(),
+            }
+        } else {
+            Layout::General(chunks().map(block).collect())
+        };
+        Self { direct: section.direct, rate: section.rate, layout, lags: section.lags.len() }
+    }
+
+    /// The blocks whose decay factors a step needs.
+    #[inline]
+    fn decaying(&self) -> &[Block] {
+        match &self.layout {
+            Layout::General(blocks) => blocks,
+            Layout::Shared { poles, .. } => poles,
+        }
+    }
+
+    /// What the lags follow, four side by side.
+    fn drives(&self, modes: &[f64; 4]) -> Vec<Lanes> {
+        match &self.layout {
+            Layout::General(blocks) => blocks.iter().map(|block| block.drive(modes)).collect(),
+            Layout::Shared { .. } => vec![*modes],
+        }
     }
 
     /// The loads without the lags' share.
@@ -114,7 +168,7 @@ impl StepFactors {
     pub fn new(section: &MarchingSection, semichords: f64) -> Result<Self, AeroError> {
         check_step(semichords)?;
         let step = [semichords, 1.0 / semichords];
-        let blocks = section.blocks.iter().map(|block| block.decay(step)).collect();
+        let blocks = section.decaying().iter().map(|block| block.decay(step)).collect();
         Ok(Self { blocks, lags: section.lags })
     }
 }
@@ -129,6 +183,7 @@ impl StepFactors {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionState {
     states: Vec<Lanes>,
+    /// What the states follow: block by block, or once for all if they share the inputs.
     drives: Vec<Lanes>,
     lags: usize,
 }
@@ -141,8 +196,12 @@ impl SectionState {
 
     /// A section whose inputs have been held for ever.
     pub fn settled(section: &MarchingSection, modes: &[f64; 4]) -> Self {
-        let drives: Vec<Lanes> = section.blocks.iter().map(|block| block.drive(modes)).collect();
-        Self { states: drives.clone(), drives, lags: section.lags }
+        let drives = section.drives(modes);
+        let states = match &section.layout {
+            Layout::General(_) => drives.clone(),
+            Layout::Shared { lags, .. } => vec![*modes; lags.len()],
+        };
+        Self { states, drives, lags: section.lags }
     }
 
     /// The lag states, in the order of [`SectionCoefficients::lags`].
@@ -156,9 +215,8 @@ impl SectionState {
     /// [`AeroError::StateMismatch`] if the state belongs to coefficients of another structure.
     pub fn jump(&mut self, section: &MarchingSection, modes: &[f64; 4]) -> Result<(), AeroError> {
         self.check(section)?;
-        for (drive, block) in self.drives.iter_mut().zip(&section.blocks) {
-            *drive = block.drive(modes);
-        }
+        self.check_drives(section)?;
+        self.drives = section.drives(modes);
         Ok(())
     }
 
@@ -182,8 +240,9 @@ impl SectionState {
         check_step(semichords)?;
         check_inputs(inputs)?;
         let step = [semichords, 1.0 / semichords];
-        let decays = section.blocks.iter().map(|block| block.decay(step));
-        Ok(self.advance(section, inputs, decays))
+        self.check_drives(section)?;
+        let mut decays = section.decaying().iter().map(|block| block.decay(step));
+        Ok(self.advance(section, inputs, &mut decays))
     }
 
     /// [`step`](Self::step) with factors computed beforehand, for steps of constant length.
@@ -200,7 +259,8 @@ impl SectionState {
         self.check(section)?;
         check_lags(factors.lags, section.lags)?;
         check_inputs(inputs)?;
-        Ok(self.advance(section, inputs, factors.blocks.iter().copied()))
+        self.check_drives(section)?;
+        Ok(self.advance(section, inputs, &mut factors.blocks.iter().copied()))
     }
 
     /// `[Cn, Cm, Ch]` of these inputs with the lag states as they are.
@@ -214,9 +274,18 @@ impl SectionState {
     ) -> Result<[f64; 3], AeroError> {
         self.check(section)?;
         let mut sums = [[0.0; LANES]; 3];
-        for (block, state) in section.blocks.iter().zip(&self.states) {
-            for (sum, weights) in sums.iter_mut().zip(&block.output) {
+        let mut add_all = |output: &[Lanes; 3], state: &Lanes| {
+            for (sum, weights) in sums.iter_mut().zip(output) {
                 *sum = add(*sum, weights, state);
+            }
+        };
+        match &section.layout {
+            Layout::General(blocks) => blocks
+                .iter()
+                .zip(&self.states)
+                .for_each(|(block, state)| add_all(&block.output, state)),
+            Layout::Shared { lags, .. } => {
+                lags.iter().zip(&self.states).for_each(|(lags, state)| add_all(&lags.output, state))
             }
         }
         Ok(total(section.loads_at_once(inputs), &sums))
@@ -227,15 +296,29 @@ impl SectionState {
         &mut self,
         section: &MarchingSection,
         inputs: &SectionInputs,
-        decays: impl Iterator<Item = Decay>,
+        decays: &mut impl Iterator<Item = Decay>,
     ) -> [f64; 3] {
+        let sums = match &section.layout {
+            Layout::General(blocks) => self.advance_blocks(blocks, &inputs.modes, decays),
+            Layout::Shared { lags, .. } => self.advance_shared(lags, &inputs.modes, decays),
+        };
+        total(section.loads_at_once(inputs), &sums)
+    }
+
+    #[inline]
+    fn advance_blocks(
+        &mut self,
+        blocks: &[Block],
+        modes: &[f64; 4],
+        decays: &mut impl Iterator<Item = Decay>,
+    ) -> [Lanes; 3] {
         let [mut lift, mut moment, mut hinge] = [[0.0; LANES]; 3];
         for (((block, Decay { gone, mean }), state), drive) in
-            section.blocks.iter().zip(decays).zip(&mut self.states).zip(&mut self.drives)
+            blocks.iter().zip(decays).zip(&mut self.states).zip(&mut self.drives)
         {
             // through local arrays: four lags stay together, in registers
             let (old, before) = (*drive, *state);
-            let target = block.drive(&inputs.modes);
+            let target = block.drive(modes);
             let after: Lanes = std::array::from_fn(|lane| {
                 let behind = before[lane] - old[lane];
                 target[lane] - (target[lane] - old[lane]) * mean[lane]
@@ -247,7 +330,49 @@ impl SectionState {
             moment = add(moment, &block.output[1], &after);
             hinge = add(hinge, &block.output[2], &after);
         }
-        total(section.loads_at_once(inputs), &[lift, moment, hinge])
+        [lift, moment, hinge]
+    }
+
+    #[inline]
+    fn advance_shared(
+        &mut self,
+        lags: &[Shared],
+        modes: &[f64; 4],
+        decays: &mut impl Iterator<Item = Decay>,
+    ) -> [Lanes; 3] {
+        let [mut lift, mut moment, mut hinge] = [[0.0; LANES]; 3];
+        let target = *modes;
+        let old = self.drives.first().copied().unwrap_or_default();
+        let change: Lanes = std::array::from_fn(|lane| target[lane] - old[lane]);
+        for ((lags, states), Decay { gone, mean }) in
+            lags.chunks(LANES).zip(self.states.chunks_mut(LANES)).zip(decays)
+        {
+            for (((lag, state), gone), mean) in lags.iter().zip(states).zip(gone).zip(mean) {
+                let before = *state;
+                let after: Lanes = std::array::from_fn(|lane| {
+                    let behind = before[lane] - old[lane];
+                    target[lane] - change[lane] * mean + (behind - behind * gone)
+                });
+                *state = after;
+                lift = add(lift, &lag.output[0], &after);
+                moment = add(moment, &lag.output[1], &after);
+                hinge = add(hinge, &lag.output[2], &after);
+            }
+        }
+        if let Some(drive) = self.drives.first_mut() {
+            *drive = target;
+        }
+        [lift, moment, hinge]
+    }
+
+    /// A state of the same number of lags may still belong to lags of another kind.
+    #[inline]
+    fn check_drives(&self, section: &MarchingSection) -> Result<(), AeroError> {
+        let needed = match &section.layout {
+            Layout::General(blocks) => blocks.len(),
+            Layout::Shared { .. } => 1,
+        };
+        check_lags(self.drives.len() * LANES, needed * LANES)
     }
 
     fn check(&self, section: &MarchingSection) -> Result<(), AeroError> {

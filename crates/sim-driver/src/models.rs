@@ -79,6 +79,7 @@ impl Case {
             SectionModelChoice::QuasiSteady => AttachedFlowModel::QuasiSteady,
             SectionModelChoice::Incompressible => AttachedFlowModel::Incompressible,
             SectionModelChoice::HariharanLeishman => AttachedFlowModel::HariharanLeishman,
+            SectionModelChoice::Calibrated => AttachedFlowModel::Calibrated,
         }
     }
 

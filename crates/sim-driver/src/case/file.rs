@@ -216,6 +216,8 @@ pub enum SectionModelChoice {
     Incompressible,
     /// Compressible indicial functions of the Hariharan-Leishman form (a reconstruction).
     HariharanLeishman,
+    /// Compressible, fitted to exact linear theory; flap chords 0.1 to 0.4.
+    Calibrated,
 }
 
 /// How the Mach number enters the sections.

@@ -145,6 +145,8 @@ pub enum SectionModelArg {
     Incompressible,
     /// Compressible indicial functions of the Hariharan-Leishman form (a reconstruction).
     HariharanLeishman,
+    /// Compressible, fitted to exact linear theory.
+    Calibrated,
 }
 
 impl From<SectionModelArg> for AttachedFlowModel {
@@ -153,6 +155,7 @@ impl From<SectionModelArg> for AttachedFlowModel {
             SectionModelArg::QuasiSteady => Self::QuasiSteady,
             SectionModelArg::Incompressible => Self::Incompressible,
             SectionModelArg::HariharanLeishman => Self::HariharanLeishman,
+            SectionModelArg::Calibrated => Self::Calibrated,
         }
     }
 }
