@@ -45,7 +45,9 @@ fn differences(stored: &str, fitted: &str) -> Vec<String> {
     (0..count)
         .map(|i| (i + 1, line(stored, i), line(fitted, i)))
         .filter(|(_, a, b)| !same(a, b))
-        .map(|(number, a, b)| format!("{TABLE}:{number}: stored `{}`, fitted `{}`", a.trim(), b.trim()))
+        .map(|(number, a, b)| {
+            format!("{TABLE}:{number}: stored `{}`, fitted `{}`", a.trim(), b.trim())
+        })
         .collect()
 }
 
@@ -137,7 +139,8 @@ pub fn short_time_deviation(
         if let (Some(exact), Some(start)) =
             (short_time(mach, flap_chord, s)?[load][mode.index()], start)
         {
-            let deviation = (indicial_response(&section, mode, s)[load] - exact).abs() / start.abs();
+            let deviation =
+                (indicial_response(&section, mode, s)[load] - exact).abs() / start.abs();
             worst = Some(f64::max(worst.unwrap_or(0.0), deviation));
         }
     }
@@ -169,7 +172,9 @@ pub fn error_tables() -> Result<String, CheckError> {
     }
     let mut start = comfy_table::Table::new();
     start.load_style(comfy_table::presets::ASCII_MARKDOWN);
-    start.set_header(["model", "M", "Cn alpha", "Cm alpha", "Cn q", "Cn delta", "Cm delta", "Ch delta"]);
+    start.set_header([
+        "model", "M", "Cn alpha", "Cm alpha", "Cn q", "Cn delta", "Cm delta", "Ch delta",
+    ]);
     let pairs = [
         (0, Mode::Alpha),
         (1, Mode::Alpha),

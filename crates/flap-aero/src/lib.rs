@@ -69,7 +69,9 @@ pub use linearise::{LagRateSlopes, LoadSlopes, lag_rate_slopes, load_slopes};
 pub use march::SectionState;
 pub use periodic::{CycleStep, periodic_state};
 pub use response::{Motion, harmonic_response, indicial_response, steady_response};
-pub use section::{AttachedFlowModel, LagChannel, Load, Mode, ModelRemarks, SectionCoefficients};
+pub use section::{
+    AttachedFlowModel, FlappedModel, LagChannel, Load, Mode, ModelRemarks, SectionCoefficients,
+};
 pub use stall::{StallParameters, StallSection, StallState, StalledLoads};
 pub use steady_flow::{LinearisedForces, SectionFlow, SectionForces, TabulatedSection};
 pub use theodorsen::TheodorsenFunctions;

@@ -6,6 +6,9 @@ use crate::layout::{
     Block, Layout, MOST_SHARED, MarchingSection, SectionInputs, StepFactors, one_by_one,
 };
 
+/// Added and subtracted it turns numbers below some 1e-266 into zero and leaves others alone.
+const NOTHING: f64 = 1e-250;
+
 /// Lag states of a section on its way through time.
 ///
 /// ```text
@@ -217,7 +220,9 @@ impl SectionState {
         for ((weights, behind), [gone, mean]) in output.iter().zip(&mut self.states).zip(decays) {
             let before = *behind;
             let after: Lanes = std::array::from_fn(|lane| {
-                before[lane] - before[lane] * gone - change[lane] * mean
+                let left = before[lane] - before[lane] * gone - change[lane] * mean;
+                // what has died away is nothing: numbers below the normal ones are slow
+                (left + NOTHING) - NOTHING
             });
             *behind = after;
             lift = add(lift, &weights[0], &after);

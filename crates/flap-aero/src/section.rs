@@ -173,6 +173,20 @@ impl AttachedFlowModel {
         }
     }
 
+    /// The model of one flap, from which the coefficients at many Mach numbers are had at less cost.
+    ///
+    /// # Errors
+    /// [`AeroError::FlapChordNotCalibrated`] for [`AttachedFlowModel::Calibrated`] with a flap
+    /// outside its calibration.
+    pub fn of_flap(self, flap: FlapChord) -> Result<FlappedModel, AeroError> {
+        Ok(FlappedModel(match self {
+            Self::QuasiSteady => Form::QuasiSteady(flap),
+            Self::Incompressible => Form::Incompressible(flap),
+            Self::HariharanLeishman => Form::HariharanLeishman(flap),
+            Self::Calibrated => Form::Calibrated(Box::new(CalibratedSection::new(flap)?)),
+        }))
+    }
+
     /// The section under this model.
     ///
     /// # Errors
@@ -184,14 +198,38 @@ impl AttachedFlowModel {
         mach: Mach,
         flap: FlapChord,
     ) -> Result<SectionCoefficients, AeroError> {
-        match self {
-            Self::QuasiSteady => Ok(quasi_steady::coefficients(mach, flap)),
-            Self::Incompressible if mach > Mach::ZERO => {
+        self.of_flap(flap)?.coefficients(mach)
+    }
+}
+
+/// An attached-flow model of one flap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlappedModel(Form);
+
+/// What each model needs of its flap.
+#[derive(Debug, Clone, PartialEq)]
+enum Form {
+    QuasiSteady(FlapChord),
+    Incompressible(FlapChord),
+    HariharanLeishman(FlapChord),
+    Calibrated(Box<CalibratedSection>),
+}
+
+impl FlappedModel {
+    /// The section at a Mach number.
+    ///
+    /// # Errors
+    /// [`AeroError::CompressibleFlow`] for [`AttachedFlowModel::Incompressible`] at a Mach number
+    /// other than 0.
+    pub fn coefficients(&self, mach: Mach) -> Result<SectionCoefficients, AeroError> {
+        match &self.0 {
+            Form::QuasiSteady(flap) => Ok(quasi_steady::coefficients(mach, *flap)),
+            Form::Incompressible(_) if mach > Mach::ZERO => {
                 Err(AeroError::CompressibleFlow { mach: mach.value() })
             }
-            Self::Incompressible => Ok(incompressible::coefficients(flap)),
-            Self::HariharanLeishman => Ok(hariharan_leishman::coefficients(mach, flap)),
-            Self::Calibrated => Ok(CalibratedSection::new(flap)?.coefficients(mach)),
+            Form::Incompressible(flap) => Ok(incompressible::coefficients(*flap)),
+            Form::HariharanLeishman(flap) => Ok(hariharan_leishman::coefficients(mach, *flap)),
+            Form::Calibrated(section) => Ok(section.coefficients(mach)),
         }
     }
 }

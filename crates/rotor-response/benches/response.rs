@@ -69,6 +69,7 @@ fn response(criterion: &mut Criterion) {
         AttachedFlowModel::QuasiSteady,
         AttachedFlowModel::Incompressible,
         AttachedFlowModel::HariharanLeishman,
+        AttachedFlowModel::Calibrated,
     ] {
         let built = solver(model).and_then(|mut s| {
             let rest = s.solve(&condition(0.0), &LinearInflow::Drees, None)?;

@@ -123,12 +123,12 @@ impl StationAir {
         speeds: &[f64],
     ) -> Result<Self, ResponseError> {
         let chord_fraction = flap.map_or(0.0, |k| model.flaps[k].chord_fraction);
-        let flap_chord = FlapChord::new(chord_fraction)?;
+        let section_model = model.section_model.of_flap(FlapChord::new(chord_fraction)?)?;
         let coefficients = speeds
             .iter()
             .map(|speed| {
                 let mach = Mach::limited(model.compressible_tip_mach() * speed, MACH_LIMIT)?;
-                model.section_model.coefficients(mach, flap_chord)
+                section_model.coefficients(mach)
             })
             .collect::<Result<Vec<SectionCoefficients>, _>>()?;
         let channels = coefficients.first().map_or(0, |c| c.lags.len());

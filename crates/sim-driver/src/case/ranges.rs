@@ -121,6 +121,13 @@ fn check_section(check: &mut Checker<'_>, file: &CaseFile) {
     {
         check.fault("aerodynamics.model", Fault::IncompressibleWithMach);
     }
+    if a.model == SectionModelChoice::Calibrated {
+        let remedy = "the calibrated section model holds for these; or choose another model";
+        for (i, flap) in file.flaps.iter().enumerate() {
+            let field = format!("flaps[{i}].chord_fraction");
+            check.within(number(&field, flap.chord_fraction, "", remedy), 0.1, 0.4);
+        }
+    }
 }
 
 fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
