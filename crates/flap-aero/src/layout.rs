@@ -87,7 +87,11 @@ fn is_shared(lags: &[LagChannel]) -> bool {
     const UNIT: [[f64; 4]; 4] =
         [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
     let same = |lag: &LagChannel| lag.pole.to_bits() == lags[0].pole.to_bits();
-    lags.len() == LANES && lags.iter().zip(UNIT).all(|(lag, unit)| same(lag) && lag.input == unit)
+    lags.len() == LANES
+        && lags
+            .iter()
+            .zip(UNIT)
+            .all(|(lag, unit)| same(lag) && lag.input.map(f64::to_bits) == unit.map(f64::to_bits))
 }
 
 impl MarchingSection {

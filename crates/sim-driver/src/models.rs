@@ -5,7 +5,7 @@ use crate::case::{
     Case, CompressibilityChoice, CouplingsChoice, InflowChoice, SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
-use flap_aero::AttachedFlowModel;
+use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, ModeCount, Twist};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, RotorModel,
@@ -68,6 +68,7 @@ impl Case {
                     chord_fraction: f.chord_fraction,
                     mass_fraction: f.mass_fraction,
                     cg_fraction: f.cg_fraction,
+                    effectiveness: effectiveness(f.effectiveness),
                 })
                 .collect(),
         }
@@ -157,4 +158,9 @@ impl Case {
         let t = &self.tolerances;
         TrimSettings { tolerance: t.trim, max_iterations: t.trim_iterations }
     }
+}
+
+/// The factors of a flap; a case's are within their range.
+fn effectiveness([lift, moment, hinge]: [f64; 3]) -> FlapEffectiveness {
+    FlapEffectiveness::new(lift, moment, hinge).unwrap_or_default()
 }

@@ -23,7 +23,7 @@ use crate::AeroError;
 /// Fields are seven columns wide and may touch (`-0.123-0.4567`): they are cut by column. Files that
 /// separate by blanks instead are read too, row by row, by counting.
 ///
-/// Source: the format note in the documentation of MBDyn (Politecnico di Milano); blank-separated
+/// Source: the format note in the documentation of `MBDyn` (Politecnico di Milano); blank-separated
 /// files as the Python package c81utils writes them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct C81Airfoil {

@@ -2,6 +2,7 @@
 
 use super::{C81Airfoil, C81Table};
 use crate::AeroError;
+use std::fmt::Write;
 
 /// Columns of a number.
 pub(super) const WIDTH: usize = 7;
@@ -67,7 +68,8 @@ pub(super) fn airfoil(airfoil: &C81Airfoil) -> Result<String, AeroError> {
                 let what = "a table of more than 99 Mach numbers or incidences";
                 return Err(AeroError::C81NotWritable { what });
             }
-            text.push_str(&format!("{count:2}"));
+            // writing to a string does not fail
+            let _ = write!(text, "{count:2}");
         }
     }
     text.push('\n');

@@ -8,16 +8,15 @@ use crate::{
     TheodorsenFunctions,
 };
 use std::f64::consts::TAU;
-use table::{FAST, FLAP_RANGE, FLAPPED, MACH_RANGE, POLE_LAW, RIGID, SMALLEST_RATIO};
+use table::{
+    FAST, FLAP_RANGE, FLAP_TERMS, FLAPPED, MACH_RANGE, MACH_TERMS, POLE_LAW, POLES, RIGID,
+    SMALLEST_RATIO,
+};
 
-/// Number of poles all inputs and loads share.
-const POLES: usize = POLE_LAW.len();
 /// Gains of the table per pair: of all poles but the fastest, whose gain is what the others leave.
 const FITTED: usize = POLES - 1;
-/// Chebyshev terms in the Mach number.
-const MACH_TERMS: usize = RIGID[0].len();
 /// Pairs of load and input.
-const PAIRS: usize = RIGID.len() + FLAPPED.len();
+const PAIRS: usize = 12;
 
 /// Pairs in the order of the table: first those that do not depend on the flap.
 const ORDER: [(Load, Mode); PAIRS] = [
@@ -79,7 +78,7 @@ impl CalibratedSection {
         }
         let mut gains: Vec<[[f64; FITTED]; MACH_TERMS]> = RIGID.to_vec();
         if !flap.is_none() {
-            let t = chebyshev::<{ FLAPPED[0].len() }>(ratio, FLAP_RANGE);
+            let t = chebyshev::<FLAP_TERMS>(ratio, FLAP_RANGE);
             for pair in &FLAPPED {
                 let mut sum = [[0.0; FITTED]; MACH_TERMS];
                 for (weight, rows) in t.iter().zip(pair) {

@@ -8,6 +8,12 @@
 pub(super) const MACH_RANGE: [f64; 2] = [0.05, 0.9];
 /// Flap chord ratios the calibration spans.
 pub(super) const FLAP_RANGE: [f64; 2] = [0.1, 0.4];
+/// Number of poles.
+pub(super) const POLES: usize = 6;
+/// Chebyshev terms in the Mach number.
+pub(super) const MACH_TERMS: usize = 20;
+/// Chebyshev terms in the flap chord.
+pub(super) const FLAP_TERMS: usize = 4;
 /// Smallest ratio of neighbouring poles.
 pub(super) const SMALLEST_RATIO: f64 = 1.5;
 /// Poles that belong to the pressure waves.
@@ -23,7 +29,7 @@ pub(super) const POLE_LAW: [[f64; 3]; 6] = [
 ];
 /// Gains of incidence and pitch rate in lift and moment, `[pair][Mach term]`.
 #[rustfmt::skip]
-pub(super) const RIGID: [[[f64; 5]; 20]; 4] = [
+pub(super) static RIGID: [[[f64; 5]; 20]; 4] = [
     [
         [-1.934144161, -1.300463063, 1.221163699, 1.883316682, 0.722644294], [2.329356972, -1.546105412, 1.490252261, 2.575595871, 1.012837624],
         [0.854510601, 0.995596186, 0.356231179, 0.986585035, 0.398087229], [-2.80964462, 1.330144279, 0.235304579, 0.218373412, 0.086501851],
@@ -75,7 +81,7 @@ pub(super) const RIGID: [[[f64; 5]; 20]; 4] = [
 ];
 /// Gains that depend on the flap chord, `[pair][flap term][Mach term]`.
 #[rustfmt::skip]
-pub(super) const FLAPPED: [[[[f64; 5]; 20]; 4]; 8] = [
+pub(super) static FLAPPED: [[[[f64; 5]; 20]; 4]; 8] = [
     [
         [
             [1.501350768, -1.769615038, 1.263035752, 1.192659319, 0.432564897], [2.177919248, -2.54215824, 1.974341644, 1.65857925, 0.606207887],

@@ -85,7 +85,7 @@ impl GainTable {
             .map(|mach| {
                 let poles = law.poles(mach);
                 let samples = Samples::at(mach, &flap_chords)?;
-                Ok(samples.iter().map(|s| scaled(fit_gains(s, &poles).0, mach)).collect())
+                Ok(samples.iter().map(|s| scaled(&fit_gains(s, &poles).0, mach)).collect())
             })
             .collect::<Result<Vec<Vec<Gains>>, ExactError>>()?;
         let series = |o: usize, j: usize, q: usize| {
@@ -109,7 +109,7 @@ impl GainTable {
     }
 }
 
-fn scaled(gains: Gains, mach: f64) -> Gains {
+fn scaled(gains: &Gains, mach: f64) -> Gains {
     gains.map(|row| row.map(|gains| gains.map(|gain| gain * mach)))
 }
 

@@ -24,6 +24,12 @@ impl Calibration {
         let [low, high] = FLAP_RANGE;
         put(format_args!("/// Flap chord ratios the calibration spans."));
         put(format_args!("pub(super) const FLAP_RANGE: [f64; 2] = [{low:?}, {high:?}];"));
+        put(format_args!("/// Number of poles."));
+        put(format_args!("pub(super) const POLES: usize = {POLES};"));
+        put(format_args!("/// Chebyshev terms in the Mach number."));
+        put(format_args!("pub(super) const MACH_TERMS: usize = {MACH_TERMS};"));
+        put(format_args!("/// Chebyshev terms in the flap chord."));
+        put(format_args!("pub(super) const FLAP_TERMS: usize = {FLAP_TERMS};"));
         put(format_args!("/// Smallest ratio of neighbouring poles."));
         put(format_args!("pub(super) const SMALLEST_RATIO: f64 = {:?};", pole_law::SMALLEST_RATIO));
         put(format_args!("/// Poles that belong to the pressure waves."));
@@ -45,7 +51,7 @@ impl Calibration {
             "/// Gains of incidence and pitch rate in lift and moment, `[pair][Mach term]`."
         ));
         put(format_args!("#[rustfmt::skip]"));
-        put(format_args!("pub(super) const RIGID: [[[f64; {g}]; {m}]; {}] = [", RIGID.len()));
+        put(format_args!("pub(super) static RIGID: [[[f64; {g}]; {m}]; {}] = [", RIGID.len()));
         for pair in RIGID {
             put(format_args!("    ["));
             for m in (0..MACH_TERMS).step_by(2) {
@@ -59,7 +65,7 @@ impl Calibration {
         ));
         put(format_args!("#[rustfmt::skip]"));
         put(format_args!(
-            "pub(super) const FLAPPED: [[[[f64; {g}]; {m}]; {FLAP_TERMS}]; {}] = [",
+            "pub(super) static FLAPPED: [[[[f64; {g}]; {m}]; {FLAP_TERMS}]; {}] = [",
             FLAPPED.len()
         ));
         for pair in FLAPPED {

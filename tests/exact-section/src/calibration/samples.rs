@@ -72,7 +72,7 @@ impl Samples {
 /// An error counts relative to the load of the motions it enters, more at low frequencies, little
 /// above `k = 1`.
 fn weights(loads: &[[Complex64; 4]; 3], k: f64) -> [[f64; 4]; 3] {
-    let size = Motion::ALL.map(|motion| motion.of(loads, k).map(|load| load.norm()));
+    let size = Motion::ALL.map(|motion| motion.of(loads, k).map(Complex64::norm));
     let here = match k {
         ..=0.31 => 1.6,
         ..=1.01 => 1.0,
