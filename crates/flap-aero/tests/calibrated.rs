@@ -215,8 +215,8 @@ fn a_sample_of_the_calibration_can_be_made_again() {
         let (gains, _) = fit_gains(sample, &poles.clone().try_into().unwrap());
         for (i, lags) in section.lags.chunks_exact(4).enumerate() {
             for (j, lag) in lags.iter().enumerate() {
-                for o in 0..3 {
-                    let (got, again) = (lag.output[o], gains[o][j][i]);
+                for (o, (got, row)) in lag.output.iter().zip(&gains).enumerate() {
+                    let again = row[j][i];
                     assert!((got - again).abs() < 1e-6, "M {m} E {e} {o}{j}{i}: {got} {again}");
                 }
             }
