@@ -70,6 +70,15 @@ pub enum XtaskError {
         /// The areas there are.
         areas: String,
     },
+    /// The exact theory failed at a sample of the calibration.
+    #[error("the calibration stopped: {source}")]
+    Exact {
+        /// Why.
+        source: exact_section::ExactError,
+    },
+    /// The errors of the section models could not be computed.
+    #[error(transparent)]
+    Check(#[from] crate::validate::CheckError),
     /// The program to sweep could not be set up.
     #[error(transparent)]
     Program(#[from] sim_driver::SimError),
@@ -80,6 +89,7 @@ impl XtaskError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Program(error) => error.exit_code(),
+            Self::Exact { .. } | Self::Check(_) => 1,
             _ => 2,
         }
     }

@@ -5,6 +5,7 @@
 //! | `layers` | checks that crates depend on strictly lower floors only | [`layers`] |
 //! | `tidy` | checks the rules of the house that a text can break | [`tidy`] |
 //! | `validate` | runs every check against theory and published data, writes the page of the book | [`validate`] |
+//! | `calibrate` | fits the calibrated section model to exact theory and writes its table | [`calibrate`] |
 //! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
@@ -16,6 +17,7 @@
     reason = "xtask and sim-driver are where files and the environment are known"
 )]
 
+pub mod calibrate;
 pub mod ci;
 mod error;
 pub mod files;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::{XtaskError, ci, files, layers, regress, tidy, validate, workspace};
+use xtask::{XtaskError, calibrate, ci, files, layers, regress, tidy, validate, workspace};
 
 /// Chores of the project.
 #[derive(Parser)]
@@ -27,6 +27,12 @@ enum Chore {
         #[arg(long, default_value = "", conflicts_with = "check")]
         filter: String,
         /// Write nothing; fail if the page does not say what the checks say
+        #[arg(long)]
+        check: bool,
+    },
+    /// Fit the calibrated section model to exact theory, write its table, show the errors of all models
+    Calibrate {
+        /// Write nothing; fail if the stored table is not what the fit gives
         #[arg(long)]
         check: bool,
     },
@@ -73,6 +79,19 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(verdict(&findings, &summary))
         }
         Chore::Validate { filter, check } => validation(root, &filter, check),
+        Chore::Calibrate { check: true } => {
+            let differences = calibrate::check(root)?;
+            let lines: Vec<String> = differences.iter().map(|line| format!("{line}\n")).collect();
+            let summary = format!("{} lines differ\n", differences.len());
+            say(&mut std::io::stdout(), &(lines.concat() + &summary));
+            Ok(ExitCode::from(if differences.is_empty() { 0 } else { 3 }))
+        }
+        Chore::Calibrate { check: false } => {
+            calibrate::write(root)?;
+            say(&mut std::io::stdout(), &format!("written: {}\n", calibrate::TABLE));
+            say(&mut std::io::stdout(), &calibrate::error_tables()?);
+            Ok(ExitCode::SUCCESS)
+        }
         Chore::Regress { bless, filter, golden } => {
             let folder = golden.unwrap_or_else(|| root.join("fixtures/golden"));
             let mode = if bless { regress::Mode::Bless } else { regress::Mode::Compare };

@@ -24,6 +24,19 @@ pub enum AeroError {
         /// The value found.
         ratio: f64,
     },
+    /// A flap chord ratio outside the calibration.
+    #[error(
+        "flap chord ratio {ratio}: the calibrated model holds for {from} to {to}, or 0 (no flap); \
+         choose another model for other flaps"
+    )]
+    FlapChordNotCalibrated {
+        /// The value found.
+        ratio: f64,
+        /// Smallest flap chord of the calibration.
+        from: f64,
+        /// Largest flap chord of the calibration.
+        to: f64,
+    },
     /// A hinge that is not on the chord.
     #[error(
         "hinge position {semichords} semichords aft of mid-chord: expected -1 (leading edge) to 1 \
@@ -36,11 +49,43 @@ pub enum AeroError {
     /// A compressible flow was asked of the incompressible model.
     #[error(
         "the incompressible model holds at Mach 0 only, got Mach {mach}; set the Mach number to 0 \
-         or choose the Hariharan-Leishman model"
+         or choose the calibrated or the Hariharan-Leishman model"
     )]
     CompressibleFlow {
         /// The Mach number asked for.
         mach: f64,
+    },
+    /// A C81 file is not understood.
+    #[error("C81 table, line {line}, column {column}: expected {expected}")]
+    C81Text {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Column of the line, from 1.
+        column: usize,
+        /// What should have been there.
+        expected: &'static str,
+    },
+    /// An axis of a table does not ascend, is empty, or has a number that is none.
+    #[error("C81 table: the {what} must ascend, entry {index} (from 0) does not; sort them")]
+    C81Order {
+        /// The axis.
+        what: &'static str,
+        /// First entry that is not above the one before it.
+        index: usize,
+    },
+    /// A table has too few values, too many, or some that are not finite.
+    #[error("C81 table: {found} finite values for {expected} pairs of incidence and Mach number")]
+    C81Shape {
+        /// Finite values found.
+        found: usize,
+        /// Pairs of the axes.
+        expected: usize,
+    },
+    /// An aerofoil cannot be written in the format.
+    #[error("C81 table: cannot write {what}; round the aerofoil first")]
+    C81NotWritable {
+        /// What the format cannot hold.
+        what: &'static str,
     },
     /// A state was used with coefficients of another structure.
     #[error(

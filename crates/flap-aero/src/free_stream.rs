@@ -14,6 +14,16 @@ pub struct FreeStream {
 }
 
 impl FreeStream {
+    /// The stream of a section that meets it yawed by `yaw_rad` from the direction of the chord.
+    ///
+    /// In attached flow the loads are those of the component normal to the span, `U cos(yaw)`, alone
+    /// (independence principle): Mach number, reduced frequency and incidence are to be formed with
+    /// it too.
+    #[must_use]
+    pub fn yawed(density: f64, semichord: f64, speed: f64, yaw_rad: f64) -> Self {
+        Self { density, semichord, speed: speed * yaw_rad.cos() }
+    }
+
     /// Semichords travelled per unit of time, `|U| / b`.
     pub fn semichord_rate(&self) -> f64 {
         self.speed.abs() / self.semichord

@@ -222,7 +222,11 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
         direct: start,
         rate: [[0.0; 4]; 3],
         lags,
-        remarks: ModelRemarks { mach_floored: floored, slope_unmatched: times.unmatched },
+        remarks: ModelRemarks {
+            mach_floored: floored,
+            slope_unmatched: times.unmatched,
+            ..ModelRemarks::default()
+        },
     }
 }
 

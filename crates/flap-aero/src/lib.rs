@@ -35,27 +35,45 @@
 //! The flap is plain: no gap, no aerodynamic balance, its leading edge is the hinge.
 //!
 //! # Modules
-//! `theodorsen` the flap functions; `quasi_steady`, `incompressible`, `hariharan_leishman` the
-//! models; `section` the structure they share; `response`, `march`, `free_stream` its uses.
+//! `theodorsen` the flap functions; `quasi_steady`, `incompressible`, `hariharan_leishman`,
+//! `calibrated` the models; `section` the structure they share; `response`, `march`, `free_stream` its uses.
 
+mod c81;
+mod calibrated;
 mod decay;
+mod effectiveness;
 mod error;
 mod free_stream;
 mod hariharan_leishman;
 mod incompressible;
+mod layout;
+mod linearise;
 mod march;
+mod periodic;
 mod quasi_steady;
 mod response;
 mod section;
+mod stall;
+mod steady_flow;
 mod theodorsen;
 mod values;
 
+pub use c81::{AirfoilSpan, C81Airfoil, C81Table, SteadyCoefficients, SteadyPoint};
+pub use calibrated::CalibratedSection;
+pub use effectiveness::FlapEffectiveness;
 pub use error::AeroError;
 pub use free_stream::{FreeStream, SectionLoads, lag_rates, loads_of_outputs, section_loads};
 pub use hariharan_leishman::{MIN_NONCIRCULATORY_MACH, initial_slopes, piston_start};
-pub use march::{MarchingSection, SectionInputs, SectionState, StepFactors};
+pub use layout::{MarchingSection, SectionInputs, StepFactors};
+pub use linearise::{LagRateSlopes, LoadSlopes, lag_rate_slopes, load_slopes};
+pub use march::SectionState;
+pub use periodic::{CycleStep, periodic_state};
 pub use response::{Motion, harmonic_response, indicial_response, steady_response};
-pub use section::{AttachedFlowModel, LagChannel, Load, Mode, ModelRemarks, SectionCoefficients};
+pub use section::{
+    AttachedFlowModel, FlappedModel, LagChannel, Load, Mode, ModelRemarks, SectionCoefficients,
+};
+pub use stall::{StallParameters, StallSection, StallState, StalledLoads};
+pub use steady_flow::{LinearisedForces, SectionFlow, SectionForces, TabulatedSection};
 pub use theodorsen::TheodorsenFunctions;
 pub use values::{FlapChord, HingePosition, Mach};
 

@@ -1,123 +1,13 @@
 //! Time marching of a section: recurrence exact for inputs that change linearly over a step.
 
-use crate::decay::{Decay, LANES, Lanes, decay};
-use crate::{AeroError, SectionCoefficients};
+use crate::AeroError;
+use crate::decay::{Decay, LANES, Lanes};
+use crate::layout::{
+    Block, Layout, MOST_SHARED, MarchingSection, SectionInputs, StepFactors, one_by_one,
+};
 
-/// A step shorter than this, semichords, is none: its inverse would leave the range of numbers.
-const NO_STEP: f64 = 1e-200;
-
-/// Inputs of a section at an instant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SectionInputs {
-    /// `m = [alpha, q, delta, q_delta]`, in the order of [`Mode`](crate::Mode).
-    pub modes: [f64; 4],
-    /// `dm/dS`, per semichord travelled. Used by models with apparent mass only.
-    pub rates: [f64; 4],
-}
-
-/// Four lags side by side; a block that is not full ends with lags of no weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Block {
-    pole: Lanes,
-    /// `1 / pole`
-    time: Lanes,
-    /// `[input][lag]`
-    input: [Lanes; 4],
-    /// `[output][lag]`
-    output: [Lanes; 3],
-}
-
-/// Section coefficients laid out for marching.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MarchingSection {
-    direct: [[f64; 4]; 3],
-    rate: [[f64; 4]; 3],
-    blocks: Vec<Block>,
-    lags: usize,
-}
-
-impl MarchingSection {
-    /// Lays out the coefficients of a section.
-    pub fn new(section: &SectionCoefficients) -> Self {
-        let blocks = section
-            .lags
-            .chunks(LANES)
-            .map(|lags| {
-                let mut block = Block {
-                    pole: [1.0; LANES],
-                    time: [1.0; LANES],
-                    input: [[0.0; LANES]; 4],
-                    output: [[0.0; LANES]; 3],
-                };
-                for (lane, lag) in lags.iter().enumerate() {
-                    block.pole[lane] = lag.pole;
-                    block.time[lane] = 1.0 / lag.pole;
-                    for (row, weight) in block.input.iter_mut().zip(lag.input) {
-                        row[lane] = weight;
-                    }
-                    for (row, weight) in block.output.iter_mut().zip(lag.output) {
-                        row[lane] = weight;
-                    }
-                }
-                block
-            })
-            .collect();
-        Self { direct: section.direct, rate: section.rate, blocks, lags: section.lags.len() }
-    }
-
-    /// The loads without the lags' share.
-    #[inline]
-    fn loads_at_once(&self, inputs: &SectionInputs) -> [f64; 3] {
-        let dot = |row: &[f64; 4], m: &[f64; 4]| {
-            row[0] * m[0] + row[1] * m[1] + row[2] * m[2] + row[3] * m[3]
-        };
-        std::array::from_fn(|o| {
-            dot(&self.direct[o], &inputs.modes) + dot(&self.rate[o], &inputs.rates)
-        })
-    }
-}
-
-impl Block {
-    /// What each lag follows.
-    #[inline]
-    fn drive(&self, modes: &[f64; 4]) -> Lanes {
-        std::array::from_fn(|lane| {
-            self.input[0][lane] * modes[0]
-                + self.input[1][lane] * modes[1]
-                + self.input[2][lane] * modes[2]
-                + self.input[3][lane] * modes[3]
-        })
-    }
-
-    /// Decay over a step of `[semichords, 1 / semichords]`.
-    #[inline]
-    fn decay(&self, [semichords, inverse]: [f64; 2]) -> Decay {
-        if semichords < NO_STEP {
-            return Decay::NONE;
-        }
-        decay(&self.pole.map(|pole| pole * semichords), &self.time.map(|time| time * inverse))
-    }
-}
-
-/// Decay factors of a step, for steps that are taken many times over.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StepFactors {
-    blocks: Vec<Decay>,
-    lags: usize,
-}
-
-impl StepFactors {
-    /// Factors of a step of `semichords` with these coefficients.
-    ///
-    /// # Errors
-    /// [`AeroError::BadInput`] if the step is negative or not finite.
-    pub fn new(section: &MarchingSection, semichords: f64) -> Result<Self, AeroError> {
-        check_step(semichords)?;
-        let step = [semichords, 1.0 / semichords];
-        let blocks = section.blocks.iter().map(|block| block.decay(step)).collect();
-        Ok(Self { blocks, lags: section.lags })
-    }
-}
+/// Added and subtracted it turns numbers below some 1e-266 into zero and leaves others alone.
+const NOTHING: f64 = 1e-250;
 
 /// Lag states of a section on its way through time.
 ///
@@ -128,8 +18,11 @@ impl StepFactors {
 /// ramp, second order otherwise, and stable for any step however stiff the lag.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionState {
+    /// The states; for shared poles what they lack of their inputs, `x - m`.
     states: Vec<Lanes>,
+    /// What the states follow: block by block, or once for all if they share the inputs.
     drives: Vec<Lanes>,
+    shared: bool,
     lags: usize,
 }
 
@@ -141,13 +34,36 @@ impl SectionState {
 
     /// A section whose inputs have been held for ever.
     pub fn settled(section: &MarchingSection, modes: &[f64; 4]) -> Self {
-        let drives: Vec<Lanes> = section.blocks.iter().map(|block| block.drive(modes)).collect();
-        Self { states: drives.clone(), drives, lags: section.lags }
+        let drives = section.drives(modes);
+        let (states, shared) = match &section.layout {
+            Layout::General(_) => (drives.clone(), false),
+            Layout::Shared(shared) => (vec![[0.0; LANES]; shared.output.len()], true),
+        };
+        Self { states, drives, shared, lags: section.lags }
     }
 
     /// The lag states, in the order of [`SectionCoefficients::lags`].
-    pub fn states(&self) -> &[f64] {
-        &self.states.as_flattened()[..self.lags]
+    pub fn states(&self) -> Vec<f64> {
+        let behind = self.states.as_flattened().iter();
+        let input = |i: usize| if self.shared { self.drives[0][i % LANES] } else { 0.0 };
+        behind.take(self.lags).enumerate().map(|(i, x)| x + input(i)).collect()
+    }
+
+    /// Number of lag states.
+    pub(crate) fn lags(&self) -> usize {
+        self.lags
+    }
+
+    /// `self + share (other - self)`, lag by lag, for a state of the same inputs.
+    pub(crate) fn moved_toward(&self, other: &Self, shares: &[f64]) -> Result<Self, AeroError> {
+        check_lags(shares.len(), self.lags)?;
+        let mut moved = other.clone();
+        let before = self.states.as_flattened();
+        let after = moved.states.as_flattened_mut();
+        for ((x, from), share) in after.iter_mut().zip(before).zip(shares) {
+            *x = from + share * (*x - from);
+        }
+        Ok(moved)
     }
 
     /// Jumps to other inputs in no time: the lag states stay, the next ramp starts from here.
@@ -156,9 +72,15 @@ impl SectionState {
     /// [`AeroError::StateMismatch`] if the state belongs to coefficients of another structure.
     pub fn jump(&mut self, section: &MarchingSection, modes: &[f64; 4]) -> Result<(), AeroError> {
         self.check(section)?;
-        for (drive, block) in self.drives.iter_mut().zip(&section.blocks) {
-            *drive = block.drive(modes);
+        let drives = section.drives(modes);
+        if self.shared {
+            // the states stay, so what they lack changes
+            let change: Lanes = std::array::from_fn(|lane| drives[0][lane] - self.drives[0][lane]);
+            for behind in &mut self.states {
+                *behind = std::array::from_fn(|lane| behind[lane] - change[lane]);
+            }
         }
+        self.drives = drives;
         Ok(())
     }
 
@@ -182,8 +104,14 @@ impl SectionState {
         check_step(semichords)?;
         check_inputs(inputs)?;
         let step = [semichords, 1.0 / semichords];
-        let decays = section.blocks.iter().map(|block| block.decay(step));
-        Ok(self.advance(section, inputs, decays))
+        let decays = section.decaying().iter().map(|block| block.decay(step));
+        let sums = match &section.layout {
+            Layout::General(blocks) => self.advance_blocks(blocks, &inputs.modes, decays),
+            Layout::Shared(shared) => {
+                self.advance_shared(&shared.output, &inputs.modes, &one_by_one(decays))
+            }
+        };
+        Ok(total(section.loads_at_once(inputs), &sums))
     }
 
     /// [`step`](Self::step) with factors computed beforehand, for steps of constant length.
@@ -200,7 +128,15 @@ impl SectionState {
         self.check(section)?;
         check_lags(factors.lags, section.lags)?;
         check_inputs(inputs)?;
-        Ok(self.advance(section, inputs, factors.blocks.iter().copied()))
+        let sums = match &section.layout {
+            Layout::General(blocks) => {
+                self.advance_blocks(blocks, &inputs.modes, factors.blocks.iter().copied())
+            }
+            Layout::Shared(shared) => {
+                self.advance_shared(&shared.output, &inputs.modes, &factors.shared)
+            }
+        };
+        Ok(total(section.loads_at_once(inputs), &sums))
     }
 
     /// `[Cn, Cm, Ch]` of these inputs with the lag states as they are.
@@ -214,28 +150,42 @@ impl SectionState {
     ) -> Result<[f64; 3], AeroError> {
         self.check(section)?;
         let mut sums = [[0.0; LANES]; 3];
-        for (block, state) in section.blocks.iter().zip(&self.states) {
-            for (sum, weights) in sums.iter_mut().zip(&block.output) {
+        let mut add_all = |output: &[Lanes; 3], state: &Lanes| {
+            for (sum, weights) in sums.iter_mut().zip(output) {
                 *sum = add(*sum, weights, state);
+            }
+        };
+        match &section.layout {
+            Layout::General(blocks) => blocks
+                .iter()
+                .zip(&self.states)
+                .for_each(|(block, state)| add_all(&block.output, state)),
+            Layout::Shared(shared) => {
+                // these inputs may be others than those the states were left with
+                let change: Lanes =
+                    std::array::from_fn(|lane| self.drives[0][lane] - inputs.modes[lane]);
+                for (output, behind) in shared.output.iter().zip(&self.states) {
+                    add_all(output, &std::array::from_fn(|lane| behind[lane] + change[lane]));
+                }
             }
         }
         Ok(total(section.loads_at_once(inputs), &sums))
     }
 
     #[inline]
-    fn advance(
+    fn advance_blocks(
         &mut self,
-        section: &MarchingSection,
-        inputs: &SectionInputs,
+        blocks: &[Block],
+        modes: &[f64; 4],
         decays: impl Iterator<Item = Decay>,
-    ) -> [f64; 3] {
+    ) -> [Lanes; 3] {
         let [mut lift, mut moment, mut hinge] = [[0.0; LANES]; 3];
         for (((block, Decay { gone, mean }), state), drive) in
-            section.blocks.iter().zip(decays).zip(&mut self.states).zip(&mut self.drives)
+            blocks.iter().zip(decays).zip(&mut self.states).zip(&mut self.drives)
         {
             // through local arrays: four lags stay together, in registers
             let (old, before) = (*drive, *state);
-            let target = block.drive(&inputs.modes);
+            let target = block.drive(modes);
             let after: Lanes = std::array::from_fn(|lane| {
                 let behind = before[lane] - old[lane];
                 target[lane] - (target[lane] - old[lane]) * mean[lane]
@@ -247,11 +197,48 @@ impl SectionState {
             moment = add(moment, &block.output[1], &after);
             hinge = add(hinge, &block.output[2], &after);
         }
-        total(section.loads_at_once(inputs), &[lift, moment, hinge])
+        [lift, moment, hinge]
+    }
+
+    /// ```text
+    /// y1 = y0 e^(-z) - (m1 - m0) g,     y = x - m
+    /// ```
+    #[inline]
+    fn advance_shared(
+        &mut self,
+        output: &[[Lanes; 3]],
+        modes: &[f64; 4],
+        decays: &[[f64; 2]; MOST_SHARED],
+    ) -> [Lanes; 3] {
+        let [mut lift, mut moment, mut hinge] = [[0.0; LANES]; 3];
+        let old = self.drives.first_mut();
+        let Some(old) = old else {
+            return [lift, moment, hinge];
+        };
+        let change: Lanes = std::array::from_fn(|lane| modes[lane] - old[lane]);
+        *old = *modes;
+        for ((weights, behind), [gone, mean]) in output.iter().zip(&mut self.states).zip(decays) {
+            let before = *behind;
+            let after: Lanes = std::array::from_fn(|lane| {
+                let left = before[lane] - before[lane] * gone - change[lane] * mean;
+                // what has died away is nothing: numbers below the normal ones are slow
+                (left + NOTHING) - NOTHING
+            });
+            *behind = after;
+            lift = add(lift, &weights[0], &after);
+            moment = add(moment, &weights[1], &after);
+            hinge = add(hinge, &weights[2], &after);
+        }
+        [lift, moment, hinge]
     }
 
     fn check(&self, section: &MarchingSection) -> Result<(), AeroError> {
-        check_lags(self.lags, section.lags)
+        check_lags(self.lags, section.lags)?;
+        // the same number of lags may still be lags of another kind
+        if self.shared == matches!(section.layout, Layout::Shared(_)) {
+            return Ok(());
+        }
+        Err(AeroError::StateMismatch { state: self.lags, coefficients: section.lags })
     }
 }
 
@@ -274,7 +261,7 @@ fn check_lags(state: usize, coefficients: usize) -> Result<(), AeroError> {
     Err(AeroError::StateMismatch { state, coefficients })
 }
 
-fn check_step(semichords: f64) -> Result<(), AeroError> {
+pub(crate) fn check_step(semichords: f64) -> Result<(), AeroError> {
     if semichords.is_finite() && semichords >= 0.0 {
         return Ok(());
     }

@@ -1,6 +1,8 @@
 //! The structure all attached-flow models share: a linear section with lag states.
 
-use crate::{AeroError, FlapChord, Mach, hariharan_leishman, incompressible, quasi_steady};
+use crate::{
+    AeroError, CalibratedSection, FlapChord, Mach, hariharan_leishman, incompressible, quasi_steady,
+};
 
 /// The four inputs of a section, in the order of every array over inputs.
 ///
@@ -122,6 +124,8 @@ pub struct ModelRemarks {
     /// The Mach number lay below the smallest the noncirculatory loads are formed with, which was
     /// used for them instead.
     pub mach_floored: bool,
+    /// The Mach number lay above the calibration; the coefficients are those of its upper end.
+    pub mach_capped: bool,
     /// Pairs `[output][input]` whose time constant could not be had by matching the initial slope,
     /// and is the floor instead.
     pub slope_unmatched: [[bool; 4]; 3],
@@ -149,11 +153,15 @@ pub enum AttachedFlowModel {
     ///
     /// A *reconstruction*: the text of the 1996 paper was not available to this project.
     HariharanLeishman,
+    /// Compressible, poles and gains fitted to exact linear theory: see [`CalibratedSection`].
+    /// Flap chords 0.1 to 0.4, or no flap.
+    Calibrated,
 }
 
 impl AttachedFlowModel {
     /// All models.
-    pub const ALL: [Self; 3] = [Self::QuasiSteady, Self::Incompressible, Self::HariharanLeishman];
+    pub const ALL: [Self; 4] =
+        [Self::QuasiSteady, Self::Incompressible, Self::HariharanLeishman, Self::Calibrated];
 
     /// Short name, as case files and the command line spell it.
     pub fn name(self) -> &'static str {
@@ -161,26 +169,67 @@ impl AttachedFlowModel {
             Self::QuasiSteady => "quasi-steady",
             Self::Incompressible => "incompressible",
             Self::HariharanLeishman => "hariharan-leishman",
+            Self::Calibrated => "calibrated",
         }
+    }
+
+    /// The model of one flap, from which the coefficients at many Mach numbers are had at less cost.
+    ///
+    /// # Errors
+    /// [`AeroError::FlapChordNotCalibrated`] for [`AttachedFlowModel::Calibrated`] with a flap
+    /// outside its calibration.
+    pub fn of_flap(self, flap: FlapChord) -> Result<FlappedModel, AeroError> {
+        Ok(FlappedModel(match self {
+            Self::QuasiSteady => Form::QuasiSteady(flap),
+            Self::Incompressible => Form::Incompressible(flap),
+            Self::HariharanLeishman => Form::HariharanLeishman(flap),
+            Self::Calibrated => Form::Calibrated(Box::new(CalibratedSection::new(flap)?)),
+        }))
     }
 
     /// The section under this model.
     ///
     /// # Errors
     /// [`AeroError::CompressibleFlow`] for [`AttachedFlowModel::Incompressible`] at a Mach number
-    /// other than 0.
+    /// other than 0; [`AeroError::FlapChordNotCalibrated`] for [`AttachedFlowModel::Calibrated`] with
+    /// a flap outside its calibration.
     pub fn coefficients(
         self,
         mach: Mach,
         flap: FlapChord,
     ) -> Result<SectionCoefficients, AeroError> {
-        match self {
-            Self::QuasiSteady => Ok(quasi_steady::coefficients(mach, flap)),
-            Self::Incompressible if mach > Mach::ZERO => {
+        self.of_flap(flap)?.coefficients(mach)
+    }
+}
+
+/// An attached-flow model of one flap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlappedModel(Form);
+
+/// What each model needs of its flap.
+#[derive(Debug, Clone, PartialEq)]
+enum Form {
+    QuasiSteady(FlapChord),
+    Incompressible(FlapChord),
+    HariharanLeishman(FlapChord),
+    Calibrated(Box<CalibratedSection>),
+}
+
+impl FlappedModel {
+    /// The section at a Mach number.
+    ///
+    /// # Errors
+    /// [`AeroError::CompressibleFlow`] for [`AttachedFlowModel::Incompressible`] at a Mach number
+    /// other than 0.
+    pub fn coefficients(&self, mach: Mach) -> Result<SectionCoefficients, AeroError> {
+        match &self.0 {
+            Form::QuasiSteady(flap) => Ok(quasi_steady::coefficients(mach, *flap)),
+            Form::Incompressible(_) if mach > Mach::ZERO => {
                 Err(AeroError::CompressibleFlow { mach: mach.value() })
             }
-            Self::Incompressible => Ok(incompressible::coefficients(flap)),
-            Self::HariharanLeishman => Ok(hariharan_leishman::coefficients(mach, flap)),
+            Form::Incompressible(flap) => Ok(incompressible::coefficients(*flap)),
+            Form::HariharanLeishman(flap) => Ok(hariharan_leishman::coefficients(mach, *flap)),
+            Form::Calibrated(section) => Ok(section.coefficients(mach)),
         }
     }
 }

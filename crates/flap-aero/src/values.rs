@@ -38,6 +38,11 @@ impl Mach {
         Self::new(limit).map(|Self(limit)| Self(speed_ratio.abs().min(limit)))
     }
 
+    /// A Mach number held within a range of Mach numbers.
+    pub(crate) fn within(mach: Self, low: f64, high: f64) -> Self {
+        Self(mach.0.clamp(low, high))
+    }
+
     /// The Mach number below which noncirculatory compressible loads are not formed.
     pub(crate) fn noncirculatory_floor() -> Self {
         Self(crate::MIN_NONCIRCULATORY_MACH)

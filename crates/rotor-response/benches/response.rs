@@ -4,7 +4,7 @@
 //! twelve columns costs less than a second.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use flap_aero::AttachedFlowModel;
+use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
@@ -29,6 +29,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
         chord_fraction: 0.2,
         mass_fraction: 0.1,
         cg_fraction: 0.2,
+        effectiveness: FlapEffectiveness::IDEAL,
     };
     let model = RotorModel {
         blades: 4,
@@ -69,6 +70,7 @@ fn response(criterion: &mut Criterion) {
         AttachedFlowModel::QuasiSteady,
         AttachedFlowModel::Incompressible,
         AttachedFlowModel::HariharanLeishman,
+        AttachedFlowModel::Calibrated,
     ] {
         let built = solver(model).and_then(|mut s| {
             let rest = s.solve(&condition(0.0), &LinearInflow::Drees, None)?;

@@ -1,6 +1,7 @@
 //! The aeroelastic blade: what it is made of, and its values at the spanwise stations.
 
 use crate::{Discretisation, ResponseError, RotorModel, SpanGrid};
+use flap_aero::FlapEffectiveness;
 use nalgebra::DMatrix;
 use rotor_base::{LagrangeBasis, gauss_legendre};
 use rotor_fem::{BladeProperties, ModeCount, ModeKind, UncoupledMode, uncoupled_modes};
@@ -32,6 +33,8 @@ pub struct TrailingEdgeFlap {
     pub mass_fraction: f64,
     /// Distance of the flap's centre of gravity behind its hinge over the flap chord.
     pub cg_fraction: f64,
+    /// How much of thin-aerofoil theory's flap it is, in lift, moment and hinge moment.
+    pub effectiveness: FlapEffectiveness,
 }
 
 /// Inertia of a flap per length in rotor units: mass `m0`, length R.

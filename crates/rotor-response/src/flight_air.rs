@@ -123,14 +123,16 @@ impl StationAir {
         speeds: &[f64],
     ) -> Result<Self, ResponseError> {
         let chord_fraction = flap.map_or(0.0, |k| model.flaps[k].chord_fraction);
-        let flap_chord = FlapChord::new(chord_fraction)?;
+        let effectiveness = flap.map(|k| model.flaps[k].effectiveness).unwrap_or_default();
+        let section_model = model.section_model.of_flap(FlapChord::new(chord_fraction)?)?;
         let coefficients = speeds
             .iter()
             .map(|speed| {
                 let mach = Mach::limited(model.compressible_tip_mach() * speed, MACH_LIMIT)?;
-                model.section_model.coefficients(mach, flap_chord)
+                let section = section_model.coefficients(mach)?;
+                Ok(section.with_flap_effectiveness(&effectiveness))
             })
-            .collect::<Result<Vec<SectionCoefficients>, _>>()?;
+            .collect::<Result<Vec<SectionCoefficients>, ResponseError>>()?;
         let channels = coefficients.first().map_or(0, |c| c.lags.len());
         let lags = (0..channels)
             .map(|c| StationLag::new(model, collocation, speeds, (&coefficients, c)))

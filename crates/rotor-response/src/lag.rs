@@ -124,7 +124,7 @@ mod tests {
         for (elements, gauss) in [(8, 8), (12, 8)] {
             let time = TimeElements::new(elements, 5, gauss).unwrap();
             let collocation = Collocation::new(&time);
-            for a in [0.5, 3.0, 25.0] {
+            for a in [0.5, 3.0, 25.0, 600.0] {
                 let lag = PeriodicLag::new(&collocation, &vec![a; time.points().len()]).unwrap();
                 for n in [1.0, 4.0] {
                     let drive: Vec<f64> = time.points().iter().map(|p| (n * p).cos()).collect();

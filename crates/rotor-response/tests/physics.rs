@@ -4,11 +4,12 @@
 mod common;
 
 use common::{paper_blade, paper_flaps, paper_model, paper_spec};
+use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Condition, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow, Rotor,
-    RotorModel, RotorSolution, RotorSolver, hub_loads,
+    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
+    ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap, hub_loads,
 };
 use rotor_wake::{FlightState, InducedInflow, LinearInflow};
 use std::sync::Arc;
@@ -237,6 +238,62 @@ fn the_default_mesh_resolves_the_reverse_flow_region() {
     let outboard = refinement(ReverseFlow::Abrupt, 0.35);
     assert!(outboard <= 0.001, "{outboard}");
     println!("gradual {gradual:.2e}, abrupt {abrupt:.2e}, cut-out .35 {outboard:.2e}");
+}
+
+/// The calibrated sections in flight: lag states from the fast pressure waves of the inner blade to
+/// the slow wake, periodic, at every local Mach number.
+#[test]
+fn calibrated_sections_fly() {
+    let solve_flaps =
+        |section_model: AttachedFlowModel, effectiveness: FlapEffectiveness, elements: usize| {
+            let mut angle = HarmonicSeries::zero(5);
+            angle.set_harmonic(3, Harmonic::from_amplitude_phase(0.03, 0.4));
+            let condition = Condition {
+                flap_angles_rad: vec![HarmonicSeries::zero(1), angle],
+                ..forward(controls_deg(8.0, 1.0, -4.5))
+            };
+            let model = RotorModel {
+                flaps: paper_flaps()
+                    .into_iter()
+                    .map(|flap| TrailingEdgeFlap { effectiveness, ..flap })
+                    .collect(),
+                section_model,
+                compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
+                ..paper_model(Couplings::Full)
+            };
+            let d = Discretisation { time_elements: elements, ..Discretisation::default() };
+            solve(model, &paper_blade(), d, &condition, &LinearInflow::Drees).hub
+        };
+    let solve_with = |model, elements| solve_flaps(model, FlapEffectiveness::IDEAL, elements);
+    let solve_effective = |effectiveness, elements| {
+        solve_flaps(AttachedFlowModel::Calibrated, effectiveness, elements)
+    };
+    let elements = Discretisation::default().time_elements;
+    let calibrated = solve_with(AttachedFlowModel::Calibrated, elements);
+    let size = |v: &[f64; 12]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let gap = |a: &[f64; 12], b: &[f64; 12]| size(&std::array::from_fn(|i| a[i] - b[i])) / size(a);
+    // the time elements converge
+    let [fine, finer] = [3, 4].map(|n| solve_with(AttachedFlowModel::Calibrated, n * elements));
+    let resolved = gap(&finer.harmonic(4), &fine.harmonic(4));
+    let default = gap(&finer.harmonic(4), &calibrated.harmonic(4));
+    // a flap of half the effect moves the loads about half as far
+    let weak = FlapEffectiveness::new(0.5, 0.5, 0.5).unwrap();
+    let parts = [FlapEffectiveness::new(0.0, 0.0, 0.0).unwrap(), weak].map(|effectiveness| {
+        gap(&calibrated.harmonic(4), &solve_effective(effectiveness, elements).harmonic(4))
+    });
+    assert!((parts[1] / parts[0] - 0.5).abs() < 0.02, "{parts:?}");
+    // the slope-matched form decays too fast: it is near, and it is not the same
+    let matched = solve_with(AttachedFlowModel::HariharanLeishman, elements);
+    let apart = gap(&calibrated.harmonic(4), &matched.harmonic(4));
+    let [mean, other] = [&calibrated, &matched].map(|hub| hub.mean()[2]);
+    let mean = (other / mean - 1.0).abs();
+    println!("default time elements {default:.2e}");
+    println!(
+        "4/rev: finer time elements {resolved:.2e}, slope-matched form {apart:.3}, mean {mean:.2e}"
+    );
+    assert!(resolved < 5e-3 && default < 0.01, "{resolved} {default}");
+    assert!((0.003..0.5).contains(&apart), "{apart}");
+    assert!(mean < 0.02, "{mean}");
 }
 
 #[test]

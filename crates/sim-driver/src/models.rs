@@ -6,7 +6,7 @@ use crate::case::{
     SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
-use flap_aero::AttachedFlowModel;
+use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, ModeCount, Twist};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow,
@@ -73,6 +73,7 @@ impl Case {
                     chord_fraction: f.chord_fraction,
                     mass_fraction: f.mass_fraction,
                     cg_fraction: f.cg_fraction,
+                    effectiveness: effectiveness(f.effectiveness),
                 })
                 .collect(),
         }
@@ -84,6 +85,7 @@ impl Case {
             SectionModelChoice::QuasiSteady => AttachedFlowModel::QuasiSteady,
             SectionModelChoice::Incompressible => AttachedFlowModel::Incompressible,
             SectionModelChoice::HariharanLeishman => AttachedFlowModel::HariharanLeishman,
+            SectionModelChoice::Calibrated => AttachedFlowModel::Calibrated,
         }
     }
 
@@ -161,4 +163,9 @@ impl Case {
         let t = &self.tolerances;
         TrimSettings { tolerance: t.trim, max_iterations: t.trim_iterations }
     }
+}
+
+/// The factors of a flap; a case's are within their range.
+fn effectiveness([lift, moment, hinge]: [f64; 3]) -> FlapEffectiveness {
+    FlapEffectiveness::new(lift, moment, hinge).unwrap_or_default()
 }

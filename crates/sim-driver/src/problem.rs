@@ -215,7 +215,7 @@ pub enum Fault {
     },
     /// The incompressible section model is asked for with a Mach number.
     #[error(
-        "Incompressible holds at Mach 0 only; set aerodynamics.compressibility: None, or choose HariharanLeishman"
+        "Incompressible holds at Mach 0 only; set aerodynamics.compressibility: None, or choose Calibrated or HariharanLeishman"
     )]
     IncompressibleWithMach,
     /// The control voltage leaves the actuator's range.

@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 use std::path::PathBuf;
 
+use exact_section::ExactError;
 use flap_aero::AeroError;
 use hhc_control::{ControlError, RunError};
 use preisach_dyn::PreisachError;
@@ -63,6 +64,9 @@ pub enum CheckError {
     /// The section.
     #[error(transparent)]
     Aero(#[from] AeroError),
+    /// The exact theory of the section.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
     /// The inflow.
     #[error(transparent)]
     Wake(#[from] WakeError),

@@ -14,6 +14,7 @@ mod control;
 mod inflow;
 mod rotor;
 mod section;
+mod section_compressible;
 mod time_elements;
 mod trimmed;
 
@@ -28,6 +29,7 @@ pub const AREAS: &[Area] = &[
     blade::AREA,
     time_elements::AREA,
     section::AREA,
+    section_compressible::AREA,
     inflow::AREA,
     rotor::AREA,
     trimmed::AREA,

@@ -1,7 +1,7 @@
 //! The rotor of the paper's Table 1 for tests.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-use flap_aero::AttachedFlowModel;
+use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{Compressibility, Couplings, ReverseFlow, RotorModel, TrailingEdgeFlap};
 
@@ -44,6 +44,7 @@ pub(crate) fn paper_flaps() -> Vec<TrailingEdgeFlap> {
             chord_fraction: 0.2,
             mass_fraction: 0.1,
             cg_fraction: 0.2,
+            effectiveness: FlapEffectiveness::IDEAL,
         })
         .to_vec()
 }

@@ -64,6 +64,11 @@ fn build(file: &CaseFile, folder: &Folder, scales: RotorScales) -> Case {
                 chord_fraction: f.chord_fraction,
                 mass_fraction: f.mass_fraction,
                 cg_fraction: f.cg_fraction,
+                effectiveness: [
+                    f.effectiveness.lift,
+                    f.effectiveness.moment,
+                    f.effectiveness.hinge,
+                ],
             })
             .collect(),
         section: SectionValues {

@@ -140,6 +140,35 @@ pub struct FlapFile {
     /// Centre of gravity behind the hinge over the flap chord.
     #[serde(default = "a_fifth")]
     pub cg_fraction: f64,
+    /// How much of thin-aerofoil theory's flap it is.
+    #[serde(default, skip_serializing_if = "EffectivenessFile::is_ideal")]
+    pub effectiveness: EffectivenessFile,
+}
+
+/// Factors on the loads a flap makes; 1 is theory's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct EffectivenessFile {
+    /// On the lift.
+    pub lift: f64,
+    /// On the moment about the quarter chord.
+    pub moment: f64,
+    /// On the hinge moment.
+    pub hinge: f64,
+}
+
+impl Default for EffectivenessFile {
+    fn default() -> Self {
+        Self { lift: 1.0, moment: 1.0, hinge: 1.0 }
+    }
+}
+
+impl EffectivenessFile {
+    /// Whether it is theory's: not written then.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+    fn is_ideal(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 fn a_fifth() -> f64 {
@@ -158,6 +187,7 @@ impl Default for FlapFile {
             chord_fraction: a_fifth(),
             mass_fraction: a_tenth(),
             cg_fraction: a_fifth(),
+            effectiveness: EffectivenessFile::default(),
         }
     }
 }
@@ -216,6 +246,8 @@ pub enum SectionModelChoice {
     Incompressible,
     /// Compressible indicial functions of the Hariharan-Leishman form (a reconstruction).
     HariharanLeishman,
+    /// Compressible, fitted to exact linear theory; flap chords 0.1 to 0.4.
+    Calibrated,
 }
 
 /// How the Mach number enters the sections.

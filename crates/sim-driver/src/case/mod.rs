@@ -14,9 +14,9 @@ mod tests;
 mod validated;
 
 pub use file::{
-    AerodynamicsFile, CaseFile, CompressibilityChoice, CouplingsChoice, FlapFile, InflowChoice,
-    InflowFile, ModesFile, ResponseFile, ReverseFlowChoice, RotorFile, SectionModelChoice,
-    StructureFile, TolerancesFile,
+    AerodynamicsFile, CaseFile, CompressibilityChoice, CouplingsChoice, EffectivenessFile,
+    FlapFile, InflowChoice, InflowFile, ModesFile, ResponseFile, ReverseFlowChoice, RotorFile,
+    SectionModelChoice, StructureFile, TolerancesFile,
 };
 pub use file_control::{
     ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice,

@@ -81,6 +81,9 @@ fn check_structure(check: &mut Checker<'_>, file: &CaseFile) {
     check.count("structure.modes.torsion", s.modes.torsion, (1, most), remedy);
 }
 
+/// What a flap effectiveness is.
+const EFFECTIVE: &str = "1 is thin-aerofoil theory; a real flap makes about 0.8 of its lift";
+
 fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
     let mut from_r = file.rotor.root_cutout_r;
     for (i, flap) in file.flaps.iter().enumerate() {
@@ -100,6 +103,9 @@ fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
                 "the flap's mass is part of the blade's",
             ),
             ("cg_fraction", flap.cg_fraction, -1.0, 1.0, "behind the hinge is positive"),
+            ("effectiveness.lift", flap.effectiveness.lift, 0.0, 2.0, EFFECTIVE),
+            ("effectiveness.moment", flap.effectiveness.moment, 0.0, 2.0, EFFECTIVE),
+            ("effectiveness.hinge", flap.effectiveness.hinge, 0.0, 2.0, EFFECTIVE),
         ] {
             check.within(number(&format!("flaps[{i}].{key}"), value, "", remedy), low, high);
         }
@@ -120,6 +126,13 @@ fn check_section(check: &mut Checker<'_>, file: &CaseFile) {
         && a.compressibility != CompressibilityChoice::None
     {
         check.fault("aerodynamics.model", Fault::IncompressibleWithMach);
+    }
+    if a.model == SectionModelChoice::Calibrated {
+        let remedy = "the calibrated section model holds for these; or choose another model";
+        for (i, flap) in file.flaps.iter().enumerate() {
+            let field = format!("flaps[{i}].chord_fraction");
+            check.within(number(&field, flap.chord_fraction, "", remedy), 0.1, 0.4);
+        }
     }
 }
 

@@ -101,6 +101,8 @@ pub struct FlapValues {
     pub mass_fraction: f64,
     /// Centre of gravity behind the hinge over the flap chord.
     pub cg_fraction: f64,
+    /// Factors on lift, moment and hinge moment.
+    pub effectiveness: [f64; 3],
 }
 
 /// Section aerodynamics.

@@ -35,7 +35,7 @@ pub enum Command {
     Import(ImportArgs),
     /// Rotating frequencies of a blade, and the data of a fan plot.
     Modes(ModesArgs),
-    /// Harmonic response of a section with a trailing-edge flap.
+    /// Responses of a section with a trailing-edge flap: harmonic, step, ramp, loop, polar.
     Section(SectionArgs),
     /// Check a case, a data folder or an actuator file; reports every problem with its line.
     Check(CheckArgs),
@@ -215,6 +215,8 @@ pub enum SectionModelArg {
     Incompressible,
     /// Compressible indicial functions of the Hariharan-Leishman form (a reconstruction).
     HariharanLeishman,
+    /// Compressible, fitted to exact linear theory.
+    Calibrated,
 }
 
 impl From<SectionModelArg> for AttachedFlowModel {
@@ -223,6 +225,7 @@ impl From<SectionModelArg> for AttachedFlowModel {
             SectionModelArg::QuasiSteady => Self::QuasiSteady,
             SectionModelArg::Incompressible => Self::Incompressible,
             SectionModelArg::HariharanLeishman => Self::HariharanLeishman,
+            SectionModelArg::Calibrated => Self::Calibrated,
         }
     }
 }
@@ -248,6 +251,30 @@ impl From<MotionArg> for Motion {
     }
 }
 
+/// Responses of a section on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ResponseArg {
+    /// Complex amplitudes at one reduced frequency.
+    Harmonic,
+    /// History after a unit step.
+    Step,
+    /// History of a unit ramp over --rise semichords.
+    Ramp,
+    /// One cycle of a motion that repeats.
+    Loop,
+    /// Static curve over incidence.
+    Polar,
+}
+
+/// Stall models on the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StallArg {
+    /// Attached flow.
+    Off,
+    /// Leishman-Beddoes with the published constants of the NACA 0012.
+    Naca0012,
+}
+
 /// `hhc section`.
 #[derive(Debug, Clone, Args)]
 pub struct SectionArgs {
@@ -257,15 +284,51 @@ pub struct SectionArgs {
     /// Mach number.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub mach: f64,
-    /// Reduced frequency, omega c / (2 U).
-    #[arg(long, value_name = "K", allow_negative_numbers = true)]
-    pub reduced_frequency: f64,
     /// Flap chord over chord.
     #[arg(long, value_name = "E", default_value_t = 0.2, allow_negative_numbers = true)]
     pub flap_chord: f64,
     /// What moves.
     #[arg(long, value_enum, default_value_t = MotionArg::Flap)]
     pub motion: MotionArg,
+    /// What is asked for.
+    #[arg(long, value_enum, default_value_t = ResponseArg::Harmonic)]
+    pub response: ResponseArg,
+    /// Reduced frequency, omega c / (2 U), of a harmonic response or a loop.
+    #[arg(
+        long,
+        value_name = "K",
+        allow_negative_numbers = true,
+        required_unless_present = "response",
+        required_if_eq_any([("response", "harmonic"), ("response", "loop")])
+    )]
+    pub reduced_frequency: Option<f64>,
+    /// Distance of a step or ramp response, semichords.
+    #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
+    pub distance: f64,
+    /// Length of a ramp, semichords.
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub rise: f64,
+    /// Points of a history, a cycle or a curve.
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    pub points: usize,
+    /// Mean incidence of a loop, middle of a polar, deg.
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub mean_deg: f64,
+    /// Amplitude of a loop, half the range of a polar, deg.
+    #[arg(long, value_name = "DEG", default_value_t = 10.0, allow_negative_numbers = true)]
+    pub amplitude_deg: f64,
+    /// Stall of a loop or a polar.
+    #[arg(long, value_enum, default_value_t = StallArg::Off)]
+    pub stall: StallArg,
+    /// C81 file whose polar is wanted.
+    #[arg(long, value_name = "FILE")]
+    pub table: Option<PathBuf>,
+    /// Flap effectiveness in lift, moment and hinge moment, such as 0.78,1,1.
+    #[arg(long, value_name = "FACTORS", value_delimiter = ',', num_args = 1)]
+    pub effectiveness: Vec<f64>,
+    /// CSV file to write.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

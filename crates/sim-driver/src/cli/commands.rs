@@ -1,8 +1,8 @@
 //! What each command does.
 
 use super::args::{
-    CheckArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs,
-    SectionArgs, StudyArgs,
+    CheckArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs,
+    ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs,
 };
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
@@ -21,9 +21,13 @@ use crate::progress::Progress;
 use crate::report::{StudyReport, report_html};
 use crate::results::StoredResult;
 use crate::run::{run_case, steps_of};
-use crate::section::{SectionQuestion, section_response};
+use crate::section::{
+    LoopQuestion, PolarQuestion, SectionChoice, SectionQuestion, TransientQuestion, loop_history,
+    polar, section_response, transient_history,
+};
 use crate::stored_actuator::{StoredActuator, read_actuator};
 use crate::study::{SENSITIVITY_ROWS, histories_csv, sensitivities, study_report};
+use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
 use preisach_dyn::identify::Settings;
 use rotor_fem::GyroscopicTerms;
 use std::path::{Path, PathBuf};
@@ -215,14 +219,69 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
 }
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
-    let result = section_response(&SectionQuestion {
+    let section = SectionChoice {
         model: args.model.into(),
         mach: args.mach,
-        reduced_frequency: args.reduced_frequency,
         flap_chord: args.flap_chord,
-        motion: args.motion.into(),
-    })?;
-    print(&result.render(args.format.format)?)
+        effectiveness: effectiveness(&args.effectiveness)?,
+    };
+    let motion = args.motion.into();
+    // the arguments make sure of it where it counts
+    let reduced_frequency = args.reduced_frequency.unwrap_or(0.0);
+    let (mean, half) = (args.mean_deg.to_radians(), args.amplitude_deg.to_radians());
+    let stall = match args.stall {
+        StallArg::Off => None,
+        StallArg::Naca0012 => Some(StallParameters::naca_0012(Mach::new(args.mach)?)),
+    };
+    let (distance, points) = (args.distance, args.points);
+    let transient = |rise: f64| {
+        transient_history(&TransientQuestion { section, motion, rise, distance, points })
+    };
+    let table = match args.response {
+        ResponseArg::Harmonic => {
+            let result = section_response(&SectionQuestion { section, reduced_frequency, motion })?;
+            if let Some(path) = &args.output {
+                write_atomic(path, result.csv().as_bytes())?;
+            }
+            return print(&result.render(args.format.format)?);
+        }
+        ResponseArg::Step => transient(0.0)?,
+        ResponseArg::Ramp => transient(args.rise)?,
+        ResponseArg::Loop => loop_history(&LoopQuestion {
+            section,
+            motion,
+            mean_rad: mean,
+            amplitude_rad: half,
+            reduced_frequency,
+            points,
+            stall,
+        })?,
+        ResponseArg::Polar => polar(&PolarQuestion {
+            section,
+            incidences_rad: [mean - half, mean + half],
+            points,
+            stall,
+            table: args.table.clone(),
+        })?,
+    };
+    if let Some(path) = &args.output {
+        write_atomic(path, table.csv().as_bytes())?;
+    }
+    print(&table.render(args.format.format)?)
+}
+
+/// Factors of a flap: none given is theory's.
+fn effectiveness(factors: &[f64]) -> Result<FlapEffectiveness, SimError> {
+    match factors {
+        [] => Ok(FlapEffectiveness::IDEAL),
+        [lift, moment, hinge] => Ok(FlapEffectiveness::new(*lift, *moment, *hinge)?),
+        _ => Err(AeroError::BadInput {
+            quantity: "number of flap effectiveness factors",
+            value: factors.len() as f64,
+            expected: "three: lift, moment, hinge moment",
+        }
+        .into()),
+    }
 }
 
 pub(super) fn check(args: &CheckArgs) -> Result<(), SimError> {

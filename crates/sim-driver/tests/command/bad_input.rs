@@ -308,4 +308,12 @@ fn section_questions_outside_the_models() {
         .rejected(&["reduced frequency is -1: expected a finite number, 0 or more"]);
     ask(&["--model", "xfoil"]).rejected(&["invalid value 'xfoil'", "hariharan-leishman"]);
     place.hhc(&["section"]).rejected(&["--reduced-frequency"]);
+    place.hhc(&["section", "--response", "loop"]).rejected(&["--reduced-frequency"]);
+    ask(&["--model", "calibrated", "--flap-chord", "0.05"])
+        .rejected(&["flap chord ratio 0.05", "0.1 to 0.4"]);
+    ask(&["--response", "step", "--distance", "0"]).rejected(&["distance, semichords is 0"]);
+    ask(&["--response", "ramp", "--rise", "-1"]).rejected(&["rise, semichords is -1"]);
+    ask(&["--response", "step", "--points", "0"]).rejected(&["number of points is 0"]);
+    ask(&["--effectiveness", "0.8,1"]).rejected(&["flap effectiveness factors is 2"]);
+    ask(&["--effectiveness", "0.8,1,7"]).rejected(&["flap effectiveness in hinge moment is 7"]);
 }

@@ -107,6 +107,106 @@ fn section_against_exact_theory() {
     assert!(text.contains("Cn") && text.contains("Ch"), "{text}");
 }
 
+/// Rows of a CSV file: names, then numbers.
+fn rows(csv: &str) -> (Vec<String>, Vec<Vec<f64>>) {
+    let mut lines = csv.lines();
+    let names = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    let numbers = lines.map(|l| l.split(',').map(|c| c.parse().unwrap()).collect()).collect();
+    (names, numbers)
+}
+
+/// Possio's equation, M 0.5, E 0.2, k 0.1, and the closed form of the first moments of a step.
+#[test]
+fn calibrated_section_against_exact_theory() {
+    let place = Place::new();
+    let base = ["section", "--model", "calibrated", "--mach", "0.5"];
+    let ask = |more: &[&str]| place.hhc(&[&base[..], more].concat());
+    let json = ask(&["--reduced-frequency", "0.1", "--format", "json"]).json();
+    let [re, im] = pair(&json["cn"]);
+    let error = (re - 3.109_48).hypot(im + 0.759_14) / 3.109_48_f64.hypot(0.759_14);
+    assert!(error < 0.01, "{error}");
+    assert_eq!(json.as_object().unwrap().len(), 3, "the JSON of a harmonic has not changed");
+    let weak = ["--reduced-frequency", "0.1", "--effectiveness", "0.78,1,1", "--format", "json"];
+    close(pair(&ask(&weak).json()["cn"])[0], 0.78 * re, 1e-12);
+
+    // Evvard: cn = (4/M)(E - m t/2), t = S/(2M) at the start; 4E/M at once
+    ask(&["--response", "step", "--distance", "30", "--points", "300", "-o", "step.csv"]).done();
+    let (names, step) = rows(&place.read("step.csv"));
+    assert_eq!(names, ["S", "input", "cn", "cm", "ch"]);
+    assert_eq!(step.len(), 301);
+    close(step[0][2], 1.6, 1e-12);
+    let steady = 2.0 * 1.727_295_218 / 0.75_f64.sqrt();
+    assert!((step[300][2] / steady - 1.0).abs() < 0.15, "{:?}", step[300]);
+
+    // a short ramp ends where the step is; while it moves the rate adds its loads
+    ask(&[
+        "--response",
+        "ramp",
+        "--rise",
+        "0.5",
+        "--distance",
+        "30",
+        "--points",
+        "300",
+        "-o",
+        "ramp.csv",
+    ])
+    .done();
+    let (_, ramp) = rows(&place.read("ramp.csv"));
+    close(ramp[3][1], 0.6, 1e-9);
+    close(ramp[300][2], step[300][2], 5e-3);
+}
+
+#[test]
+fn loops_polars_and_tables_of_a_section() {
+    let place = Place::new();
+    let loop_ = |more: &[&str]| {
+        let base = [
+            "section",
+            "--model",
+            "calibrated",
+            "--mach",
+            "0.3",
+            "--response",
+            "loop",
+            "--motion",
+            "pitch",
+            "--reduced-frequency",
+            "0.1",
+            "--mean-deg",
+            "10",
+            "--points",
+            "360",
+        ];
+        place.hhc(&[&base[..], more].concat()).done();
+        rows(&place.read("loop.csv")).1
+    };
+    let attached = loop_(&["-o", "loop.csv"]);
+    let stalled = loop_(&["--stall", "naca0012", "-o", "loop.csv"]);
+    let top = |rows: &[Vec<f64>]| rows.iter().map(|row| row[1]).fold(0.0, f64::max);
+    assert!(top(&attached) > 2.0 && top(&stalled) < top(&attached));
+    assert!(stalled.iter().any(|row| row[6] < 0.6), "the flow separates");
+    assert!(attached[0].len() == 4 && stalled[0].len() == 8);
+
+    let polar = ["section", "--model", "calibrated", "--mach", "0.3", "--response", "polar"];
+    let ask = |more: &[&str]| place.hhc(&[&polar[..], more].concat());
+    let text = ask(&["--stall", "naca0012", "--amplitude-deg", "25"]).done();
+    assert!(text.contains("static stall") && text.contains("cd_pressure"), "{text}");
+
+    place.write(
+        "plate.c81",
+        "PLATE                          2 3 2 3 2 3\n          0.20   0.60\n-180.  -0.1   -0.1234\n   0.    0.0    0.0\n 180.   0.1    0.1234\n          0.20   0.60\n-180.   0.01   0.02\n   0.   0.01   0.02\n 180.   0.01   0.02\n          0.20   0.60\n-180.   0.0    0.0\n   0.   0.0    0.0\n 180.   0.0    0.0\n",
+    );
+    ask(&["--table", "plate.c81", "--amplitude-deg", "180", "--points", "4", "-o", "polar.csv"])
+        .done();
+    let (names, rows) = rows(&place.read("polar.csv"));
+    assert_eq!(names, ["incidence_deg", "cl", "cd", "cm"]);
+    close(rows[3][1], 0.05 + 0.25 * (0.0617 - 0.05), 1e-9);
+    place.write("broken.c81", "PLATE\n1 2 3\n");
+    ask(&["--table", "broken.c81"]).rejected(&["C81 table, line 1"]);
+    ask(&["--table", "gone.c81"]).rejected(&["gone.c81"]);
+}
+
 #[test]
 fn init_check_and_the_refusal_to_overwrite() {
     let place = Place::new();

@@ -1,0 +1,148 @@
+//! An aerofoil from a C81 file's text.
+
+use super::write::{NAME, PER_LINE, WIDTH};
+use super::{C81Airfoil, C81Table};
+use crate::AeroError;
+
+/// Lines with their numbers, blank ones left out.
+struct Lines<'a> {
+    lines: std::iter::Enumerate<std::str::Lines<'a>>,
+    /// Line last handed out, from 1.
+    line: usize,
+}
+
+impl<'a> Lines<'a> {
+    fn next(&mut self, expected: &'static str) -> Result<&'a str, AeroError> {
+        for (index, line) in self.lines.by_ref() {
+            self.line = index + 1;
+            if !line.trim().is_empty() {
+                return Ok(line);
+            }
+        }
+        Err(self.fault(1, expected))
+    }
+
+    fn fault(&self, column: usize, expected: &'static str) -> AeroError {
+        AeroError::C81Text { line: self.line, column, expected }
+    }
+}
+
+pub(super) fn airfoil(text: &str) -> Result<C81Airfoil, AeroError> {
+    let mut lines = Lines { lines: text.lines().enumerate(), line: 0 };
+    let expected = "a first line with name (30 columns) and six counts (2 columns each)";
+    let head = lines.next(expected)?;
+    let Some((name, counts)) = header(head) else {
+        return Err(lines.fault(NAME + 1, expected));
+    };
+    let [ml, al, md, ad, mm, am] = counts;
+    let lift = table(&mut lines, ml, al)?;
+    let drag = table(&mut lines, md, ad)?;
+    let moment = table(&mut lines, mm, am)?;
+    Ok(C81Airfoil { name, lift, drag, moment })
+}
+
+/// Name and counts of the first line: by columns, or else the last six words.
+fn header(line: &str) -> Option<(String, [usize; 6])> {
+    let characters: Vec<char> = line.chars().collect();
+    let by_columns = || -> Option<[usize; 6]> {
+        let mut counts = [0; 6];
+        for (i, count) in counts.iter_mut().enumerate() {
+            let field: String = characters.get(NAME + 2 * i..NAME + 2 * i + 2)?.iter().collect();
+            *count = field.trim().parse().ok().filter(|n| *n > 0)?;
+        }
+        let rest: String = characters[NAME + 12..].iter().collect();
+        rest.trim().is_empty().then_some(counts)
+    };
+    if let Some(counts) = by_columns() {
+        let name: String = characters[..NAME].iter().collect();
+        return Some((name.trim_end().to_owned(), counts));
+    }
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let first = words.len().checked_sub(6)?;
+    let mut counts = [0; 6];
+    for (count, word) in counts.iter_mut().zip(&words[first..]) {
+        *count = word.parse().ok().filter(|n| (1..=99).contains(n))?;
+    }
+    Some((words[..first].join(" "), counts))
+}
+
+fn table(lines: &mut Lines<'_>, machs: usize, incidences: usize) -> Result<C81Table, AeroError> {
+    let (_, mach_numbers) = row(lines, false, machs)?;
+    let mut angles = Vec::with_capacity(incidences);
+    let mut values = Vec::with_capacity(machs * incidences);
+    for _ in 0..incidences {
+        let (angle, row) = row(lines, true, machs)?;
+        angles.extend(angle);
+        values.extend(row);
+    }
+    C81Table::new(mach_numbers, angles, values)
+}
+
+/// One row: its incidence, if it has one, and `count` values, over as many lines as these need.
+fn row(
+    lines: &mut Lines<'_>,
+    has_incidence: bool,
+    count: usize,
+) -> Result<(Option<f64>, Vec<f64>), AeroError> {
+    let mut incidence = None;
+    let mut values: Vec<f64> = Vec::with_capacity(count);
+    let mut first = has_incidence;
+    while values.len() < count {
+        let wanted = (count - values.len()).min(PER_LINE);
+        let line = lines.next("a line of numbers; the file ends before its tables do")?;
+        let mut numbers = match by_columns(line, first, wanted) {
+            Ok(numbers) => numbers,
+            Err(column) => {
+                by_words(line, usize::from(first) + count - values.len()).ok_or_else(|| {
+                    lines.fault(column, "numbers in fields of seven columns, or apart by blanks")
+                })?
+            }
+        };
+        if first {
+            incidence = Some(numbers.remove(0));
+            first = false;
+        }
+        values.extend(numbers);
+    }
+    Ok((incidence, values))
+}
+
+/// The numbers of a line cut by columns; the column of the first field that is none.
+fn by_columns(line: &str, has_incidence: bool, wanted: usize) -> Result<Vec<f64>, usize> {
+    let characters: Vec<char> = line.trim_end().chars().collect();
+    let field = |n: usize| -> Option<String> {
+        let end = characters.len().min((n + 1) * WIDTH);
+        characters.get(n * WIDTH..end).map(|field| field.iter().collect())
+    };
+    let number = |n: usize| -> Result<f64, usize> {
+        field(n).and_then(|text| parsed(text.trim())).ok_or(n * WIDTH + 1)
+    };
+    let mut numbers = Vec::with_capacity(wanted + 1);
+    if has_incidence {
+        numbers.push(number(0)?);
+    } else if field(0).is_some_and(|text| !text.trim().is_empty()) {
+        return Err(1);
+    }
+    for n in 1..=wanted {
+        numbers.push(number(n)?);
+    }
+    if characters.len() > (wanted + 1) * WIDTH {
+        return Err((wanted + 1) * WIDTH + 1);
+    }
+    Ok(numbers)
+}
+
+/// The numbers of a line apart by blanks: at most as many as are still wanted, at least two.
+fn by_words(line: &str, wanted: usize) -> Option<Vec<f64>> {
+    let numbers: Option<Vec<f64>> = line.split_whitespace().map(parsed).collect();
+    numbers.filter(|numbers| (1..=wanted).contains(&numbers.len()))
+}
+
+/// A finite number as Fortran writes it: `.5`, `5.`, `1.2D-3` and `1.2E-3`.
+fn parsed(text: &str) -> Option<f64> {
+    let plain = text.chars().all(|c| c.is_ascii_digit() || "+-.eEdD".contains(c));
+    if !plain {
+        return None;
+    }
+    text.replace(['d', 'D'], "E").parse().ok().filter(|value: &f64| value.is_finite())
+}

@@ -1,0 +1,379 @@
+//! Dynamic stall after Leishman and Beddoes, on top of any attached-flow model. Off unless it is used.
+
+use crate::decay::{LANES, decay};
+use crate::{AeroError, FlapChord, Mach, TheodorsenFunctions};
+use std::f64::consts::{PI, TAU};
+
+/// Beddoes's circulatory lags, pairs `(A, b)`.
+const BEDDOES: [(f64, f64); 2] = [(0.3, 0.14), (0.7, 0.53)];
+
+/// How an aerofoil stalls, at one Mach number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StallParameters {
+    /// Incidence from zero lift at which the flow separates at 0.7 chord, rad.
+    pub alpha1_rad: f64,
+    /// Sharpness of the separation below `alpha1`, rad.
+    pub s1_rad: f64,
+    /// The same above.
+    pub s2_rad: f64,
+    /// Aerodynamic centre ahead of the quarter chord, chords: `Cm = k0 Cn` in attached flow.
+    pub k0: f64,
+    /// Moment per normal force of separated flow.
+    pub k1: f64,
+    /// Shape of the moment break.
+    pub k2: f64,
+    /// Recovery of the leading-edge suction.
+    pub eta: f64,
+    /// Normal force at which the leading edge lets go.
+    pub cn1: f64,
+    /// Lag of the leading-edge pressure, semichords.
+    pub tp: f64,
+    /// Lag of the boundary layer, semichords.
+    pub tf: f64,
+    /// Decay of the vortex lift, semichords.
+    pub tv: f64,
+    /// Travel of the vortex over the chord, semichords.
+    pub tvl: f64,
+}
+
+/// NACA 0012, one row per Mach number: `M`, `alpha1`, `S1`, `S2` (deg), `K0`, `K1`, `K2`, `eta`,
+/// `Cn1`, `Tp`, `Tf`, `Tv`, `Tvl`.
+///
+/// Source: Leishman and Beddoes, J. Am. Helicopter Soc. 34(3), 1989, table 1; the values agree with
+/// those of the public program laurapla/BLcode2.0.
+const NACA_0012: [[f64; 13]; 7] = [
+    [0.3, 15.25, 3.0, 2.3, 0.0025, -0.135, 0.04, 0.965, 1.45, 1.7, 3.0, 6.0, 7.0],
+    [0.4, 12.5, 3.25, 1.6, 0.006, -0.135, 0.05, 0.96, 1.2, 1.8, 2.5, 6.0, 9.0],
+    [0.5, 10.5, 3.5, 1.2, 0.02, -0.125, 0.04, 0.96, 1.05, 2.0, 2.2, 6.0, 9.0],
+    [0.6, 8.5, 4.0, 0.7, 0.038, -0.12, 0.04, 0.96, 0.92, 2.5, 2.0, 6.0, 9.0],
+    [0.7, 5.6, 4.5, 0.5, 0.03, -0.09, 0.15, 0.96, 0.68, 3.0, 2.0, 6.0, 9.0],
+    [0.75, 3.5, 3.5, 0.8, 0.001, -0.13, -0.02, 0.955, 0.5, 3.3, 2.0, 6.0, 9.0],
+    [0.8, 0.7, 0.7, 0.18, -0.01, 0.02, -0.01, 0.955, 0.18, 4.3, 2.0, 4.0, 9.0],
+];
+
+impl StallParameters {
+    /// The NACA 0012 at a Mach number, linear between the published columns (Mach 0.3 to 0.8), the
+    /// end columns beyond.
+    pub fn naca_0012(mach: Mach) -> Self {
+        let m = mach.value();
+        let after = NACA_0012.partition_point(|row| row[0] <= m).clamp(1, NACA_0012.len() - 1);
+        let (low, high) = (&NACA_0012[after - 1], &NACA_0012[after]);
+        let share = ((m - low[0]) / (high[0] - low[0])).clamp(0.0, 1.0);
+        let value = |column: usize| low[column] + share * (high[column] - low[column]);
+        Self {
+            alpha1_rad: value(1).to_radians(),
+            s1_rad: value(2).to_radians(),
+            s2_rad: value(3).to_radians(),
+            k0: value(4),
+            k1: value(5),
+            k2: value(6),
+            eta: value(7),
+            cn1: value(8),
+            tp: value(9),
+            tf: value(10),
+            tv: value(11),
+            tvl: value(12),
+        }
+    }
+
+    /// Chordwise place of separation, 1 (attached) to 0, at an incidence from zero lift in rad:
+    ///
+    /// ```text
+    /// f = 1 - 0.3 e^((|alpha| - alpha1)/S1)          |alpha| <= alpha1
+    /// f = 0.04 + 0.66 e^((alpha1 - |alpha|)/S2)      beyond
+    /// ```
+    pub fn separation(&self, alpha_rad: f64) -> f64 {
+        let over = alpha_rad.abs() - self.alpha1_rad;
+        if over <= 0.0 {
+            1.0 - 0.3 * (over / self.s1_rad).exp()
+        } else {
+            0.04 + 0.66 * (-over / self.s2_rad).exp()
+        }
+    }
+
+    /// Share of the attached normal force that is left with the flow separated at `f`, after
+    /// Kirchhoff: `((1 + sqrt f)/2)^2`.
+    pub fn kirchhoff(f: f64) -> f64 {
+        let half = 0.5 * (1.0 + f.max(0.0).sqrt());
+        half * half
+    }
+
+    /// Moment about the quarter chord over the normal force: `k0 + k1 (1 - f) + k2 sin(pi f^2)`.
+    fn moment_arm(&self, f: f64) -> f64 {
+        self.k0 + self.k1 * (1.0 - f) + self.k2 * (PI * f * f).sin()
+    }
+
+    fn check(&self) -> Result<(), AeroError> {
+        for (quantity, value) in [
+            ("alpha1 of the stall", self.alpha1_rad),
+            ("S1 of the stall", self.s1_rad),
+            ("S2 of the stall", self.s2_rad),
+            ("Cn1 of the stall", self.cn1),
+            ("Tp of the stall", self.tp),
+            ("Tf of the stall", self.tf),
+            ("Tv of the stall", self.tv),
+            ("Tvl of the stall", self.tvl),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(AeroError::BadInput { quantity, value, expected: "a number above 0" });
+            }
+        }
+        for (quantity, value) in
+            [("k0", self.k0), ("k1", self.k1), ("k2", self.k2), ("eta", self.eta)]
+        {
+            if !value.is_finite() {
+                return Err(AeroError::BadInput { quantity, value, expected: "a finite number" });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A section that can stall.
+///
+/// The attached-flow model stays what it is; this adds what separation takes away and what the
+/// vortex brings:
+///
+/// ```text
+/// Cn  = Cn_attached - Cn_alpha alpha_E (1 - K(f'')) + Cn_v
+/// Cm  = Cm_attached + [k0 + k1 (1 - f'') + k2 sin(pi f''^2)] Cn_alpha alpha_E K(f'')
+///                   - 0.2 (1 - cos(pi tau/Tvl)) Cn_v
+/// Cc  = eta Cn_alpha alpha_E^2 sqrt(f'')                             toward the leading edge
+/// alpha_E: two lags on the circulatory downwash alpha + q/2 + (T10/pi) delta + (T11/4 pi) q_delta
+/// Cn' : lag Tp on Cn_attached;      f'' : lag Tf on f(Cn'/Cn_alpha)
+/// d Cn_v/dS = d/dS [Cn_alpha alpha_E (1 - K)] - Cn_v/Tv;   the feed ends when tau reaches Tvl
+/// tau: distance since |Cn'| passed Cn1, 0 below
+/// ```
+/// Held for ever it is the static curve of Kirchhoff; with `alpha1` out of reach it is the attached
+/// model.
+///
+/// Differs from source: the time constants are not changed during the vortex's travel, secondary
+/// vortices are not shed, and the impulsive part of the attached load is not separated from it when
+/// its lag `Tp` is formed (it is in the source too) nor touched by the separation. Assumes the flap
+/// acts on the separation through the lift it makes. Not modelled: the hinge moment of separated
+/// flow (the attached one is kept), reattachment beyond the lags.
+///
+/// Source: Leishman and Beddoes, J. Am. Helicopter Soc. 34(3), 1989.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StallSection {
+    parameters: StallParameters,
+    slope: f64,
+    circulation: [f64; 4],
+    poles: [f64; 4],
+}
+
+/// Loads of a section that may be stalled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StalledLoads {
+    /// Normal force, up +.
+    pub normal: f64,
+    /// Moment about the quarter chord, nose-up +.
+    pub moment: f64,
+    /// Hinge moment, that of attached flow.
+    pub hinge: f64,
+    /// Chord force, toward the leading edge +.
+    pub chord: f64,
+    /// Place of separation `f''`, 1 attached.
+    pub separation: f64,
+    /// Share of the vortex in the normal force.
+    pub vortex: f64,
+}
+
+impl StalledLoads {
+    /// Pressure drag at an incidence, `Cn sin(alpha) - Cc cos(alpha)`.
+    pub fn pressure_drag(&self, incidence_rad: f64) -> f64 {
+        let (sin, cos) = incidence_rad.sin_cos();
+        self.normal * sin - self.chord * cos
+    }
+}
+
+/// What of a stalling section remembers its past.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StallState {
+    /// The circulatory downwash and what its two lags lack of it.
+    downwash: f64,
+    lacking: [f64; 2],
+    attached: f64,
+    delayed: f64,
+    quasi: f64,
+    separation: f64,
+    shed: f64,
+    vortex: f64,
+    /// Distance since the vortex left the leading edge, semichords; `None` below the critical force.
+    travel: Option<f64>,
+}
+
+/// `[1 - e^(-z), (1 - e^(-z))/z]`.
+fn gone_and_mean(z: f64) -> [f64; 2] {
+    if z < 1e-200 {
+        return [0.0, 1.0];
+    }
+    let d = decay(&[z; LANES], &[1.0 / z; LANES]);
+    [d.gone[0], d.mean[0]]
+}
+
+/// A lag over a step in which what it follows runs straight from `from` to `to`.
+fn lagged(state: f64, [from, to]: [f64; 2], z: f64) -> f64 {
+    let [gone, mean] = gone_and_mean(z);
+    let behind = state - from;
+    to - (to - from) * mean + (behind - behind * gone)
+}
+
+impl StallSection {
+    /// A section at a Mach number, with the lift slope `2 pi / beta` of the attached models.
+    ///
+    /// # Errors
+    /// [`AeroError::BadInput`] if a parameter is not finite, or one that must be positive is not.
+    pub fn new(
+        mach: Mach,
+        flap: FlapChord,
+        parameters: StallParameters,
+    ) -> Result<Self, AeroError> {
+        parameters.check()?;
+        let beta = mach.beta();
+        let pole = |i: usize| BEDDOES[i].1 * beta * beta;
+        Ok(Self {
+            parameters,
+            slope: TAU / beta,
+            circulation: TheodorsenFunctions::new(flap.hinge()).circulatory_input(),
+            poles: [pole(0), pole(1), 1.0 / parameters.tp, 1.0 / parameters.tf],
+        })
+    }
+
+    /// The static loads: incidence and inputs held for ever.
+    ///
+    /// `attached` is what the attached model settles to, `[Cn, Cm, Ch]`.
+    pub fn settled(&self, attached: [f64; 3], modes: &[f64; 4]) -> StalledLoads {
+        StallState::settled(self, attached[0], modes).loads(self, attached)
+    }
+
+    fn downwash(&self, modes: &[f64; 4]) -> f64 {
+        self.circulation.iter().zip(modes).map(|(w, m)| w * m).sum()
+    }
+}
+
+impl StallState {
+    /// A section whose inputs have been held for ever, with the attached normal force of that.
+    pub fn settled(section: &StallSection, attached_normal: f64, modes: &[f64; 4]) -> Self {
+        let downwash = section.downwash(modes);
+        let separation = section.parameters.separation(attached_normal / section.slope);
+        let shed = section.slope * downwash * (1.0 - StallParameters::kirchhoff(separation));
+        Self {
+            downwash,
+            lacking: [0.0; 2],
+            attached: attached_normal,
+            delayed: attached_normal,
+            quasi: separation,
+            separation,
+            shed,
+            vortex: 0.0,
+            // a vortex long gone
+            travel: (attached_normal.abs() > section.parameters.cn1)
+                .then_some(2.0 * section.parameters.tvl),
+        }
+    }
+
+    /// Advances by `semichords`, over which `modes` and the attached loads run straight to these
+    /// values, and returns the loads at the end.
+    ///
+    /// # Errors
+    /// [`AeroError::BadInput`] if the step is negative or a number is not finite; the state is then
+    /// unchanged.
+    pub fn step(
+        &mut self,
+        section: &StallSection,
+        attached: [f64; 3],
+        modes: &[f64; 4],
+        semichords: f64,
+    ) -> Result<StalledLoads, AeroError> {
+        let numbers = attached.iter().chain(modes).chain([&semichords]);
+        if let Some(value) = numbers.copied().find(|x| !x.is_finite()) {
+            let quantity = "input of the stalling section";
+            return Err(AeroError::BadInput { quantity, value, expected: "a finite number" });
+        }
+        if semichords < 0.0 {
+            let (quantity, value) = ("step, semichords", semichords);
+            return Err(AeroError::BadInput { quantity, value, expected: "0 or more" });
+        }
+        let p = &section.parameters;
+        let z = section.poles.map(|pole| pole * semichords);
+        let downwash = section.downwash(modes);
+        for (lacking, z) in self.lacking.iter_mut().zip(z) {
+            // in the shape of a lag of the downwash, less the downwash
+            *lacking = lagged(*lacking + self.downwash, [self.downwash, downwash], z) - downwash;
+        }
+        self.downwash = downwash;
+        let before = self.delayed;
+        self.delayed = lagged(before, [self.attached, attached[0]], z[2]);
+        self.attached = attached[0];
+        let quasi = p.separation(self.delayed / section.slope);
+        self.separation = lagged(self.separation, [self.quasi, quasi], z[3]);
+        self.quasi = quasi;
+        let shed = self.effective(section) * (1.0 - StallParameters::kirchhoff(self.separation));
+        self.advance_vortex(section, before, shed, semichords);
+        Ok(self.loads(section, attached))
+    }
+
+    /// `Cn_alpha alpha_E`.
+    fn effective(&self, section: &StallSection) -> f64 {
+        let lacking: f64 = BEDDOES.iter().zip(self.lacking).map(|((a, _), y)| a * y).sum();
+        section.slope * (self.downwash + lacking)
+    }
+
+    /// The vortex over a step in which its source runs straight to `shed` and the delayed force to
+    /// its value now. The step is parted where the force passes the critical one and where the
+    /// vortex leaves the chord.
+    fn advance_vortex(&mut self, section: &StallSection, before: f64, shed: f64, ds: f64) {
+        let p = &section.parameters;
+        let feed = if ds > 0.0 { (shed - self.shed) / ds } else { 0.0 };
+        let (was, now) = (before.abs(), self.delayed.abs());
+        let crossing = ds * ((p.cn1 - was) / (now - was)).clamp(0.0, 1.0);
+        match (was > p.cn1, now > p.cn1) {
+            (true, true) => self.travel_on(p, feed, ds),
+            (true, false) => {
+                self.travel_on(p, feed, crossing);
+                self.travel = None;
+                self.grow(p, feed, ds - crossing);
+            }
+            (false, true) => {
+                self.grow(p, feed, crossing);
+                self.travel = Some(0.0);
+                self.travel_on(p, feed, ds - crossing);
+            }
+            (false, false) => self.grow(p, feed, ds),
+        }
+        self.shed = shed;
+    }
+
+    /// A distance with the vortex on its way: fed over the chord, then left to decay.
+    fn travel_on(&mut self, p: &StallParameters, feed: f64, distance: f64) {
+        let travelled = self.travel.unwrap_or(0.0);
+        let over_chord = (p.tvl - travelled).clamp(0.0, distance);
+        self.grow(p, feed, over_chord);
+        self.grow(p, 0.0, distance - over_chord);
+        self.travel = Some((travelled + distance).min(2.0 * p.tvl));
+    }
+
+    /// Decay over a distance, fed evenly.
+    fn grow(&mut self, p: &StallParameters, feed: f64, distance: f64) {
+        let [gone, mean] = gone_and_mean(distance / p.tv);
+        self.vortex = self.vortex - self.vortex * gone + feed * distance * mean;
+    }
+
+    fn loads(&self, section: &StallSection, [normal, moment, hinge]: [f64; 3]) -> StalledLoads {
+        let p = &section.parameters;
+        let f = self.separation;
+        let effective = self.effective(section);
+        let left = StallParameters::kirchhoff(f);
+        let phase = self.travel.unwrap_or(0.0) / p.tvl;
+        let centre = 0.2 * (1.0 - (PI * phase).cos());
+        StalledLoads {
+            normal: normal - effective * (1.0 - left) + self.vortex,
+            moment: moment + p.moment_arm(f) * effective * left - centre * self.vortex,
+            hinge,
+            chord: p.eta * effective * effective / section.slope * f.max(0.0).sqrt(),
+            separation: f,
+            vortex: self.vortex,
+        }
+    }
+}

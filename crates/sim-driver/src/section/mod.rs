@@ -1,0 +1,163 @@
+//! `hhc section`: responses of a section with a trailing-edge flap.
+//!
+//! | response | what | module |
+//! |---|---|---|
+//! | harmonic | complex amplitudes at one frequency | here |
+//! | step, ramp | history after a unit step, or a unit ramp over a distance | `history` |
+//! | loop | one cycle of a motion that repeats, with dynamic stall on request | `history` |
+//! | polar | static curve: linear, stalled after Kirchhoff, or of a C81 file | `polar` |
+
+mod history;
+mod polar;
+
+pub use history::{LoopQuestion, TransientQuestion, loop_history, transient_history};
+pub use polar::{PolarQuestion, polar};
+
+use crate::SimError;
+use crate::output::{Printable, table};
+use flap_aero::{
+    AttachedFlowModel, FlapChord, FlapEffectiveness, Mach, Motion, SectionCoefficients,
+    harmonic_response,
+};
+use serde::Serialize;
+
+/// A section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SectionChoice {
+    /// Section model.
+    pub model: AttachedFlowModel,
+    /// Mach number.
+    pub mach: f64,
+    /// Flap chord over chord.
+    pub flap_chord: f64,
+    /// How much of theory's flap the flap is.
+    pub effectiveness: FlapEffectiveness,
+}
+
+impl SectionChoice {
+    /// The section's coefficients, Mach number and flap.
+    ///
+    /// # Errors
+    /// [`SimError::Section`] for a Mach number or flap chord outside the model.
+    pub fn coefficients(&self) -> Result<(SectionCoefficients, Mach, FlapChord), SimError> {
+        let mach = Mach::new(self.mach)?;
+        let flap = FlapChord::new(self.flap_chord)?;
+        let section = self.model.coefficients(mach, flap)?;
+        Ok((section.with_flap_effectiveness(&self.effectiveness), mach, flap))
+    }
+}
+
+/// What is asked of a section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SectionQuestion {
+    /// The section.
+    pub section: SectionChoice,
+    /// Reduced frequency `k = omega c / (2 U)`, 0 and up.
+    pub reduced_frequency: f64,
+    /// Motion of unit amplitude.
+    pub motion: Motion,
+}
+
+/// Complex amplitudes per radian (plunge: per unit of `h_dot / U`, down positive) as `[re, im]`;
+/// moments on the full chord squared, about the quarter chord and the hinge.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SectionResult {
+    /// Normal force coefficient.
+    pub cn: [f64; 2],
+    /// Moment coefficient about the quarter chord, nose-up positive.
+    pub cm: [f64; 2],
+    /// Hinge-moment coefficient, positive in the sense of the flap angle.
+    pub ch: [f64; 2],
+}
+
+/// Answers a question about a section.
+///
+/// # Errors
+/// [`SimError::Section`] for a Mach number, flap chord or frequency outside the model.
+pub fn section_response(question: &SectionQuestion) -> Result<SectionResult, SimError> {
+    let k = question.reduced_frequency;
+    within("reduced frequency", k, k >= 0.0, "a finite number, 0 or more")?;
+    let (section, ..) = question.section.coefficients()?;
+    let [cn, cm, ch] =
+        harmonic_response(&section, k, question.motion).map(|value| [value.re, value.im]);
+    Ok(SectionResult { cn, cm, ch })
+}
+
+impl Printable for SectionResult {
+    fn text(&self) -> String {
+        let rows = [
+            ("Cn, normal force", self.cn),
+            ("Cm, about c/4", self.cm),
+            ("Ch, about the hinge", self.ch),
+        ];
+        table(
+            &["per radian (plunge: per h_dot/U)", "real", "imaginary", "amplitude", "lag, deg"],
+            rows.map(|(name, [re, im])| {
+                let lag = -im.atan2(re).to_degrees();
+                let amplitude = re.hypot(im);
+                vec![
+                    name.to_owned(),
+                    format!("{re:.6}"),
+                    format!("{im:.6}"),
+                    format!("{amplitude:.6}"),
+                    format!("{lag:.2}"),
+                ]
+            }),
+        )
+    }
+}
+
+/// A table of numbers with named columns: a history or a curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SectionTable {
+    /// What the table shows.
+    pub title: String,
+    /// Names of the columns, with units.
+    pub columns: Vec<&'static str>,
+    /// The rows.
+    pub rows: Vec<Vec<f64>>,
+}
+
+/// Rows a person is shown; a file or JSON has all of them.
+const SHOWN: usize = 40;
+
+impl SectionTable {
+    /// The table as CSV, one line of names and one per row, in full precision.
+    pub fn csv(&self) -> String {
+        let line = |cells: Vec<String>| cells.join(",") + "\n";
+        let head = line(self.columns.iter().map(|name| (*name).to_owned()).collect());
+        let rows = self.rows.iter().map(|row| line(row.iter().map(f64::to_string).collect()));
+        std::iter::once(head).chain(rows).collect()
+    }
+}
+
+impl SectionResult {
+    /// The amplitudes as CSV.
+    pub fn csv(&self) -> String {
+        let rows = [("cn", self.cn), ("cm", self.cm), ("ch", self.ch)];
+        let lines = rows.map(|(name, [re, im])| format!("{name},{re},{im}\n"));
+        format!("load,re,im\n{}", lines.concat())
+    }
+}
+
+impl Printable for SectionTable {
+    fn text(&self) -> String {
+        let every = self.rows.len().div_ceil(SHOWN).max(1);
+        let rows = self.rows.iter().step_by(every);
+        let cells = rows.map(|row| row.iter().map(|value| format!("{value:.6}")).collect());
+        format!("{}\n{}", self.title, table(&self.columns, cells))
+    }
+}
+
+/// Refuses a number that does not fit.
+fn within(
+    quantity: &'static str,
+    value: f64,
+    fits: bool,
+    expected: &'static str,
+) -> Result<(), SimError> {
+    if fits && value.is_finite() {
+        return Ok(());
+    }
+    Err(flap_aero::AeroError::BadInput { quantity, value, expected }.into())
+}

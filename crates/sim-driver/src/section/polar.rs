@@ -1,0 +1,72 @@
+//! Static curves of a section.
+
+use super::{SectionChoice, SectionTable, within};
+use crate::SimError;
+use crate::files::Source;
+use flap_aero::{C81Airfoil, StallParameters, StallSection, steady_response};
+use std::path::PathBuf;
+
+/// A static curve over incidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PolarQuestion {
+    /// The section; of a table the Mach number alone counts.
+    pub section: SectionChoice,
+    /// First and last incidence, rad.
+    pub incidences_rad: [f64; 2],
+    /// Number of rows after the first.
+    pub points: usize,
+    /// How the section stalls; `None` is linear.
+    pub stall: Option<StallParameters>,
+    /// A C81 file that takes the place of the model.
+    pub table: Option<PathBuf>,
+}
+
+/// The curve.
+///
+/// # Errors
+/// [`SimError::Rejected`] if the file cannot be read, [`SimError::Section`] if it is no C81 file or a
+/// number is outside its range.
+pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
+    let [from, to] = question.incidences_rad;
+    within("first incidence", from, true, "a finite number")?;
+    within("last incidence", to, to > from, "a finite number above the first")?;
+    let points = question.points;
+    within("number of points", points as f64, (1..=1_000_000).contains(&points), "1 to 1000000")?;
+    let incidences = (0..=points).map(|n| from + (to - from) * n as f64 / points as f64);
+    let mach = question.section.mach;
+    if let Some(path) = &question.table {
+        let airfoil = C81Airfoil::read(&Source::read(path)?.text)?;
+        within("Mach number", mach, mach >= 0.0, "a finite number, 0 or more")?;
+        let rows = incidences.map(|a| {
+            let point = airfoil.at(a, mach).value;
+            vec![a.to_degrees(), point.lift, point.drag, point.moment]
+        });
+        return Ok(SectionTable {
+            title: format!("{}, Mach {mach}", airfoil.name),
+            columns: vec!["incidence_deg", "cl", "cd", "cm"],
+            rows: rows.collect(),
+        });
+    }
+    let (section, mach, flap) = question.section.coefficients()?;
+    let stalling = question.stall.map(|p| StallSection::new(mach, flap, p)).transpose()?;
+    let rows = incidences.map(|a| {
+        let modes = [a, 0.0, 0.0, 0.0];
+        let attached = steady_response(&section, &modes);
+        match &stalling {
+            None => [a.to_degrees()].into_iter().chain(attached).collect(),
+            Some(stalling) => {
+                let l = stalling.settled(attached, &modes);
+                let drag = l.pressure_drag(a);
+                vec![a.to_degrees(), l.normal, l.moment, l.hinge, l.chord, drag, l.separation]
+            }
+        }
+    });
+    let rows = rows.collect();
+    let columns = match &stalling {
+        None => vec!["incidence_deg", "cn", "cm", "ch"],
+        Some(_) => vec!["incidence_deg", "cn", "cm", "ch", "cc", "cd_pressure", "f"],
+    };
+    let flow = if stalling.is_some() { "static stall" } else { "attached flow" };
+    let title = format!("{}, Mach {}, {flow}", question.section.model.name(), mach.value());
+    Ok(SectionTable { title, columns, rows })
+}

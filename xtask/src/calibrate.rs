@@ -1,0 +1,227 @@
+//! `cargo xtask calibrate`: poles and gains of the calibrated section model, from exact theory to source.
+
+use std::path::Path;
+
+use exact_section::calibration::{Calibration, calibrate};
+use exact_section::{ExactError, Possio, short_time};
+use flap_aero::{
+    AttachedFlowModel, FlapChord, Mach, Mode, Motion, harmonic_response, indicial_response,
+};
+
+use crate::validate::CheckError;
+use crate::{XtaskError, files};
+
+/// The file the calibration is stored in, from the root.
+pub const TABLE: &str = "crates/flap-aero/src/calibrated/table.rs";
+
+/// Numbers of a table that differ by more than this are different: the fit is iterative, and
+/// logarithms are not the same to the last bit on every machine.
+const SAME: f64 = 1e-5;
+
+/// Fits the model anew and writes its table.
+///
+/// # Errors
+/// [`XtaskError::Exact`] if the exact theory fails, [`XtaskError::Write`] if the file cannot be
+/// written.
+pub fn write(root: &Path) -> Result<Calibration, XtaskError> {
+    let calibration = calibrate()?;
+    files::write_atomically(&root.join(TABLE), &calibration.source())?;
+    Ok(calibration)
+}
+
+/// Fits the model anew and compares with the stored table: the lines that differ.
+///
+/// # Errors
+/// As [`write`], and [`XtaskError::Read`] if there is no table.
+pub fn check(root: &Path) -> Result<Vec<String>, XtaskError> {
+    let stored = files::read(&root.join(TABLE))?;
+    Ok(differences(&stored, &calibrate()?.source()))
+}
+
+/// Lines of two tables that differ by more than rounding.
+fn differences(stored: &str, fitted: &str) -> Vec<String> {
+    let count = stored.lines().count().max(fitted.lines().count());
+    let line = |text: &str, i: usize| text.lines().nth(i).unwrap_or_default().to_owned();
+    (0..count)
+        .map(|i| (i + 1, line(stored, i), line(fitted, i)))
+        .filter(|(_, a, b)| !same(a, b))
+        .map(|(number, a, b)| {
+            format!("{TABLE}:{number}: stored `{}`, fitted `{}`", a.trim(), b.trim())
+        })
+        .collect()
+}
+
+/// Whether two lines have the same words, and numbers near one another.
+fn same(a: &str, b: &str) -> bool {
+    let words = |line: &str| -> Vec<String> {
+        line.split([',', '[', ']', ' ']).filter(|w| !w.is_empty()).map(str::to_owned).collect()
+    };
+    let (a, b) = (words(a), words(b));
+    a.len() == b.len()
+        && a.iter().zip(&b).all(|(a, b)| match (a.parse::<f64>(), b.parse::<f64>()) {
+            (Ok(x), Ok(y)) => (x - y).abs() <= SAME,
+            _ => a == b,
+        })
+}
+
+/// Models whose error is shown.
+const MODELS: [AttachedFlowModel; 3] = [
+    AttachedFlowModel::QuasiSteady,
+    AttachedFlowModel::HariharanLeishman,
+    AttachedFlowModel::Calibrated,
+];
+
+/// `(M, E)` of the table of errors; those of the last rows took no part in the fit.
+const CONDITIONS: [(f64, f64); 9] = [
+    (0.1, 0.2),
+    (0.3, 0.2),
+    (0.5, 0.2),
+    (0.7, 0.2),
+    (0.8, 0.2),
+    (0.35, 0.15),
+    (0.45, 0.33),
+    (0.62, 0.27),
+    (0.69, 0.18),
+];
+
+/// Largest errors against Possio's equation, per cent of the magnitude of each load: `[k <= 0.3,
+/// k <= 1]` of `Cn`, `Cm`, `Ch`.
+///
+/// # Errors
+/// [`CheckError`] outside the theory or a model.
+pub fn errors_against_possio(
+    model: AttachedFlowModel,
+    (mach, flap_chord): (f64, f64),
+    motion: Motion,
+) -> Result<[[f64; 2]; 3], CheckError> {
+    let section = model.coefficients(Mach::new(mach)?, FlapChord::new(flap_chord)?)?;
+    let mut worst = [[0.0_f64; 2]; 3];
+    for k in [0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0] {
+        let loads = Possio::new(mach, k)?.loads(flap_chord)?;
+        let exact = match motion {
+            Motion::Flap => exact_section::Motion::Flap,
+            Motion::Pitch => exact_section::Motion::Pitch,
+            Motion::Plunge => exact_section::Motion::Plunge,
+        }
+        .of(&loads, k);
+        let got = harmonic_response(&section, k, motion);
+        for ((w, g), x) in worst.iter_mut().zip(got).zip(exact) {
+            let error = 100.0 * (g - x).norm() / x.norm();
+            w[1] = w[1].max(error);
+            if k < 0.301 {
+                w[0] = w[0].max(error);
+            }
+        }
+    }
+    Ok(worst)
+}
+
+/// Largest deviation of an indicial function from the exact first moments after a step, over its
+/// start value; `None` where there is no closed form.
+///
+/// # Errors
+/// [`CheckError`] outside the theory or a model.
+pub fn short_time_deviation(
+    model: AttachedFlowModel,
+    (mach, flap_chord): (f64, f64),
+    (load, mode): (usize, Mode),
+) -> Result<Option<f64>, CheckError> {
+    let section = model.coefficients(Mach::new(mach)?, FlapChord::new(flap_chord)?)?;
+    let reach = match mode {
+        Mode::Alpha | Mode::PitchRate => 1.0,
+        Mode::Flap | Mode::FlapRate => flap_chord,
+    };
+    let end = 2.0 * mach * reach / (1.0 + mach);
+    let start = short_time(mach, flap_chord, 0.0)?[load][mode.index()];
+    let mut worst = None;
+    for i in 0..=20 {
+        let s = end * f64::from(i) / 20.0;
+        if let (Some(exact), Some(start)) =
+            (short_time(mach, flap_chord, s)?[load][mode.index()], start)
+        {
+            let deviation =
+                (indicial_response(&section, mode, s)[load] - exact).abs() / start.abs();
+            worst = Some(f64::max(worst.unwrap_or(0.0), deviation));
+        }
+    }
+    Ok(worst)
+}
+
+/// The tables of errors of every compressible model.
+///
+/// # Errors
+/// [`CheckError`] outside the theory or a model.
+pub fn error_tables() -> Result<String, CheckError> {
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::ASCII_MARKDOWN);
+    table.set_header(["model", "motion", "M", "E", "Cn, %", "Cm, %", "Ch, %"]);
+    for model in MODELS {
+        for motion in [Motion::Flap, Motion::Pitch, Motion::Plunge] {
+            for (mach, flap_chord) in CONDITIONS {
+                let errors = errors_against_possio(model, (mach, flap_chord), motion)?;
+                let mut cells = vec![
+                    model.name().to_owned(),
+                    format!("{motion:?}").to_lowercase(),
+                    mach.to_string(),
+                    flap_chord.to_string(),
+                ];
+                cells.extend(errors.map(|[slow, fast]| format!("{slow:.1} / {fast:.1}")));
+                table.add_row(cells);
+            }
+        }
+    }
+    let mut start = comfy_table::Table::new();
+    start.load_style(comfy_table::presets::ASCII_MARKDOWN);
+    start.set_header([
+        "model", "M", "Cn alpha", "Cm alpha", "Cn q", "Cn delta", "Cm delta", "Ch delta",
+    ]);
+    let pairs = [
+        (0, Mode::Alpha),
+        (1, Mode::Alpha),
+        (0, Mode::PitchRate),
+        (0, Mode::Flap),
+        (1, Mode::Flap),
+        (2, Mode::Flap),
+    ];
+    for model in MODELS {
+        for mach in [0.3, 0.5, 0.7] {
+            let mut cells = vec![model.name().to_owned(), mach.to_string()];
+            for pair in pairs {
+                let deviation = short_time_deviation(model, (mach, 0.2), pair)?;
+                cells.push(deviation.map_or("-".to_owned(), |d| format!("{:.1}", 100.0 * d)));
+            }
+            start.add_row(cells);
+        }
+    }
+    Ok(format!(
+        "Largest error against Possio's equation, % of the magnitude of each load, k <= 0.3 / k <= 1\n\n\
+         {table}\n\nLargest deviation from the exact first moments after a step, % of the start value, \
+         E 0.2\n\n{start}\n"
+    ))
+}
+
+impl From<ExactError> for XtaskError {
+    fn from(source: ExactError) -> Self {
+        Self::Exact { source }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stored_table_is_what_the_fit_gives() {
+        let found = check(&crate::workspace::root()).unwrap();
+        assert!(found.is_empty(), "{}", found.join("\n"));
+    }
+
+    #[test]
+    fn rounding_is_no_difference_and_anything_else_is() {
+        let stored = "a [1.0, 2.0],\nb [3.0],";
+        assert!(differences(stored, "a [1.000001, 2.0],\nb [3.0],").is_empty());
+        assert_eq!(differences(stored, "a [1.001, 2.0],\nb [3.0],").len(), 1);
+        assert_eq!(differences(stored, "a [1.0, 2.0],\nc [3.0],").len(), 1);
+        assert_eq!(differences(stored, "a [1.0, 2.0],").len(), 1);
+    }
+}

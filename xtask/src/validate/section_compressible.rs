@@ -1,0 +1,458 @@
+//! Compressible, stalled and tabulated sections, and the exact theory they are measured against.
+
+use std::f64::consts::TAU;
+use std::sync::OnceLock;
+
+use exact_section::{Possio, incompressible_loads, short_time, start_loads};
+use flap_aero::{
+    AttachedFlowModel, C81Airfoil, C81Table, FlapChord, Load, Mach, MarchingSection, Mode, Motion,
+    SectionInputs, SectionState, StallParameters, StallSection, StallState, harmonic_response,
+    indicial_response, steady_response,
+};
+use num_complex::Complex64;
+
+use super::CheckError;
+use super::check::{Area, Check, Criterion, Repeatability};
+use super::reference::{Table, TableRow, worst};
+use crate::calibrate::errors_against_possio;
+
+const OWN: &str = "Possio's equation, the project's own solver";
+const SLOW: usize = 0;
+const FAST: usize = 1;
+
+/// A check that is the same on every machine.
+const fn check(
+    id: &'static str,
+    quantity: &'static str,
+    unit: &'static str,
+    (source, criterion): (&'static str, Criterion),
+    measure: fn() -> Result<f64, CheckError>,
+) -> Check {
+    let repeatability = Repeatability::Everywhere;
+    Check { id, quantity, unit, source, criterion, repeatability, measure }
+}
+
+const fn calibrated(
+    id: &'static str,
+    quantity: &'static str,
+    most: f64,
+    measure: fn() -> Result<f64, CheckError>,
+) -> Check {
+    check(id, quantity, "%", (OWN, Criterion::AtMost(most)), measure)
+}
+
+pub(super) const AREA: Area = Area {
+    heading: "Compressible, stalled and tabulated sections (`flap-aero`, `exact-section`)",
+    checks: &[
+        check(
+            "V-AERO-07",
+            "own solution of Possio's equation, flap, M 0.1 to 0.8, k to 1.5: largest difference of its magnitude",
+            "-",
+            ("possio_flap.csv", Criterion::AtMost(1e-4)),
+            || possio_table("possio_flap.csv", 1.6),
+        ),
+        check(
+            "V-AERO-08",
+            "the same, pitch and plunge, k to 2",
+            "-",
+            ("possio_pitch_plunge.csv", Criterion::AtMost(1e-4)),
+            || possio_table("possio_pitch_plunge.csv", 2.1),
+        ),
+        check(
+            "V-AERO-09",
+            "the same at M 0.001, E 0.1 to 0.4, k to 2, against Theodorsen",
+            "-",
+            ("Theodorsen, pressure series of Küssner and Schwarz", Criterion::AtMost(1e-4)),
+            possio_without_compressibility,
+        ),
+        check(
+            "V-AERO-10",
+            "closed forms of the first moments after a step: largest difference of the start value",
+            "-",
+            ("evvard_flap_step_E020.csv, lomax_alpha_q.csv", Criterion::AtMost(1e-3)),
+            short_time_tables,
+        ),
+        check(
+            "V-AERO-11",
+            "loads at S = 0, both compressible models, M 0.05 to 0.9: largest error",
+            "-",
+            ("piston theory", Criterion::AtMost(1e-10)),
+            start_values,
+        ),
+        calibrated(
+            "V-AERO-12",
+            "calibrated flap lift, M to 0.55, k to 0.3, in and off the fit",
+            3.0,
+            || flap_error(false, Load::Lift, SLOW),
+        ),
+        calibrated("V-AERO-13", "the same, k to 1", 5.0, || flap_error(false, Load::Lift, FAST)),
+        calibrated("V-AERO-14", "calibrated flap moment, M to 0.55, k to 0.3", 2.0, || {
+            flap_error(false, Load::Moment, SLOW)
+        }),
+        calibrated("V-AERO-15", "the same, k to 1", 3.0, || flap_error(false, Load::Moment, FAST)),
+        calibrated("V-AERO-16", "calibrated hinge moment, M to 0.55, k to 0.3", 1.5, || {
+            flap_error(false, Load::Hinge, SLOW)
+        }),
+        calibrated("V-AERO-17", "the same, k to 1", 2.0, || flap_error(false, Load::Hinge, FAST)),
+        calibrated("V-AERO-18", "calibrated flap lift, M 0.6 to 0.7, k to 0.3", 4.0, || {
+            flap_error(true, Load::Lift, SLOW)
+        }),
+        calibrated("V-AERO-19", "the same, k to 1", 6.0, || flap_error(true, Load::Lift, FAST)),
+        calibrated("V-AERO-20", "calibrated flap moment, M 0.6 to 0.7, k to 0.3", 4.0, || {
+            flap_error(true, Load::Moment, SLOW)
+        }),
+        calibrated("V-AERO-21", "the same, k to 1", 8.0, || flap_error(true, Load::Moment, FAST)),
+        calibrated("V-AERO-22", "calibrated hinge moment, M 0.6 to 0.7, k to 0.3", 2.0, || {
+            flap_error(true, Load::Hinge, SLOW)
+        }),
+        calibrated("V-AERO-23", "the same, k to 1", 3.0, || flap_error(true, Load::Hinge, FAST)),
+        calibrated(
+            "V-AERO-24",
+            "calibrated pitch and plunge, all loads, M to 0.7, k to 1",
+            3.0,
+            rigid_error,
+        ),
+        check(
+            "V-AERO-25",
+            "Hariharan-Leishman form, flap lift, M 0.5, k to 0.3: its known error",
+            "%",
+            (OWN, Criterion::Between(25.0, 35.0)),
+            slope_matched_error,
+        ),
+        check(
+            "V-AERO-26",
+            "oscillating flap in the wind tunnel, M 0.5, k 0.098: phase of the lift, measured less calibrated",
+            "deg",
+            ("flap_oscillation, digitised", Criterion::Near { expected: 0.0, within: 0.5 }),
+            || Ok(oscillating_flap()?[0]),
+        ),
+        check(
+            "V-AERO-27",
+            "the same: moment, measured over calibrated",
+            "-",
+            ("flap_oscillation, digitised", Criterion::Near { expected: 1.0, within: 0.01 }),
+            || Ok(oscillating_flap()?[1]),
+        ),
+        check(
+            "V-AERO-28",
+            "the same: lift, measured over calibrated (the boundary layer's share, no error of the theory)",
+            "-",
+            ("flap_oscillation, digitised", Criterion::Near { expected: 0.78, within: 0.01 }),
+            || Ok(oscillating_flap()?[2]),
+        ),
+        check(
+            "V-AERO-29",
+            "marched calibrated lift, 72 steps per cycle, k 0.2: largest error of the amplitude",
+            "-",
+            ("its own harmonic response", Criterion::AtMost(6e-4)),
+            recurrence_error,
+        ),
+        check(
+            "V-AERO-30",
+            "C81 file with touching fields and 11 Mach numbers, read, written, read: largest difference",
+            "-",
+            ("the numbers put in", Criterion::AtMost(0.0)),
+            c81_round_trip,
+        ),
+        check(
+            "V-AERO-31",
+            "stalling section held for ever: largest error of the normal force",
+            "-",
+            ("Kirchhoff's static curve", Criterion::AtMost(1e-10)),
+            static_stall,
+        ),
+        check(
+            "V-AERO-32",
+            "deep-stall loop, order from 360 to 720 steps per cycle",
+            "-",
+            ("theory: second order", Criterion::Between(1.8, 2.2)),
+            stall_order,
+        ),
+    ],
+};
+
+fn complex(row: &TableRow<'_>, name: &str) -> Result<Complex64, CheckError> {
+    Ok(Complex64::new(row.number(&format!("{name}_re"))?, row.number(&format!("{name}_im"))?))
+}
+
+/// Largest difference between the own solution and a table, over the magnitude of each load.
+fn possio_table(file: &str, k_max: f64) -> Result<f64, CheckError> {
+    let table = Table::read(&format!("aero/{file}"))?;
+    let mut errors = Vec::new();
+    for row in table.rows() {
+        let (mach, k) = (row.number("M")?, row.number("k")?);
+        if k > k_max {
+            continue;
+        }
+        let flap = row.number("E").or_else(|_| row.number("E_hinge"))?;
+        let loads = Possio::new(mach, k)?.loads(flap)?;
+        let got = match row.text("mode") {
+            Err(_) => exact_section::Motion::Flap.of(&loads, k),
+            Ok("alpha") => exact_section::Motion::Pitch.of(&loads, k),
+            // per unit of h/b, not of the velocity
+            Ok(_) => {
+                exact_section::Motion::Plunge.of(&loads, k).map(|l| l * Complex64::new(0.0, k))
+            }
+        };
+        for (got, name) in got.into_iter().zip(["cn", "cm25", "ch"]) {
+            let exact = complex(&row, name)?;
+            // below it the table has no more digits
+            errors.push(Ok((got - exact).norm() / exact.norm().max(1e-4)));
+        }
+    }
+    worst("loads", 300, errors)
+}
+
+fn possio_without_compressibility() -> Result<f64, CheckError> {
+    let mut errors = Vec::new();
+    for flap in [0.1, 0.2, 0.4] {
+        for k in [0.02, 0.1, 0.3, 1.0, 2.0] {
+            let still = incompressible_loads(k, flap)?;
+            let moving = Possio::new(1e-3, k)?.loads(flap)?;
+            for motion in exact_section::Motion::ALL {
+                for (a, b) in motion.of(&still, k).into_iter().zip(motion.of(&moving, k)) {
+                    errors.push(Ok((a - b).norm() / a.norm()));
+                }
+            }
+        }
+    }
+    worst("loads", 100, errors)
+}
+
+fn short_time_tables() -> Result<f64, CheckError> {
+    let mut errors = Vec::new();
+    for (file, modes, names) in [
+        ("evvard_flap_step_E020.csv", [2, 3], ["delta", "ddot"]),
+        ("lomax_alpha_q.csv", [0, 1], ["alpha", "q"]),
+    ] {
+        for row in Table::read(&format!("aero/{file}"))?.rows() {
+            let mach = row.number("M")?;
+            let exact = short_time(mach, 0.2, row.number("S")?)?;
+            let start = short_time(mach, 0.2, 0.0)?;
+            for (o, load) in ["cn", "cm25", "ch"].into_iter().enumerate() {
+                for (mode, name) in modes.into_iter().zip(names) {
+                    if let (Some(value), Some(start)) = (exact[o][mode], start[o][mode]) {
+                        let cell = row.number(&format!("{load}_{name}"))?;
+                        errors.push(Ok((value - cell).abs() / start.abs()));
+                    }
+                }
+            }
+        }
+    }
+    worst("short-time loads", 300, errors)
+}
+
+fn start_values() -> Result<f64, CheckError> {
+    let mut errors = Vec::new();
+    for model in [AttachedFlowModel::HariharanLeishman, AttachedFlowModel::Calibrated] {
+        for mach in [0.05, 0.2, 0.5, 0.7, 0.9] {
+            for flap in [0.1, 0.2, 0.33, 0.4] {
+                let section = model.coefficients(Mach::new(mach)?, FlapChord::new(flap)?)?;
+                let exact = start_loads(mach, flap);
+                for mode in Mode::ALL {
+                    let got = indicial_response(&section, mode, 0.0);
+                    for (got, row) in got.into_iter().zip(exact) {
+                        errors.push(Ok((got - row[mode.index()]).abs()));
+                    }
+                }
+            }
+        }
+    }
+    worst("start values", 400, errors)
+}
+
+/// `(M, E)` up to Mach 0.55 and beyond: those of the reference tables, the ends of the range of flap
+/// chords, and some that took no part in the fit.
+const SUBCRITICAL: [(f64, f64); 8] = [
+    (0.3, 0.2),
+    (0.5, 0.2),
+    (0.3, 0.1),
+    (0.5, 0.4),
+    (0.12, 0.22),
+    (0.35, 0.15),
+    (0.45, 0.33),
+    (0.55, 0.12),
+];
+const FASTER: [(f64, f64); 6] =
+    [(0.7, 0.2), (0.7, 0.1), (0.7, 0.4), (0.62, 0.27), (0.66, 0.37), (0.69, 0.18)];
+
+type Errors = Vec<[[f64; 2]; 3]>;
+
+fn collected(conditions: &[(f64, f64)], motion: Motion) -> Result<Errors, CheckError> {
+    let model = AttachedFlowModel::Calibrated;
+    conditions.iter().map(|c| errors_against_possio(model, *c, motion)).collect()
+}
+
+/// Largest error of a load of a flap motion, per cent, at the conditions of a band.
+fn flap_error(faster: bool, load: Load, band: usize) -> Result<f64, CheckError> {
+    // computed once for all checks
+    static ERRORS: OnceLock<[Errors; 2]> = OnceLock::new();
+    let errors = match ERRORS.get() {
+        Some(errors) => errors,
+        None => {
+            let fresh = [collected(&SUBCRITICAL, Motion::Flap)?, collected(&FASTER, Motion::Flap)?];
+            ERRORS.get_or_init(|| fresh)
+        }
+    };
+    let of_band = &errors[usize::from(faster)];
+    worst("conditions", 6, of_band.iter().map(|e| Ok(e[load.index()][band])))
+}
+
+fn rigid_error() -> Result<f64, CheckError> {
+    let conditions = [(0.07, 0.2), (0.2, 0.2), (0.3, 0.2), (0.5, 0.2), (0.7, 0.2), (0.62, 0.13)];
+    let mut all = Vec::new();
+    for motion in [Motion::Pitch, Motion::Plunge] {
+        all.extend(collected(&conditions, motion)?);
+    }
+    worst("loads", 36, all.iter().flatten().map(|bands| Ok(bands[FAST])))
+}
+
+fn slope_matched_error() -> Result<f64, CheckError> {
+    let model = AttachedFlowModel::HariharanLeishman;
+    Ok(errors_against_possio(model, (0.5, 0.2), Motion::Flap)?[0][SLOW])
+}
+
+/// Phase difference of the lift in degrees, moment and lift of the measurement over the calibrated
+/// model.
+fn oscillating_flap() -> Result<[f64; 3], CheckError> {
+    let section =
+        AttachedFlowModel::Calibrated.coefficients(Mach::new(0.5)?, FlapChord::new(0.25)?)?;
+    let [cn, cm, _] = harmonic_response(&section, 0.098, Motion::Flap);
+    let [lift, moment] = [
+        first_harmonic(include_str!("../../../fixtures/reference/flap_oscillation/exp_cn.txt")),
+        first_harmonic(include_str!("../../../fixtures/reference/flap_oscillation/exp_cm.txt")),
+    ];
+    // the direction round the loop is not known: the size of the quadrature counts
+    let phase = |c: Complex64| c.im.abs().atan2(c.re.abs()).to_degrees();
+    Ok([phase(lift) - phase(cn), moment.norm() / cm.norm(), lift.norm() / cn.norm()])
+}
+
+/// First harmonic of points round a loop, per rad: in phase and in quadrature with the flap angle.
+fn first_harmonic(text: &str) -> Complex64 {
+    const AMPLITUDE_DEG: f64 = 2.5;
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .map(|line| line.split_whitespace().filter_map(|word| word.parse().ok()).collect())
+        .collect();
+    let [angles, values] = [&rows[0], &rows[1]];
+    let n = angles.len();
+    let basis = nalgebra::DMatrix::from_fn(n, 3, |i, c| {
+        let sine = (angles[i] / AMPLITUDE_DEG).clamp(-1.0, 1.0);
+        let rising = angles[(i + 1) % n] > angles[(i + n - 1) % n];
+        [1.0, sine, (1.0 - sine * sine).sqrt() * if rising { 1.0 } else { -1.0 }][c]
+    });
+    let right = nalgebra::DVector::from_column_slice(values);
+    let solution = basis.svd(true, true).solve(&right, 1e-12).unwrap_or_else(|_| right.clone());
+    Complex64::new(solution[1], solution[2]) / AMPLITUDE_DEG.to_radians()
+}
+
+fn recurrence_error() -> Result<f64, CheckError> {
+    let section =
+        AttachedFlowModel::Calibrated.coefficients(Mach::new(0.5)?, FlapChord::new(0.2)?)?;
+    let (k, steps) = (0.2, 72_u32);
+    let exact = harmonic_response(&section, k, Motion::Flap)[0];
+    let march = MarchingSection::new(&section);
+    let at = |n: u32| {
+        let turn = Complex64::cis(TAU * f64::from(n) / f64::from(steps));
+        (Motion::Flap.inputs(k).map(|m| (m * turn).re), (exact * turn).re)
+    };
+    let mut state = SectionState::settled(&march, &at(0).0);
+    let step = TAU / k / f64::from(steps);
+    let mut errors = Vec::new();
+    for n in 1..=40 * steps {
+        let (modes, lift) = at(n);
+        let inputs = SectionInputs { modes, rates: [0.0; 4] };
+        let got = state.step(&march, &inputs, step)?[0];
+        if n > 39 * steps {
+            errors.push(Ok((got - lift).abs() / exact.norm()));
+        }
+    }
+    worst("steps", 72, errors)
+}
+
+/// A synthetic aerofoil whose numbers fill their seven columns.
+fn c81_round_trip() -> Result<f64, CheckError> {
+    let machs: Vec<f64> = (0..11).map(|i| f64::from(i) / 16.0).collect();
+    let angles = vec![-180.0, -12.25, 0.0, 9.125, 180.0];
+    let value = |i: usize, j: usize| -> f64 {
+        (-1.0_f64).powi(i32::try_from(i + j).unwrap_or(0)) * (0.1235 + 0.0817 * (i + 3 * j) as f64)
+    };
+    let values =
+        (0..angles.len()).flat_map(|i| (0..machs.len()).map(move |j| value(i, j))).collect();
+    let lift = C81Table::new(machs, angles, values)?;
+    let moment = C81Table::new(vec![0.3], vec![-180.0, 180.0], vec![-0.1, 0.1])?;
+    let made =
+        C81Airfoil { name: "SYNTHETIC".to_owned(), lift, drag: moment.clone(), moment }.rounded();
+    let text = made.write()?;
+    let again = C81Airfoil::read(&text)?;
+    let same = again == made && again.write()? == text;
+    let gaps = (0..5).flat_map(|i| {
+        let rows = [made.lift.row(i).to_vec(), again.lift.row(i).to_vec()];
+        (0..11).map(move |j| Ok((rows[0][j] - rows[1][j]).abs() + if same { 0.0 } else { 1.0 }))
+    });
+    worst("values", 55, gaps)
+}
+
+fn stalling() -> Result<(Mach, FlapChord, StallParameters), CheckError> {
+    let mach = Mach::new(0.3)?;
+    Ok((mach, FlapChord::new(0.2)?, StallParameters::naca_0012(mach)))
+}
+
+fn static_stall() -> Result<f64, CheckError> {
+    let (mach, flap, p) = stalling()?;
+    let section = AttachedFlowModel::Calibrated.coefficients(mach, flap)?;
+    let stalling = StallSection::new(mach, flap, p)?;
+    let errors = (-30..=30).map(|degrees| {
+        let alpha = f64::from(degrees).to_radians();
+        let modes = [alpha, 0.0, 0.0, 0.0];
+        let got = stalling.settled(steady_response(&section, &modes), &modes).normal;
+        let over = alpha.abs() - p.alpha1_rad;
+        let f = if over <= 0.0 {
+            1.0 - 0.3 * (over / p.s1_rad).exp()
+        } else {
+            0.04 + 0.66 * (-over / p.s2_rad).exp()
+        };
+        let exact = TAU / mach.beta() * alpha * (0.5 * (1.0 + f.sqrt())).powi(2);
+        Ok((got - exact).abs())
+    });
+    worst("incidences", 61, errors)
+}
+
+/// The normal force over the second cycle of `10 + 10 sin` deg at `k = 0.1`.
+fn deep_stall(steps: u32) -> Result<Vec<f64>, CheckError> {
+    let (mach, flap, p) = stalling()?;
+    let section = MarchingSection::new(&AttachedFlowModel::Calibrated.coefficients(mach, flap)?);
+    let stalling = StallSection::new(mach, flap, p)?;
+    let k = 0.1;
+    let at = |n: u32| {
+        let (sin, cos) = (TAU * f64::from(n) / f64::from(steps)).sin_cos();
+        [10.0 * (1.0 + sin), 20.0 * k * cos, 0.0, 0.0].map(f64::to_radians)
+    };
+    let held = SectionInputs { modes: at(0), rates: [0.0; 4] };
+    let mut state = SectionState::settled(&section, &at(0));
+    let [cn, ..] = state.loads(&section, &held)?;
+    let mut stall = StallState::settled(&stalling, cn, &at(0));
+    let step = TAU / k / f64::from(steps);
+    let mut out = Vec::new();
+    for n in 1..=2 * steps {
+        let inputs = SectionInputs { modes: at(n), rates: [0.0; 4] };
+        let loads = state.step(&section, &inputs, step)?;
+        let normal = stall.step(&stalling, loads, &inputs.modes, step)?.normal;
+        if n > steps {
+            out.push(normal);
+        }
+    }
+    Ok(out)
+}
+
+fn stall_order() -> Result<f64, CheckError> {
+    let finest = deep_stall(46_080)?;
+    let error = |steps: u32| -> Result<f64, CheckError> {
+        let coarse = deep_stall(steps)?;
+        let every = finest.len() / coarse.len();
+        let gaps =
+            coarse.iter().enumerate().map(|(i, cn)| Ok((cn - finest[(i + 1) * every - 1]).abs()));
+        worst("steps", 300, gaps)
+    };
+    Ok((error(360)? / error(720)?).log2())
+}
