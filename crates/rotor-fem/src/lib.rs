@@ -37,6 +37,7 @@ mod error;
 mod linear_periodic;
 mod mode_kind;
 mod mode_set;
+mod moderate;
 mod modes;
 mod newton_matrix;
 mod periodic;
@@ -53,6 +54,12 @@ pub use error::FemError;
 pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
+pub use moderate::{
+    AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalMotion, ModalShape, ModalTangent,
+    ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion, PitchMotion, RootSupport,
+    RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, deflected_fan,
+    deflected_modes,
+};
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
 pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
 pub use periodic_error::PeriodicError;
