@@ -145,8 +145,7 @@ pub(crate) fn tangent(
         add_strain(&mut section, &point.stiffness.bending_stiffness(theta, &s));
         add_motion(&mut section, &inertia.stiffness);
         point.add_matrix(&mut out.stiffness, &section);
-        for (matrix, part) in
-            [(&mut out.damping, &inertia.damping), (&mut out.mass, &inertia.mass)]
+        for (matrix, part) in [(&mut out.damping, &inertia.damping), (&mut out.mass, &inertia.mass)]
         {
             let mut section = SectionMatrix::zeros();
             add_motion(&mut section, part);

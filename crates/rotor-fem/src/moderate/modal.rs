@@ -199,8 +199,10 @@ impl ModalBlade {
         modes: Vec<ModalShape>,
     ) -> Result<Self, FemError> {
         let stations = Self::stations_of(edges, points)?;
-        let still =
-            || ModalShape { root: SectionShape::default(), sections: vec![SectionShape::default(); stations.len()] };
+        let still = || ModalShape {
+            root: SectionShape::default(),
+            sections: vec![SectionShape::default(); stations.len()],
+        };
         let base = base.unwrap_or_else(still);
         for (mode, shape) in modes.iter().chain([&base]).enumerate() {
             let (found, expected) = (shape.sections.len(), stations.len());

@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, SVector};
 
+use super::PitchMotion;
 use super::inertia::MOTION_VARIABLES;
 use super::modal::{Coordinates, ModalBlade, ModalMotion, SectionShape, Station};
 use super::strain::{Curvatures, STRAIN_VARIABLES, SectionStiffness, at};
-use super::PitchMotion;
 
 /// Modal force with its derivatives.
 #[derive(Debug, Clone, PartialEq)]
@@ -197,8 +197,7 @@ mod tests {
     fn tangents_meet_the_complex_step_of_the_force() {
         let blade = blade();
         let [value, rate, acceleration] = state();
-        let motion =
-            ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
+        let motion = ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
         let found = blade.tangent(motion, pitch());
         assert_eq!(found.force, blade.force(motion, pitch()).generalised);
         let matrices = [&found.stiffness, &found.damping, &found.mass];
@@ -229,9 +228,8 @@ mod tests {
                 rate: p.rate + t * p.acceleration,
                 acceleration: p.acceleration,
             };
-            let q: [f64; MODES] = std::array::from_fn(|k| {
-                value[k] + t * rate[k] + 0.5 * t * t * acceleration[k]
-            });
+            let q: [f64; MODES] =
+                std::array::from_fn(|k| value[k] + t * rate[k] + 0.5 * t * t * acceleration[k]);
             let qd: [f64; MODES] = std::array::from_fn(|k| rate[k] + t * acceleration[k]);
             (q, qd, pitch)
         };
@@ -266,8 +264,7 @@ mod tests {
             }
             lagrangian(&q, &qd, &pitch).im / STEP
         };
-        let motion =
-            ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
+        let motion = ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
         let force = blade.force(motion, pitch()).generalised;
         for k in 0..MODES {
             let h = 1e-4;

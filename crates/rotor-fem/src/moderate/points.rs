@@ -152,9 +152,7 @@ pub(crate) fn strain_of<T: Scalar>(z: &[T; SECTION_VARIABLES]) -> [T; STRAIN_VAR
 }
 
 /// Motion variables among section variables.
-pub(crate) fn motion_of<T: Scalar>(
-    z: &[T; SECTION_VARIABLES],
-) -> [T; inertia::MOTION_VARIABLES] {
+pub(crate) fn motion_of<T: Scalar>(z: &[T; SECTION_VARIABLES]) -> [T; inertia::MOTION_VARIABLES] {
     MOTION.map(|i| z[i])
 }
 

@@ -107,22 +107,14 @@ impl SectionStiffness {
     /// ```
     /// Source: D. H. Hodges, E. H. Dowell, NASA TN D-7818 (1974), moderate-deflection strain energy; the
     /// trigonometric functions are kept whole. Not modelled: warping, shear.
-    pub(crate) fn bending_energy<T: Scalar>(
-        &self,
-        theta_rad: f64,
-        s: &[T; STRAIN_VARIABLES],
-    ) -> T {
+    pub(crate) fn bending_energy<T: Scalar>(&self, theta_rad: f64, s: &[T; STRAIN_VARIABLES]) -> T {
         let k = Curvatures::new(theta_rad, s);
         let half = |stiffness: f64, value: T| value * value * T::from_real(0.5 * stiffness);
         half(self.lag, k.z.value) + half(self.flap, k.y.value) + half(self.torsion, k.x.value)
     }
 
     /// Energy per length of stretching, `EA e^2 / 2`.
-    pub(crate) fn stretch_energy<T: Scalar>(
-        &self,
-        theta_rad: f64,
-        s: &[T; STRAIN_VARIABLES],
-    ) -> T {
+    pub(crate) fn stretch_energy<T: Scalar>(&self, theta_rad: f64, s: &[T; STRAIN_VARIABLES]) -> T {
         let e = self.stretch(theta_rad, s).value;
         e * e * T::from_real(0.5 * self.axial)
     }

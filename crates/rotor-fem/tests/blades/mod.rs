@@ -10,11 +10,8 @@ use rotor_fem::{BladeSpec, Distribution, Joint, ModerateSpec, RootSupport};
 pub(crate) fn table(name: &str) -> Vec<Vec<String>> {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/reference/rotor").join(name);
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .comment(Some(b'#'))
-        .from_path(path)
-        .unwrap();
+    let mut reader =
+        csv::ReaderBuilder::new().flexible(true).comment(Some(b'#')).from_path(path).unwrap();
     reader.records().map(|row| row.unwrap().iter().map(String::from).collect()).collect()
 }
 
@@ -34,7 +31,9 @@ pub(crate) fn princeton_blade() -> ModerateSpec {
     let square = PRINCETON_LENGTH_M.powi(2);
     let soft = young * height * width.powi(3) / 12.0 / square;
     let stiff = young * width * height.powi(3) / 12.0 / square;
-    let torsion = shear * torsion_constant(height, width) / square;
+    // the torsional stiffness of the reference: 0.198 of the polar moment of area
+    let polar = height * width * (height * height + width * width) / 12.0;
+    let torsion = 0.198 * shear * polar / square;
     let axial = young * height * width;
     BladeSpec { rotor_speed: 0.0, ..BladeSpec::uniform(soft, stiff, torsion, axial) }.into()
 }
@@ -64,11 +63,7 @@ pub(crate) fn tm_4760_blade() -> ModerateSpec {
     let (radius, gravity, young) = (55.0, 386.088, 1.0e7);
     let shear = young / 2.6;
     let rows = table("tm4760_blade_structure.csv");
-    let edges: Vec<f64> = rows
-        .iter()
-        .map(|row| number(row, 0) / radius)
-        .chain([1.0])
-        .collect();
+    let edges: Vec<f64> = rows.iter().map(|row| number(row, 0) / radius).chain([1.0]).collect();
     let mass_unit = 0.04 / gravity;
     let omega = TM_4760_RPM * TAU / 60.0;
     let force = mass_unit * omega * omega * radius * radius;
