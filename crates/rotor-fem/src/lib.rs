@@ -57,8 +57,8 @@ pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
 pub use moderate::{
     AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalMotion, ModalShape, ModalTangent,
     ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion, PitchMotion, RootSupport,
-    RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, deflected_fan,
-    deflected_modes,
+    RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, TorsionTerms, TwistAngle,
+    Untwist, deflected_fan, deflected_modes,
 };
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
 pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};

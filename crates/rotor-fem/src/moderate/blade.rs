@@ -64,6 +64,36 @@ pub enum RotaryInertia {
     Included,
 }
 
+/// Whether tension turns the built-in twist straight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Untwist {
+    /// The moment `N k_A^2 th_x` acts, as the energy says.
+    #[default]
+    Included,
+    /// Tension stiffens the elastic twist only, `N k_A^2 phi_x`.
+    Neglected,
+}
+
+/// What the degree of freedom phi is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TwistAngle {
+    /// The last of three rotations (lag, flap, pitch): the section's pitch. Bending in two planes twists
+    /// it, `kappa_x = phi_x + w_x v_xx`.
+    #[default]
+    Rotation,
+    /// The elastic twist, taken for the pitch: `kappa_x = phi_x`.
+    Elastic,
+}
+
+/// Terms of second order in torsion that published formulations keep or drop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TorsionTerms {
+    /// Tension on the built-in twist.
+    pub untwist: Untwist,
+    /// The twist angle.
+    pub angle: TwistAngle,
+}
+
 /// A blade for moderate deflections as its user describes it, rotor units (as [`BladeSpec`]).
 ///
 /// Offsets are over R, positive toward the leading edge. Mass radii `k_m1`, `k_m2` are about the elastic
@@ -81,6 +111,8 @@ pub struct ModerateSpec {
     pub root: RootSupport,
     /// Rotary inertia of bending.
     pub rotary_inertia: RotaryInertia,
+    /// Terms of second order in torsion.
+    pub torsion: TorsionTerms,
 }
 
 impl From<BladeSpec> for ModerateSpec {
@@ -92,6 +124,7 @@ impl From<BladeSpec> for ModerateSpec {
             mass_centre: 0.0.into(),
             tension_centre: 0.0.into(),
             rotary_inertia: RotaryInertia::default(),
+            torsion: TorsionTerms::default(),
         }
     }
 }
@@ -199,7 +232,14 @@ impl ModerateBlade {
             axial: p.axial_stiffness(station),
             area_radius_squared: p.squared_area_radius(station),
             tension_centre: self.spec.tension_centre.value(station),
-            twist_rate: p.twist_rate_rad(station),
+            twist_rate: match self.spec.torsion.untwist {
+                Untwist::Included => p.twist_rate_rad(station),
+                Untwist::Neglected => 0.0,
+            },
+            bending_twist: match self.spec.torsion.angle {
+                TwistAngle::Rotation => 1.0,
+                TwistAngle::Elastic => 0.0,
+            },
         }
     }
 

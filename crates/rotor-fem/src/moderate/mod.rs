@@ -17,7 +17,10 @@ mod points;
 mod statics;
 mod strain;
 
-pub use blade::{Joint, ModerateBlade, ModerateSpec, RootSupport, RotaryInertia};
+pub use blade::{
+    Joint, ModerateBlade, ModerateSpec, RootSupport, RotaryInertia, TorsionTerms, TwistAngle,
+    Untwist,
+};
 pub use free_motion::{FreeMotion, MotionState};
 pub use modal::{ModalBlade, ModalForce, ModalMotion, ModalShape, SectionShape};
 pub use modal_tangent::ModalTangent;

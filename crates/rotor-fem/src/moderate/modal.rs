@@ -448,7 +448,7 @@ impl Section {
         let two = T::from_real(2.0);
         let [ka_2, ea] =
             [self.stiffness.area_radius_squared, self.stiffness.tension_centre].map(T::from_real);
-        let k = super::strain::Curvatures::new(state.pitch[0], s);
+        let k = super::strain::Curvatures::new(state.pitch[0], 0.0, s);
         let [sin, cos] = [k.z.gradient[at::W_XX], k.z.gradient[at::V_XX]];
         let bending = two * t1 * (s1[at::W_XX] * cos - s1[at::V_XX] * sin) - t1 * t1 * k.z.value;
         let squares = s1[at::V_X] * s1[at::V_X]

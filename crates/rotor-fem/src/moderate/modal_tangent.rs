@@ -99,7 +99,7 @@ fn shortening(
     let [s, s1, s2] = &station.strain;
     let pitch = station.state.pitch;
     let (t1, t2) = (s1[at::PHI] + pitch[1], s2[at::PHI] + pitch[2]);
-    let k = Curvatures::new(pitch[0], s);
+    let k = Curvatures::new(pitch[0], 0.0, s);
     let [sin, cos] = [k.z.gradient[at::W_XX], k.z.gradient[at::V_XX]];
     let lag = [cos, -sin * t1, -cos * t1 * t1 - sin * t2];
     let flap = [sin, cos * t1, cos * t2 - sin * t1 * t1];

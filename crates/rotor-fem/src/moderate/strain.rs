@@ -33,8 +33,10 @@ pub(crate) struct SectionStiffness {
     pub(crate) area_radius_squared: f64,
     /// `e_A`, tension centre ahead of the elastic axis.
     pub(crate) tension_centre: f64,
-    /// Rate of the built-in twist along the radius.
+    /// Rate of the built-in twist along the radius, as far as tension works on it.
     pub(crate) twist_rate: f64,
+    /// 1 where bending in two planes twists the section by itself, else 0.
+    pub(crate) bending_twist: f64,
 }
 
 /// A strain measure with its gradient in the strain variables.
@@ -48,8 +50,9 @@ pub(crate) struct Measure<T> {
 ///
 /// ```text
 /// kappa_z = v_xx cos th1 + w_xx sin th1      kappa_y = w_xx cos th1 - v_xx sin th1
-/// kappa_x = phi_x + w_x v_xx                 th1 = pitch + twist + phi
+/// kappa_x = phi_x + b w_x v_xx               th1 = pitch + twist + phi
 /// ```
+/// b is 1 where phi is the last of three rotations (lag, flap, pitch), 0 where it is the elastic twist.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Curvatures<T> {
     pub(crate) z: Measure<T>,
@@ -58,8 +61,9 @@ pub(crate) struct Curvatures<T> {
 }
 
 impl<T: Scalar> Curvatures<T> {
-    /// At the strain variables `s` and the pitch plus built-in twist `theta_rad`.
-    pub(crate) fn new(theta_rad: f64, s: &[T; STRAIN_VARIABLES]) -> Self {
+    /// At the strain variables `s`, the pitch plus built-in twist `theta_rad` and the factor b.
+    pub(crate) fn new(theta_rad: f64, bending_twist: f64, s: &[T; STRAIN_VARIABLES]) -> Self {
+        let b = T::from_real(bending_twist);
         let (sin, cos) = (s[at::PHI] + T::from_real(theta_rad)).sin_cos();
         let (zero, one) = (T::zero(), T::one());
         let z = s[at::V_XX] * cos + s[at::W_XX] * sin;
@@ -68,8 +72,8 @@ impl<T: Scalar> Curvatures<T> {
             z: Measure { value: z, gradient: [zero, zero, zero, cos, sin, y, zero] },
             y: Measure { value: y, gradient: [zero, zero, zero, -sin, cos, -z, zero] },
             x: Measure {
-                value: s[at::PHI_X] + s[at::W_X] * s[at::V_XX],
-                gradient: [zero, zero, s[at::V_XX], s[at::W_X], zero, zero, one],
+                value: s[at::PHI_X] + b * s[at::W_X] * s[at::V_XX],
+                gradient: [zero, zero, b * s[at::V_XX], b * s[at::W_X], zero, zero, one],
             },
         }
     }
@@ -89,7 +93,7 @@ impl SectionStiffness {
         let (half, twist_rate) = (T::from_real(0.5), T::from_real(self.twist_rate));
         let [ka_2, ea] = [self.area_radius_squared, self.tension_centre].map(T::from_real);
         let [v_x, w_x, phi_x] = [s[at::V_X], s[at::W_X], s[at::PHI_X]];
-        let bending = Curvatures::new(theta_rad, s).z;
+        let bending = Curvatures::new(theta_rad, self.bending_twist, s).z;
         let mut gradient = bending.gradient.map(|g| -ea * g);
         gradient[at::U_X] += T::one();
         gradient[at::V_X] += v_x;
@@ -108,7 +112,7 @@ impl SectionStiffness {
     /// Source: D. H. Hodges, E. H. Dowell, NASA TN D-7818 (1974), moderate-deflection strain energy; the
     /// trigonometric functions are kept whole. Not modelled: warping, shear.
     pub(crate) fn bending_energy<T: Scalar>(&self, theta_rad: f64, s: &[T; STRAIN_VARIABLES]) -> T {
-        let k = Curvatures::new(theta_rad, s);
+        let k = Curvatures::new(theta_rad, self.bending_twist, s);
         let half = |stiffness: f64, value: T| value * value * T::from_real(0.5 * stiffness);
         half(self.lag, k.z.value) + half(self.flap, k.y.value) + half(self.torsion, k.x.value)
     }
@@ -125,7 +129,7 @@ impl SectionStiffness {
         theta_rad: f64,
         s: &[T; STRAIN_VARIABLES],
     ) -> [T; STRAIN_VARIABLES] {
-        let k = Curvatures::new(theta_rad, s);
+        let k = Curvatures::new(theta_rad, self.bending_twist, s);
         let parts = [(self.lag, k.z), (self.flap, k.y), (self.torsion, k.x)];
         let parts = parts.map(|(stiffness, m)| (m.value * T::from_real(stiffness), m.gradient));
         std::array::from_fn(|i| {
@@ -149,7 +153,7 @@ impl SectionStiffness {
         theta_rad: f64,
         s: &[f64; STRAIN_VARIABLES],
     ) -> SMatrix<f64, STRAIN_VARIABLES, STRAIN_VARIABLES> {
-        let k = Curvatures::new(theta_rad, s);
+        let k = Curvatures::new(theta_rad, self.bending_twist, s);
         let mut out = SMatrix::zeros();
         add_square(&mut out, self.lag, &k.z.gradient);
         add_square(&mut out, self.flap, &k.y.gradient);
@@ -158,7 +162,8 @@ impl SectionStiffness {
         add_rotation(&mut out, mz, &k.z, &k.y.gradient);
         // kappa_y is kappa_z a quarter turn ahead, so its own partner is -kappa_z
         add_rotation(&mut out, my, &k.y, &k.z.gradient.map(|g| -g));
-        add_pair(&mut out, (at::W_X, at::V_XX), self.torsion * k.x.value);
+        let coupling = self.torsion * k.x.value * self.bending_twist;
+        add_pair(&mut out, (at::W_X, at::V_XX), coupling);
         out
     }
 
@@ -169,7 +174,7 @@ impl SectionStiffness {
         s: &[f64; STRAIN_VARIABLES],
         n: f64,
     ) -> SMatrix<f64, STRAIN_VARIABLES, STRAIN_VARIABLES> {
-        let k = Curvatures::new(theta_rad, s);
+        let k = Curvatures::new(theta_rad, self.bending_twist, s);
         let mut out = SMatrix::zeros();
         out[(at::V_X, at::V_X)] = n;
         out[(at::W_X, at::W_X)] = n;
@@ -237,6 +242,7 @@ mod tests {
             area_radius_squared: 0.2,
             tension_centre: 0.15,
             twist_rate: -0.4,
+            bending_twist: 0.7,
         }
     }
 
