@@ -152,6 +152,18 @@ pub enum FemError {
         /// The state at that part.
         last: Box<StaticState>,
     },
+    /// A vector is not over the blade's degrees of freedom.
+    #[error(
+        "{field} has {found} entries, the blade {expected} degrees of freedom: build it with the same model"
+    )]
+    DofCount {
+        /// Name of the argument.
+        field: &'static str,
+        /// Number of entries.
+        found: usize,
+        /// Number of degrees of freedom.
+        expected: usize,
+    },
     /// The step of a free motion was not found.
     #[error(
         "free motion: step {step} left {residual:e} of the momentum out of balance after \

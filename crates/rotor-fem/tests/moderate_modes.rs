@@ -3,14 +3,14 @@
 
 mod blades;
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use blades::{EPPS_CHANDRA_RPM, TM_4760_RPM, epps_chandra_strip, number, table, tm_4760_blade};
 use nalgebra::{DMatrix, DVector};
 use rotor_fem::{
-    AxialMotion, BladeSpec, CoupledMode, FemError, GyroscopicTerms, ModeCount, ModeKind,
-    ModerateBlade, ModerateModel, ModerateSpec, NodalMotion, RotaryInertia, StaticSettings,
-    StaticState, Twist, deflected_fan, deflected_modes,
+    AxialMotion, BladeSpec, CoupledMode, FemError, GyroscopicTerms, ModalBlade, ModalMotion,
+    ModeCount, ModeKind, ModerateBlade, ModerateModel, ModerateSpec, NodalMotion, RotaryInertia,
+    StaticSettings, StaticState, Twist, deflected_fan, deflected_modes,
 };
 
 fn at_rest(spec: ModerateSpec, elements: usize) -> (ModerateModel, StaticState) {
@@ -220,6 +220,34 @@ fn condensed_axial_motion_keeps_the_frequencies() {
     assert!(lowest > 1.02 * free.iter().map(|m| m.frequency).fold(f64::INFINITY, f64::min));
 }
 
+/// The reduced blade stands in balance where the elements do and vibrates at their frequencies.
+#[test]
+fn the_modal_blade_has_the_balance_and_the_frequencies_of_its_elements() {
+    let (model, state) = bent();
+    let (blade, modes) = ModalBlade::about(&model, &state, ModeCount::default(), 6).unwrap();
+    let still = vec![0.0; modes.len()];
+    let motion = ModalMotion { value: &still, rate: &still, acceleration: &still };
+    let found = blade.tangent(motion, model.own_pitch());
+    let loads: Vec<[f64; 4]> =
+        blade.stations().iter().map(|x| [0.0, -2e-3 * x, 0.03 * x * x, 0.0]).collect();
+    let work = blade.applied(&still, model.own_pitch(), &loads);
+    for (k, mode) in modes.iter().enumerate() {
+        let gap = (found.force[k] - work[k]).abs();
+        let square = mode.frequency.powi(2);
+        let frequency =
+            (found.stiffness[(k, k)] / found.mass[(k, k)]).sqrt() / mode.frequency - 1.0;
+        println!(
+            "{} {}: out of balance {gap:.1e}, mass {:.6}, frequency {frequency:.1e}",
+            mode.kind,
+            mode.number,
+            found.mass[(k, k)]
+        );
+        assert!(gap < 2e-4 * square.max(1.0), "{gap:e}");
+        assert!((found.mass[(k, k)] - 1.0).abs() < 2e-3);
+        assert!(frequency.abs() < 2e-3, "{frequency}");
+    }
+}
+
 #[test]
 fn as_many_modes_as_asked_and_a_named_refusal_beyond() {
     let (model, state) = bent();
@@ -235,5 +263,4 @@ fn as_many_modes_as_asked_and_a_named_refusal_beyond() {
         assert!((mode.in_phase.dot(&(&about.mass * &mode.in_phase)) - 1.0).abs() < 1e-6);
     }
     assert!(matches!(ask(60), Err(FemError::TooFewModes { kind: ModeKind::Flap, .. })));
-    let _ = TAU;
 }

@@ -8,7 +8,7 @@ use blades::{number, princeton_blade, table};
 use nalgebra::DVector;
 use rotor_fem::{
     BladeSpec, Distribution, FemError, Joint, ModerateBlade, ModerateModel, ModerateSpec,
-    NodalMotion, PitchMotion, RootSupport, StaticSettings, StaticState, Twist,
+    NodalMotion, RootSupport, StaticSettings, StaticState, Twist,
 };
 
 fn model(spec: ModerateSpec, elements: usize) -> ModerateModel {
@@ -198,6 +198,48 @@ fn pitch_link_and_hinge_springs_carry_their_moments() {
     assert_eq!(beam.free().len(), 9 * 3 + 2);
 }
 
+/// A pull along the elastic axis bends a beam whose tension centre lies off it: `v_xx = N e_A / EI_z`.
+#[test]
+fn an_offset_tension_centre_bends_under_tension() {
+    let spec = ModerateSpec { tension_centre: 0.01.into(), ..unit_beam(1e4) };
+    let beam = model(spec, 4);
+    let pull = 1e-3;
+    let state = solve(&beam, &beam.tip_load([pull, 0.0, 0.0], 0.0));
+    let [u, v, w, _] = tip(&beam, &state);
+    assert!((v / (pull * 0.01 / (2.0 * 3.0)) - 1.0).abs() < 1e-3, "{v}");
+    assert!(w.abs() < 1e-12 && (u - pull / 1e4).abs() < 1e-6);
+}
+
+/// Closed equilibria of a stiff rotating blade: its hinges and bearing turn until nothing is out of balance.
+#[test]
+fn hinges_and_bearing_turn_to_their_closed_equilibria() {
+    let stiff = |root: RootSupport, offset: f64, precone_rad: f64, pitch_rad: f64| {
+        let blade = BladeSpec {
+            root_offset: 0.1,
+            precone_rad,
+            pitch_rad,
+            ..BladeSpec::uniform(50.0, 50.0, 50.0, 1e5)
+        };
+        let model = model(ModerateSpec { mass_centre: offset.into(), root, ..blade.into() }, 6);
+        let state = solve(&model, &DVector::zeros(model.size()));
+        let s = model.section(&state.dof, 0.1).unwrap();
+        [s.lag[1], s.flap[1], s.twist[0]]
+    };
+    let held = RootSupport { flap: Joint::Locked, lag: Joint::Locked, feather: Joint::Locked };
+    // lag hinge: the mass centre of the whole blade lies on the radius through the hinge
+    let [lag, _, _] = stiff(RootSupport { lag: Joint::FREE, ..held }, 0.004, 0.0, 0.0);
+    assert!((lag / (-2.0 * 0.004 / 0.9) - 1.0).abs() < 3e-3, "{lag}");
+    // flap hinge: a preconed blade returns to the plane of rotation
+    let [_, flap, _] = stiff(RootSupport { flap: Joint::FREE, ..held }, 0.0, 0.03, 0.0);
+    assert!((flap / -0.03 - 1.0).abs() < 2e-3, "{flap}");
+    // bearing: the propeller moment against the pitch link
+    let link = RootSupport { feather: Joint::Spring { stiffness: 0.02 }, ..held };
+    let [_, _, turn] = stiff(link, 0.0, 0.0, 0.2);
+    let moment = 0.9 * (0.0247_f64.powi(2) - 0.0132_f64.powi(2));
+    let closed = |turn: f64| -moment * (0.2 + turn).sin() * (0.2 + turn).cos() / 0.02;
+    assert!((turn / closed(turn) - 1.0).abs() < 2e-3, "{turn} {}", closed(turn));
+}
+
 #[test]
 fn a_static_state_that_is_not_found_is_reported_with_the_last_good_one() {
     // a free hinge without rotation carries no load
@@ -271,9 +313,11 @@ fn bad_blades_and_settings_are_named_with_the_remedy() {
         let text = beam.static_state(&load, &settings).unwrap_err().to_string();
         assert!(text.contains(field), "{text}");
     }
+    let short = DVector::zeros(5);
+    let text = beam.static_state(&short, &StaticSettings::default()).unwrap_err().to_string();
+    assert!(text.contains("load has 5 entries"), "{text}");
     load[9] = f64::NAN;
     let text = beam.static_state(&load, &StaticSettings::default()).unwrap_err().to_string();
     assert!(text.contains("load"), "{text}");
     assert!(ModerateModel::new(ModerateBlade::new(good()).unwrap(), 0).is_err());
-    let _ = PitchMotion::steady(0.1);
 }

@@ -6,7 +6,7 @@ use crate::case::{
 };
 use crate::problem::Place;
 use flap_aero::AttachedFlowModel;
-use rotor_fem::{BladeProperties, BladeSpec, ModeCount, Twist};
+use rotor_fem::{BladeProperties, BladeSpec, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, RotorModel,
     TrailingEdgeFlap,
@@ -51,6 +51,7 @@ impl Case {
             couplings: match self.blade.couplings {
                 CouplingsChoice::Linear => Couplings::Linear,
                 CouplingsChoice::Full => Couplings::Full,
+                CouplingsChoice::Moderate => Couplings::Moderate(TorsionTerms::default()),
             },
             section_model: self.section_model(),
             compressibility: match self.section.compressibility {

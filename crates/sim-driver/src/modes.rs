@@ -109,8 +109,7 @@ fn modes_at(
             let none = DVector::zeros(model.size());
             let state = model.static_state(&none, &StaticSettings::default())?;
             let tip = model.section(&state.dof, 1.0)?;
-            let found =
-                deflected_modes(&model, &state, question.terms, AxialMotion::Free, count)?;
+            let found = deflected_modes(&model, &state, question.terms, AxialMotion::Free, count)?;
             (found, Some(tip.into()))
         }
     };

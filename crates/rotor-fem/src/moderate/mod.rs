@@ -14,6 +14,7 @@ mod modal_tangent;
 mod model;
 mod modes;
 mod points;
+mod span;
 mod statics;
 mod strain;
 

@@ -10,10 +10,9 @@
 //!
 //! Left out: the stretch by the changing part of the tension, of the order of its ratio to EA.
 
-use rotor_base::{LagrangeBasis, gauss_legendre};
-
 use super::inertia::{MOTION_VARIABLES, SectionMass, SectionState, Spin};
-use super::strain::{STRAIN_VARIABLES, SectionStiffness, at};
+use super::span::Span;
+use super::strain::{Curvatures, STRAIN_VARIABLES, SectionStiffness, at};
 use super::{ModerateBlade, PitchMotion, Scalar};
 use crate::FemError;
 
@@ -96,62 +95,6 @@ pub(super) struct Section {
     pub(super) mass: SectionMass,
     /// Stretch by the steady tension, `T0 / EA`.
     stretch: f64,
-}
-
-/// Gauss points of a blade cut into pieces, with running integrals.
-#[derive(Debug, Clone)]
-pub(super) struct Span {
-    pub(super) stations: Vec<f64>,
-    pub(super) weights: Vec<f64>,
-    halves: Vec<f64>,
-    running: Vec<Vec<f64>>,
-}
-
-impl Span {
-    pub(super) fn new(edges: &[f64], points: usize) -> Self {
-        let rule = gauss_legendre(points);
-        let mut span = Self {
-            stations: Vec::new(),
-            weights: Vec::new(),
-            halves: Vec::new(),
-            running: LagrangeBasis::new(rule.nodes.clone()).integration_matrix(),
-        };
-        for pair in edges.windows(2) {
-            let (half, mid) = (0.5 * (pair[1] - pair[0]), 0.5 * (pair[1] + pair[0]));
-            span.halves.push(half);
-            span.stations.extend(rule.nodes.iter().map(|node| mid + half * node));
-            span.weights.extend(rule.weights.iter().map(|weight| half * weight));
-        }
-        span
-    }
-
-    /// Integral from the root to every station.
-    ///
-    /// For Gauss points it is the adjoint of [`Self::to_tip`] to the last bit of the arithmetic: virtual
-    /// work is done by the very forces that are summed.
-    pub(super) fn from_root<T: Scalar>(&self, f: &[T]) -> Vec<T> {
-        let count = self.running.len() - 1;
-        let mut before = T::zero();
-        let mut out = Vec::with_capacity(f.len());
-        for (values, half) in f.chunks_exact(count).zip(&self.halves) {
-            let partial = |row: &[f64]| {
-                let sum = row.iter().zip(values);
-                sum.fold(T::zero(), |sum, (a, b)| sum + *b * T::from_real(a * half))
-            };
-            out.extend(self.running[..count].iter().map(|row| before + partial(row)));
-            before += partial(&self.running[count]);
-        }
-        out
-    }
-
-    /// Integral from every station to the tip.
-    pub(super) fn to_tip<T: Scalar>(&self, f: &[T]) -> Vec<T> {
-        let whole = f
-            .iter()
-            .zip(&self.weights)
-            .fold(T::zero(), |sum, (value, weight)| sum + *value * T::from_real(*weight));
-        self.from_root(f).into_iter().map(|part| whole - part).collect()
-    }
 }
 
 /// Motion of one station, the axial one included.
@@ -448,7 +391,7 @@ impl Section {
         let two = T::from_real(2.0);
         let [ka_2, ea] =
             [self.stiffness.area_radius_squared, self.stiffness.tension_centre].map(T::from_real);
-        let k = super::strain::Curvatures::new(state.pitch[0], 0.0, s);
+        let k = Curvatures::new(state.pitch[0], 0.0, s);
         let [sin, cos] = [k.z.gradient[at::W_XX], k.z.gradient[at::V_XX]];
         let bending = two * t1 * (s1[at::W_XX] * cos - s1[at::V_XX] * sin) - t1 * t1 * k.z.value;
         let squares = s1[at::V_X] * s1[at::V_X]

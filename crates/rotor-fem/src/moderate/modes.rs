@@ -26,10 +26,8 @@ pub enum AxialMotion {
 ///
 /// # Errors
 /// [`FemError::NotStable`] when the stiffness about the state has a negative direction,
-/// [`FemError::TooFewModes`], [`FemError::Eigen`].
-///
-/// # Panics
-/// If the state is not over all degrees of freedom of the model.
+/// [`FemError::TooFewModes`], [`FemError::Eigen`], [`FemError::DofCount`] for the state of another
+/// model.
 pub fn deflected_modes(
     model: &ModerateModel,
     state: &StaticState,
@@ -37,6 +35,10 @@ pub fn deflected_modes(
     axial: AxialMotion,
     count: ModeCount,
 ) -> Result<Vec<CoupledMode>, FemError> {
+    if state.dof.len() != model.size() {
+        let (found, expected) = (state.dof.len(), model.size());
+        return Err(FemError::DofCount { field: "state", found, expected });
+    }
     let pitch = PitchMotion::steady(state.pitch_rad);
     let about = model.tangents(&NodalMotion::steady(state.dof.clone()), pitch);
     let free = model.free();

@@ -54,16 +54,18 @@ impl ModerateModel {
     /// does not converge is halved.
     ///
     /// # Errors
+    /// [`FemError::DofCount`] for a load that is not over all degrees of freedom,
     /// [`FemError::Parameter`] for a setting out of range or a load that is not finite,
     /// [`FemError::NoStaticState`] with the last state found when the load steps become too small.
-    ///
-    /// # Panics
-    /// If the load is not over all [`Self::size`] degrees of freedom.
     pub fn static_state(
         &self,
         load: &DVector<f64>,
         settings: &StaticSettings,
     ) -> Result<StaticState, FemError> {
+        if load.len() != self.size() {
+            let (found, expected) = (load.len(), self.size());
+            return Err(FemError::DofCount { field: "load", found, expected });
+        }
         check(load, settings)?;
         let mut state = StaticState {
             dof: DVector::zeros(self.size()),
