@@ -7,6 +7,8 @@
 //! | What is the blade? | [`BladeSpec`], checked by [`BladeProperties`] |
 //! | What are its matrices? | [`BladeModel`] |
 //! | At which frequencies does it vibrate? | [`modes`], [`fan_plot`] |
+//! | How does it deflect, and vibrate about that? | [`ModerateModel`], [`deflected_modes`] |
+//! | What are its modal equations then? | [`ModalBlade`] |
 //! | Which shapes does the response use? | [`uncoupled_modes`] and its [`ModeSet`] |
 //! | Which motion repeats every revolution? | [`PeriodicSolver`] for any [`PeriodicSystem`] |
 //!
