@@ -46,7 +46,7 @@ fn congruence(l1: &Mat<f64>, a: &DMatrix<f64>, l2: &Mat<f64>) -> Mat<f64> {
 
 /// Squared frequency that round-off may put in the place of zero: the digits that the stiffest motion
 /// leaves.
-pub(crate) fn round_off(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> f64 {
+fn round_off(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> f64 {
     let stiffest = |i| stiffness[(i, i)] / mass[(i, i)];
     1e-15 * (0..mass.nrows()).map(stiffest).fold(0.0, f64::max)
 }

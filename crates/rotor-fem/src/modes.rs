@@ -3,7 +3,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::assembly::{dof_kind, restrict};
-use crate::eigen::{EigenPair, gyroscopic, round_off, symmetric};
+use crate::eigen::{EigenPair, gyroscopic, symmetric};
 use crate::mode_set::{kind_offset, shift};
 use crate::shape::JOINT_DOF;
 use crate::{BladeModel, BladeProperties, FemError, ModeCount, ModeKind};
@@ -136,7 +136,7 @@ impl ModeProblem {
             GyroscopicTerms::Neglected => real.iter().map(to_complex).collect(),
             GyroscopicTerms::Included => {
                 let lowest = real.first().map_or(0.0, |pair| pair.squared_frequency);
-                let floor = NEUTRAL * self.shift + 10.0 * round_off(mass, stiffness);
+                let floor = NEUTRAL * self.shift;
                 let firm =
                     if lowest < floor { stiffness + mass * floor } else { stiffness.clone() };
                 gyroscopic(mass, &self.gyroscopic, &firm, lowest)?

@@ -4,9 +4,10 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use nalgebra::{DMatrix, DVector};
 
+use super::element::Imposed;
 use super::{ModerateModel, NodalMotion, PitchMotion};
-use crate::FemError;
-use crate::assembly::restrict;
+use crate::assembly::{dof_kind, restrict};
+use crate::{FemError, ModeKind};
 
 /// How the static deflection is sought.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,6 +109,7 @@ impl ModerateModel {
         let imposed = self.imposed(PitchMotion::steady(from.pitch_rad), load_factor.sqrt());
         let applied = load * load_factor;
         let mut motion = NodalMotion::steady(from.dof.clone());
+        self.pull_taut(&mut motion, &imposed, &applied);
         let mut best: Option<(DVector<f64>, f64)> = None;
         let mut last = f64::INFINITY;
         for iteration in 0..settings.iterations {
@@ -145,6 +147,21 @@ impl ModerateModel {
             let iterations = from.iterations + settings.iterations;
             Ok(StaticState { dof, load_factor, residual, pitch_rad: from.pitch_rad, iterations })
         })
+    }
+
+    /// Moves the axial degrees of freedom into balance, the others held; they are linear then.
+    ///
+    /// Without the tension that this brings, a hinged blade has no stiffness and the first Newton step
+    /// goes astray.
+    fn pull_taut(&self, motion: &mut NodalMotion, imposed: &Imposed, applied: &DVector<f64>) {
+        let axial: Vec<usize> =
+            self.free().iter().copied().filter(|&i| dof_kind(i) == ModeKind::Axial).collect();
+        let about = self.tangents_at(motion, imposed);
+        let gap = DVector::from_fn(axial.len(), |k, _| applied[axial[k]] - about.force[axial[k]]);
+        let step = solve(&restrict(&about.stiffness, &axial), &gap);
+        for (&i, value) in axial.iter().zip(step.iter()) {
+            motion.value[i] += value;
+        }
     }
 
     /// The entries of the free degrees of freedom.
