@@ -151,7 +151,7 @@ fn the_deflected_rotating_blade_is_in_balance() {
     let load = model.distributed_load(|x| [0.0, -1e-3 * x, 8e-3 * x * x, -2e-6]);
     let state = solve(&model, &load);
     println!("tip {:?}, {} steps, {:e}", tip(&model, &state), state.iterations, state.residual);
-    assert!(state.load_factor == 1.0 && state.residual < 1e-9);
+    assert!(state.load_factor >= 1.0 && state.residual < 1e-9);
     let about = model.tangents(&NodalMotion::steady(state.dof.clone()), model.own_pitch());
     let gap = |m: &nalgebra::DMatrix<f64>, sign: f64| (m - m.transpose() * sign).amax() / m.amax();
     assert!(gap(&about.stiffness, 1.0) < 1e-13);
@@ -255,8 +255,8 @@ fn a_static_state_that_is_not_found_is_reported_with_the_last_good_one() {
         panic!("{failed}");
     };
     println!("{failed}");
-    assert!(*iterations > 0 && !(*residual < 1e-6) && *load_factor < 1.0);
-    assert!(last.dof.iter().all(|x| x.is_finite()) && last.load_factor == *load_factor);
+    assert!(*iterations > 0 && *residual > 1e-6 && *load_factor < 1.0);
+    assert!(last.dof.iter().all(|x| x.is_finite()) && (last.load_factor - load_factor).abs() < 1e-15);
 }
 
 #[test]

@@ -23,6 +23,9 @@ pub(super) fn princeton_beam() -> ModerateSpec {
     BladeSpec { rotor_speed: 0.0, ..BladeSpec::uniform(soft, stiff, torsion, axial) }.into()
 }
 
+/// A property of a section from its row.
+type Value<'a> = &'a dyn Fn(TableRow<'_>) -> Result<f64, CheckError>;
+
 /// Rotor speed that the units of [`tm_4760_blade`] refer to, rpm.
 pub(super) const TM_4760_RPM: f64 = 660.0;
 
@@ -41,7 +44,6 @@ pub(super) fn tm_4760_blade() -> Result<ModerateSpec, CheckError> {
         edges.push(row.number("r_in")? / radius);
     }
     edges.push(1.0);
-    type Value<'a> = &'a dyn Fn(TableRow<'_>) -> Result<f64, CheckError>;
     let steps = |value: Value<'_>| -> Result<Distribution, CheckError> {
         let values = table.rows().map(value).collect::<Result<_, _>>()?;
         Ok(Distribution::PiecewiseConstant { edges: edges.clone(), values })

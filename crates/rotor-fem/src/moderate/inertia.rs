@@ -421,7 +421,9 @@ mod tests {
     fn tangents_are_the_gradients_of_the_force() {
         let (m, spin) = (mass(), spin());
         let tangent = m.tangent(&spin, &state());
-        assert_eq!(tangent.force, m.force(&spin, &state()));
+        for (a, b) in tangent.force.iter().zip(m.force(&spin, &state())) {
+            assert!((a - b).abs() < 1e-15);
+        }
         for l in 0..MOTION_VARIABLES {
             let mut moved = [complex(&state()); 3];
             moved[0].value[l].im = STEP;

@@ -302,7 +302,7 @@ impl ModalBlade {
             }
             stations.push(station);
         }
-        let [u, u1, u2] = slopes.each_ref().map(|slope| self.span.from_root(slope));
+        let [u, u1, u2] = slopes.each_ref().map(|slope| self.span.running(slope));
         for (i, station) in stations.iter_mut().enumerate() {
             station.state.value[0] = u[i];
             station.state.rate[0] = u1[i];

@@ -49,7 +49,7 @@ impl ModalBlade {
                     };
                     loaded.stations.iter().enumerate().map(of).collect::<Vec<f64>>()
                 });
-                slopes.each_ref().map(|slope| self.span.from_root(slope))
+                slopes.each_ref().map(|slope| self.span.running(slope))
             })
             .collect();
         for (i, station) in loaded.stations.iter().enumerate() {
@@ -266,14 +266,14 @@ mod tests {
         };
         let motion = ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
         let force = blade.force(motion, pitch()).generalised;
-        for k in 0..MODES {
+        for (k, got) in force.iter().enumerate() {
             let h = 1e-4;
             let momentum_rate = (8.0 * (slope(h, k, true) - slope(-h, k, true))
                 - (slope(2.0 * h, k, true) - slope(-2.0 * h, k, true)))
                 / (12.0 * h);
             let expected = momentum_rate - slope(0.0, k, false);
-            let gap = (force[k] - expected).abs();
-            assert!(gap < 1e-9 * (1.0 + expected.abs()), "{k}: {} {expected}", force[k]);
+            let gap = (got - expected).abs();
+            assert!(gap < 1e-9 * (1.0 + expected.abs()), "{k}: {got} {expected}");
         }
     }
 }

@@ -54,7 +54,7 @@ pub fn deflected_modes(
     match axial {
         AxialMotion::Free => whole.solve(terms, count),
         AxialMotion::Condensed => {
-            let condensed = Condensed::new(whole, terms)?;
+            let condensed = Condensed::new(&whole, terms)?;
             let mut found = condensed.problem.solve(terms, count)?;
             for mode in &mut found {
                 condensed.add_axial(mode, terms);
@@ -106,7 +106,7 @@ struct Condensed {
 }
 
 impl Condensed {
-    fn new(whole: ModeProblem, terms: GyroscopicTerms) -> Result<Self, FemError> {
+    fn new(whole: &ModeProblem, terms: GyroscopicTerms) -> Result<Self, FemError> {
         let places = |axial: bool| -> Vec<usize> {
             let is_axial = |i: &usize| (dof_kind(whole.free[*i]) == ModeKind::Axial) == axial;
             (0..whole.free.len()).filter(is_axial).collect()

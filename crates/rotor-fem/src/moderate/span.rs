@@ -10,7 +10,7 @@ pub(super) struct Span {
     pub(super) stations: Vec<f64>,
     pub(super) weights: Vec<f64>,
     halves: Vec<f64>,
-    running: Vec<Vec<f64>>,
+    integration: Vec<Vec<f64>>,
 }
 
 impl Span {
@@ -20,7 +20,7 @@ impl Span {
             stations: Vec::new(),
             weights: Vec::new(),
             halves: Vec::new(),
-            running: LagrangeBasis::new(rule.nodes.clone()).integration_matrix(),
+            integration: LagrangeBasis::new(rule.nodes.clone()).integration_matrix(),
         };
         for pair in edges.windows(2) {
             let (half, mid) = (0.5 * (pair[1] - pair[0]), 0.5 * (pair[1] + pair[0]));
@@ -35,8 +35,8 @@ impl Span {
     ///
     /// For Gauss points it is the adjoint of [`Self::to_tip`] to the last bit of the arithmetic: virtual
     /// work is done by the very forces that are summed.
-    pub(super) fn from_root<T: Scalar>(&self, f: &[T]) -> Vec<T> {
-        let count = self.running.len() - 1;
+    pub(super) fn running<T: Scalar>(&self, f: &[T]) -> Vec<T> {
+        let count = self.integration.len() - 1;
         let mut before = T::zero();
         let mut out = Vec::with_capacity(f.len());
         for (values, half) in f.chunks_exact(count).zip(&self.halves) {
@@ -44,8 +44,8 @@ impl Span {
                 let sum = row.iter().zip(values);
                 sum.fold(T::zero(), |sum, (a, b)| sum + *b * T::from_real(a * half))
             };
-            out.extend(self.running[..count].iter().map(|row| before + partial(row)));
-            before += partial(&self.running[count]);
+            out.extend(self.integration[..count].iter().map(|row| before + partial(row)));
+            before += partial(&self.integration[count]);
         }
         out
     }
@@ -56,7 +56,7 @@ impl Span {
             .iter()
             .zip(&self.weights)
             .fold(T::zero(), |sum, (value, weight)| sum + *value * T::from_real(*weight));
-        self.from_root(f).into_iter().map(|part| whole - part).collect()
+        self.running(f).into_iter().map(|part| whole - part).collect()
     }
 }
 
@@ -73,9 +73,9 @@ mod tests {
         let product = |a: &[f64], b: &[f64]| -> f64 {
             a.iter().zip(b).zip(&span.weights).map(|((a, b), w)| a * b * w).sum()
         };
-        let gap = product(&f, &span.from_root(&g)) - product(&span.to_tip(&f), &g);
+        let gap = product(&f, &span.running(&g)) - product(&span.to_tip(&f), &g);
         assert!(gap.abs() < 1e-14, "{gap:e}");
-        let line = span.from_root(&vec![2.0; span.stations.len()]);
+        let line = span.running(&vec![2.0; span.stations.len()]);
         for (x, value) in span.stations.iter().zip(line) {
             assert!((value - 2.0 * (x - 0.1)).abs() < 1e-15);
         }
