@@ -256,7 +256,9 @@ fn a_static_state_that_is_not_found_is_reported_with_the_last_good_one() {
     };
     println!("{failed}");
     assert!(*iterations > 0 && *residual > 1e-6 && *load_factor < 1.0);
-    assert!(last.dof.iter().all(|x| x.is_finite()) && (last.load_factor - load_factor).abs() < 1e-15);
+    assert!(
+        last.dof.iter().all(|x| x.is_finite()) && (last.load_factor - load_factor).abs() < 1e-15
+    );
 }
 
 #[test]
