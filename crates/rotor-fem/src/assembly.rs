@@ -7,7 +7,7 @@ use crate::shape::{ELEMENT_DOF, JOINT_DOF, Rows, STRIDE};
 use crate::{BladeProperties, FemError, ModeKind, RootCondition};
 
 /// Largest number of elements; dense algebra grows with its cube.
-const MAX_ELEMENTS: usize = 200;
+pub(crate) const MAX_ELEMENTS: usize = 200;
 
 /// Edges of `elements` equal elements from the blade's root to its tip.
 pub(crate) fn element_edges(

@@ -44,6 +44,13 @@ fn congruence(l1: &Mat<f64>, a: &DMatrix<f64>, l2: &Mat<f64>) -> Mat<f64> {
     both.transpose().to_owned()
 }
 
+/// Squared frequency that round-off may put in the place of zero: the digits that the stiffest motion
+/// leaves.
+fn round_off(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> f64 {
+    let stiffest = |i| stiffness[(i, i)] / mass[(i, i)];
+    1e-15 * (0..mass.nrows()).map(stiffest).fold(0.0, f64::max)
+}
+
 /// All solutions of `K x = w^2 M x`, lowest first.
 ///
 /// Solved as `M x = mu (K + shift M) x`, `mu = 1 / (w^2 + shift)`, whose largest eigenvalues are the
@@ -74,7 +81,7 @@ pub(crate) fn symmetric(
     pairs.sort_by(|a, b| a.squared_frequency.total_cmp(&b.squared_frequency));
     if let Some(first) = pairs.first_mut() {
         // round-off of a rigid motion, against a true divergence
-        if first.squared_frequency < -1e-9 * shift {
+        if first.squared_frequency < -(1e-9 * shift + round_off(mass, stiffness)) {
             return Err(FemError::NotStable { squared_frequency: first.squared_frequency });
         }
     }

@@ -1,6 +1,6 @@
 //! What can go wrong in building and solving the blade and its orbit.
 
-use crate::ModeKind;
+use crate::{ModeKind, StaticState};
 
 /// Failures of the blade finite elements.
 ///
@@ -133,6 +133,61 @@ pub enum FemError {
     NotStable {
         /// Lowest squared frequency in units of the nominal rotor speed squared.
         squared_frequency: f64,
+    },
+    /// The static deflection was not found.
+    #[error(
+        "no static deflection beyond {load_factor} of the load after {iterations} Newton steps: force out \
+         of balance {residual:e} of the largest, allowed {tolerance:e}; look for a hinge without \
+         spring on a blade at rest, a load beyond moderate deflection, or a blade that diverges"
+    )]
+    NoStaticState {
+        /// Newton steps done.
+        iterations: usize,
+        /// Force out of balance over the largest force, at the last try.
+        residual: f64,
+        /// Largest allowed.
+        tolerance: f64,
+        /// Part of load and squared rotor speed that could be carried.
+        load_factor: f64,
+        /// The state at that part.
+        last: Box<StaticState>,
+    },
+    /// A vector is not over the blade's degrees of freedom.
+    #[error(
+        "{field} has {found} entries, the blade {expected} degrees of freedom: build it with the same model"
+    )]
+    DofCount {
+        /// Name of the argument.
+        field: &'static str,
+        /// Number of entries.
+        found: usize,
+        /// Number of degrees of freedom.
+        expected: usize,
+    },
+    /// The step of a free motion was not found.
+    #[error(
+        "free motion: step {step} left {residual:e} of the momentum out of balance after \
+         {iterations} iterations; use a smaller time step than {time_step}"
+    )]
+    FreeMotionStep {
+        /// Number of the step, from 1.
+        step: usize,
+        /// Iterations done.
+        iterations: usize,
+        /// Momentum out of balance over the largest momentum.
+        residual: f64,
+        /// Time step, rad.
+        time_step: f64,
+    },
+    /// Shapes and stations of a modal blade do not match in number.
+    #[error("mode {mode} has {found} section shapes, the blade {expected} stations")]
+    ShapeCount {
+        /// Index of the mode, from 0.
+        mode: usize,
+        /// Number of shapes.
+        found: usize,
+        /// Number of stations.
+        expected: usize,
     },
     /// An eigenvalue solution did not converge.
     #[error(

@@ -7,6 +7,8 @@
 //! | What is the blade? | [`BladeSpec`], checked by [`BladeProperties`] |
 //! | What are its matrices? | [`BladeModel`] |
 //! | At which frequencies does it vibrate? | [`modes`], [`fan_plot`] |
+//! | How does it deflect, and vibrate about that? | [`ModerateModel`], [`deflected_modes`] |
+//! | What are its modal equations then? | [`ModalBlade`] |
 //! | Which shapes does the response use? | [`uncoupled_modes`] and its [`ModeSet`] |
 //! | Which motion repeats every revolution? | [`PeriodicSolver`] for any [`PeriodicSystem`] |
 //!
@@ -37,6 +39,7 @@ mod error;
 mod linear_periodic;
 mod mode_kind;
 mod mode_set;
+mod moderate;
 mod modes;
 mod newton_matrix;
 mod periodic;
@@ -53,6 +56,12 @@ pub use error::FemError;
 pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
+pub use moderate::{
+    AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalMotion, ModalShape, ModalTangent,
+    ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion, PitchMotion, RootSupport,
+    RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, TorsionTerms, TwistAngle,
+    Untwist, deflected_fan, deflected_modes,
+};
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
 pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
 pub use periodic_error::PeriodicError;

@@ -96,35 +96,95 @@ pub fn modes(
     count: ModeCount,
 ) -> Result<Vec<CoupledMode>, FemError> {
     let free = model.free();
-    let mass = restrict(model.mass(), free);
-    let stiffness = restrict(model.stiffness(), free);
-    let real = symmetric(&mass, &stiffness, shift(model.properties()))?;
-    let pairs: Vec<EigenPair<Complex<f64>>> = match terms {
-        GyroscopicTerms::Neglected => real.iter().map(to_complex).collect(),
-        GyroscopicTerms::Included => {
-            let gyro = restrict(model.gyroscopic(), free);
-            let lowest = real.first().map_or(0.0, |pair| pair.squared_frequency);
-            let floor = NEUTRAL * shift(model.properties());
-            let firm = if lowest < floor { stiffness + &mass * floor } else { stiffness };
-            gyroscopic(&mass, &gyro, &firm, lowest)?
-        }
+    let problem = ModeProblem {
+        size: model.mass().nrows(),
+        mass: restrict(model.mass(), free),
+        stiffness: restrict(model.stiffness(), free),
+        gyroscopic: restrict(model.gyroscopic(), free),
+        free: free.to_vec(),
+        shift: shift(model.properties()),
+        rotor_speed: model.properties().spec().rotor_speed,
     };
-    let classified: Vec<(EnergyShares, EigenPair<Complex<f64>>)> =
-        pairs.into_iter().map(|pair| (shares(free, &mass, &pair.vector), pair)).collect();
+    problem.solve(terms, count)
+}
 
-    let mut chosen = Vec::with_capacity(count.total());
-    for kind in ModeKind::ALL {
-        let family: Vec<_> =
-            classified.iter().filter(|(energy, _)| energy.leader() == kind).collect();
-        if family.len() < count.of(kind) {
-            let (wanted, available) = (count.of(kind), family.len());
-            return Err(FemError::TooFewModes { kind, wanted, available });
+/// Matrices over the free degrees of freedom whose modes are wanted.
+pub(crate) struct ModeProblem {
+    /// Number of all degrees of freedom.
+    pub(crate) size: usize,
+    /// The free ones, ascending.
+    pub(crate) free: Vec<usize>,
+    pub(crate) mass: DMatrix<f64>,
+    pub(crate) stiffness: DMatrix<f64>,
+    pub(crate) gyroscopic: DMatrix<f64>,
+    /// See [`shift`].
+    pub(crate) shift: f64,
+    pub(crate) rotor_speed: f64,
+}
+
+impl ModeProblem {
+    pub(crate) fn solve(
+        &self,
+        terms: GyroscopicTerms,
+        count: ModeCount,
+    ) -> Result<Vec<CoupledMode>, FemError> {
+        let Self { free, mass, stiffness, .. } = self;
+        let real = symmetric(mass, stiffness, self.shift)?;
+        let at_rest = self.gyroscopic.iter().all(|g| *g == 0.0);
+        let pairs: Vec<EigenPair<Complex<f64>>> = match terms {
+            _ if at_rest => real.iter().map(to_complex).collect(),
+            GyroscopicTerms::Neglected => real.iter().map(to_complex).collect(),
+            GyroscopicTerms::Included => {
+                let lowest = real.first().map_or(0.0, |pair| pair.squared_frequency);
+                let floor = NEUTRAL * self.shift;
+                let firm =
+                    if lowest < floor { stiffness + mass * floor } else { stiffness.clone() };
+                gyroscopic(mass, &self.gyroscopic, &firm, lowest)?
+            }
+        };
+        let classified: Vec<(EnergyShares, EigenPair<Complex<f64>>)> =
+            pairs.into_iter().map(|pair| (shares(free, mass, &pair.vector), pair)).collect();
+
+        let mut chosen = Vec::with_capacity(count.total());
+        for kind in ModeKind::ALL {
+            let family: Vec<_> =
+                classified.iter().filter(|(energy, _)| energy.leader() == kind).collect();
+            if family.len() < count.of(kind) {
+                let (wanted, available) = (count.of(kind), family.len());
+                return Err(FemError::TooFewModes { kind, wanted, available });
+            }
+            for (index, (energy, pair)) in family.into_iter().take(count.of(kind)).enumerate() {
+                chosen.push(self.mode(kind, index + 1, *energy, pair));
+            }
         }
-        for (index, (energy, pair)) in family.into_iter().take(count.of(kind)).enumerate() {
-            chosen.push(mode(model, kind, index + 1, *energy, pair));
+        Ok(chosen)
+    }
+
+    /// A mode over all degrees of freedom, the tip of its family moving in the positive direction.
+    fn mode(
+        &self,
+        kind: ModeKind,
+        number: usize,
+        energy: EnergyShares,
+        pair: &EigenPair<Complex<f64>>,
+    ) -> CoupledMode {
+        let mut all: DVector<Complex<f64>> = DVector::zeros(self.size);
+        for (value, place) in pair.vector.iter().zip(&self.free) {
+            all[*place] = *value;
+        }
+        let tip = all[self.size - JOINT_DOF + kind_offset(kind)].re;
+        let sign = if tip < 0.0 { -1.0 } else { 1.0 };
+        let frequency = pair.squared_frequency.sqrt();
+        CoupledMode {
+            kind,
+            number,
+            frequency,
+            per_rev: frequency / self.rotor_speed,
+            energy,
+            in_phase: all.map(|z| sign * z.re),
+            quadrature: all.map(|z| sign * z.im),
         }
     }
-    Ok(chosen)
 }
 
 /// The modes of a blade at one rotor speed.
@@ -160,7 +220,7 @@ fn to_complex(pair: &EigenPair<f64>) -> EigenPair<Complex<f64>> {
     EigenPair { squared_frequency: pair.squared_frequency, vector: pair.vector.map(Complex::from) }
 }
 
-/// Kinetic energy of each family over the whole; the mass matrix does not couple families.
+/// Kinetic energy of each family over their sum; what couples families belongs to none.
 fn shares(free: &[usize], mass: &DMatrix<f64>, vector: &DVector<Complex<f64>>) -> EnergyShares {
     let energy = |kind: ModeKind| -> f64 {
         let only = |part: fn(&Complex<f64>) -> f64| {
@@ -175,31 +235,4 @@ fn shares(free: &[usize], mass: &DMatrix<f64>, vector: &DVector<Complex<f64>>) -
     let whole: f64 = parts.iter().sum();
     let [flap, lag, torsion, axial] = parts.map(|part| part / whole);
     EnergyShares { flap, lag, torsion, axial }
-}
-
-/// A mode over all degrees of freedom, the tip of its family moving in the positive direction.
-fn mode(
-    model: &BladeModel,
-    kind: ModeKind,
-    number: usize,
-    energy: EnergyShares,
-    pair: &EigenPair<Complex<f64>>,
-) -> CoupledMode {
-    let size = model.mass().nrows();
-    let mut all: DVector<Complex<f64>> = DVector::zeros(size);
-    for (value, place) in pair.vector.iter().zip(model.free()) {
-        all[*place] = *value;
-    }
-    let tip = all[size - JOINT_DOF + kind_offset(kind)].re;
-    let sign = if tip < 0.0 { -1.0 } else { 1.0 };
-    let frequency = pair.squared_frequency.sqrt();
-    CoupledMode {
-        kind,
-        number,
-        frequency,
-        per_rev: frequency / model.properties().spec().rotor_speed,
-        energy,
-        in_phase: all.map(|z| sign * z.re),
-        quadrature: all.map(|z| sign * z.im),
-    }
 }

@@ -4,7 +4,10 @@ use crate::{Discretisation, ResponseError, RotorModel, SpanGrid};
 use flap_aero::FlapEffectiveness;
 use nalgebra::DMatrix;
 use rotor_base::{LagrangeBasis, gauss_legendre};
-use rotor_fem::{BladeProperties, ModeCount, ModeKind, UncoupledMode, uncoupled_modes};
+use rotor_fem::{
+    BladeProperties, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
+    ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, uncoupled_modes,
+};
 
 /// Which nonlinear structural and inertial terms the modal equations carry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +18,11 @@ pub enum Couplings {
     /// Second order: tension with the Coriolis part, foreshortening rate in the lag equation,
     /// flap-lag coupling through the pitch angle, torsion driven by `(EI_z - EI_y) kappa_z kappa_y`.
     Full,
+    /// Moderate deflections: the exact modal equations of the Hodges-Dowell energies with the axial
+    /// motion condensed ([`ModalBlade`]). Beyond `Full`: all foreshortening terms in the tension, the
+    /// axial part of the air loads, bending-torsion coupling `GJ (phi_x + w_x v_xx)`, full gyroscopic
+    /// terms of the section, and the terms of torsion that are named here.
+    Moderate(TorsionTerms),
 }
 
 /// A trailing-edge flap that is part of the blade.
@@ -117,6 +125,8 @@ pub struct ResponseBlade {
     pub(crate) flap_inertia: Vec<FlapInertia>,
     pub(crate) cutout: f64,
     pub(crate) root_offset: f64,
+    /// The blade's own modal equations, for [`Couplings::Moderate`].
+    pub(crate) modal: Option<ModalBlade>,
 }
 
 impl ResponseBlade {
@@ -199,6 +209,12 @@ impl ResponseBlade {
             flap_inertia: model.flaps.iter().map(|f| f.inertia(model.chord)).collect(),
             cutout: model.root_cutout,
             root_offset: root,
+            modal: match model.couplings {
+                Couplings::Moderate(torsion) => {
+                    Some(modal_blade(properties, torsion, &modes, &grid)?)
+                }
+                Couplings::Linear | Couplings::Full => None,
+            },
             grid,
         })
     }
@@ -247,4 +263,39 @@ impl ResponseBlade {
     pub fn frequencies_per_rev(&self) -> &[f64] {
         &self.frequencies
     }
+}
+
+/// The blade with moderate deflections in the coordinates of the uncoupled modes.
+fn modal_blade(
+    properties: &BladeProperties,
+    torsion: TorsionTerms,
+    modes: &ModeSet,
+    grid: &SpanGrid,
+) -> Result<ModalBlade, ResponseError> {
+    let spec = ModerateSpec { torsion, ..properties.spec().clone().into() };
+    let blade = ModerateBlade::new(spec)?;
+    let shape = |mode: &UncoupledMode, x: f64| -> Result<SectionShape, ResponseError> {
+        let value = mode.shape(x)?;
+        let still = SectionShape::default();
+        Ok(match mode.kind() {
+            ModeKind::Flap => SectionShape { flap: value, ..still },
+            ModeKind::Lag => SectionShape { lag: value, ..still },
+            _ => SectionShape { twist: [value[0], value[1]], ..still },
+        })
+    };
+    let shapes = modes
+        .modes()
+        .iter()
+        .map(|mode| {
+            Ok(ModalShape {
+                root: shape(mode, properties.spec().root_offset)?,
+                sections: grid
+                    .x()
+                    .iter()
+                    .map(|x| shape(mode, *x))
+                    .collect::<Result<_, ResponseError>>()?,
+            })
+        })
+        .collect::<Result<_, ResponseError>>()?;
+    Ok(ModalBlade::new(&blade, grid.edges(), grid.points_per_piece(), None, shapes)?)
 }

@@ -117,8 +117,8 @@ fn coned_to_shaft(precone_rad: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
 
 /// Flap bending moment at the root by force summation, `int x f_z - N w_x dx`, tip up positive.
 ///
-/// Carries the terms of the chosen couplings, so that it is the exact counterpart of the curvature
-/// moment of the same modal equations. `x` is measured from the root.
+/// Carries the terms of the couplings `Linear` and `Full`, so that it is the exact counterpart of the
+/// curvature moment of the same modal equations; for `Moderate`, up to third-order terms. `x` is measured from the root.
 pub(crate) fn root_flap_moment(
     blade: &ResponseBlade,
     couplings: Couplings,
@@ -130,7 +130,7 @@ pub(crate) fn root_flap_moment(
     let coriolis: Vec<f64> = (0..n)
         .map(|i| match couplings {
             Couplings::Linear => 0.0,
-            Couplings::Full => 2.0 * blade.mass[i] * v.rate[i],
+            Couplings::Full | Couplings::Moderate(_) => 2.0 * blade.mass[i] * v.rate[i],
         })
         .collect();
     let mut tension = vec![0.0; n];
@@ -160,7 +160,7 @@ pub(crate) fn root_flap_curvature_moment(
     let [ei_flap, ei_lag] = blade.root_stiffness;
     match couplings {
         Couplings::Linear => ei_flap * w_xx,
-        Couplings::Full => {
+        Couplings::Full | Couplings::Moderate(_) => {
             let (sin, cos) = (pitch_rad + blade.root_twist).sin_cos();
             let (kz, ky) = (v_xx * cos + w_xx * sin, w_xx * cos - v_xx * sin);
             ei_lag * kz * sin + ei_flap * ky * cos

@@ -11,6 +11,7 @@ use rotor_base::{LagrangeBasis, gauss_legendre};
 pub struct SpanGrid {
     x: Vec<f64>,
     weight: Vec<f64>,
+    edges: Vec<f64>,
     halves: Vec<f64>,
     points_per_piece: usize,
     integration: Vec<Vec<f64>>,
@@ -34,6 +35,7 @@ impl SpanGrid {
         let mut grid = Self {
             x: Vec::new(),
             weight: Vec::new(),
+            edges: edges.clone(),
             halves: Vec::new(),
             points_per_piece,
             integration: LagrangeBasis::new(rule.nodes.clone()).integration_matrix(),
@@ -55,6 +57,16 @@ impl SpanGrid {
     /// Quadrature weights, radius R, summing to the blade's length.
     pub fn weight(&self) -> &[f64] {
         &self.weight
+    }
+
+    /// Ends of the pieces, radius R, from root to tip.
+    pub fn edges(&self) -> &[f64] {
+        &self.edges
+    }
+
+    /// Gauss points in each piece.
+    pub fn points_per_piece(&self) -> usize {
+        self.points_per_piece
     }
 
     /// Number of stations.

@@ -18,6 +18,8 @@
 
 use crate::blade::{Couplings, ResponseBlade};
 use crate::motion::{Motion, RootPitch};
+use nalgebra::DMatrix;
+use rotor_fem::{ModalBlade, ModalMotion, PitchMotion};
 
 /// Distributed loads at the stations at one azimuth, per length, mass `m0`, length R, time 1/Omega.
 #[derive(Debug, Clone, Default)]
@@ -74,6 +76,38 @@ fn project(out: &mut [f64], weight: &[f64], parts: &[(&[Vec<f64>], &[f64])]) {
     }
 }
 
+/// Generalised residual of the moderately deflected blade without the constant mass part.
+///
+/// ```text
+/// Q(q, q', q'') - M q'' - virtual work of (F_x, F_y, F_z, M),   F_x = -w_x F_z - v_x F_y
+/// ```
+/// Loads stand normal to the deflected blade; their axial part works on the foreshortening.
+pub(crate) fn moderate_residual(
+    modal: &ModalBlade,
+    mass: &DMatrix<f64>,
+    state: BladeState<'_>,
+    [q, qd, qdd]: [&[f64]; 3],
+    out: &mut [f64],
+) {
+    let BladeState { motion, pitch, loads } = state;
+    let root =
+        PitchMotion { angle_rad: pitch.angle, rate: pitch.rate, acceleration: pitch.acceleration };
+    let coordinates = ModalMotion { value: q, rate: qd, acceleration: qdd };
+    let blade = modal.force(coordinates, root).generalised;
+    let applied: Vec<[f64; 4]> = (0..loads.fz.len())
+        .map(|i| {
+            let (fy, fz) = (loads.fy[i], loads.fz[i]);
+            let fx = -motion.w.slope[i] * fz - motion.v.slope[i] * fy;
+            [fx, fy, fz, loads.moment[i]]
+        })
+        .collect();
+    let work = modal.applied(q, root, &applied);
+    for (i, value) in out.iter_mut().enumerate() {
+        let constant: f64 = mass.row(i).iter().zip(qdd).map(|(m, a)| m * a).sum();
+        *value = blade[i] - constant - work[i];
+    }
+}
+
 /// Generalised residual without the constant mass part, modal order flap, lag, torsion.
 pub(crate) fn modal_residual(
     blade: &ResponseBlade,
@@ -85,7 +119,7 @@ pub(crate) fn modal_residual(
     let BladeState { motion, pitch, loads } = state;
     let n = blade.grid.len();
     scratch.resize(n);
-    let full = couplings == Couplings::Full;
+    let full = couplings != Couplings::Linear;
     let s = scratch;
     if full {
         for i in 0..n {

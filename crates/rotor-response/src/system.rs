@@ -7,7 +7,9 @@ use crate::air::{
 use crate::blade::{Couplings, ResponseBlade};
 use crate::flight_air::FlightAir;
 use crate::motion::{Motion, RootPitch};
-use crate::structure::{BladeState, SpanLoads, StructureScratch, modal_residual};
+use crate::structure::{
+    BladeState, SpanLoads, StructureScratch, modal_residual, moderate_residual,
+};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_fem::{LocalTangent, OrbitSamples, PeriodicSystem};
@@ -144,15 +146,18 @@ impl ResponseSystem<'_> {
     fn project(
         &self,
         point: usize,
-        (motion, qd): (&Motion, &[f64]),
+        (motion, coordinates): (&Motion, [&[f64]; 3]),
         scratch: &mut Scratch,
         out: &mut [f64],
     ) {
         let Scratch { structure, loads } = scratch;
         let pitch = self.points[point].air.pitch;
         let state = BladeState { motion, pitch, loads };
-        modal_residual(self.blade, self.couplings, state, structure, out);
-        for ((o, d), rate) in out.iter_mut().zip(self.damping).zip(qd) {
+        match &self.blade.modal {
+            Some(modal) => moderate_residual(modal, self.mass, state, coordinates, out),
+            None => modal_residual(self.blade, self.couplings, state, structure, out),
+        }
+        for ((o, d), rate) in out.iter_mut().zip(self.damping).zip(coordinates[1]) {
             *o += d * rate;
         }
     }
@@ -169,7 +174,7 @@ impl ResponseSystem<'_> {
         let sections = self.section_loads(point, &flows, &self.air.settled_loads(point, &flows));
         self.span_loads(point, &sections, &mut scratch.loads);
         let mut out = vec![0.0; q.len()];
-        self.project(point, (motion, qd), scratch, &mut out);
+        self.project(point, (motion, [q, qd, qdd]), scratch, &mut out);
         out
     }
 
@@ -216,8 +221,9 @@ impl PeriodicSystem for ResponseSystem<'_> {
         for (p, motion) in revolution.motions.iter().enumerate() {
             let sections = self.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
             self.span_loads(p, &sections, &mut scratch.loads);
-            let qd: Vec<f64> = samples.qd.column(p).iter().copied().collect();
-            self.project(p, (motion, &qd), &mut scratch, &mut column);
+            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
+            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
+            self.project(p, (motion, [&q, &qd, &qdd]), &mut scratch, &mut column);
             out.column_mut(p).copy_from_slice(&column);
         }
         Ok(())

@@ -7,7 +7,7 @@ use crate::case::{
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
-use rotor_fem::{BladeProperties, BladeSpec, ModeCount, Twist};
+use rotor_fem::{BladeProperties, BladeSpec, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow,
     RotorModel, TrailingEdgeFlap,
@@ -52,6 +52,7 @@ impl Case {
             couplings: match self.blade.couplings {
                 CouplingsChoice::Linear => Couplings::Linear,
                 CouplingsChoice::Full => Couplings::Full,
+                CouplingsChoice::Moderate => Couplings::Moderate(TorsionTerms::default()),
             },
             section_model: self.section_model(),
             compressibility: match self.section.compressibility {

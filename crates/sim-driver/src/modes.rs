@@ -4,18 +4,63 @@ use crate::SimError;
 use crate::case::Case;
 use crate::output::{Printable, Sheet, table};
 use crate::problem::Place;
-use rotor_fem::{BladeModel, CoupledMode, FemError, GyroscopicTerms, fan_plot, modes};
+use nalgebra::DVector;
+use rotor_fem::{
+    AxialMotion, BladeModel, BladeProperties, CoupledMode, EnergyShares, FemError, GyroscopicTerms,
+    ModerateBlade, ModerateModel, ModerateSpec, SectionMotion, StaticSettings, deflected_modes,
+    modes,
+};
 use serde::Serialize;
+use std::fmt::Write as _;
+
+/// Rotor speeds over the nominal one of a fan plot for which none are given.
+pub const FAN_SPEEDS: [f64; 13] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2];
+
+/// The state whose small motions the modes are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AboutState {
+    /// The blade as rotation deflects it at its pitch, without air loads: nonlinear elements.
+    #[default]
+    Deflected,
+    /// The undeformed blade with the tension of rotation: linear elements.
+    Undeformed,
+}
+
+/// Which modes are wanted.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModesQuestion {
+    /// Coriolis terms.
+    pub terms: GyroscopicTerms,
+    /// Pitch angle at 0.75 R, rad: the collective.
+    pub pitch_rad: f64,
+    /// State the modes are about.
+    pub about: AboutState,
+    /// Further rotor speeds over the nominal one.
+    pub speed_ratios: Vec<f64>,
+}
 
 /// One mode as it is printed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModeLine {
-    /// `flap`, `lag` or `torsion`.
+    /// `flap`, `lag` or `torsion`: the family with most of the kinetic energy.
     pub kind: String,
     /// Frequency per revolution of the rotor's own speed; none at rest.
     pub per_rev: Option<f64>,
     /// Frequency, Hz.
     pub hz: f64,
+    /// Division of the kinetic energy among flap, lag, torsion and axial motion.
+    pub energy: [f64; 4],
+}
+
+/// Displacement of the tip in the state the modes are about.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SteadyTip {
+    /// Toward the leading edge, R.
+    pub lag_r: f64,
+    /// Up, R.
+    pub flap_r: f64,
+    /// Elastic twist, deg, nose up.
+    pub twist_deg: f64,
 }
 
 /// The modes at one rotor speed.
@@ -23,6 +68,9 @@ pub struct ModeLine {
 pub struct ModesResult {
     /// Rotor speed, rad/s.
     pub rotor_speed_rad_s: f64,
+    /// Tip of the deflected blade; none if the modes are about the undeformed one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steady_tip: Option<SteadyTip>,
     /// Flap, lag and torsion modes, each kind from its lowest.
     pub modes: Vec<ModeLine>,
     /// The same at further rotor speeds: the data of a fan plot.
@@ -30,53 +78,103 @@ pub struct ModesResult {
     pub fan: Vec<ModesResult>,
 }
 
-/// Rotating modes of a case's blade, twist included, at a pitch angle (rad, at 0.75 R) and at further
-/// rotor speeds over the nominal one.
+/// Rotating modes of a case's blade, twist included, at its pitch and at further rotor speeds.
 ///
 /// # Errors
 /// [`SimError::Blade`].
-pub fn rotating_modes(
-    case: &Case,
-    terms: GyroscopicTerms,
-    pitch_rad: f64,
-    speed_ratios: &[f64],
-) -> Result<ModesResult, SimError> {
+pub fn rotating_modes(case: &Case, question: &ModesQuestion) -> Result<ModesResult, SimError> {
     let fail = |source: FemError| SimError::Blade { place: Place::file("modes"), source };
-    let blade = case.blade_properties()?.with_pitch_rad(pitch_rad).map_err(fail)?;
+    let blade = case.blade_properties()?.with_pitch_rad(question.pitch_rad).map_err(fail)?;
+    let at = |ratio: f64| modes_at(case, question, &blade, ratio).map_err(fail);
+    let fan = question.speed_ratios.iter().map(|ratio| at(*ratio)).collect::<Result<_, _>>()?;
+    Ok(ModesResult { fan, ..at(1.0)? })
+}
+
+fn modes_at(
+    case: &Case,
+    question: &ModesQuestion,
+    blade: &BladeProperties,
+    ratio: f64,
+) -> Result<ModesResult, FemError> {
     let nominal_rad_s = case.scales.omega_rad_s();
-    let lines = |found: &[CoupledMode]| {
-        found
-            .iter()
-            .map(|mode| ModeLine {
-                kind: mode.kind.to_string(),
-                per_rev: mode.per_rev.is_finite().then_some(mode.per_rev),
-                hz: mode.frequency * nominal_rad_s / std::f64::consts::TAU,
-            })
-            .collect()
+    let (elements, count) = (case.blade.elements, case.mode_count());
+    let blade = blade.with_rotor_speed(ratio)?;
+    let (found, steady_tip) = match question.about {
+        AboutState::Undeformed => {
+            (modes(&BladeModel::new(blade, elements)?, question.terms, count)?, None)
+        }
+        AboutState::Deflected => {
+            let spec = ModerateSpec::from(blade.spec().clone());
+            let model = ModerateModel::new(ModerateBlade::new(spec)?, elements)?;
+            let none = DVector::zeros(model.size());
+            let state = model.static_state(&none, &StaticSettings::default())?;
+            let tip = model.section(&state.dof, 1.0)?;
+            let found = deflected_modes(&model, &state, question.terms, AxialMotion::Free, count)?;
+            (found, Some(tip.into()))
+        }
     };
-    let fan = fan_plot(&blade, case.blade.elements, speed_ratios, terms, case.mode_count())
-        .map_err(fail)?
-        .iter()
-        .map(|point| ModesResult {
-            rotor_speed_rad_s: point.rotor_speed * nominal_rad_s,
-            modes: lines(&point.modes),
-            fan: vec![],
-        })
-        .collect();
-    let model = BladeModel::new(blade, case.blade.elements).map_err(fail)?;
-    let nominal = modes(&model, terms, case.mode_count()).map_err(fail)?;
-    Ok(ModesResult { rotor_speed_rad_s: nominal_rad_s, modes: lines(&nominal), fan })
+    Ok(ModesResult {
+        rotor_speed_rad_s: ratio * nominal_rad_s,
+        steady_tip,
+        modes: found.iter().map(|mode| ModeLine::new(mode, nominal_rad_s)).collect(),
+        fan: vec![],
+    })
+}
+
+impl ModeLine {
+    fn new(mode: &CoupledMode, nominal_rad_s: f64) -> Self {
+        let EnergyShares { flap, lag, torsion, axial } = mode.energy;
+        Self {
+            kind: mode.kind.to_string(),
+            per_rev: mode.per_rev.is_finite().then_some(mode.per_rev),
+            hz: mode.frequency * nominal_rad_s / std::f64::consts::TAU,
+            energy: [flap, lag, torsion, axial],
+        }
+    }
+}
+
+impl From<SectionMotion> for SteadyTip {
+    fn from(tip: SectionMotion) -> Self {
+        Self { lag_r: tip.lag[0], flap_r: tip.flap[0], twist_deg: tip.twist[0].to_degrees() }
+    }
+}
+
+/// The fan plot as a table: one row for each mode at each rotor speed.
+pub fn fan_csv(result: &ModesResult) -> String {
+    let mut text = String::from(
+        "rotor_speed_rad_s,mode,frequency_hz,per_rev,flap_share,lag_share,torsion_share,axial_share\n",
+    );
+    for point in &result.fan {
+        for (name, mode) in numbered(&point.modes).zip(&point.modes) {
+            let per_rev = mode.per_rev.map_or_else(String::new, |p| format!("{p:.9}"));
+            let [flap, lag, torsion, axial] = mode.energy;
+            // writing to a string cannot fail
+            let _ = writeln!(
+                text,
+                "{},{name},{:.9},{per_rev},{flap:.6},{lag:.6},{torsion:.6},{axial:.6}",
+                point.rotor_speed_rad_s, mode.hz
+            );
+        }
+    }
+    text
 }
 
 impl Printable for ModesResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("Rotor speed {:.4} rad/s", self.rotor_speed_rad_s));
+        if let Some(tip) = self.steady_tip {
+            sheet.line(format_args!(
+                "Steady tip: lag {:.5} R, flap {:.5} R, twist {:.3} deg",
+                tip.lag_r, tip.flap_r, tip.twist_deg
+            ));
+        }
         sheet.block(&table(
-            &["mode", "per rev", "Hz"],
+            &["mode", "per rev", "Hz", "flap %", "lag %", "torsion %"],
             numbered(&self.modes).zip(&self.modes).map(|(name, mode)| {
                 let per_rev = mode.per_rev.map_or_else(|| "-".to_owned(), |p| format!("{p:.6}"));
-                vec![name, per_rev, format!("{:.4}", mode.hz)]
+                let shares = mode.energy.iter().take(3).map(|e| format!("{:.1}", 100.0 * e));
+                [name, per_rev, format!("{:.4}", mode.hz)].into_iter().chain(shares).collect()
             }),
         ));
         if !self.fan.is_empty() {

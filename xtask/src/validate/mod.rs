@@ -12,6 +12,8 @@ mod actuator;
 mod blade;
 mod control;
 mod inflow;
+mod moderate;
+mod moderate_blades;
 mod rotor;
 mod section;
 mod section_compressible;
@@ -27,6 +29,7 @@ use crate::XtaskError;
 /// All areas, in the order of the page.
 pub const AREAS: &[Area] = &[
     blade::AREA,
+    moderate::AREA,
     time_elements::AREA,
     section::AREA,
     section_compressible::AREA,

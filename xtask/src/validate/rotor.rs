@@ -210,6 +210,16 @@ fn four_per_rev_error(case: &Crosscheck) -> Result<f64, CheckError> {
     Ok(percent_off(&solve(case)?.hub.harmonic(4), &expected))
 }
 
+/// Distance of part of the 4/rev vector of case S2 with couplings of the caller's choice, %.
+pub(super) fn s2_distance(
+    couplings: fn() -> Couplings,
+    part: std::ops::Range<usize>,
+) -> Result<f64, CheckError> {
+    let expected: [f64; 12] = reference::crosscheck(S2.name, "hub_Z4")?;
+    let found = solve(&Crosscheck { couplings, ..S2 })?.hub.harmonic(4);
+    Ok(percent_off(&found[part.clone()], &expected[part]))
+}
+
 fn mean_error(case: &Crosscheck, part: std::ops::Range<usize>) -> Result<f64, CheckError> {
     let expected: [f64; 6] = reference::crosscheck(case.name, "hub_mean")?;
     Ok(percent_off(&solve(case)?.hub.mean()[part.clone()], &expected[part]))

@@ -199,6 +199,8 @@ pub enum CouplingsChoice {
     Linear,
     /// Coriolis, foreshortening, propeller moment and pitch-flap-lag coupling.
     Full,
+    /// Exact modal equations of the moderately deflected blade.
+    Moderate,
 }
 
 /// Structural model of the blade.

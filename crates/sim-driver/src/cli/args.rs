@@ -198,9 +198,15 @@ pub struct ModesArgs {
     /// Pitch angle at 0.75 R, deg.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     pub pitch_deg: f64,
+    /// Modes about the undeformed blade instead of the one that rotation deflects.
+    #[arg(long)]
+    pub undeformed: bool,
     /// Further rotor speeds over the nominal one, such as 0,0.25,0.5,0.75,1: a fan plot.
     #[arg(long, value_name = "RATIOS", value_delimiter = ',')]
     pub speeds: Vec<f64>,
+    /// CSV file to write the fan plot to; without --speeds, from 0 to 1.2 in steps of 0.1.
+    #[arg(long, value_name = "FILE.csv")]
+    pub fan: Option<PathBuf>,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

@@ -14,7 +14,7 @@ use crate::files::{
 };
 use crate::identification::{BenchIdentification, identify_bench, identify_loops};
 use crate::import::{ColumnOptions, ImportRequest, default_folder};
-use crate::modes::rotating_modes;
+use crate::modes::{AboutState, FAN_SPEEDS, ModesQuestion, fan_csv, rotating_modes};
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
@@ -214,8 +214,19 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     };
     let terms =
         if args.no_gyroscopic { GyroscopicTerms::Neglected } else { GyroscopicTerms::Included };
-    let result = rotating_modes(&loaded.case, terms, args.pitch_deg.to_radians(), &args.speeds)?;
-    print(&result.render(args.format.format)?)
+    let about = if args.undeformed { AboutState::Undeformed } else { AboutState::Deflected };
+    let speed_ratios = match &args.fan {
+        Some(_) if args.speeds.is_empty() => FAN_SPEEDS.to_vec(),
+        _ => args.speeds.clone(),
+    };
+    let pitch_rad = args.pitch_deg.to_radians();
+    let question = ModesQuestion { terms, pitch_rad, about, speed_ratios };
+    let result = rotating_modes(&loaded.case, &question)?;
+    let text = result.render(args.format.format)?;
+    if let Some(path) = &args.fan {
+        write_atomic(path, fan_csv(&result).as_bytes())?;
+    }
+    print(&text)
 }
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {

@@ -66,6 +66,29 @@ fn modes_without_a_case_are_the_papers() {
     assert!((lag(&pitched) - lag(&with)).abs() > 1e-3, "pitch couples flap and lag");
 }
 
+/// Rotation turns the washed-out blade nose up; the fan plot is a table of every mode at every speed.
+#[test]
+fn modes_are_about_the_deflected_blade_and_the_fan_plot_is_a_table() {
+    let place = Place::new();
+    let args = ["modes", "--pitch-deg", "8", "--fan", "fan.csv", "--format", "json"];
+    let json = place.hhc(&args).json();
+    let twist = json["steady_tip"]["twist_deg"].as_f64().unwrap();
+    // tension on the twist against the propeller moment of 8 deg
+    assert!((0.0..0.2).contains(&twist), "{twist}");
+    let flat = place.hhc(&["modes", "--undeformed", "--format", "json"]).json();
+    assert!(flat["steady_tip"].is_null());
+    let fan = place.read("fan.csv");
+    let rows: Vec<Vec<&str>> = fan.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 1 + 13 * 10);
+    assert_eq!(rows[0][..4], ["rotor_speed_rad_s", "mode", "frequency_hz", "per_rev"]);
+    // nominal speed is the eleventh: the modes of the command itself
+    let row = rows.iter().skip(1 + 10 * 10).find(|row| row[1] == "torsion 1").unwrap();
+    let torsion = &json["modes"][8];
+    close(row[2].parse().unwrap(), torsion["hz"].as_f64().unwrap(), 1e-8);
+    let shares: f64 = row[4..].iter().map(|share| share.parse::<f64>().unwrap()).sum();
+    close(shares, 1.0, 1e-5);
+}
+
 /// Exact coefficients of a flapped section, reduced frequency 0.1 (Theodorsen, E = 0.2).
 #[test]
 fn section_against_exact_theory() {

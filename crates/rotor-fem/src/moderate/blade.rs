@@ -1,0 +1,257 @@
+//! What the moderately deflected blade is made of.
+
+use crate::distribution::Allowed;
+use crate::{BladeProperties, BladeSpec, Distribution, FemError, RootCondition};
+
+use super::inertia::SectionMass;
+use super::strain::SectionStiffness;
+
+/// How one rotation of the blade's root is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Joint {
+    /// Held fast.
+    Locked,
+    /// Free against a spring; stiffness over m0 Omega^2 R^3 (moment per rad), 0 for a free hinge.
+    Spring {
+        /// Stiffness.
+        stiffness: f64,
+    },
+}
+
+impl Joint {
+    /// A hinge without spring.
+    pub const FREE: Self = Self::Spring { stiffness: 0.0 };
+
+    /// Stiffness of the spring, none if the joint is locked.
+    pub fn stiffness(&self) -> Option<f64> {
+        match *self {
+            Self::Locked => None,
+            Self::Spring { stiffness } => Some(stiffness),
+        }
+    }
+}
+
+/// How the root of the blade is held: three rotations at the root offset. Displacements are held fast.
+///
+/// Flap and lag turn in the axes of the rotating frame: the hinges lie inboard of the pitch bearing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RootSupport {
+    /// Flap hinge, slope `w_x`.
+    pub flap: Joint,
+    /// Lag hinge, slope `v_x`.
+    pub lag: Joint,
+    /// Pitch bearing, twist phi: the spring is the pitch link with the control system.
+    pub feather: Joint,
+}
+
+impl From<RootCondition> for RootSupport {
+    fn from(condition: RootCondition) -> Self {
+        let bending = match condition {
+            RootCondition::Clamped => Joint::Locked,
+            RootCondition::Hinged => Joint::FREE,
+        };
+        Self { flap: bending, lag: bending, feather: Joint::Locked }
+    }
+}
+
+/// Whether the radial motion of points off the axis, by the slopes of bending, carries inertia.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RotaryInertia {
+    /// Of the mass centre only: a slender blade.
+    #[default]
+    Neglected,
+    /// Of every point of the section.
+    Included,
+}
+
+/// Whether tension turns the built-in twist straight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Untwist {
+    /// The moment `N k_A^2 th_x` acts, as the energy says.
+    #[default]
+    Included,
+    /// Tension stiffens the elastic twist only, `N k_A^2 phi_x`.
+    Neglected,
+}
+
+/// What the degree of freedom phi is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TwistAngle {
+    /// The last of three rotations (lag, flap, pitch): the section's pitch. Bending in two planes twists
+    /// it, `kappa_x = phi_x + w_x v_xx`.
+    #[default]
+    Rotation,
+    /// The elastic twist, taken for the pitch: `kappa_x = phi_x`.
+    Elastic,
+}
+
+/// Terms of second order in torsion that published formulations keep or drop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TorsionTerms {
+    /// Tension on the built-in twist.
+    pub untwist: Untwist,
+    /// The twist angle.
+    pub angle: TwistAngle,
+}
+
+/// A blade for moderate deflections as its user describes it, rotor units (as [`BladeSpec`]).
+///
+/// Offsets are over R, positive toward the leading edge. Mass radii `k_m1`, `k_m2` are about the elastic
+/// axis, stiffnesses `EI_y`, `EI_z` about the tension centre, the area radius `k_A` about the elastic axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModerateSpec {
+    /// Stiffness, mass, twist, pitch, precone, root offset, rotor speed. Its `root` is replaced by
+    /// [`Self::root`].
+    pub blade: BladeSpec,
+    /// Mass centre ahead of the elastic axis, `e_g`.
+    pub mass_centre: Distribution,
+    /// Tension centre ahead of the elastic axis, `e_A`.
+    pub tension_centre: Distribution,
+    /// Root support.
+    pub root: RootSupport,
+    /// Rotary inertia of bending.
+    pub rotary_inertia: RotaryInertia,
+    /// Terms of second order in torsion.
+    pub torsion: TorsionTerms,
+}
+
+impl From<BladeSpec> for ModerateSpec {
+    /// The same blade with mass and tension centre on the elastic axis.
+    fn from(blade: BladeSpec) -> Self {
+        Self {
+            root: blade.root.into(),
+            blade,
+            mass_centre: 0.0.into(),
+            tension_centre: 0.0.into(),
+            rotary_inertia: RotaryInertia::default(),
+            torsion: TorsionTerms::default(),
+        }
+    }
+}
+
+/// A blade for moderate deflections whose properties have been checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModerateBlade {
+    spec: ModerateSpec,
+    properties: BladeProperties,
+    breaks: Vec<f64>,
+}
+
+impl ModerateBlade {
+    /// Checks a blade.
+    ///
+    /// # Errors
+    /// [`FemError`] naming field, station and value of the first fault found: those of
+    /// [`BladeProperties::new`]; an offset table with a fault; `chord_gyration_radius` below the offset
+    /// of the mass centre; a spring that is negative or not finite.
+    pub fn new(spec: ModerateSpec) -> Result<Self, FemError> {
+        let properties = BladeProperties::new(spec.blade.clone())?;
+        let root = spec.blade.root_offset;
+        spec.mass_centre.check("mass_centre", root, Allowed::Finite)?;
+        spec.tension_centre.check("tension_centre", root, Allowed::Finite)?;
+        let springs = [
+            ("root.flap.stiffness", spec.root.flap),
+            ("root.lag.stiffness", spec.root.lag),
+            ("root.feather.stiffness", spec.root.feather),
+        ];
+        for (field, joint) in springs {
+            let value = joint.stiffness().unwrap_or(0.0);
+            if !(value.is_finite() && value >= 0.0) {
+                let expected =
+                    "a finite number not below zero (moment per rad over m0 Omega^2 R^3)";
+                return Err(FemError::Parameter { field, value, expected });
+            }
+        }
+        let offsets = spec.mass_centre.breaks().iter().chain(spec.tension_centre.breaks());
+        let mut breaks: Vec<f64> = offsets
+            .copied()
+            .filter(|b| *b > root && *b < 1.0)
+            .chain(properties.breaks().iter().copied())
+            .collect();
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+        let this = Self { spec, properties, breaks };
+        for pair in this.breaks.windows(2) {
+            let inset = 1e-9 * (pair[1] - pair[0]);
+            for station in [pair[0] + inset, pair[1] - inset] {
+                let value = this.properties.squared_mass_radii(station)[1].sqrt();
+                if value < this.spec.mass_centre.value(station).abs() * (1.0 - 1e-12) {
+                    return Err(FemError::Property {
+                        field: "chord_gyration_radius",
+                        station,
+                        value,
+                        expected: "at least the offset mass_centre: the radius is about the \
+                                   elastic axis, so add the offset's square to the square of the \
+                                   radius about the mass centre",
+                    });
+                }
+            }
+        }
+        Ok(this)
+    }
+
+    /// The description this blade was made from.
+    pub fn spec(&self) -> &ModerateSpec {
+        &self.spec
+    }
+
+    /// Its properties but for the offsets.
+    pub fn properties(&self) -> &BladeProperties {
+        &self.properties
+    }
+
+    /// The same blade at another rotor speed, over the nominal one.
+    ///
+    /// # Errors
+    /// [`FemError::Parameter`] for a negative speed or a NaN.
+    pub fn with_rotor_speed(&self, rotor_speed: f64) -> Result<Self, FemError> {
+        let blade = BladeSpec { rotor_speed, ..self.spec.blade.clone() };
+        Self::new(ModerateSpec { blade, ..self.spec.clone() })
+    }
+
+    /// The same blade at another pitch angle, rad.
+    ///
+    /// # Errors
+    /// [`FemError::Parameter`] beyond 10 rad or for a NaN.
+    pub fn with_pitch_rad(&self, pitch_rad: f64) -> Result<Self, FemError> {
+        let blade = BladeSpec { pitch_rad, ..self.spec.blade.clone() };
+        Self::new(ModerateSpec { blade, ..self.spec.clone() })
+    }
+
+    /// Root, tip and every station between them where a property jumps or has a kink.
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    pub(crate) fn stiffness(&self, station: f64) -> SectionStiffness {
+        let p = &self.properties;
+        SectionStiffness {
+            flap: p.flap_stiffness(station),
+            lag: p.lag_stiffness(station),
+            torsion: p.torsion_stiffness(station),
+            axial: p.axial_stiffness(station),
+            area_radius_squared: p.squared_area_radius(station),
+            tension_centre: self.spec.tension_centre.value(station),
+            twist_rate: match self.spec.torsion.untwist {
+                Untwist::Included => p.twist_rate_rad(station),
+                Untwist::Neglected => 0.0,
+            },
+            bending_twist: match self.spec.torsion.angle {
+                TwistAngle::Rotation => 1.0,
+                TwistAngle::Elastic => 0.0,
+            },
+        }
+    }
+
+    pub(crate) fn mass(&self, station: f64) -> SectionMass {
+        let m = self.properties.mass(station);
+        let offset = self.spec.mass_centre.value(station);
+        let [thickness, chord] = self.properties.squared_mass_radii(station).map(|k| m * k);
+        let centre = m * offset * offset;
+        let [chord, thickness, flat_chord, flat_thickness] = match self.spec.rotary_inertia {
+            RotaryInertia::Neglected => [centre, 0.0, (chord - centre).max(0.0), thickness],
+            RotaryInertia::Included => [chord, thickness, 0.0, 0.0],
+        };
+        SectionMass { mass: m, first: m * offset, chord, thickness, flat_chord, flat_thickness }
+    }
+}

@@ -1,0 +1,266 @@
+//! Modes about the deflected rotating blade: closed forms, published frequencies, condensation.
+#![expect(clippy::unwrap_used, reason = "a test may fail by unwrapping")]
+
+mod blades;
+
+use std::f64::consts::FRAC_PI_2;
+
+use blades::{EPPS_CHANDRA_RPM, TM_4760_RPM, epps_chandra_strip, number, table, tm_4760_blade};
+use nalgebra::{DMatrix, DVector};
+use rotor_fem::{
+    AxialMotion, BladeSpec, CoupledMode, FemError, GyroscopicTerms, ModalBlade, ModalMotion,
+    ModeCount, ModeKind, ModerateBlade, ModerateModel, ModerateSpec, NodalMotion, RotaryInertia,
+    StaticSettings, StaticState, Twist, deflected_fan, deflected_modes,
+};
+
+fn at_rest(spec: ModerateSpec, elements: usize) -> (ModerateModel, StaticState) {
+    let model = ModerateModel::new(ModerateBlade::new(spec).unwrap(), elements).unwrap();
+    let none = DVector::zeros(model.size());
+    let state = model.static_state(&none, &StaticSettings::default()).unwrap();
+    (model, state)
+}
+
+fn frequencies(spec: ModerateSpec, elements: usize, kind: ModeKind, count: usize) -> Vec<f64> {
+    let (model, state) = at_rest(spec, elements);
+    let mut wanted = ModeCount { flap: 0, lag: 0, torsion: 0, axial: 0 };
+    match kind {
+        ModeKind::Flap => wanted.flap = count,
+        ModeKind::Lag => wanted.lag = count,
+        ModeKind::Torsion => wanted.torsion = count,
+        ModeKind::Axial => wanted.axial = count,
+    }
+    let terms = GyroscopicTerms::Neglected;
+    let modes = deflected_modes(&model, &state, terms, AxialMotion::Free, wanted).unwrap();
+    modes.iter().map(|mode| mode.per_rev).collect()
+}
+
+fn table_1() -> BladeSpec {
+    BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1e6)
+}
+
+/// Turning in the plane takes 1 from the square of the same beam's flapping frequency.
+#[test]
+fn lag_and_flap_of_equal_stiffness_differ_by_one_in_the_square() {
+    let lag = frequencies(table_1().into(), 40, ModeKind::Lag, 4);
+    let stiff = BladeSpec { flap_stiffness: 0.0268.into(), ..table_1() };
+    let flap = frequencies(stiff.into(), 40, ModeKind::Flap, 4);
+    for (l, f) in lag.iter().zip(&flap) {
+        let gap = (l * l - (f * f - 1.0)).abs() / (l * l);
+        println!("L {l:.9}  F {f:.9}  {gap:.2e}");
+        assert!(gap < 1e-6);
+    }
+    assert!((lag[0] - 0.701_362_786).abs() < 2e-6);
+}
+
+#[test]
+fn torsion_meets_its_closed_form() {
+    for (k1, k2) in [(0.0132_f64, 0.0247_f64), (0.025, 0.025)] {
+        let spec = BladeSpec {
+            thickness_gyration_radius: k1.into(),
+            chord_gyration_radius: k2.into(),
+            area_gyration_radius: 0.0.into(),
+            ..table_1()
+        };
+        let found = frequencies(spec.into(), 40, ModeKind::Torsion, 2);
+        let polar = k1 * k1 + k2 * k2;
+        for (n, got) in found.iter().enumerate() {
+            let wave = (2.0 * n as f64 + 1.0) * FRAC_PI_2;
+            let exact = (wave * wave * 0.006_15 / polar + (k2 * k2 - k1 * k1) / polar).sqrt();
+            println!("T{} {got:.9} {exact:.9} {:.2e}", n + 1, got / exact - 1.0);
+            assert!((got / exact - 1.0).abs() < 1e-6);
+        }
+    }
+    let table = frequencies(table_1().into(), 20, ModeKind::Torsion, 2);
+    println!("Table 1: {table:?}");
+    assert!((table[0] / 4.588 - 1.0).abs() < 1e-4 && (table[1] / 13.522 - 1.0).abs() < 1e-4);
+}
+
+/// The tangent about the deflected state against the same blade's linear frequencies with pitch and
+/// twist, where the propeller moment does not deflect it.
+#[test]
+fn pitch_and_twist_couple_flap_and_lag_as_in_the_table() {
+    let rows = table("bo105_pitch_coupled_frequencies.csv");
+    for row in &rows {
+        let (pitch, rate): (f64, f64) = match row[0].as_str() {
+            "pitch_0deg" => (0.0, 0.0),
+            "pitch_5deg" => (5.0, 0.0),
+            "pitch_10deg" => (10.0, 0.0),
+            "pitch_15deg" => (15.0, 0.0),
+            _ => (8.0, -8.0),
+        };
+        let spec = BladeSpec {
+            pitch_rad: pitch.to_radians(),
+            twist: Twist::Linear { rate_rad: rate.to_radians() },
+            thickness_gyration_radius: 0.02.into(),
+            chord_gyration_radius: 0.02.into(),
+            area_gyration_radius: 0.0.into(),
+            ..table_1()
+        };
+        let lag = frequencies(spec.clone().into(), 20, ModeKind::Lag, 2);
+        let flap = frequencies(spec.into(), 20, ModeKind::Flap, 3);
+        for (got, k) in [(lag[0], 1), (flap[0], 2), (flap[1], 3), (lag[1], 4), (flap[2], 5)] {
+            assert!((got / number(row, k) - 1.0).abs() < 3e-6, "{} {k}: {got}", row[0]);
+        }
+    }
+}
+
+/// Published frequencies of the hinged nonuniform model blade.
+#[test]
+fn hinged_nonuniform_blade_meets_its_published_frequencies() {
+    let rows = table("tm4760_mbdyn_frequencies_hz.csv");
+    let speeds: Vec<f64> = rows.iter().map(|row| number(row, 0) / TM_4760_RPM).collect();
+    let blade = ModerateBlade::new(tm_4760_blade()).unwrap();
+    let count = ModeCount { flap: 4, lag: 2, torsion: 1, axial: 0 };
+    let terms = GyroscopicTerms::Included;
+    let fan = deflected_fan(&blade, 30, &speeds, terms, count).unwrap();
+    let hz = TM_4760_RPM / 60.0;
+    println!(" rpm   mode   here    published   gap %");
+    for (row, point) in rows.iter().zip(&fan) {
+        let of = |kind: ModeKind, number: usize| {
+            let same = |mode: &&CoupledMode| mode.kind == kind && mode.number == number;
+            point.modes.iter().find(same).unwrap().frequency * hz
+        };
+        // the hinged blade's first flap and lag modes are its rigid ones
+        for (name, got, column, bound) in [
+            ("rigid flap", of(ModeKind::Flap, 1), 2, 0.5),
+            ("F1", of(ModeKind::Flap, 2), 3, 0.5),
+            ("F2", of(ModeKind::Flap, 3), 4, 0.5),
+            ("L1", of(ModeKind::Lag, 2), 5, 0.5),
+            ("F3", of(ModeKind::Flap, 4), 6, 1.0),
+            ("T1", of(ModeKind::Torsion, 1), 7, 1.0),
+        ] {
+            let published = number(row, column);
+            if published == 0.0 {
+                assert!(got < 1e-3, "{name}");
+                continue;
+            }
+            let gap = 100.0 * (got / published - 1.0);
+            println!("{:4} {name:>10} {got:8.3} {published:8.2} {gap:7.2}", row[0]);
+            assert!(gap.abs() <= bound, "{name} at {} rpm: {gap} %", row[0]);
+        }
+    }
+}
+
+/// Measured frequencies of the rotating strip: the nominal beam is low by several per cent.
+#[test]
+fn measured_strip_is_stiffer_than_its_nominal_beam() {
+    let rows = table("epps_chandra_frequencies_hz.csv");
+    let blade = ModerateBlade::new(epps_chandra_strip()).unwrap();
+    let rpm = [0.0, 500.0, 750.0];
+    let count = ModeCount { flap: 3, lag: 0, torsion: 0, axial: 0 };
+    let speeds = rpm.map(|r| r / EPPS_CHANDRA_RPM);
+    let fan = deflected_fan(&blade, 20, &speeds, GyroscopicTerms::Included, count).unwrap();
+    let mut squares = Vec::new();
+    println!("mode  rpm   here  measured  gap %");
+    for row in rows.iter().filter(|row| row[1] == "0" && row[0].starts_with('B')) {
+        let mode: usize = row[0][1..].parse().unwrap();
+        for (k, point) in fan.iter().enumerate() {
+            let got = point.modes[mode - 1].frequency * EPPS_CHANDRA_RPM / 60.0;
+            let measured = number(row, 2 + k);
+            let gap = 100.0 * (got / measured - 1.0);
+            println!("{}  {:4} {got:7.2} {measured:7.1} {gap:7.1}", row[0], rpm[k]);
+            if mode > 1 {
+                squares.push(gap * gap);
+                assert!((-11.0..-3.0).contains(&gap), "{gap}");
+            }
+        }
+    }
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    println!("rms of B2 and B3: {rms:.2} %");
+    assert!((rms - 6.4).abs() < 0.2);
+}
+
+/// A blade bent by a lift-like load, with every property that couples motions.
+fn bent() -> (ModerateModel, StaticState) {
+    let spec = ModerateSpec {
+        mass_centre: (-0.004).into(),
+        tension_centre: 0.003.into(),
+        rotary_inertia: RotaryInertia::Included,
+        ..BladeSpec {
+            twist: Twist::Linear { rate_rad: -0.14 },
+            pitch_rad: 0.14,
+            axial_stiffness: 200.0.into(),
+            ..table_1()
+        }
+        .into()
+    };
+    let model = ModerateModel::new(ModerateBlade::new(spec).unwrap(), 10).unwrap();
+    let load = model.distributed_load(|x| [0.0, -2e-3 * x, 0.03 * x * x, 0.0]);
+    let state = model.static_state(&load, &StaticSettings::default()).unwrap();
+    (model, state)
+}
+
+/// Condensing keeps the frequencies that leaving the axial motion out destroys.
+#[test]
+fn condensed_axial_motion_keeps_the_frequencies() {
+    let (model, state) = bent();
+    let count = ModeCount::default();
+    let terms = GyroscopicTerms::Included;
+    let solve = |axial| deflected_modes(&model, &state, terms, axial, count).unwrap();
+    let (free, condensed) = (solve(AxialMotion::Free), solve(AxialMotion::Condensed));
+    for (a, b) in free.iter().zip(&condensed) {
+        let gap = b.frequency / a.frequency - 1.0;
+        println!("{} {}: {:.6} {:.6} {gap:.1e}", a.kind, a.number, a.frequency, b.frequency);
+        let bound = if a.frequency < 5.0 { 2e-4 } else { 2e-2 };
+        assert_eq!((a.kind, a.number), (b.kind, b.number));
+        assert!(gap.abs() < bound, "{} {}: {gap}", a.kind, a.number);
+        let shape = (&a.in_phase - &b.in_phase).norm() / a.in_phase.norm();
+        assert!(shape < 0.1, "{} {}: {shape}", a.kind, a.number);
+    }
+    // leaving u out, by its indices 0, 6, 7 of every element
+    let kept: Vec<usize> =
+        model.free().iter().copied().filter(|i| ![0, 6, 7].contains(&(i % 9))).collect();
+    let about = model.tangents(&NodalMotion::steady(state.dof), model.own_pitch());
+    let part =
+        |m: &DMatrix<f64>| DMatrix::from_fn(kept.len(), kept.len(), |i, j| m[(kept[i], kept[j])]);
+    let inverse = part(&about.mass).cholesky().unwrap().l().try_inverse().unwrap();
+    let reduced = &inverse * part(&about.stiffness) * inverse.transpose();
+    let lowest = reduced.symmetric_eigen().eigenvalues.min().sqrt();
+    println!("lowest with u left out {lowest:.4}");
+    assert!(lowest > 1.02 * free.iter().map(|m| m.frequency).fold(f64::INFINITY, f64::min));
+}
+
+/// The reduced blade stands in balance where the elements do and vibrates at their frequencies.
+#[test]
+fn the_modal_blade_has_the_balance_and_the_frequencies_of_its_elements() {
+    let (model, state) = bent();
+    let (blade, modes) = ModalBlade::about(&model, &state, ModeCount::default(), 6).unwrap();
+    let still = vec![0.0; modes.len()];
+    let motion = ModalMotion { value: &still, rate: &still, acceleration: &still };
+    let found = blade.tangent(motion, model.own_pitch());
+    let loads: Vec<[f64; 4]> =
+        blade.stations().iter().map(|x| [0.0, -2e-3 * x, 0.03 * x * x, 0.0]).collect();
+    let work = blade.applied(&still, model.own_pitch(), &loads);
+    for (k, mode) in modes.iter().enumerate() {
+        let gap = (found.force[k] - work[k]).abs();
+        let square = mode.frequency.powi(2);
+        let frequency =
+            (found.stiffness[(k, k)] / found.mass[(k, k)]).sqrt() / mode.frequency - 1.0;
+        println!(
+            "{} {}: out of balance {gap:.1e}, mass {:.6}, frequency {frequency:.1e}",
+            mode.kind,
+            mode.number,
+            found.mass[(k, k)]
+        );
+        assert!(gap < 2e-4 * square.max(1.0), "{gap:e}");
+        assert!((found.mass[(k, k)] - 1.0).abs() < 2e-3);
+        assert!(frequency.abs() < 2e-3, "{frequency}");
+    }
+}
+
+#[test]
+fn as_many_modes_as_asked_and_a_named_refusal_beyond() {
+    let (model, state) = bent();
+    let ask = |flap| {
+        let count = ModeCount { flap, lag: 6, torsion: 4, axial: 0 };
+        let terms = GyroscopicTerms::Neglected;
+        deflected_modes(&model, &state, terms, AxialMotion::Condensed, count)
+    };
+    let found = ask(6).unwrap();
+    assert_eq!(found.len(), 16);
+    for mode in &found {
+        let about = model.tangents(&NodalMotion::steady(state.dof.clone()), model.own_pitch());
+        assert!((mode.in_phase.dot(&(&about.mass * &mode.in_phase)) - 1.0).abs() < 1e-6);
+    }
+    assert!(matches!(ask(60), Err(FemError::TooFewModes { kind: ModeKind::Flap, .. })));
+}
