@@ -192,8 +192,7 @@ impl Printable for CurvesResult {
                     format!("{:.2}", self.held_out_rms_percent),
                     format!("{:.2}", self.held_out_worst_percent),
                 ],
-            ]
-            .into_iter(),
+            ],
         ));
         sheet.line(format_args!(
             "\nPercent of the range of all outputs. Reversal curves are quasi-static: they say nothing about rate."

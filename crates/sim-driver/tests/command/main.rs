@@ -1,5 +1,7 @@
 //! The `hhc` command as users meet it: a process in a folder of its own.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod bad_input;
 mod commands;
 mod import;
