@@ -165,7 +165,6 @@ impl Default for EffectivenessFile {
 
 impl EffectivenessFile {
     /// Whether it is theory's: not written then.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
     fn is_ideal(&self) -> bool {
         *self == Self::default()
     }
