@@ -287,12 +287,11 @@ fn collected(conditions: &[(f64, f64)], motion: Motion) -> Result<Errors, CheckE
 fn flap_error(faster: bool, load: Load, band: usize) -> Result<f64, CheckError> {
     // computed once for all checks
     static ERRORS: OnceLock<[Errors; 2]> = OnceLock::new();
-    let errors = match ERRORS.get() {
-        Some(errors) => errors,
-        None => {
-            let fresh = [collected(&SUBCRITICAL, Motion::Flap)?, collected(&FASTER, Motion::Flap)?];
-            ERRORS.get_or_init(|| fresh)
-        }
+    let errors = if let Some(errors) = ERRORS.get() {
+        errors
+    } else {
+        let fresh = [collected(&SUBCRITICAL, Motion::Flap)?, collected(&FASTER, Motion::Flap)?];
+        ERRORS.get_or_init(|| fresh)
     };
     let of_band = &errors[usize::from(faster)];
     worst("conditions", 6, of_band.iter().map(|e| Ok(e[load.index()][band])))
