@@ -173,6 +173,18 @@ impl AttachedFlowModel {
         }
     }
 
+    /// Name for reports, with what a reader has to know of the model's origin.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::QuasiSteady => "quasi-steady",
+            Self::Incompressible => "incompressible, exact wake of a flat plate",
+            Self::HariharanLeishman => {
+                "form of Hariharan and Leishman, slope-matched reconstruction"
+            }
+            Self::Calibrated => "calibrated on exact compressible theory",
+        }
+    }
+
     /// The model of one flap, from which the coefficients at many Mach numbers are had at less cost.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, ResponseError,
-    ResponseTolerances, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::hint::black_box;
@@ -44,6 +44,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
             AttachedFlowModel::Incompressible => Compressibility::None,
             _ => Compressibility::LocalMach { tip_mach: 0.582 },
         },
+        reverse_flow: ReverseFlow::default(),
         flaps: vec![flap(0.70, 0.75), flap(0.80, 0.85)],
     };
     let rotor = Rotor::new(model, &blade, Discretisation::default())?;

@@ -60,7 +60,7 @@ fn setting(loaded: &LoadedCase) -> Vec<String> {
             "{} blades, advance ratio {:.3}, {:?} couplings, modes {:?} (flap, lag, torsion).",
             case.blades, case.advance_ratio, case.blade.couplings, case.blade.modes
         ),
-        format!("Sections: {}. Inflow: {:?}.", case.section_model().name(), case.inflow),
+        format!("Sections: {}. Inflow: {:?}.", case.section_model().title(), case.inflow),
         format!(
             "One revolution of the rotor is {:.4} s of bench time ({} rev/s).",
             1.0 / case.actuator.bench_rev_hz,
