@@ -32,7 +32,7 @@ pub fn write(root: &Path) -> Result<Calibration, XtaskError> {
 /// Fits the model anew and compares with the stored table: the lines that differ.
 ///
 /// # Errors
-/// As [`write`], and [`XtaskError::Read`] if there is no table.
+/// As [`write()`], and [`XtaskError::Read`] if there is no table.
 pub fn check(root: &Path) -> Result<Vec<String>, XtaskError> {
     let stored = files::read(&root.join(TABLE))?;
     Ok(differences(&stored, &calibrate()?.source()))

@@ -296,6 +296,15 @@ pub enum PreisachError {
         remedy: &'static str,
     },
 
+    /// The records are outside the class of the model.
+    #[error(
+        "the model leaves {nrmse_percent:.0} % of the training records unexplained: no actuator of this kind; check the sign of the displacement, which has to rise with the voltage, and the columns"
+    )]
+    NotDescribed {
+        /// Root mean square of the NRMSE of the training records, percent.
+        nrmse_percent: f64,
+    },
+
     // ---- reversal curves ----
     /// A reversal curve cannot be used.
     #[error("reversal curve {curve}, point {index}: {problem} ({value})")]

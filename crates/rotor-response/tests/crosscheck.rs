@@ -136,6 +136,7 @@ fn the_couplings_are_seen_by_the_bound() {
 }
 
 /// Distance of the 4/rev vector and of its vertical force, and the largest error of a mode.
+#[expect(clippy::print_stdout, reason = "the comparison, mode by mode, is what a reader wants")]
 fn moderate_distance(torsion: TorsionTerms) -> [f64; 3] {
     let reference = reference("S2_full_fixed");
     let solution = solve(Couplings::Moderate(torsion), Discretisation::default());

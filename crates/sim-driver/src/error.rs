@@ -140,6 +140,7 @@ fn actuator_family(error: &PreisachError) -> Family {
     match error {
         PreisachError::Diverged { .. }
         | PreisachError::OrbitNotClosed { .. }
+        | PreisachError::NotDescribed { .. }
         | PreisachError::QuadraticProgram { .. } => Family::NumericalFailure,
         _ => Family::RejectedInput,
     }

@@ -31,6 +31,8 @@ pub struct DataHeading {
     pub content_hash: String,
     /// Whether a run leaves its side of the split to the rule.
     pub split_by_rule: bool,
+    /// Whether `dataset.ron` gives a run its side of the split, by its use or by its role.
+    pub split_by_data: bool,
     /// Input and output of a generic loop; none for an actuator: V and deg.
     pub channels: Option<StoredChannels>,
     /// Where the range of the inputs comes from.
@@ -91,7 +93,8 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
         title: data.title.clone(),
         folder: data.folder.clone(),
         content_hash: data.content_hash.clone(),
-        split_by_rule: data.runs.iter().any(|run| run.use_as.is_none()),
+        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
+        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
         channels: None,
         range_rule: "command_range_V",
     };
@@ -131,7 +134,8 @@ pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentific
         title: data.title.clone(),
         folder: data.folder.clone(),
         content_hash: data.content_hash.clone(),
-        split_by_rule: data.runs.iter().any(|run| run.use_as.is_none()),
+        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
+        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
         channels: Some(StoredChannels { input, output }),
         range_rule: data.input_range.rule(),
     };
@@ -163,6 +167,14 @@ fn identified(
     let dataset = format!("{}/dataset.ron", heading.folder);
     let fail = |source: PreisachError| SimError::Actuator { place: Place::file(&dataset), source };
     let identification = identify(&records, &settings).map_err(fail)?;
+    // of a generic loop the table of models may still be of use; a rotor needs an actuator
+    let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
+        Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),
+        _ => None,
+    });
+    if let (Some(nrmse_percent), None) = (not_described, &heading.channels) {
+        return Err(fail(PreisachError::NotDescribed { nrmse_percent }));
+    }
     let fits = judged(&heading, &records, &identification)?;
     Ok(BenchIdentification { heading, identification, settings, records, fits, comparison: None })
 }
@@ -341,7 +353,12 @@ impl BenchIdentification {
             range_rule: self.heading.range_rule.to_owned(),
             split: if self.heading.split_by_rule {
                 format!(
-                    "trained: quasi-static records (up to {} Hz) and, at {} Hz, the largest and the smallest amplitude; held out: all others{}",
+                    "{}trained: quasi-static records (up to {} Hz) and, at {} Hz, the largest and the smallest amplitude; held out: all others{}",
+                    if self.heading.split_by_data {
+                        "runs with a use, and measured ones, as dataset.ron says; of the others "
+                    } else {
+                        ""
+                    },
                     rule.quasi_static_hz,
                     rule.trained_hz.iter().map(f64::to_string).collect::<Vec<_>>().join(" and "),
                     if *rule == base { "" } else { " (rule of the start file)" },
@@ -514,6 +531,9 @@ impl Printable for IdentifyResult {
             sheet.line(format_args!(
                 "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen. Held-out runs are never looked at for choosing."
             ));
+            for failure in failures(&self.models) {
+                sheet.line(format_args!("{failure}"));
+            }
         }
         let [determined, unknowns] = self.density_determined;
         sheet.line(format_args!(
@@ -537,13 +557,29 @@ fn model_table(models: &[ModelLine]) -> String {
             vec![
                 format!("{}{}", if m.chosen { "* " } else { "" }, m.model),
                 m.levels.to_string(),
-                m.failure.clone().unwrap_or_else(|| optional(m.cross_validation_percent)),
+                optional(m.cross_validation_percent),
                 optional(m.trained_percent),
                 optional(m.held_out_percent),
                 optional(m.worst_held_out_percent),
             ]
         }),
     )
+}
+
+/// Why models have no fit, each reason once with the models it concerns.
+fn failures(models: &[ModelLine]) -> Vec<String> {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for line in models {
+        let Some(failure) = &line.failure else { continue };
+        match reasons.iter_mut().find(|(reason, _)| reason == failure) {
+            Some((_, concerned)) => concerned.push(&line.model),
+            None => reasons.push((failure, vec![&line.model])),
+        }
+    }
+    reasons
+        .into_iter()
+        .map(|(reason, concerned)| format!("Not fitted: {}\n  {reason}", concerned.join("; ")))
+        .collect()
 }
 
 /// How the model fits the runs given.

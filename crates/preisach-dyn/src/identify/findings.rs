@@ -89,6 +89,11 @@ pub enum Finding {
         /// Greatest width at the middle of the command over the range of the output, percent.
         width_percent: f64,
     },
+    /// Even the records that trained are not described: the data are outside the class of the model.
+    NotDescribed {
+        /// Root mean square of the NRMSE of the training records, percent.
+        nrmse_percent: f64,
+    },
 }
 
 impl Finding {
@@ -104,7 +109,8 @@ impl Finding {
             Self::ClippedOutput { .. }
             | Self::ClippedCommand { .. }
             | Self::OutputLeads { .. }
-            | Self::LoopTooWide { .. } => Severity::Suspect,
+            | Self::LoopTooWide { .. }
+            | Self::NotDescribed { .. } => Severity::Suspect,
         }
     }
 
@@ -134,6 +140,9 @@ impl Finding {
             }
             Self::LoopTooWide { .. } => {
                 "check the columns, the sign of the output and the synchronisation of the channels"
+            }
+            Self::NotDescribed { .. } => {
+                "check the sign of the output, which has to rise with the input; otherwise another kind of model is needed: do not use this one"
             }
         }
     }
@@ -180,6 +189,10 @@ impl fmt::Display for Finding {
             Self::LoopTooWide { id, width_percent } => write!(
                 f,
                 "record {id}: the slow loop is {width_percent:.0} % as wide as the output's range"
+            ),
+            Self::NotDescribed { nrmse_percent } => write!(
+                f,
+                "the model leaves {nrmse_percent:.0} % of the training records unexplained: they are outside its class"
             ),
         }
     }

@@ -126,7 +126,7 @@ pub fn identify(
     let bench = Bench::new(records, settings)?;
     let prepared = bench.prepared(&grid, settings)?;
     let Sorted { slow, fast } = Sorted::of(&prepared)?;
-    let summary = bench.summary(&grid, &prepared, settings);
+    let mut summary = bench.summary(&grid, &prepared, settings);
 
     let trained = Some(trained_range(&slow, &fast, &prepared));
     let wrap = |law| ActuatorModel { trained, ..settings.actuator_of(law) };
@@ -165,6 +165,10 @@ pub fn identify(
             })
         })
         .collect::<Result<Vec<_>, PreisachError>>()?;
+    let unexplained = unexplained(&reports);
+    if unexplained > MOST_UNEXPLAINED {
+        summary.findings.push(Finding::NotDescribed { nrmse_percent: 100.0 * unexplained });
+    }
     let zero_deg = match settings.zero {
         FlapZero::AsRecorded => 0.0,
         FlapZero::MajorLoopMean => major_loop_mean(&slow),
@@ -182,6 +186,20 @@ pub fn identify(
         covariance: rate.covariance,
         summary,
     })
+}
+
+/// Share of the spread of the training records beyond which what a model leaves is no misfit of its
+/// numbers but of its kind.
+const MOST_UNEXPLAINED: f64 = 0.5;
+
+/// Root mean square of the NRMSE of the training records.
+fn unexplained(reports: &[RecordReport]) -> f64 {
+    let trained: Vec<f64> = reports
+        .iter()
+        .filter(|r| r.record_use == RecordUse::Train)
+        .map(|r| r.dynamic.nrmse.powi(2))
+        .collect();
+    (trained.iter().sum::<f64>() / trained.len().max(1) as f64).sqrt()
 }
 
 /// A dynamic Preisach law with what its fit rests on.

@@ -16,8 +16,8 @@ pub use polar::{PolarQuestion, polar};
 use crate::SimError;
 use crate::output::{Printable, table};
 use flap_aero::{
-    AttachedFlowModel, FlapChord, FlapEffectiveness, Mach, Motion, SectionCoefficients,
-    harmonic_response,
+    AttachedFlowModel, FlapChord, FlapEffectiveness, Mach, ModelRemarks, Motion,
+    SectionCoefficients, harmonic_response,
 };
 use serde::Serialize;
 
@@ -60,8 +60,14 @@ pub struct SectionQuestion {
 
 /// Complex amplitudes per radian (plunge: per unit of `h_dot / U`, down positive) as `[re, im]`;
 /// moments on the full chord squared, about the quarter chord and the hinge.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SectionResult {
+    /// The model and where it comes from; not in the JSON, whose form is fixed.
+    #[serde(skip)]
+    pub model: &'static str,
+    /// Where the model had to leave its own form to give an answer; not in the JSON.
+    #[serde(skip)]
+    pub remarks: Vec<&'static str>,
     /// Normal force coefficient.
     pub cn: [f64; 2],
     /// Moment coefficient about the quarter chord, nose-up positive.
@@ -80,7 +86,23 @@ pub fn section_response(question: &SectionQuestion) -> Result<SectionResult, Sim
     let (section, ..) = question.section.coefficients()?;
     let [cn, cm, ch] =
         harmonic_response(&section, k, question.motion).map(|value| [value.re, value.im]);
-    Ok(SectionResult { cn, cm, ch })
+    let model = question.section.model.title();
+    Ok(SectionResult { model, remarks: remarks(&section.remarks), cn, cm, ch })
+}
+
+fn remarks(remarks: &ModelRemarks) -> Vec<&'static str> {
+    let unmatched = remarks.slope_unmatched.iter().flatten().any(|unmatched| *unmatched);
+    [
+        (remarks.mach_floored, "the noncirculatory loads are those of a small Mach number above 0"),
+        (remarks.mach_capped, "the coefficients are those of the highest Mach number calibrated"),
+        (
+            unmatched,
+            "an initial slope could not be matched: its time constant is the smallest used",
+        ),
+    ]
+    .into_iter()
+    .filter_map(|(applies, text)| applies.then_some(text))
+    .collect()
 }
 
 impl Printable for SectionResult {
@@ -90,7 +112,8 @@ impl Printable for SectionResult {
             ("Cm, about c/4", self.cm),
             ("Ch, about the hinge", self.ch),
         ];
-        table(
+        let notes: Vec<String> = self.remarks.iter().map(|r| format!("Note: {r}\n")).collect();
+        let loads = table(
             &["per radian (plunge: per h_dot/U)", "real", "imaginary", "amplitude", "lag, deg"],
             rows.map(|(name, [re, im])| {
                 let lag = -im.atan2(re).to_degrees();
@@ -103,7 +126,8 @@ impl Printable for SectionResult {
                     format!("{lag:.2}"),
                 ]
             }),
-        )
+        );
+        format!("Model: {}\n{}{loads}", self.model, notes.concat())
     }
 }
 
