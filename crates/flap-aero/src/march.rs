@@ -42,7 +42,7 @@ impl SectionState {
         Self { states, drives, shared, lags: section.lags }
     }
 
-    /// The lag states, in the order of [`SectionCoefficients::lags`].
+    /// The lag states, in the order of [`crate::SectionCoefficients::lags`].
     pub fn states(&self) -> Vec<f64> {
         let behind = self.states.as_flattened().iter();
         let input = |i: usize| if self.shared { self.drives[0][i % LANES] } else { 0.0 };
