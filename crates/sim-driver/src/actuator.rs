@@ -7,7 +7,8 @@ use crate::identification::{BenchIdentification, identify_bench};
 use crate::problem::{Fault, Place, Problem};
 use crate::stored_actuator::{StoredFit, read_actuator};
 use preisach_dyn::identify::Settings;
-use preisach_dyn::{ActuatorModel, VoltageRange};
+use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
+use rotor_base::{Harmonic, HarmonicSeries};
 
 /// The actuators of a case.
 #[derive(Debug, Clone)]
@@ -87,6 +88,9 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     }
     let place = loaded.index.place("actuator.bench_rev_hz");
     actuators.warnings.extend(extrapolation_warnings(loaded, actuators.real.as_ref(), &place));
+    actuators
+        .warnings
+        .extend(actuators.real.as_ref().and_then(|model| gain_warning(loaded, model)));
     Ok(actuators)
 }
 
@@ -109,6 +113,31 @@ fn within_model(
         known_high_volt: known.highest_volt(),
     };
     Err(Problem::new(loaded.index.place("actuator.range_V"), fault).into())
+}
+
+/// Difference of the gains beyond which the ideal actuator is not the identified one without its
+/// hysteresis.
+const GAIN_ALLOWANCE: f64 = 0.05;
+
+/// A warning if the ideal actuator's gain is not that of the identified one cycled slowly about the
+/// middle of its range: then more than hysteresis lies between them.
+fn gain_warning(loaded: &LoadedCase, model: &ActuatorModel) -> Option<String> {
+    let case = &loaded.case;
+    let trained = model.trained?;
+    let range = model.range_volt;
+    let amplitude_volt = trained.largest_amplitude_volt.min(0.499 * range.span_volt());
+    let mut voltage = HarmonicSeries { mean: range.middle_volt(), ..HarmonicSeries::zero(1) };
+    voltage.set_harmonic(1, Harmonic { cosine: amplitude_volt, sine: 0.0 });
+    let settings = PeriodicSettings::default();
+    let cycle = model.periodic_response(&voltage, trained.lowest_hz, &settings).ok()?;
+    let slow = cycle.flap_deg.harmonic(1).amplitude() / amplitude_volt;
+    let ideal = case.actuator.ideal_amplitude_deg / case.control.amplitude_volt;
+    ((ideal / slow - 1.0).abs() > GAIN_ALLOWANCE).then(|| {
+        format!(
+            "{}: the ideal actuator makes {ideal:.4} deg/V (ideal_amplitude_deg over control.amplitude_V), the identified one {slow:.4} deg/V when cycled slowly: more than hysteresis lies between the rows ideal, ignored and hysteretic",
+            loaded.index.place("actuator.ideal_amplitude_deg")
+        )
+    })
 }
 
 /// One warning per harmonic whose frequency lies above everything the bench has seen.

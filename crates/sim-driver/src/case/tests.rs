@@ -117,6 +117,9 @@ fn single_problems_name_the_remedy() {
         ("(trim: Propulsive(ct: 0.07))", "unknown key `ct`"),
         ("(trim: Free)", "unknown choice `Free`"),
         ("(control: (harmonics: [[2, 2]]))", "`2` is used already"),
+        ("(flaps: [])", "control.harmonics: the blade has no flap to control with"),
+        ("(response: (time_order: 1))", "response.time_order: is 1"),
+        ("(rotor: (lock_number: 0))", "rotor.lock_number: is 0"),
         (
             "(control: (harmonics: [[]]))",
             "control.harmonics[0]: is empty; give at least one harmonic",

@@ -222,6 +222,18 @@ fn a_voltage_outside_the_actuators_range() {
 }
 
 #[test]
+fn a_range_beyond_the_records() {
+    let place = Place::new();
+    let text = "(\n  title: \"wide\",\n  actuator: (\n    range_V: (-200, 300),\n  ),\n  control: (bias_V: 50, amplitude_V: 200),\n)";
+    place.write("case.ron", text);
+    place.hhc(&["run", "case.ron"]).rejected(&[
+        "case.ron:4:5: actuator.range_V: (-200, 300) V reaches beyond the (-20, 150) V",
+        "narrow the range",
+    ]);
+    assert_eq!(place.listing(), ["case.ron"], "nothing is written");
+}
+
+#[test]
 fn broken_ron() {
     bad_case(
         "(\n  advance_ratio: 0.3\n  rotor: (),\n)",
