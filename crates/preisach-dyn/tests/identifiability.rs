@@ -263,3 +263,18 @@ fn windows_train_and_judge_apart_while_the_memory_runs_from_the_first_sample() {
     let whole = identify(&[all], &settings).unwrap().records[0].static_only;
     assert!(whole.range_percent > 3.0 * fit.range_percent, "{whole:?}");
 }
+
+/// An output that falls as the voltage rises is outside every class here, and that is said, whatever
+/// numbers the fit finds; the same records the right way up are described.
+#[test]
+fn records_outside_the_class_are_called_so() {
+    let outside = |sign: f64| {
+        let mut records = full();
+        for output in records.iter_mut().flat_map(|r| &mut r.output_deg) {
+            *output *= sign;
+        }
+        found(&records).summary.findings.iter().any(|f| matches!(f, Finding::NotDescribed { .. }))
+    };
+    assert!(outside(-1.0));
+    assert!(!outside(1.0));
+}
