@@ -146,18 +146,27 @@ impl BladeModel {
     /// # Errors
     /// [`FemError::Station`] outside 0 to 1.
     pub fn motion(&self, dof: &DVector<f64>, station: f64) -> Result<SectionMotion, FemError> {
-        let Some((e, s)) = locate(&self.edges, station)? else {
-            return Ok(SectionMotion::default());
-        };
-        let rows = Rows::at(s, self.edges[e + 1] - self.edges[e]);
-        let local = dof.fixed_rows::<ELEMENT_DOF>(STRIDE * e);
-        Ok(SectionMotion {
-            axial: rows.axial.map(|row| row.dot(&local)),
-            lag: rows.lag.map(|row| row.dot(&local)),
-            flap: rows.flap.map(|row| row.dot(&local)),
-            twist: rows.twist.map(|row| row.dot(&local)),
-        })
+        section_motion(&self.edges, dof, station)
     }
+}
+
+/// Motion of the section at station r/R of a mesh with element ends `edges`; at rest inboard of it.
+pub(crate) fn section_motion(
+    edges: &[f64],
+    dof: &DVector<f64>,
+    station: f64,
+) -> Result<SectionMotion, FemError> {
+    let Some((e, s)) = locate(edges, station)? else {
+        return Ok(SectionMotion::default());
+    };
+    let rows = Rows::at(s, edges[e + 1] - edges[e]);
+    let local = dof.fixed_rows::<ELEMENT_DOF>(STRIDE * e);
+    Ok(SectionMotion {
+        axial: rows.axial.map(|row| row.dot(&local)),
+        lag: rows.lag.map(|row| row.dot(&local)),
+        flap: rows.flap.map(|row| row.dot(&local)),
+        twist: rows.twist.map(|row| row.dot(&local)),
+    })
 }
 
 /// The family a global degree of freedom belongs to.

@@ -36,8 +36,9 @@ impl SixLoads {
     }
 }
 
-/// Root loads of one blade at one azimuth, rotating shaft axes, about the rotor centre; summed in coned
-/// blade axes by
+/// Root loads of one blade at one azimuth, rotating shaft axes, about the rotor centre.
+///
+/// Summed in coned blade axes, then turned by [`coned_to_shaft`]:
 ///
 /// ```text
 /// f_x = m (x + u + 2 v' - u'') + F_x      F_x = -w_x F_z - v_x F_y (aerodynamic)

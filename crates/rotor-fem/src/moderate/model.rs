@@ -6,8 +6,8 @@ use super::element::{self, ElementMotion, Imposed};
 use super::inertia::Spin;
 use super::points::ElementPoints;
 use super::{Joint, ModerateBlade};
-use crate::assembly::{MAX_ELEMENTS, locate};
-use crate::shape::{ELEMENT_DOF, JOINT_DOF, Rows, STRIDE, place};
+use crate::assembly::{MAX_ELEMENTS, section_motion};
+use crate::shape::{ELEMENT_DOF, JOINT_DOF, STRIDE, place};
 use crate::{FemError, SectionMotion};
 
 /// Places of the root's flap slope, lag slope and twist among the degrees of freedom.
@@ -302,17 +302,7 @@ impl ModerateModel {
     /// # Errors
     /// [`FemError::Station`] outside 0 to 1.
     pub fn section(&self, dof: &DVector<f64>, station: f64) -> Result<SectionMotion, FemError> {
-        let Some((e, s)) = locate(&self.edges, station)? else {
-            return Ok(SectionMotion::default());
-        };
-        let rows = Rows::at(s, self.edges[e + 1] - self.edges[e]);
-        let local = dof.fixed_rows::<ELEMENT_DOF>(STRIDE * e);
-        Ok(SectionMotion {
-            axial: rows.axial.map(|row| row.dot(&local)),
-            lag: rows.lag.map(|row| row.dot(&local)),
-            flap: rows.flap.map(|row| row.dot(&local)),
-            twist: rows.twist.map(|row| row.dot(&local)),
-        })
+        section_motion(&self.edges, dof, station)
     }
 
     /// Steady tension `EA e` at the three points of the stretch of each element, station with value.

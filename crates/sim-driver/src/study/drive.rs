@@ -54,9 +54,13 @@ impl FlapDrive {
         for &(n, harmonic) in voltages {
             voltage.set_harmonic(n, harmonic);
         }
+        let (low, high) = alternating_volt(&voltage);
+        let (swing_volt, span_volt) = self.swing_and_room((low, high));
+        if swing_volt > span_volt * (1.0 + 1e-9) {
+            return Err(PlantError::VoltageSwing { swing_volt, span_volt });
+        }
         match self {
-            Self::Ideal { gain_deg_per_volt, bias_volt, range_volt } => {
-                bias_window(*range_volt, alternating_volt(&voltage), Some(*bias_volt))?;
+            Self::Ideal { gain_deg_per_volt, bias_volt, .. } => {
                 let mut flap_deg = HarmonicSeries::zero(0);
                 for &(n, h) in voltages {
                     let scaled = Harmonic {
@@ -71,7 +75,7 @@ impl FlapDrive {
             Self::Model { model, range_volt, rev_hz, bias_volt } => {
                 let settings = PeriodicSettings::default();
                 let solver = BiasSolver {
-                    range_volt: bias_window(*range_volt, alternating_volt(&voltage), None)?,
+                    range_volt: [range_volt.lowest_volt() - low, range_volt.highest_volt() - high],
                     guess_volt: *bias_volt,
                     slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
                     tolerance_deg: MEAN_FLAP_TOLERANCE_DEG,
@@ -103,21 +107,26 @@ impl FlapDrive {
         }
     }
 
-    /// The swing of the voltage over what the range leaves it: above 1 it cannot be asked for. About
-    /// its fixed bias for the ideal actuator; over the whole range where the bias is free.
+    /// The swing of the voltage over what the range leaves it: above 1 it cannot be asked for.
     pub fn range_ratio(&self, voltages: &[(usize, Harmonic)]) -> f64 {
         let mut voltage = HarmonicSeries::zero(0);
         for &(n, harmonic) in voltages {
             voltage.set_harmonic(n, harmonic);
         }
-        let (low, high) = alternating_volt(&voltage);
+        let (swing_volt, room_volt) = self.swing_and_room(alternating_volt(&voltage));
+        swing_volt / room_volt
+    }
+
+    /// Swing of a voltage with these extremes and the room the range leaves it, V: from its fixed bias
+    /// to the tighter side for the ideal actuator, over the whole range where the bias is free.
+    fn swing_and_room(&self, (low, high): (f64, f64)) -> (f64, f64) {
         match self {
             Self::Ideal { bias_volt, range_volt, .. } => {
                 let below = bias_volt - range_volt.lowest_volt();
                 let above = range_volt.highest_volt() - bias_volt;
-                f64::max(-low / below, high / above)
+                if -low / below > high / above { (-low, below) } else { (high, above) }
             }
-            Self::Model { range_volt, .. } => (high - low) / range_volt.span_volt(),
+            Self::Model { range_volt, .. } => (high - low, range_volt.span_volt()),
         }
     }
 
@@ -182,28 +191,4 @@ fn alternating_volt(voltage: &HarmonicSeries) -> (f64, f64) {
         .into_iter()
         .map(|azimuth| alternating.value(azimuth))
         .fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)))
-}
-
-/// The biases that keep the whole voltage inside its range, `bias_volt` alone if one is given.
-fn bias_window(
-    range: VoltageRange,
-    (low, high): (f64, f64),
-    bias_volt: Option<f64>,
-) -> Result<[f64; 2], PlantError> {
-    let window = [range.lowest_volt() - low, range.highest_volt() - high];
-    let slack = 1e-9 * range.span_volt();
-    let fits = match bias_volt {
-        Some(bias) => window[0] - slack <= bias && bias <= window[1] + slack,
-        None => window[0] <= window[1],
-    };
-    if fits {
-        return Ok(window);
-    }
-    // the swing about a fixed bias counts from the nearer limit
-    let (swing_volt, span_volt) = match bias_volt {
-        Some(bias) if window[0] > bias => (-low, bias - range.lowest_volt()),
-        Some(bias) => (high, range.highest_volt() - bias),
-        None => (high - low, range.span_volt()),
-    };
-    Err(PlantError::VoltageSwing { swing_volt, span_volt })
 }
