@@ -189,6 +189,30 @@ pub enum FemError {
         /// Number of stations.
         expected: usize,
     },
+    /// The tangents of a periodic system do not fit its mesh.
+    #[error(
+        "tangents of the revolution: {what} at point {point} is {found}, expected {expected}; take them \
+         at every Gauss point of the same time elements"
+    )]
+    Tangents {
+        /// What was counted.
+        what: &'static str,
+        /// Index of the Gauss point, from 0.
+        point: usize,
+        /// Number found.
+        found: usize,
+        /// Number expected.
+        expected: usize,
+    },
+    /// The mass matrix with apparent mass cannot be inverted.
+    #[error(
+        "the mass matrix with the apparent mass of the air is singular at azimuth {azimuth_rad} rad: \
+         check the mass distribution and the Lock number"
+    )]
+    MassSingular {
+        /// Azimuth, rad.
+        azimuth_rad: f64,
+    },
     /// An eigenvalue solution did not converge.
     #[error(
         "the eigenvalue solution of size {size} did not converge: check the blade's properties"

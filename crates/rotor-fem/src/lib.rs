@@ -11,6 +11,7 @@
 //! | What are its modal equations then? | [`ModalBlade`] |
 //! | Which shapes does the response use? | [`uncoupled_modes`] and its [`ModeSet`] |
 //! | Which motion repeats every revolution? | [`PeriodicSolver`] for any [`PeriodicSystem`] |
+//! | Is that motion stable? | [`Floquet`] |
 //!
 //! # Conventions
 //! Rotor units throughout: length R, mass m0 R, time 1/Omega, so stiffnesses are EI / (m0 Omega^2 R^4)
@@ -36,6 +37,7 @@ mod distribution;
 mod eigen;
 mod element;
 mod error;
+mod floquet;
 mod linear_periodic;
 mod mode_kind;
 mod mode_set;
@@ -53,6 +55,7 @@ mod time_elements;
 pub use assembly::{BladeModel, SectionMotion};
 pub use distribution::Distribution;
 pub use error::FemError;
+pub use floquet::{Floquet, FloquetMode};
 pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};

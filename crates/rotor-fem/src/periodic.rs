@@ -84,7 +84,7 @@ struct Iterate {
 /// level of the tolerance: use one solver per thread, or [`forget_factorisation`] between solves.
 ///
 /// Assumes: a constant symmetric mass matrix; period 2 pi.
-/// Not modelled: stability of the orbit.
+/// Not modelled: stability of the orbit, which is for [`Floquet`](crate::Floquet).
 ///
 /// [`forget_factorisation`]: Self::forget_factorisation
 #[derive(Debug, Clone)]

@@ -23,11 +23,19 @@ pub(crate) fn flap_equation() -> LinearPeriodic<impl Fn(f64) -> LinearCoefficien
         let load = theta * (1.0 + 8.0 / 3.0 * MU * s + 2.0 * MU * MU * s * s)
             - 8.0 * (0.8 + 2.0 * MU * s + 4.0 / 3.0 * MU * MU * s * s)
             - lambda * (4.0 / 3.0 + 2.0 * MU * s);
-        let aero_stiffness = g * (4.0 / 3.0 * MU * c + MU * MU * (2.0 * psi).sin());
+        let [damping, stiffness] = flap_stability_coefficients(psi);
         LinearCoefficients {
-            damping: DMatrix::from_element(1, 1, g * (1.0 + 4.0 / 3.0 * MU * s)),
-            stiffness: DMatrix::from_element(1, 1, NU * NU + aero_stiffness),
+            damping: DMatrix::from_element(1, 1, damping),
+            stiffness: DMatrix::from_element(1, 1, stiffness),
             load: DVector::from_element(1, g * load),
         }
     })
+}
+
+/// Damping and stiffness of the left side of the [`flap_equation`].
+pub(crate) fn flap_stability_coefficients(psi: f64) -> [f64; 2] {
+    let (s, c) = psi.sin_cos();
+    let g = GAMMA / 8.0;
+    let aero_stiffness = g * (4.0 / 3.0 * MU * c + MU * MU * (2.0 * psi).sin());
+    [g * (1.0 + 4.0 / 3.0 * MU * s), NU * NU + aero_stiffness]
 }
