@@ -224,6 +224,16 @@ impl ResponseBlade {
         self.flap.count() + self.lag.count() + self.torsion.count()
     }
 
+    /// Family of a modal coordinate and its number in it, from 1.
+    pub(crate) fn mode(&self, coordinate: usize) -> (ModeKind, usize) {
+        let (flap, lag) = (self.flap.count(), self.lag.count());
+        match coordinate {
+            i if i < flap => (ModeKind::Flap, i + 1),
+            i if i < flap + lag => (ModeKind::Lag, i - flap + 1),
+            i => (ModeKind::Torsion, i - flap - lag + 1),
+        }
+    }
+
     /// Modal mass matrix: families do not couple, modes of a family do only by rounding.
     pub(crate) fn mass_matrix(&self) -> DMatrix<f64> {
         let n = self.grid.len();

@@ -11,6 +11,7 @@ mod motion;
 mod rigid;
 mod rotor;
 mod span;
+mod stability;
 mod structure;
 mod system;
 
@@ -23,6 +24,7 @@ pub use rotor::{
     RotorSolver,
 };
 pub use span::SpanGrid;
+pub use stability::{BladeMotion, Stability};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -10,7 +10,7 @@ use crate::{Controls, Discretisation, ResponseError, RotorModel};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
-    BladeProperties, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver,
+    BladeProperties, Floquet, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver,
     PeriodicSystem, TimeElements,
 };
 use rotor_wake::{FlightState, InducedInflow, InflowModel, RotorLoading};
@@ -225,17 +225,8 @@ impl RotorSolver {
         let mut previous: Option<(Vec<f64>, f64)> = None;
         let mut last = (f64::INFINITY, 0.0);
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
-            let rotor = Arc::clone(&self.rotor);
-            let air = Arc::clone(&self.air);
-            let system = ResponseSystem {
-                blade: &rotor.blade,
-                couplings: rotor.model.couplings,
-                scales: rotor.scales(),
-                air: &air,
-                points: self.point_inputs(condition, &inflow),
-                damping: &rotor.damping,
-                mass: &rotor.mass,
-            };
+            let (rotor, air) = (Arc::clone(&self.rotor), Arc::clone(&self.air));
+            let system = self.system((&rotor, &air), condition, &inflow);
             let solution = self.solver.solve(&system, &orbit).map_err(Self::orbit_error)?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;
@@ -290,6 +281,36 @@ impl RotorSolver {
             PeriodicError::System { source, .. } => source,
             other => ResponseError::Periodic(Box::new(other)),
         }
+    }
+
+    /// The blade in a condition under a given inflow. Rotor and air are this solver's own, held apart
+    /// so that its Newton matrix may change while the system lives.
+    pub(crate) fn system<'a>(
+        &self,
+        (rotor, air): (&'a Rotor, &'a FlightAir),
+        condition: &Condition,
+        inflow: &InducedInflow,
+    ) -> ResponseSystem<'a> {
+        ResponseSystem {
+            blade: &rotor.blade,
+            couplings: rotor.model.couplings,
+            scales: rotor.scales(),
+            air,
+            points: self.point_inputs(condition, inflow),
+            damping: &rotor.damping,
+            mass: &rotor.mass,
+        }
+    }
+
+    /// Linearisation about a solution, for its stability.
+    pub(crate) fn linearised(
+        &self,
+        condition: &Condition,
+        solution: &RotorSolution,
+    ) -> Result<Floquet, ResponseError> {
+        let system = self.system((&self.rotor, &self.air), condition, &solution.inflow);
+        let tangents = system.tangents(&solution.orbit.sample(&self.time))?;
+        Ok(Floquet::of(&self.time, &self.rotor.mass, &tangents)?)
     }
 
     /// Azimuth, pitch, inflow and flap angles at every point.

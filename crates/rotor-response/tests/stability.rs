@@ -1,0 +1,76 @@
+//! Floquet exponents of the blade in flight against closed forms of the flapping blade.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{paper_blade, paper_model};
+use rotor_fem::{BladeProperties, BladeSpec, ModeKind};
+use rotor_response::{
+    Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
+    RotorSolver, Stability,
+};
+use rotor_wake::{FlightState, LinearInflow};
+use std::sync::Arc;
+
+fn stability(model: RotorModel, blade: &BladeProperties, modes: [usize; 3], mu: f64) -> Stability {
+    let discretisation = Discretisation { modes, ..Discretisation::default() };
+    let rotor = Rotor::new(model, blade, discretisation).unwrap();
+    let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
+    let condition = Condition {
+        flight: FlightState { advance_ratio: mu, shaft_tilt_rad: 0.1 * mu },
+        controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.01, theta1s_rad: -0.2 * mu },
+        flap_angles_rad: vec![],
+    };
+    let inflow = LinearInflow::Prescribed { induced_inflow: 0.05 };
+    let solution = solver.solve(&condition, &inflow, None).unwrap();
+    solver.stability(&condition, &solution).unwrap()
+}
+
+/// A hinged rigid blade in hover: `b'' + (g/8) b' + (1 - g c/12) b = 0`. The last term is the lift of the
+/// pitch rate `Omega b` of a flapped section at its three-quarter chord, `(g/2) (c/2) int x^2 dx b`.
+#[test]
+fn hovering_blade_flaps_with_a_sixteenth_of_the_lock_number() {
+    let blade = BladeProperties::new(BladeSpec {
+        root: rotor_fem::RootCondition::Hinged,
+        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
+    })
+    .unwrap();
+    let model = RotorModel {
+        root_cutout: 0.0,
+        modal_damping: 0.0,
+        drag_coefficient: 0.0,
+        ..paper_model(Couplings::Linear)
+    };
+    let result = stability(model, &blade, [1, 0, 0], 0.0);
+    let motion = result.least_stable().unwrap();
+    let expected = -5.2 / 16.0;
+    let frequency = (1.0_f64 - 5.2 * 0.055 / 12.0 - expected * expected).sqrt();
+    println!("{motion:?}, expected {expected}, {frequency}");
+    assert!((motion.growth_per_rad - expected).abs() < 1e-6, "{motion:?}");
+    assert!((motion.frequency_per_rev - (1.0 - frequency)).abs() < 1e-6, "{motion:?}");
+}
+
+/// The blade of the paper is stable in flight, its first lag motion least: little air damps it.
+#[test]
+fn the_paper_blade_is_stable_and_lags_longest() {
+    let result = stability(paper_model(Couplings::Full), &paper_blade(), [4, 4, 2], 0.3);
+    for motion in &result.motions {
+        println!(
+            "{} {}: {:+.4} per rad, {:.4} per rev",
+            motion.kind, motion.number, motion.growth_per_rad, motion.frequency_per_rev
+        );
+    }
+    assert!(result.is_stable());
+    assert_eq!(result.motions.len(), 10);
+    let least = result.least_stable().unwrap();
+    assert_eq!(least.kind, ModeKind::Lag);
+}
+
+/// What damps is the air and the modal damping: without both nothing is left.
+#[test]
+fn a_blade_in_vacuum_without_damping_neither_grows_nor_dies() {
+    let model =
+        RotorModel { lock_number: 0.0, modal_damping: 0.0, ..paper_model(Couplings::Linear) };
+    let result = stability(model, &paper_blade(), [2, 2, 1], 0.0);
+    assert!(result.motions.iter().all(|m| m.growth_per_rad.abs() < 1e-9), "{:?}", result.motions);
+}
