@@ -157,10 +157,7 @@ struct Coefficients {
 }
 
 impl Coefficients {
-    fn sum<'a>(
-        mass: &DMatrix<f64>,
-        parts: impl Iterator<Item = (f64, &'a LocalTangent)>,
-    ) -> Self {
+    fn sum<'a>(mass: &DMatrix<f64>, parts: impl Iterator<Item = (f64, &'a LocalTangent)>) -> Self {
         let zero = DMatrix::zeros(mass.nrows(), mass.ncols());
         let mut out = Self { mass: mass.clone(), damping: zero.clone(), stiffness: zero };
         for (weight, tangent) in parts {
@@ -195,11 +192,9 @@ impl Stepper {
         let array = |f: &dyn Fn(usize) -> f64| std::array::from_fn::<f64, STAGES, _>(f);
         let nodes = array(&|i| 0.5 * (rule.nodes[i] + 1.0));
         let weights = array(&|i| 0.5 * rule.weights[i]);
-        let once: [[f64; STAGES]; STAGES] =
-            std::array::from_fn(|i| array(&|j| 0.5 * rows[i][j]));
-        let twice = std::array::from_fn(|i| {
-            array(&|j| (0..STAGES).map(|k| once[i][k] * once[k][j]).sum())
-        });
+        let once: [[f64; STAGES]; STAGES] = std::array::from_fn(|i| array(&|j| 0.5 * rows[i][j]));
+        let twice =
+            std::array::from_fn(|i| array(&|j| (0..STAGES).map(|k| once[i][k] * once[k][j]).sum()));
         let end_twice = array(&|j| (0..STAGES).map(|k| weights[k] * once[k][j]).sum());
         Self { nodes, weights, once, twice, end_twice }
     }
@@ -259,9 +254,7 @@ fn motions(monodromy: &DMatrix<f64>, mass: &DMatrix<f64>) -> Result<Vec<FloquetM
                 multiplier,
                 growth_per_rad: size.ln() / TAU,
                 frequency_per_rev: multiplier.arg().abs() / TAU,
-                leading_dof: (0..dof)
-                    .max_by(|&i, &j| energy(i).total_cmp(&energy(j)))
-                    .unwrap_or(0),
+                leading_dof: (0..dof).max_by(|&i, &j| energy(i).total_cmp(&energy(j))).unwrap_or(0),
             }
         })
         .collect();

@@ -84,12 +84,14 @@ fn the_error_falls_with_the_time_elements() {
 fn oscillators_keep_their_damping_and_frequency() {
     let (omega, zeta) = ([0.7, 4.588, 20.656], [0.02, 0.005, 0.0]);
     let system = LinearPeriodic::new(DMatrix::identity(3, 3) * 2.0, |_| LinearCoefficients {
-        damping: DMatrix::from_fn(3, 3, |i, j| {
-            if i == j { 4.0 * zeta[i] * omega[i] } else { 0.0 }
-        }),
-        stiffness: DMatrix::from_fn(3, 3, |i, j| {
-            if i == j { 2.0 * omega[i] * omega[i] } else { 0.0 }
-        }),
+        damping: DMatrix::from_fn(3, 3, |i, j| if i == j { 4.0 * zeta[i] * omega[i] } else { 0.0 }),
+        stiffness: DMatrix::from_fn(
+            3,
+            3,
+            |i, j| {
+                if i == j { 2.0 * omega[i] * omega[i] } else { 0.0 }
+            },
+        ),
         load: DVector::zeros(3),
     });
     let result = floquet(&system, &TimeElements::default());

@@ -13,7 +13,7 @@ use rotor_response::{
     RotorModel, TrailingEdgeFlap,
 };
 use rotor_wake::LinearInflow;
-use trim::{TrimSettings, TrimTarget, Vehicle};
+use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle};
 
 impl Case {
     /// The blade's structure, clamped at the rotor centre, at zero pitch.
@@ -126,6 +126,7 @@ impl Case {
                 hub_starboard_of_cg,
                 tail_rotor_arm,
                 tail_rotor_height,
+                horizontal_tail: tail,
             } => TrimTarget::Propulsive {
                 weight_ct_sigma: ct_sigma,
                 vehicle: Vehicle {
@@ -135,6 +136,13 @@ impl Case {
                     hub_starboard_of_cg,
                     tail_rotor_arm,
                     tail_rotor_height,
+                    horizontal_tail: HorizontalTail {
+                        area: tail.area,
+                        arm: tail.arm_r,
+                        height: tail.height_r,
+                        incidence_rad: tail.incidence_deg.to_radians(),
+                        lift_slope: tail.lift_slope,
+                    },
                 },
             },
             TrimValues::WindTunnel { ct_sigma, shaft_tilt_rad } => {

@@ -1,12 +1,14 @@
 //! Rotor and vehicle equilibrium over the aeroelastic response.
 
+mod balance;
 mod error;
 mod solve;
 mod vehicle;
 
+pub use balance::{TrimTarget, imbalance};
 pub use error::TrimError;
-pub use solve::{TrimSettings, TrimSolution, TrimTarget, imbalance, trim};
-pub use vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
+pub use solve::{TrimSettings, TrimSolution, trim};
+pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -1,40 +1,13 @@
 //! Newton's method on the trim equations around the periodic rotor response.
 
 use crate::TrimError;
-use crate::vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
+use crate::balance::{ATTITUDE_LIMIT, Balance, TrimTarget};
+use crate::vehicle::Attitude;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_response::{Condition, Controls, RotorSolution, RotorSolver};
 use rotor_wake::{FlightState, InflowModel, momentum_inflow};
-
-/// What the rotor is trimmed to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum TrimTarget {
-    /// Level flight of the whole helicopter: six equations for the three controls, shaft tilt, bank
-    /// and tail rotor thrust.
-    Propulsive {
-        /// Weight as `C_W / sigma`.
-        weight_ct_sigma: f64,
-        /// The helicopter.
-        vehicle: Vehicle,
-    },
-    /// Wind-tunnel (moment) trim: thrust and zero hub moments for the three controls at a given
-    /// shaft tilt.
-    WindTunnel {
-        /// Thrust as `C_T / sigma`.
-        ct_sigma: f64,
-        /// Shaft tilt, rad, forward positive.
-        shaft_tilt_rad: f64,
-    },
-    /// Controls and shaft tilt are given; nothing is solved but the response.
-    Prescribed {
-        /// The controls.
-        controls: Controls,
-        /// Shaft tilt, rad, forward positive.
-        shaft_tilt_rad: f64,
-    },
-}
 
 /// Tolerances of the trim.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,9 +49,6 @@ pub struct TrimSolution {
 const JACOBIAN_STEP: f64 = 1e-4;
 /// Pitch angles beyond which the linear section model means nothing, rad.
 const PITCH_LIMIT: f64 = 0.6;
-/// Shaft tilt and bank beyond which level flight is not meant, rad.
-const ATTITUDE_LIMIT: f64 = 0.8;
-
 /// Shaft tilt at which a trim starts at most, rad: a larger one is approached by the steps.
 const LARGEST_FIRST_TILT: f64 = 0.4;
 /// Halvings of a step that does not lower the residuals.
@@ -109,129 +79,40 @@ pub fn trim(
     settings: &TrimSettings,
     start: Option<&TrimSolution>,
 ) -> Result<TrimSolution, TrimError> {
-    let problem = Problem::new(solver, inflow, advance_ratio, target)?;
-    problem.solve(solver, settings, start)
+    let balance = Balance::new(solver, advance_ratio, target)?;
+    let flaps = solver.rotor().model().flaps.len();
+    Problem { inflow, balance, flaps }.solve(solver, settings, start)
 }
 
-/// Largest force (moment) left over the weight (weight times R) by another response at the controls
-/// and attitude of a trim: with the flaps at work the trim is not what it was. Zero for prescribed
-/// controls, which ask for no balance.
-///
-/// # Errors
-/// [`TrimError::Parameter`] for a bad target.
-pub fn imbalance(
-    solver: &RotorSolver,
-    inflow: &dyn InflowModel,
-    target: &TrimTarget,
-    trimmed: &TrimSolution,
-    response: &RotorSolution,
-) -> Result<f64, TrimError> {
-    let problem = Problem::new(solver, inflow, trimmed.flight.advance_ratio, target)?;
-    let residual = problem.residual(response, &trimmed.attitude);
-    Ok(if residual.is_empty() { 0.0 } else { residual.amax() })
-}
-
-/// Trim equations at one advance ratio.
+/// The search for balance at one advance ratio.
 struct Problem<'a> {
     inflow: &'a dyn InflowModel,
-    advance_ratio: f64,
-    target: TrimTarget,
-    weight: f64,
-    thrust_coefficient: f64,
-    density_chord: f64,
-    chord: f64,
+    balance: Balance,
     flaps: usize,
-    unknowns: usize,
 }
 
-impl<'a> Problem<'a> {
-    fn new(
-        solver: &RotorSolver,
-        inflow: &'a dyn InflowModel,
-        advance_ratio: f64,
-        target: &TrimTarget,
-    ) -> Result<Self, TrimError> {
-        let model = solver.rotor().model();
-        let (loading, unknowns, tilt) = match target {
-            TrimTarget::Propulsive { weight_ct_sigma, vehicle } => {
-                vehicle.validate()?;
-                (*weight_ct_sigma, 6, 0.0)
-            }
-            TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad } => (*ct_sigma, 3, *shaft_tilt_rad),
-            TrimTarget::Prescribed { shaft_tilt_rad, .. } => (0.07, 0, *shaft_tilt_rad),
-        };
-        if !(loading > 0.0 && loading <= 0.5) {
-            let (field, expected) = ("ct_sigma", "more than 0 and at most 0.5");
-            return Err(TrimError::Parameter { field, value: loading, expected });
-        }
-        if !(-ATTITUDE_LIMIT..=ATTITUDE_LIMIT).contains(&tilt) {
-            let (field, expected) = ("shaft_tilt_rad", "-0.8 to 0.8 rad");
-            return Err(TrimError::Parameter { field, value: tilt, expected });
-        }
-        if !(0.0..=0.5).contains(&advance_ratio) {
-            let (field, expected) = ("advance_ratio", "0 to 0.5");
-            return Err(TrimError::Parameter { field, value: advance_ratio, expected });
-        }
-        Ok(Self {
-            inflow,
-            advance_ratio,
-            target: *target,
-            weight: model.thrust_of_loading(loading),
-            thrust_coefficient: model.thrust_coefficient(model.thrust_of_loading(loading)),
-            density_chord: model.density_chord(),
-            chord: model.chord,
-            flaps: model.flaps.len(),
-            unknowns,
-        })
-    }
-
+impl Problem<'_> {
     /// Starting values: the controls of a rigid blade under momentum inflow, the tilt that balances the
     /// drag, a torque guess.
     fn first_guess(&self, solver: &RotorSolver) -> DVector<f64> {
-        let mu = self.advance_ratio;
-        let tilt = match self.target {
-            TrimTarget::Propulsive { .. } => (self.drag(0.0) / self.weight).min(LARGEST_FIRST_TILT),
+        let balance = &self.balance;
+        let mu = balance.advance_ratio;
+        let tilt = match balance.target {
+            TrimTarget::Propulsive { .. } => {
+                (balance.airframe(0.0).drag / balance.weight).min(LARGEST_FIRST_TILT)
+            }
             TrimTarget::WindTunnel { shaft_tilt_rad, .. }
             | TrimTarget::Prescribed { shaft_tilt_rad, .. } => shaft_tilt_rad,
         };
         let flight = FlightState { advance_ratio: mu, shaft_tilt_rad: tilt };
-        let hover = (0.5 * self.thrust_coefficient).sqrt();
-        let induced = momentum_inflow(&flight, self.thrust_coefficient).unwrap_or(hover);
+        let hover = (0.5 * balance.thrust_coefficient).sqrt();
+        let induced = momentum_inflow(&flight, balance.thrust_coefficient).unwrap_or(hover);
         let lambda = flight.normal_inflow() + induced;
-        let c = solver.rotor().rigid_blade_controls(mu, lambda, self.weight).unwrap_or_default();
+        let c = solver.rotor().rigid_blade_controls(mu, lambda, balance.weight).unwrap_or_default();
         let pitch = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad]
             .map(|angle| angle.clamp(-PITCH_LIMIT, PITCH_LIMIT));
-        let guess = [pitch[0], pitch[1], pitch[2], tilt, -0.03, 0.03 * self.weight];
-        DVector::from_column_slice(&guess[..self.unknowns])
-    }
-
-    fn drag(&self, shaft_tilt_rad: f64) -> f64 {
-        match &self.target {
-            TrimTarget::Propulsive { vehicle, .. } => fuselage_drag(
-                self.density_chord,
-                self.chord,
-                vehicle.drag_area,
-                self.advance_ratio,
-                shaft_tilt_rad,
-            ),
-            _ => 0.0,
-        }
-    }
-
-    fn state(&self, x: &DVector<f64>) -> (Controls, Attitude) {
-        match self.target {
-            TrimTarget::Prescribed { controls, shaft_tilt_rad } => {
-                (controls, Attitude { shaft_tilt_rad, ..Attitude::default() })
-            }
-            TrimTarget::WindTunnel { shaft_tilt_rad, .. } => (
-                Controls { theta0_rad: x[0], theta1c_rad: x[1], theta1s_rad: x[2] },
-                Attitude { shaft_tilt_rad, ..Attitude::default() },
-            ),
-            TrimTarget::Propulsive { .. } => (
-                Controls { theta0_rad: x[0], theta1c_rad: x[1], theta1s_rad: x[2] },
-                Attitude { shaft_tilt_rad: x[3], roll_rad: x[4], tail_thrust: x[5] },
-            ),
-        }
+        let guess = [pitch[0], pitch[1], pitch[2], tilt, -0.03, 0.03 * balance.weight];
+        DVector::from_column_slice(&guess[..balance.unknowns])
     }
 
     /// Rotor response and trim residuals over the weight.
@@ -241,30 +122,16 @@ impl<'a> Problem<'a> {
         x: &DVector<f64>,
         start: Option<&RotorSolution>,
     ) -> Result<(RotorSolution, DVector<f64>), TrimError> {
-        let (controls, attitude) = self.state(x);
+        let (controls, attitude) = self.balance.state(x);
         let flight = FlightState {
-            advance_ratio: self.advance_ratio,
+            advance_ratio: self.balance.advance_ratio,
             shaft_tilt_rad: attitude.shaft_tilt_rad,
         };
         let flap_angles_rad = vec![HarmonicSeries::default(); self.flaps];
         let condition = Condition { flight, controls, flap_angles_rad };
         let rotor = solver.solve(&condition, self.inflow, start)?;
-        let residual = self.residual(&rotor, &attitude);
+        let residual = self.balance.residual(&rotor, &attitude);
         Ok((rotor, residual))
-    }
-
-    /// Trim residuals over the weight of a response at an attitude; empty for prescribed controls.
-    fn residual(&self, rotor: &RotorSolution, attitude: &Attitude) -> DVector<f64> {
-        let mean = rotor.hub.mean();
-        let residual = match &self.target {
-            TrimTarget::Prescribed { .. } => vec![],
-            TrimTarget::WindTunnel { .. } => vec![mean[2] - self.weight, mean[3], mean[4]],
-            TrimTarget::Propulsive { vehicle, .. } => {
-                let drag = self.drag(attitude.shaft_tilt_rad);
-                equilibrium(mean, attitude, vehicle, self.weight, drag).to_vec()
-            }
-        };
-        DVector::from_vec(residual) / self.weight
     }
 
     /// Columns are independent and computed in parallel from the same starting point.
@@ -274,7 +141,7 @@ impl<'a> Problem<'a> {
         x: &DVector<f64>,
         base: &(RotorSolution, DVector<f64>),
     ) -> Result<DMatrix<f64>, TrimError> {
-        let columns = (0..self.unknowns)
+        let columns = (0..self.balance.unknowns)
             .into_par_iter()
             .map(|j| {
                 let mut moved = x.clone();
@@ -306,10 +173,10 @@ impl<'a> Problem<'a> {
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
         let mut history = vec![current.1.amax()];
         let mut jacobian: Option<DMatrix<f64>> =
-            start.and_then(|s| s.jacobian.clone()).filter(|j| j.nrows() == self.unknowns);
+            start.and_then(|s| s.jacobian.clone()).filter(|j| j.nrows() == self.balance.unknowns);
         for iteration in 0..=settings.max_iterations {
             let residual = current.1.amax();
-            if self.unknowns == 0 || residual <= settings.tolerance {
+            if self.balance.unknowns == 0 || residual <= settings.tolerance {
                 return Ok(self.finish(&x, current, (history, iteration), jacobian));
             }
             let (matrix, fresh) = match jacobian.take() {
@@ -332,7 +199,7 @@ impl<'a> Problem<'a> {
                 if !fresh {
                     continue;
                 }
-                let theta0_deg = self.state(&x).0.theta0_rad.to_degrees();
+                let theta0_deg = self.balance.state(&x).0.theta0_rad.to_degrees();
                 return Err(TrimError::NoDescent { iteration, residual, history, theta0_deg });
             };
             let gained = new.1.amax() <= 0.3 * residual;
@@ -349,7 +216,7 @@ impl<'a> Problem<'a> {
             residual: current.1.amax(),
             tolerance: settings.tolerance,
             history,
-            theta0_deg: self.state(&x).0.theta0_rad.to_degrees(),
+            theta0_deg: self.balance.state(&x).0.theta0_rad.to_degrees(),
         })
     }
 
@@ -398,7 +265,7 @@ impl<'a> Problem<'a> {
             a.roll_rad,
             a.tail_thrust,
         ];
-        DVector::from_column_slice(&all[..self.unknowns])
+        DVector::from_column_slice(&all[..self.balance.unknowns])
     }
 
     fn finish(
@@ -408,12 +275,12 @@ impl<'a> Problem<'a> {
         (residual_history, iterations): (Vec<f64>, usize),
         jacobian: Option<DMatrix<f64>>,
     ) -> TrimSolution {
-        let (controls, attitude) = self.state(x);
+        let (controls, attitude) = self.balance.state(x);
         let flight = FlightState {
-            advance_ratio: self.advance_ratio,
+            advance_ratio: self.balance.advance_ratio,
             shaft_tilt_rad: attitude.shaft_tilt_rad,
         };
-        let residual = if self.unknowns == 0 { 0.0 } else { residual.amax() };
+        let residual = if self.balance.unknowns == 0 { 0.0 } else { residual.amax() };
         TrimSolution {
             controls,
             attitude,

@@ -19,10 +19,34 @@ pub struct Vehicle {
     pub tail_rotor_arm: f64,
     /// Height of the tail rotor above the centre of gravity.
     pub tail_rotor_height: f64,
+    /// Horizontal tail.
+    pub horizontal_tail: HorizontalTail,
+}
+
+/// A horizontal tail in the undisturbed stream: no downwash of rotor or fuselage, no stall, no drag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HorizontalTail {
+    /// Area over the disk area, `S_t/A`; zero is no tail.
+    pub area: f64,
+    /// Distance behind the centre of gravity, radius R.
+    pub arm: f64,
+    /// Height above the centre of gravity, radius R.
+    pub height: f64,
+    /// Incidence against the plane normal to the shaft, rad, nose up positive.
+    pub incidence_rad: f64,
+    /// Lift slope, per rad.
+    pub lift_slope: f64,
+}
+
+impl HorizontalTail {
+    /// No tail: area zero, 1.2 R behind the centre of gravity, lift slope 4 per rad.
+    pub const NONE: Self =
+        Self { area: 0.0, arm: 1.2, height: 0.0, incidence_rad: 0.0, lift_slope: 4.0 };
 }
 
 impl Default for Vehicle {
-    /// `f/A` .01, centre of gravity .2 R under the hub, tail rotor 1.2 R behind and .2 R above it.
+    /// `f/A` .01, centre of gravity .2 R under the hub, tail rotor 1.2 R behind and .2 R above it, no
+    /// horizontal tail.
     fn default() -> Self {
         Self {
             drag_area: 0.01,
@@ -31,6 +55,7 @@ impl Default for Vehicle {
             hub_starboard_of_cg: 0.0,
             tail_rotor_arm: 1.2,
             tail_rotor_height: 0.2,
+            horizontal_tail: HorizontalTail::NONE,
         }
     }
 }
@@ -53,7 +78,15 @@ impl Vehicle {
         check("hub_aft_of_cg", self.hub_aft_of_cg, -1.0, 1.0, "-1 to 1 R")?;
         check("hub_starboard_of_cg", self.hub_starboard_of_cg, -1.0, 1.0, "-1 to 1 R")?;
         check("tail_rotor_arm", self.tail_rotor_arm, 0.1, 5.0, "0.1 to 5 R")?;
-        check("tail_rotor_height", self.tail_rotor_height, -2.0, 2.0, "-2 to 2 R")
+        check("tail_rotor_height", self.tail_rotor_height, -2.0, 2.0, "-2 to 2 R")?;
+        let tail = &self.horizontal_tail;
+        check("horizontal_tail.area", tail.area, 0.0, 0.2, "0 to 0.2 disk areas")?;
+        check("horizontal_tail.arm", tail.arm, -5.0, 5.0, "-5 to 5 R")?;
+        check("horizontal_tail.height", tail.height, -2.0, 2.0, "-2 to 2 R")?;
+        let angle = tail.incidence_rad;
+        check("horizontal_tail.incidence_rad", angle, -0.5, 0.5, "-0.5 to 0.5 rad")?;
+        let slope = tail.lift_slope;
+        check("horizontal_tail.lift_slope", slope, 0.0, 10.0, "0 to 10 per rad")
     }
 }
 
@@ -72,19 +105,21 @@ pub struct Attitude {
 ///
 /// ```text
 /// forward   T sin a - D - H cos a
-/// up        T cos a cos f + H sin a - Y sin f - W
-/// starboard Y cos f + T sin f cos a + T_tr
-/// pitch     M_Y + H h - T x_h                (nose up)
+/// up        T cos a cos f + H sin a - Y sin f + L_t cos f - W
+/// starboard Y cos f + T sin f cos a + T_tr + L_t sin f
+/// pitch     M_Y + H h - T x_h + L_t (h_t sin a - x_t cos a)   (nose up)
 /// roll      M_X - Y h + T y_h - T_tr h_tr    (about X aft: starboard side up)
 /// yaw       M_Z + Y x_h - H y_h + T_tr x_tr
 /// ```
 /// | argument | meaning | unit |
 /// |---|---|---|
 /// | `hub_mean` | mean hub loads `H, Y, T, M_X, M_Y, M_Z` in shaft axes (X aft, Y starboard, Z up) | `m0 Omega^2 R^2` (`R^3`) |
-/// | `weight`, `drag` | `W`, `D` | `m0 Omega^2 R^2` |
+/// | `weight` | `W` | `m0 Omega^2 R^2` |
+/// | `airframe` | `D` and the lift `L_t` of the horizontal tail | `m0 Omega^2 R^2` |
 ///
 /// `a` shaft tilt forward, `f` bank right, `h` the distance of the centre of gravity below the hub,
-/// `x_h`, `y_h` the hub's offset aft and to starboard.
+/// `x_h`, `y_h` the hub's offset aft and to starboard, `x_t`, `h_t` the tail's aft and above the centre
+/// of gravity.
 /// Source: the six equations of coupled trim, Johnson, Helicopter Theory (1980), section 5-4, with the
 /// roll moment written about the aft axis.
 pub fn equilibrium(
@@ -92,18 +127,21 @@ pub fn equilibrium(
     attitude: &Attitude,
     vehicle: &Vehicle,
     weight: f64,
-    drag: f64,
+    airframe: AirframeLoads,
 ) -> [f64; 6] {
     let [h_force, y_force, thrust, mx, my, mz] = hub_mean;
     let (sin_a, cos_a) = attitude.shaft_tilt_rad.sin_cos();
     let (sin_f, cos_f) = attitude.roll_rad.sin_cos();
     let tail = attitude.tail_thrust;
+    let AirframeLoads { drag, tail_lift } = airframe;
+    let plane = &vehicle.horizontal_tail;
     let below = vehicle.cg_below_hub;
     [
         thrust * sin_a - drag - h_force * cos_a,
-        thrust * cos_a * cos_f + h_force * sin_a - y_force * sin_f - weight,
-        y_force * cos_f + thrust * sin_f * cos_a + tail,
-        my + h_force * below - thrust * vehicle.hub_aft_of_cg,
+        thrust * cos_a * cos_f + h_force * sin_a - y_force * sin_f + tail_lift * cos_f - weight,
+        y_force * cos_f + thrust * sin_f * cos_a + tail + tail_lift * sin_f,
+        my + h_force * below - thrust * vehicle.hub_aft_of_cg
+            + tail_lift * (plane.height * sin_a - plane.arm * cos_a),
         mx - y_force * below + thrust * vehicle.hub_starboard_of_cg
             - tail * vehicle.tail_rotor_height,
         mz + y_force * vehicle.hub_aft_of_cg - h_force * vehicle.hub_starboard_of_cg
@@ -111,21 +149,46 @@ pub fn equilibrium(
     ]
 }
 
-/// Fuselage drag `D = rho V^2 f / 2` in `m0 Omega^2 R^2`.
-///
-/// ```text
-/// D = (1/2) (rho c R/m0) (R/c) pi (f/A) (V / Omega R)^2,   V / Omega R = mu / cos a
-/// ```
-/// `mu` is the in-plane component of the flight speed, `a` the shaft tilt.
-pub fn fuselage_drag(
-    density_chord: f64,
-    chord: f64,
-    drag_area: f64,
-    advance_ratio: f64,
-    shaft_tilt_rad: f64,
-) -> f64 {
-    let speed = advance_ratio / shaft_tilt_rad.cos();
-    0.5 * density_chord / chord * std::f64::consts::PI * drag_area * speed * speed
+/// Loads of the airframe in steady level flight, `m0 Omega^2 R^2`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AirframeLoads {
+    /// Drag of the fuselage, along the flight path.
+    pub drag: f64,
+    /// Lift of the horizontal tail, up and normal to the flight path.
+    pub tail_lift: f64,
+}
+
+impl AirframeLoads {
+    /// Drag and tail lift of a vehicle at an advance ratio and shaft tilt.
+    ///
+    /// ```text
+    /// q A  = (1/2) (rho c R/m0) (R/c) pi (V / Omega R)^2,   V / Omega R = mu / cos a
+    /// D    = q A (f/A),    L_t = q A (S_t/A) a_t (i_t - a)
+    /// ```
+    /// | argument | meaning | unit |
+    /// |---|---|---|
+    /// | `density_chord` | `rho c R/m0` | - |
+    /// | `chord` | `c/R` | - |
+    /// | `advance_ratio` | `mu`, the in-plane component of the flight speed | tip speed |
+    /// | `shaft_tilt_rad` | `a`, forward positive | rad |
+    ///
+    /// Source: Johnson, Helicopter Theory (1980), section 5-4; the tail sees the flight speed alone.
+    pub fn of(
+        vehicle: &Vehicle,
+        density_chord: f64,
+        chord: f64,
+        advance_ratio: f64,
+        shaft_tilt_rad: f64,
+    ) -> Self {
+        let speed = advance_ratio / shaft_tilt_rad.cos();
+        let pressure = 0.5 * density_chord / chord * std::f64::consts::PI * speed * speed;
+        let tail = &vehicle.horizontal_tail;
+        let angle = tail.incidence_rad - shaft_tilt_rad;
+        Self {
+            drag: pressure * vehicle.drag_area,
+            tail_lift: pressure * tail.area * tail.lift_slope * angle,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -142,7 +205,7 @@ mod tests {
             &Attitude::default(),
             &Vehicle::default(),
             2.0,
-            0.0,
+            AirframeLoads::default(),
         );
         assert!(e.iter().all(|r| r.abs() < 1e-15), "{e:?}");
     }
@@ -159,7 +222,7 @@ mod tests {
         };
         let at_hub = cross([0.07, -0.03, 0.2], [hub[0], hub[1], hub[2]]);
         let at_tail = cross([1.2, 0.0, 0.2], [0.0, 0.09, 0.0]);
-        let e = equilibrium(hub, &attitude, &vehicle, 1.0, 0.0);
+        let e = equilibrium(hub, &attitude, &vehicle, 1.0, AirframeLoads::default());
         assert_abs_diff_eq!(e[4], hub[3] + at_hub[0] + at_tail[0], epsilon = 1e-15);
         assert_abs_diff_eq!(e[3], hub[4] + at_hub[1] + at_tail[1], epsilon = 1e-15);
         assert_abs_diff_eq!(e[5], hub[5] + at_hub[2] + at_tail[2], epsilon = 1e-15);
@@ -170,7 +233,35 @@ mod tests {
         // C_D = D / (rho pi R^2 (Omega R)^2) = (f/A) (V/Omega R)^2 / 2
         let (rc, c) = (0.2759, 0.055);
         let to_coefficient = c / (std::f64::consts::PI * rc);
-        let d = fuselage_drag(rc, c, 0.01, 0.3, 0.0);
+        let d = AirframeLoads::of(&Vehicle::default(), rc, c, 0.3, 0.0).drag;
         assert_abs_diff_eq!(d * to_coefficient, 0.5 * 0.3 * 0.3 * 0.01, epsilon = 1e-15);
+    }
+
+    /// The lift of the tail written as a vector in shaft axes, its moment by the cross product.
+    #[test]
+    fn tail_lift_is_normal_to_the_flight_path() {
+        let tail = HorizontalTail {
+            area: 0.01,
+            arm: 1.1,
+            height: 0.3,
+            incidence_rad: -0.04,
+            ..HorizontalTail::NONE
+        };
+        let vehicle = Vehicle { horizontal_tail: tail, drag_area: 0.0, ..Vehicle::default() };
+        let attitude = Attitude { shaft_tilt_rad: 0.12, roll_rad: -0.05, tail_thrust: 0.0 };
+        let air = AirframeLoads::of(&vehicle, 0.2759, 0.055, 0.3, 0.12);
+        // q S a (i - alpha), q A = 16.6.. in these units, down because the nose is down
+        let dynamic = 0.5 * 0.2759 / 0.055 * std::f64::consts::PI * (0.3 / 0.12_f64.cos()).powi(2);
+        assert_abs_diff_eq!(air.tail_lift, -0.16 * 4.0 * 0.01 * dynamic, epsilon = 1e-15);
+        let e = equilibrium([0.0; 6], &attitude, &vehicle, 0.0, air);
+        let lift = air.tail_lift;
+        // forward nothing, up and starboard the banked lift
+        assert_abs_diff_eq!(e[0], 0.0, epsilon = 1e-15);
+        assert_abs_diff_eq!(e[1].hypot(e[2]), lift.abs(), epsilon = 1e-15);
+        // in shaft axes: X aft = L sin a, Z up = L cos a; the moment about Y is z F_x - x F_z
+        let [x, z] = [lift * 0.12_f64.sin(), lift * 0.12_f64.cos()];
+        assert_abs_diff_eq!(e[3], 0.3 * x - 1.1 * z, epsilon = 1e-15);
+        assert!(e[3] > 0.0, "a tail pressed down lifts the nose");
+        assert_eq!([e[4], e[5]], [0.0, 0.0]);
     }
 }

@@ -10,7 +10,7 @@ use rotor_response::{
 };
 use rotor_wake::LinearInflow;
 use std::sync::Arc;
-use trim::{TrimError, TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
+use trim::{HorizontalTail, TrimError, TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
 
 fn solver(advance_ratio: f64) -> RotorSolver {
     let blade = BladeProperties::new(BladeSpec {
@@ -124,4 +124,35 @@ fn every_advance_ratio_trims_from_the_first_guess() {
         assert!(t.iterations <= 12, "mu {mu}: {:?}", t.residual_history);
         assert!(t.residual <= 1e-9);
     }
+}
+
+/// A tail that pushes down lifts the nose: the hub must carry less nose-up moment, so the shaft tilts less
+/// and the cyclic changes; without area nothing changes.
+#[test]
+fn a_horizontal_tail_takes_over_pitch_moment() {
+    let of = |area: f64| {
+        let horizontal_tail = HorizontalTail { area, incidence_rad: -0.03, ..HorizontalTail::NONE };
+        let vehicle = Vehicle { horizontal_tail, ..Vehicle::default() };
+        solve(0.3, &TrimTarget::Propulsive { weight_ct_sigma: 0.07, vehicle }).unwrap()
+    };
+    let (bare, tailed) = (of(0.0), of(0.01));
+    let plain = solve(0.3, &propulsive(0.07)).unwrap();
+    assert_eq!(bare.controls, plain.controls, "a tail without area is no tail");
+    let (before, after) = (bare.rotor.hub.mean(), tailed.rotor.hub.mean());
+    // the hub's pitching moment about the centre of gravity balances the tail's
+    let dynamic = 0.5 * 5.2 / (3.0 * std::f64::consts::TAU) / 0.055 * std::f64::consts::PI;
+    let tilt = tailed.attitude.shaft_tilt_rad;
+    let lift = dynamic * (0.3 / tilt.cos()).powi(2) * 0.01 * 4.0 * (-0.03 - tilt);
+    assert!(lift < 0.0);
+    let hub_moment = after[4] + 0.2 * after[0];
+    assert!((hub_moment - 1.2 * lift * tilt.cos()).abs() < 1e-8, "{hub_moment} against {lift}");
+    assert!(after[2] > before[2], "the rotor carries the tail's download");
+}
+
+#[test]
+fn a_bad_tail_is_named() {
+    let horizontal_tail = HorizontalTail { area: -0.1, ..HorizontalTail::NONE };
+    let vehicle = Vehicle { horizontal_tail, ..Vehicle::default() };
+    let error = solve(0.3, &TrimTarget::Propulsive { weight_ct_sigma: 0.07, vehicle }).unwrap_err();
+    assert!(error.to_string().contains("horizontal_tail.area"), "{error}");
 }

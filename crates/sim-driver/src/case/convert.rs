@@ -113,6 +113,7 @@ fn trim_values(trim: &TrimFile) -> TrimValues {
             hub_starboard_of_cg: p.hub_starboard_of_cg_r,
             tail_rotor_arm: p.tail_rotor_arm_r,
             tail_rotor_height: p.tail_rotor_height_r,
+            horizontal_tail: p.horizontal_tail,
         },
         TrimFile::WindTunnel(w) => TrimValues::WindTunnel {
             ct_sigma: w.ct_sigma,

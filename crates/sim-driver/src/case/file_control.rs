@@ -37,6 +37,38 @@ pub struct PropulsiveTrimFile {
     pub tail_rotor_arm_r: f64,
     /// Tail rotor above the centre of gravity, radius R.
     pub tail_rotor_height_r: f64,
+    /// Horizontal tail; none of area by default.
+    #[serde(skip_serializing_if = "HorizontalTailFile::is_none")]
+    pub horizontal_tail: HorizontalTailFile,
+}
+
+/// A horizontal tail in the undisturbed stream.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct HorizontalTailFile {
+    /// Area over the disk area.
+    pub area: f64,
+    /// Behind the centre of gravity, radius R.
+    pub arm_r: f64,
+    /// Above the centre of gravity, radius R.
+    pub height_r: f64,
+    /// Incidence against the plane normal to the shaft, deg, nose up positive.
+    pub incidence_deg: f64,
+    /// Lift slope, per rad.
+    pub lift_slope: f64,
+}
+
+impl Default for HorizontalTailFile {
+    fn default() -> Self {
+        Self { area: 0.0, arm_r: 1.2, height_r: 0.0, incidence_deg: 0.0, lift_slope: 4.0 }
+    }
+}
+
+impl HorizontalTailFile {
+    /// Whether there is none: not written then.
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 impl Default for PropulsiveTrimFile {
@@ -49,6 +81,7 @@ impl Default for PropulsiveTrimFile {
             hub_starboard_of_cg_r: 0.0,
             tail_rotor_arm_r: 1.2,
             tail_rotor_height_r: 0.2,
+            horizontal_tail: HorizontalTailFile::default(),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::checker::{Checker, Number};
 use super::{
-    ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice, InflowChoice,
-    SectionModelChoice, StrokeChoice, TrimFile,
+    ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice,
+    HorizontalTailFile, InflowChoice, SectionModelChoice, StrokeChoice, TrimFile,
 };
 use crate::problem::Fault;
 use std::f64::consts::TAU;
@@ -163,7 +163,10 @@ fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
                     "R",
                     "above the centre of gravity is positive",
                 ),
-            ] {
+            ]
+            .into_iter()
+            .chain(horizontal_tail_ranges(&p.horizontal_tail))
+            {
                 check.within(number(field, value, unit, remedy), low, high);
             }
         }
@@ -183,6 +186,35 @@ fn check_trim(check: &mut Checker<'_>, trim: &TrimFile) {
             check.within(number("trim.shaft_tilt_deg", p.shaft_tilt_deg, "deg", tilt), -45.0, 45.0);
         }
     }
+}
+
+/// Field, value, lowest and highest value, unit and remedy of a number.
+type FieldRange = (&'static str, f64, f64, f64, &'static str, &'static str);
+
+/// Every number of a horizontal tail.
+fn horizontal_tail_ranges(tail: &HorizontalTailFile) -> [FieldRange; 5] {
+    let height = "above the centre of gravity is positive";
+    [
+        (
+            "trim.horizontal_tail.area",
+            tail.area,
+            0.0,
+            0.2,
+            "",
+            "0.01 disk areas is usual; 0 is none",
+        ),
+        ("trim.horizontal_tail.arm_r", tail.arm_r, -5.0, 5.0, "R", "1.2 R is usual"),
+        ("trim.horizontal_tail.height_r", tail.height_r, -2.0, 2.0, "R", height),
+        (
+            "trim.horizontal_tail.incidence_deg",
+            tail.incidence_deg,
+            -28.0,
+            28.0,
+            "deg",
+            "nose up is positive; the tail does not stall in this model",
+        ),
+        ("trim.horizontal_tail.lift_slope", tail.lift_slope, 0.0, 10.0, "1/rad", "4 is usual"),
+    ]
 }
 
 fn check_actuator(check: &mut Checker<'_>, file: &CaseFile) {

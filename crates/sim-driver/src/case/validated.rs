@@ -1,9 +1,9 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    CompressibilityChoice, ControlActuator, CouplingsChoice, EffortChoice, InflowChoice,
-    LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice, StrokeChoice,
-    TolerancesFile,
+    CompressibilityChoice, ControlActuator, CouplingsChoice, EffortChoice, HorizontalTailFile,
+    InflowChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice,
+    StrokeChoice, TolerancesFile,
 };
 use crate::files::Folder;
 use rotor_base::RotorScales;
@@ -139,6 +139,8 @@ pub enum TrimValues {
         tail_rotor_arm: f64,
         /// Tail rotor above the centre of gravity.
         tail_rotor_height: f64,
+        /// Horizontal tail, as in the file.
+        horizontal_tail: HorizontalTailFile,
     },
     /// Thrust and zero hub moments.
     WindTunnel {

@@ -67,7 +67,7 @@ impl TrimmedRotor {
         target: &TrimTarget,
         response: &RotorSolution,
     ) -> Result<f64, TrimError> {
-        imbalance(&self.solver, &self.inflow, target, &self.trim, response)
+        imbalance(&self.solver, target, &self.trim, response)
     }
 
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.

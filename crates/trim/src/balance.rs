@@ -1,0 +1,153 @@
+//! The equations of trim: what is asked for, and what a response leaves of it.
+
+use crate::TrimError;
+use crate::vehicle::{AirframeLoads, Attitude, Vehicle, equilibrium};
+use nalgebra::DVector;
+use rotor_response::{Controls, RotorSolution, RotorSolver};
+
+/// What the rotor is trimmed to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TrimTarget {
+    /// Level flight of the whole helicopter: six equations for the three controls, shaft tilt, bank
+    /// and tail rotor thrust.
+    Propulsive {
+        /// Weight as `C_W / sigma`.
+        weight_ct_sigma: f64,
+        /// The helicopter.
+        vehicle: Vehicle,
+    },
+    /// Wind-tunnel (moment) trim: thrust and zero hub moments for the three controls at a given
+    /// shaft tilt.
+    WindTunnel {
+        /// Thrust as `C_T / sigma`.
+        ct_sigma: f64,
+        /// Shaft tilt, rad, forward positive.
+        shaft_tilt_rad: f64,
+    },
+    /// Controls and shaft tilt are given; nothing is solved but the response.
+    Prescribed {
+        /// The controls.
+        controls: Controls,
+        /// Shaft tilt, rad, forward positive.
+        shaft_tilt_rad: f64,
+    },
+}
+
+/// Shaft tilt and bank beyond which level flight is not meant, rad.
+pub(crate) const ATTITUDE_LIMIT: f64 = 0.8;
+
+/// Largest force (moment) left over the weight (weight times R) by another response at the controls
+/// and attitude of a trim: with the flaps at work the trim is not what it was. Zero for prescribed
+/// controls, which ask for no balance.
+///
+/// # Errors
+/// [`TrimError::Parameter`] for a bad target.
+pub fn imbalance(
+    solver: &RotorSolver,
+    target: &TrimTarget,
+    trimmed: &crate::TrimSolution,
+    response: &RotorSolution,
+) -> Result<f64, TrimError> {
+    let problem = Balance::new(solver, trimmed.flight.advance_ratio, target)?;
+    let residual = problem.residual(response, &trimmed.attitude);
+    Ok(if residual.is_empty() { 0.0 } else { residual.amax() })
+}
+
+/// Trim equations of a rotor at one advance ratio.
+#[derive(Debug, Clone)]
+pub(crate) struct Balance {
+    pub(crate) advance_ratio: f64,
+    pub(crate) target: TrimTarget,
+    /// Weight or thrust asked for, `m0 Omega^2 R^2`.
+    pub(crate) weight: f64,
+    /// The same as thrust coefficient.
+    pub(crate) thrust_coefficient: f64,
+    /// Number of unknowns, and of equations.
+    pub(crate) unknowns: usize,
+    density_chord: f64,
+    chord: f64,
+}
+
+impl Balance {
+    pub(crate) fn new(
+        solver: &RotorSolver,
+        advance_ratio: f64,
+        target: &TrimTarget,
+    ) -> Result<Self, TrimError> {
+        let model = solver.rotor().model();
+        let (loading, unknowns, tilt) = match target {
+            TrimTarget::Propulsive { weight_ct_sigma, vehicle } => {
+                vehicle.validate()?;
+                (*weight_ct_sigma, 6, 0.0)
+            }
+            TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad } => (*ct_sigma, 3, *shaft_tilt_rad),
+            TrimTarget::Prescribed { shaft_tilt_rad, .. } => (0.07, 0, *shaft_tilt_rad),
+        };
+        if !(loading > 0.0 && loading <= 0.5) {
+            let (field, expected) = ("ct_sigma", "more than 0 and at most 0.5");
+            return Err(TrimError::Parameter { field, value: loading, expected });
+        }
+        if !(-ATTITUDE_LIMIT..=ATTITUDE_LIMIT).contains(&tilt) {
+            let (field, expected) = ("shaft_tilt_rad", "-0.8 to 0.8 rad");
+            return Err(TrimError::Parameter { field, value: tilt, expected });
+        }
+        if !(0.0..=0.5).contains(&advance_ratio) {
+            let (field, expected) = ("advance_ratio", "0 to 0.5");
+            return Err(TrimError::Parameter { field, value: advance_ratio, expected });
+        }
+        Ok(Self {
+            advance_ratio,
+            target: *target,
+            weight: model.thrust_of_loading(loading),
+            thrust_coefficient: model.thrust_coefficient(model.thrust_of_loading(loading)),
+            density_chord: model.density_chord(),
+            chord: model.chord,
+            unknowns,
+        })
+    }
+
+    /// Drag and tail lift of the airframe; none but in level flight.
+    pub(crate) fn airframe(&self, shaft_tilt_rad: f64) -> AirframeLoads {
+        match &self.target {
+            TrimTarget::Propulsive { vehicle, .. } => AirframeLoads::of(
+                vehicle,
+                self.density_chord,
+                self.chord,
+                self.advance_ratio,
+                shaft_tilt_rad,
+            ),
+            _ => AirframeLoads::default(),
+        }
+    }
+
+    /// Controls and attitude of the unknowns.
+    pub(crate) fn state(&self, x: &DVector<f64>) -> (Controls, Attitude) {
+        match self.target {
+            TrimTarget::Prescribed { controls, shaft_tilt_rad } => {
+                (controls, Attitude { shaft_tilt_rad, ..Attitude::default() })
+            }
+            TrimTarget::WindTunnel { shaft_tilt_rad, .. } => (
+                Controls { theta0_rad: x[0], theta1c_rad: x[1], theta1s_rad: x[2] },
+                Attitude { shaft_tilt_rad, ..Attitude::default() },
+            ),
+            TrimTarget::Propulsive { .. } => (
+                Controls { theta0_rad: x[0], theta1c_rad: x[1], theta1s_rad: x[2] },
+                Attitude { shaft_tilt_rad: x[3], roll_rad: x[4], tail_thrust: x[5] },
+            ),
+        }
+    }
+
+    /// Trim residuals over the weight of a response at an attitude; empty for prescribed controls.
+    pub(crate) fn residual(&self, rotor: &RotorSolution, attitude: &Attitude) -> DVector<f64> {
+        let mean = rotor.hub.mean();
+        let residual = match &self.target {
+            TrimTarget::Prescribed { .. } => vec![],
+            TrimTarget::WindTunnel { .. } => vec![mean[2] - self.weight, mean[3], mean[4]],
+            TrimTarget::Propulsive { vehicle, .. } => {
+                let airframe = self.airframe(attitude.shaft_tilt_rad);
+                equilibrium(mean, attitude, vehicle, self.weight, airframe).to_vec()
+            }
+        };
+        DVector::from_vec(residual) / self.weight
+    }
+}
