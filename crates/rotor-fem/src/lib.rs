@@ -60,7 +60,7 @@ pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
 pub use moderate::{
-    AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalMotion, ModalShape, ModalTangent,
+    AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape, ModalTangent,
     ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion, PitchMotion, RootSupport,
     RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, TorsionTerms, TwistAngle,
     Untwist, deflected_fan, deflected_modes,

@@ -283,6 +283,32 @@ impl SectionMass {
         std::array::from_fn(|k| self.product(&geometry.jacobian[k].values(), &acceleration))
     }
 
+    /// Mass times acceleration per length as force and moment about the rotor centre, in the axes of
+    /// the coned blade: `integral a dm`, `integral r x a dm`.
+    ///
+    /// It belongs to the same positions as [`force`](Self::force), so that the power of both agrees.
+    pub(crate) fn wrench(&self, spin: &Spin, s: &SectionState<f64>) -> [f64; 6] {
+        let position = Geometry::new(s).position;
+        let acceleration = position.map(|r| r.absolute(spin));
+        let still = Moving::fixed([0.0; 3]);
+        let along = |k: usize| {
+            let unit = std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+            Field::new(Moving::fixed(unit), still, still).values()
+        };
+        let about = |k: usize| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            position.map(|r| {
+                let mut turned = [0.0; 3];
+                (turned[i], turned[j]) = (-r.value[j], r.value[i]);
+                turned
+            })
+        };
+        std::array::from_fn(|k| {
+            let field = if k < 3 { along(k) } else { about(k - 3) };
+            self.product(&field, &acceleration)
+        })
+    }
+
     /// Force with its derivatives in variables, rates and accelerations.
     pub(crate) fn tangent(&self, spin: &Spin, s: &SectionState<f64>) -> InertialTangent {
         let g = Geometry::new(s);
@@ -415,6 +441,32 @@ mod tests {
             let expected = momentum[k].im / STEP - gradient[k];
             assert!((force[k] - expected).abs() < 1e-14, "{k}: {} {expected}", force[k]);
         }
+    }
+
+    /// Forces on the axis are the sums over the section, and the power of all inertial forces, those that
+    /// turn the frame included, is the rate of the kinetic energy.
+    #[test]
+    fn the_power_of_wrench_and_force_is_the_rate_of_the_energy() {
+        let (m, spin, s) = (mass(), spin(), state());
+        let (force, wrench) = (m.force(&spin, &s), m.wrench(&spin, &s));
+        for k in 0..3 {
+            assert!((force[k] - wrench[k]).abs() < 1e-14, "{k}");
+        }
+        let mut ahead = complex(&s);
+        for k in 0..MOTION_VARIABLES {
+            ahead.value[k].im = STEP * s.rate[k];
+            ahead.rate[k].im = STEP * s.acceleration[k];
+        }
+        ahead.value[at::PHI].im += STEP * s.pitch[1];
+        ahead.rate[at::PHI] += Complex::new(s.pitch[1], STEP * s.pitch[2]);
+        ahead.pitch = [s.pitch[0], 0.0, 0.0];
+        let gained = m.energy(&spin, &ahead).im / STEP;
+        let moving: f64 = force.iter().zip(s.rate).map(|(f, v)| f * v).sum();
+        let turning = spin.along * wrench[3] + spin.across * wrench[5];
+        let pitching = force[at::PHI] * s.pitch[1];
+        let power = moving + pitching + turning;
+        assert!((gained - power).abs() < 1e-13, "{gained} {power}");
+        assert!(turning.abs() > 1e-2 && pitching.abs() > 1e-3);
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub use blade::{
     Untwist,
 };
 pub use free_motion::{FreeMotion, MotionState};
-pub use modal::{ModalBlade, ModalForce, ModalMotion, ModalShape, SectionShape};
+pub use modal::{ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape, SectionShape};
 pub use modal_tangent::ModalTangent;
 pub use model::{ModerateModel, NodalMotion, PitchMotion, Tangents};
 pub use modes::{AxialMotion, deflected_fan, deflected_modes};

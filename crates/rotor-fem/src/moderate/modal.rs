@@ -75,6 +75,21 @@ pub struct ModalForce {
     pub inertial: Vec<[f64; 6]>,
 }
 
+/// What a motion asks of hub and pitch control, inertial and elastic: applied loads not counted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalLoads {
+    /// Axial displacement at each station, R.
+    pub axial: Vec<f64>,
+    /// Its rate in azimuth.
+    pub axial_rate: Vec<f64>,
+    /// Mass times acceleration per length at each station as force and moment about the rotor centre,
+    /// in the axes of the coned blade.
+    pub wrench: Vec<[f64; 6]>,
+    /// Elastic plus inertial moment on the pitch of the root, nose up, `m0 Omega^2 R^3`: the pitch control
+    /// must supply it, less the applied one.
+    pub pitch_moment: f64,
+}
+
 /// The blade at Gauss points along its span, with mode shapes.
 #[derive(Debug, Clone)]
 pub struct ModalBlade {
@@ -118,6 +133,7 @@ pub(super) struct Loaded<T> {
     pub(super) inertial: Vec<[T; MOTION_VARIABLES]>,
     pub(super) tension: Vec<T>,
     pub(super) generalised: Vec<T>,
+    pub(super) pitch_moment: T,
 }
 
 impl ModalBlade {
@@ -223,6 +239,27 @@ impl ModalBlade {
             tension: loaded.tension,
             axial: loaded.stations.iter().map(|s| s.state.value[0]).collect(),
             inertial: loaded.inertial,
+        }
+    }
+
+    /// What the same motion asks of hub and pitch control. A pure function of its arguments.
+    ///
+    /// Force, moment and power belong together: over one revolution of a periodic motion the power of
+    /// the applied loads equals that of hub, pitch control and damping.
+    ///
+    /// # Panics
+    /// If the motion has another number of coordinates than there are modes.
+    pub fn loads(&self, motion: ModalMotion<'_>, pitch: PitchMotion) -> ModalLoads {
+        let ModalMotion { value, rate, acceleration } = motion;
+        let loaded = self.loaded(&Coordinates { value, rate, acceleration }, &pitch);
+        let of = |section: &Section, station: &Station<f64>| {
+            section.mass.wrench(&self.spin, &station.state)
+        };
+        ModalLoads {
+            axial: loaded.stations.iter().map(|s| s.state.value[0]).collect(),
+            axial_rate: loaded.stations.iter().map(|s| s.state.rate[0]).collect(),
+            wrench: self.sections.iter().zip(&loaded.stations).map(|(a, b)| of(a, b)).collect(),
+            pitch_moment: loaded.pitch_moment,
         }
     }
 
@@ -350,7 +387,11 @@ impl ModalBlade {
             sum
         });
         let generalised = generalised.collect();
-        Loaded { stations, inertial, tension, generalised }
+        let mut pitch_moment = T::zero();
+        for (weight, (f, e)) in self.span.weights.iter().zip(inertial.iter().zip(&elastic)) {
+            pitch_moment += (f[super::inertia::at::PHI] + e[at::PHI]) * T::from_real(*weight);
+        }
+        Loaded { stations, inertial, tension, generalised, pitch_moment }
     }
 
     /// Derivative of the springs' force in the coordinates, for two modes.
