@@ -8,7 +8,7 @@ use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseError,
+    Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, ResponseError,
     ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
@@ -29,6 +29,8 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
         chord_fraction: 0.2,
         mass_fraction: 0.1,
         cg_fraction: 0.2,
+        gyration_fraction: None,
+        mass: FlapMass::PartOfBlade,
         effectiveness: FlapEffectiveness::IDEAL,
     };
     let model = RotorModel {

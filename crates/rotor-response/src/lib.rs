@@ -3,7 +3,10 @@
 mod air;
 mod blade;
 mod error;
+mod flap_inertia;
+mod flap_mass;
 mod flight_air;
+mod hinge;
 mod lag;
 mod loads;
 mod model;
@@ -15,8 +18,10 @@ mod stability;
 mod structure;
 mod system;
 
-pub use blade::{Couplings, ResponseBlade, TrailingEdgeFlap};
+pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;
+pub use flap_mass::with_flap_masses;
+pub use hinge::{HingeMoment, HingeSlopes};
 pub use loads::{SixLoads, hub_loads};
 pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};
 pub use rotor::{

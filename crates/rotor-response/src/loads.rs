@@ -47,6 +47,7 @@ impl SixLoads {
 /// m_x = -m km^2 th'' - m (km2^2 - km1^2) sin th cos th + M
 /// M_x = int v f_z - w f_y + m_x,  M_y = int w f_x - (x + u) f_z,  M_z = int (x + u) f_y - v f_x
 /// ```
+/// `M_y` and `M_z` also hold the moments on the slopes of flaps that weigh beside the blade.
 /// The foreshortening `u` and its rates enter in second order whatever the couplings of the modal
 /// equations: without them the vibratory in-plane loads are wrong by most of their size.
 pub(crate) fn root_loads(
@@ -77,7 +78,7 @@ pub(crate) fn root_loads(
         let (u, u_rate, u_acceleration) = (-squares[i], -rates[i], -accelerations[i]);
         let bp = blade.precone;
         let aero_x = -w.slope[i] * aerodynamic.fz[i] - v.slope[i] * aerodynamic.fy[i];
-        let fx = m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x;
+        let fx = m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x + loads.axial[i];
         let fy = m * (v.value[i] - v.acceleration[i] - 2.0 * u_rate + 2.0 * bp * w.rate[i])
             + loads.fy[i];
         let fz = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i];
@@ -93,8 +94,8 @@ pub(crate) fn root_loads(
             fy,
             fz,
             v.value[i] * fz - w.value[i] * fy + mx,
-            w.value[i] * fx - (x + u) * fz,
-            (x + u) * fy - v.value[i] * fx,
+            w.value[i] * fx - (x + u) * fz - loads.slope[1][i],
+            (x + u) * fy - v.value[i] * fx + loads.slope[0][i],
         ];
         for (t, part) in total.iter_mut().zip(parts) {
             *t += weight * part;
@@ -142,6 +143,7 @@ pub(crate) fn root_flap_moment(
             let inertia = -m * (w.acceleration[i] + blade.precone * (x + 2.0 * v.rate[i]));
             (x - blade.root_offset) * (inertia + loads.fz[i])
                 - (blade.tension[i] + tension[i]) * w.slope[i]
+                + loads.slope[1][i]
         })
         .collect();
     blade.grid.integral(&integrand)

@@ -101,7 +101,12 @@ impl RotorModel {
             let m = flap.mass_fraction;
             check("flap mass_fraction", m, within(m, 0.0, 1.0), "0 to 1 of m0")?;
             let cg = flap.cg_fraction;
-            check("flap cg_fraction", cg, within(cg, -1.0, 1.0), "-1 to 1 flap chord")?;
+            let beyond = "-1 to 1 flap chord: 1 is the trailing edge";
+            check("flap cg_fraction", cg, within(cg, -1.0, 1.0), beyond)?;
+            if let Some(k) = flap.gyration_fraction {
+                let least = "abs(cg_fraction) to 1 flap chord: it is about the hinge";
+                check("flap gyration_fraction", k, within(k, cg.abs(), 1.0), least)?;
+            }
         }
         Ok(())
     }

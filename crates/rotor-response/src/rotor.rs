@@ -2,7 +2,9 @@
 
 use crate::air::{AirPoint, AirScales, FlapAngle, SectionLoads};
 use crate::blade::ResponseBlade;
+use crate::flap_mass::with_flap_masses;
 use crate::flight_air::FlightAir;
+use crate::hinge::{HingeMoment, HingeSlopes};
 use crate::loads::{SixLoads, hub_loads, root_flap_curvature_moment, root_flap_moment, root_loads};
 use crate::structure::{BladeState, SpanLoads};
 use crate::system::{PointInput, ResponseSystem};
@@ -49,7 +51,8 @@ pub struct Rotor {
 }
 
 impl Rotor {
-    /// Builds mode shapes, stations and matrices.
+    /// Builds mode shapes, stations and matrices, of the blade made heavier by flaps that its mass does
+    /// not contain ([`with_flap_masses`]).
     ///
     /// # Errors
     /// Any problem of the model, the blade or the discretisation.
@@ -59,7 +62,8 @@ impl Rotor {
         discretisation: Discretisation,
     ) -> Result<Self, ResponseError> {
         model.validate()?;
-        let blade = ResponseBlade::new(&model, properties, discretisation)?;
+        let properties = with_flap_masses(properties, &model.flaps)?;
+        let blade = ResponseBlade::new(&model, &properties, discretisation)?;
         let mass = blade.mass_matrix();
         let damping = blade.damping(model.modal_damping);
         Ok(Self { model, discretisation, blade, mass, damping })
@@ -73,6 +77,23 @@ impl Rotor {
     /// The blade at its stations.
     pub fn blade(&self) -> &ResponseBlade {
         &self.blade
+    }
+
+    /// The periodic system of one blade for what air and pilot do at every point.
+    pub(crate) fn system<'a>(
+        &'a self,
+        air: &'a FlightAir,
+        points: Vec<PointInput>,
+    ) -> ResponseSystem<'a> {
+        ResponseSystem {
+            blade: &self.blade,
+            couplings: self.model.couplings,
+            scales: self.scales(),
+            air,
+            points,
+            damping: &self.damping,
+            mass: &self.mass,
+        }
     }
 
     fn scales(&self) -> AirScales {
@@ -140,9 +161,8 @@ pub struct RotorSolution {
     pub root: SixLoads,
     /// Hub loads, fixed frame, all blades.
     pub hub: SixLoads,
-    /// Aerodynamic hinge moment of each flap over its span, positive in the sense of the flap angle
-    /// (trailing edge down), `m0 Omega^2 R^3`.
-    pub hinge: Vec<HarmonicSeries>,
+    /// Hinge moments of each flap, root to tip.
+    pub hinge: Vec<HingeMoment>,
     /// Flapwise bending moment at the blade root, in two ways.
     pub root_flap_bending: RootBending,
     /// Residuals and iterations.
@@ -225,8 +245,9 @@ impl RotorSolver {
         let mut previous: Option<(Vec<f64>, f64)> = None;
         let mut last = (f64::INFINITY, 0.0);
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
-            let (rotor, air) = (Arc::clone(&self.rotor), Arc::clone(&self.air));
-            let system = self.system((&rotor, &air), condition, &inflow);
+            let rotor = Arc::clone(&self.rotor);
+            let air = Arc::clone(&self.air);
+            let system = rotor.system(&air, self.point_inputs(condition, &inflow));
             let solution = self.solver.solve(&system, &orbit).map_err(Self::orbit_error)?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;
@@ -276,29 +297,43 @@ impl RotorSolver {
         })
     }
 
+    /// How the hinge moment of each flap changes with its motion, about a solution.
+    ///
+    /// # Errors
+    /// [`ResponseError::FlapMotions`] for a condition with another number of flaps.
+    pub fn hinge_slopes(
+        &self,
+        condition: &Condition,
+        solution: &RotorSolution,
+    ) -> Result<Vec<HingeSlopes>, ResponseError> {
+        let expected = self.rotor.model.flaps.len();
+        let given = condition.flap_angles_rad.len();
+        if given != expected {
+            return Err(ResponseError::FlapMotions { given, expected });
+        }
+        let points = self.point_inputs(condition, &solution.inflow);
+        let system = self.rotor.system(&self.air, points);
+        let revolution = system.revolution(&solution.orbit.sample(&self.time));
+        let by_point: Vec<[Vec<f64>; 3]> =
+            (0..self.time.points().len()).map(|p| system.hinge_slopes(p, &revolution)).collect();
+        let count = self.rotor.discretisation.load_harmonics;
+        let series = |which: usize, flap: usize| {
+            let values: Vec<f64> = by_point.iter().map(|slopes| slopes[which][flap]).collect();
+            RevolutionLoads::series(&self.time, &values, count)
+        };
+        Ok((0..expected)
+            .map(|k| HingeSlopes {
+                angle: series(0, k),
+                rate: series(1, k),
+                acceleration: series(2, k),
+            })
+            .collect())
+    }
+
     fn orbit_error(error: PeriodicError<ResponseError>) -> ResponseError {
         match error {
             PeriodicError::System { source, .. } => source,
             other => ResponseError::Periodic(Box::new(other)),
-        }
-    }
-
-    /// The blade in a condition under a given inflow. Rotor and air are this solver's own, held apart
-    /// so that its Newton matrix may change while the system lives.
-    pub(crate) fn system<'a>(
-        &self,
-        (rotor, air): (&'a Rotor, &'a FlightAir),
-        condition: &Condition,
-        inflow: &InducedInflow,
-    ) -> ResponseSystem<'a> {
-        ResponseSystem {
-            blade: &rotor.blade,
-            couplings: rotor.model.couplings,
-            scales: rotor.scales(),
-            air,
-            points: self.point_inputs(condition, inflow),
-            damping: &rotor.damping,
-            mass: &rotor.mass,
         }
     }
 
@@ -308,7 +343,8 @@ impl RotorSolver {
         condition: &Condition,
         solution: &RotorSolution,
     ) -> Result<Floquet, ResponseError> {
-        let system = self.system((&self.rotor, &self.air), condition, &solution.inflow);
+        let points = self.point_inputs(condition, &solution.inflow);
+        let system = self.rotor.system(&self.air, points);
         let tangents = system.tangents(&solution.orbit.sample(&self.time))?;
         Ok(Floquet::of(&self.time, &self.rotor.mass, &tangents)?)
     }
@@ -373,7 +409,8 @@ fn unit_weights(time: &TimeElements) -> Vec<f64> {
 /// Root loads and hinge moments at every azimuth point.
 struct RevolutionLoads {
     root: Vec<[f64; 6]>,
-    hinge: Vec<Vec<f64>>,
+    /// Aerodynamic and inertial hinge moment of each flap.
+    hinge: Vec<[Vec<f64>; 2]>,
     /// Root flap bending by force summation and by curvature.
     bending: [Vec<f64>; 2],
 }
@@ -410,12 +447,12 @@ impl RevolutionLoads {
         let blade = &rotor.blade;
         let first = system.air.first_station();
         let mut root = Vec::with_capacity(revolution.motions.len());
-        let mut hinge = vec![Vec::new(); rotor.model.flaps.len()];
+        let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model.flaps.len()];
         let mut bending = [Vec::new(), Vec::new()];
         let mut loads = SpanLoads::default();
         for (p, motion) in revolution.motions.iter().enumerate() {
             let sections = system.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
-            system.span_loads(p, &sections, &mut loads);
+            system.span_loads(p, motion, &sections, &mut loads);
             let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
             let pitch = system.points[p].air.pitch;
             let state = BladeState { motion, pitch, loads: &loads };
@@ -424,15 +461,11 @@ impl RevolutionLoads {
             bending[0].push(root_flap_moment(blade, couplings, motion, &loads));
             let q: Vec<f64> = samples.q.column(p).iter().copied().collect();
             bending[1].push(root_flap_curvature_moment(blade, couplings, &q, pitch.angle));
+            let moments = system.hinge_moments(p, motion, &sections);
             for (k, history) in hinge.iter_mut().enumerate() {
-                history.push(
-                    sections
-                        .iter()
-                        .enumerate()
-                        .filter(|(s, _)| blade.flap_index[first + s] == Some(k))
-                        .map(|(s, load)| blade.grid.weight()[first + s] * load.hinge)
-                        .sum(),
-                );
+                for (part, moment) in history.iter_mut().zip(&moments) {
+                    part.push(moment[k]);
+                }
             }
         }
         Ok(Self { root, hinge, bending })
@@ -459,8 +492,14 @@ impl RevolutionLoads {
         }
     }
 
-    fn hinge(&self, time: &TimeElements, count: usize) -> Vec<HarmonicSeries> {
-        self.hinge.iter().map(|h| Self::series(time, h, count)).collect()
+    fn hinge(&self, time: &TimeElements, count: usize) -> Vec<HingeMoment> {
+        self.hinge
+            .iter()
+            .map(|[aerodynamic, inertial]| HingeMoment {
+                aerodynamic: Self::series(time, aerodynamic, count),
+                inertial: Self::series(time, inertial, count),
+            })
+            .collect()
     }
 
     fn root_bending(&self, time: &TimeElements, count: usize) -> RootBending {
@@ -481,8 +520,8 @@ impl RevolutionLoads {
 
 /// Aerodynamic forces alone at all stations.
 fn aerodynamic_loads(stations: usize, first: usize, sections: &[SectionLoads]) -> SpanLoads {
-    let mut out =
-        SpanLoads { fz: vec![0.0; stations], fy: vec![0.0; stations], moment: vec![0.0; stations] };
+    let mut out = SpanLoads::default();
+    out.clear(stations);
     for (s, load) in sections.iter().enumerate() {
         out.fz[first + s] = load.fz;
         out.fy[first + s] = load.fy;

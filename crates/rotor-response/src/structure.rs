@@ -30,6 +30,21 @@ pub(crate) struct SpanLoads {
     pub(crate) fy: Vec<f64>,
     /// Nose-up moment about the elastic axis.
     pub(crate) moment: Vec<f64>,
+    /// Force along the blade and moments on the slopes `v_x` and `w_x`, of flaps that weigh beside
+    /// the blade.
+    pub(crate) axial: Vec<f64>,
+    pub(crate) slope: [Vec<f64>; 2],
+}
+
+impl SpanLoads {
+    /// No loads at `n` stations.
+    pub(crate) fn clear(&mut self, n: usize) {
+        let [slope_v, slope_w] = &mut self.slope;
+        for v in [&mut self.fz, &mut self.fy, &mut self.moment, &mut self.axial, slope_v, slope_w] {
+            v.clear();
+            v.resize(n, 0.0);
+        }
+    }
 }
 
 /// Motion, root pitch and loads of the blade at one azimuth.
@@ -76,6 +91,19 @@ fn project(out: &mut [f64], weight: &[f64], parts: &[(&[Vec<f64>], &[f64])]) {
     }
 }
 
+/// Takes the work of moments on the slopes of lag and flap off a residual.
+pub(crate) fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]) {
+    let weight = blade.grid.weight();
+    let (nf, nl) = (blade.flap.count(), blade.lag.count());
+    let mut work = vec![0.0; nf + nl];
+    let (flap, lag) = work.split_at_mut(nf);
+    project(flap, weight, &[(&blade.flap.slope, &loads.slope[1])]);
+    project(lag, weight, &[(&blade.lag.slope, &loads.slope[0])]);
+    for (value, work) in out.iter_mut().zip(work) {
+        *value -= work;
+    }
+}
+
 /// Generalised residual of the moderately deflected blade without the constant mass part.
 ///
 /// ```text
@@ -97,7 +125,7 @@ pub(crate) fn moderate_residual(
     let applied: Vec<[f64; 4]> = (0..loads.fz.len())
         .map(|i| {
             let (fy, fz) = (loads.fy[i], loads.fz[i]);
-            let fx = -motion.w.slope[i] * fz - motion.v.slope[i] * fy;
+            let fx = -motion.w.slope[i] * fz - motion.v.slope[i] * fy + loads.axial[i];
             [fx, fy, fz, loads.moment[i]]
         })
         .collect();

@@ -4,11 +4,12 @@ use crate::ResponseError;
 use crate::air::{
     AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, section_flow, section_loads,
 };
-use crate::blade::{Couplings, ResponseBlade};
+use crate::blade::{Couplings, FlapMass, ResponseBlade};
+use crate::flap_inertia::FlapSection;
 use crate::flight_air::FlightAir;
 use crate::motion::{Motion, RootPitch};
 use crate::structure::{
-    BladeState, SpanLoads, StructureScratch, modal_residual, moderate_residual,
+    BladeState, SpanLoads, StructureScratch, modal_residual, moderate_residual, subtract_slope_work,
 };
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -62,6 +63,16 @@ struct Scratch {
 impl ResponseSystem<'_> {
     /// Flow at every lifting station for the motion held in `motion`.
     fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
+        self.flows_with_flaps(point, motion, |flap| self.points[point].flap[flap])
+    }
+
+    /// The same with flap angles of one's own.
+    pub(crate) fn flows_with_flaps(
+        &self,
+        point: usize,
+        motion: &Motion,
+        angle: impl Fn(usize) -> FlapAngle,
+    ) -> Vec<SectionFlow> {
         let input = &self.points[point];
         let first = self.air.first_station();
         input
@@ -70,8 +81,7 @@ impl ResponseSystem<'_> {
             .enumerate()
             .map(|(s, &lambda)| {
                 let station = first + s;
-                let delta =
-                    self.blade.flap_index[station].map_or([0.0; 3], |flap| input.flap[flap]);
+                let delta = self.blade.flap_index[station].map_or([0.0; 3], &angle);
                 let at = (station, lambda);
                 section_flow(self.blade, self.scales.chord, motion, &input.air, at, delta)
             })
@@ -114,18 +124,46 @@ impl ResponseSystem<'_> {
             .collect()
     }
 
-    /// Aerodynamic loads plus the inertial loads of the moving flaps, at all stations.
+    /// Motion of the section at a station that carries flap `k`, and of the flap.
+    pub(crate) fn flap_section(
+        &self,
+        point: usize,
+        motion: &Motion,
+        (i, k): (usize, usize),
+    ) -> FlapSection {
+        let (v, w, phi) = (&motion.v, &motion.w, &motion.phi);
+        let pitch = self.points[point].air.pitch;
+        FlapSection {
+            x: self.blade.grid.x()[i],
+            precone: self.blade.precone,
+            v: [v.value[i], v.rate[i], v.acceleration[i]],
+            v_x: [v.slope[i], v.slope_rate[i], v.slope_acceleration[i]],
+            w: [w.value[i], w.rate[i], w.acceleration[i]],
+            w_x: [w.slope[i], w.slope_rate[i], w.slope_acceleration[i]],
+            twist: [
+                pitch.angle + self.blade.twist[i] + phi.value[i],
+                pitch.rate + phi.rate[i],
+                pitch.acceleration + phi.acceleration[i],
+            ],
+            delta: self.points[point].flap[k],
+        }
+    }
+
+    /// Aerodynamic loads plus the inertial loads of the flaps, at all stations.
     ///
     /// ```text
     /// F_z += m_f X_f delta''     M += -(m_f (d + X_f) X_f + I_cg) delta'' - m_f (d + X_f) X_f delta
     /// ```
-    /// Only what the flap angle adds: the flap at rest is part of the blade.
-    pub(crate) fn span_loads(&self, point: usize, sections: &[SectionLoads], out: &mut SpanLoads) {
-        let n = self.blade.grid.len();
-        for v in [&mut out.fz, &mut out.fy, &mut out.moment] {
-            v.clear();
-            v.resize(n, 0.0);
-        }
+    /// Of a flap that is part of the blade only what its angle adds, in this first-order form; of one
+    /// that weighs beside it all loads of its distance from the elastic axis.
+    pub(crate) fn span_loads(
+        &self,
+        point: usize,
+        motion: &Motion,
+        sections: &[SectionLoads],
+        out: &mut SpanLoads,
+    ) {
+        out.clear(self.blade.grid.len());
         let first = self.air.first_station();
         for (s, load) in sections.iter().enumerate() {
             out.fz[first + s] = load.fz;
@@ -134,11 +172,25 @@ impl ResponseSystem<'_> {
         }
         for (i, flap) in self.blade.flap_index.iter().enumerate() {
             let Some(k) = *flap else { continue };
-            let [delta, _, acceleration] = self.points[point].flap[k];
             let inertia = self.blade.flap_inertia[k];
-            out.fz[i] += inertia.first_moment * acceleration;
-            out.moment[i] -=
-                (inertia.arm_moment + inertia.own) * acceleration + inertia.arm_moment * delta;
+            match inertia.mass {
+                FlapMass::PartOfBlade => {
+                    let [delta, _, acceleration] = self.points[point].flap[k];
+                    out.fz[i] += inertia.first_moment * acceleration;
+                    out.moment[i] -= (inertia.arm_moment + inertia.own) * acceleration
+                        + inertia.arm_moment * delta;
+                }
+                FlapMass::AddedToBlade => {
+                    let section = self.flap_section(point, motion, (i, k));
+                    let loads = inertia.body.loads_off_axis(&section);
+                    out.axial[i] += loads.force[0];
+                    out.fy[i] += loads.force[1];
+                    out.fz[i] += loads.force[2];
+                    out.moment[i] += loads.twist;
+                    out.slope[0][i] += loads.slope[0];
+                    out.slope[1][i] += loads.slope[1];
+                }
+            }
         }
     }
 
@@ -157,6 +209,9 @@ impl ResponseSystem<'_> {
             Some(modal) => moderate_residual(modal, self.mass, state, coordinates, out),
             None => modal_residual(self.blade, self.couplings, state, structure, out),
         }
+        if self.blade.flaps_beside_blade() {
+            subtract_slope_work(self.blade, loads, out);
+        }
         for ((o, d), rate) in out.iter_mut().zip(self.damping).zip(coordinates[1]) {
             *o += d * rate;
         }
@@ -172,7 +227,7 @@ impl ResponseSystem<'_> {
         motion.fill(self.blade, q, qd, qdd);
         let flows = self.flows(point, motion);
         let sections = self.section_loads(point, &flows, &self.air.settled_loads(point, &flows));
-        self.span_loads(point, &sections, &mut scratch.loads);
+        self.span_loads(point, motion, &sections, &mut scratch.loads);
         let mut out = vec![0.0; q.len()];
         self.project(point, (motion, [q, qd, qdd]), scratch, &mut out);
         out
@@ -220,7 +275,7 @@ impl PeriodicSystem for ResponseSystem<'_> {
         let mut column = vec![0.0; self.dof()];
         for (p, motion) in revolution.motions.iter().enumerate() {
             let sections = self.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
-            self.span_loads(p, &sections, &mut scratch.loads);
+            self.span_loads(p, motion, &sections, &mut scratch.loads);
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
             self.project(p, (motion, [&q, &qd, &qdd]), &mut scratch, &mut column);

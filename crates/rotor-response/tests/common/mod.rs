@@ -3,7 +3,9 @@
 
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
-use rotor_response::{Compressibility, Couplings, ReverseFlow, RotorModel, TrailingEdgeFlap};
+use rotor_response::{
+    Compressibility, Couplings, FlapMass, ReverseFlow, RotorModel, TrailingEdgeFlap,
+};
 
 /// Table 1 with the documented defaults where the paper is silent.
 pub(crate) fn paper_spec() -> BladeSpec {
@@ -44,6 +46,8 @@ pub(crate) fn paper_flaps() -> Vec<TrailingEdgeFlap> {
             chord_fraction: 0.2,
             mass_fraction: 0.1,
             cg_fraction: 0.2,
+            gyration_fraction: None,
+            mass: FlapMass::PartOfBlade,
             effectiveness: FlapEffectiveness::IDEAL,
         })
         .to_vec()

@@ -2,12 +2,18 @@
 
 use super::{FullScale, PlantError};
 use hhc_control::{BiasSolver, RunError};
-use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
+use preisach_dyn::{
+    ActuatorModel, LinkageStage, PeriodicResponse, PeriodicSettings, PreisachError, VoltageRange,
+};
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 use std::sync::Arc;
 
 /// Largest mean flap angle the bias solution leaves, deg.
 pub const MEAN_FLAP_TOLERANCE_DEG: f64 = 0.005;
+
+/// Largest change of the mean flap angle that a load leaves after the bias has met it, deg: tighter, so
+/// that motion and hinge moment can settle on each other.
+const LOADED_MEAN_TOLERANCE_DEG: f64 = 1e-8;
 
 /// Voltage and angle of one flap over a revolution, against the azimuth of its blade.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,38 +79,61 @@ impl FlapDrive {
                 Ok(FlapMotion { voltage_volt: voltage, flap_deg })
             }
             Self::Model { model, range_volt, rev_hz, bias_volt } => {
-                let settings = PeriodicSettings::default();
                 let solver = BiasSolver {
                     range_volt: [range_volt.lowest_volt() - low, range_volt.highest_volt() - high],
                     guess_volt: *bias_volt,
                     slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
                     tolerance_deg: MEAN_FLAP_TOLERANCE_DEG,
                 };
-                let mut orbit = None;
-                let solution = solver.solve(|bias_volt| {
-                    voltage.mean = bias_volt;
-                    let response = model.periodic_response(&voltage, *rev_hz, &settings)?;
-                    let mean_deg = response.flap_deg.mean;
-                    orbit = Some((bias_volt, response));
-                    Ok::<_, preisach_dyn::PreisachError>(mean_deg)
-                });
-                let bias_volt = match solution {
-                    Ok(solution) => solution.bias_volt,
-                    Err(RunError::Plant { source, .. }) => return Err(source.into()),
-                    Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
-                    Err(_) => return Err(PlantError::BiasSearch),
-                };
-                // the search may have ended on another trial than its last one
-                let response = match orbit {
-                    Some((at, response)) if at.to_bits() == bias_volt.to_bits() => response,
-                    _ => {
-                        voltage.mean = bias_volt;
-                        model.periodic_response(&voltage, *rev_hz, &settings)?
-                    }
-                };
-                Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
+                let drive = PeriodicDrive { model, rev_hz: *rev_hz, load: None };
+                drive.biased(&solver, 0.0, voltage)
             }
         }
+    }
+
+    /// The same motion under a hinge moment (N m, positive in the sense of the flap angle, against
+    /// azimuth), the bias moved so that the mean angle stays that of the `free` motion.
+    ///
+    /// # Errors
+    /// As [`Self::motion`].
+    pub fn loaded_motion(
+        &self,
+        free: &FlapMotion,
+        hinge_moment_newton_metre: &HarmonicSeries,
+    ) -> Result<FlapMotion, PlantError> {
+        let Self::Model { model, range_volt, rev_hz, .. } = self else {
+            return Ok(free.clone());
+        };
+        if self.give_deg_per_newton_metre() == 0.0 {
+            return Ok(free.clone());
+        }
+        let voltage = free.voltage_volt.clone();
+        let (low, high) = alternating_volt(&voltage);
+        let solver = BiasSolver {
+            range_volt: [range_volt.lowest_volt() - low, range_volt.highest_volt() - high],
+            guess_volt: voltage.mean,
+            slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
+            tolerance_deg: LOADED_MEAN_TOLERANCE_DEG,
+        };
+        // what pushes the flap down helps it on: the actuator counts what stands against it
+        let newton = model.calibration.load_newton(-1.0);
+        let load = scaled(hinge_moment_newton_metre, newton);
+        let drive = PeriodicDrive { model, rev_hz: *rev_hz, load: Some(load) };
+        drive.biased(&solver, free.flap_deg.mean, voltage)
+    }
+
+    /// How far a steady hinge moment turns the flap, deg per N m in its own sense; 0 without a load
+    /// stage that gives. Stages behind the load stage are taken as they are at rest.
+    pub fn give_deg_per_newton_metre(&self) -> f64 {
+        let Self::Model { model, .. } = self else { return 0.0 };
+        let newton = model.calibration.load_newton(1.0);
+        model.linkage.iter().fold(0.0, |give, stage| match stage {
+            LinkageStage::LoadStiffness(stage) => {
+                let own = model.calibration.deg_per_um * stage.compliance_um_per_newton * newton;
+                (give + own) / (1.0 + stage.stiffness_ratio)
+            }
+            _ => give,
+        })
     }
 
     /// The swing of the voltage over what the range leaves it: above 1 it cannot be asked for.
@@ -171,6 +200,67 @@ impl FlapDrive {
         let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
         Ok(FullScale { amplitude_volt: amplitude, stroke_deg })
     }
+}
+
+/// An actuator model in the time of the rotor, with the load on it, N.
+struct PeriodicDrive<'a> {
+    model: &'a ActuatorModel,
+    rev_hz: f64,
+    load: Option<HarmonicSeries>,
+}
+
+impl PeriodicDrive<'_> {
+    fn response(&self, voltage: &HarmonicSeries) -> Result<PeriodicResponse, PreisachError> {
+        let settings = PeriodicSettings::default();
+        match &self.load {
+            None => self.model.periodic_response(voltage, self.rev_hz, &settings),
+            Some(load) => {
+                self.model.periodic_response_loaded(voltage, load, self.rev_hz, &settings)
+            }
+        }
+    }
+
+    /// The motion whose mean is `mean_deg`, by the bias.
+    fn biased(
+        &self,
+        solver: &BiasSolver,
+        mean_deg: f64,
+        mut voltage: HarmonicSeries,
+    ) -> Result<FlapMotion, PlantError> {
+        let mut orbit = None;
+        let solution = solver.solve(|bias_volt| {
+            voltage.mean = bias_volt;
+            let response = self.response(&voltage)?;
+            let gap_deg = response.flap_deg.mean - mean_deg;
+            orbit = Some((bias_volt, response));
+            Ok::<_, PreisachError>(gap_deg)
+        });
+        let bias_volt = match solution {
+            Ok(solution) => solution.bias_volt,
+            Err(RunError::Plant { source, .. }) => return Err(source.into()),
+            Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
+            Err(_) => return Err(PlantError::BiasSearch),
+        };
+        // the search may have ended on another trial than its last one
+        let response = match orbit {
+            Some((at, response)) if at.to_bits() == bias_volt.to_bits() => response,
+            _ => {
+                voltage.mean = bias_volt;
+                self.response(&voltage)?
+            }
+        };
+        Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
+    }
+}
+
+/// A series times a factor.
+pub(super) fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+    let harmonics = series
+        .harmonics
+        .iter()
+        .map(|h| Harmonic { cosine: factor * h.cosine, sine: factor * h.sine })
+        .collect();
+    HarmonicSeries { mean: factor * series.mean, harmonics }
 }
 
 /// Change of the mean flap angle with the bias of a bench that makes +-10 deg over 170 V, deg/V: the

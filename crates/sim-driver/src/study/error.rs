@@ -20,6 +20,20 @@ pub enum PlantError {
     /// The search for the bias voltage ended for a reason unknown here.
     #[error("the search for the bias voltage failed")]
     BiasSearch,
+    /// Flap motion and hinge moment did not settle on each other.
+    #[error(
+        "flap motion and hinge moment did not settle: {residual_deg:.2e} deg are left after {iterations} responses of the rotor (wanted {tolerance_deg:.0e}); the actuator is soft against the hinge moment, or the flap near a resonance on it: lower compliance_um_per_newton"
+    )]
+    Coupling {
+        /// Responses of the rotor.
+        iterations: usize,
+        /// Least change of a flap angle by the hinge moment left, deg.
+        residual_deg: f64,
+        /// Change wanted, deg.
+        tolerance_deg: f64,
+        /// Flap motions at the least residual.
+        best: Vec<super::FlapMotion>,
+    },
     /// The harmonics of the voltage are larger than the range.
     #[error(
         "the voltage swings over {swing_volt:.2} V, the actuator takes {span_volt:.2} V: lower the amplitudes"
