@@ -37,6 +37,7 @@ mod eigen;
 mod element;
 mod error;
 mod linear_periodic;
+mod linear_response;
 mod mode_kind;
 mod mode_set;
 mod moderate;
@@ -54,6 +55,7 @@ pub use assembly::{BladeModel, SectionMotion};
 pub use distribution::Distribution;
 pub use error::FemError;
 pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
+pub use linear_response::LinearResponse;
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
 pub use moderate::{

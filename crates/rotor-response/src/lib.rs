@@ -5,6 +5,7 @@ mod blade;
 mod error;
 mod flight_air;
 mod lag;
+mod linearised;
 mod loads;
 mod model;
 mod motion;
@@ -16,6 +17,7 @@ mod system;
 
 pub use blade::{Couplings, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;
+pub use linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
 pub use loads::{SixLoads, hub_loads};
 pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};
 pub use rotor::{
