@@ -1,6 +1,6 @@
 //! What can go wrong.
 
-use crate::{ControlStep, Cost};
+use crate::{ConeStatus, ControlStep, Cost};
 
 /// Rejected input and numerical failures of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -108,6 +108,30 @@ pub enum ControlError {
         /// What was recorded: the start.
         history: Vec<ControlStep>,
     },
+    /// The optimum within the limits was not found.
+    #[error(
+        "the optimum within the limits was not found in {iterations} iterations ({status:?}, KKT residual \
+         {kkt:e}); are the limits of wildly different size, or the controls more than the loads with rho = 0?"
+    )]
+    ConeProgram {
+        /// Why.
+        status: ConeStatus,
+        /// Iterations of the interior-point method.
+        iterations: u32,
+        /// Largest KKT residual reached; NaN if there was no point to judge.
+        kkt: f64,
+    },
+    /// T cannot be identified about a control because neither side of it is in the plant's range.
+    #[error(
+        "control {control} (from 0) can be moved by {step_volt} V neither up nor down inside the range the \
+         plant admits, so T cannot be identified there: take a smaller step"
+    )]
+    NoRoomToIdentify {
+        /// The control, from 0.
+        control: usize,
+        /// The step, V.
+        step_volt: f64,
+    },
     /// No control weight was found that brings the stroke to its limit.
     #[error(
         "no control weight up to rho = {rho:e} 1/V^2 brings the largest stroke to its limit (still at \
@@ -172,6 +196,16 @@ pub enum PlantCall {
         /// Control vector, volt.
         control_volt: Vec<f64>,
     },
+    /// The linearised T at this control vector.
+    Linearise {
+        /// Control vector, volt.
+        control_volt: Vec<f64>,
+    },
+    /// The limits at this control vector.
+    Limits {
+        /// Control vector, volt.
+        control_volt: Vec<f64>,
+    },
     /// The mean flap angle at this bias.
     MeanFlap {
         /// Bias, volt.
@@ -186,6 +220,10 @@ impl std::fmt::Display for PlantCall {
             Self::MeasureMany { count } => write!(f, "measured at {count} controls for T"),
             Self::Strokes { control_volt } => {
                 write!(f, "asked for its strokes at u = {control_volt:.4?} V")
+            }
+            Self::Linearise { control_volt } => write!(f, "linearised at u = {control_volt:.4?} V"),
+            Self::Limits { control_volt } => {
+                write!(f, "asked for its limits at u = {control_volt:.4?} V")
             }
             Self::MeanFlap { bias_volt } => {
                 write!(f, "asked for its mean flap angle at a bias of {bias_volt} V")

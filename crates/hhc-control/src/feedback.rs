@@ -1,11 +1,10 @@
-//! The feedback form of the global controller, eq. (8)-(10).
+//! The feedback controller: what is asked of it and what it answers.
 
-use crate::stroke::{Strokes, track_effort};
+use crate::control_loop::Effort;
 use crate::{
-    ControlError, ControlLayout, Cost, FeedbackLaw, LoadWeights, Measurement, Plant, PlantCall,
-    RunError, TMatrix, error, layout::as_harmonics, reduction_percent,
+    ControlError, Controller, Cost, FeedbackLaw, KktResidual, LoadWeights, Measurement, Plant,
+    RunError, TMatrix, error, reduction_percent,
 };
-use rotor_base::Harmonic;
 
 /// Settings of the feedback loop.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,8 +95,14 @@ pub struct ControlRun {
     pub start: ControlStep,
     /// The accepted steps, in order.
     pub steps: Vec<ControlStep>,
-    /// Measurements made, rejected steps and the start included.
+    /// Measurements made: the start, steps, rejected steps, and what learning T took.
     pub measurements: usize,
+    /// Times T was identified again, or the controls were probed.
+    pub identifications: usize,
+    /// T as known at the end, 1/V.
+    pub t: TMatrix,
+    /// How exactly the last aim was the optimum within the limits; none where there were no limits.
+    pub kkt: Option<KktResidual>,
 }
 
 impl ControlRun {
@@ -122,7 +127,8 @@ impl ControlRun {
     }
 }
 
-/// The controller of eq. (8)-(10): one constant T0, fed back with the measured loads.
+/// The control loop of eq. (8)-(10), fed back with the measured loads: with one constant T0 as in the
+/// paper, or with any other [`Controller`].
 ///
 /// At each step the control goes to the optimum that [`FeedbackLaw`] sees from the last measurement.
 /// A step whose measured cost is higher than the present one, *with the same* `rho`, is halved, and
@@ -153,23 +159,7 @@ impl ControlRun {
 pub struct FeedbackController {
     pub(crate) law: FeedbackLaw,
     pub(crate) settings: FeedbackSettings,
-}
-
-/// Changes below a picovolt are rounding, should the optimum be no control at all.
-const SMALLEST_CHANGE_VOLT: f64 = 1e-12;
-
-/// A step no longer than this part of the step before belongs to a loop that settles.
-const SETTLING: f64 = 0.8;
-
-/// Part of the starting cost below which a difference is rounding.
-const COST_ROUNDING: f64 = 1e-14;
-
-/// How the loop weights the control.
-pub(crate) enum Effort<'a> {
-    /// A given `rho`.
-    Fixed(f64),
-    /// At every step the `rho` for which the step's control has the target stroke.
-    Tracked(&'a Strokes),
+    pub(crate) controller: Controller,
 }
 
 impl FeedbackController {
@@ -183,7 +173,27 @@ impl FeedbackController {
         settings: FeedbackSettings,
     ) -> Result<Self, ControlError> {
         settings.check()?;
-        Ok(Self { law: FeedbackLaw::new(t0, load_weights)?, settings })
+        let law = FeedbackLaw::new(t0, load_weights)?;
+        Ok(Self { law, settings, controller: Controller::Global })
+    }
+
+    /// The same with another way to know T: re-identified, or adaptive.
+    ///
+    /// # Errors
+    /// Settings of the way outside their range.
+    pub fn with_controller(self, controller: Controller) -> Result<Self, ControlError> {
+        match &controller {
+            Controller::Global => {}
+            Controller::Local { step_volt } => {
+                let controls = self.law.shape().1;
+                error::check_vector("voltage steps of the T matrix (volt)", step_volt, controls)?;
+                for &step in step_volt {
+                    error::check_positive("voltage step of the T matrix (volt)", step)?;
+                }
+            }
+            Controller::Adaptive(settings) => settings.check()?,
+        }
+        Ok(Self { controller, ..self })
     }
 
     /// The control law with its singular values.
@@ -223,160 +233,25 @@ impl FeedbackController {
         Ok(run)
     }
 
-    /// The state before the first step, measured.
-    pub(crate) fn start<P: Plant>(
+    /// Runs the loop from zero control to the optimum within the plant's limits ([`Plant::limits`]):
+    /// every step aims at the optimum of a second-order cone program, never at a clipped one.
+    ///
+    /// | argument | symbol | unit | range |
+    /// |---|---|---|---|
+    /// | `rho` | `rho` | 1/V^2 | >= 0; above 0 with more controls than loads |
+    ///
+    /// # Errors
+    /// As [`FeedbackController::run`], and [`ControlError::ConeProgram`].
+    pub fn run_constrained<P: Plant>(
         &self,
         plant: &mut P,
-        start_volt: &[f64],
-    ) -> Result<ControlStep, RunError<P::Error>> {
-        let (_, controls) = self.law.shape();
-        let layout = plant.layout();
-        if layout.len() != controls {
-            Err(ControlError::Length {
-                what: "controls of the plant, against columns of the T matrix",
-                found: layout.len(),
-                expected: controls,
-            })?;
-        }
-        layout.check(start_volt)?;
-        let measurement = self.measured(plant, start_volt, &[])?;
-        let cost = self.cost(&measurement, start_volt, 0.0);
-        let control_volt = start_volt.to_vec();
-        Ok(ControlStep { control_volt, measurement, rho: 0.0, cost, asked_volt: 0.0, halvings: 0 })
-    }
-
-    /// The loop itself, from a measured start; counts no measurement for the start.
-    pub(crate) fn iterate<P: Plant>(
-        &self,
-        plant: &mut P,
-        start: &ControlStep,
-        effort: &mut Effort<'_>,
-    ) -> Result<ControlRun, RunError<P::Error>> {
-        let mut here = start.clone();
-        let mut steps: Vec<ControlStep> = Vec::new();
-        let mut measurements = 0;
-        let outcome = loop {
-            let rho = match effort {
-                Effort::Fixed(rho) => *rho,
-                Effort::Tracked(strokes) => track_effort(&self.law, plant, strokes, &here)?,
-            };
-            here = self.weighed(&here, rho);
-            let start_cost = self.weighed(start, rho).cost.total();
-            let (aim, step) = self.step(rho, &here.control_volt, &here.measurement)?;
-            let asked_volt = largest_amplitude(&step);
-            let size = largest_amplitude(&aim).max(largest_amplitude(&here.control_volt));
-            if asked_volt <= (self.settings.step_tolerance * size).max(SMALLEST_CHANGE_VOLT) {
-                break Outcome::Converged;
-            }
-            if steps.len() >= self.settings.max_steps {
-                break Outcome::StepLimit;
-            }
-            let history =
-                || -> Vec<ControlStep> { std::iter::once(start).chain(&steps).cloned().collect() };
-            let mut taken = None;
-            let mut shortest = None;
-            let mut left_range = false;
-            for halvings in 0..=self.settings.max_halvings {
-                let part = 0.5_f64.powi(halvings.cast_signed());
-                let control_volt: Vec<f64> =
-                    here.control_volt.iter().zip(&step).map(|(u, d)| u + part * d).collect();
-                if !plant.admits(&control_volt) {
-                    left_range = true;
-                    continue;
-                }
-                let measurement = self.measured(plant, &control_volt, &history())?;
-                measurements += 1;
-                let cost = self.cost(&measurement, &control_volt, rho);
-                let rise = (cost.total() - here.cost.total()) / start_cost;
-                let settles = halvings == 0
-                    && rise <= self.settings.cost_rise_allowance
-                    && largest_amplitude(&self.step(rho, &control_volt, &measurement)?.1)
-                        <= SETTLING * asked_volt;
-                if rise <= COST_ROUNDING || settles {
-                    taken = Some(ControlStep {
-                        control_volt,
-                        measurement,
-                        rho,
-                        cost,
-                        asked_volt,
-                        halvings,
-                    });
-                    break;
-                }
-                shortest = Some(cost);
-            }
-            if let Some(step) = taken {
-                steps.push(step.clone());
-                here = step;
-                continue;
-            }
-            if !steps.is_empty() {
-                break if left_range { Outcome::OutOfRange } else { Outcome::Stalled };
-            }
-            let divisor = 1_u64 << self.settings.max_halvings;
-            let history = vec![here.clone()];
-            Err(match shortest {
-                Some(shortest) => {
-                    let start = here.cost;
-                    ControlError::Diverges { rho, divisor, start, shortest, history }
-                }
-                None => ControlError::NotAdmitted { rho, divisor, history },
-            })?;
-        };
-        let start = self.weighed(start, here.rho);
-        Ok(ControlRun { rho: here.rho, outcome, start, steps, measurements })
-    }
-
-    /// The control eq. (10) aims at from a measured state, and the step there, volt.
-    fn step(
-        &self,
         rho: f64,
-        control_volt: &[f64],
-        measurement: &Measurement,
-    ) -> Result<(Vec<f64>, Vec<f64>), ControlError> {
-        let aim = self.law.optimum_volt(rho, control_volt, &measurement.hub_loads)?;
-        let step = aim.iter().zip(control_volt).map(|(a, u)| a - u).collect();
-        Ok((aim, step))
+    ) -> Result<ControlRun, RunError<P::Error>> {
+        error::check_not_negative("control weight rho (1/V^2)", rho)?;
+        let zero = plant.layout().zero();
+        let start = self.start(plant, &zero)?;
+        let mut run = self.iterate(plant, &start, &mut Effort::Cone(rho))?;
+        run.measurements += 1;
+        Ok(run)
     }
-
-    /// One checked measurement.
-    fn measured<P: Plant>(
-        &self,
-        plant: &mut P,
-        control_volt: &[f64],
-        history: &[ControlStep],
-    ) -> Result<Measurement, RunError<P::Error>> {
-        let measurement = plant.measure(control_volt).map_err(|source| RunError::Plant {
-            call: PlantCall::Measure { control_volt: control_volt.to_vec() },
-            history: history.to_vec(),
-            source,
-        })?;
-        let (loads, _) = self.law.shape();
-        error::check_vector("measured hub loads", &measurement.hub_loads, loads)?;
-        let layout: &ControlLayout = plant.layout();
-        if measurement.flap_motion_deg.len() != layout.pairs() {
-            Err(ControlError::Length {
-                what: "measured flap harmonics",
-                found: measurement.flap_motion_deg.len(),
-                expected: layout.pairs(),
-            })?;
-        }
-        error::check_vector("mean flap angle (deg)", &measurement.mean_flap_deg, layout.flaps())?;
-        Ok(measurement)
-    }
-
-    fn cost(&self, measurement: &Measurement, control_volt: &[f64], rho: f64) -> Cost {
-        Cost::of(&measurement.hub_loads, self.law.load_weights(), control_volt, rho)
-    }
-
-    /// The same state with its cost formed with another weight.
-    fn weighed(&self, step: &ControlStep, rho: f64) -> ControlStep {
-        let cost = self.cost(&step.measurement, &step.control_volt, rho);
-        ControlStep { rho, cost, ..step.clone() }
-    }
-}
-
-/// Largest amplitude of the harmonics of a control vector, volt.
-fn largest_amplitude(control_volt: &[f64]) -> f64 {
-    as_harmonics(control_volt).iter().map(Harmonic::amplitude).fold(0.0, f64::max)
 }

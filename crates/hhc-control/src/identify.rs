@@ -29,6 +29,57 @@ pub fn identify_t<P: Plant>(
     Ok(central_differences(step_volt, &measurements)?)
 }
 
+/// `T = dZ/du` about a control vector whose loads are known, and the measurements it took.
+///
+/// Central differences where the plant admits both sides of a control, one-sided ones to the
+/// admitted side at the edge of its range.
+///
+/// | argument | symbol | unit | range |
+/// |---|---|---|---|
+/// | `here` | `u`, `Z(u)` | V, nondimensional | measured |
+/// | `step_volt` | `h_j` | V | > 0, one per control |
+///
+/// # Errors
+/// As [`identify_t`]; [`ControlError::NoRoomToIdentify`] if neither side of a control is admitted.
+pub fn identify_t_about<P: Plant>(
+    plant: &mut P,
+    (control_volt, hub_loads): (&[f64], &[f64]),
+    step_volt: &[f64],
+) -> Result<(TMatrix, usize), RunError<P::Error>> {
+    plant.layout().check(control_volt)?;
+    error::check_vector("voltage steps of the T matrix (volt)", step_volt, control_volt.len())?;
+    let mut controls = Vec::with_capacity(2 * control_volt.len());
+    let mut sides = Vec::with_capacity(control_volt.len());
+    for (control, &step) in step_volt.iter().enumerate() {
+        error::check_positive("voltage step of the T matrix (volt)", step)?;
+        let moved = |signed: f64| {
+            let mut moved = control_volt.to_vec();
+            moved[control] += signed;
+            moved
+        };
+        let admitted = [moved(step), moved(-step)].map(|u| plant.admits(&u).then_some(u));
+        if admitted.iter().all(Option::is_none) {
+            return Err(ControlError::NoRoomToIdentify { control, step_volt: step }.into());
+        }
+        sides.push(admitted.each_ref().map(Option::is_some));
+        controls.extend(admitted.into_iter().flatten());
+    }
+    let measurements = measure_all(plant, &controls)?;
+    let mut found = measurements.iter().map(|m| m.hub_loads.as_slice());
+    let columns: Vec<Vec<f64>> = sides
+        .iter()
+        .zip(step_volt)
+        .map(|(&[up, down], step)| {
+            let mut side = |there: bool| if there { found.next() } else { None };
+            let (high, low) = (side(up), side(down));
+            let width = step * (f64::from(u8::from(up)) + f64::from(u8::from(down)));
+            let (high, low) = (high.unwrap_or(hub_loads), low.unwrap_or(hub_loads));
+            high.iter().zip(low).map(|(h, l)| (h - l) / width).collect()
+        })
+        .collect();
+    Ok((TMatrix::from_columns(&columns)?, controls.len()))
+}
+
 /// T0 for two voltage steps, and how much it depends on the step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepSensitivity {

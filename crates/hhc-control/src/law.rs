@@ -96,6 +96,26 @@ impl FeedbackLaw {
         &self.load_weights
     }
 
+    /// The T matrix of the law.
+    ///
+    /// # Errors
+    /// Never for a law that could be made.
+    pub fn t(&self) -> Result<TMatrix, ControlError> {
+        let columns: Vec<Vec<f64>> =
+            self.t.column_iter().map(|column| column.iter().copied().collect()).collect();
+        TMatrix::from_columns(&columns)
+    }
+
+    /// The T matrix, loads x controls, 1/V.
+    pub(crate) fn matrix(&self) -> DMatrix<f64> {
+        self.t.clone()
+    }
+
+    /// The law of another T matrix with the same load weights.
+    pub(crate) fn with_t(&self, t: &TMatrix) -> Result<Self, ControlError> {
+        Self::new(t, &LoadWeights::Diagonal(self.load_weights.clone()))
+    }
+
     /// Number of loads and of controls.
     pub(crate) fn shape(&self) -> (usize, usize) {
         self.t.shape()
@@ -124,6 +144,23 @@ impl FeedbackLaw {
             target.iter().zip(self.gains(rho)).map(|(value, gain)| value * gain),
         );
         self.right_transposed.tr_mul(&scaled).iter().copied().collect()
+    }
+
+    /// The predicted cost, halved and without its constant, as a form of the control (volt):
+    /// `u' P u / 2 + q' u`.
+    pub(crate) fn quadratic(
+        &self,
+        rho: f64,
+        target: &DVector<f64>,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let scaled = DMatrix::from_fn(
+            self.right_transposed.nrows(),
+            self.right_transposed.ncols(),
+            |k, j| self.singular_values[k] * self.right_transposed[(k, j)],
+        );
+        let n = scaled.ncols();
+        let hessian = scaled.tr_mul(&scaled) + DMatrix::identity(n, n) * rho;
+        (hessian, -scaled.tr_mul(target))
     }
 
     /// Euclidean norm of the optimum, volt; never grows with `rho`.

@@ -41,26 +41,37 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod adaptive;
 mod bias;
+mod cone;
+mod control_loop;
+mod controller;
 mod cost;
 mod error;
 mod feedback;
 mod identify;
+mod lag;
 mod law;
 mod layout;
+mod limits;
 mod linear_plant;
 mod plant;
 mod root;
 mod stroke;
 mod t_matrix;
 
+pub use adaptive::AdaptiveSettings;
 pub use bias::{BiasSolution, BiasSolver};
+pub use cone::{ConeStatus, ConstrainedOptimum, KktResidual};
+pub use controller::Controller;
 pub use cost::{Cost, HUB_LOAD_NAMES, LoadWeights, load_harmonics, reduction_percent};
 pub use error::{ControlError, PlantCall, RunError};
 pub use feedback::{ControlRun, ControlStep, FeedbackController, FeedbackSettings, Outcome};
-pub use identify::{StepSensitivity, identify_t, step_sensitivity};
+pub use identify::{StepSensitivity, identify_t, identify_t_about, step_sensitivity};
+pub use lag::{LagLoss, lag_loss};
 pub use law::FeedbackLaw;
 pub use layout::{ControlLayout, lag_deg};
+pub use limits::{ControlLimits, FlapCircle, PowerLimit, VoltageRange};
 pub use linear_plant::LinearPlant;
 pub use plant::{Measurement, Plant};
 pub use stroke::{EffortTrial, StrokeLimitedRun, StrokeStatus};

@@ -106,7 +106,7 @@ impl Plant for LinearPlant {
         vec![self.stroke_limit_deg; self.layout.pairs()]
     }
 
-    fn linearised_t(&mut self) -> Result<Option<TMatrix>, Self::Error> {
+    fn linearised_t(&mut self, _: &[f64]) -> Result<Option<TMatrix>, Self::Error> {
         Ok(Some(self.t.clone()))
     }
 }

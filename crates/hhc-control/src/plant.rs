@@ -1,6 +1,6 @@
 //! What the controller sees of the rotor and its actuators.
 
-use crate::{ControlLayout, TMatrix};
+use crate::{ControlLayout, ControlLimits, TMatrix};
 use rotor_base::Harmonic;
 
 /// One steady measurement at one control vector.
@@ -73,12 +73,24 @@ pub trait Plant {
         true
     }
 
-    /// `T = dZ/du` about zero control from a linearised solution, for plants that have one; `None` by
-    /// default.
+    /// Convex limits of the control, as they stand at a control vector: the bias and the gain of an
+    /// actuator with memory belong to the motion it makes. No limits by default; only
+    /// [`crate::FeedbackController::run_constrained`] asks.
+    ///
+    /// # Errors
+    /// Whatever keeps the actuator model from an answer.
+    fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, Self::Error> {
+        let _ = control_volt;
+        Ok(ControlLimits::none(self.layout()))
+    }
+
+    /// `T = dZ/du` about a control vector from a linearised solution, for plants that have one;
+    /// `None` by default.
     ///
     /// # Errors
     /// Whatever keeps the plant from a linearised solution.
-    fn linearised_t(&mut self) -> Result<Option<TMatrix>, Self::Error> {
+    fn linearised_t(&mut self, control_volt: &[f64]) -> Result<Option<TMatrix>, Self::Error> {
+        let _ = control_volt;
         Ok(None)
     }
 }

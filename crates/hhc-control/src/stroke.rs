@@ -1,10 +1,10 @@
 //! The stroke limit, met through the control weight.
 
-use crate::feedback::Effort;
+use crate::control_loop::Effort;
+use crate::controller::Knowledge;
 use crate::root::{Bracketed, Trial, root_between};
 use crate::{
-    ControlError, ControlRun, ControlStep, FeedbackController, FeedbackLaw, Outcome, Plant,
-    PlantCall, RunError,
+    ControlError, ControlRun, ControlStep, FeedbackController, Outcome, Plant, PlantCall, RunError,
 };
 
 /// Where the larger stroke ended.
@@ -157,12 +157,13 @@ impl FeedbackController {
 
 /// The `rho` for which the next control of the law has the target stroke, from cheap calls alone.
 pub(crate) fn track_effort<P: Plant>(
-    law: &FeedbackLaw,
+    known: &Knowledge<'_>,
     plant: &mut P,
     strokes: &Strokes,
     here: &ControlStep,
 ) -> Result<f64, RunError<P::Error>> {
-    let target = law.modal_target(&here.control_volt, &here.measurement.hub_loads)?;
+    let target = known.target(&here.control_volt, &here.measurement.hub_loads)?;
+    let law = &known.law;
     let guess = (here.rho > 0.0).then_some(here.rho);
     // The first guess takes strokes to be in proportion to the norm of the control.
     let from_norm = |ratio: f64| {

@@ -39,6 +39,7 @@ mod element;
 mod error;
 mod floquet;
 mod linear_periodic;
+mod linear_response;
 mod mode_kind;
 mod mode_set;
 mod moderate;
@@ -57,13 +58,14 @@ pub use distribution::Distribution;
 pub use error::FemError;
 pub use floquet::{Floquet, FloquetMode};
 pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
+pub use linear_response::LinearResponse;
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
 pub use moderate::{
-    AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape, ModalTangent,
-    ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion, PitchMotion, RootSupport,
-    RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, TorsionTerms, TwistAngle,
-    Untwist, deflected_fan, deflected_modes,
+    AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape,
+    ModalTangent, ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion,
+    PitchMotion, RootSupport, RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents,
+    TorsionTerms, TwistAngle, Untwist, deflected_fan, deflected_modes,
 };
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
 pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};

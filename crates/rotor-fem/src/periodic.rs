@@ -65,11 +65,11 @@ pub struct PeriodicSolution {
 }
 
 /// One orbit with its weak residual.
-struct Iterate {
-    orbit: Orbit,
+pub(crate) struct Iterate {
+    pub(crate) orbit: Orbit,
     samples: OrbitSamples,
     /// Weak residual over the nodes' integral weights, shape `dof x nodes`.
-    residual: DMatrix<f64>,
+    pub(crate) residual: DMatrix<f64>,
     norm: f64,
 }
 
@@ -91,7 +91,7 @@ struct Iterate {
 pub struct PeriodicSolver {
     time: TimeElements,
     settings: PeriodicSettings,
-    factorisation: Option<Factorisation>,
+    pub(crate) factorisation: Option<Factorisation>,
 }
 
 impl PeriodicSolver {
@@ -217,7 +217,7 @@ impl PeriodicSolver {
     }
 
     /// Refuses a system or start that does not fit.
-    fn check<S: PeriodicSystem>(
+    pub(crate) fn check<S: PeriodicSystem>(
         &self,
         system: &S,
         start: &Orbit,
@@ -249,7 +249,7 @@ impl PeriodicSolver {
     }
 
     /// The weak residual of an orbit.
-    fn evaluate<S: PeriodicSystem>(
+    pub(crate) fn evaluate<S: PeriodicSystem>(
         &self,
         system: &S,
         orbit: Orbit,
@@ -277,7 +277,19 @@ impl PeriodicSolver {
             return Err(not_finite(entry, time.points()[entry / system.dof()]));
         }
         let momentum = system.mass() * &samples.qd;
-        let mut residual = DMatrix::zeros(system.dof(), time.unknowns_per_dof());
+        let residual = self.weak(&momentum, &force);
+        if let Some(entry) = residual.iter().position(|r| !r.is_finite()) {
+            return Err(not_finite(entry, time.node_azimuths_rad()[entry / system.dof()]));
+        }
+        let norm = residual.amax();
+        Ok(Iterate { orbit, samples, residual, norm })
+    }
+
+    /// `integral( -N_a' p + N_a f ) dpsi` over the integral of `N_a`, for momenta `p` and forces `f` at
+    /// all points.
+    pub(crate) fn weak(&self, momentum: &DMatrix<f64>, force: &DMatrix<f64>) -> DMatrix<f64> {
+        let time = &self.time;
+        let mut residual = DMatrix::zeros(force.nrows(), time.unknowns_per_dof());
         for e in 0..time.elements() {
             for g in 0..time.gauss_per_element() {
                 let point = e * time.gauss_per_element() + g;
@@ -292,15 +304,11 @@ impl PeriodicSolver {
         for (mut column, weight) in residual.column_iter_mut().zip(time.node_weights()) {
             column /= *weight;
         }
-        if let Some(entry) = residual.iter().position(|r| !r.is_finite()) {
-            return Err(not_finite(entry, time.node_azimuths_rad()[entry / system.dof()]));
-        }
-        let norm = residual.amax();
-        Ok(Iterate { orbit, samples, residual, norm })
+        residual
     }
 
     /// A new Newton matrix at an orbit.
-    fn factorise<S: PeriodicSystem>(
+    pub(crate) fn factorise<S: PeriodicSystem>(
         &self,
         system: &S,
         state: &Iterate,

@@ -8,6 +8,7 @@ mod flap_mass;
 mod flight_air;
 mod hinge;
 mod lag;
+mod linearised;
 mod loads;
 mod model;
 mod motion;
@@ -22,6 +23,7 @@ pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;
 pub use flap_mass::with_flap_masses;
 pub use hinge::{HingeMoment, HingeSlopes};
+pub use linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
 pub use loads::{SixLoads, hub_loads};
 pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};
 pub use rotor::{

@@ -12,7 +12,7 @@ use crate::{Controls, Discretisation, ResponseError, RotorModel};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
-    BladeProperties, Floquet, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver,
+    BladeProperties, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver,
     PeriodicSystem, TimeElements,
 };
 use rotor_wake::{FlightState, InducedInflow, InflowModel, RotorLoading};
@@ -22,6 +22,9 @@ use std::sync::Arc;
 /// The Newton matrix leaves the lag states out, so chord steps contract slowly with any matrix: a new
 /// one, thirty times the cost of a step, pays only when they hardly contract at all.
 const REFRESH_CONTRACTION: f64 = 0.8;
+
+/// Iterations of the accelerations.
+const ACCELERATION_ITERATIONS: usize = 30;
 
 /// Tolerances of the response.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,10 +175,10 @@ pub struct RotorSolution {
 /// Solves one rotor at one advance ratio, keeping the factorised Newton matrix between solutions.
 #[derive(Debug, Clone)]
 pub struct RotorSolver {
-    rotor: Arc<Rotor>,
-    air: Arc<FlightAir>,
-    time: TimeElements,
-    solver: PeriodicSolver,
+    pub(crate) rotor: Arc<Rotor>,
+    pub(crate) air: Arc<FlightAir>,
+    pub(crate) time: TimeElements,
+    pub(crate) solver: PeriodicSolver,
     tolerances: ResponseTolerances,
     advance_ratio: f64,
 }
@@ -330,27 +333,19 @@ impl RotorSolver {
             .collect())
     }
 
-    fn orbit_error(error: PeriodicError<ResponseError>) -> ResponseError {
+    pub(crate) fn orbit_error(error: PeriodicError<ResponseError>) -> ResponseError {
         match error {
             PeriodicError::System { source, .. } => source,
             other => ResponseError::Periodic(Box::new(other)),
         }
     }
 
-    /// Linearisation about a solution, for its stability.
-    pub(crate) fn linearised(
+    /// Azimuth, pitch, inflow and flap angles at every point.
+    pub(crate) fn point_inputs(
         &self,
         condition: &Condition,
-        solution: &RotorSolution,
-    ) -> Result<Floquet, ResponseError> {
-        let points = self.point_inputs(condition, &solution.inflow);
-        let system = self.rotor.system(&self.air, points);
-        let tangents = system.tangents(&solution.orbit.sample(&self.time))?;
-        Ok(Floquet::of(&self.time, &self.rotor.mass, &tangents)?)
-    }
-
-    /// Azimuth, pitch, inflow and flap angles at every point.
-    fn point_inputs(&self, condition: &Condition, inflow: &InducedInflow) -> Vec<PointInput> {
+        inflow: &InducedInflow,
+    ) -> Vec<PointInput> {
         let first = self.air.first_station();
         let stations = &self.rotor.blade.grid.x()[first..];
         let mu = condition.flight.advance_ratio;
@@ -407,7 +402,7 @@ fn unit_weights(time: &TimeElements) -> Vec<f64> {
 }
 
 /// Root loads and hinge moments at every azimuth point.
-struct RevolutionLoads {
+pub(crate) struct RevolutionLoads {
     root: Vec<[f64; 6]>,
     /// Aerodynamic and inertial hinge moment of each flap.
     hinge: Vec<[Vec<f64>; 2]>,
@@ -417,10 +412,6 @@ struct RevolutionLoads {
 
 impl RevolutionLoads {
     /// Force summation with accelerations that satisfy the equations of motion at each azimuth.
-    ///
-    /// The orbit gives positions and rates; the accelerations follow from
-    /// `q'' = -M^-1 f(q, q', q'', psi)`, iterated because apparent mass makes `f` depend weakly on
-    /// them.
     fn new(
         rotor: &Rotor,
         time: &TimeElements,
@@ -428,22 +419,17 @@ impl RevolutionLoads {
         samples: &OrbitSamples,
     ) -> Result<Self, ResponseError> {
         let mut samples = samples.clone();
-        let inverse = rotor
-            .mass
-            .clone()
-            .cholesky()
-            .ok_or(ResponseError::MassMatrix { modes: rotor.mass.nrows() })?;
-        let mut forces = DMatrix::zeros(system.dof(), time.points().len());
-        for _ in 0..30 {
-            system.residual(&samples, &mut forces)?;
-            let accelerations = -inverse.solve(&forces);
-            let moved = (&accelerations - &samples.qdd).amax();
-            samples.qdd = accelerations;
-            if moved <= 1e-14 + 1e-13 * samples.qdd.amax() {
-                break;
-            }
-        }
-        let revolution = system.revolution(&samples);
+        settle_accelerations(rotor, time, system, (&mut samples, 1e-14))?;
+        Ok(Self::summed(rotor, system, &samples))
+    }
+
+    /// Force summation of a motion as it is.
+    pub(crate) fn summed(
+        rotor: &Rotor,
+        system: &ResponseSystem<'_>,
+        samples: &OrbitSamples,
+    ) -> Self {
+        let revolution = system.revolution(samples);
         let blade = &rotor.blade;
         let first = system.air.first_station();
         let mut root = Vec::with_capacity(revolution.motions.len());
@@ -468,7 +454,7 @@ impl RevolutionLoads {
                 }
             }
         }
-        Ok(Self { root, hinge, bending })
+        Self { root, hinge, bending }
     }
 
     fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {
@@ -510,12 +496,41 @@ impl RevolutionLoads {
         }
     }
 
-    fn hub(&self, rotor: &Rotor, time: &TimeElements) -> SixLoads {
+    pub(crate) fn hub(&self, rotor: &Rotor, time: &TimeElements) -> SixLoads {
         let count = rotor.discretisation.load_harmonics;
         let blade = self.root(time, count + 1);
         let blades: Vec<SixLoads> = (0..rotor.model.blades).map(|_| blade.clone()).collect();
         hub_loads(&blades, count)
     }
+}
+
+/// Accelerations that satisfy the equations of motion at each azimuth, and the evaluations they took.
+///
+/// The orbit gives positions and rates; the accelerations follow from
+/// `q'' = -M^-1 f(q, q', q'', psi)`, iterated because apparent mass makes `f` depend weakly on
+/// them, until they move by no more than `absolute` and 1e-13 of the largest.
+pub(crate) fn settle_accelerations(
+    rotor: &Rotor,
+    time: &TimeElements,
+    system: &ResponseSystem<'_>,
+    (samples, absolute): (&mut OrbitSamples, f64),
+) -> Result<usize, ResponseError> {
+    let inverse = rotor
+        .mass
+        .clone()
+        .cholesky()
+        .ok_or(ResponseError::MassMatrix { modes: rotor.mass.nrows() })?;
+    let mut forces = DMatrix::zeros(system.dof(), time.points().len());
+    for evaluation in 1..=ACCELERATION_ITERATIONS {
+        system.residual(samples, &mut forces)?;
+        let accelerations = -inverse.solve(&forces);
+        let moved = (&accelerations - &samples.qdd).amax();
+        samples.qdd = accelerations;
+        if moved <= absolute + 1e-13 * samples.qdd.amax() {
+            return Ok(evaluation);
+        }
+    }
+    Ok(ACCELERATION_ITERATIONS)
 }
 
 /// Aerodynamic forces alone at all stations.

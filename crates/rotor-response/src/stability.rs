@@ -1,7 +1,7 @@
 //! Stability of the blade's periodic response.
 
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
-use rotor_fem::ModeKind;
+use rotor_fem::{Floquet, ModeKind, PeriodicSystem};
 
 /// One motion of the blade about its periodic response, `e^(s psi) p(psi)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,13 +52,15 @@ impl RotorSolver {
         condition: &Condition,
         solution: &RotorSolution,
     ) -> Result<Stability, ResponseError> {
-        let (given, expected) = (condition.flap_angles_rad.len(), self.rotor().model().flaps.len());
+        let (given, expected) = (condition.flap_angles_rad.len(), self.rotor.model().flaps.len());
         if given != expected {
             return Err(ResponseError::FlapMotions { given, expected });
         }
-        let blade = self.rotor().blade();
-        let motions = self
-            .linearised(condition, solution)?
+        let points = self.point_inputs(condition, &solution.inflow);
+        let system = self.rotor.system(&self.air, points);
+        let tangents = system.tangents(&solution.orbit.sample(&self.time))?;
+        let blade = self.rotor.blade();
+        let motions = Floquet::of(&self.time, system.mass, &tangents)?
             .modes()
             .iter()
             .map(|mode| {

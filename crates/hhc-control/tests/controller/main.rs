@@ -2,8 +2,10 @@
 
 #![expect(clippy::unwrap_used, clippy::float_cmp, reason = "a test that cannot unwrap has failed")]
 
+mod constrained;
 mod failures;
 mod hysteresis;
+mod learning;
 mod linear;
 mod plants;
 mod sensitivity;

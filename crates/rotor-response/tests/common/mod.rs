@@ -2,10 +2,14 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
+use rotor_base::HarmonicSeries;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Couplings, FlapMass, ReverseFlow, RotorModel, TrailingEdgeFlap,
+    Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, ResponseTolerances,
+    ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
 };
+use rotor_wake::FlightState;
+use std::sync::Arc;
 
 /// Table 1 with the documented defaults where the paper is silent.
 pub(crate) fn paper_spec() -> BladeSpec {
@@ -51,4 +55,25 @@ pub(crate) fn paper_flaps() -> Vec<TrailingEdgeFlap> {
             effectiveness: FlapEffectiveness::IDEAL,
         })
         .to_vec()
+}
+
+/// The paper's rotor with flaps and unsteady sections at an advance ratio of 0.30.
+pub(crate) fn solver() -> RotorSolver {
+    let model = RotorModel {
+        section_model: AttachedFlowModel::HariharanLeishman,
+        compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
+        flaps: paper_flaps(),
+        ..paper_model(Couplings::Full)
+    };
+    let rotor = Rotor::new(model, &paper_blade(), Discretisation::default()).unwrap();
+    RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap()
+}
+
+/// Near trim in level flight at that advance ratio, flaps at rest.
+pub(crate) fn condition() -> Condition {
+    Condition {
+        flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.1 },
+        controls: Controls { theta0_rad: 0.145, theta1c_rad: 0.02, theta1s_rad: -0.08 },
+        flap_angles_rad: vec![HarmonicSeries::zero(0); 2],
+    }
 }

@@ -1,0 +1,359 @@
+//! The optimum within limits, as a second-order cone program.
+
+use crate::limits::ControlLimits;
+use crate::{ControlError, FeedbackLaw, error};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT,
+    SolverStatus, SupportedConeT,
+};
+use nalgebra::{DMatrix, DVector};
+
+/// How far an optimum is from the conditions of Karush, Kuhn and Tucker, each relative to the size of
+/// its terms.
+///
+/// ```text
+/// min x'Px/2 + q'x  subject to  s = b - A x in K:      P x + q + A' z = 0,  s in K,  z in K*,  s'z = 0
+/// ```
+/// Computed anew from the control vector returned and the multipliers, with no part of the solver.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct KktResidual {
+    /// Largest element of `P x + q + A' z`, over the largest of `P` and `q`.
+    pub stationarity: f64,
+    /// How far `s` leaves its cones; the limits are scaled to 1.
+    pub primal: f64,
+    /// How far the multipliers leave theirs, scaled as the stationarity.
+    pub dual: f64,
+    /// `|s' z|`, scaled as the stationarity.
+    pub complementarity: f64,
+}
+
+impl KktResidual {
+    /// The largest of the four.
+    pub fn largest(&self) -> f64 {
+        self.stationarity.max(self.primal).max(self.dual).max(self.complementarity)
+    }
+}
+
+/// The best control within limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConstrainedOptimum {
+    /// The control vector, V; it keeps every limit.
+    pub control_volt: Vec<f64>,
+    /// How exactly it is the optimum.
+    pub kkt: KktResidual,
+    /// Whether a limit binds; if none does, the optimum is that of eq. (10).
+    pub binding: bool,
+    /// Iterations of the interior-point method; 0 if no limit binds.
+    pub iterations: u32,
+}
+
+/// Why the cone program has no answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ConeStatus {
+    /// The solver refused the problem or its settings.
+    Refused,
+    /// It stopped short of its accuracy, and the KKT residual is too large.
+    Inaccurate,
+    /// Voltages beyond the range kept appearing between the azimuths held.
+    Azimuths,
+}
+
+/// Accuracy asked of the interior-point method.
+const SOLVER_TOLERANCE: f64 = 1e-12;
+/// Largest KKT residual accepted.
+const LARGEST_KKT: f64 = 1e-6;
+/// At first, every so many azimuth samples are held; the others follow where they are exceeded.
+const COARSE_STRIDE: usize = 10;
+/// Rounds in which exceeded azimuth samples are added.
+const AZIMUTH_ROUNDS: usize = 20;
+/// Excess of a row that is rounding, as a part of its room.
+const ROW_ROUNDING: f64 = 1e-10;
+
+impl FeedbackLaw {
+    /// The control of least predicted cost among those that keep the limits.
+    ///
+    /// ```text
+    /// min over u'   | W_Z^(1/2) (Z + T (u' - u)) |^2 + rho |u'|^2     subject to the limits
+    /// ```
+    /// Solved as a second-order cone program: amplitudes and flap angles are circles, the power is a
+    /// rotated cone, the range of the voltage is two rows per azimuth sample. Where no limit binds it
+    /// is the optimum of eq. (10) itself.
+    ///
+    /// | argument | symbol | unit | range |
+    /// |---|---|---|---|
+    /// | `rho` | `rho` | 1/V^2 | >= 0; with more controls than loads above 0, or the optimum is not unique |
+    /// | `control_volt` | `u` | V | as measured |
+    /// | `hub_loads` | `Z` | nondimensional | measured at `u` |
+    ///
+    /// # Errors
+    /// [`ControlError::ConeProgram`] if the program is not solved to a KKT residual of 1e-6; vectors of
+    /// the wrong length.
+    ///
+    /// Source: S. Boyd, L. Vandenberghe, *Convex Optimization* (2004), section 4.4 and 5.5.3.
+    pub fn optimum_within(
+        &self,
+        rho: f64,
+        control_volt: &[f64],
+        hub_loads: &[f64],
+        limits: &ControlLimits,
+    ) -> Result<ConstrainedOptimum, ControlError> {
+        error::check_not_negative("control weight rho (1/V^2)", rho)?;
+        let target = self.modal_target(control_volt, hub_loads)?;
+        self.optimum_of_target_within(rho, &target, limits)
+    }
+
+    /// The same for a modal target.
+    pub(crate) fn optimum_of_target_within(
+        &self,
+        rho: f64,
+        target: &DVector<f64>,
+        limits: &ControlLimits,
+    ) -> Result<ConstrainedOptimum, ControlError> {
+        let (found, expected) = (limits.layout().len(), self.shape().1);
+        if found != expected {
+            return Err(ControlError::Length { what: "controls of the limits", found, expected });
+        }
+        let free = self.optimum_of(rho, target);
+        let volt = limits.typical_volt().unwrap_or_else(|| largest(&free).max(f64::MIN_POSITIVE));
+        let (hessian, linear) = self.quadratic(rho, target);
+        let size = (hessian.amax() * volt * volt).max(linear.amax() * volt);
+        let size = if size > 0.0 { size } else { 1.0 };
+        let mut program = Program {
+            hessian: hessian * (volt * volt / size),
+            linear: linear * (volt / size),
+            cones: Vec::new(),
+        };
+        if limits.usage(&free)? <= 1.0 {
+            let kkt = program.kkt(&(DVector::from_column_slice(&free) / volt), &[]);
+            return Ok(ConstrainedOptimum {
+                control_volt: free,
+                kkt,
+                binding: false,
+                iterations: 0,
+            });
+        }
+        program.add_circles(limits, volt);
+        program.add_power(limits, volt);
+        let rows = limits.voltage_rows(1);
+        let per_flap = rows.len() / limits.layout().flaps();
+        let mut held: Vec<bool> =
+            (0..rows.len()).map(|k| (k % per_flap.max(1)) / 2 % COARSE_STRIDE == 0).collect();
+        let mut iterations = 0;
+        for _ in 0..AZIMUTH_ROUNDS {
+            let mut round = program.clone();
+            for (row, room) in rows.iter().zip(&held).filter(|(_, held)| **held).map(|(r, _)| r) {
+                let scaled = row.iter().map(|&(column, v)| (column, v * volt / room)).collect();
+                round.cones.push(Cone { kind: Kind::Linear, rows: vec![(scaled, 1.0)] });
+            }
+            let (x, z, used) = round.solve()?;
+            iterations += used;
+            let control: Vec<f64> = x.iter().map(|v| v * volt).collect();
+            let exceeded: Vec<usize> = rows
+                .iter()
+                .enumerate()
+                .filter(|(k, (row, room))| {
+                    let value: f64 = row.iter().map(|&(column, v)| v * control[column]).sum();
+                    !held[*k] && value > room * (1.0 + ROW_ROUNDING)
+                })
+                .map(|(k, _)| k)
+                .collect();
+            if !exceeded.is_empty() {
+                for k in exceeded {
+                    held[k] = true;
+                }
+                continue;
+            }
+            // rounding of the solver, taken back toward zero control, which keeps every limit
+            let usage = limits.usage(&control)?.max(1.0);
+            let control_volt: Vec<f64> = control.iter().map(|u| u / usage).collect();
+            let kkt = round.kkt(&(x / usage), &z);
+            if kkt.largest() > LARGEST_KKT {
+                let (status, kkt) = (ConeStatus::Inaccurate, kkt.largest());
+                return Err(ControlError::ConeProgram { status, iterations, kkt });
+            }
+            return Ok(ConstrainedOptimum { control_volt, kkt, binding: true, iterations });
+        }
+        let (status, kkt) = (ConeStatus::Azimuths, f64::NAN);
+        Err(ControlError::ConeProgram { status, iterations, kkt })
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| v.abs().max(m))
+}
+
+/// What a cone is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// `s >= 0`, one row.
+    Linear,
+    /// `s_0 >= |(s_1, s_2, ...)|`.
+    SecondOrder,
+}
+
+/// One cone: `s = bound - row x` by row, each row sparse.
+#[derive(Debug, Clone)]
+struct Cone {
+    kind: Kind,
+    rows: Vec<(Vec<(usize, f64)>, f64)>,
+}
+
+impl Cone {
+    /// The slack at a point.
+    fn slack(&self, x: &DVector<f64>) -> Vec<f64> {
+        let along =
+            |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(column, a)| a * x[column]).sum() };
+        self.rows.iter().map(|(row, bound)| bound - along(row)).collect()
+    }
+
+    /// How far a vector lies outside the cone, which is its own dual.
+    fn outside(&self, s: &[f64]) -> f64 {
+        let rest = s[1..].iter().map(|v| v * v).sum::<f64>().sqrt();
+        match self.kind {
+            Kind::Linear => (-s[0]).max(0.0),
+            Kind::SecondOrder => (rest - s[0]).max(0.0),
+        }
+    }
+}
+
+/// `min x' P x / 2 + q' x` subject to cones; `x` is the control over a typical voltage.
+#[derive(Debug, Clone)]
+struct Program {
+    hessian: DMatrix<f64>,
+    linear: DVector<f64>,
+    cones: Vec<Cone>,
+}
+
+impl Program {
+    fn add_circles(&mut self, limits: &ControlLimits, volt: f64) {
+        for (pair, &amplitude) in limits.amplitudes_volt().iter().enumerate() {
+            if amplitude.is_finite() {
+                let share = volt / amplitude;
+                self.add_circle(pair, [[share, 0.0], [0.0, share]]);
+            }
+        }
+        for (pair, circle) in limits.flap_circles().iter().enumerate() {
+            if let Some(circle) = circle {
+                let share = volt / circle.limit_deg;
+                self.add_circle(pair, circle.gain_deg_per_volt.map(|row| row.map(|g| g * share)));
+            }
+        }
+    }
+
+    /// `|gain [x_c, x_s]'| <= 1`.
+    fn add_circle(&mut self, pair: usize, gain: [[f64; 2]; 2]) {
+        let mut rows = vec![(Vec::new(), 1.0)];
+        rows.extend(gain.map(|[c, s]| (vec![(2 * pair, -c), (2 * pair + 1, -s)], 0.0)));
+        self.cones.push(Cone { kind: Kind::SecondOrder, rows });
+    }
+
+    /// `u' P u / room <= t = 1 - p' u / room` as `|(2 F u / sqrt(room), 1 - t)| <= 1 + t`.
+    fn add_power(&mut self, limits: &ControlLimits, volt: f64) {
+        let Some((power, root)) = limits.power() else { return };
+        let room = power.limit - power.constant;
+        let linear: Vec<(usize, f64)> =
+            power.linear.iter().map(|p| p * volt / room).enumerate().collect();
+        let opposite = linear.iter().map(|&(column, p)| (column, -p)).collect();
+        let mut rows = vec![(linear, 2.0)];
+        let factor = -2.0 * volt / room.sqrt();
+        rows.extend(
+            root.row_iter().map(|row| (row.iter().map(|f| factor * f).enumerate().collect(), 0.0)),
+        );
+        rows.push((opposite, 0.0));
+        self.cones.push(Cone { kind: Kind::SecondOrder, rows });
+    }
+
+    /// Minimum, multipliers by row, iterations.
+    fn solve(&self) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+        let n = self.linear.len();
+        let refused = |status| ControlError::ConeProgram { status, iterations: 0, kkt: f64::NAN };
+        let upper: Vec<(usize, usize, f64)> = (0..n)
+            .flat_map(|column| (0..=column).map(move |row| (row, column)))
+            .map(|(row, column)| (row, column, self.hessian[(row, column)]))
+            .collect();
+        let hessian = sparse(n, n, &upper);
+        let rows: Vec<_> = self.cones.iter().flat_map(|cone| &cone.rows).collect();
+        let entries: Vec<(usize, usize, f64)> = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(k, (row, _))| row.iter().map(move |&(column, a)| (k, column, a)))
+            .collect();
+        let matrix = sparse(rows.len(), n, &entries);
+        let bounds: Vec<f64> = rows.iter().map(|(_, bound)| *bound).collect();
+        let cones: Vec<SupportedConeT<f64>> = self
+            .cones
+            .iter()
+            .map(|cone| match cone.kind {
+                Kind::Linear => NonnegativeConeT(1),
+                Kind::SecondOrder => SecondOrderConeT(cone.rows.len()),
+            })
+            .collect();
+        let settings = DefaultSettingsBuilder::default()
+            .verbose(false)
+            .tol_gap_abs(SOLVER_TOLERANCE)
+            .tol_gap_rel(SOLVER_TOLERANCE)
+            .tol_feas(SOLVER_TOLERANCE)
+            .tol_ktratio(SOLVER_TOLERANCE)
+            .build()
+            .map_err(|_| refused(ConeStatus::Refused))?;
+        let linear: Vec<f64> = self.linear.iter().copied().collect();
+        let mut solver = DefaultSolver::new(&hessian, &linear, &matrix, &bounds, &cones, settings)
+            .map_err(|_| refused(ConeStatus::Refused))?;
+        solver.solve();
+        let found = solver.solution;
+        match found.status {
+            // an early stop is judged by the KKT residual
+            SolverStatus::Solved
+            | SolverStatus::AlmostSolved
+            | SolverStatus::InsufficientProgress
+            | SolverStatus::MaxIterations => {
+                Ok((DVector::from_vec(found.x), found.z, found.iterations))
+            }
+            _ => Err(refused(ConeStatus::Inaccurate)),
+        }
+    }
+
+    /// The KKT conditions at a point; without multipliers, those of no cone.
+    fn kkt(&self, x: &DVector<f64>, z: &[f64]) -> KktResidual {
+        let mut gradient = &self.hessian * x + &self.linear;
+        let mut residual = KktResidual::default();
+        let mut product = 0.0;
+        let mut at = 0;
+        for cone in &self.cones {
+            let slack = cone.slack(x);
+            residual.primal = residual.primal.max(cone.outside(&slack));
+            let Some(z) = z.get(at..at + slack.len()) else { break };
+            at += slack.len();
+            residual.dual = residual.dual.max(cone.outside(z));
+            product += slack.iter().zip(z).map(|(s, z)| s * z).sum::<f64>();
+            for ((row, _), multiplier) in cone.rows.iter().zip(z) {
+                for &(column, a) in row {
+                    gradient[column] += a * multiplier;
+                }
+            }
+        }
+        residual.stationarity = gradient.amax();
+        residual.complementarity = product.abs();
+        residual
+    }
+}
+
+/// A sparse matrix from `(row, column, value)` with rows ascending inside a column.
+fn sparse(rows: usize, columns: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64> {
+    let mut starts = vec![0];
+    let (mut row_numbers, mut values) = (Vec::new(), Vec::new());
+    let mut by_column: Vec<Vec<(usize, f64)>> = vec![Vec::new(); columns];
+    for &(row, column, value) in entries {
+        by_column[column].push((row, value));
+    }
+    for column in by_column {
+        for (row, value) in column {
+            row_numbers.push(row);
+            values.push(value);
+        }
+        starts.push(row_numbers.len());
+    }
+    CscMatrix::new(rows, columns, starts, row_numbers, values)
+}

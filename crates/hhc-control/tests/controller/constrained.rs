@@ -1,0 +1,362 @@
+//! The optimum within limits, against enumeration and against what else can be done.
+
+use crate::plants::{Problem, as_t};
+use hhc_control::{
+    ControlError, ControlLayout, ControlLimits, Controller, FeedbackController, FeedbackLaw,
+    FeedbackSettings, FlapCircle, LinearPlant, LoadWeights, Measurement, Outcome, Plant,
+    PowerLimit, RunError, VoltageRange,
+};
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+use std::convert::Infallible;
+use std::f64::consts::PI;
+
+fn law(problem: &Problem) -> FeedbackLaw {
+    FeedbackLaw::new(&as_t(&problem.t), &LoadWeights::Identity).unwrap()
+}
+
+fn loads_cost(problem: &Problem, u: &[f64]) -> f64 {
+    problem.loads_cost(&DVector::from_column_slice(u))
+}
+
+/// The least cost over a grid in angle and share of the limits that closes in on its best point; the
+/// limits are asked for the length of a direction only.
+fn brute_force(cost: impl Fn(&[f64]) -> f64, limits: &ControlLimits) -> Vec<f64> {
+    let control = |angle: f64, share: f64| {
+        let direction = [angle.cos(), angle.sin()];
+        let usage = limits.usage(&direction).unwrap();
+        [share.clamp(0.0, 1.0) * direction[0] / usage, share.clamp(0.0, 1.0) * direction[1] / usage]
+    };
+    let mut best = (cost(&[0.0, 0.0]), 0.0, 0.5);
+    let mut width = 1.0;
+    while width > 1e-9 {
+        let (_, angle, share) = best;
+        for i in -60..=60 {
+            for j in -10..=10 {
+                let angle = angle + width * PI * f64::from(i) / 60.0;
+                let share = share + width * f64::from(j) / 10.0;
+                let value = cost(&control(angle, share));
+                if value < best.0 {
+                    best = (value, angle, share);
+                }
+            }
+        }
+        width *= 0.6;
+    }
+    control(best.1, best.2).to_vec()
+}
+
+fn one_flap() -> (Problem, ControlLayout) {
+    let t = DMatrix::from_fn(12, 2, |i, j| (1.0 + 0.9 * i as f64 + 2.1 * j as f64).sin());
+    let z0: Vec<f64> = (0..12).map(|i| 3.0 * (0.4 * f64::from(i)).cos()).collect();
+    (Problem::new(1, &[3], t, &z0), ControlLayout::new(1, vec![3]).unwrap())
+}
+
+#[test]
+fn two_variables_meet_a_brute_force_grid() {
+    let (problem, layout) = one_flap();
+    let z0: Vec<f64> = problem.z0.iter().copied().collect();
+    let free = problem.optimum(&[1.0; 12], 0.0);
+    let none = ControlLimits::none(&layout);
+    let range = VoltageRange {
+        range_volt: [-0.4 * free.norm(), 0.9 * free.norm()],
+        bias_volt: vec![0.1 * free.norm()],
+        azimuths: 720,
+    };
+    let skewed = FlapCircle {
+        gain_deg_per_volt: [[0.06, 0.02], [-0.01, 0.03]],
+        limit_deg: 0.02 * free.norm(),
+    };
+    let power = PowerLimit {
+        quadratic: DMatrix::from_row_slice(2, 2, &[2.0, 0.7, 0.7, 0.5]),
+        linear: vec![0.3, -0.2],
+        constant: 0.1,
+        limit: 0.1 + 0.3 * free.norm_squared(),
+    };
+    let each = [
+        none.clone().with_amplitudes_volt(vec![0.5 * free.norm()]).unwrap(),
+        none.clone().with_voltage_range(range).unwrap(),
+        none.clone().with_flap_circle(0, skewed).unwrap(),
+        none.clone().with_power(power.clone()).unwrap(),
+        none.with_amplitudes_volt(vec![0.7 * free.norm()])
+            .and_then(|l| {
+                l.with_flap_circle(0, FlapCircle { limit_deg: 0.03 * free.norm(), ..skewed })
+            })
+            .and_then(|l| l.with_power(power))
+            .unwrap(),
+    ];
+    for (case, limits) in each.iter().enumerate() {
+        let found = law(&problem).optimum_within(0.0, &[0.0; 2], &z0, limits).unwrap();
+        assert!(found.binding);
+        assert!(found.kkt.largest() <= 1e-8, "case {case}: {:?}", found.kkt);
+        assert!(limits.usage(&found.control_volt).unwrap() <= 1.0 + 1e-14);
+        let grid = brute_force(|u| loads_cost(&problem, u), limits);
+        let (cone, brute) =
+            (loads_cost(&problem, &found.control_volt), loads_cost(&problem, &grid));
+        assert!((cone / brute - 1.0).abs() <= 1e-6, "case {case}: {cone} against {brute}");
+        let distance = (found.control_volt[0] - grid[0]).hypot(found.control_volt[1] - grid[1]);
+        assert!(distance <= 1e-4 * free.norm(), "case {case}: off by {distance}");
+        println!(
+            "case {case}: cone / grid - 1 = {:.1e}, KKT {:.1e}, {} iterations",
+            cone / brute - 1.0,
+            found.kkt.largest(),
+            found.iterations
+        );
+    }
+}
+
+#[test]
+fn where_no_limit_binds_it_is_the_fixed_point_of_the_law() {
+    let (problem, layout) = one_flap();
+    let free = problem.optimum(&[1.0; 12], 0.0);
+    let roomy = ControlLimits::none(&layout).with_amplitudes_volt(vec![1.1 * free.norm()]).unwrap();
+    let mut plant = Limited { plant: problem.plant.clone(), limits: roomy };
+    let settings = FeedbackSettings { step_tolerance: 1e-12, ..FeedbackSettings::default() };
+    let controller =
+        FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings).unwrap();
+    let constrained = controller.run_constrained(&mut plant, 0.0).unwrap();
+    let law = controller.run(&mut plant, 0.0).unwrap();
+    let u = DVector::from_column_slice(&constrained.last().control_volt);
+    assert!((&u - &free).norm() <= 1e-8 * free.norm());
+    assert!(
+        (u - DVector::from_column_slice(&law.last().control_volt)).norm() <= 1e-8 * free.norm()
+    );
+    assert!(constrained.kkt.unwrap().largest() <= 1e-12);
+}
+
+/// A plant with given limits.
+#[derive(Clone)]
+struct Limited {
+    plant: LinearPlant,
+    limits: ControlLimits,
+}
+
+impl Plant for Limited {
+    type Error = Infallible;
+
+    fn layout(&self) -> &ControlLayout {
+        self.plant.layout()
+    }
+
+    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
+        self.plant.measure(control_volt)
+    }
+
+    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Infallible> {
+        self.plant.strokes_deg(control_volt)
+    }
+
+    fn stroke_limits_deg(&self) -> Vec<f64> {
+        self.plant.stroke_limits_deg()
+    }
+
+    fn limits(&mut self, _: &[f64]) -> Result<ControlLimits, Infallible> {
+        Ok(self.limits.clone())
+    }
+}
+
+/// Two flaps at 4/rev whose effects nearly cancel, the outboard one four times as strong: the free
+/// optimum works them hard against each other.
+fn opposed_flaps() -> (Problem, ControlLayout) {
+    let t = DMatrix::from_fn(12, 4, |i, j| {
+        let common = (0.8 * i as f64 + 1.3 * (j % 2) as f64).sin();
+        let own = 0.15 * (1.9 * i as f64 + 0.7 * j as f64).cos();
+        if j < 2 { common + own } else { 4.0 * common - own }
+    });
+    let wanted = DVector::from_vec(vec![-6.0, 4.0, 1.5, -1.0]);
+    let rest = DVector::from_fn(12, |i, _| 0.6 * (1.7 * i as f64).cos());
+    let z0: Vec<f64> = (rest - &t * wanted).iter().copied().collect();
+    (Problem::new(2, &[4], t, &z0), ControlLayout::new(2, vec![4]).unwrap())
+}
+
+/// Numbers in -1..1, uniform and always the same.
+fn uniform(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// `J / J0` of the cone optimum, of the best random control, of the weighted and of the clipped one.
+fn compared(problem: &Problem, layout: &ControlLayout, limit_volt: [f64; 2]) -> [f64; 4] {
+    let room = 0.95 * limit_volt[0].max(limit_volt[1]);
+    let limits = ControlLimits::none(layout)
+        .with_amplitudes_volt(limit_volt.to_vec())
+        .and_then(|l| {
+            l.with_voltage_range(VoltageRange {
+                range_volt: [-room, 1.2 * room],
+                bias_volt: vec![0.05; 2],
+                azimuths: 720,
+            })
+        })
+        .unwrap();
+    let z0: Vec<f64> = problem.z0.iter().copied().collect();
+    let found = law(problem).optimum_within(0.0, &[0.0; 4], &z0, &limits).unwrap();
+    let cone = loads_cost(problem, &found.control_volt);
+    assert!(found.binding && found.kkt.largest() <= 1e-8, "{:?}", found.kkt);
+
+    let mut random = uniform(7);
+    let mut best = f64::INFINITY;
+    for _ in 0..10_000 {
+        let u: Vec<f64> = (0..4).map(|k| limit_volt[k / 2] * random()).collect();
+        let usage = limits.usage(&u).unwrap();
+        // one half inside, one half just keeping the limits
+        let part = if random() < 0.0 { usage.max(1.0) } else { usage };
+        let u: Vec<f64> = u.iter().map(|v| v / part).collect();
+        best = best.min(loads_cost(problem, &u));
+    }
+
+    // the control weight for which every limit is kept: bisection on the usage of the law's optimum
+    let law = law(problem);
+    let (mut low, mut high) = (-30.0_f64, 30.0_f64);
+    for _ in 0..100 {
+        let middle = f64::midpoint(low, high);
+        let u = law.optimum_volt(middle.exp(), &[0.0; 4], &z0).unwrap();
+        if limits.usage(&u).unwrap() > 1.0 { low = middle } else { high = middle }
+    }
+    let weighted = loads_cost(problem, &law.optimum_volt(high.exp(), &[0.0; 4], &z0).unwrap());
+
+    // the unconstrained step, clipped pair by pair
+    let free = problem.optimum(&[1.0; 12], 0.0);
+    let clipped: Vec<f64> = free
+        .as_slice()
+        .chunks_exact(2)
+        .zip(limit_volt)
+        .flat_map(|(u, limit)| {
+            let part = (limit / u[0].hypot(u[1])).min(1.0);
+            [part * u[0], part * u[1]]
+        })
+        .collect();
+    [cone, best, weighted, loads_cost(problem, &clipped)].map(|j| j / problem.z0.norm_squared())
+}
+
+#[test]
+fn binding_limits_beat_random_search_weighting_and_the_clipped_step() {
+    let (problem, layout) = opposed_flaps();
+    for (limit_volt, trapped) in [([2.0, 2.0], true), ([2.0, 0.3], false), ([0.5, 0.5], false)] {
+        let [cone, random, weighted, clipped] = compared(&problem, &layout, limit_volt);
+        println!(
+            "limits {limit_volt:?}: J / J0 cone {cone:.4}, random {random:.4}, weighted {weighted:.4}, clipped {clipped:.4}"
+        );
+        assert!(cone <= random && cone <= weighted && cone < 1.0);
+        if trapped {
+            assert!(clipped > 1.2, "the clipped step is worse than no control: {clipped}");
+        }
+    }
+}
+
+#[test]
+fn four_harmonics_together_keep_the_range_at_every_azimuth() {
+    let layout = ControlLayout::new(2, vec![2, 3, 4, 5]).unwrap();
+    let mut random = uniform(3);
+    let t = DMatrix::from_fn(12, 16, |_, _| random());
+    let z0: Vec<f64> = (0..12).map(|_| 20.0 * random()).collect();
+    let problem = Problem::new(2, &[2, 3, 4, 5], t, &z0);
+    let limits = ControlLimits::none(&layout)
+        .with_amplitudes_volt(vec![3.0, 2.5, 2.0, 1.5, 3.0, 2.5, 2.0, 1.5])
+        .and_then(|l| {
+            l.with_voltage_range(VoltageRange {
+                range_volt: [-2.0, 4.0],
+                bias_volt: vec![0.9, 1.2],
+                azimuths: 720,
+            })
+        })
+        .unwrap();
+    let rho = 1e-8 * law(&problem).singular_values()[0].powi(2);
+    let found = law(&problem).optimum_within(rho, &[0.0; 16], &z0, &limits).unwrap();
+    assert!(found.kkt.largest() <= 1e-6, "{:?}", found.kkt);
+    let usage = limits.usage(&found.control_volt).unwrap();
+    assert!((1.0 - 1e-6..=1.0 + 1e-12).contains(&usage), "{usage}");
+    // the range binds, not the circles alone
+    let amplitudes = layout.amplitudes_volt(&found.control_volt).unwrap();
+    assert!(amplitudes.iter().zip([3.0, 2.5, 2.0, 1.5].iter().cycle()).any(|(a, l)| *a < 0.99 * l));
+    let cost = loads_cost(&problem, &found.control_volt);
+    for _ in 0..10_000 {
+        let u: Vec<f64> = (0..16).map(|_| 3.0 * random()).collect();
+        let usage = limits.usage(&u).unwrap();
+        let u: Vec<f64> = u.iter().map(|v| v / usage).collect();
+        assert!(cost <= loads_cost(&problem, &u));
+    }
+    println!("KKT {:.1e}, {} iterations", found.kkt.largest(), found.iterations);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn the_kkt_residual_is_small_always(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 12 * 8),
+        baseline in prop::collection::vec(-1.0..1.0_f64, 12),
+        exponent in -7.0..1.0_f64,
+        limit in 0.01..2.0_f64,
+        bias in 0.2..0.8_f64,
+    ) {
+        // loads in rotor units per volt, limits in volt
+        let t = DMatrix::from_vec(12, 8, numbers) * 10.0_f64.powf(exponent);
+        let z0: Vec<f64> = baseline.iter().map(|z| z * 10.0_f64.powf(exponent)).collect();
+        let problem = Problem::new(2, &[2, 3], t, &z0);
+        let layout = ControlLayout::new(2, vec![2, 3]).unwrap();
+        let circle =
+            FlapCircle { gain_deg_per_volt: [[0.05, 0.02], [-0.02, 0.05]], limit_deg: 0.04 * limit };
+        let limits = ControlLimits::none(&layout)
+            .with_amplitudes_volt(vec![limit, 2.0 * limit, f64::INFINITY, limit])
+            .and_then(|l| l.with_flap_circle(2, circle))
+            .and_then(|l| l.with_voltage_range(VoltageRange {
+                range_volt: [0.0, 2.0 * limit], bias_volt: vec![2.0 * bias * limit; 2], azimuths: 360,
+            }))
+            .unwrap();
+        let found = law(&problem).optimum_within(0.0, &[0.0; 8], &z0, &limits).unwrap();
+        prop_assert!(found.kkt.largest() <= 1e-6, "{:?}", found.kkt);
+        prop_assert!(limits.usage(&found.control_volt).unwrap() <= 1.0 + 1e-12);
+    }
+}
+
+#[test]
+fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
+    // full steps correct what T gets wrong; the limits never give way
+    let (problem, layout) = opposed_flaps();
+    let limits = ControlLimits::none(&layout).with_amplitudes_volt(vec![2.0; 2]).unwrap();
+    let z0: Vec<f64> = problem.z0.iter().copied().collect();
+    let exact = law(&problem).optimum_within(0.0, &[0.0; 4], &z0, &limits).unwrap();
+    let mut plant = Limited { plant: problem.plant.clone(), limits };
+    let settings = FeedbackSettings { step_tolerance: 1e-9, ..FeedbackSettings::default() };
+    for controller in [Controller::Local { step_volt: vec![0.1; 4] }, Controller::Global] {
+        let t0 = problem.distorted_t(1.1, 8.0);
+        let run = FeedbackController::new(&t0, &LoadWeights::Identity, settings.clone())
+            .and_then(|c| c.with_controller(controller.clone()))
+            .unwrap()
+            .run_constrained(&mut plant, 0.0)
+            .unwrap();
+        let cost = run.last().cost.loads;
+        let best = loads_cost(&problem, &exact.control_volt);
+        println!(
+            "{}: J / J* - 1 = {:.2e}, {:?}",
+            controller.name(),
+            cost / best - 1.0,
+            run.outcome
+        );
+        assert!(run.kkt.unwrap().largest() <= 1e-6);
+        if controller != Controller::Global {
+            assert_eq!(run.outcome, Outcome::Converged);
+            assert!((cost / best - 1.0).abs() <= 1e-8);
+        }
+        assert!(cost < run.start.cost.loads);
+    }
+}
+
+#[test]
+fn limits_of_another_layout_are_refused() {
+    let (problem, _) = one_flap();
+    let other = ControlLimits::none(&ControlLayout::new(2, vec![3]).unwrap());
+    let mut plant = Limited { plant: problem.plant.clone(), limits: other };
+    let controller = FeedbackController::new(
+        &as_t(&problem.t),
+        &LoadWeights::Identity,
+        FeedbackSettings::default(),
+    )
+    .unwrap();
+    let refused = controller.run_constrained(&mut plant, 0.0);
+    assert!(matches!(refused, Err(RunError::Control(ControlError::Length { .. }))), "{refused:?}");
+}

@@ -1,0 +1,296 @@
+//! How the hub loads answer to small flap motions about a converged orbit.
+
+use crate::loads::SixLoads;
+use crate::rotor::{RevolutionLoads, settle_accelerations};
+use crate::system::{PointInput, ResponseSystem};
+use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use rotor_base::HarmonicSeries;
+use rotor_fem::{Orbit, OrbitSamples, PeriodicSystem};
+use rotor_wake::{InducedInflow, InflowModel, RotorLoading};
+use std::sync::Arc;
+
+/// What the inflow does while the flaps move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InflowState {
+    /// It stays as in the orbit: the wake is frozen.
+    Frozen,
+    /// It settles anew on the thrust, as in [`RotorSolver::solve`].
+    Settled,
+}
+
+/// One motion of all flaps, rad, trailing edge down positive: the direction of a derivative.
+pub type FlapDirection = Vec<HarmonicSeries>;
+
+/// Derivative of the hub loads along one direction of the flaps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HubSensitivity {
+    /// Change of the hub loads per unit of the direction, fixed frame, all blades.
+    pub hub: SixLoads,
+    /// Change of the thrust coefficient.
+    pub thrust_coefficient: f64,
+}
+
+/// Derivatives along several directions, and what they cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearisedRotor {
+    /// One derivative per direction.
+    pub sensitivities: Vec<HubSensitivity>,
+    /// Largest residual left by a linear equation, over its right-hand side.
+    pub relative_residual: f64,
+    /// Evaluations of the whole revolution.
+    pub evaluations: usize,
+    /// Newton matrices made; none where the orbit's own was kept.
+    pub factorisations: usize,
+}
+
+/// Relative residual of the linear equations.
+const LINEAR_TOLERANCE: f64 = 1e-6;
+/// Size of the flap angle and of the inflow in one-sided differences; the motion of the blade is of the
+/// same size. The loads are close to linear in all of them.
+const FLAP_DIFFERENCE_RAD: f64 = 1e-5;
+const INFLOW_DIFFERENCE: f64 = 1e-6;
+/// Accuracy of the accelerations, as a part of the motion that is differenced.
+const ACCELERATION_PART: f64 = 1e-7;
+/// Relative change of thrust for the slope of the inflow.
+const THRUST_DIFFERENCE: f64 = 1e-5;
+
+/// A load with a direction: the points of the revolution before and after a small change.
+struct Direction {
+    points: Vec<PointInput>,
+    size: f64,
+}
+
+/// The orbit about which is linearised.
+struct Base<'a> {
+    solver: &'a RotorSolver,
+    /// The motion of the time elements, which satisfies the weak equations.
+    orbit: OrbitSamples,
+    /// The same with accelerations that satisfy the equations of motion at each azimuth.
+    settled: OrbitSamples,
+    forces: DMatrix<f64>,
+    hub: SixLoads,
+}
+
+impl RotorSolver {
+    /// Derivatives of the hub loads along directions of flap motion, about a converged orbit with the
+    /// pilot controls held.
+    ///
+    /// ```text
+    /// R(q, delta, lambda) = 0   =>   dq = -(dR/dq)^-1 ( dR/ddelta ddelta + dR/dlambda dlambda )
+    /// dZ = dZ/dq dq + dZ/ddelta ddelta + dZ/dlambda dlambda
+    /// settled:  dlambda = g'(C_T) dC_T,   dC_T = dC_T|frozen / (1 - dC_T/dlambda g')
+    /// ```
+    /// The implicit function theorem on the time elements: one set of linear equations with the exact
+    /// Jacobian, the kept Newton matrix as preconditioner ([`rotor_fem::PeriodicSolver::linear_response`]). A settled
+    /// inflow costs one more right-hand side. Directions may hold any harmonics: the motion of an ideal
+    /// actuator or the one-sided difference of a hysteretic one.
+    ///
+    /// | argument | meaning |
+    /// |---|---|
+    /// | `condition`, `about` | flight, controls and flap motion of the orbit; its solution |
+    /// | `directions` | flap motions, one series per flap |
+    /// | `inflow` | frozen or settled |
+    ///
+    /// Assumes: the inflow follows the thrust alone, as all models behind [`InflowModel`] that are
+    /// linear over the disk do.
+    ///
+    /// # Errors
+    /// [`ResponseError::FlapMotions`] for a direction with another number of flaps; the errors of the
+    /// linear equations and of the inflow model.
+    pub fn linearised(
+        &mut self,
+        (condition, about): (&Condition, &RotorSolution),
+        inflow_model: &dyn InflowModel,
+        directions: &[FlapDirection],
+        inflow: InflowState,
+    ) -> Result<LinearisedRotor, ResponseError> {
+        let expected = self.rotor.model().flaps.len();
+        let all = directions.iter().chain(std::iter::once(&condition.flap_angles_rad));
+        if let Some(given) = all.map(Vec::len).find(|given| *given != expected) {
+            return Err(ResponseError::FlapMotions { given, expected });
+        }
+        let slope = match inflow {
+            InflowState::Frozen => None,
+            InflowState::Settled => Some(inflow_slope(condition, inflow_model, about)?),
+        };
+        let mut changes: Vec<Direction> =
+            directions.iter().map(|d| self.moved_flaps(condition, &about.inflow, d)).collect();
+        if let Some(slope) = &slope {
+            changes.push(self.moved_inflow(condition, &about.inflow, slope)?);
+        }
+        let base = Base::new(self, condition, about)?;
+        let loads = changes
+            .par_iter()
+            .map(|change| base.load_change(change))
+            .collect::<Result<Vec<_>, ResponseError>>()?;
+        let mut evaluations = 1 + loads.len();
+        let (rotor, air) = (Arc::clone(&self.rotor), Arc::clone(&self.air));
+        let system = rotor.system(&air, self.point_inputs(condition, &about.inflow));
+        let mut orbits = self.solver.clone();
+        let response = orbits
+            .linear_response(&system, &about.orbit, &loads, LINEAR_TOLERANCE)
+            .map_err(Self::orbit_error)?;
+        evaluations += response.evaluations;
+        let summed = changes
+            .par_iter()
+            .zip(&response.changes)
+            .map(|(change, nodal)| base.hub_change(change, nodal))
+            .collect::<Result<Vec<_>, ResponseError>>()?;
+        evaluations += summed.iter().map(|(_, count)| count).sum::<usize>();
+        let mut hubs: Vec<SixLoads> = summed.into_iter().map(|(hub, _)| hub).collect();
+        let thrust = |hub: &SixLoads| rotor.model().thrust_coefficient(hub.components[2].mean);
+        if slope.is_some()
+            && let Some(of_inflow) = hubs.pop()
+        {
+            let feedback = thrust(&of_inflow);
+            for hub in &mut hubs {
+                add_scaled(hub, &of_inflow, thrust(hub) / (1.0 - feedback));
+            }
+        }
+        let sensitivities = hubs
+            .into_iter()
+            .map(|hub| HubSensitivity { thrust_coefficient: thrust(&hub), hub })
+            .collect();
+        Ok(LinearisedRotor {
+            sensitivities,
+            relative_residual: response.relative_residual,
+            evaluations,
+            factorisations: response.factorisations,
+        })
+    }
+
+    /// The condition with the flaps moved a little along a direction.
+    fn moved_flaps(
+        &self,
+        condition: &Condition,
+        inflow: &InducedInflow,
+        direction: &[HarmonicSeries],
+    ) -> Direction {
+        let largest = direction.iter().map(largest_angle).fold(0.0, f64::max);
+        let size = if largest > 0.0 { FLAP_DIFFERENCE_RAD / largest } else { 1.0 };
+        let flap_angles_rad = condition
+            .flap_angles_rad
+            .iter()
+            .zip(direction)
+            .map(|(angle, along)| sum(angle, along, size))
+            .collect();
+        let moved = Condition { flap_angles_rad, ..condition.clone() };
+        Direction { points: self.point_inputs(&moved, inflow), size }
+    }
+
+    /// The condition with the inflow moved a little along its slope with thrust.
+    fn moved_inflow(
+        &self,
+        condition: &Condition,
+        inflow: &InducedInflow,
+        slope: &[f64],
+    ) -> Result<Direction, ResponseError> {
+        let largest = slope.iter().fold(0.0_f64, |m, v| v.abs().max(m));
+        let size = if largest > 0.0 { INFLOW_DIFFERENCE / largest } else { 1.0 };
+        let parameters: Vec<f64> =
+            inflow.parameters().iter().zip(slope).map(|(p, s)| p + size * s).collect();
+        let moved = inflow.with_parameters(&parameters)?;
+        Ok(Direction { points: self.point_inputs(condition, &moved), size })
+    }
+}
+
+impl<'a> Base<'a> {
+    fn new(
+        solver: &'a RotorSolver,
+        condition: &Condition,
+        about: &RotorSolution,
+    ) -> Result<Self, ResponseError> {
+        let orbit = about.orbit.sample(&solver.time);
+        let points = solver.point_inputs(condition, &about.inflow);
+        let system = solver.rotor.system(&solver.air, points);
+        let mut forces = DMatrix::zeros(system.dof(), orbit.q.ncols());
+        system.residual(&orbit, &mut forces)?;
+        let mut settled = orbit.clone();
+        settle_accelerations(&solver.rotor, &solver.time, &system, (&mut settled, 1e-14))?;
+        let hub = RevolutionLoads::summed(&solver.rotor, &system, &settled)
+            .hub(&solver.rotor, &solver.time);
+        Ok(Self { solver, orbit, settled, forces, hub })
+    }
+
+    fn system(&self, points: Vec<PointInput>) -> ResponseSystem<'_> {
+        self.solver.rotor.system(&self.solver.air, points)
+    }
+
+    /// `df/dp` at all points, the motion held.
+    fn load_change(&self, change: &Direction) -> Result<DMatrix<f64>, ResponseError> {
+        let system = self.system(change.points.clone());
+        let mut forces = DMatrix::zeros(self.forces.nrows(), self.forces.ncols());
+        system.residual(&self.orbit, &mut forces)?;
+        Ok((forces - &self.forces) / change.size)
+    }
+
+    /// Change of the hub loads per unit of the direction, and the evaluations it took.
+    fn hub_change(
+        &self,
+        change: &Direction,
+        nodal: &DMatrix<f64>,
+    ) -> Result<(SixLoads, usize), ResponseError> {
+        let RotorSolver { rotor, time, .. } = self.solver;
+        // the points were made for `change.size`; the motion goes with it
+        let mut motion = Orbit::of_nodal(time, nodal * change.size)?.sample(time);
+        let allowed = ACCELERATION_PART * motion.qdd.amax();
+        motion.q += &self.settled.q;
+        motion.qd += &self.settled.qd;
+        motion.qdd += &self.settled.qdd;
+        let system = self.system(change.points.clone());
+        let count = settle_accelerations(rotor, time, &system, (&mut motion, allowed))?;
+        let mut hub = RevolutionLoads::summed(rotor, &system, &motion).hub(rotor, time);
+        add_scaled(&mut hub, &self.hub, -1.0);
+        scale(&mut hub, 1.0 / change.size);
+        Ok((hub, count + 1))
+    }
+}
+
+/// Change of the inflow parameters with the thrust coefficient, by central differences.
+fn inflow_slope(
+    condition: &Condition,
+    model: &dyn InflowModel,
+    about: &RotorSolution,
+) -> Result<Vec<f64>, ResponseError> {
+    let ct = about.thrust_coefficient;
+    let step = THRUST_DIFFERENCE * ct.abs().max(1e-6);
+    let at = |ct: f64| -> Result<Vec<f64>, ResponseError> {
+        let loading = RotorLoading::from_thrust_coefficient(ct);
+        Ok(model.induced(&condition.flight, &loading)?.parameters())
+    };
+    let (above, below) = (at(ct + step)?, at(ct - step)?);
+    Ok(above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * step)).collect())
+}
+
+/// `angle + factor direction`.
+fn sum(angle: &HarmonicSeries, direction: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+    let mut out = angle.clone();
+    out.mean += factor * direction.mean;
+    for (k, part) in direction.harmonics.iter().enumerate() {
+        let mut harmonic = out.harmonic(k + 1);
+        harmonic.cosine += factor * part.cosine;
+        harmonic.sine += factor * part.sine;
+        out.set_harmonic(k + 1, harmonic);
+    }
+    out
+}
+
+/// A bound on the angle of a series.
+fn largest_angle(series: &HarmonicSeries) -> f64 {
+    series.mean.abs() + series.harmonics.iter().map(rotor_base::Harmonic::amplitude).sum::<f64>()
+}
+
+/// `hub += factor other`.
+fn add_scaled(hub: &mut SixLoads, other: &SixLoads, factor: f64) {
+    for (component, part) in hub.components.iter_mut().zip(&other.components) {
+        *component = sum(component, part, factor);
+    }
+}
+
+fn scale(hub: &mut SixLoads, factor: f64) {
+    for component in &mut hub.components {
+        *component = sum(&HarmonicSeries::zero(component.harmonics.len()), component, factor);
+    }
+}
