@@ -8,9 +8,11 @@ mod lag;
 mod loads;
 mod model;
 mod motion;
+mod nonlinear;
 mod rigid;
 mod rotor;
 mod span;
+mod stall_history;
 mod structure;
 mod system;
 
@@ -18,6 +20,7 @@ pub use blade::{Couplings, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;
 pub use loads::{SixLoads, hub_loads};
 pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};
+pub use nonlinear::{DynamicStall, NonlinearSections};
 pub use rotor::{
     Condition, ResponseResiduals, ResponseTolerances, RootBending, Rotor, RotorSolution,
     RotorSolver,

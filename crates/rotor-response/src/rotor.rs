@@ -385,7 +385,7 @@ impl RevolutionLoads {
                 break;
             }
         }
-        let revolution = system.revolution(&samples);
+        let revolution = system.revolution(&samples)?;
         let blade = &rotor.blade;
         let first = system.air.first_station();
         let mut root = Vec::with_capacity(revolution.motions.len());
@@ -393,7 +393,7 @@ impl RevolutionLoads {
         let mut bending = [Vec::new(), Vec::new()];
         let mut loads = SpanLoads::default();
         for (p, motion) in revolution.motions.iter().enumerate() {
-            let sections = system.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
+            let sections = system.section_loads(p, &revolution.flows[p], &revolution.pasts[p]);
             system.span_loads(p, &sections, &mut loads);
             let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
             let pitch = system.points[p].air.pitch;

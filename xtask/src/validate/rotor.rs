@@ -7,7 +7,7 @@ use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
-    ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
+    NonlinearSections, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
 };
 use rotor_wake::{FlightState, InflowModel, LinearInflow};
 
@@ -157,6 +157,7 @@ pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel 
         compressibility: Compressibility::None,
         reverse_flow: ReverseFlow::default(),
         flaps: vec![],
+        nonlinear: NonlinearSections::default(),
     }
 }
 

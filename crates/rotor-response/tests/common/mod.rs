@@ -3,7 +3,7 @@
 
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
-use rotor_response::{Compressibility, Couplings, ReverseFlow, RotorModel, TrailingEdgeFlap};
+use rotor_response::{Compressibility, Couplings, NonlinearSections, ReverseFlow, RotorModel, TrailingEdgeFlap};
 
 /// Table 1 with the documented defaults where the paper is silent.
 pub(crate) fn paper_spec() -> BladeSpec {
@@ -32,6 +32,7 @@ pub(crate) fn paper_model(couplings: Couplings) -> RotorModel {
         compressibility: Compressibility::None,
         reverse_flow: ReverseFlow::default(),
         flaps: vec![],
+        nonlinear: NonlinearSections::default(),
     }
 }
 
