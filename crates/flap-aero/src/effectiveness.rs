@@ -83,6 +83,16 @@ impl SectionCoefficients {
         self.lags = self.lags.iter().flat_map(|lag| parted(lag, &factors)).collect();
         self
     }
+
+    /// The same section with every lag that rigid and flap inputs share parted in two of the same pole:
+    /// the loads of the rigid section and those of its flap can then be told apart.
+    ///
+    /// The number of lags may grow, and does not depend on the Mach number.
+    #[must_use]
+    pub fn with_flap_apart(mut self) -> Self {
+        self.lags = self.lags.iter().flat_map(|lag| parted(lag, &[1.0; 3])).collect();
+        self
+    }
 }
 
 /// A lag with the flap's share of its loads weighed: one lag, or two.

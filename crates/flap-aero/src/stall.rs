@@ -1,7 +1,7 @@
 //! Dynamic stall after Leishman and Beddoes, on top of any attached-flow model. Off unless it is used.
 
 use crate::decay::{LANES, decay};
-use crate::{AeroError, FlapChord, Mach, TheodorsenFunctions};
+use crate::{AeroError, FlapChord, FlapEffectiveness, Load, Mach, Mode, TheodorsenFunctions};
 use std::f64::consts::{PI, TAU};
 
 /// Beddoes's circulatory lags, pairs `(A, b)`.
@@ -142,13 +142,14 @@ impl StallParameters {
 /// alpha_E: two lags on the circulatory downwash alpha + q/2 + (T10/pi) delta + (T11/4 pi) q_delta
 /// Cn' : lag Tp on Cn_attached;      f'' : lag Tf on f(Cn'/Cn_alpha)
 /// d Cn_v/dS = d/dS [Cn_alpha alpha_E (1 - K)] - Cn_v/Tv;   the feed ends when tau reaches Tvl
-/// tau: distance since |Cn'| passed Cn1, 0 below
+/// tau: distance since |Cn'| passed Cn1, until 2 Tvl, where the vortex is gone; 0 without one
 /// ```
 /// Held for ever it is the static curve of Kirchhoff; with `alpha1` out of reach it is the attached
 /// model.
 ///
-/// Differs from source: the time constants are not changed during the vortex's travel, secondary
-/// vortices are not shed, and the impulsive part of the attached load is not separated from it when
+/// Differs from source: the time constants are not changed during the vortex's travel; a vortex once
+/// shed runs its course, also when the force falls below the critical one, and when another is shed
+/// before it is gone keeps its place (the loads are then continuous in time); and the impulsive part of the attached load is not separated from it when
 /// its lag `Tp` is formed (it is in the source too) nor touched by the separation. Assumes the flap
 /// acts on the separation through the lift it makes. Not modelled: the hinge moment of separated
 /// flow (the attached one is kept), reattachment beyond the lags.
@@ -199,6 +200,8 @@ pub struct StallState {
     separation: f64,
     shed: f64,
     vortex: f64,
+    /// What is left of earlier vortices: normal force, and moment about the quarter chord, nose-down +.
+    spent: [f64; 2],
     /// Distance since the vortex left the leading edge, semichords; `None` below the critical force.
     travel: Option<f64>,
 }
@@ -247,6 +250,16 @@ impl StallSection {
         StallState::settled(self, attached[0], modes).loads(self, attached)
     }
 
+    /// The section with a flap of this effectiveness in lift: the attached loads it is given are to be
+    /// those of the same flap.
+    #[must_use]
+    pub fn with_flap_effectiveness(mut self, effectiveness: &FlapEffectiveness) -> Self {
+        let factor = effectiveness.of(Load::Lift);
+        self.circulation[Mode::Flap.index()] *= factor;
+        self.circulation[Mode::FlapRate.index()] *= factor;
+        self
+    }
+
     fn downwash(&self, modes: &[f64; 4]) -> f64 {
         self.circulation.iter().zip(modes).map(|(w, m)| w * m).sum()
     }
@@ -267,6 +280,7 @@ impl StallState {
             separation,
             shed,
             vortex: 0.0,
+            spent: [0.0; 2],
             // a vortex long gone
             travel: (attached_normal.abs() > section.parameters.cn1)
                 .then_some(2.0 * section.parameters.tvl),
@@ -314,6 +328,24 @@ impl StallState {
         Ok(self.loads(section, attached))
     }
 
+    /// The loads without delay at the effective incidence of this state: the separation of these
+    /// attached loads held for ever, no vortex. What is dynamic in [`step`](Self::step)'s loads is
+    /// their difference from these.
+    pub fn without_delay(&self, section: &StallSection, attached: [f64; 3]) -> StalledLoads {
+        let separation = section.parameters.separation(attached[0] / section.slope);
+        Self { separation, vortex: 0.0, spent: [0.0; 2], travel: None, ..*self }
+            .loads(section, attached)
+    }
+
+    /// The loads of attached flow in the form of stalled ones: the chord force is the whole
+    /// leading-edge suction `Cn_alpha alpha_E^2`.
+    pub fn without_stall(&self, section: &StallSection, attached: [f64; 3]) -> StalledLoads {
+        let [normal, moment, hinge] = attached;
+        let effective = self.effective(section);
+        let chord = effective * effective / section.slope;
+        StalledLoads { normal, moment, hinge, chord, separation: 1.0, vortex: 0.0 }
+    }
+
     /// `Cn_alpha alpha_E`.
     fn effective(&self, section: &StallSection) -> f64 {
         let lacking: f64 = BEDDOES.iter().zip(self.lacking).map(|((a, _), y)| a * y).sum();
@@ -321,43 +353,69 @@ impl StallState {
     }
 
     /// The vortex over a step in which its source runs straight to `shed` and the delayed force to
-    /// its value now. The step is parted where the force passes the critical one and where the
-    /// vortex leaves the chord.
+    /// its value now. The step is parted where the force passes the critical one, where the vortex
+    /// leaves the chord and where it is gone.
     fn advance_vortex(&mut self, section: &StallSection, before: f64, shed: f64, ds: f64) {
         let p = &section.parameters;
         let feed = if ds > 0.0 { (shed - self.shed) / ds } else { 0.0 };
         let (was, now) = (before.abs(), self.delayed.abs());
         let crossing = ds * ((p.cn1 - was) / (now - was)).clamp(0.0, 1.0);
         match (was > p.cn1, now > p.cn1) {
-            (true, true) => self.travel_on(p, feed, ds),
+            (true, true) => self.travel_on(p, (feed, true), ds),
             (true, false) => {
-                self.travel_on(p, feed, crossing);
-                self.travel = None;
-                self.grow(p, feed, ds - crossing);
+                self.travel_on(p, (feed, true), crossing);
+                self.travel_on(p, (feed, false), ds - crossing);
             }
             (false, true) => {
-                self.grow(p, feed, crossing);
-                self.travel = Some(0.0);
-                self.travel_on(p, feed, ds - crossing);
+                self.travel_on(p, (feed, false), crossing);
+                self.release(p);
+                self.travel_on(p, (feed, true), ds - crossing);
             }
-            (false, false) => self.grow(p, feed, ds),
+            (false, false) => self.travel_on(p, (feed, false), ds),
         }
         self.shed = shed;
     }
 
-    /// A distance with the vortex on its way: fed over the chord, then left to decay.
-    fn travel_on(&mut self, p: &StallParameters, feed: f64, distance: f64) {
-        let travelled = self.travel.unwrap_or(0.0);
+    /// A vortex leaves the leading edge; one still on its way joins the spent ones.
+    fn release(&mut self, p: &StallParameters) {
+        if self.travel.is_some() {
+            self.spent[0] += self.vortex;
+            self.spent[1] += self.centre(p) * self.vortex;
+            self.vortex = 0.0;
+        }
+        self.travel = Some(0.0);
+    }
+
+    /// Centre of the vortex force behind the quarter chord, chords.
+    fn centre(&self, p: &StallParameters) -> f64 {
+        0.2 * (1.0 - (PI * self.travel.unwrap_or(0.0) / p.tvl).cos())
+    }
+
+    /// A distance with the delayed force above the critical one or not: a vortex on its way is fed
+    /// over the chord, then decays over another chord; when it is gone and the force is not critical,
+    /// the next one gathers.
+    fn travel_on(&mut self, p: &StallParameters, (feed, critical): (f64, bool), distance: f64) {
+        let Some(travelled) = self.travel else {
+            self.grow(p, feed, distance);
+            return;
+        };
         let over_chord = (p.tvl - travelled).clamp(0.0, distance);
         self.grow(p, feed, over_chord);
-        self.grow(p, 0.0, distance - over_chord);
-        self.travel = Some((travelled + distance).min(2.0 * p.tvl));
+        let left = distance - over_chord;
+        let behind = (2.0 * p.tvl - (travelled + over_chord)).clamp(0.0, left);
+        let gone = !critical && left > behind;
+        self.grow(p, 0.0, if gone { behind } else { left });
+        if gone {
+            self.grow(p, feed, left - behind);
+        }
+        self.travel = (!gone).then_some((travelled + distance).min(2.0 * p.tvl));
     }
 
     /// Decay over a distance, fed evenly.
     fn grow(&mut self, p: &StallParameters, feed: f64, distance: f64) {
         let [gone, mean] = gone_and_mean(distance / p.tv);
         self.vortex = self.vortex - self.vortex * gone + feed * distance * mean;
+        self.spent = self.spent.map(|left| left - left * gone);
     }
 
     fn loads(&self, section: &StallSection, [normal, moment, hinge]: [f64; 3]) -> StalledLoads {
@@ -365,15 +423,15 @@ impl StallState {
         let f = self.separation;
         let effective = self.effective(section);
         let left = StallParameters::kirchhoff(f);
-        let phase = self.travel.unwrap_or(0.0) / p.tvl;
-        let centre = 0.2 * (1.0 - (PI * phase).cos());
+        let vortex = self.vortex + self.spent[0];
+        let nose_down = self.centre(p) * self.vortex + self.spent[1];
         StalledLoads {
-            normal: normal - effective * (1.0 - left) + self.vortex,
-            moment: moment + p.moment_arm(f) * effective * left - centre * self.vortex,
+            normal: normal - effective * (1.0 - left) + vortex,
+            moment: moment + p.moment_arm(f) * effective * left - nose_down,
             hinge,
             chord: p.eta * effective * effective / section.slope * f.max(0.0).sqrt(),
             separation: f,
-            vortex: self.vortex,
+            vortex,
         }
     }
 }

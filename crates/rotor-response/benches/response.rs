@@ -8,8 +8,9 @@ use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, ResponseError,
-    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
+    Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
+    ResponseError, ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver,
+    TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::hint::black_box;
@@ -48,6 +49,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
         },
         reverse_flow: ReverseFlow::default(),
         flaps: vec![flap(0.70, 0.75), flap(0.80, 0.85)],
+        nonlinear: NonlinearSections::default(),
     };
     let rotor = Rotor::new(model, &blade, Discretisation::default())?;
     RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default())

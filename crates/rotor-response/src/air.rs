@@ -28,6 +28,8 @@ pub(crate) struct SectionFlow {
     pub(crate) u_p: f64,
     /// Sense of the circulation: 1 in flow from the leading edge, -1 in reverse flow.
     pub(crate) sense: f64,
+    /// Pitch of the section, nose up, rad.
+    pub(crate) pitch: f64,
     /// `[U alpha, c om, U delta, c delta']`.
     pub(crate) input: [f64; 4],
     /// Azimuth derivative of the inputs.
@@ -71,6 +73,7 @@ pub(crate) fn section_flow(
             ReverseFlow::Gradual => u_t / u_t.hypot(u_p).max(f64::MIN_POSITIVE),
             ReverseFlow::Abrupt => (blade.grid.x()[i] + mu_sin).signum(),
         },
+        pitch: theta,
         input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
         input_rate: [
             u_t_rate * theta + u_t * theta_rate - u_p_rate,
@@ -88,6 +91,18 @@ pub(crate) struct SectionLoads {
     pub(crate) fy: f64,
     pub(crate) moment: f64,
     pub(crate) hinge: f64,
+}
+
+/// What the past of a section adds to its loads.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct SectionPast {
+    /// Lag part of lift, moment and hinge moment, velocities.
+    pub(crate) lag: [f64; 3],
+    /// Share of the rigid section, without its flap, in the lag part of the lift; only of sections
+    /// beyond linear theory.
+    pub(crate) rigid_lift: f64,
+    /// What stall adds to the coefficients of normal force, chord force and moment.
+    pub(crate) stall: [f64; 3],
 }
 
 /// What turns coefficients into loads: `rho c R/m0`, chord `c/R`, profile drag coefficient.

@@ -71,6 +71,20 @@ pub enum ResponseError {
         /// Largest rate found, per rad.
         largest_rate: f64,
     },
+    /// The stall of a section, marched round under one motion, does not come back to itself.
+    #[error(
+        "dynamic stall at {station} R does not repeat: it still changes by {change:.3e} (coefficients) after {revolutions} revolutions, wanted {tolerance:.0e}; the vortex may last longer than a revolution: raise root_cutout, or leave dynamic stall off"
+    )]
+    StallNotPeriodic {
+        /// Station, radius R.
+        station: f64,
+        /// Revolutions marched.
+        revolutions: usize,
+        /// Last change of a coefficient from revolution to revolution.
+        change: f64,
+        /// Change wanted.
+        tolerance: f64,
+    },
     /// The periodic response was not found; the inner error carries iterations, residuals and the
     /// best orbit.
     #[error("periodic blade response: {0}")]

@@ -1,6 +1,6 @@
 //! Hinge moments of the flaps over a revolution, and how they change with the flap motion.
 
-use crate::air::{SectionFlow, SectionLoads};
+use crate::air::SectionLoads;
 use crate::blade::ResponseBlade;
 use crate::motion::Motion;
 use crate::system::{ResponseSystem, Revolution};
@@ -8,6 +8,8 @@ use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 
 /// Step of the differences in the flap angle's inertia, rad and per rad: the moment is nearly linear.
 const DIFFERENCE_STEP: f64 = 1e-3;
+/// Step of the differences in the air's answer to the flap angle and its rates.
+const AIR_STEP: f64 = 1e-4;
 
 /// Moments about the hinge of one flap of one blade, over its span, against the azimuth of the blade;
 /// `m0 Omega^2 R^3`, positive in the sense of the flap angle (trailing edge down).
@@ -110,21 +112,14 @@ impl ResponseSystem<'_> {
     pub(crate) fn hinge_slopes(&self, point: usize, revolution: &Revolution) -> [Vec<f64>; 3] {
         let motion = &revolution.motions[point];
         let (flaps, first) = (self.points[point].flap.len(), self.air.first_station());
-        let still = self.flows_with_flaps(point, motion, |_| [0.0; 3]);
+        let still = self.settled_sections(point, &revolution.flows[point]);
         std::array::from_fn(|which| {
-            let unit: [f64; 3] = std::array::from_fn(|j| f64::from(j == which));
-            let moved = self.flows_with_flaps(point, motion, |_| unit);
-            let change: Vec<SectionFlow> = still
-                .iter()
-                .zip(&moved)
-                .map(|(a, b)| SectionFlow {
-                    input: std::array::from_fn(|j| b.input[j] - a.input[j]),
-                    input_rate: std::array::from_fn(|j| b.input_rate[j] - a.input_rate[j]),
-                    ..*a
-                })
-                .collect();
-            let sections =
-                self.section_loads(point, &change, &self.air.settled_loads(point, &change));
+            let moved = self.flows_with_flaps(point, motion, |k| {
+                let mut delta = self.points[point].flap[k];
+                delta[which] += AIR_STEP;
+                delta
+            });
+            let moved = self.settled_sections(point, &moved);
             over_flaps(self.blade, flaps, |i, k| {
                 let body = &self.blade.flap_inertia[k].body;
                 let section = self.flap_section(point, motion, (i, k));
@@ -134,7 +129,8 @@ impl ResponseSystem<'_> {
                     body.hinge_moment(&section)
                 };
                 let difference = stepped(DIFFERENCE_STEP) - stepped(-DIFFERENCE_STEP);
-                sections[i - first].hinge + difference / (2.0 * DIFFERENCE_STEP)
+                (moved[i - first].hinge - still[i - first].hinge) / AIR_STEP
+                    + difference / (2.0 * DIFFERENCE_STEP)
             })
         })
     }

@@ -12,10 +12,13 @@ mod linearised;
 mod loads;
 mod model;
 mod motion;
+mod nonlinear;
+mod power;
 mod rigid;
 mod rotor;
 mod span;
 mod stability;
+mod stall_history;
 mod structure;
 mod system;
 
@@ -26,6 +29,8 @@ pub use hinge::{HingeMoment, HingeSlopes};
 pub use linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
 pub use loads::{SixLoads, hub_loads};
 pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};
+pub use nonlinear::{DynamicStall, NonlinearSections};
+pub use power::PowerBalance;
 pub use rotor::{
     Condition, ResponseResiduals, ResponseTolerances, RootBending, Rotor, RotorSolution,
     RotorSolver,

@@ -209,7 +209,7 @@ impl<'a> Base<'a> {
         system.residual(&orbit, &mut forces)?;
         let mut settled = orbit.clone();
         settle_accelerations(&solver.rotor, &solver.time, &system, (&mut settled, 1e-14))?;
-        let hub = RevolutionLoads::summed(&solver.rotor, &system, &settled)
+        let hub = RevolutionLoads::summed(&solver.rotor, &solver.time, &system, &settled)?
             .hub(&solver.rotor, &solver.time);
         Ok(Self { solver, orbit, settled, forces, hub })
     }
@@ -241,7 +241,7 @@ impl<'a> Base<'a> {
         motion.qdd += &self.settled.qdd;
         let system = self.system(change.points.clone());
         let count = settle_accelerations(rotor, time, &system, (&mut motion, allowed))?;
-        let mut hub = RevolutionLoads::summed(rotor, &system, &motion).hub(rotor, time);
+        let mut hub = RevolutionLoads::summed(rotor, time, &system, &motion)?.hub(rotor, time);
         add_scaled(&mut hub, &self.hub, -1.0);
         scale(&mut hub, 1.0 / change.size);
         Ok((hub, count + 1))

@@ -4,6 +4,7 @@ use crate::blade::{Couplings, ResponseBlade};
 use crate::motion::Motion;
 use crate::structure::{BladeState, SpanLoads};
 use rotor_base::{HarmonicSeries, rotating_to_fixed, uniform_azimuths_rad};
+use rotor_fem::ModalLoads;
 
 /// Six load components over one revolution as harmonic series, order
 /// `F_x, F_y, F_z, M_x, M_y, M_z`; forces in `m0 Omega^2 R^2`, moments in `m0 Omega^2 R^3`.
@@ -99,6 +100,40 @@ pub(crate) fn root_loads(
         ];
         for (t, part) in total.iter_mut().zip(parts) {
             *t += weight * part;
+        }
+    }
+    let [fx, fy, fz, mx, my, mz] = total;
+    let [force, moment] = [[fx, fy, fz], [mx, my, mz]].map(|v| coned_to_shaft(blade.precone, v));
+    [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
+}
+
+/// Root loads of the moderately deflected blade at one azimuth, as [`root_loads`] gives them.
+///
+/// ```text
+/// F = sum( f - m a ),   M = sum( r x f + (1, v_x, w_x) M - integral r x a dm )
+/// ```
+/// Loads stand on the deflected axis; inertial forces are those of the equations of motion, so that the
+/// power of loads, shaft and pitch control agrees.
+pub(crate) fn moderate_root_loads(
+    blade: &ResponseBlade,
+    state: BladeState<'_>,
+    modal: &ModalLoads,
+) -> [f64; 6] {
+    let BladeState { motion, loads, .. } = state;
+    let (w, v) = (&motion.w, &motion.v);
+    let mut total = [0.0; 6];
+    for (i, inertial) in modal.wrench.iter().enumerate() {
+        let weight = blade.grid.weight()[i];
+        let force = [loads.fx(motion, i), loads.fy[i], loads.fz[i]];
+        let arm = [blade.grid.x()[i] + modal.axial[i], v.value[i], w.value[i]];
+        let turn = loads.moment[i];
+        let own =
+            [turn, turn * v.slope[i] - loads.slope[1][i], turn * w.slope[i] + loads.slope[0][i]];
+        for k in 0..3 {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let moment = arm[a] * force[b] - arm[b] * force[a] + own[k];
+            total[k] += weight * (force[k] - inertial[k]);
+            total[3 + k] += weight * (moment - inertial[3 + k]);
         }
     }
     let [fx, fy, fz, mx, my, mz] = total;

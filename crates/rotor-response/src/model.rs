@@ -1,6 +1,6 @@
 //! What a rotor is made of: validated parameters handed down by the drivers.
 
-use crate::{Couplings, ResponseError, TrailingEdgeFlap};
+use crate::{Couplings, NonlinearSections, ResponseError, TrailingEdgeFlap};
 use flap_aero::AttachedFlowModel;
 
 /// How the local Mach number enters the section aerodynamics.
@@ -63,6 +63,8 @@ pub struct RotorModel {
     pub reverse_flow: ReverseFlow,
     /// Trailing-edge flaps from root to tip.
     pub flaps: Vec<TrailingEdgeFlap>,
+    /// Tables and dynamic stall of the sections; none by default.
+    pub nonlinear: NonlinearSections,
 }
 
 impl RotorModel {

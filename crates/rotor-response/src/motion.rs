@@ -1,6 +1,7 @@
 //! Deflections, rates and accelerations of the blade at the stations, at one azimuth.
 
 use crate::blade::{ResponseBlade, Shapes};
+use rotor_fem::PitchMotion;
 
 /// Pitch angle imposed at the root with its first two azimuth derivatives (rad).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -8,6 +9,12 @@ pub(crate) struct RootPitch {
     pub(crate) angle: f64,
     pub(crate) rate: f64,
     pub(crate) acceleration: f64,
+}
+
+impl From<RootPitch> for PitchMotion {
+    fn from(pitch: RootPitch) -> Self {
+        Self { angle_rad: pitch.angle, rate: pitch.rate, acceleration: pitch.acceleration }
+    }
 }
 
 /// Displacement family at the stations: value, slope, curvature; rates of value and slope;

@@ -5,15 +5,19 @@ use crate::blade::ResponseBlade;
 use crate::flap_mass::with_flap_masses;
 use crate::flight_air::FlightAir;
 use crate::hinge::{HingeMoment, HingeSlopes};
-use crate::loads::{SixLoads, hub_loads, root_flap_curvature_moment, root_flap_moment, root_loads};
+use crate::loads::{
+    SixLoads, hub_loads, moderate_root_loads, root_flap_curvature_moment, root_flap_moment,
+    root_loads,
+};
+use crate::power::{AxialMotion, PowerBalance, power};
 use crate::structure::{BladeState, SpanLoads};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
-    BladeProperties, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver,
-    PeriodicSystem, TimeElements,
+    BladeProperties, ModalLoads, ModalMotion, Orbit, OrbitSamples, PeriodicError, PeriodicSettings,
+    PeriodicSolver, PeriodicSystem, TimeElements,
 };
 use rotor_wake::{FlightState, InducedInflow, InflowModel, RotorLoading};
 use std::f64::consts::TAU;
@@ -168,6 +172,8 @@ pub struct RotorSolution {
     pub hinge: Vec<HingeMoment>,
     /// Flapwise bending moment at the blade root, in two ways.
     pub root_flap_bending: RootBending,
+    /// Mean power of one blade.
+    pub power: PowerBalance,
     /// Residuals and iterations.
     pub residuals: ResponseResiduals,
 }
@@ -273,6 +279,7 @@ impl RotorSolver {
                     root_flap_bending: loads
                         .root_bending(&self.time, rotor.discretisation.load_harmonics),
                     inflow,
+                    power: loads.power,
                     root,
                     hub,
                     residuals: ResponseResiduals {
@@ -316,7 +323,7 @@ impl RotorSolver {
         }
         let points = self.point_inputs(condition, &solution.inflow);
         let system = self.rotor.system(&self.air, points);
-        let revolution = system.revolution(&solution.orbit.sample(&self.time));
+        let revolution = system.revolution(&solution.orbit.sample(&self.time))?;
         let by_point: Vec<[Vec<f64>; 3]> =
             (0..self.time.points().len()).map(|p| system.hinge_slopes(p, &revolution)).collect();
         let count = self.rotor.discretisation.load_harmonics;
@@ -408,6 +415,7 @@ pub(crate) struct RevolutionLoads {
     hinge: Vec<[Vec<f64>; 2]>,
     /// Root flap bending by force summation and by curvature.
     bending: [Vec<f64>; 2],
+    power: PowerBalance,
 }
 
 impl RevolutionLoads {
@@ -420,32 +428,51 @@ impl RevolutionLoads {
     ) -> Result<Self, ResponseError> {
         let mut samples = samples.clone();
         settle_accelerations(rotor, time, system, (&mut samples, 1e-14))?;
-        Ok(Self::summed(rotor, system, &samples))
+        Self::summed(rotor, time, system, &samples)
     }
 
     /// Force summation of a motion as it is.
     pub(crate) fn summed(
         rotor: &Rotor,
+        time: &TimeElements,
         system: &ResponseSystem<'_>,
         samples: &OrbitSamples,
-    ) -> Self {
-        let revolution = system.revolution(samples);
+    ) -> Result<Self, ResponseError> {
+        let revolution = system.revolution(samples)?;
         let blade = &rotor.blade;
         let first = system.air.first_station();
         let mut root = Vec::with_capacity(revolution.motions.len());
         let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model.flaps.len()];
         let mut bending = [Vec::new(), Vec::new()];
         let mut loads = SpanLoads::default();
+        let mut balance = PowerBalance::default();
+        let weights = unit_weights(time);
         for (p, motion) in revolution.motions.iter().enumerate() {
-            let sections = system.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
+            let sections = system.section_loads(p, &revolution.flows[p], &revolution.pasts[p]);
             system.span_loads(p, motion, &sections, &mut loads);
             let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
             let pitch = system.points[p].air.pitch;
             let state = BladeState { motion, pitch, loads: &loads };
-            root.push(root_loads(blade, state, &aerodynamic));
+            let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
+            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
+            let (at_root, axial) = match &blade.modal {
+                Some(modal) => {
+                    let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
+                    let found = modal.loads(coordinates, pitch.into());
+                    let at_root = moderate_root_loads(blade, state, &found);
+                    let ModalLoads { axial: value, axial_rate: rate, pitch_moment, .. } = found;
+                    (at_root, AxialMotion { value, rate, pitch_moment })
+                }
+                None => {
+                    let axial = AxialMotion::inextensional(blade, motion, pitch);
+                    (root_loads(blade, state, &aerodynamic), axial)
+                }
+            };
+            root.push(at_root);
+            let damped = qd.iter().zip(&rotor.damping).map(|(rate, c)| c * rate * rate).sum();
+            balance.add(weights[p], &power(blade, state, &axial, damped, at_root[5]));
             let couplings = rotor.model.couplings;
             bending[0].push(root_flap_moment(blade, couplings, motion, &loads));
-            let q: Vec<f64> = samples.q.column(p).iter().copied().collect();
             bending[1].push(root_flap_curvature_moment(blade, couplings, &q, pitch.angle));
             let moments = system.hinge_moments(p, motion, &sections);
             for (k, history) in hinge.iter_mut().enumerate() {
@@ -454,7 +481,7 @@ impl RevolutionLoads {
                 }
             }
         }
-        Self { root, hinge, bending }
+        Ok(Self { root, hinge, bending, power: balance })
     }
 
     fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {

@@ -37,6 +37,12 @@ pub(crate) struct SpanLoads {
 }
 
 impl SpanLoads {
+    /// Force along the undeformed blade at a station: loads stand normal to the deflected blade.
+    pub(crate) fn fx(&self, motion: &Motion, station: usize) -> f64 {
+        -motion.w.slope[station] * self.fz[station] - motion.v.slope[station] * self.fy[station]
+            + self.axial[station]
+    }
+
     /// No loads at `n` stations.
     pub(crate) fn clear(&mut self, n: usize) {
         let [slope_v, slope_w] = &mut self.slope;
@@ -118,16 +124,11 @@ pub(crate) fn moderate_residual(
     out: &mut [f64],
 ) {
     let BladeState { motion, pitch, loads } = state;
-    let root =
-        PitchMotion { angle_rad: pitch.angle, rate: pitch.rate, acceleration: pitch.acceleration };
+    let root = PitchMotion::from(pitch);
     let coordinates = ModalMotion { value: q, rate: qd, acceleration: qdd };
     let blade = modal.force(coordinates, root).generalised;
     let applied: Vec<[f64; 4]> = (0..loads.fz.len())
-        .map(|i| {
-            let (fy, fz) = (loads.fy[i], loads.fz[i]);
-            let fx = -motion.w.slope[i] * fz - motion.v.slope[i] * fy + loads.axial[i];
-            [fx, fy, fz, loads.moment[i]]
-        })
+        .map(|i| [loads.fx(motion, i), loads.fy[i], loads.fz[i], loads.moment[i]])
         .collect();
     let work = modal.applied(q, root, &applied);
     for (i, value) in out.iter_mut().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::ResponseError;
 use crate::air::{
-    AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, section_flow, section_loads,
+    AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, SectionPast, section_flow,
 };
 use crate::blade::{Couplings, FlapMass, ResponseBlade};
 use crate::flap_inertia::FlapSection;
@@ -49,8 +49,8 @@ pub(crate) struct Revolution {
     pub(crate) motions: Vec<Motion>,
     /// By point and lifting station.
     pub(crate) flows: Vec<Vec<SectionFlow>>,
-    /// Lag part of lift, moment and hinge moment, by point and lifting station.
-    pub(crate) lags: Vec<Vec<[f64; 3]>>,
+    /// What the past adds to the loads, by point and lifting station.
+    pub(crate) pasts: Vec<Vec<SectionPast>>,
 }
 
 /// Reusable arrays of one evaluation.
@@ -89,7 +89,10 @@ impl ResponseSystem<'_> {
     }
 
     /// Motion, flow and aerodynamic lag loads over the whole revolution.
-    pub(crate) fn revolution(&self, samples: &OrbitSamples) -> Revolution {
+    ///
+    /// # Errors
+    /// [`ResponseError::StallNotPeriodic`].
+    pub(crate) fn revolution(&self, samples: &OrbitSamples) -> Result<Revolution, ResponseError> {
         let points = self.points.len();
         let mut motions = vec![Motion::default(); points];
         let mut flows = Vec::with_capacity(points);
@@ -97,8 +100,8 @@ impl ResponseSystem<'_> {
             self.fill(motion, samples, p);
             flows.push(self.flows(p, motion));
         }
-        let lags = self.air.lag_loads(&flows);
-        Revolution { motions, flows, lags }
+        let pasts = self.air.pasts(&flows)?;
+        Ok(Revolution { motions, flows, pasts })
     }
 
     /// Motion of the blade at one point.
@@ -107,20 +110,27 @@ impl ResponseSystem<'_> {
         motion.fill(self.blade, &column(&samples.q), &column(&samples.qd), &column(&samples.qdd));
     }
 
+    /// Aerodynamic section loads of one point with everything that remembers settled on its flow.
+    pub(crate) fn settled_sections(
+        &self,
+        point: usize,
+        flows: &[SectionFlow],
+    ) -> Vec<SectionLoads> {
+        self.section_loads(point, flows, &self.air.settled_pasts(point, flows))
+    }
+
     /// Aerodynamic section loads at the lifting stations of one point.
     pub(crate) fn section_loads(
         &self,
         point: usize,
         flows: &[SectionFlow],
-        lags: &[[f64; 3]],
+        pasts: &[SectionPast],
     ) -> Vec<SectionLoads> {
         flows
             .iter()
-            .zip(lags)
+            .zip(pasts)
             .enumerate()
-            .map(|(s, (flow, &lag))| {
-                section_loads(self.scales, flow, self.air.prompt(s, point), lag)
-            })
+            .map(|(s, (flow, past))| self.air.loads(self.scales, (s, point), flow, past))
             .collect()
     }
 
@@ -226,7 +236,7 @@ impl ResponseSystem<'_> {
     ) -> Vec<f64> {
         motion.fill(self.blade, q, qd, qdd);
         let flows = self.flows(point, motion);
-        let sections = self.section_loads(point, &flows, &self.air.settled_loads(point, &flows));
+        let sections = self.settled_sections(point, &flows);
         self.span_loads(point, motion, &sections, &mut scratch.loads);
         let mut out = vec![0.0; q.len()];
         self.project(point, (motion, [q, qd, qdd]), scratch, &mut out);
@@ -270,11 +280,11 @@ impl PeriodicSystem for ResponseSystem<'_> {
     }
 
     fn residual(&self, samples: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Self::Error> {
-        let revolution = self.revolution(samples);
+        let revolution = self.revolution(samples)?;
         let mut scratch = Scratch::default();
         let mut column = vec![0.0; self.dof()];
         for (p, motion) in revolution.motions.iter().enumerate() {
-            let sections = self.section_loads(p, &revolution.flows[p], &revolution.lags[p]);
+            let sections = self.section_loads(p, &revolution.flows[p], &revolution.pasts[p]);
             self.span_loads(p, motion, &sections, &mut scratch.loads);
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);

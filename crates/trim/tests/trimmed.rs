@@ -5,8 +5,8 @@
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow, Rotor,
-    RotorModel, RotorSolver,
+    Compressibility, Controls, Couplings, Discretisation, NonlinearSections, ResponseTolerances,
+    ReverseFlow, Rotor, RotorModel, RotorSolver,
 };
 use rotor_wake::LinearInflow;
 use std::sync::Arc;
@@ -30,6 +30,7 @@ fn solver(advance_ratio: f64) -> RotorSolver {
         compressibility: Compressibility::None,
         reverse_flow: ReverseFlow::default(),
         flaps: vec![],
+        nonlinear: NonlinearSections::default(),
     };
     let rotor = Rotor::new(model, &blade, Discretisation::default()).unwrap();
     RotorSolver::new(Arc::new(rotor), advance_ratio, ResponseTolerances::default()).unwrap()

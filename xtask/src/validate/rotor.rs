@@ -6,8 +6,9 @@ use std::sync::Arc;
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
-    ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
+    Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads,
+    hub_loads,
 };
 use rotor_wake::{FlightState, InflowModel, LinearInflow};
 
@@ -157,6 +158,7 @@ pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel 
         compressibility: Compressibility::None,
         reverse_flow: ReverseFlow::default(),
         flaps: vec![],
+        nonlinear: NonlinearSections::default(),
     }
 }
 

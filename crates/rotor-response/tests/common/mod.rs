@@ -5,8 +5,8 @@ use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::HarmonicSeries;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, ResponseTolerances,
-    ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
+    Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
 };
 use rotor_wake::FlightState;
 use std::sync::Arc;
@@ -38,6 +38,7 @@ pub(crate) fn paper_model(couplings: Couplings) -> RotorModel {
         compressibility: Compressibility::None,
         reverse_flow: ReverseFlow::default(),
         flaps: vec![],
+        nonlinear: NonlinearSections::default(),
     }
 }
 

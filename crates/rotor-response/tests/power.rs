@@ -1,0 +1,79 @@
+//! Power of a blade over a revolution: what the air takes, the shaft gives.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![expect(clippy::print_stdout, reason = "the measured balance is worth seeing")]
+
+mod common;
+
+use common::{paper_blade, paper_flaps, paper_model};
+use flap_aero::AttachedFlowModel;
+use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_fem::TorsionTerms;
+use rotor_response::{
+    Compressibility, Condition, Controls, Couplings, Discretisation, PowerBalance,
+    ResponseTolerances, Rotor, RotorModel, RotorSolver,
+};
+use rotor_wake::{FlightState, LinearInflow};
+use std::sync::Arc;
+
+/// Forward flight at mu .3 with controls near trim.
+fn balance(
+    model: RotorModel,
+    time_elements: usize,
+    flap_angles: &[HarmonicSeries],
+) -> PowerBalance {
+    let discretisation = Discretisation { time_elements, ..Discretisation::default() };
+    let rotor = Rotor::new(model, &paper_blade(), discretisation).unwrap();
+    let mut solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
+    let deg = f64::to_radians;
+    let condition = Condition {
+        flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: deg(5.5) },
+        controls: Controls { theta0_rad: deg(8.7), theta1c_rad: deg(1.7), theta1s_rad: deg(-5.3) },
+        flap_angles_rad: flap_angles.to_vec(),
+    };
+    let solution = solver.solve(&condition, &LinearInflow::Drees, None).unwrap();
+    println!("{:?}, imbalance {:.3e}", solution.power, solution.power.imbalance());
+    solution.power
+}
+
+fn moderate() -> RotorModel {
+    paper_model(Couplings::Moderate(TorsionTerms::default()))
+}
+
+/// Air, damping, shaft and pitch control add up to nothing, the better the finer the time elements.
+#[test]
+fn power_of_the_moderately_deflected_blade_balances() {
+    let model = || RotorModel {
+        section_model: AttachedFlowModel::HariharanLeishman,
+        compressibility: Compressibility::LocalMach { tip_mach: 0.58 },
+        ..moderate()
+    };
+    let imbalance = |elements| balance(model(), elements, &[]).imbalance().abs();
+    let [six, eight, twelve] = [6, 8, 12].map(imbalance);
+    assert!(eight <= 1e-5, "{eight:e}");
+    assert!(six > eight && eight > twelve, "{six:e} {eight:e} {twelve:e}");
+    let power = balance(model(), 8, &[]);
+    // every part is seen by the bound
+    for part in [power.aerodynamic, power.damping, power.shaft, power.pitch] {
+        assert!(part.abs() > 5e-5 * power.shaft.abs(), "{power:?}");
+    }
+    assert!(power.aerodynamic < 0.0 && power.shaft > 0.0 && power.damping < 0.0);
+}
+
+/// Moving flaps are part of the loads: their inertia too.
+#[test]
+fn power_balances_with_moving_flaps() {
+    let model = RotorModel { flaps: paper_flaps(), ..moderate() };
+    let mut angle = HarmonicSeries::zero(3);
+    angle.set_harmonic(3, Harmonic { cosine: 0.05, sine: 0.02 });
+    let power = balance(model, 8, &[angle.clone(), angle]);
+    assert!(power.imbalance().abs() <= 2e-5, "{power:?}");
+}
+
+/// The second-order couplings leave terms out of the equations that the root loads hold: how much, is
+/// their own error.
+#[test]
+fn the_second_order_couplings_balance_to_their_own_order() {
+    let power = balance(paper_model(Couplings::Full), 8, &[]);
+    let error = power.imbalance().abs();
+    assert!(error > 1e-5 && error < 2e-2, "{power:?}");
+}
