@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::element::element_matrices;
 use crate::shape::{ELEMENT_DOF, JOINT_DOF, Rows, STRIDE};
-use crate::{BladeProperties, FemError, ModeKind, RootCondition};
+use crate::{BladeProperties, FemError, ModeKind, RootSupport};
 
 /// Largest number of elements; dense algebra grows with its cube.
 pub(crate) const MAX_ELEMENTS: usize = 200;
@@ -56,7 +56,7 @@ pub struct SectionMotion {
 /// ```
 /// An n-element blade has 9 n + 6 degrees of freedom. Joint j, counted from the root, holds
 /// `u v v' w w' phi` at 9 j + 0..=5; element e holds `u(1/3) u(2/3) phi(1/2)` at 9 e + 6..=8. A clamped
-/// root removes the first six (9 n left), a hinged root keeps v' and w' (9 n + 2).
+/// root removes the first six (9 n left), a hinged root keeps v' and w' (9 n + 2), a pitch bearing phi.
 ///
 /// Rotor units: length R, mass m0 R, time 1/Omega.
 #[derive(Debug, Clone)]
@@ -81,7 +81,7 @@ impl BladeModel {
             mass: DMatrix::zeros(size, size),
             stiffness: DMatrix::zeros(size, size),
             gyroscopic: DMatrix::zeros(size, size),
-            free: free_dof(properties.spec().root, size),
+            free: properties.spec().root.free_dof(size),
             properties,
             edges,
         };
@@ -96,6 +96,10 @@ impl BladeModel {
                 let mut window = global.view_mut(at, shape);
                 window += part;
             }
+        }
+        let springs = model.properties.spec().root.springs();
+        for (place, spring) in RootSupport::PLACES.into_iter().zip(springs) {
+            model.stiffness[(place, place)] += spring;
         }
         Ok(model)
     }
@@ -177,15 +181,6 @@ pub(crate) fn dof_kind(index: usize) -> ModeKind {
         3 | 4 => ModeKind::Flap,
         _ => ModeKind::Torsion,
     }
-}
-
-/// Degrees of freedom the root leaves free.
-fn free_dof(root: RootCondition, size: usize) -> Vec<usize> {
-    let hinges: &[usize] = match root {
-        RootCondition::Clamped => &[],
-        RootCondition::Hinged => &[2, 4],
-    };
-    hinges.iter().copied().chain(JOINT_DOF..size).collect()
 }
 
 /// The rows and columns `keep` of a square matrix.

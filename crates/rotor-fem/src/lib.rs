@@ -50,6 +50,7 @@ mod periodic_error;
 mod periodic_system;
 mod properties;
 mod renewal;
+mod root_support;
 mod shape;
 mod time_elements;
 
@@ -62,16 +63,17 @@ pub use linear_response::LinearResponse;
 pub use mode_kind::ModeKind;
 pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
 pub use moderate::{
-    AxialMotion, FreeMotion, Joint, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape,
+    AxialMotion, FreeMotion, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape,
     ModalTangent, ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion,
-    PitchMotion, RootSupport, RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents,
-    TorsionTerms, TwistAngle, Untwist, deflected_fan, deflected_modes,
+    PitchMotion, RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, TorsionTerms,
+    TwistAngle, Untwist, deflected_fan, deflected_modes,
 };
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
 pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
 pub use periodic_error::PeriodicError;
 pub use periodic_system::{LocalTangent, PeriodicSystem};
-pub use properties::{BladeProperties, BladeSpec, RootCondition, Twist};
+pub use properties::{BladeProperties, BladeSpec, Twist};
+pub use root_support::{Joint, RootSupport};
 pub use time_elements::{Orbit, OrbitSamples, TimeElements};
 
 #[cfg(doctest)]

@@ -3,17 +3,7 @@
 use rotor_base::gauss_legendre;
 
 use crate::distribution::Allowed;
-use crate::{Distribution, FemError};
-
-/// How the blade is held at its root.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum RootCondition {
-    /// No displacement, no slope, no twist.
-    Clamped,
-    /// Coincident flap and lag hinges at the root offset; no displacement and no twist.
-    Hinged,
-}
+use crate::{Distribution, FemError, RootSupport};
 
 /// Built-in twist along the radius, rad, nose up positive.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,8 +81,8 @@ pub struct BladeSpec {
     pub precone_rad: f64,
     /// Radial station of the blade's root; the tip is at 1, and nothing moves or weighs inboard.
     pub root_offset: f64,
-    /// Root condition.
-    pub root: RootCondition,
+    /// How the root is held.
+    pub root: RootSupport,
     /// Rotor speed over the nominal one that the rotor units refer to.
     pub rotor_speed: f64,
 }
@@ -123,7 +113,7 @@ impl BladeSpec {
             pitch_rad: 0.0,
             precone_rad: 0.0,
             root_offset: 0.0,
-            root: RootCondition::Clamped,
+            root: RootSupport::CLAMPED,
             rotor_speed: 1.0,
         }
     }
@@ -157,6 +147,7 @@ impl BladeProperties {
                 return Err(FemError::Parameter { field, value, expected });
             }
         }
+        spec.root.check()?;
         let root = spec.root_offset;
         let fields = [
             ("flap_stiffness", &spec.flap_stiffness, Allowed::Positive),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use rotor_fem::{
-    BladeModel, BladeProperties, BladeSpec, GyroscopicTerms, ModeCount, ModeKind, RootCondition,
+    BladeModel, BladeProperties, BladeSpec, GyroscopicTerms, ModeCount, ModeKind, RootSupport,
     Twist, UncoupledMode, fan_plot, modes, uncoupled_modes,
 };
 
@@ -144,7 +144,7 @@ fn torsion_meets_its_closed_form() {
 }
 
 /// The beam of length L on a hub of radius e, in units of the tip radius R = L + e.
-fn rotating_beam(root: RootCondition, offset_over_length: f64, eta: f64) -> BladeProperties {
+fn rotating_beam(root: RootSupport, offset_over_length: f64, eta: f64) -> BladeProperties {
     let radius = 1.0 + offset_over_length;
     let stiffness = radius.powi(-4);
     blade(BladeSpec {
@@ -161,14 +161,14 @@ fn rotating_beams_meet_the_exact_table() {
     let mut rows = 0;
     for row in table("rotating_beam_exact.csv") {
         let root = match row[0].as_str() {
-            "clamped" => RootCondition::Clamped,
-            "hinged" => RootCondition::Hinged,
+            "clamped" => RootSupport::CLAMPED,
+            "hinged" => RootSupport::HINGED,
             other => panic!("unknown root {other}"),
         };
         let numbers: Vec<f64> = row[1..].iter().map(|v| v.parse().unwrap()).collect();
         let (offset, eta, exact) = (numbers[0], numbers[1], &numbers[2..]);
         // at rest the hinged beam's rigid mode, frequency 0, is not in the table
-        let skip = usize::from(root == RootCondition::Hinged && eta == 0.0);
+        let skip = usize::from(root == RootSupport::HINGED && eta == 0.0);
         let count = ModeCount { flap: 5 + skip, lag: 0, torsion: 0, axial: 0 };
         let set = uncoupled_modes(&rotating_beam(root, offset, eta), 24, count).unwrap();
         let got: Vec<f64> = set.modes().iter().map(UncoupledMode::frequency).collect();
@@ -185,7 +185,7 @@ fn rotating_beams_meet_the_exact_table() {
 #[test]
 fn a_hinged_blade_flaps_rigidly_once_per_rev() {
     for speed in [0.5, 1.0, 1.2] {
-        let spec = BladeSpec { root: RootCondition::Hinged, rotor_speed: speed, ..table_1() };
+        let spec = BladeSpec { root: RootSupport::HINGED, rotor_speed: speed, ..table_1() };
         let count = ModeCount { flap: 1, lag: 1, torsion: 0, axial: 0 };
         let set = uncoupled_modes(&blade(spec), 10, count).unwrap();
         let [flap, lag] = set.modes() else { panic!("two modes") };
@@ -205,7 +205,7 @@ fn a_hinged_blade_flaps_rigidly_once_per_rev() {
 fn precone_weakens_the_centrifugal_spring() {
     let b = 0.2_f64;
     let spec = BladeSpec {
-        root: RootCondition::Hinged,
+        root: RootSupport::HINGED,
         precone_rad: b,
         flap_stiffness: 1.0.into(),
         lag_stiffness: 1.0.into(),

@@ -8,7 +8,7 @@ use proptest::test_runner::RngSeed;
 use rotor_base::gauss_legendre;
 use rotor_fem::{
     BladeModel, BladeProperties, BladeSpec, Distribution, FemError, GyroscopicTerms, ModeCount,
-    ModeKind, RootCondition, Twist, UncoupledMode, modes, uncoupled_modes,
+    ModeKind, RootSupport, Twist, UncoupledMode, modes, uncoupled_modes,
 };
 
 fn uniform() -> BladeSpec {
@@ -63,7 +63,7 @@ fn sizes_follow_the_element() {
         let clamped = model(uniform(), n);
         assert_eq!(clamped.mass().nrows(), 9 * n + 6);
         assert_eq!(clamped.free().len(), 9 * n);
-        let hinged = model(BladeSpec { root: RootCondition::Hinged, ..uniform() }, n);
+        let hinged = model(BladeSpec { root: RootSupport::HINGED, ..uniform() }, n);
         assert_eq!(hinged.free().len(), 9 * n + 2);
     }
 }
@@ -269,7 +269,7 @@ fn the_mode_set_is_normalised_ordered_and_orthogonal() {
 #[test]
 fn a_lag_hinge_on_the_axis_is_neutral() {
     for elements in 3..=10 {
-        let hinged = model(BladeSpec { root: RootCondition::Hinged, ..uniform() }, elements);
+        let hinged = model(BladeSpec { root: RootSupport::HINGED, ..uniform() }, elements);
         let count = ModeCount { flap: 1, lag: 2, torsion: 0, axial: 0 };
         for terms in [GyroscopicTerms::Neglected, GyroscopicTerms::Included] {
             let found = modes(&hinged, terms, count).unwrap();
@@ -301,8 +301,7 @@ fn refusals_say_what_to_do() {
         assert!(matches!(set.sample(&[0.5, station]), Err(FemError::Station { .. })));
     }
     // a lag hinge on the axis of a preconed rotor turns over
-    let preconed =
-        model(BladeSpec { root: RootCondition::Hinged, precone_rad: 0.2, ..uniform() }, 5);
+    let preconed = model(BladeSpec { root: RootSupport::HINGED, precone_rad: 0.2, ..uniform() }, 5);
     let error = modes(&preconed, GyroscopicTerms::Included, ModeCount::default()).unwrap_err();
     let FemError::NotStable { squared_frequency } = error else { panic!("{error}") };
     assert!((squared_frequency + 0.2_f64.sin().powi(2)).abs() < 1e-6, "{squared_frequency}");

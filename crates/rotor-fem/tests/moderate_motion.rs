@@ -11,12 +11,11 @@ fn model() -> ModerateModel {
     let spec = ModerateSpec {
         mass_centre: (-0.004).into(),
         tension_centre: 0.003.into(),
-        root: RootSupport {
-            flap: Joint::Locked,
-            lag: Joint::Locked,
-            feather: Joint::Spring { stiffness: 0.02 },
-        },
         ..BladeSpec {
+            root: RootSupport {
+                feather: Joint::Spring { stiffness: 0.02 },
+                ..RootSupport::CLAMPED
+            },
             twist: Twist::Linear { rate_rad: -0.14 },
             pitch_rad: 0.14,
             precone_rad: 0.03,

@@ -30,6 +30,12 @@ fn unit_beam(axial_stiffness: f64) -> ModerateSpec {
     BladeSpec { rotor_speed: 0.0, ..BladeSpec::uniform(1.0, 3.0, 1.0, axial_stiffness) }.into()
 }
 
+/// The unit beam with another root.
+fn held_by(root: RootSupport) -> ModerateSpec {
+    let spec = unit_beam(1e4);
+    ModerateSpec { blade: BladeSpec { root, ..spec.blade.clone() }, ..spec }
+}
+
 /// In a plane the energy is linear but for the foreshortening: P L^3 / 3 EI whatever the load, and a
 /// shortening of half the squared slopes.
 #[test]
@@ -140,12 +146,15 @@ fn the_deflected_rotating_blade_is_in_balance() {
     let spec = ModerateSpec {
         mass_centre: (-0.004).into(),
         tension_centre: 0.003.into(),
-        root: RootSupport {
-            flap: Joint::Spring { stiffness: 0.05 },
-            lag: Joint::Spring { stiffness: 0.1 },
-            feather: Joint::Spring { stiffness: 0.01 },
-        },
-        ..rotating().into()
+        ..BladeSpec {
+            root: RootSupport {
+                flap: Joint::Spring { stiffness: 0.05 },
+                lag: Joint::Spring { stiffness: 0.1 },
+                feather: Joint::Spring { stiffness: 0.01 },
+            },
+            ..rotating()
+        }
+        .into()
     };
     let model = model(spec, 10);
     let load = model.distributed_load(|x| [0.0, -1e-3 * x, 8e-3 * x * x, -2e-6]);
@@ -182,14 +191,11 @@ fn the_deflected_rotating_blade_is_in_balance() {
 /// Feathering against a soft pitch link: a tip moment turns the whole blade by M (1/k + L/GJ).
 #[test]
 fn pitch_link_and_hinge_springs_carry_their_moments() {
-    let spec = ModerateSpec {
-        root: RootSupport {
-            flap: Joint::Spring { stiffness: 2.0 },
-            lag: Joint::Locked,
-            feather: Joint::Spring { stiffness: 0.5 },
-        },
-        ..unit_beam(1e4)
-    };
+    let spec = held_by(RootSupport {
+        flap: Joint::Spring { stiffness: 2.0 },
+        lag: Joint::Locked,
+        feather: Joint::Spring { stiffness: 0.5 },
+    });
     let beam = model(spec, 3);
     let twisted = solve(&beam, &beam.tip_load([0.0; 3], 1e-3));
     assert!((tip(&beam, &twisted)[3] - 3e-3).abs() < 1e-9);
@@ -218,14 +224,15 @@ fn hinges_and_bearing_turn_to_their_closed_equilibria() {
             root_offset: 0.1,
             precone_rad,
             pitch_rad,
+            root,
             ..BladeSpec::uniform(50.0, 50.0, 50.0, 1e5)
         };
-        let model = model(ModerateSpec { mass_centre: offset.into(), root, ..blade.into() }, 6);
+        let model = model(ModerateSpec { mass_centre: offset.into(), ..blade.into() }, 6);
         let state = solve(&model, &DVector::zeros(model.size()));
         let s = model.section(&state.dof, 0.1).unwrap();
         [s.lag[1], s.flap[1], s.twist[0]]
     };
-    let held = RootSupport { flap: Joint::Locked, lag: Joint::Locked, feather: Joint::Locked };
+    let held = RootSupport::CLAMPED;
     // lag hinge: the mass centre of the whole blade lies on the radius through the hinge
     let [lag, _, _] = stiff(RootSupport { lag: Joint::FREE, ..held }, 0.004, 0.0, 0.0);
     assert!((lag / (-2.0 * 0.004 / 0.9) - 1.0).abs() < 3e-3, "{lag}");
@@ -243,10 +250,7 @@ fn hinges_and_bearing_turn_to_their_closed_equilibria() {
 #[test]
 fn a_static_state_that_is_not_found_is_reported_with_the_last_good_one() {
     // a free hinge without rotation carries no load
-    let spec = ModerateSpec {
-        root: RootSupport { flap: Joint::FREE, lag: Joint::Locked, feather: Joint::Locked },
-        ..unit_beam(1e4)
-    };
+    let spec = held_by(RootSupport { flap: Joint::FREE, ..RootSupport::CLAMPED });
     let beam = model(spec, 3);
     let failed = beam
         .static_state(&beam.tip_load([0.0, 0.0, 0.1], 0.0), &StaticSettings::default())
@@ -288,13 +292,13 @@ fn bad_blades_and_settings_are_named_with_the_remedy() {
         (ModerateSpec { tension_centre: disorder, ..good() }, &["tension_centre", "sort"]),
         (ModerateSpec { mass_centre: 0.03.into(), ..good() }, &["chord_gyration_radius", "square"]),
         (
-            ModerateSpec {
+            blade(BladeSpec {
                 root: RootSupport {
                     feather: Joint::Spring { stiffness: -1.0 },
-                    ..rotating().root.into()
+                    ..RootSupport::CLAMPED
                 },
-                ..good()
-            },
+                ..rotating()
+            }),
             &["root.feather.stiffness", "below zero"],
         ),
     ];

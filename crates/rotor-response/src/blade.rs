@@ -136,6 +136,8 @@ pub struct ResponseBlade {
     /// Undamped frequencies per rev and modal masses, in the order flap, lag, torsion.
     pub(crate) frequencies: Vec<f64>,
     pub(crate) modal_masses: Vec<f64>,
+    /// Stiffness of the springs at the root on the modal coordinates.
+    pub(crate) root_spring: DMatrix<f64>,
     /// Flap curvature of every flap mode at the root, for the bending moment there.
     pub(crate) root_flap_curvature: Vec<f64>,
     /// Lag curvature of every lag mode at the root.
@@ -224,6 +226,7 @@ impl ResponseBlade {
             torsion: family(ModeKind::Torsion)?,
             frequencies: modes.modes().iter().map(UncoupledMode::frequency).collect(),
             modal_masses: modes.modes().iter().map(UncoupledMode::modal_mass).collect(),
+            root_spring: root_springs(properties, &modes)?,
             root_flap_curvature: root_curvature(ModeKind::Flap)?,
             root_lag_curvature: root_curvature(ModeKind::Lag)?,
             root_stiffness: [properties.flap_stiffness(root), properties.lag_stiffness(root)],
@@ -311,6 +314,36 @@ impl ResponseBlade {
     pub fn frequencies_per_rev(&self) -> &[f64] {
         &self.frequencies
     }
+}
+
+/// Stiffness of the springs at the root on the modal coordinates: one line for each of the joints.
+///
+/// ```text
+/// K_ij = k s_i s_j,   s_i the slope (twist) of mode i at the root
+/// ```
+fn root_springs(
+    properties: &BladeProperties,
+    modes: &ModeSet,
+) -> Result<DMatrix<f64>, ResponseError> {
+    let root = properties.spec().root_offset;
+    let [lag, flap, feather] = properties.spec().root.springs();
+    let rotations = modes
+        .modes()
+        .iter()
+        .map(|mode| {
+            let shape = mode.shape(root)?;
+            Ok(match mode.kind() {
+                ModeKind::Flap => (mode.kind(), flap, shape[1]),
+                ModeKind::Lag => (mode.kind(), lag, shape[1]),
+                _ => (mode.kind(), feather, shape[0]),
+            })
+        })
+        .collect::<Result<Vec<_>, ResponseError>>()?;
+    let count = rotations.len();
+    Ok(DMatrix::from_fn(count, count, |i, j| {
+        let ((kind, spring, a), (other, _, b)) = (rotations[i], rotations[j]);
+        if kind == other { spring * a * b } else { 0.0 }
+    }))
 }
 
 /// The blade with moderate deflections in the coordinates of the uncoupled modes.

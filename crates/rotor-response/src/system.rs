@@ -217,7 +217,12 @@ impl ResponseSystem<'_> {
         let state = BladeState { motion, pitch, loads };
         match &self.blade.modal {
             Some(modal) => moderate_residual(modal, self.mass, state, coordinates, out),
-            None => modal_residual(self.blade, self.couplings, state, structure, out),
+            None => {
+                modal_residual(self.blade, self.couplings, state, structure, out);
+                for (o, springs) in out.iter_mut().zip(self.blade.root_spring.row_iter()) {
+                    *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
+                }
+            }
         }
         if self.blade.flaps_beside_blade() {
             subtract_slope_work(self.blade, loads, out);

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{paper_blade, paper_model};
-use rotor_fem::{BladeProperties, BladeSpec, ModeKind};
+use rotor_fem::{BladeProperties, BladeSpec, Joint, ModeKind, RootSupport, TorsionTerms};
 use rotor_response::{
     Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
     RotorSolver, Stability,
@@ -31,7 +31,7 @@ fn stability(model: RotorModel, blade: &BladeProperties, modes: [usize; 3], mu: 
 #[test]
 fn hovering_blade_flaps_with_a_sixteenth_of_the_lock_number() {
     let blade = BladeProperties::new(BladeSpec {
-        root: rotor_fem::RootCondition::Hinged,
+        root: RootSupport::HINGED,
         ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
     })
     .unwrap();
@@ -73,4 +73,24 @@ fn a_blade_in_vacuum_without_damping_neither_grows_nor_dies() {
         RotorModel { lock_number: 0.0, modal_damping: 0.0, ..paper_model(Couplings::Linear) };
     let result = stability(model, &paper_blade(), [2, 2, 1], 0.0);
     assert!(result.motions.iter().all(|m| m.growth_per_rad.abs() < 1e-9), "{:?}", result.motions);
+}
+
+/// A spring at the flap hinge raises the frequency of a rigid blade: `nu^2 = 1 + 3 k`, in the second-order
+/// equations and in those of moderate deflection alike.
+#[test]
+fn a_hinge_spring_stiffens_the_flapping_blade() {
+    let nu = 1.125_789_21_f64;
+    let spring = Joint::Spring { stiffness: (nu * nu - 1.0) / 3.0 };
+    let blade = BladeProperties::new(BladeSpec {
+        root: RootSupport { flap: spring, ..RootSupport::CLAMPED },
+        ..BladeSpec::uniform(1e3, 1e3, 1e3, 1e6)
+    })
+    .unwrap();
+    for couplings in
+        [Couplings::Linear, Couplings::Full, Couplings::Moderate(TorsionTerms::default())]
+    {
+        let model = RotorModel { lock_number: 1e-9, modal_damping: 0.0, ..paper_model(couplings) };
+        let motion = stability(model, &blade, [1, 0, 0], 0.0).motions[0];
+        assert!((motion.frequency_per_rev - (nu - 1.0)).abs() < 1e-5, "{couplings:?} {motion:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Rotating frequencies of the blade.
 
 use rotor_fem::{
-    BladeModel, BladeProperties, BladeSpec, GyroscopicTerms, ModeCount, ModeKind, RootCondition,
+    BladeModel, BladeProperties, BladeSpec, GyroscopicTerms, ModeCount, ModeKind, RootSupport,
     modes, uncoupled_modes,
 };
 
@@ -56,7 +56,7 @@ pub(super) const AREA: Area = Area {
             source: "exact series, rotating_beam_exact.csv",
             criterion: Criterion::AtMost(0.05),
             repeatability: Repeatability::Everywhere,
-            measure: || rotating_beams("clamped", RootCondition::Clamped),
+            measure: || rotating_beams("clamped", RootSupport::CLAMPED),
         },
         Check {
             id: "V-FEM-06",
@@ -66,7 +66,7 @@ pub(super) const AREA: Area = Area {
             source: "exact series, rotating_beam_exact.csv",
             criterion: Criterion::AtMost(0.05),
             repeatability: Repeatability::Everywhere,
-            measure: || rotating_beams("hinged", RootCondition::Hinged),
+            measure: || rotating_beams("hinged", RootSupport::HINGED),
         },
         Check {
             id: "V-FEM-07",
@@ -134,7 +134,7 @@ fn first_torsion() -> Result<f64, CheckError> {
 
 /// Largest error over the rows of one root condition, %. The table's unit of length is the length L of
 /// the beam, the crate's the tip radius R = L + e.
-fn rotating_beams(name: &str, root: RootCondition) -> Result<f64, CheckError> {
+fn rotating_beams(name: &str, root: RootSupport) -> Result<f64, CheckError> {
     let table = Table::read("rotor/rotating_beam_exact.csv")?;
     let mut errors = Vec::new();
     for row in table.rows() {
@@ -151,7 +151,7 @@ fn rotating_beams(name: &str, root: RootCondition) -> Result<f64, CheckError> {
             ..BladeSpec::uniform(stiffness, stiffness, 1.0, 1e4)
         })?;
         // the rigid motion of a hinged beam at rest is not in the table
-        let rigid = usize::from(root == RootCondition::Hinged && eta == 0.0);
+        let rigid = usize::from(root == RootSupport::HINGED && eta == 0.0);
         let count = ModeCount { flap: 5 + rigid, lag: 0, torsion: 0, axial: 0 };
         let set = uncoupled_modes(&blade, 20, count)?;
         for (number, mode) in set.modes().iter().skip(rigid).enumerate() {

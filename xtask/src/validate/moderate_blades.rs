@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rotor_fem::{BladeSpec, Distribution, Joint, ModerateSpec, RootSupport};
+use rotor_fem::{BladeSpec, Distribution, ModerateSpec, RootSupport};
 
 use super::CheckError;
 use super::reference::{Table, TableRow};
@@ -77,13 +77,10 @@ pub(super) fn tm_4760_blade() -> Result<ModerateSpec, CheckError> {
             Ok(((flap + chord) / row.number("A_in2")?).sqrt() / radius)
         })?,
         root_offset: 3.0 / radius,
+        root: RootSupport::HINGED,
         ..BladeSpec::uniform(1.0, 1.0, 1.0, 1.0)
     };
-    Ok(ModerateSpec {
-        mass_centre: steps(&offset)?,
-        root: RootSupport { flap: Joint::FREE, lag: Joint::FREE, feather: Joint::Locked },
-        ..blade.into()
-    })
+    Ok(ModerateSpec { mass_centre: steps(&offset)?, ..blade.into() })
 }
 
 /// Rotor speed that the units of [`epps_chandra_strip`] refer to, rpm.

@@ -1,58 +1,10 @@
 //! What the moderately deflected blade is made of.
 
 use crate::distribution::Allowed;
-use crate::{BladeProperties, BladeSpec, Distribution, FemError, RootCondition};
+use crate::{BladeProperties, BladeSpec, Distribution, FemError};
 
 use super::inertia::SectionMass;
 use super::strain::SectionStiffness;
-
-/// How one rotation of the blade's root is held.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Joint {
-    /// Held fast.
-    Locked,
-    /// Free against a spring; stiffness over m0 Omega^2 R^3 (moment per rad), 0 for a free hinge.
-    Spring {
-        /// Stiffness.
-        stiffness: f64,
-    },
-}
-
-impl Joint {
-    /// A hinge without spring.
-    pub const FREE: Self = Self::Spring { stiffness: 0.0 };
-
-    /// Stiffness of the spring, none if the joint is locked.
-    pub fn stiffness(&self) -> Option<f64> {
-        match *self {
-            Self::Locked => None,
-            Self::Spring { stiffness } => Some(stiffness),
-        }
-    }
-}
-
-/// How the root of the blade is held: three rotations at the root offset. Displacements are held fast.
-///
-/// Flap and lag turn in the axes of the rotating frame: the hinges lie inboard of the pitch bearing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RootSupport {
-    /// Flap hinge, slope `w_x`.
-    pub flap: Joint,
-    /// Lag hinge, slope `v_x`.
-    pub lag: Joint,
-    /// Pitch bearing, twist phi: the spring is the pitch link with the control system.
-    pub feather: Joint,
-}
-
-impl From<RootCondition> for RootSupport {
-    fn from(condition: RootCondition) -> Self {
-        let bending = match condition {
-            RootCondition::Clamped => Joint::Locked,
-            RootCondition::Hinged => Joint::FREE,
-        };
-        Self { flap: bending, lag: bending, feather: Joint::Locked }
-    }
-}
 
 /// Whether the radial motion of points off the axis, by the slopes of bending, carries inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -100,15 +52,12 @@ pub struct TorsionTerms {
 /// axis, stiffnesses `EI_y`, `EI_z` about the tension centre, the area radius `k_A` about the elastic axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModerateSpec {
-    /// Stiffness, mass, twist, pitch, precone, root offset, rotor speed. Its `root` is replaced by
-    /// [`Self::root`].
+    /// Stiffness, mass, twist, pitch, precone, root, rotor speed.
     pub blade: BladeSpec,
     /// Mass centre ahead of the elastic axis, `e_g`.
     pub mass_centre: Distribution,
     /// Tension centre ahead of the elastic axis, `e_A`.
     pub tension_centre: Distribution,
-    /// Root support.
-    pub root: RootSupport,
     /// Rotary inertia of bending.
     pub rotary_inertia: RotaryInertia,
     /// Terms of second order in torsion.
@@ -119,7 +68,6 @@ impl From<BladeSpec> for ModerateSpec {
     /// The same blade with mass and tension centre on the elastic axis.
     fn from(blade: BladeSpec) -> Self {
         Self {
-            root: blade.root.into(),
             blade,
             mass_centre: 0.0.into(),
             tension_centre: 0.0.into(),
@@ -143,25 +91,12 @@ impl ModerateBlade {
     /// # Errors
     /// [`FemError`] naming field, station and value of the first fault found: those of
     /// [`BladeProperties::new`]; an offset table with a fault; `chord_gyration_radius` below the offset
-    /// of the mass centre; a spring that is negative or not finite.
+    /// of the mass centre.
     pub fn new(spec: ModerateSpec) -> Result<Self, FemError> {
         let properties = BladeProperties::new(spec.blade.clone())?;
         let root = spec.blade.root_offset;
         spec.mass_centre.check("mass_centre", root, Allowed::Finite)?;
         spec.tension_centre.check("tension_centre", root, Allowed::Finite)?;
-        let springs = [
-            ("root.flap.stiffness", spec.root.flap),
-            ("root.lag.stiffness", spec.root.lag),
-            ("root.feather.stiffness", spec.root.feather),
-        ];
-        for (field, joint) in springs {
-            let value = joint.stiffness().unwrap_or(0.0);
-            if !(value.is_finite() && value >= 0.0) {
-                let expected =
-                    "a finite number not below zero (moment per rad over m0 Omega^2 R^3)";
-                return Err(FemError::Parameter { field, value, expected });
-            }
-        }
         let offsets = spec.mass_centre.breaks().iter().chain(spec.tension_centre.breaks());
         let mut breaks: Vec<f64> = offsets
             .copied()

@@ -18,10 +18,7 @@ mod span;
 mod statics;
 mod strain;
 
-pub use blade::{
-    Joint, ModerateBlade, ModerateSpec, RootSupport, RotaryInertia, TorsionTerms, TwistAngle,
-    Untwist,
-};
+pub use blade::{ModerateBlade, ModerateSpec, RotaryInertia, TorsionTerms, TwistAngle, Untwist};
 pub use free_motion::{FreeMotion, MotionState};
 pub use modal::{ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape, SectionShape};
 pub use modal_tangent::ModalTangent;

@@ -180,9 +180,7 @@ impl ModalBlade {
                 stretch: properties.tension(x) / properties.axial_stiffness(x),
             })
             .collect();
-        let root = blade.spec().root;
-        let springs =
-            [root.lag, root.flap, root.feather].map(|joint| joint.stiffness().unwrap_or(0.0));
+        let springs = spec.root.springs();
         let spin = Spin::new(spec.rotor_speed, spec.precone_rad);
         Ok(Self { span: Span::new(edges, points), sections, base, modes, springs, spin })
     }

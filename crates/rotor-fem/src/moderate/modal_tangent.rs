@@ -125,8 +125,9 @@ fn shortening(
 mod tests {
     use super::*;
     use crate::moderate::modal::ModalShape;
-    use crate::moderate::{Joint, ModerateBlade, ModerateSpec, RootSupport, RotaryInertia};
+    use crate::moderate::{ModerateBlade, ModerateSpec, RotaryInertia};
     use crate::{BladeSpec, Twist};
+    use crate::{Joint, RootSupport};
     use nalgebra::Complex;
 
     const STEP: f64 = 1e-30;
@@ -151,12 +152,12 @@ mod tests {
             mass_centre: (-0.01).into(),
             tension_centre: 0.02.into(),
             rotary_inertia: RotaryInertia::Included,
-            root: RootSupport {
-                flap: Joint::Spring { stiffness: 0.3 },
-                lag: Joint::Spring { stiffness: 0.2 },
-                feather: Joint::Spring { stiffness: 0.1 },
-            },
             ..BladeSpec {
+                root: RootSupport {
+                    flap: Joint::Spring { stiffness: 0.3 },
+                    lag: Joint::Spring { stiffness: 0.2 },
+                    feather: Joint::Spring { stiffness: 0.1 },
+                },
                 twist: Twist::Linear { rate_rad: -0.3 },
                 precone_rad: 0.05,
                 root_offset: 0.1,

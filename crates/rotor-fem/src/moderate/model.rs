@@ -2,16 +2,13 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
+use super::ModerateBlade;
 use super::element::{self, ElementMotion, Imposed};
 use super::inertia::Spin;
 use super::points::ElementPoints;
-use super::{Joint, ModerateBlade};
 use crate::assembly::{MAX_ELEMENTS, section_motion};
 use crate::shape::{ELEMENT_DOF, JOINT_DOF, STRIDE, place};
-use crate::{FemError, SectionMotion};
-
-/// Places of the root's flap slope, lag slope and twist among the degrees of freedom.
-const ROOT_ROTATIONS: [usize; 3] = [4, 2, 5];
+use crate::{FemError, RootSupport, SectionMotion};
 
 /// Pitch imposed at the root, at 0.75 R of a linearly twisted blade, with its rates in azimuth.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -124,16 +121,7 @@ impl ModerateModel {
             edges.windows(2).map(|pair| ElementPoints::new(&blade, pair[0], pair[1])).collect();
         let axial_from_slopes = points.iter().map(axial_from_slopes).collect();
         let size = STRIDE * count + JOINT_DOF;
-        let support = blade.spec().root;
-        let joints = [support.flap, support.lag, support.feather];
-        let mut free: Vec<usize> = ROOT_ROTATIONS
-            .into_iter()
-            .zip(joints)
-            .filter(|(_, joint)| *joint != Joint::Locked)
-            .map(|(place, _)| place)
-            .chain(JOINT_DOF..size)
-            .collect();
-        free.sort_unstable();
+        let free = blade.spec().blade.root.free_dof(size);
         Ok(Self { blade, edges, points, axial_from_slopes, free })
     }
 
@@ -268,9 +256,7 @@ impl ModerateModel {
     }
 
     fn springs(&self) -> impl Iterator<Item = (usize, f64)> {
-        let root = self.blade.spec().root;
-        let joints = [root.flap, root.lag, root.feather];
-        ROOT_ROTATIONS.into_iter().zip(joints).filter_map(|(i, j)| Some((i, j.stiffness()?)))
+        RootSupport::PLACES.into_iter().zip(self.blade.spec().blade.root.springs())
     }
 
     /// Dead load at the tip: force outboard, toward the leading edge and up over m0 Omega^2 R^2, and

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use rotor_fem::{BladeSpec, Distribution, Joint, ModerateSpec, RootSupport};
+use rotor_fem::{BladeSpec, Distribution, ModerateSpec, RootSupport};
 
 /// Rows of a reference table without its head.
 pub(crate) fn table(name: &str) -> Vec<Vec<String>> {
@@ -90,13 +90,10 @@ pub(crate) fn tm_4760_blade() -> ModerateSpec {
             ((number(row, 2) + number(row, 3)) / number(row, 1)).sqrt() / radius
         }),
         root_offset: 3.0 / radius,
+        root: RootSupport::HINGED,
         ..BladeSpec::uniform(1.0, 1.0, 1.0, 1.0)
     };
-    ModerateSpec {
-        mass_centre: column(&|row| number(row, 7) / radius),
-        root: RootSupport { flap: Joint::FREE, lag: Joint::FREE, feather: Joint::Locked },
-        ..blade.into()
-    }
+    ModerateSpec { mass_centre: column(&|row| number(row, 7) / radius), ..blade.into() }
 }
 
 /// Rotor speed that the units of [`epps_chandra_strip`] refer to, rpm.
