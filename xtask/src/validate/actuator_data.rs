@@ -1,0 +1,190 @@
+//! The actuator on data: the model that cross-validation picks, measured reversal curves, a measured
+//! friction damper, the inverse.
+
+use std::sync::LazyLock;
+
+use preisach_dyn::identify::{Family, ModelComparison, RecordFit, RecordUse, Settings};
+use preisach_dyn::{InverseSettings, StaticPreisach};
+use rotor_base::{Harmonic, HarmonicSeries};
+use sim_driver::SimError;
+use sim_driver::curve_identification::identify_curves;
+use sim_driver::files::{DataSet, Folder, SHIPPED_BENCH, read_bench, read_dataset};
+use sim_driver::identification::{identify_bench, identify_loops};
+
+use super::CheckError;
+use super::actuator::{BENCH, grid_and_map};
+use super::check::{Area, Check, Criterion, Repeatability};
+use super::reference::worst;
+
+type Measure = fn() -> Result<f64, CheckError>;
+
+const fn percent(
+    id: &'static str,
+    quantity: &'static str,
+    source: &'static str,
+    most: f64,
+    measure: Measure,
+) -> Check {
+    Check {
+        id,
+        quantity,
+        unit: "%",
+        source,
+        criterion: Criterion::AtMost(most),
+        repeatability: Repeatability::Everywhere,
+        measure,
+    }
+}
+
+const FORC: &str = "152 measured curves, fixtures/measured/forc";
+const DAMPER: &str = "measured friction damper, fixtures/measured/friction_damper";
+
+pub(super) const AREA: Area = Area {
+    heading: "Actuator on data (`preisach-dyn`, `sim-driver`)",
+    checks: &[
+        percent(
+            "V-ACT-30",
+            "model picked by cross-validation, 0.2 Hz loop and reversal curves: largest NRMSE",
+            BENCH,
+            1.5,
+            || picked(3, |id| id.contains("0p2hz") || id.starts_with("forc"), nrmse),
+        ),
+        percent(
+            "V-ACT-31",
+            "model picked by cross-validation, held out, 15 and 20 Hz: largest NRMSE",
+            BENCH,
+            8.0,
+            || picked(6, is_fast, nrmse),
+        ),
+        Check {
+            unit: "deg",
+            ..percent(
+                "V-ACT-32",
+                "model picked by cross-validation, held out, 15 and 20 Hz: largest phase error",
+                BENCH,
+                2.0,
+                || picked(6, is_fast, |fit| fit.phase_error_deg.map_or(f64::NAN, f64::abs)),
+            )
+        },
+        percent(
+            "V-ACT-33",
+            "reversal curves, every fourth held out: worst curve, of the range",
+            FORC,
+            2.0,
+            held_out_curves,
+        ),
+        percent(
+            "V-ACT-34",
+            "inverse then forward, 2, 3 and 4/rev: largest error, of the amplitude",
+            "definition",
+            0.5,
+            inverse,
+        ),
+        percent(
+            "V-ACT-35",
+            "friction damper, trained at 0.25 Hz, stops, 0.5 and 1 Hz held out: rms NRMSE",
+            DAMPER,
+            60.0,
+            || damper(Family::PrandtlStop),
+        ),
+        Check {
+            criterion: Criterion::AtLeast(80.0),
+            ..percent(
+                "V-ACT-36",
+                "the same, static Preisach: rising plays cannot lead",
+                DAMPER,
+                0.0,
+                || damper(Family::StaticPreisach),
+            )
+        },
+    ],
+};
+
+/// The table of some families on a data set, made once for all checks.
+type Tabled = LazyLock<Result<ModelComparison, SimError>>;
+
+static SHIPPED: Tabled = LazyLock::new(|| {
+    let data = read_bench(&Folder::Shipped(SHIPPED_BENCH.to_owned()))?;
+    let mut found = identify_bench(&data, &Settings::default())?;
+    found.compare()?;
+    Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
+});
+
+fn measured(folder: &str) -> Result<DataSet, SimError> {
+    let folder = crate::workspace::root().join("fixtures/measured").join(folder);
+    Ok(read_dataset(&Folder::Disk(folder))?)
+}
+
+fn table(of: &'static Tabled) -> Result<&'static ModelComparison, CheckError> {
+    of.as_ref().map_err(|error| CheckError::Driver(error.clone()))
+}
+
+fn nrmse(fit: &RecordFit) -> f64 {
+    fit.nrmse_percent()
+}
+
+fn is_fast(id: &str) -> bool {
+    id.contains("15hz") || id.contains("20hz")
+}
+
+/// The largest figure of the picked model over some of the records.
+fn picked(
+    needed: usize,
+    wanted: fn(&str) -> bool,
+    figure: fn(&RecordFit) -> f64,
+) -> Result<f64, CheckError> {
+    let table = table(&SHIPPED)?;
+    let missing = CheckError::TooFew { what: "fitted models", found: 0, needed: 1 };
+    let fitted = table.best().and_then(|row| row.fitted.as_ref().ok()).ok_or(missing)?;
+    let chosen = table.records.iter().zip(&fitted.fits).filter(|((id, _), _)| wanted(id));
+    worst("records", needed, chosen.map(|(_, fit)| Ok(figure(fit))))
+}
+
+static LOOPS: Tabled = LazyLock::new(|| {
+    let DataSet::Loops(data) = measured("friction_damper")? else {
+        unreachable!("a data set of loops")
+    };
+    let mut found = identify_loops(&data, &Settings::default())?;
+    found.compare()?;
+    Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
+});
+
+fn damper(family: Family) -> Result<f64, CheckError> {
+    let table = table(&LOOPS)?;
+    let row = table.rows.iter().find(|row| row.family == family);
+    let error = row.and_then(|row| table.error_over(row, RecordUse::HeldOut));
+    Ok(error.map_or(f64::NAN, |(rms, _)| 100.0 * rms))
+}
+
+fn held_out_curves() -> Result<f64, CheckError> {
+    let data = measured("forc").map_err(CheckError::Driver)?;
+    let DataSet::Curves(curves) = &data else { return Ok(f64::NAN) };
+    let found = identify_curves(curves).map_err(CheckError::Driver)?;
+    Ok(found.summary(None).held_out_worst_percent)
+}
+
+fn inverse() -> Result<f64, CheckError> {
+    let (grid, map) = grid_and_map()?;
+    let law = preisach_dyn::ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, map)?);
+    let calibration = preisach_dyn::Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+    let model = preisach_dyn::ActuatorModel::new(law, grid.range(), calibration);
+    let settings = InverseSettings::default();
+    // about the middle of what it can do
+    let rest = model.simulate(&[65.0, 65.0], 1.0)?.output_deg[0];
+    let mut wanted = HarmonicSeries::zero(4);
+    wanted.mean = rest;
+    for (n, cosine, sine) in [(2, 0.5, 0.0), (3, 0.2, 0.4), (4, -0.2, 0.2)] {
+        wanted.set_harmonic(n, Harmonic { cosine, sine });
+    }
+    let rev_hz = 5.0;
+    let found = model.periodic_inverse(&wanted, rev_hz, &settings)?;
+    let again =
+        model.periodic_response(&found.response.voltage_volt, rev_hz, &settings.periodic)?;
+    let steps = again.samples_deg.len() as f64;
+    let errors = again
+        .samples_deg
+        .iter()
+        .enumerate()
+        .map(|(i, y)| (y - wanted.value(std::f64::consts::TAU * i as f64 / steps)).abs());
+    Ok(100.0 * errors.fold(0.0, f64::max) / found.amplitude_deg)
+}
