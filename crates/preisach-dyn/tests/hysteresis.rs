@@ -1,6 +1,5 @@
 //! Static Preisach: the properties that define it, and agreement of its three forms.
 #![expect(clippy::float_cmp, reason = "results are claimed to be equal to the last bit")]
-#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 mod common;
 
