@@ -148,7 +148,7 @@ fn bad_steps() -> Result<f64, CheckError> {
     let mut state = 1;
     for _ in 0..1000 {
         for voltage in wander(state, 1000) {
-            law.step(&mut memory, voltage, 1e-3);
+            HysteresisLaw::step(law, &mut memory, voltage, 1e-3);
         }
         state += 1;
     }
@@ -179,7 +179,7 @@ fn time_order(time_order: TimeOrder) -> Result<f64, CheckError> {
     let errors = steps.map(|per_cycle| -> Result<f64, CheckError> {
         let step_s = 1.0 / hz / f64::from(per_cycle);
         let volts: Vec<f64> = (0..=3 * per_cycle)
-            .map(|i| 65.0 + 60.0 * (1.0 - (omega * step_s * f64::from(i)).cos()))
+            .map(|i| -15.0 + 80.0 * (1.0 - (omega * step_s * f64::from(i)).cos()))
             .collect();
         let output = model.simulate(&volts, step_s)?.output_deg;
         let first = output[0];
@@ -188,7 +188,7 @@ fn time_order(time_order: TimeOrder) -> Result<f64, CheckError> {
         let exact = |t: f64| {
             let (s, c) = (omega * t).sin_cos();
             let decay = (-t / lag_s).exp();
-            first + gain * 60.0 * (1.0 - decay - (c + x * s - decay) / (1.0 + x * x))
+            first + gain * 80.0 * (1.0 - decay - (c + x * s - decay) / (1.0 + x * x))
         };
         Ok(off(&output, step_s, exact))
     });

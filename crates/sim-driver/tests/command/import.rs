@@ -419,7 +419,7 @@ fn the_measured_friction_damper_is_a_stop_and_no_play() {
     };
     let (stops, fixed) = (held_out("Prandtl-Ishlinskii stops"), held_out("static Preisach"));
     assert!(stops.0 && !fixed.0, "{models:?}");
-    assert!(stops.1 < 60.0 && fixed.1 > 80.0, "{stops:?} {fixed:?}");
+    assert!(stops.1 < 50.0 && fixed.1 > 80.0, "{stops:?} {fixed:?}");
     let text = place.hhc(&args).done();
     assert!(text.contains("friction does"), "{text}");
     assert!(text.contains("Model written to damper.ron"), "{text}");
