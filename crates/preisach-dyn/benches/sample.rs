@@ -11,8 +11,9 @@ use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen, BoucWenParameters, Calibration,
     CurrentLimit, Drive, DynamicParameters, DynamicPreisach, Envelope, EverettStaircase, Lag,
     LinkageStage, LogCreep, OutputHistory, PlayMap, PlayMemory, PrandtlIshlinskii,
-    PrandtlParameters, PreisachError, PreisachGrid, RateForm, RelayGrid, Resonance, StartState,
-    StaticPreisach, StepCounts, TimeOrder, VoltageRange, WeightedPlay,
+    PrandtlParameters, PrandtlStop, PreisachError, PreisachGrid, RateForm, RelayGrid, Resonance,
+    StartState, StaticPreisach, StepCounts, StopParameters, TimeOrder, VoltageRange, WeightedPlay,
+    WeightedStop,
 };
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -120,7 +121,15 @@ fn actuators(c: &mut Criterion) {
         exponent: 1.0,
         envelope: Envelope::default(),
     });
-    let (Ok(prandtl), Ok(bouc_wen)) = (prandtl, bouc_wen) else {
+    let stop = |i: usize| WeightedStop { threshold_volt: i as f64, stiffness_deg_per_volt: 1e-3 };
+    let stops = PrandtlStop::new(StopParameters {
+        range_volt,
+        stiffness_deg_per_volt: 0.01,
+        stops: (1..LEVELS).map(stop).collect(),
+        viscosity_deg_s_per_volt: 1e-5,
+        offset_deg: 0.0,
+    });
+    let (Ok(prandtl), Ok(bouc_wen), Ok(stops)) = (prandtl, bouc_wen, stops) else {
         return;
     };
     let (Ok(everett), Ok(relays)) =
@@ -141,6 +150,7 @@ fn actuators(c: &mut Criterion) {
         ("actuator: Everett", plain(ActuatorLaw::Everett(everett)), STATIC_BAR_NS),
         ("actuator: relays", plain(ActuatorLaw::RelayGrid(relays)), STATIC_BAR_NS),
         ("actuator: Prandtl", plain(ActuatorLaw::PrandtlIshlinskii(prandtl)), STATIC_BAR_NS),
+        ("actuator: stops", plain(ActuatorLaw::PrandtlStop(stops)), STATIC_BAR_NS),
         ("actuator: Bouc-Wen", plain(ActuatorLaw::BoucWen(bouc_wen)), STATIC_BAR_NS),
         ("actuator: dynamic", plain(dynamic.clone()), DYNAMIC_BAR_NS),
         ("actuator: dynamic, four stages", stages(dynamic), DYNAMIC_BAR_NS),
@@ -192,7 +202,11 @@ fn batches(c: &mut Criterion) {
         });
     });
     report("batch", batch, DYNAMIC_BAR_NS);
-    println!("batch: {:.2} times as fast as one by one", single / batch);
+    let threads = rayon::current_num_threads();
+    println!(
+        "batch: {:.2} times as fast as one by one, on {threads} threads; bar on idle cores: their number, less a tenth",
+        single / batch
+    );
     group.finish();
 }
 

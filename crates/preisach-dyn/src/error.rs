@@ -305,6 +305,17 @@ pub enum PreisachError {
         nrmse_percent: f64,
     },
 
+    /// Stops fitted to an output that lags its input.
+    #[error(
+        "the output lags the input: its loops enclose {:.1} % of their frame, anticlockwise; stops lead, so they have nothing to fit",
+        -100.0 * area_share
+    )]
+    OutputLags {
+        /// `integral y du` over half the output's range and the travel of the input; negative: the
+        /// output lags.
+        area_share: f64,
+    },
+
     // ---- reversal curves ----
     /// A reversal curve cannot be used.
     #[error("reversal curve {curve}, point {index}: {problem} ({value})")]
@@ -404,7 +415,7 @@ pub enum PreisachError {
     },
     /// No start of a fit led to a model.
     #[error(
-        "{family}: no start of the fit gave a model of the family; check the sign of the output and the voltage range"
+        "{family}: no start of the fit gave a model of the family; check the sign of the output and the range of the input"
     )]
     NotFitted {
         /// The family of models.

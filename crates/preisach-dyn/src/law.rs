@@ -2,8 +2,8 @@
 
 use crate::{
     BoucWen, BoucWenMemory, DynamicMemory, DynamicPreisach, EverettStaircase, PlayMemory,
-    PrandtlIshlinskii, PrandtlMemory, PreisachError, RelayGrid, RelayMemory, StaircaseMemory,
-    StartState, StaticPreisach, StepCounts,
+    PrandtlIshlinskii, PrandtlMemory, PrandtlStop, PreisachError, RelayGrid, RelayMemory,
+    StaircaseMemory, StartState, StaticPreisach, StepCounts, StopMemory,
 };
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -100,6 +100,8 @@ pub enum ActuatorLaw {
     PrandtlIshlinskii(PrandtlIshlinskii),
     /// The Bouc-Wen differential equation.
     BoucWen(BoucWen),
+    /// Stops: an output that leads its input, as friction does.
+    PrandtlStop(PrandtlStop),
 }
 
 /// The memory of any law.
@@ -120,6 +122,8 @@ pub enum LawMemory {
     PrandtlIshlinskii(PrandtlMemory),
     /// The hysteretic variable and the last voltage.
     BoucWen(BoucWenMemory),
+    /// The plays of the stops and the last voltage.
+    PrandtlStop(StopMemory),
 }
 
 /// Runs the same expression for a law and the memory that belongs to it.
@@ -133,6 +137,7 @@ macro_rules! paired {
             (ActuatorLaw::DynamicPreisach($l), LawMemory::DynamicPreisach($m)) => $body,
             (ActuatorLaw::PrandtlIshlinskii($l), LawMemory::PrandtlIshlinskii($m)) => $body,
             (ActuatorLaw::BoucWen($l), LawMemory::BoucWen($m)) => $body,
+            (ActuatorLaw::PrandtlStop($l), LawMemory::PrandtlStop($m)) => $body,
             _ => $otherwise,
         }
     };
@@ -149,6 +154,7 @@ macro_rules! each {
             ActuatorLaw::DynamicPreisach($l) => each!(@ $variant DynamicPreisach $body),
             ActuatorLaw::PrandtlIshlinskii($l) => each!(@ $variant PrandtlIshlinskii $body),
             ActuatorLaw::BoucWen($l) => each!(@ $variant BoucWen $body),
+            ActuatorLaw::PrandtlStop($l) => each!(@ $variant PrandtlStop $body),
         }
     };
     (@ memory $name:ident $body:expr) => {{
@@ -169,6 +175,7 @@ impl ActuatorLaw {
             Self::DynamicPreisach(_) => "dynamic Preisach",
             Self::PrandtlIshlinskii(_) => "Prandtl-Ishlinskii",
             Self::BoucWen(_) => "Bouc-Wen",
+            Self::PrandtlStop(_) => "Prandtl-Ishlinskii stops",
         }
     }
 }

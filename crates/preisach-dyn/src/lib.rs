@@ -9,7 +9,7 @@
 //! | any law between voltage and free flap angle | [`HysteresisLaw`], [`ActuatorLaw`] |
 //! | static model, paper eq. (2) | [`StaticPreisach`], [`EverettStaircase`], [`RelayGrid`] |
 //! | dynamic model, paper eq. (5) | [`DynamicPreisach`], [`output_rate`] |
-//! | other families | [`PrandtlIshlinskii`], [`BoucWen`] |
+//! | other families | [`PrandtlIshlinskii`], [`BoucWen`]; output ahead of the input: [`PrandtlStop`] |
 //! | what stands around the law | [`AmplifierStage`], [`LinkageStage`], [`SensorStage`] |
 //! | one actuator: simulation, bench, batch | [`ActuatorModel`], [`Drive`], [`Stepper`] |
 //! | closed orbits, and the voltage for a wanted one | [`PeriodicResponse`], [`PeriodicInverse`] |
@@ -41,6 +41,7 @@ mod relays;
 mod simulate;
 mod stages;
 mod statics;
+mod stop;
 
 pub use actuator::{ActuatorModel, Calibration, TrainedRange};
 pub use bouc_wen::{BoucWen, BoucWenMemory, BoucWenParameters};
@@ -62,12 +63,13 @@ pub use prandtl::{PrandtlIshlinskii, PrandtlMemory, PrandtlParameters, WeightedP
 pub use relays::{RelayGrid, RelayMemory};
 pub use simulate::{BenchSimulation, Drive, Simulation};
 pub use stages::{
-    AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
+    Accommodation, AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
     DielectricHeating, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep,
     MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Relaxation, RelaxationElement,
     Resonance, Saturation, SensorStage,
 };
 pub use statics::StaticPreisach;
+pub use stop::{PrandtlStop, StopMemory, StopParameters, WeightedStop};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

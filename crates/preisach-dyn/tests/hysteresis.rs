@@ -1,7 +1,9 @@
 //! Static Preisach: the properties that define it, and agreement of its three forms.
 #![expect(clippy::float_cmp, reason = "results are claimed to be equal to the last bit")]
-#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
+mod common;
+
+use common::Wavy;
 use preisach_dyn::{
     EverettStaircase, HysteresisLaw, PlayMap, PlayMemory, PreisachGrid, RelayGrid, StartState,
     StaticPreisach, VoltageRange,
@@ -13,20 +15,7 @@ const HIGH: f64 = 150.0;
 
 /// A density with structure: larger near the centre of the triangle, uneven along it.
 fn model(levels: usize) -> StaticPreisach {
-    let grid = PreisachGrid::new(VoltageRange::amplified_stack(), levels).unwrap();
-    let n = levels as f64;
-    let rises: Vec<Vec<f64>> = (0..levels)
-        .map(|j| {
-            (0..levels - j)
-                .map(|k| {
-                    let (s, r) = ((2 * k + j) as f64 / n - 1.0, j as f64 / n);
-                    let reversible = if j == 0 { 6.0 / n } else { 0.0 };
-                    reversible + 30.0 / (n * n) * (-3.0 * r).exp() * (1.2 + (4.0 * s).sin())
-                })
-                .collect()
-        })
-        .collect();
-    StaticPreisach::new(grid, PlayMap::from_rises(&grid, 0.5, &rises).unwrap()).unwrap()
+    Wavy::WIDE.law(levels)
 }
 
 fn driven(model: &StaticPreisach, history: &[f64]) -> PlayMemory {

@@ -1,10 +1,13 @@
 //! Inverse, then forward: the flap must move as wanted.
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
+mod common;
+
+use common::Wavy;
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, InverseSettings,
-    PlayMap, PlayMemory, PreisachError, PreisachGrid, RateForm, StartState, StaticPreisach,
-    TimeOrder, VoltageRange,
+    PlayMap, PlayMemory, PreisachError, RateForm, StartState, StaticPreisach, TimeOrder,
+    VoltageRange,
 };
 use proptest::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -12,19 +15,7 @@ use rotor_base::{Harmonic, HarmonicSeries};
 const REV_HZ: f64 = 5.0;
 
 fn static_model(levels: usize) -> StaticPreisach {
-    let grid = PreisachGrid::new(VoltageRange::amplified_stack(), levels).unwrap();
-    let n = levels as f64;
-    let rises: Vec<Vec<f64>> = (0..levels)
-        .map(|j| {
-            (0..levels - j)
-                .map(|k| {
-                    let (s, r) = ((2 * k + j) as f64 / n - 1.0, j as f64 / n);
-                    (1.0 + 0.5 * (2.0 * s).sin()) * (-3.0 * r).exp() * 60.0 / (n * n)
-                })
-                .collect()
-        })
-        .collect();
-    StaticPreisach::new(grid, PlayMap::from_rises(&grid, 0.0, &rises).unwrap()).unwrap()
+    Wavy::GENTLE.law(levels)
 }
 
 fn actuator(law: ActuatorLaw) -> ActuatorModel {

@@ -1,13 +1,16 @@
 //! The table of models, its choice, the uncertainty of parameters, and long records piece by piece.
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
+mod common;
+
+use common::Wavy;
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Family, Finding, Order, RecordUse, Settings, StaticAccumulator,
     compare_models, identify,
 };
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, Lag, LinkageStage, LogCreep, PlayMap,
-    PreisachError, PreisachGrid, Relaxation, RelaxationElement, StaticPreisach, VoltageRange,
+    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, Lag, LinkageStage, LogCreep,
+    PreisachError, Relaxation, RelaxationElement, StaticPreisach, VoltageRange,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -59,19 +62,7 @@ fn runs() -> Vec<(String, f64, Vec<f64>)> {
 }
 
 fn static_law(levels: usize) -> StaticPreisach {
-    let grid = PreisachGrid::new(VoltageRange::amplified_stack(), levels).unwrap();
-    let n = levels as f64;
-    let rises: Vec<Vec<f64>> = (0..levels)
-        .map(|j| {
-            (0..levels - j)
-                .map(|k| {
-                    let (s, r) = ((2 * k + j) as f64 / n - 1.0, j as f64 / n);
-                    (1.0 + 0.4 * (2.0 * s).sin()) * (-3.0 * r).exp() * 60.0 / (n * n)
-                })
-                .collect()
-        })
-        .collect();
-    StaticPreisach::new(grid, PlayMap::from_rises(&grid, 0.0, &rises).unwrap()).unwrap()
+    Wavy { height: 0.4, ..Wavy::GENTLE }.law(levels)
 }
 
 fn bare(law: ActuatorLaw) -> ActuatorModel {
@@ -140,6 +131,13 @@ fn every_family_can_be_fitted_and_one_frequency_leaves_only_static_ones() {
     let candidates = Candidates { orders: Vec::new(), ..Candidates::default() };
     let table = compare_models(&records, &settings, &candidates).unwrap();
     for row in &table.rows {
+        if row.family == Family::PrandtlStop {
+            // an actuator lags, a stop leads
+            assert!(
+                matches!(row.fitted, Err(PreisachError::OutputLags { area_share }) if area_share < 0.0)
+            );
+            continue;
+        }
         let fitted = row.fitted.as_ref().unwrap();
         assert_eq!(fitted.fits.len(), records.len());
         assert!(row.cross_validation.unwrap().is_finite(), "{:?}", row.family);

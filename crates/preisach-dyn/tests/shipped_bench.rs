@@ -127,7 +127,8 @@ fn the_model_that_cross_validation_picks_meets_the_bars() {
     for ((id, record_use), fit) in table.records.iter().zip(&fitted.fits) {
         let fast = id.contains("15hz") || id.contains("20hz");
         let bound = match record_use {
-            RecordUse::Train if id.contains("0p2hz") => 1.5,
+            // loop and reversal curves
+            RecordUse::Train if id.contains("0p2hz") || id.starts_with("forc") => 1.5,
             RecordUse::Train => 4.0,
             RecordUse::HeldOut if fast => 8.0,
             RecordUse::HeldOut => 10.0,

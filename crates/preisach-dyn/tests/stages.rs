@@ -6,10 +6,10 @@ mod common;
 use approx::assert_abs_diff_eq;
 use common::{amplifier, effects, largest_difference, linkage, measured, sampled, sensor};
 use preisach_dyn::{
-    ActuatorModel, AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
-    DielectricHeating, Drive, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage, LoadStiffness,
-    LogCreep, MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Resonance, Saturation,
-    SensorStage, StartState,
+    Accommodation, ActuatorModel, AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay,
+    Depolarisation, DielectricHeating, Drive, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage,
+    LoadStiffness, LogCreep, MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Resonance,
+    Saturation, SensorStage, StartState,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -27,6 +27,7 @@ fn identities() -> Vec<ActuatorModel> {
         linkage(LinkageStage::KelvinVoigt(KelvinVoigt { elements: vec![none, none] })),
         linkage(LinkageStage::Backlash(Backlash { width_um: 0.0 })),
         linkage(LinkageStage::CoulombFriction(CoulombFriction { width_um: 0.0 })),
+        linkage(LinkageStage::Accommodation(Accommodation { share: 0.0, travel_um: 60.0 })),
         linkage(LinkageStage::LoadStiffness(LoadStiffness {
             stiffness_ratio: 0.0,
             compliance_um_per_newton: 0.0,
@@ -102,6 +103,13 @@ fn effects_vanish_in_proportion_to_their_parameter() {
             "friction",
             Box::new(|x| {
                 linkage(LinkageStage::CoulombFriction(CoulombFriction { width_um: 1e-3 * x }))
+            }),
+        ),
+        (
+            "accommodation",
+            Box::new(|x| {
+                let stage = Accommodation { share: 1e-4 * x, travel_um: 60.0 };
+                linkage(LinkageStage::Accommodation(stage))
             }),
         ),
         (
@@ -418,6 +426,33 @@ fn depolarisation_stays_until_the_voltage_repoles() {
         amplifier(AmplifierStage::Depolarisation(Depolarisation { repoling_volt: None, ..stage }));
     let output = measured(&lasting, &[50.0, -50.0, 100.0, 50.0], 1e-3);
     assert_abs_diff_eq!(output[3], 35.0, epsilon = 1e-12);
+}
+
+#[test]
+fn accommodation_settles_with_the_way_and_not_with_time() {
+    let (share, travel) = (0.2, 50.0);
+    let model = linkage(LinkageStage::Accommodation(Accommodation { share, travel_um: travel }));
+    // up by 80, down by 80, up by 80: the stretch after each, in closed form
+    let input = [0.0, 30.0, 80.0, 80.0, 20.0, 0.0, 0.0, 0.0, 80.0];
+    let output = measured(&model, &input, 1e-3);
+    let left = (-80.0_f64 / travel).exp();
+    let up = travel * (1.0 - left);
+    let down = -travel + (up + travel) * left;
+    let again = travel + (down - travel) * left;
+    for (at, stretch) in [(2, up), (3, up), (5, down), (7, down), (8, again)] {
+        assert_abs_diff_eq!(output[at], input[at] - share * stretch, epsilon = 1e-12);
+    }
+    // the same way in another time: the same bits
+    assert_eq!(measured(&model, &input, 0.7), output);
+    // no return-point memory: the second time at 80 gives more, and the loops close after a long way
+    assert!(output[8] > output[2] + 1.0, "{output:?}");
+    let cycles = sampled(40, 1.0, |i| if i.rem_euclid(2.0) < 0.5 { 0.0 } else { 80.0 });
+    let tops = measured(&model, &cycles, 1.0);
+    assert_abs_diff_eq!(tops[37], tops[39], epsilon = 1e-9);
+    for (share, travel_um) in [(-0.1, 60.0), (1.1, 60.0), (0.1, 0.0), (f64::NAN, 60.0)] {
+        let stage = LinkageStage::Accommodation(Accommodation { share, travel_um });
+        assert!(linkage(stage).start(0.0, preisach_dyn::StartState::Rest).is_err());
+    }
 }
 
 #[test]

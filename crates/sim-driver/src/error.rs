@@ -46,6 +46,16 @@ pub enum SimError {
         /// What went wrong.
         source: PreisachError,
     },
+    /// The model of a generic loop or its identification.
+    #[error("{place}: {message}")]
+    Loop {
+        /// Data that asked for it.
+        place: Place,
+        /// What went wrong, in the units of the data.
+        message: String,
+        /// The same as the model says it.
+        source: PreisachError,
+    },
     /// The misfit of a record.
     #[error("{place}: {source}")]
     Misfit {
@@ -122,7 +132,7 @@ impl SimError {
             | Self::NotWritten { .. }
             | Self::Section(_)
             | Self::Misfit { .. } => Family::RejectedInput,
-            Self::Actuator { source, .. } => actuator_family(source),
+            Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),
             Self::Trim { source, .. } => trim_family(source),

@@ -10,7 +10,6 @@
 
 use crate::SimError;
 use crate::identification::BenchIdentification;
-use crate::problem::Place;
 use preisach_dyn::forc::DiagramPoint;
 use preisach_dyn::{ActuatorLaw, PlayMap, PreisachError, PreisachGrid};
 use rayon::prelude::*;
@@ -19,12 +18,9 @@ use std::fmt::Write;
 /// Names and texts of the tables.
 ///
 /// # Errors
-/// [`SimError::Actuator`] if the model cannot be simulated on one of its records.
+/// [`SimError::Actuator`] or [`SimError::Loop`] if the model cannot be simulated on one of its records.
 pub fn figure_files(found: &BenchIdentification) -> Result<Vec<(String, String)>, SimError> {
-    let fail = |source: PreisachError| SimError::Actuator {
-        place: Place::file(format!("{}/dataset.ron", found.heading.folder)),
-        source,
-    };
+    let fail = |source: PreisachError| found.heading.failed(source);
     let loops: Result<Vec<(String, String)>, PreisachError> =
         (0..found.records.len()).into_par_iter().map(|number| loop_table(found, number)).collect();
     let mut files = loops.map_err(fail)?;
@@ -36,10 +32,8 @@ pub fn figure_files(found: &BenchIdentification) -> Result<Vec<(String, String)>
 fn labels(found: &BenchIdentification) -> (String, String, String) {
     match &found.heading.channels {
         Some(channels) => {
-            let output = &channels.output;
-            let unit = crate::files::Channel::parse(output)
-                .map_or_else(String::new, |c| format!("_{}", c.unit.symbol));
-            (channels.input.clone(), output.clone(), unit)
+            let [_, unit] = found.heading.subject().units();
+            (channels.input.clone(), channels.output.clone(), format!("_{unit}"))
         }
         None => ("command_V".to_owned(), "flap_deg".to_owned(), "_deg".to_owned()),
     }

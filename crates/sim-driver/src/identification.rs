@@ -8,7 +8,7 @@ use crate::stored_actuator::{FitUse, StoredActuator, StoredChannels, StoredFit, 
 use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, NoiseEstimate, RunError, Use};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
-    RecordWindows, Refinement, Settings, Severity, compare_models, identify,
+    RecordWindows, Refinement, Settings, Severity, Subject, compare_models, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
 use rayon::prelude::*;
@@ -37,6 +37,28 @@ pub struct DataHeading {
     pub channels: Option<StoredChannels>,
     /// Where the range of the inputs comes from.
     pub range_rule: &'static str,
+}
+
+impl DataHeading {
+    /// The words and units of messages about the data.
+    pub fn subject(&self) -> Subject<'static> {
+        self.channels.as_ref().map_or(Subject::Actuator, |channels| {
+            let unit =
+                |label: &str| crate::files::Channel::parse(label).map_or("", |c| c.unit.symbol);
+            Subject::Loop { input_unit: unit(&channels.input), output_unit: unit(&channels.output) }
+        })
+    }
+
+    /// An error of the model or its identification, at the place of the data set.
+    pub(crate) fn failed(&self, source: PreisachError) -> SimError {
+        let place = Place::file(format!("{}/dataset.ron", self.folder));
+        match self.subject() {
+            Subject::Actuator => SimError::Actuator { place, source },
+            subject @ Subject::Loop { .. } => {
+                SimError::Loop { place, message: subject.error(&source), source }
+            }
+        }
+    }
 }
 
 /// An identification with the data it came from.
@@ -108,12 +130,20 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
 /// set's; zero output stays where it was recorded.
 ///
 /// # Errors
-/// [`SimError::Actuator`] at the place of the data set.
+/// [`SimError::Loop`] at the place of the data set.
 pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentification, SimError> {
-    let place = Place::file(format!("{}/dataset.ron", data.folder)).field("input_range");
+    let [input, output] = data.channels.both().map(crate::files::Channel::label);
+    let heading = DataHeading {
+        title: data.title.clone(),
+        folder: data.folder.clone(),
+        content_hash: data.content_hash.clone(),
+        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
+        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
+        channels: Some(StoredChannels { input, output }),
+        range_rule: data.input_range.rule(),
+    };
     let (low, high) = data.input_range.limits();
-    let range_volt =
-        VoltageRange::new(low, high).map_err(|source| SimError::Actuator { place, source })?;
+    let range_volt = VoltageRange::new(low, high).map_err(|source| heading.failed(source))?;
     let zero = FlapZero::AsRecorded;
     let settings = Settings { range_volt, deg_per_um: 1.0, zero, ..base.clone() };
     let records = data
@@ -129,16 +159,6 @@ pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentific
             ..BenchRecord::default()
         })
         .collect();
-    let [input, output] = data.channels.both().map(crate::files::Channel::label);
-    let heading = DataHeading {
-        title: data.title.clone(),
-        folder: data.folder.clone(),
-        content_hash: data.content_hash.clone(),
-        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
-        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
-        channels: Some(StoredChannels { input, output }),
-        range_rule: data.input_range.rule(),
-    };
     identified(heading, records, settings)
 }
 
@@ -164,16 +184,14 @@ fn identified(
     records: Vec<BenchRecord>,
     settings: Settings,
 ) -> Result<BenchIdentification, SimError> {
-    let dataset = format!("{}/dataset.ron", heading.folder);
-    let fail = |source: PreisachError| SimError::Actuator { place: Place::file(&dataset), source };
-    let identification = identify(&records, &settings).map_err(fail)?;
+    let identification = identify(&records, &settings).map_err(|e| heading.failed(e))?;
     // of a generic loop the table of models may still be of use; a rotor needs an actuator
     let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
         Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),
         _ => None,
     });
     if let (Some(nrmse_percent), None) = (not_described, &heading.channels) {
-        return Err(fail(PreisachError::NotDescribed { nrmse_percent }));
+        return Err(heading.failed(PreisachError::NotDescribed { nrmse_percent }));
     }
     let fits = judged(&heading, &records, &identification)?;
     Ok(BenchIdentification { heading, identification, settings, records, fits, comparison: None })
@@ -184,10 +202,12 @@ fn judged(
     records: &[BenchRecord],
     identification: &Identification,
 ) -> Result<Vec<RunFit>, SimError> {
-    let place = || Place::file(format!("{}/dataset.ron", heading.folder));
     judge(records, identification).map_err(|e| match e {
-        Judged::Model(source) => SimError::Actuator { place: place(), source },
-        Judged::Misfit { id, source } => SimError::Misfit { place: place().field(&id), source },
+        Judged::Model(source) => heading.failed(source),
+        Judged::Misfit { id, source } => {
+            let place = Place::file(format!("{}/dataset.ron", heading.folder)).field(&id);
+            SimError::Misfit { place, source }
+        }
     })
 }
 
@@ -302,13 +322,10 @@ impl BenchIdentification {
     /// Fits all families of models to the same records and keeps the table.
     ///
     /// # Errors
-    /// [`SimError::Actuator`] at the place of the data set.
+    /// [`SimError::Actuator`] or [`SimError::Loop`] at the place of the data set.
     pub fn compare(&mut self) -> Result<(), SimError> {
         let table = compare_models(&self.records, &self.settings, &Candidates::default());
-        self.comparison = Some(table.map_err(|source| SimError::Actuator {
-            place: Place::file(format!("{}/dataset.ron", self.heading.folder)),
-            source,
-        })?);
+        self.comparison = Some(table.map_err(|source| self.heading.failed(source))?);
         Ok(())
     }
 
@@ -370,8 +387,17 @@ impl BenchIdentification {
             zero_deg: self.identification.zero_deg,
             refinement: self.identification.refinement,
             runs: self.fits.iter().map(stored_fit).collect(),
-            models: self.comparison.as_ref().map_or_else(Vec::new, model_lines),
-            findings: self.identification.summary.findings.iter().map(FindingLine::of).collect(),
+            models: self
+                .comparison
+                .as_ref()
+                .map_or_else(Vec::new, |table| model_lines(table, self.heading.subject())),
+            findings: self
+                .identification
+                .summary
+                .findings
+                .iter()
+                .map(|finding| FindingLine::of(finding, self.heading.subject()))
+                .collect(),
             density_determined: self.identification.summary.density_determined,
             written_to,
         }
@@ -399,7 +425,7 @@ pub struct ModelLine {
     pub failure: Option<String>,
 }
 
-fn model_lines(table: &ModelComparison) -> Vec<ModelLine> {
+fn model_lines(table: &ModelComparison, subject: Subject<'_>) -> Vec<ModelLine> {
     let percent = |v: f64| 100.0 * v;
     let line = |(index, row): (usize, &preisach_dyn::identify::ModelRow)| {
         let held_out = table.error_over(row, RecordUse::HeldOut);
@@ -411,7 +437,7 @@ fn model_lines(table: &ModelComparison) -> Vec<ModelLine> {
             trained_percent: table.error_over(row, RecordUse::Train).map(|e| percent(e.0)),
             held_out_percent: held_out.map(|e| percent(e.0)),
             worst_held_out_percent: held_out.map(|e| percent(e.1)),
-            failure: row.fitted.as_ref().err().map(ToString::to_string),
+            failure: row.fitted.as_ref().err().map(|error| subject.error(error)),
         }
     };
     table.rows.iter().enumerate().map(line).collect()
@@ -431,12 +457,12 @@ pub struct FindingLine {
 }
 
 impl FindingLine {
-    fn of(finding: &Finding) -> Self {
+    fn of(finding: &Finding, subject: Subject<'_>) -> Self {
         Self {
             severity: finding.severity(),
             finding: finding.clone(),
-            message: finding.to_string(),
-            remedy: finding.remedy(),
+            message: subject.finding(finding),
+            remedy: subject.remedy(finding),
         }
     }
 }
@@ -543,7 +569,8 @@ impl Printable for IdentifyResult {
             sheet.line(format_args!("{:?}: {}\n  {}", line.severity, line.message, line.remedy));
         }
         if let Some(path) = &self.written_to {
-            sheet.line(format_args!("Actuator written to {path}"));
+            let what = if self.channels.is_some() { "Model" } else { "Actuator" };
+            sheet.line(format_args!("{what} written to {path}"));
         }
         sheet.finish()
     }

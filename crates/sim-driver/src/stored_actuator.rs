@@ -108,8 +108,18 @@ impl StoredActuator {
             path: path.to_path_buf(),
             reason: e.to_string(),
         })?;
+        let (what, units) = match &self.channels {
+            Some(channels) => (
+                format!("Model of {} to {}", channels.input, channels.output),
+                format!(
+                    "// Of its names, volt stands for the unit of {}, deg (and um) for that of {}.\n",
+                    channels.input, channels.output
+                ),
+            ),
+            None => ("Actuator".to_owned(), String::new()),
+        };
         let comment = format!(
-            "// Actuator identified by hhc {} from: {}\n// Written by `hhc identify`; identify again rather than edit.\n",
+            "// {what} identified by hhc {} from: {}\n{units}// Written by `hhc identify`; identify again rather than edit.\n",
             self.program_version, self.title
         );
         write_atomic(path, text.replacen('\n', &format!("\n{comment}"), 1).as_bytes())

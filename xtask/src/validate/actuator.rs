@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use preisach_dyn::identify::{RecordFit, RecordReport, RecordUse, Settings};
+use preisach_dyn::identify::{Identification, RecordFit, RecordReport, RecordUse, Settings};
 use preisach_dyn::{
     EverettStaircase, HysteresisLaw, PlayMap, PlayMemory, PreisachGrid, StartState, StaticPreisach,
     VoltageRange,
@@ -15,7 +15,7 @@ use super::CheckError;
 use super::check::{Area, Check, Criterion, Repeatability};
 use super::reference::worst;
 
-const BENCH: &str = "synthetic bench records, fixtures/bench/apa500l_synthetic";
+pub(super) const BENCH: &str = "synthetic bench records, fixtures/bench/apa500l_synthetic";
 
 pub(super) const AREA: Area = Area {
     heading: "Actuator (`preisach-dyn`)",
@@ -53,7 +53,7 @@ pub(super) const AREA: Area = Area {
             quantity: "play form against Everett staircase of the same density: largest difference",
             unit: "deg",
             source: "classical Preisach model",
-            criterion: Criterion::AtMost(1e-10),
+            criterion: Criterion::AtMost(1e-12),
             repeatability: Repeatability::Everywhere,
             measure: staircase,
         },
@@ -109,7 +109,7 @@ const LOWEST: f64 = -20.0;
 const HIGHEST: f64 = 150.0;
 
 /// A density with structure, 24 levels.
-fn grid_and_map() -> Result<(PreisachGrid, PlayMap), CheckError> {
+pub(super) fn grid_and_map() -> Result<(PreisachGrid, PlayMap), CheckError> {
     let levels = 24;
     let grid = PreisachGrid::new(VoltageRange::new(LOWEST, HIGHEST)?, levels)?;
     let n = levels as f64;
@@ -133,7 +133,7 @@ fn static_model() -> Result<StaticPreisach, CheckError> {
 }
 
 /// Voltages without pattern, from a linear congruential sequence.
-fn wander(seed: u64, count: usize) -> Vec<f64> {
+pub(super) fn wander(seed: u64, count: usize) -> Vec<f64> {
     let mut state = seed;
     (0..count)
         .map(|_| {
@@ -210,13 +210,17 @@ fn staircase() -> Result<f64, CheckError> {
 }
 
 /// The shipped records, identified once for all checks.
-static RECORDS: LazyLock<Result<Vec<RecordReport>, SimError>> = LazyLock::new(|| {
+static IDENTIFIED: LazyLock<Result<Identification, SimError>> = LazyLock::new(|| {
     let data = read_bench(&Folder::Shipped(SHIPPED_BENCH.to_owned()))?;
-    Ok(identify_bench(&data, &Settings::default())?.identification.records)
+    Ok(identify_bench(&data, &Settings::default())?.identification)
 });
 
+pub(super) fn identified() -> Result<&'static Identification, CheckError> {
+    IDENTIFIED.as_ref().map_err(|error| CheckError::Driver(error.clone()))
+}
+
 fn records() -> Result<&'static [RecordReport], CheckError> {
-    RECORDS.as_deref().map_err(|error| CheckError::Driver(error.clone()))
+    Ok(&identified()?.records)
 }
 
 fn is_held_out(record: &RecordReport) -> bool {

@@ -9,6 +9,8 @@ mod page;
 mod reference;
 
 mod actuator;
+mod actuator_data;
+mod actuator_stages;
 mod blade;
 mod control;
 mod inflow;
@@ -37,6 +39,8 @@ pub const AREAS: &[Area] = &[
     rotor::AREA,
     trimmed::AREA,
     actuator::AREA,
+    actuator_stages::AREA,
+    actuator_data::AREA,
     control::AREA,
 ];
 

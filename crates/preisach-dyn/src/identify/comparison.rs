@@ -195,7 +195,11 @@ enum Folds {
 fn has_memory(family: Family) -> bool {
     !matches!(
         family,
-        Family::Linear | Family::LinearLag | Family::BoucWen | Family::PrandtlIshlinskii
+        Family::Linear
+            | Family::LinearLag
+            | Family::BoucWen
+            | Family::PrandtlIshlinskii
+            | Family::PrandtlStop
     )
 }
 
@@ -268,7 +272,8 @@ impl<'a> Contest<'a> {
             Ok(errors.sum::<Result<f64, PreisachError>>()? / fold.len() as f64)
         };
         let mut folds = conditions(&fast, slow.len());
-        if slow.len() >= 3 && (fast.is_empty() || which == Folds::All) {
+        let fewest = if fast.is_empty() { 2 } else { 3 };
+        if slow.len() >= fewest && (fast.is_empty() || which == Folds::All) {
             folds.extend((0..slow.len()).map(|place| vec![place]));
         }
         let cross_validation = match &whole {

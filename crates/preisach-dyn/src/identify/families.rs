@@ -1,8 +1,8 @@
 //! The families of models that the same records can be fitted with.
 
-use super::output_error::{Estimate, OutputError};
+use super::output_error::{Estimate, OutputError, Pull};
 use super::prepared::Prepared;
-use super::{RateFit, RateSmoothness, Settings, layered, static_fit};
+use super::{RateFit, RateSmoothness, Settings, layered, static_fit, stop_fit};
 use crate::{
     ActuatorLaw, ActuatorModel, AmplifierStage, BoucWen, BoucWenParameters, Envelope, Lag,
     LinearGain, PlayMap, PrandtlIshlinskii, PrandtlParameters, PreisachError, PreisachGrid,
@@ -23,6 +23,8 @@ pub enum Family {
     BoucWen,
     /// Prandtl-Ishlinskii hysteresis whose half-widths grow with the voltage rate.
     PrandtlIshlinskii,
+    /// Prandtl-Ishlinskii stops: an output that leads the input.
+    PrandtlStop,
     /// Static Preisach.
     StaticPreisach,
     /// Dynamic Preisach, implicit Euler in time.
@@ -31,17 +33,19 @@ pub enum Family {
     DynamicPreisach,
     /// Dynamic Preisach before creep along the logarithm of time.
     DynamicPreisachCreep,
-    /// Static Preisach before one relaxation time, a share that follows at once, and creep.
+    /// Static Preisach before accommodation, one relaxation time, a share that follows at once, and
+    /// creep.
     StaticPreisachRelaxation,
 }
 
 impl Family {
     /// All of them, from the simplest.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Linear,
         Self::LinearLag,
         Self::BoucWen,
         Self::PrandtlIshlinskii,
+        Self::PrandtlStop,
         Self::StaticPreisach,
         Self::DynamicPreisachFirst,
         Self::DynamicPreisach,
@@ -56,17 +60,20 @@ impl Family {
             Self::LinearLag => "linear gain + lag",
             Self::BoucWen => "Bouc-Wen",
             Self::PrandtlIshlinskii => "rate-dependent Prandtl-Ishlinskii",
+            Self::PrandtlStop => "Prandtl-Ishlinskii stops",
             Self::StaticPreisach => "static Preisach",
             Self::DynamicPreisachFirst => "dynamic Preisach, first order",
             Self::DynamicPreisach => "dynamic Preisach, second order",
             Self::DynamicPreisachCreep => "dynamic Preisach + creep",
-            Self::StaticPreisachRelaxation => "static Preisach + relaxation + creep",
+            Self::StaticPreisachRelaxation => {
+                "static Preisach + accommodation + relaxation + creep"
+            }
         }
     }
 
     /// Whether a fit needs records at several frequencies.
     pub fn needs_rate(self) -> bool {
-        !matches!(self, Self::Linear | Self::BoucWen | Self::StaticPreisach)
+        !matches!(self, Self::Linear | Self::BoucWen | Self::PrandtlStop | Self::StaticPreisach)
     }
 }
 
@@ -150,6 +157,7 @@ pub(super) fn fit(
             let rate = RateFit::new(grid, training.static_map()?, slow, fast, &settings)?;
             Ok(Fitted { model: settings.actuator_of(rate.law), parameters: rate.parameters })
         }
+        Family::PrandtlStop => stop_fit::fit(training),
         Family::DynamicPreisachCreep => layered::dynamic_creep(training, given),
         Family::StaticPreisachRelaxation => layered::relaxation(training, given),
         _ => by_output_error(family, training, given),
@@ -239,7 +247,7 @@ fn by_output_error(
             names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
             let with = |exponent: f64| {
                 let build = move |x: &DVector<f64>| bouc_wen(x, exponent);
-                finish_with_error(family, &build, &all, &starts, &names)
+                finish_with_error(family, &build, &all, &starts, (&names, &[]))
             };
             // the exponents with a closed solution
             let (first, second) = (with(1.0)?, with(2.0)?);
@@ -276,20 +284,21 @@ fn finish<'a>(
     starts: &[DVector<f64>],
     names: &[&str],
 ) -> Result<Fitted, PreisachError> {
-    Ok(finish_with_error(family, build, records, starts, names)?.1)
+    Ok(finish_with_error(family, build, records, starts, (names, &[]))?.1)
 }
 
-/// The best of the starts, its error and the uncertainty of its parameters.
+/// The best of the starts, its error and the uncertainty of its parameters; names of the parameters
+/// and what is known of the first of them.
 pub(super) fn finish_with_error<'a>(
     family: Family,
     build: &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> + Sync),
     records: &'a [&'a Prepared<'a>],
     starts: &[DVector<f64>],
-    names: &[&str],
+    (names, pulls): (&[&str], &'a [Pull]),
 ) -> Result<(f64, Fitted), PreisachError> {
-    let minimum = OutputError::best_of(build, records, starts, PATIENCE)
+    let minimum = OutputError::best_of(build, records, pulls, starts, PATIENCE)
         .ok_or(PreisachError::NotFitted { family: family.name() })?;
-    let covariance = OutputError::new(build, records, minimum.x.clone()).covariance();
+    let covariance = OutputError::pulled(build, records, pulls, minimum.x.clone()).covariance();
     let parameters = names.iter().zip(minimum.x.iter()).enumerate().map(|(k, (name, &value))| {
         let deviation = covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k));
         Estimate { name: (*name).to_owned(), value, std_deviation: deviation }

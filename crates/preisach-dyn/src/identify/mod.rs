@@ -27,7 +27,9 @@ mod refine;
 mod roles;
 mod settings;
 pub(crate) mod static_fit;
+mod stop_fit;
 mod stream;
+mod subject;
 mod validate;
 
 pub use compare::RecordFit;
@@ -41,6 +43,7 @@ pub use record::{BenchRecord, Drive, RecordUse, RecordWindows, SplitRule, Wavefo
 pub use refine::{Refinement, RefinementOutcome};
 pub use settings::{FlapZero, RateSmoothness, Settings};
 pub use stream::StaticAccumulator;
+pub use subject::Subject;
 pub use validate::Validation;
 
 use crate::{

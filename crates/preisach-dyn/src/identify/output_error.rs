@@ -20,6 +20,16 @@ const DIFFERENCE: f64 = 1e-5;
 /// of order one: a step of 1e-5 in any of them must mean something.
 pub(super) type Build<'a> = &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> + Sync);
 
+/// What is known of a parameter beforehand: the residual `weight (x - at)` is added.
+///
+/// Where records determine the parameter it means little; where they do not, the parameter stays
+/// where the literature has it instead of wandering off.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pull {
+    pub(super) at: f64,
+    pub(super) weight: f64,
+}
+
 /// A parameter with its uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
@@ -62,7 +72,7 @@ impl Covariance {
 pub(super) struct Minimum {
     pub(super) x: DVector<f64>,
     pub(super) model: ActuatorModel,
-    /// Root mean square of the NRMSE of the records.
+    /// Root mean square of the NRMSE of the records, with the pulls if there are any.
     pub(super) nrmse: f64,
     /// Evaluations spent.
     pub(super) steps: usize,
@@ -73,6 +83,8 @@ pub(super) struct Minimum {
 pub(super) struct OutputError<'a> {
     build: Build<'a>,
     records: &'a [&'a Prepared<'a>],
+    /// Of the first parameters.
+    pulls: &'a [Pull],
     x: DVector<f64>,
     /// Residuals at `x`; outside the domain those of the best parameters ten times as
     /// large, so that the step is taken back; none if the start lies outside.
@@ -83,13 +95,23 @@ pub(super) struct OutputError<'a> {
 
 impl<'a> OutputError<'a> {
     pub(super) fn new(build: Build<'a>, records: &'a [&'a Prepared<'a>], x: DVector<f64>) -> Self {
-        let mut problem = Self { build, records, x, here: None, best: None };
+        Self::pulled(build, records, &[], x)
+    }
+
+    /// With what is known beforehand of the first parameters.
+    pub(super) fn pulled(
+        build: Build<'a>,
+        records: &'a [&'a Prepared<'a>],
+        pulls: &'a [Pull],
+        x: DVector<f64>,
+    ) -> Self {
+        let mut problem = Self { build, records, pulls, x, here: None, best: None };
         problem.here = problem.residuals_at(&problem.x);
         problem.best = problem.here.clone().map(|here| (problem.x.clone(), here));
         problem
     }
 
-    /// Root mean square of the NRMSE of the records at the start.
+    /// Root mean square of the NRMSE of the records at the start, with the pulls.
     pub(super) fn nrmse(&self) -> Option<f64> {
         Some(self.here.as_ref()?.norm())
     }
@@ -115,6 +137,7 @@ impl<'a> OutputError<'a> {
             residuals
                 .extend(Self::kept(prepared).map(|i| weight * (output[i] - record.output_deg[i])));
         }
+        residuals.extend(self.pulls.iter().zip(x.iter()).map(|(p, x)| p.weight * (x - p.at)));
         let residuals = DVector::from_vec(residuals);
         residuals.iter().all(|r| r.is_finite()).then_some(residuals)
     }
@@ -137,12 +160,13 @@ impl<'a> OutputError<'a> {
     pub(super) fn best_of(
         build: Build<'a>,
         records: &'a [&'a Prepared<'a>],
+        pulls: &'a [Pull],
         starts: &[DVector<f64>],
         patience: usize,
     ) -> Option<Minimum> {
         let found: Vec<Option<Minimum>> = starts
             .par_iter()
-            .map(|x| Self::new(build, records, x.clone()).minimise(patience))
+            .map(|x| Self::pulled(build, records, pulls, x.clone()).minimise(patience))
             .collect();
         found.into_iter().flatten().reduce(|a, b| if b.nrmse < a.nrmse { b } else { a })
     }

@@ -177,13 +177,12 @@ impl Drive {
         if drive.amplitude_volt <= 0.0 {
             return drive;
         }
-        let period = match record.base_frequency_hz {
-            Some(hz) => Some(1.0 / (hz * record.time_step_s)),
-            None => find_period(u, &drive),
+        let given = record.base_frequency_hz.map(|hz| 1.0 / (hz * record.time_step_s));
+        let to_the_end = || {
+            let period = given.or_else(|| find_period(u, &drive))?;
+            Some((period, steady_samples(u, period, drive.amplitude_volt)?))
         };
-        let steady =
-            period.and_then(|p| steady_samples(u, p, drive.amplitude_volt).map(|s| (p, s)));
-        if let Some((samples, steady)) = steady {
+        if let Some((samples, steady)) = to_the_end().or_else(|| inner_stretch(u, given, &drive)) {
             drive.base_hz = 1.0 / (samples * record.time_step_s);
             drive.steady = steady;
             drive.find_harmonics(record);
@@ -261,29 +260,102 @@ impl Drive {
     }
 }
 
-/// Period in samples, from upward crossings of the middle level; none if nothing repeats.
-fn find_period(u: &[f64], drive: &Drive) -> Option<f64> {
-    // the later part of the record: rests and fade-ins come first
-    let first = u.len() * 2 / 5;
+/// Upward crossings of the middle level from a sample on, in samples.
+fn crossings(u: &[f64], first: usize, drive: &Drive) -> Vec<f64> {
     let band = 0.1 * drive.amplitude_volt;
     let mut armed = false;
-    let mut crossings = Vec::new();
+    let mut found = Vec::new();
     for i in first..u.len() - 1 {
         let (a, b) = (u[i] - drive.middle_volt, u[i + 1] - drive.middle_volt);
         armed |= a < -band;
         if armed && a < 0.0 && b >= 0.0 {
-            crossings.push(i as f64 + a / (a - b));
+            found.push(i as f64 + a / (a - b));
             armed = false;
         }
     }
+    found
+}
+
+/// Crossings that one period may hold at most.
+const MOST_CROSSINGS: usize = 12;
+
+/// Period in samples of a command that repeats to its end; none if nothing repeats.
+fn find_period(u: &[f64], drive: &Drive) -> Option<f64> {
+    // the later part of the record: rests and fade-ins come first
+    let first = u.len() * 2 / 5;
+    let crossings = crossings(u, first, drive);
     // a period may hold several crossings
-    (1..=12.min(crossings.len().saturating_sub(1))).find_map(|per_period| {
+    (1..=MOST_CROSSINGS.min(crossings.len().saturating_sub(1))).find_map(|per_period| {
         let periods = (crossings.len() - 1) / per_period;
         let last = crossings.len() - 1;
         let period = (crossings[last] - crossings[last - periods * per_period]) / periods as f64;
         let repeats = mismatch(u, first, period)? <= PERIODIC_MISMATCH * drive.amplitude_volt;
         repeats.then_some(period)
     })
+}
+
+/// Share of a record that must repeat if its end does not.
+const LEAST_STEADY: f64 = 0.25;
+
+/// Period and whole periods of a command that repeats between a fade-in and a fade-out, one period
+/// fewer than there are; none unless two periods or more and a quarter of the record repeat.
+fn inner_stretch(u: &[f64], given: Option<f64>, drive: &Drive) -> Option<(f64, Range<usize>)> {
+    let crossings = crossings(u, 0, drive);
+    let per_period = 1..=MOST_CROSSINGS.min(crossings.len().saturating_sub(1));
+    let medians = per_period.map(|count| {
+        let mut spans: Vec<f64> =
+            crossings.iter().zip(&crossings[count..]).map(|(a, b)| b - a).collect();
+        spans.sort_by(f64::total_cmp);
+        spans[spans.len() / 2]
+    });
+    let candidates: Vec<f64> = given.map_or_else(|| medians.collect(), |period| vec![period]);
+    let allowed = 3.0 * PERIODIC_MISMATCH * drive.amplitude_volt;
+    candidates.into_iter().find_map(|median| {
+        let (mut longest, mut begin) = (0..0, 0);
+        for i in 0..u.len() {
+            match later(u, i, median) {
+                Some(v) if (v - u[i]).abs() <= allowed => {
+                    if i + 1 - begin > longest.len() {
+                        longest = begin..i + 1;
+                    }
+                }
+                _ => begin = i + 1,
+            }
+        }
+        let (samples, _) = crate::play_map::split(median);
+        let end = longest.end + samples;
+        let enough = end as f64 - longest.start as f64 >= LEAST_STEADY * u.len() as f64;
+        if !enough || (longest.len() as f64) < median || rests(&u[longest.start..end], drive) {
+            return None;
+        }
+        let inside: Vec<f64> = crossings
+            .iter()
+            .copied()
+            .filter(|c| (longest.start as f64..end as f64).contains(c))
+            .collect();
+        // refined between crossings that are whole periods apart
+        let last = *inside.last()?;
+        let apart = inside.iter().map(|c| (last - c) / median);
+        let whole = apart.filter(|n| *n > 0.5 && (n - n.round()).abs() < 0.05);
+        let most = whole.fold(0.0, f64::max);
+        let period = match given {
+            Some(period) => period,
+            None if most > 0.0 => most * median / most.round(),
+            None => median,
+        };
+        let (periods, _) = crate::play_map::split((end - longest.start) as f64 / period);
+        let (used, _) = crate::play_map::split((periods.max(2) - 1) as f64 * period + 0.5);
+        // a period less than there are, in the middle: the tolerance lets in a little of the fades
+        let start = longest.start + (end - longest.start).saturating_sub(used) / 2;
+        (periods >= 2).then(|| (period, start..(start + used).min(end)))
+    })
+}
+
+/// Whether the command does not use half its amplitude: a rest repeats at any period.
+fn rests(u: &[f64], drive: &Drive) -> bool {
+    let (low, high) =
+        u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    0.5 * (high - low) < 0.5 * drive.amplitude_volt
 }
 
 /// Root mean square of `u(i + period) - u(i)` from `first` on; none if less than half a period is
@@ -443,6 +515,24 @@ mod tests {
         // a drifting frequency does not repeat
         let drive = record(1e-3, 5.0, |t| 65.0 + 50.0 * (TAU * (t + 0.3 * t * t)).sin()).drive();
         assert_eq!(drive.waveform, Waveform::Transient);
+    }
+
+    #[test]
+    fn a_command_that_fades_in_and_out_has_the_frequency_of_its_steady_part() {
+        // two periods up, three steady, two down, as a test machine is run
+        let fading = |t: f64| {
+            let n = 0.25 * t;
+            let gain = (n / 2.25).min((7.0 - n) / 1.75).clamp(0.0, 1.0);
+            gain * (TAU * n).sin()
+        };
+        let drive = record(1.0 / 256.0, 28.0, fading).drive();
+        assert_eq!(drive.waveform, Waveform::SingleHarmonic, "{drive:?}");
+        assert!((drive.base_hz - 0.25).abs() < 5e-4, "{drive:?}");
+        let [start, end] = [drive.steady.start, drive.steady.end].map(|i| i as f64 / 256.0);
+        assert!(start > 9.0 && end < 21.0 && end - start > 7.9, "{start} to {end} s");
+        // ever larger to the end: nothing repeats
+        let growing = record(1.0 / 256.0, 28.0, |t| t * (TAU * 0.25 * t).sin()).drive();
+        assert_eq!(growing.waveform, Waveform::Transient);
     }
 
     #[test]

@@ -80,11 +80,13 @@ impl CoulombFriction {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FrictionStep {
     half_width: f64,
+    /// What of the stretch is missing from the output.
+    share: f64,
 }
 
 impl FrictionStep {
-    pub(super) fn new(half_width: f64) -> Self {
-        Self { half_width }
+    pub(super) fn new(half_width: f64, share: f64) -> Self {
+        Self { half_width, share }
     }
 }
 
@@ -111,7 +113,38 @@ impl Step for FrictionStep {
             let left = (-change.abs() / self.half_width).exp();
             memory.stretch = limit + (memory.stretch - limit) * left;
         }
-        input - memory.stretch
+        input - self.share * memory.stretch
+    }
+}
+
+/// Accommodation: a share of the motion that settles with the way travelled, not with time.
+///
+/// ```text
+/// y = x - share e,   de = ( 1 - sgn(dx) e / travel ) dx
+/// ```
+/// `x - e` is a lag of `x` whose time is the way travelled. Loops drift over several cycles before
+/// they close, and a return to the same voltage does not bring back the same output: what no
+/// operator with return-point memory can show. Rate-independent; exact for a motion that is monotone
+/// between samples. `share = 0` is the identity.
+/// Source: K. C. Valanis, *A theory of viscoplasticity without a yield surface*, Archives of Mechanics
+/// 23 (1971): time measured by the way; the effect: E. Della Torre, *Magnetic Hysteresis* (1999).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Accommodation {
+    /// Share of the motion that settles late, 0 to 1.
+    pub share: f64,
+    /// Way after which it has settled to `1 - 1/e`, at the actuator, um, `> 0`.
+    pub travel_um: f64,
+}
+
+impl Accommodation {
+    pub(super) fn check(self) -> Result<(), PreisachError> {
+        crate::actuator::check_positive("travel_um", self.travel_um)?;
+        if (0.0..=1.0).contains(&self.share) {
+            return Ok(());
+        }
+        let (quantity, value) = ("share of the accommodation", self.share);
+        Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 1.0 })
     }
 }
 

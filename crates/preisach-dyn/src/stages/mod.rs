@@ -22,7 +22,7 @@ pub use amplifier::{CurrentLimit, Depolarisation, DielectricHeating, Saturation}
 pub use creep::{KelvinVoigt, KelvinVoigtElement, LogCreep};
 pub use delay::Delay;
 pub use lag::Lag;
-pub use linkage::{Backlash, CoulombFriction, LoadStiffness};
+pub use linkage::{Accommodation, Backlash, CoulombFriction, LoadStiffness};
 pub use relaxation::{Relaxation, RelaxationElement};
 pub use resonance::Resonance;
 pub use sensor::{MainsHum, Nonlinearity, NonlinearityShape, Quantisation};
@@ -67,6 +67,8 @@ pub enum LinkageStage {
     KelvinVoigt(KelvinVoigt),
     /// A distribution of relaxation times.
     Relaxation(Relaxation),
+    /// A share that settles with the way travelled.
+    Accommodation(Accommodation),
     /// One mechanical mode.
     Resonance(Resonance),
     /// Lost motion.
@@ -275,6 +277,7 @@ impl LinkageStage {
             Self::LogCreep(stage) => stage.check(),
             Self::KelvinVoigt(stage) => stage.check(),
             Self::Relaxation(stage) => stage.check(),
+            Self::Accommodation(stage) => stage.check(),
             Self::Resonance(stage) => stage.check(),
             Self::Backlash(stage) => stage.check(),
             Self::CoulombFriction(stage) => stage.check(),
@@ -288,10 +291,13 @@ impl LinkageStage {
             Self::LogCreep(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::KelvinVoigt(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Relaxation(stage) => StageStep::Creep(stage.prepared(step_s)),
+            Self::Accommodation(stage) => {
+                StageStep::Friction(FrictionStep::new(stage.travel_um * deg, stage.share))
+            }
             Self::Resonance(stage) => StageStep::Resonance(stage.prepared(step_s)),
             Self::Backlash(stage) => StageStep::Play(PlayStep::new(0.5 * stage.width_um * deg)),
             Self::CoulombFriction(stage) => {
-                StageStep::Friction(FrictionStep::new(0.5 * stage.width_um * deg))
+                StageStep::Friction(FrictionStep::new(0.5 * stage.width_um * deg, 1.0))
             }
             Self::LoadStiffness(stage) => StageStep::Load(stage.prepared(calibration.deg_per_um)),
         }

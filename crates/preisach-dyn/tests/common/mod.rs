@@ -3,13 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen, BoucWenParameters, Calibration,
-    CoulombFriction, CurrentLimit, Delay, Depolarisation, DielectricHeating, Drive,
-    DynamicParameters, DynamicPreisach, Envelope, EverettStaircase, KelvinVoigt,
-    KelvinVoigtElement, Lag, LinearGain, LinkageStage, LoadStiffness, LogCreep, MainsHum,
-    Nonlinearity, NonlinearityShape, PlayMap, PrandtlIshlinskii, PrandtlParameters, PreisachGrid,
-    Quantisation, RateForm, RelayGrid, Resonance, Saturation, SensorStage, StaticPreisach,
-    TimeOrder, VoltageRange, WeightedPlay,
+    Accommodation, ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen,
+    BoucWenParameters, Calibration, CoulombFriction, CurrentLimit, Delay, Depolarisation,
+    DielectricHeating, Drive, DynamicParameters, DynamicPreisach, Envelope, EverettStaircase,
+    KelvinVoigt, KelvinVoigtElement, Lag, LinearGain, LinkageStage, LoadStiffness, LogCreep,
+    MainsHum, Nonlinearity, NonlinearityShape, PlayMap, PrandtlIshlinskii, PrandtlParameters,
+    PrandtlStop, PreisachGrid, Quantisation, RateForm, RelayGrid, Resonance, Saturation,
+    SensorStage, StaticPreisach, StopParameters, TimeOrder, VoltageRange, WeightedPlay,
+    WeightedStop,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -22,21 +23,74 @@ pub(crate) fn stored<T: Serialize + DeserializeOwned>(value: &T) -> T {
     serde_json::from_str(&serde_json::to_string(value).unwrap()).unwrap()
 }
 
+/// A density with structure: a wave across the centres, falling with the half-width, and a
+/// reversible part.
+#[derive(Clone, Copy)]
+pub(crate) struct Wavy {
+    /// Output of the lowest state, deg.
+    pub(crate) constant_deg: f64,
+    /// Rise of the reversible part over the range, deg.
+    pub(crate) reversible_deg: f64,
+    /// Scale of the rises of the plays, deg.
+    pub(crate) scale_deg: f64,
+    /// Mean of the wave, above its height so that no density is negative.
+    pub(crate) mean: f64,
+    /// Height of the wave.
+    pub(crate) height: f64,
+    /// Waves per half range, rad.
+    pub(crate) waves: f64,
+}
+
+impl Wavy {
+    /// With a reversible part.
+    pub(crate) const SOFT: Self = Self {
+        constant_deg: 0.5,
+        reversible_deg: 12.0,
+        scale_deg: 20.0,
+        mean: 1.2,
+        height: 1.0,
+        waves: 4.0,
+    };
+
+    /// Less reversible, wider loops.
+    pub(crate) const WIDE: Self = Self { reversible_deg: 6.0, scale_deg: 30.0, ..Self::SOFT };
+
+    /// Plays alone, a gentle wave.
+    pub(crate) const GENTLE: Self = Self {
+        constant_deg: 0.0,
+        reversible_deg: 0.0,
+        scale_deg: 60.0,
+        mean: 1.0,
+        height: 0.5,
+        waves: 2.0,
+    };
+
+    pub(crate) fn map(self, levels: usize) -> (PreisachGrid, PlayMap) {
+        let grid = PreisachGrid::new(VoltageRange::amplified_stack(), levels).unwrap();
+        let n = levels as f64;
+        let rises: Vec<Vec<f64>> = (0..levels)
+            .map(|j| {
+                (0..levels - j)
+                    .map(|k| {
+                        let (s, r) = ((2 * k + j) as f64 / n - 1.0, j as f64 / n);
+                        let reversible = if j == 0 { self.reversible_deg / n } else { 0.0 };
+                        let wave = self.mean + self.height * (self.waves * s).sin();
+                        reversible + wave * (-3.0 * r).exp() * self.scale_deg / (n * n)
+                    })
+                    .collect()
+            })
+            .collect();
+        (grid, PlayMap::from_rises(&grid, self.constant_deg, &rises).unwrap())
+    }
+
+    pub(crate) fn law(self, levels: usize) -> StaticPreisach {
+        let (grid, map) = self.map(levels);
+        StaticPreisach::new(grid, map).unwrap()
+    }
+}
+
 pub(crate) fn map(levels: usize) -> (PreisachGrid, PlayMap) {
-    let grid = PreisachGrid::new(VoltageRange::amplified_stack(), levels).unwrap();
-    let n = levels as f64;
-    let rises: Vec<Vec<f64>> = (0..levels)
-        .map(|j| {
-            (0..levels - j)
-                .map(|k| {
-                    let (s, r) = ((2 * k + j) as f64 / n - 1.0, j as f64 / n);
-                    let reversible = if j == 0 { 12.0 / n } else { 0.0 };
-                    reversible + 20.0 / (n * n) * (-3.0 * r).exp() * (1.2 + (4.0 * s).sin())
-                })
-                .collect()
-        })
-        .collect();
-    (grid, PlayMap::from_rises(&grid, 0.5, &rises).unwrap())
+    Wavy::SOFT.map(levels)
 }
 
 pub(crate) fn plays() -> Vec<WeightedPlay> {
@@ -114,6 +168,19 @@ pub(crate) fn every_law() -> Vec<ActuatorLaw> {
             PrandtlIshlinskii::new(prandtl(plays(), 5e-4, envelope)).unwrap(),
         ),
         ActuatorLaw::BoucWen(bouc_wen(1.6, 0.8)),
+        ActuatorLaw::PrandtlStop(
+            PrandtlStop::new(StopParameters {
+                range_volt: VoltageRange::amplified_stack(),
+                stiffness_deg_per_volt: 0.06,
+                stops: vec![
+                    WeightedStop { threshold_volt: 10.0, stiffness_deg_per_volt: 0.03 },
+                    WeightedStop { threshold_volt: 30.0, stiffness_deg_per_volt: 0.02 },
+                ],
+                viscosity_deg_s_per_volt: 1e-4,
+                offset_deg: 0.2,
+            })
+            .unwrap(),
+        ),
     ]
 }
 
@@ -175,6 +242,7 @@ pub(crate) fn effects() -> Vec<ActuatorModel> {
         linkage(LinkageStage::Resonance(Resonance { frequency_hz: 90.0, damping_ratio: 0.03 })),
         linkage(LinkageStage::Backlash(Backlash { width_um: 3.0 })),
         linkage(LinkageStage::CoulombFriction(CoulombFriction { width_um: 3.0 })),
+        linkage(LinkageStage::Accommodation(Accommodation { share: 0.05, travel_um: 60.0 })),
         linkage(LinkageStage::LoadStiffness(LoadStiffness {
             stiffness_ratio: 0.1,
             compliance_um_per_newton: 0.0,

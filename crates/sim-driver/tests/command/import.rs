@@ -398,6 +398,43 @@ fn the_measured_friction_damper() {
     assert_eq!(json["warnings"].as_array().unwrap().len(), 0, "{json}");
 }
 
+/// Trained at 0.25 Hz, judged at 0.5 and 1 Hz: the table says what leads and what cannot, in inches and
+/// kips, at the frequencies of the steady parts.
+#[test]
+fn the_measured_friction_damper_is_a_stop_and_no_play() {
+    let place = Place::new();
+    let args = ["identify", &measured("friction_damper"), "-o", "damper.ron", "--best"];
+    let json = place.hhc(&[&args[..], &["--format", "json"]].concat()).json();
+    for run in json["runs"].as_array().unwrap() {
+        let id = run["id"].as_str().unwrap();
+        let hz: f64 = id.split('_').nth(1).unwrap().trim_end_matches("Hz").parse().unwrap();
+        let found = run["frequency_hz"].as_f64().unwrap();
+        assert!((found / hz - 1.0).abs() < 0.01, "{id}: {found} Hz");
+        assert_eq!(run["use"], if hz < 0.3 { "trained" } else { "held_out" });
+    }
+    let models = json["models"].as_array().unwrap();
+    let held_out = |name: &str| {
+        let line = models.iter().find(|m| m["model"] == name).unwrap();
+        (line["chosen"].as_bool().unwrap(), line["held_out_percent"].as_f64().unwrap())
+    };
+    let (stops, fixed) = (held_out("Prandtl-Ishlinskii stops"), held_out("static Preisach"));
+    assert!(stops.0 && !fixed.0, "{models:?}");
+    assert!(stops.1 < 50.0 && fixed.1 > 80.0, "{stops:?} {fixed:?}");
+    let text = place.hhc(&args).done();
+    assert!(text.contains("friction does"), "{text}");
+    assert!(text.contains("Model written to damper.ron"), "{text}");
+    // the path of the data may be called anything
+    for line in text.lines().filter(|line| !line.starts_with("Data ")) {
+        for foreign in ["volt", " V ", "Actuator", "actuator", "flap"] {
+            assert!(!line.contains(foreign), "{foreign}: {line}");
+        }
+    }
+    let model = place.read("damper.ron");
+    assert!(model.contains("// Model of displacement_in to friction_force_kip"), "{model}");
+    assert!(model.contains("PrandtlStop("), "{model}");
+    place.hhc(&["check", "damper.ron"]).done();
+}
+
 /// A structure written by another program: `SciPy`, compressed, little-endian.
 #[test]
 fn a_mat_file_of_another_program() {

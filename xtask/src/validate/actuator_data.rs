@@ -1,0 +1,205 @@
+//! The actuator on data: the model that cross-validation picks, measured reversal curves, a measured
+//! friction damper, the inverse.
+
+use std::sync::LazyLock;
+
+use preisach_dyn::InverseSettings;
+use preisach_dyn::identify::{Family, ModelComparison, RecordFit, RecordUse, Settings};
+use rotor_base::{Harmonic, HarmonicSeries};
+use sim_driver::SimError;
+use sim_driver::curve_identification::identify_curves;
+use sim_driver::files::{DataSet, Folder, SHIPPED_BENCH, read_bench, read_dataset};
+use sim_driver::identification::{identify_bench, identify_loops};
+use sim_driver::import::{ColumnOptions, ImportRequest, MOST_SAMPLES, import};
+
+use super::CheckError;
+use super::actuator::{BENCH, identified};
+use super::check::{Area, Check, Criterion, Repeatability};
+use super::reference::worst;
+
+type Measure = fn() -> Result<f64, CheckError>;
+
+const fn percent(
+    id: &'static str,
+    quantity: &'static str,
+    source: &'static str,
+    most: f64,
+    measure: Measure,
+) -> Check {
+    Check {
+        id,
+        quantity,
+        unit: "%",
+        source,
+        criterion: Criterion::AtMost(most),
+        repeatability: Repeatability::Everywhere,
+        measure,
+    }
+}
+
+const FORC: &str = "152 measured curves, fixtures/measured/forc";
+const DAMPER: &str = "measured friction damper, fixtures/measured/friction_damper";
+
+pub(super) const AREA: Area = Area {
+    heading: "Actuator on data (`preisach-dyn`, `sim-driver`)",
+    checks: &[
+        percent(
+            "V-ACT-30",
+            "model picked by cross-validation, 0.2 Hz loop and reversal curves: largest NRMSE",
+            BENCH,
+            1.5,
+            || picked(3, |id| id.contains("0p2hz") || id.starts_with("forc"), nrmse),
+        ),
+        percent(
+            "V-ACT-31",
+            "model picked by cross-validation, held out, 15 and 20 Hz: largest NRMSE",
+            BENCH,
+            8.0,
+            || picked(6, is_fast, nrmse),
+        ),
+        Check {
+            unit: "deg",
+            ..percent(
+                "V-ACT-32",
+                "model picked by cross-validation, held out, 15 and 20 Hz: largest phase error",
+                BENCH,
+                2.0,
+                || picked(6, is_fast, |fit| fit.phase_error_deg.map_or(f64::NAN, f64::abs)),
+            )
+        },
+        percent(
+            "V-ACT-33",
+            "reversal curves, every fourth held out: worst curve, of the range",
+            FORC,
+            2.0,
+            held_out_curves,
+        ),
+        percent(
+            "V-ACT-34",
+            "identified dynamic model, inverse then forward, 2, 3 and 4/rev: largest error, of the amplitude",
+            "definition",
+            0.5,
+            inverse,
+        ),
+        percent(
+            "V-ACT-35",
+            "friction damper, trained at 0.25 Hz, stops, 0.5 and 1 Hz held out: rms NRMSE",
+            DAMPER,
+            50.0,
+            || damper(Family::PrandtlStop),
+        ),
+        Check {
+            criterion: Criterion::AtLeast(80.0),
+            ..percent(
+                "V-ACT-36",
+                "the same, static Preisach: rising plays cannot lead",
+                DAMPER,
+                0.0,
+                || damper(Family::StaticPreisach),
+            )
+        },
+    ],
+};
+
+/// The table of some families on a data set, made once for all checks.
+type Tabled = LazyLock<Result<ModelComparison, SimError>>;
+
+static SHIPPED: Tabled = LazyLock::new(|| {
+    let data = read_bench(&Folder::Shipped(SHIPPED_BENCH.to_owned()))?;
+    let mut found = identify_bench(&data, &Settings::default())?;
+    found.compare()?;
+    Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
+});
+
+fn table(of: &'static Tabled) -> Result<&'static ModelComparison, CheckError> {
+    of.as_ref().map_err(|error| CheckError::Driver(error.clone()))
+}
+
+fn nrmse(fit: &RecordFit) -> f64 {
+    fit.nrmse_percent()
+}
+
+fn is_fast(id: &str) -> bool {
+    id.contains("15hz") || id.contains("20hz")
+}
+
+/// The largest figure of the picked model over some of the records.
+fn picked(
+    needed: usize,
+    wanted: fn(&str) -> bool,
+    figure: fn(&RecordFit) -> f64,
+) -> Result<f64, CheckError> {
+    let table = table(&SHIPPED)?;
+    let missing = CheckError::TooFew { what: "fitted models", found: 0, needed: 1 };
+    let fitted = table.best().and_then(|row| row.fitted.as_ref().ok()).ok_or(missing)?;
+    let chosen = table.records.iter().zip(&fitted.fits).filter(|((id, _), _)| wanted(id));
+    worst("records", needed, chosen.map(|(_, fit)| Ok(figure(fit))))
+}
+
+static LOOPS: Tabled = LazyLock::new(|| {
+    let folder = crate::workspace::root().join("fixtures/measured/friction_damper");
+    let DataSet::Loops(data) = read_dataset(&Folder::Disk(folder))? else {
+        unreachable!("a data set of loops")
+    };
+    let mut found = identify_loops(&data, &Settings::default())?;
+    found.compare()?;
+    Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
+});
+
+fn damper(family: Family) -> Result<f64, CheckError> {
+    let table = table(&LOOPS)?;
+    let row = table.rows.iter().find(|row| row.family == family);
+    let error = row.and_then(|row| table.error_over(row, RecordUse::HeldOut));
+    Ok(error.map_or(f64::NAN, |(rms, _)| 100.0 * rms))
+}
+
+/// The measured file imported as `hhc import` does, then identified.
+fn held_out_curves() -> Result<f64, CheckError> {
+    let place = tempfile::tempdir().map_err(|source| SimError::NotWritten {
+        path: std::env::temp_dir(),
+        reason: source.to_string(),
+    });
+    let place = place.map_err(CheckError::Driver)?;
+    let out = place.path().join("forc");
+    let request = ImportRequest {
+        files: vec![crate::workspace::root().join("fixtures/measured/forc/hchb_forc")],
+        out: out.clone(),
+        source: None,
+        kind: None,
+        columns: ColumnOptions::default(),
+        variable: None,
+        range: None,
+        sampling_hz: None,
+        reduce_to_hz: None,
+        most_samples: MOST_SAMPLES,
+        title: None,
+    };
+    let worst_percent = || -> Result<f64, SimError> {
+        import(&request)?;
+        let DataSet::Curves(curves) = read_dataset(&Folder::Disk(out))? else {
+            return Ok(f64::NAN);
+        };
+        Ok(identify_curves(&curves)?.summary(None).held_out_worst_percent)
+    };
+    worst_percent().map_err(CheckError::Driver)
+}
+
+fn inverse() -> Result<f64, CheckError> {
+    let model = &identified()?.dynamic;
+    let settings = InverseSettings::default();
+    let mut wanted = HarmonicSeries::zero(4);
+    for (n, cosine, sine) in [(2, 1.0, 0.0), (3, 0.4, 0.8), (4, -0.4, 0.4)] {
+        wanted.set_harmonic(n, Harmonic { cosine, sine });
+    }
+    let rev_hz = 5.0;
+    let found = model.periodic_inverse(&wanted, rev_hz, &settings)?;
+    let again =
+        model.periodic_response(&found.response.voltage_volt, rev_hz, &settings.periodic)?;
+    let steps = again.samples_deg.len() as f64;
+    let errors = again
+        .samples_deg
+        .iter()
+        .enumerate()
+        .map(|(i, y)| (y - wanted.value(std::f64::consts::TAU * i as f64 / steps)).abs());
+    Ok(100.0 * errors.fold(0.0, f64::max) / found.amplitude_deg)
+}
