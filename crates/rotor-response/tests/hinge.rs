@@ -69,8 +69,8 @@ fn inertial_hinge_moment_of_a_driven_flap_on_a_stiff_blade() {
         // n^2 I - (I + m d X), with delta'' = -n^2 delta
         let stiffness = flap.mass_fraction * (15.0 * about_hinge - d * cg) * moment(0);
         let got = solved(model(), angle.clone()).hinge[1].inertial.harmonic(4);
-        assert_relative_eq!(got.cosine, stiffness * 0.01, max_relative = 2e-3);
-        assert_relative_eq!(got.sine, stiffness * 0.02, max_relative = 2e-3);
+        assert_relative_eq!(got.cosine, stiffness * 0.01, max_relative = 2e-4);
+        assert_relative_eq!(got.sine, stiffness * 0.02, max_relative = 2e-4);
         println!("{gyration_fraction:?}: {:e}", got.cosine / (stiffness * 0.01) - 1.0);
     }
 }
@@ -89,7 +89,7 @@ fn steady_aerodynamic_hinge_moment_of_a_stiff_blade() {
     let expected = pressure * slope * delta * moment(2);
     let got = solved(model, angle).hinge[1].aerodynamic.mean;
     println!("{:e}", got / expected - 1.0);
-    assert_relative_eq!(got, expected, max_relative = 1e-4);
+    assert_relative_eq!(got, expected, max_relative = 1e-7);
     assert_relative_eq!(slope, -0.036_915, max_relative = 1e-4);
 }
 
@@ -179,7 +179,8 @@ fn counted_in_or_out_the_flap_is_the_same_body() {
     let counted_wrong = flown(with_mass(FlapMass::AddedToBlade, 0.1), &blade);
     let (near, far) = (gap(&inside, &beside), gap(&inside, &counted_wrong));
     println!("counted in or out {near:e}, counted twice {far:e}");
-    assert!(near < 0.1 && near > 1e-4, "{near:e}");
+    assert!(near < 0.05 && near > 1e-4, "{near:e}");
+    assert!(far > 1.5 * near, "{far:e}");
 }
 
 #[test]

@@ -98,7 +98,8 @@ impl HingeCoupling {
                         if j > 0 {
                             let mut unit = vec![0.0; size];
                             unit[j] = give_rad;
-                            column = coefficients(&slopes.change(&series(&unit), harmonics), harmonics);
+                            column =
+                                coefficients(&slopes.change(&series(&unit), harmonics), harmonics);
                         }
                         DVector::from_vec(column)
                     })
@@ -158,10 +159,7 @@ impl HingeCoupling {
     pub fn settle<R>(
         &self,
         actuate: impl Fn(&[HarmonicSeries]) -> Result<Vec<FlapMotion>, PlantError>,
-        respond: impl Fn(
-            &[FlapMotion],
-            Option<&R>,
-        ) -> Result<(R, Vec<HarmonicSeries>), PlantError>,
+        respond: impl Fn(&[FlapMotion], Option<&R>) -> Result<(R, Vec<HarmonicSeries>), PlantError>,
     ) -> Result<(Vec<FlapMotion>, R, CouplingResidual), PlantError> {
         // the linear prediction from the flaps at rest, without a response
         let rest = self.gather(&self.at_rest);
@@ -204,3 +202,7 @@ impl HingeCoupling {
         })
     }
 }
+
+#[cfg(test)]
+#[path = "coupling_tests.rs"]
+mod tests;
