@@ -11,6 +11,7 @@ mod reference;
 mod actuator;
 mod blade;
 mod control;
+mod hinge;
 mod inflow;
 mod moderate;
 mod moderate_blades;

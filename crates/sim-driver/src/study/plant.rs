@@ -1,15 +1,17 @@
 //! The trimmed rotor with its driven flaps as the plant of the controller.
 
+use super::coupling::{coefficients, series};
 use super::drive::scaled;
 use super::{CouplingResidual, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError};
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
 use hhc_control::{ControlLayout, Measurement, Plant, PlantCall, RunError};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_response::{Condition, HingeSlopes, ResponseError, Rotor, RotorSolution, RotorSolver};
+use rotor_response::{Condition, ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_wake::LinearInflow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};
 
 /// A rotor in trim, flaps at rest: where every control run starts.
@@ -20,6 +22,8 @@ pub struct TrimmedRotor {
     trim: TrimSolution,
     /// Moment unit `m0 Omega^2 R^3`, N m.
     moment_newton_metre: f64,
+    /// Change of the hinge moments with the flap motions, found when first asked for.
+    hinge_response: Arc<OnceLock<DMatrix<f64>>>,
 }
 
 impl TrimmedRotor {
@@ -48,7 +52,8 @@ impl TrimmedRotor {
             SimError::Trim { place: loaded.index.place(field), source }
         })?;
         let moment_newton_metre = case.scales.moment_newton_metre();
-        Ok(Self { solver, inflow, trim, moment_newton_metre })
+        let hinge_response = Arc::default();
+        Ok(Self { solver, inflow, trim, moment_newton_metre, hinge_response })
     }
 
     /// The trim.
@@ -74,10 +79,6 @@ impl TrimmedRotor {
         imbalance(&self.solver, &self.inflow, target, &self.trim, response)
     }
 
-    fn condition(&self, flap_angles_rad: Vec<HarmonicSeries>) -> Condition {
-        Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad }
-    }
-
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
     ///
     /// Starts from the trimmed orbit with the trim's factorisation, whatever was solved before.
@@ -100,44 +101,62 @@ impl TrimmedRotor {
         flap_angles_rad: Vec<HarmonicSeries>,
         start: &RotorSolution,
     ) -> Result<RotorSolution, ResponseError> {
-        let condition = self.condition(flap_angles_rad);
+        let condition =
+            Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad };
         self.solver.clone().solve(&condition, &self.inflow, Some(start))
     }
 
-    /// How the hinge moment of each flap changes with its motion, about the trim; `m0 Omega^2 R^3`.
-    ///
-    /// # Errors
-    /// None for a trimmed rotor; the form is that of [`RotorSolver::hinge_slopes`].
-    pub fn hinge_slopes(&self) -> Result<Vec<HingeSlopes>, ResponseError> {
-        let still = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
-        self.solver.hinge_slopes(&self.condition(still), &self.trim.rotor)
+    /// Change of all hinge moments with all flap motions about the trim, N m per rad, in the order of
+    /// [`HingeCoupling::new`]; one-sided differences of responses, made once for a rotor.
+    fn hinge_response(&self) -> Result<DMatrix<f64>, ResponseError> {
+        if let Some(known) = self.hinge_response.get() {
+            return Ok(known.clone());
+        }
+        let rest = &self.trim.rotor.hinge;
+        let count = rest.iter().map(|h| h.total().harmonics.len()).max().unwrap_or(0);
+        let (flaps, size) = (rest.len(), 2 * count + 1);
+        let gather = |rotor: &RotorSolution| -> DVector<f64> {
+            let all = rotor.hinge.iter().flat_map(|h| coefficients(&h.total(), count));
+            DVector::from_vec(all.map(|c| self.moment_newton_metre * c).collect())
+        };
+        let base = gather(&self.trim.rotor);
+        let columns = (0..flaps * size)
+            .into_par_iter()
+            .map(|j| {
+                if j % size == 0 {
+                    // the mean angle is the bias's
+                    return Ok(DVector::zeros(flaps * size));
+                }
+                let mut angles = vec![HarmonicSeries::zero(0); flaps];
+                let mut unit = vec![0.0; size];
+                unit[j % size] = RESPONSE_STEP_RAD;
+                angles[j / size] = series(&unit);
+                Ok((gather(&self.with_flaps(angles)?) - &base) / RESPONSE_STEP_RAD)
+            })
+            .collect::<Result<Vec<DVector<f64>>, ResponseError>>()?;
+        let found = DMatrix::from_columns(&columns);
+        Ok(self.hinge_response.get_or_init(|| found).clone())
     }
 
     /// The coupling of flaps that give way by an angle per hinge moment, deg/(N m); none without give.
     ///
     /// # Errors
-    /// As [`Self::hinge_slopes`].
+    /// The errors of the response.
     pub fn coupling(
         &self,
         give_deg_per_newton_metre: f64,
     ) -> Result<Option<HingeCoupling>, ResponseError> {
-        if give_deg_per_newton_metre == 0.0 {
+        if give_deg_per_newton_metre == 0.0 || self.trim.rotor.hinge.is_empty() {
             return Ok(None);
         }
         let unit = self.moment_newton_metre;
         let at_rest = self.trim.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect();
-        let slopes = self
-            .hinge_slopes()?
-            .iter()
-            .map(|s| HingeSlopes {
-                angle: scaled(&s.angle, unit),
-                rate: scaled(&s.rate, unit),
-                acceleration: scaled(&s.acceleration, unit),
-            })
-            .collect();
-        Ok(HingeCoupling::new(give_deg_per_newton_metre, at_rest, slopes))
+        Ok(HingeCoupling::new(give_deg_per_newton_metre, at_rest, self.hinge_response()?))
     }
 }
+
+/// Step of the differences in a harmonic of a flap angle, rad: the response is nearly linear in it.
+const RESPONSE_STEP_RAD: f64 = 1e-3;
 
 /// Everything about one control vector.
 #[derive(Debug, Clone)]
