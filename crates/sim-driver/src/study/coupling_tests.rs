@@ -147,7 +147,7 @@ fn what_does_not_settle_says_so_with_its_best_state() {
         |_, _| {
             // a rotor that never answers the same
             count.set(count.get() + 1);
-            let mean = 0.01 * ((f64::from(count.get()) * 12.9898).sin() * 43758.5453).fract();
+            let mean = 0.01 * ((f64::from(count.get()) * 1.7).sin() * 1e4).fract();
             Ok(((), vec![HarmonicSeries { mean, ..HarmonicSeries::zero(12) }]))
         },
     );
