@@ -1,15 +1,10 @@
-//! Hinge moments of the flaps over a revolution, and how they change with the flap motion.
+//! Hinge moments of the flaps over a revolution.
 
 use crate::air::SectionLoads;
 use crate::blade::ResponseBlade;
 use crate::motion::Motion;
-use crate::system::{ResponseSystem, Revolution};
-use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
-
-/// Step of the differences in the flap angle's inertia, rad and per rad: the moment is nearly linear.
-const DIFFERENCE_STEP: f64 = 1e-3;
-/// Step of the differences in the air's answer to the flap angle and its rates.
-const AIR_STEP: f64 = 1e-4;
+use crate::system::ResponseSystem;
+use rotor_base::{Harmonic, HarmonicSeries};
 
 /// Moments about the hinge of one flap of one blade, over its span, against the azimuth of the blade;
 /// `m0 Omega^2 R^3`, positive in the sense of the flap angle (trailing edge down).
@@ -31,47 +26,10 @@ impl HingeMoment {
         let mut total = HarmonicSeries { mean: a.mean + b.mean, ..a.clone() };
         for n in 1..=a.harmonics.len().max(b.harmonics.len()) {
             let (x, y) = (a.harmonic(n), b.harmonic(n));
-            let sum = rotor_base::Harmonic { cosine: x.cosine + y.cosine, sine: x.sine + y.sine };
+            let sum = Harmonic { cosine: x.cosine + y.cosine, sine: x.sine + y.sine };
             total.set_harmonic(n, sum);
         }
         total
-    }
-}
-
-/// Change of the hinge moment of one flap with its own motion, the blade's motion held and the lags of
-/// the air settled.
-///
-/// ```text
-/// dH = angle delta + rate delta' + acceleration delta''        ' by azimuth, delta in rad
-/// ```
-/// `m0 Omega^2 R^3` each. What a Newton step on the flap motion needs; the blade's own answer, wake lags
-/// and the other flap are left out.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct HingeSlopes {
-    /// With the flap angle, rad.
-    pub angle: HarmonicSeries,
-    /// With its azimuth derivative.
-    pub rate: HarmonicSeries,
-    /// With its second azimuth derivative.
-    pub acceleration: HarmonicSeries,
-}
-
-impl HingeSlopes {
-    /// The change of the hinge moment for a flap motion (rad), harmonics to `count`.
-    pub fn change(&self, motion_rad: &HarmonicSeries, count: usize) -> HarmonicSeries {
-        let highest = |s: &HarmonicSeries| s.harmonics.len();
-        let samples = highest(motion_rad) + highest(&self.angle) + count + 1;
-        let values: Vec<f64> = uniform_azimuths_rad(samples)
-            .into_iter()
-            .map(|azimuth| {
-                let [value, rate, acceleration] = motion_rad.value_and_rates(azimuth);
-                self.angle.value(azimuth) * value
-                    + self.rate.value(azimuth) * rate
-                    + self.acceleration.value(azimuth) * acceleration
-            })
-            .collect();
-        let weights = vec![1.0 / samples as f64; samples];
-        HarmonicSeries::project(&uniform_azimuths_rad(samples), &weights, &values, count)
     }
 }
 
@@ -105,33 +63,5 @@ impl ResponseSystem<'_> {
             self.blade.flap_inertia[k].body.hinge_moment(&section)
         });
         [aerodynamic, inertial]
-    }
-
-    /// Change of every flap's hinge moment with its angle, rate and acceleration at one point,
-    /// `[derivative][flap]`.
-    pub(crate) fn hinge_slopes(&self, point: usize, revolution: &Revolution) -> [Vec<f64>; 3] {
-        let motion = &revolution.motions[point];
-        let (flaps, first) = (self.points[point].flap.len(), self.air.first_station());
-        let still = self.settled_sections(point, &revolution.flows[point]);
-        std::array::from_fn(|which| {
-            let moved = self.flows_with_flaps(point, motion, |k| {
-                let mut delta = self.points[point].flap[k];
-                delta[which] += AIR_STEP;
-                delta
-            });
-            let moved = self.settled_sections(point, &moved);
-            over_flaps(self.blade, flaps, |i, k| {
-                let body = &self.blade.flap_inertia[k].body;
-                let section = self.flap_section(point, motion, (i, k));
-                let stepped = |step: f64| {
-                    let mut section = section;
-                    section.delta[which] += step;
-                    body.hinge_moment(&section)
-                };
-                let difference = stepped(DIFFERENCE_STEP) - stepped(-DIFFERENCE_STEP);
-                (moved[i - first].hinge - still[i - first].hinge) / AIR_STEP
-                    + difference / (2.0 * DIFFERENCE_STEP)
-            })
-        })
     }
 }

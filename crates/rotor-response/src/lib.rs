@@ -25,7 +25,7 @@ mod system;
 pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;
 pub use flap_mass::with_flap_masses;
-pub use hinge::{HingeMoment, HingeSlopes};
+pub use hinge::HingeMoment;
 pub use linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
 pub use loads::{SixLoads, hub_loads};
 pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};

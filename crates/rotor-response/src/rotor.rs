@@ -4,7 +4,7 @@ use crate::air::{AirPoint, AirScales, FlapAngle, SectionLoads};
 use crate::blade::ResponseBlade;
 use crate::flap_mass::with_flap_masses;
 use crate::flight_air::FlightAir;
-use crate::hinge::{HingeMoment, HingeSlopes};
+use crate::hinge::HingeMoment;
 use crate::loads::{
     SixLoads, hub_loads, moderate_root_loads, root_flap_curvature_moment, root_flap_moment,
     root_loads,
@@ -305,39 +305,6 @@ impl RotorSolver {
             tolerance: self.tolerances.inflow,
             thrust_coefficient: last.1,
         })
-    }
-
-    /// How the hinge moment of each flap changes with its motion, about a solution.
-    ///
-    /// # Errors
-    /// [`ResponseError::FlapMotions`] for a condition with another number of flaps.
-    pub fn hinge_slopes(
-        &self,
-        condition: &Condition,
-        solution: &RotorSolution,
-    ) -> Result<Vec<HingeSlopes>, ResponseError> {
-        let expected = self.rotor.model.flaps.len();
-        let given = condition.flap_angles_rad.len();
-        if given != expected {
-            return Err(ResponseError::FlapMotions { given, expected });
-        }
-        let points = self.point_inputs(condition, &solution.inflow);
-        let system = self.rotor.system(&self.air, points);
-        let revolution = system.revolution(&solution.orbit.sample(&self.time))?;
-        let by_point: Vec<[Vec<f64>; 3]> =
-            (0..self.time.points().len()).map(|p| system.hinge_slopes(p, &revolution)).collect();
-        let count = self.rotor.discretisation.load_harmonics;
-        let series = |which: usize, flap: usize| {
-            let values: Vec<f64> = by_point.iter().map(|slopes| slopes[which][flap]).collect();
-            RevolutionLoads::series(&self.time, &values, count)
-        };
-        Ok((0..expected)
-            .map(|k| HingeSlopes {
-                angle: series(0, k),
-                rate: series(1, k),
-                acceleration: series(2, k),
-            })
-            .collect())
     }
 
     pub(crate) fn orbit_error(error: PeriodicError<ResponseError>) -> ResponseError {

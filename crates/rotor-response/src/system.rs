@@ -63,16 +63,6 @@ struct Scratch {
 impl ResponseSystem<'_> {
     /// Flow at every lifting station for the motion held in `motion`.
     fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
-        self.flows_with_flaps(point, motion, |flap| self.points[point].flap[flap])
-    }
-
-    /// The same with flap angles of one's own.
-    pub(crate) fn flows_with_flaps(
-        &self,
-        point: usize,
-        motion: &Motion,
-        angle: impl Fn(usize) -> FlapAngle,
-    ) -> Vec<SectionFlow> {
         let input = &self.points[point];
         let first = self.air.first_station();
         input
@@ -81,7 +71,8 @@ impl ResponseSystem<'_> {
             .enumerate()
             .map(|(s, &lambda)| {
                 let station = first + s;
-                let delta = self.blade.flap_index[station].map_or([0.0; 3], &angle);
+                let delta =
+                    self.blade.flap_index[station].map_or([0.0; 3], |flap| input.flap[flap]);
                 let at = (station, lambda);
                 section_flow(self.blade, self.scales.chord, motion, &input.air, at, delta)
             })

@@ -9,8 +9,8 @@ use flap_aero::{FlapChord, TheodorsenFunctions};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Distribution};
 use rotor_response::{
-    Condition, Controls, Couplings, Discretisation, FlapMass, HingeSlopes, ResponseTolerances,
-    Rotor, RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
+    Condition, Controls, Couplings, Discretisation, FlapMass, ResponseTolerances, Rotor,
+    RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::sync::Arc;
@@ -69,8 +69,8 @@ fn inertial_hinge_moment_of_a_driven_flap_on_a_stiff_blade() {
         // n^2 I - (I + m d X), with delta'' = -n^2 delta
         let stiffness = flap.mass_fraction * (15.0 * about_hinge - d * cg) * moment(0);
         let got = solved(model(), angle.clone()).hinge[1].inertial.harmonic(4);
-        assert_relative_eq!(got.cosine, stiffness * 0.01, max_relative = 2e-3);
-        assert_relative_eq!(got.sine, stiffness * 0.02, max_relative = 2e-3);
+        assert_relative_eq!(got.cosine, stiffness * 0.01, max_relative = 2e-4);
+        assert_relative_eq!(got.sine, stiffness * 0.02, max_relative = 2e-4);
         println!("{gyration_fraction:?}: {:e}", got.cosine / (stiffness * 0.01) - 1.0);
     }
 }
@@ -89,7 +89,7 @@ fn steady_aerodynamic_hinge_moment_of_a_stiff_blade() {
     let expected = pressure * slope * delta * moment(2);
     let got = solved(model, angle).hinge[1].aerodynamic.mean;
     println!("{:e}", got / expected - 1.0);
-    assert_relative_eq!(got, expected, max_relative = 1e-4);
+    assert_relative_eq!(got, expected, max_relative = 1e-7);
     assert_relative_eq!(slope, -0.036_915, max_relative = 1e-4);
 }
 
@@ -99,31 +99,6 @@ fn forward(angles: Vec<HarmonicSeries>) -> Condition {
         controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.017, theta1s_rad: -0.08 },
         flap_angles_rad: angles,
     }
-}
-
-/// The slopes are what a response to a moved flap finds where the blade cannot answer: stiff blade,
-/// quasi-steady sections.
-#[test]
-fn slopes_are_differences_of_responses() {
-    let model = RotorModel { flaps: paper_flaps(), ..paper_model(Couplings::Full) };
-    let mut solver = solver(model, &stiff(), 0.3);
-    let inflow = LinearInflow::Prescribed { induced_inflow: 0.01 };
-    let mut angle = HarmonicSeries::zero(3);
-    angle.set_harmonic(3, Harmonic { cosine: 1e-3, sine: -2e-3 });
-    let still = forward(vec![HarmonicSeries::zero(1); 2]);
-    let moved = forward(vec![HarmonicSeries::zero(1), angle.clone()]);
-    let base = solver.solve(&still, &inflow, None).unwrap();
-    let other = solver.solve(&moved, &inflow, Some(&base)).unwrap();
-    let slopes: Vec<HingeSlopes> = solver.hinge_slopes(&still, &base).unwrap();
-    let change = slopes[1].change(&angle, 8);
-    let (a, b) = (base.hinge[1].total(), other.hinge[1].total());
-    let scale = change.harmonic(3).amplitude();
-    for n in 1..=6 {
-        let (x, y, c) = (a.harmonic(n), b.harmonic(n), change.harmonic(n));
-        let gap = (y.cosine - x.cosine - c.cosine).hypot(y.sine - x.sine - c.sine);
-        assert!(gap <= 2e-3 * scale, "{n}/rev: {:e}", gap / scale);
-    }
-    assert!(scale > 0.0);
 }
 
 fn with_mass(mass: FlapMass, mass_fraction: f64) -> RotorModel {
@@ -179,7 +154,8 @@ fn counted_in_or_out_the_flap_is_the_same_body() {
     let counted_wrong = flown(with_mass(FlapMass::AddedToBlade, 0.1), &blade);
     let (near, far) = (gap(&inside, &beside), gap(&inside, &counted_wrong));
     println!("counted in or out {near:e}, counted twice {far:e}");
-    assert!(near < 0.1 && near > 1e-4, "{near:e}");
+    assert!(near < 0.05 && near > 1e-4, "{near:e}");
+    assert!(far > 1.5 * near, "{far:e}");
 }
 
 #[test]

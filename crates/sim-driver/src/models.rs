@@ -2,15 +2,15 @@
 
 use crate::SimError;
 use crate::case::{
-    Case, CompressibilityChoice, CouplingsChoice, InflowChoice, ReverseFlowChoice,
+    Case, CompressibilityChoice, CouplingsChoice, FlapMassChoice, InflowChoice, ReverseFlowChoice,
     SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow,
-    RotorModel, TrailingEdgeFlap,
+    Compressibility, Controls, Couplings, Discretisation, FlapMass, ResponseTolerances,
+    ReverseFlow, RotorModel, TrailingEdgeFlap, with_flap_masses,
 };
 use rotor_wake::LinearInflow;
 use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle};
@@ -32,6 +32,16 @@ impl Case {
         };
         BladeProperties::new(spec)
             .map_err(|source| SimError::Blade { place: Place::file("case").field("rotor"), source })
+    }
+
+    /// The same with the mass of flaps that it does not contain.
+    ///
+    /// # Errors
+    /// As [`Self::blade_properties`]; [`SimError::Response`], which a validated case does not give.
+    pub fn blade_with_flaps(&self) -> Result<BladeProperties, SimError> {
+        with_flap_masses(&self.blade_properties()?, &self.rotor_model().flaps).map_err(|source| {
+            SimError::Response { place: Place::file("case").field("flaps"), source }
+        })
     }
 
     /// Modes kept in the response.
@@ -74,6 +84,11 @@ impl Case {
                     chord_fraction: f.chord_fraction,
                     mass_fraction: f.mass_fraction,
                     cg_fraction: f.cg_fraction,
+                    gyration_fraction: f.gyration_fraction,
+                    mass: match f.mass {
+                        FlapMassChoice::PartOfBlade => FlapMass::PartOfBlade,
+                        FlapMassChoice::AddedToBlade => FlapMass::AddedToBlade,
+                    },
                     effectiveness: effectiveness(f.effectiveness),
                 })
                 .collect(),

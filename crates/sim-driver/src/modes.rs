@@ -84,7 +84,7 @@ pub struct ModesResult {
 /// [`SimError::Blade`].
 pub fn rotating_modes(case: &Case, question: &ModesQuestion) -> Result<ModesResult, SimError> {
     let fail = |source: FemError| SimError::Blade { place: Place::file("modes"), source };
-    let blade = case.blade_properties()?.with_pitch_rad(question.pitch_rad).map_err(fail)?;
+    let blade = case.blade_with_flaps()?.with_pitch_rad(question.pitch_rad).map_err(fail)?;
     let at = |ratio: f64| modes_at(case, question, &blade, ratio).map_err(fail);
     let fan = question.speed_ratios.iter().map(|ratio| at(*ratio)).collect::<Result<_, _>>()?;
     Ok(ModesResult { fan, ..at(1.0)? })

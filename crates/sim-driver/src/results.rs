@@ -132,6 +132,9 @@ pub struct ControlLine {
     /// Residuals of the controlled response. Controls and attitude stay as trimmed, so `trim` here is
     /// what the moving flaps leave unbalanced.
     pub residuals: Residuals,
+    /// Coupling of flap and hinge moment; none where the actuator does not give way to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupling: Option<CouplingLine>,
 }
 
 impl ControlLine {
@@ -172,9 +175,31 @@ pub struct FlapLine {
     pub bias_volt: f64,
     /// Mean flap angle left by the bias, deg.
     pub mean_flap_deg: f64,
-    /// Largest aerodynamic hinge moment over the revolution, N m.
+    /// Largest size of the hinge moment over the revolution, aerodynamic and inertial together, N m; of
+    /// the whole motion of the flap, as the next four.
     #[serde(rename = "peak_hinge_moment_N_m")]
     pub peak_hinge_moment_newton_metre: f64,
+    /// Largest size of its aerodynamic part, N m.
+    #[serde(rename = "peak_aerodynamic_hinge_moment_N_m", default)]
+    pub peak_aerodynamic_newton_metre: f64,
+    /// Largest size of its inertial part, N m.
+    #[serde(rename = "peak_inertial_hinge_moment_N_m", default)]
+    pub peak_inertial_newton_metre: f64,
+    /// Mean of the power while the actuator gives it, `mean max(0, M delta_dot)`, W.
+    #[serde(rename = "actuation_power_W", default)]
+    pub actuation_power_watt: f64,
+    /// Mean of the power of the actuator on the flap, W.
+    #[serde(rename = "net_actuation_power_W", default)]
+    pub net_actuation_power_watt: f64,
+}
+
+/// How flap motion and hinge moment settled on each other.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct CouplingLine {
+    /// Responses of the rotor it took.
+    pub iterations: usize,
+    /// Largest change of a harmonic of a flap angle by the hinge moment still left, deg.
+    pub residual_deg: f64,
 }
 
 /// A stored result: everything needed to reproduce it.

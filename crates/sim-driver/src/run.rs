@@ -171,6 +171,11 @@ impl RunResult {
                     format!("{:.1}", f.lag_deg),
                     format!("{:.1}", f.lead_over_inboard_deg),
                     format!("{:.2}", f.bias_volt),
+                    format!("{:.3}", f.peak_hinge_moment_newton_metre),
+                    format!("{:.3}", f.peak_aerodynamic_newton_metre),
+                    format!("{:.3}", f.peak_inertial_newton_metre),
+                    format!("{:.2}", f.actuation_power_watt),
+                    format!("{:.2}", f.net_actuation_power_watt),
                 ]
             })
         });
@@ -184,6 +189,11 @@ impl RunResult {
                 "lag deg",
                 "lead deg",
                 "bias V",
+                "hinge N m",
+                "air N m",
+                "inertia N m",
+                "power W",
+                "net W",
             ],
             rows,
         )

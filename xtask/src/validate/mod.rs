@@ -13,6 +13,7 @@ mod actuator_data;
 mod actuator_stages;
 mod blade;
 mod control;
+mod hinge;
 mod inflow;
 mod moderate;
 mod moderate_blades;

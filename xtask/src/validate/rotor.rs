@@ -14,6 +14,7 @@ use rotor_wake::{FlightState, InflowModel, LinearInflow};
 
 use super::CheckError;
 use super::check::{Area, Check, Criterion, Repeatability};
+use super::hinge;
 use super::reference::{self, worst};
 
 const CROSSCHECK: &str = "independent Fourier collocation model, crosscheck_S1_S2.json";
@@ -123,6 +124,34 @@ pub(super) const AREA: Area = Area {
             repeatability: Repeatability::Everywhere,
             measure: || Ok(solve(&S2)?.residuals.periodicity),
         },
+        Check {
+            id: "V-RESP-12",
+            quantity: "inertial hinge moment of a flap driven at 4/rev on a stiff blade in hover",
+            unit: "%",
+            source: "(16 I_h - I_h - m_f d X_f) delta over the span: moment of inertia and \
+                     centrifugal moment about the hinge",
+            criterion: Criterion::AtMost(0.02),
+            repeatability: Repeatability::Everywhere,
+            measure: || hinge::inertial_error(0.2),
+        },
+        Check {
+            id: "V-RESP-13",
+            quantity: "the same with the centre of gravity taken on the hinge: what the bound must see",
+            unit: "%",
+            source: "the same closed form",
+            criterion: Criterion::AtLeast(1.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || hinge::inertial_error(0.0),
+        },
+        Check {
+            id: "V-RESP-14",
+            quantity: "aerodynamic hinge moment of a flap held at 3 deg, stiff blade in hover",
+            unit: "%",
+            source: "-(T18 + T12 T10) / (2 pi), Theodorsen, over the span",
+            criterion: Criterion::AtMost(1e-5),
+            repeatability: Repeatability::Everywhere,
+            measure: hinge::aerodynamic_error,
+        },
     ],
 };
 
@@ -177,7 +206,7 @@ fn fixed_controls() -> Condition {
 
 const PRESCRIBED: LinearInflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
 
-fn response(
+pub(super) fn response(
     model: RotorModel,
     blade: &BladeProperties,
     discretisation: Discretisation,

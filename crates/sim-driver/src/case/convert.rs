@@ -64,6 +64,8 @@ fn build(file: &CaseFile, folder: &Folder, scales: RotorScales) -> Case {
                 chord_fraction: f.chord_fraction,
                 mass_fraction: f.mass_fraction,
                 cg_fraction: f.cg_fraction,
+                gyration_fraction: f.gyration_fraction,
+                mass: f.mass,
                 effectiveness: [
                     f.effectiveness.lift,
                     f.effectiveness.moment,

@@ -69,7 +69,7 @@ pub struct RotorFile {
     pub radius_m: f64,
     /// Rotor speed, revolutions per minute.
     pub omega_rpm: f64,
-    /// Mass per length of the blade, flaps included, kg/m.
+    /// Mass per length of the blade, kg/m; flaps included unless they say `AddedToBlade`.
     pub mass_kg_m: f64,
     /// Blade chord, radius R.
     pub chord_r: f64,
@@ -140,9 +140,34 @@ pub struct FlapFile {
     /// Centre of gravity behind the hinge over the flap chord.
     #[serde(default = "a_fifth")]
     pub cg_fraction: f64,
+    /// Radius of gyration about the hinge over the flap chord; left out, a uniform thin rod about the
+    /// centre of gravity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gyration_fraction: Option<f64>,
+    /// Whether `mass_kg_m` contains the flap.
+    #[serde(default, skip_serializing_if = "FlapMassChoice::is_part")]
+    pub mass: FlapMassChoice,
     /// How much of thin-aerofoil theory's flap it is.
     #[serde(default, skip_serializing_if = "EffectivenessFile::is_ideal")]
     pub effectiveness: EffectivenessFile,
+}
+
+/// Whether the mass of the blade contains that of a flap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum FlapMassChoice {
+    /// It does: the flap at rest is blade.
+    #[default]
+    PartOfBlade,
+    /// It does not: the blade is heavier by the flap.
+    AddedToBlade,
+}
+
+impl FlapMassChoice {
+    /// Whether it is the default: not written then.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+    fn is_part(&self) -> bool {
+        *self == Self::PartOfBlade
+    }
 }
 
 /// Factors on the loads a flap makes; 1 is theory's.
@@ -186,6 +211,8 @@ impl Default for FlapFile {
             chord_fraction: a_fifth(),
             mass_fraction: a_tenth(),
             cg_fraction: a_fifth(),
+            gyration_fraction: None,
+            mass: FlapMassChoice::PartOfBlade,
             effectiveness: EffectivenessFile::default(),
         }
     }

@@ -15,8 +15,8 @@ mod validated;
 
 pub use file::{
     AerodynamicsFile, CaseFile, CompressibilityChoice, CouplingsChoice, EffectivenessFile,
-    FlapFile, InflowChoice, InflowFile, ModesFile, ResponseFile, ReverseFlowChoice, RotorFile,
-    SectionModelChoice, StructureFile, TolerancesFile,
+    FlapFile, FlapMassChoice, InflowChoice, InflowFile, ModesFile, ResponseFile, ReverseFlowChoice,
+    RotorFile, SectionModelChoice, StructureFile, TolerancesFile,
 };
 pub use file_control::{
     ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice,

@@ -102,12 +102,27 @@ fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
                 1.0,
                 "the flap's mass is part of the blade's",
             ),
-            ("cg_fraction", flap.cg_fraction, -1.0, 1.0, "behind the hinge is positive"),
+            (
+                "cg_fraction",
+                flap.cg_fraction,
+                -1.0,
+                1.0,
+                "behind the hinge is positive, 1 is the trailing edge",
+            ),
             ("effectiveness.lift", flap.effectiveness.lift, 0.0, 2.0, EFFECTIVE),
             ("effectiveness.moment", flap.effectiveness.moment, 0.0, 2.0, EFFECTIVE),
             ("effectiveness.hinge", flap.effectiveness.hinge, 0.0, 2.0, EFFECTIVE),
         ] {
             check.within(number(&format!("flaps[{i}].{key}"), value, "", remedy), low, high);
+        }
+        if let Some(gyration) = flap.gyration_fraction {
+            let remedy = "it is about the hinge: at least the distance of the centre of gravity; leave it out for a thin rod";
+            let field = format!("flaps[{i}].gyration_fraction");
+            check.within(
+                number(&field, gyration, "", remedy),
+                flap.cg_fraction.abs().min(1.0),
+                1.0,
+            );
         }
     }
 }

@@ -140,6 +140,15 @@ fn single_problems_name_the_remedy() {
             "(rotor: (omega_rpm: inf))",
             "rotor.omega_rpm: is inf rpm, expected a positive finite number",
         ),
+        (
+            "(flaps: [(start_r: 0.7, end_r: 0.8, cg_fraction: 1.3)])",
+            "flaps[0].cg_fraction: is 1.3, expected -1 to 1",
+        ),
+        (
+            "(flaps: [(start_r: 0.7, end_r: 0.8, gyration_fraction: 0.1)])",
+            "flaps[0].gyration_fraction: is 0.1, expected 0.2 to 1",
+        ),
+        ("(flaps: [(start_r: 0.7, end_r: 0.8, mass: Twice)])", "unknown choice `Twice`"),
         ("(title: \"\")", "title: is empty; give one line about the case"),
         ("(rotor: (blades: 4)", "is not valid RON"),
         ("", "is not valid RON"),

@@ -1,9 +1,9 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    CompressibilityChoice, ControlActuator, CouplingsChoice, EffortChoice, HorizontalTailFile,
-    InflowChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice,
-    StrokeChoice, TolerancesFile,
+    CompressibilityChoice, ControlActuator, CouplingsChoice, EffortChoice, FlapMassChoice,
+    HorizontalTailFile, InflowChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice,
+    SectionModelChoice, StrokeChoice, TolerancesFile,
 };
 use crate::files::Folder;
 use rotor_base::RotorScales;
@@ -101,6 +101,10 @@ pub struct FlapValues {
     pub mass_fraction: f64,
     /// Centre of gravity behind the hinge over the flap chord.
     pub cg_fraction: f64,
+    /// Radius of gyration about the hinge over the flap chord.
+    pub gyration_fraction: Option<f64>,
+    /// Whether the blade's mass contains the flap's.
+    pub mass: FlapMassChoice,
     /// Factors on lift, moment and hinge moment.
     pub effectiveness: [f64; 3],
 }

@@ -51,7 +51,8 @@ mod tests {
     /// A linear map that the plain iteration blows up on.
     #[test]
     fn a_linear_system_is_solved_in_as_many_steps_as_unknowns() {
-        let matrix = DMatrix::from_row_slice(3, 3, &[5.0, 1.0, 0.0, -1.0, 2.0, 0.5, 0.0, 0.3, -4.0]);
+        let matrix =
+            DMatrix::from_row_slice(3, 3, &[5.0, 1.0, 0.0, -1.0, 2.0, 0.5, 0.0, 0.3, -4.0]);
         let b = DVector::from_vec(vec![1.0, 2.0, 3.0]);
         let mut x = DVector::zeros(3);
         let mut anderson = Anderson::default();

@@ -3,22 +3,21 @@
 //! ```text
 //! delta = actuator(voltage, H),   H = rotor(delta)
 //! ```
-//! The unknown is the hinge moment of every flap, mean and harmonics. The actuator gives way by `g` deg
-//! per N m; the rotor's answer to a flap alone, the blade held and the wake settled, is the operator `K`
-//! of [`HingeSlopes`]. Newton's step with that Jacobian,
+//! The unknown is the hinge moment of every flap, mean and harmonics. The actuator gives way by `g` rad
+//! per N m, and the rotor, blade and wake included, answers a small flap motion by the matrix `R`, taken
+//! once by differences about the trim. Newton's step with that Jacobian,
 //!
 //! ```text
-//! ( I - K g ) dH = rotor(delta(H)) - H
+//! ( I - R g ) dH = rotor(delta(H)) - H
 //! ```
-//! leaves what blade, wake lags and the other flap answer; Anderson's acceleration takes care of them.
-//! The mean angle does not give way: the bias holds it.
+//! leaves what is not linear and what the stages behind the load do; Anderson's acceleration takes care of
+//! it. The mean angle does not give way: the bias holds it.
 
 use super::anderson::Anderson;
 use super::drive::scaled;
 use super::{FlapMotion, PlantError};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_response::HingeSlopes;
 
 /// Largest change of a harmonic of the flap angle by the hinge moment still left, deg.
 pub const COUPLING_TOLERANCE_DEG: f64 = 1e-7;
@@ -34,21 +33,21 @@ pub struct CouplingResidual {
     pub residual_deg: f64,
 }
 
-/// The Newton matrix of every flap and what it takes to iterate on its hinge moment.
+/// The Newton matrix of the flaps and what it takes to iterate on their hinge moments.
 #[derive(Debug, Clone)]
 pub struct HingeCoupling {
     harmonics: usize,
     give_deg_per_newton_metre: f64,
-    /// Slopes in N m per rad.
-    slopes: Vec<HingeSlopes>,
     /// Hinge moment of the flaps at rest, N m.
     at_rest: Vec<HarmonicSeries>,
-    /// Factors of `I - K g` by flap.
-    matrices: Vec<LU<f64, Dyn, Dyn>>,
+    /// Change of all hinge moments with all flap motions, N m per rad.
+    response: DMatrix<f64>,
+    /// Factors of `I - R g`.
+    newton: LU<f64, Dyn, Dyn>,
 }
 
 /// Coefficients of a series to `count` harmonics: mean, then cosine and sine of each.
-fn coefficients(series: &HarmonicSeries, count: usize) -> Vec<f64> {
+pub(super) fn coefficients(series: &HarmonicSeries, count: usize) -> Vec<f64> {
     std::iter::once(series.mean)
         .chain((1..=count).flat_map(|n| {
             let h = series.harmonic(n);
@@ -57,7 +56,8 @@ fn coefficients(series: &HarmonicSeries, count: usize) -> Vec<f64> {
         .collect()
 }
 
-fn series(coefficients: &[f64]) -> HarmonicSeries {
+/// The series of these coefficients.
+pub(super) fn series(coefficients: &[f64]) -> HarmonicSeries {
     HarmonicSeries {
         mean: coefficients[0],
         harmonics: coefficients[1..]
@@ -68,45 +68,33 @@ fn series(coefficients: &[f64]) -> HarmonicSeries {
 }
 
 impl HingeCoupling {
-    /// The coupling of flaps alike.
+    /// The coupling of flaps with actuators alike.
     ///
     /// | argument | meaning | unit |
     /// |---|---|---|
-    /// | `give_deg_per_newton_metre` | how far a steady hinge moment turns the flap in its own sense | deg/(N m) |
-    /// | `at_rest` | hinge moment of each flap at rest | N m |
-    /// | `slopes` | its change with the motion of that flap | N m per rad |
+    /// | `give_deg_per_newton_metre` | how far a steady hinge moment turns a flap in its own sense | deg/(N m) |
+    /// | `at_rest` | hinge moment of each flap at rest, all to the same harmonic | N m |
+    /// | `response` | change of all hinge moments with all flap motions; rows and columns flap by flap, mean, then cosine and sine of each harmonic | N m per rad |
     ///
     /// None without give. Harmonics of the hinge moment beyond those of `at_rest` are left out.
     pub fn new(
         give_deg_per_newton_metre: f64,
         at_rest: Vec<HarmonicSeries>,
-        slopes: Vec<HingeSlopes>,
+        response: DMatrix<f64>,
     ) -> Option<Self> {
         if give_deg_per_newton_metre == 0.0 {
             return None;
         }
         let harmonics = at_rest.iter().map(|h| h.harmonics.len()).max().unwrap_or(0);
-        let give_rad = give_deg_per_newton_metre.to_radians();
         let size = 2 * harmonics + 1;
-        let matrices = slopes
-            .iter()
-            .map(|slopes| {
-                // a moment in its own sense turns the flap by the give: dH = K g dH
-                let columns: Vec<DVector<f64>> = (0..size)
-                    .map(|j| {
-                        let mut column = vec![0.0; size];
-                        if j > 0 {
-                            let mut unit = vec![0.0; size];
-                            unit[j] = give_rad;
-                            column = coefficients(&slopes.change(&series(&unit), harmonics), harmonics);
-                        }
-                        DVector::from_vec(column)
-                    })
-                    .collect();
-                (DMatrix::identity(size, size) - DMatrix::from_columns(&columns)).lu()
-            })
-            .collect();
-        Some(Self { harmonics, give_deg_per_newton_metre, slopes, at_rest, matrices })
+        let mut newton = -give_deg_per_newton_metre.to_radians() * &response;
+        for mean in (0..newton.ncols()).step_by(size) {
+            // the bias holds the mean angle
+            newton.column_mut(mean).fill(0.0);
+        }
+        newton += DMatrix::identity(newton.nrows(), newton.ncols());
+        let newton = newton.lu();
+        Some(Self { harmonics, give_deg_per_newton_metre, at_rest, response, newton })
     }
 
     fn split(&self, moments: &DVector<f64>) -> Vec<HarmonicSeries> {
@@ -122,18 +110,7 @@ impl HingeCoupling {
     /// Newton's step for a mismatch of the hinge moments; the mismatch itself where the matrix is
     /// singular (a flap in resonance on its actuator).
     fn step(&self, mismatch: &DVector<f64>) -> DVector<f64> {
-        let size = 2 * self.harmonics + 1;
-        let parts: Vec<f64> = mismatch
-            .as_slice()
-            .chunks_exact(size)
-            .zip(&self.matrices)
-            .flat_map(|(part, matrix)| {
-                let part = DVector::from_column_slice(part);
-                let step = matrix.solve(&part).unwrap_or(part);
-                step.as_slice().to_vec()
-            })
-            .collect();
-        DVector::from_vec(parts)
+        self.newton.solve(mismatch).unwrap_or_else(|| mismatch.clone())
     }
 
     /// Largest turn of a flap by a mismatch of its hinge moment at one harmonic, deg.
@@ -158,23 +135,15 @@ impl HingeCoupling {
     pub fn settle<R>(
         &self,
         actuate: impl Fn(&[HarmonicSeries]) -> Result<Vec<FlapMotion>, PlantError>,
-        respond: impl Fn(
-            &[FlapMotion],
-            Option<&R>,
-        ) -> Result<(R, Vec<HarmonicSeries>), PlantError>,
+        respond: impl Fn(&[FlapMotion], Option<&R>) -> Result<(R, Vec<HarmonicSeries>), PlantError>,
     ) -> Result<(Vec<FlapMotion>, R, CouplingResidual), PlantError> {
         // the linear prediction from the flaps at rest, without a response
         let rest = self.gather(&self.at_rest);
         let mut flaps = actuate(&self.at_rest)?;
-        let predicted: Vec<HarmonicSeries> = flaps
-            .iter()
-            .zip(&self.slopes)
-            .map(|(flap, slopes)| {
-                let motion_rad = scaled(&flap.flap_deg, 1.0_f64.to_radians());
-                slopes.change(&motion_rad, self.harmonics)
-            })
-            .collect();
-        let mut moments = &rest + self.step(&self.gather(&predicted));
+        let motions_rad: Vec<HarmonicSeries> =
+            flaps.iter().map(|flap| scaled(&flap.flap_deg, 1.0_f64.to_radians())).collect();
+        let predicted = &self.response * self.gather(&motions_rad);
+        let mut moments = &rest + self.step(&predicted);
         let mut anderson = Anderson::default();
         let mut last: Option<R> = None;
         let mut best: Option<(f64, Vec<FlapMotion>)> = None;
@@ -204,3 +173,7 @@ impl HingeCoupling {
         })
     }
 }
+
+#[cfg(test)]
+#[path = "coupling_tests.rs"]
+mod tests;

@@ -1,18 +1,14 @@
 //! From a control study to what is printed and stored.
 
-use super::ControlStudy;
+use super::{ControlStudy, HingePower};
 use crate::case::LoadedCase;
-use crate::results::{ControlLine, FlapLine, HubLoads, Residuals};
+use crate::results::{ControlLine, CouplingLine, FlapLine, HubLoads, Residuals};
 use hhc_control::{Outcome, lag_deg};
-use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
-
-/// Azimuths at which a peak is looked for.
-const PEAK_AZIMUTHS: usize = 180;
 
 /// The line of one control study.
 pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
     let rotor = &study.state.rotor;
-    let moment = loaded.case.scales.moment_newton_metre();
+    let scales = &loaded.case.scales;
     let flaps = study
         .harmonics
         .iter()
@@ -26,6 +22,7 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
                         Some(inboard) if k > 0 => lag_deg(angle, inboard),
                         _ => 0.0,
                     };
+                    let power = HingePower::new(hinge, &motion.flap_deg, scales);
                     FlapLine {
                         flap: k,
                         harmonic: n,
@@ -35,7 +32,11 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
                         lead_over_inboard_deg: lead,
                         bias_volt: motion.voltage_volt.mean,
                         mean_flap_deg: motion.flap_deg.mean,
-                        peak_hinge_moment_newton_metre: moment * peak(hinge),
+                        peak_hinge_moment_newton_metre: power.peak_newton_metre,
+                        peak_aerodynamic_newton_metre: power.peak_aerodynamic_newton_metre,
+                        peak_inertial_newton_metre: power.peak_inertial_newton_metre,
+                        actuation_power_watt: power.given_watt,
+                        net_actuation_power_watt: power.net_watt,
                     }
                 },
             )
@@ -60,6 +61,10 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
             periodicity: rotor.residuals.periodicity,
             inflow: rotor.residuals.inflow,
         },
+        coupling: study
+            .state
+            .coupling
+            .map(|c| CouplingLine { iterations: c.iterations, residual_deg: c.residual_deg }),
     }
 }
 
@@ -71,11 +76,4 @@ fn outcome_name(outcome: Option<Outcome>) -> &'static str {
         Some(Outcome::OutOfRange) => "out-of-range",
         Some(Outcome::StepLimit) => "step-limit",
     }
-}
-
-fn peak(series: &HarmonicSeries) -> f64 {
-    uniform_azimuths_rad(PEAK_AZIMUTHS)
-        .into_iter()
-        .map(|azimuth| series.value(azimuth).abs())
-        .fold(0.0, f64::max)
 }

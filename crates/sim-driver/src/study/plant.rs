@@ -1,14 +1,17 @@
 //! The trimmed rotor with its driven flaps as the plant of the controller.
 
-use super::{FlapDrive, FlapMotion, FullScale, PlantError};
+use super::coupling::{coefficients, series};
+use super::drive::scaled;
+use super::{CouplingResidual, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError};
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
-use hhc_control::{ControlError, ControlLayout, Measurement, Plant};
+use hhc_control::{ControlLayout, Measurement, Plant, PlantCall, RunError};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{Condition, ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_wake::LinearInflow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};
 
 /// A rotor in trim, flaps at rest: where every control run starts.
@@ -17,6 +20,10 @@ pub struct TrimmedRotor {
     solver: RotorSolver,
     inflow: LinearInflow,
     trim: TrimSolution,
+    /// Moment unit `m0 Omega^2 R^3`, N m.
+    moment_newton_metre: f64,
+    /// Change of the hinge moments with the flap motions, found when first asked for.
+    hinge_response: Arc<OnceLock<DMatrix<f64>>>,
 }
 
 impl TrimmedRotor {
@@ -44,7 +51,9 @@ impl TrimmedRotor {
             };
             SimError::Trim { place: loaded.index.place(field), source }
         })?;
-        Ok(Self { solver, inflow, trim })
+        let moment_newton_metre = case.scales.moment_newton_metre();
+        let hinge_response = Arc::default();
+        Ok(Self { solver, inflow, trim, moment_newton_metre, hinge_response })
     }
 
     /// The trim.
@@ -80,11 +89,74 @@ impl TrimmedRotor {
         &self,
         flap_angles_rad: Vec<HarmonicSeries>,
     ) -> Result<RotorSolution, ResponseError> {
+        self.with_flaps_from(flap_angles_rad, &self.trim.rotor)
+    }
+
+    /// The same, started from a response of one's own.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn with_flaps_from(
+        &self,
+        flap_angles_rad: Vec<HarmonicSeries>,
+        start: &RotorSolution,
+    ) -> Result<RotorSolution, ResponseError> {
         let condition =
             Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad };
-        self.solver.clone().solve(&condition, &self.inflow, Some(&self.trim.rotor))
+        self.solver.clone().solve(&condition, &self.inflow, Some(start))
+    }
+
+    /// Change of all hinge moments with all flap motions about the trim, N m per rad, in the order of
+    /// [`HingeCoupling::new`]; one-sided differences of responses, made once for a rotor.
+    fn hinge_response(&self) -> Result<DMatrix<f64>, ResponseError> {
+        if let Some(known) = self.hinge_response.get() {
+            return Ok(known.clone());
+        }
+        let rest = &self.trim.rotor.hinge;
+        let count = rest.iter().map(|h| h.total().harmonics.len()).max().unwrap_or(0);
+        let (flaps, size) = (rest.len(), 2 * count + 1);
+        let gather = |rotor: &RotorSolution| -> DVector<f64> {
+            let all = rotor.hinge.iter().flat_map(|h| coefficients(&h.total(), count));
+            DVector::from_vec(all.map(|c| self.moment_newton_metre * c).collect())
+        };
+        let base = gather(&self.trim.rotor);
+        let columns = (0..flaps * size)
+            .into_par_iter()
+            .map(|j| {
+                if j % size == 0 {
+                    // the mean angle is the bias's
+                    return Ok(DVector::zeros(flaps * size));
+                }
+                let mut angles = vec![HarmonicSeries::zero(0); flaps];
+                let mut unit = vec![0.0; size];
+                unit[j % size] = RESPONSE_STEP_RAD;
+                angles[j / size] = series(&unit);
+                Ok((gather(&self.with_flaps(angles)?) - &base) / RESPONSE_STEP_RAD)
+            })
+            .collect::<Result<Vec<DVector<f64>>, ResponseError>>()?;
+        let found = DMatrix::from_columns(&columns);
+        Ok(self.hinge_response.get_or_init(|| found).clone())
+    }
+
+    /// The coupling of flaps that give way by an angle per hinge moment, deg/(N m); none without give.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn coupling(
+        &self,
+        give_deg_per_newton_metre: f64,
+    ) -> Result<Option<HingeCoupling>, ResponseError> {
+        if give_deg_per_newton_metre == 0.0 || self.trim.rotor.hinge.is_empty() {
+            return Ok(None);
+        }
+        let unit = self.moment_newton_metre;
+        let at_rest = self.trim.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect();
+        Ok(HingeCoupling::new(give_deg_per_newton_metre, at_rest, self.hinge_response()?))
     }
 }
+
+/// Step of the differences in a harmonic of a flap angle, rad: the response is nearly linear in it.
+const RESPONSE_STEP_RAD: f64 = 1e-3;
 
 /// Everything about one control vector.
 #[derive(Debug, Clone)]
@@ -93,6 +165,8 @@ pub struct PlantState {
     pub flaps: Vec<FlapMotion>,
     /// Response of the rotor.
     pub rotor: RotorSolution,
+    /// How well flap motion and hinge moment agree; none where no actuator gives way to it.
+    pub coupling: Option<CouplingResidual>,
 }
 
 /// The plant: voltages in, hub loads out.
@@ -101,6 +175,10 @@ pub struct RotorPlant {
     layout: ControlLayout,
     rotor: TrimmedRotor,
     drive: FlapDrive,
+    /// None where the actuator does not give way to the hinge moment.
+    coupling: Option<HingeCoupling>,
+    /// The last coupled states with their control vectors, oldest first.
+    remembered: Vec<(Vec<f64>, PlantState)>,
     /// One per pair of the layout.
     stroke_limits_deg: Vec<f64>,
     /// Amplitude at which each pair reaches its limit, V.
@@ -110,19 +188,24 @@ pub struct RotorPlant {
 impl RotorPlant {
     /// A plant with the same drive at every flap.
     ///
-    /// `full_scale` holds the limit at each controlled harmonic.
+    /// `full_scale` holds the limit at each controlled harmonic. A drive that gives way to a load is
+    /// coupled with the hinge moment of its flap in every answer.
     ///
     /// # Errors
-    /// [`ControlError`] for a layout without flaps or harmonics.
+    /// [`RunError::Control`] for a layout without flaps or harmonics.
     pub fn new(
         rotor: TrimmedRotor,
         drive: FlapDrive,
         harmonics: &[usize],
         full_scale: &[FullScale],
-    ) -> Result<Self, ControlError> {
+    ) -> Result<Self, RunError<PlantError>> {
         let flaps = rotor.rotor().model().flaps.len();
         let numbers = harmonics.iter().map(|&n| u32::try_from(n).unwrap_or(u32::MAX)).collect();
         let layout = ControlLayout::new(flaps, numbers)?;
+        let coupling = rotor.coupling(drive.give_deg_per_newton_metre()).map_err(|source| {
+            let call = PlantCall::Measure { control_volt: layout.zero() };
+            RunError::Plant { call, history: Vec::new(), source: source.into() }
+        })?;
         let per_pair = |pick: &dyn Fn(&FullScale) -> f64| -> Vec<f64> {
             (0..layout.pairs()).map(|p| pick(&full_scale[p % full_scale.len()])).collect()
         };
@@ -132,6 +215,8 @@ impl RotorPlant {
             layout,
             rotor,
             drive,
+            coupling,
+            remembered: Vec::new(),
         })
     }
 
@@ -152,37 +237,65 @@ impl RotorPlant {
         Ok(flaps)
     }
 
-    /// Motion of every flap for a control vector.
-    ///
-    /// # Errors
-    /// The actuator's errors.
-    pub fn flap_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
+    /// Motion of every flap for a control vector, without hinge moment.
+    fn free_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
         self.voltages(control_volt)?
             .into_par_iter()
             .map(|voltages| self.drive.motion(&voltages))
             .collect()
     }
 
-    /// Flap motion and rotor response for a control vector.
+    /// Motion of every flap for a control vector.
     ///
     /// # Errors
-    /// The errors of actuator and rotor.
+    /// The actuator's errors; those of the rotor where they are coupled.
+    pub fn flap_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
+        match &self.coupling {
+            None => self.free_motion(control_volt),
+            Some(_) => Ok(self.state(control_volt)?.flaps),
+        }
+    }
+
+    /// Flap motion and rotor response for a control vector, settled on each other where the actuator
+    /// gives way to the hinge moment. Depends on the control vector alone.
+    ///
+    /// # Errors
+    /// The errors of actuator and rotor; [`PlantError::Coupling`].
     pub fn state(&self, control_volt: &[f64]) -> Result<PlantState, PlantError> {
-        let flaps = self.flap_motion(control_volt)?;
-        let angles = flaps
-            .iter()
-            .map(|f| {
-                let to_rad = std::f64::consts::PI / 180.0;
-                let harmonics = f
-                    .flap_deg
-                    .harmonics
-                    .iter()
-                    .map(|h| Harmonic { cosine: to_rad * h.cosine, sine: to_rad * h.sine })
-                    .collect();
-                HarmonicSeries { mean: to_rad * f.flap_deg.mean, harmonics }
-            })
-            .collect();
-        Ok(PlantState { rotor: self.rotor.with_flaps(angles)?, flaps })
+        if let Some((_, state)) = self.remembered.iter().find(|(volt, _)| volt == control_volt) {
+            return Ok(state.clone());
+        }
+        let free = self.free_motion(control_volt)?;
+        let Some(coupling) = &self.coupling else {
+            let rotor = self.rotor.with_flaps(angles_rad(&free))?;
+            return Ok(PlantState { rotor, flaps: free, coupling: None });
+        };
+        let unit = self.rotor.moment_newton_metre;
+        let actuate = |moments: &[HarmonicSeries]| {
+            free.par_iter()
+                .zip(moments)
+                .map(|(free, moment)| self.drive.loaded_motion(free, moment))
+                .collect()
+        };
+        let respond = |flaps: &[FlapMotion], last: Option<&RotorSolution>| {
+            let start = last.unwrap_or(&self.rotor.trim.rotor);
+            let rotor = self.rotor.with_flaps_from(angles_rad(flaps), start)?;
+            let moments = rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect();
+            Ok((rotor, moments))
+        };
+        let (flaps, rotor, residual) = coupling.settle(actuate, respond)?;
+        Ok(PlantState { rotor, flaps, coupling: Some(residual) })
+    }
+
+    /// Keeps a coupled state: the controller asks for stroke and loads of one control apart.
+    fn remember(&mut self, control_volt: &[f64], state: &PlantState) {
+        if self.coupling.is_none() || self.remembered.iter().any(|(volt, _)| volt == control_volt) {
+            return;
+        }
+        if self.remembered.len() >= REMEMBERED {
+            self.remembered.remove(0);
+        }
+        self.remembered.push((control_volt.to_vec(), state.clone()));
     }
 
     /// Motion of each pair of the layout at its own harmonic, deg.
@@ -193,15 +306,36 @@ impl RotorPlant {
             .collect()
     }
 
-    fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        let state = self.state(control_volt)?;
+    fn measurement(&self, state: &PlantState) -> Measurement {
         let blades = self.rotor.rotor().model().blades;
-        Ok(Measurement {
+        Measurement {
             hub_loads: state.rotor.hub.harmonic(blades).to_vec(),
             flap_motion_deg: self.pair_motion(&state.flaps),
             mean_flap_deg: state.flaps.iter().map(|f| f.flap_deg.mean).collect(),
-        })
+        }
     }
+
+    fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
+        Ok(self.measurement(&self.state(control_volt)?))
+    }
+
+    /// Flap motion for the stroke; where it is coupled, its state is kept for the measurement.
+    fn stroke_motion(&mut self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
+        if self.coupling.is_none() {
+            return self.free_motion(control_volt);
+        }
+        let state = self.state(control_volt)?;
+        self.remember(control_volt, &state);
+        Ok(state.flaps)
+    }
+}
+
+/// Coupled states kept.
+const REMEMBERED: usize = 4;
+
+/// Flap angles as the rotor takes them, rad.
+fn angles_rad(flaps: &[FlapMotion]) -> Vec<HarmonicSeries> {
+    flaps.iter().map(|f| scaled(&f.flap_deg, std::f64::consts::PI / 180.0)).collect()
 }
 
 impl Plant for RotorPlant {
@@ -212,7 +346,9 @@ impl Plant for RotorPlant {
     }
 
     fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        self.answer(control_volt)
+        let state = self.state(control_volt)?;
+        self.remember(control_volt, &state);
+        Ok(self.measurement(&state))
     }
 
     fn measure_many(&mut self, controls_volt: &[Vec<f64>]) -> Result<Vec<Measurement>, PlantError> {
@@ -222,21 +358,20 @@ impl Plant for RotorPlant {
 
     fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, PlantError> {
         let amplitudes = self.layout.amplitudes_volt(control_volt).map_err(PlantError::Bias)?;
-        let scaled = || {
-            amplitudes
-                .iter()
-                .zip(&self.full_scale_volt)
-                .zip(&self.stroke_limits_deg)
-                .map(|((volt, full), limit)| limit * volt / full)
-                .collect::<Vec<f64>>()
-        };
+        let by_voltage: Vec<f64> = amplitudes
+            .iter()
+            .zip(&self.full_scale_volt)
+            .zip(&self.stroke_limits_deg)
+            .map(|((volt, full), limit)| limit * volt / full)
+            .collect();
         // beyond full scale the actuator cannot be asked: the stroke grows with the voltage there
         if amplitudes.iter().zip(&self.full_scale_volt).any(|(volt, full)| volt > full) {
-            return Ok(scaled());
+            return Ok(by_voltage);
         }
         // harmonics that share a flap share its range of voltages
         let ratios: Vec<f64> =
             self.voltages(control_volt)?.iter().map(|v| self.drive.range_ratio(v)).collect();
+        let motion = self.stroke_motion(control_volt);
         let in_range = |strokes: Vec<f64>| {
             let pairs = strokes.into_iter().zip(&self.stroke_limits_deg).enumerate();
             pairs
@@ -246,16 +381,16 @@ impl Plant for RotorPlant {
                 })
                 .collect()
         };
-        match self.flap_motion(control_volt) {
+        match motion {
             Ok(flaps) => {
                 let motion = self.pair_motion(&flaps);
                 Ok(in_range(motion.iter().map(Harmonic::amplitude).collect()))
             }
-            Err(PlantError::VoltageSwing { .. }) => Ok(in_range(scaled())),
+            Err(PlantError::VoltageSwing { .. }) => Ok(in_range(by_voltage)),
             // no bias centres the flap inside the range, though the swing alone fits
             Err(PlantError::Bias(_)) => {
                 let excess = amplitudes.len() as f64;
-                Ok(scaled().iter().map(|s| s * excess).collect())
+                Ok(by_voltage.iter().map(|s| s * excess).collect())
             }
             Err(error) => Err(error),
         }

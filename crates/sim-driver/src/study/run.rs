@@ -235,7 +235,7 @@ impl ControlSet<'_> {
             }
         };
         RotorPlant::new(self.rotor.clone(), drive.clone(), self.harmonics, &full_scale)
-            .map_err(|e| self.failed(actuator, e.into()))
+            .map_err(|e| self.failed(actuator, e))
     }
 
     fn weights(&self) -> LoadWeights {

@@ -1,0 +1,253 @@
+//! The coupled loop against closed forms.
+
+use super::*;
+use crate::case::read_case;
+use crate::files::{Folder, Source};
+use crate::study::{FlapDrive, FullScale, RotorPlant, TrimmedRotor};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use flap_aero::{AttachedFlowModel, FlapChord, Mach};
+use preisach_dyn::{ActuatorModel, LinkageStage, LoadStiffness, VoltageRange};
+use std::sync::Arc;
+
+/// A linear actuator of 0.1 deg/V whose linkage gives way by `compliance_um_per_newton`.
+fn soft(compliance_um_per_newton: f64) -> FlapDrive {
+    let range = VoltageRange::new(-20.0, 150.0).unwrap();
+    let mut model = ActuatorModel::linear(range, 8.5, 0.04);
+    let load = LoadStiffness { stiffness_ratio: 0.0, compliance_um_per_newton };
+    model.linkage.push(LinkageStage::LoadStiffness(load));
+    FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+}
+
+fn sine(n: usize, amplitude: f64) -> Vec<(usize, Harmonic)> {
+    vec![(n, Harmonic { cosine: 0.0, sine: amplitude })]
+}
+
+/// Hinge moments of a spring, a damper and a mass on each of two flaps, N m per rad.
+const SPRINGS: [[f64; 3]; 2] = [[-9.0, -0.8, -0.02], [-12.0, -1.1, -0.03]];
+
+fn hinge_moments(flaps: &[FlapMotion]) -> Vec<HarmonicSeries> {
+    let steady = [0.05, -0.02];
+    flaps
+        .iter()
+        .zip(SPRINGS)
+        .zip(steady)
+        .map(|((flap, [k, c, m]), steady)| {
+            let delta = scaled(&flap.flap_deg, 1.0_f64.to_radians());
+            let (rate, acceleration) = (delta.derivative(), delta.derivative().derivative());
+            let mut all =
+                HarmonicSeries { mean: steady + k * delta.mean, ..HarmonicSeries::zero(12) };
+            for n in 1..=12 {
+                let part = |pick: fn(&Harmonic) -> f64| {
+                    k * pick(&delta.harmonic(n))
+                        + c * pick(&rate.harmonic(n))
+                        + m * pick(&acceleration.harmonic(n))
+                };
+                all.set_harmonic(
+                    n,
+                    Harmonic { cosine: part(|h| h.cosine), sine: part(|h| h.sine) },
+                );
+            }
+            all
+        })
+        .collect()
+}
+
+/// A response matrix that knows a share of the truth: what it leaves is the iteration's.
+fn response(flaps: usize, share: f64) -> DMatrix<f64> {
+    let at = |unit: &[f64]| -> DVector<f64> {
+        let motions: Vec<FlapMotion> = unit
+            .chunks_exact(25)
+            .map(|part| FlapMotion {
+                voltage_volt: HarmonicSeries::zero(0),
+                flap_deg: scaled(&series(part), 1.0_f64.to_degrees()),
+            })
+            .collect();
+        let all = hinge_moments(&motions);
+        DVector::from_vec(all.iter().flat_map(|h| coefficients(h, 12)).collect())
+    };
+    let rest = at(&vec![0.0; 25 * flaps]);
+    let columns: Vec<DVector<f64>> = (0..25 * flaps)
+        .map(|j| {
+            let unit: Vec<f64> = (0..25 * flaps).map(|i| f64::from(u8::from(i == j))).collect();
+            share * (at(&unit) - &rest)
+        })
+        .collect();
+    DMatrix::from_columns(&columns)
+}
+
+fn settled(
+    drive: &FlapDrive,
+    share: f64,
+) -> Result<(Vec<FlapMotion>, (), CouplingResidual), PlantError> {
+    let free: Vec<FlapMotion> =
+        [drive.motion(&sine(4, 40.0)).unwrap(), drive.motion(&sine(3, 20.0)).unwrap()].to_vec();
+    let rest: Vec<FlapMotion> = (0..2).map(|_| drive.motion(&[]).unwrap()).collect();
+    let give = drive.give_deg_per_newton_metre();
+    let coupling = HingeCoupling::new(give, hinge_moments(&rest), response(2, share)).unwrap();
+    let actuate = |moments: &[HarmonicSeries]| {
+        free.iter().zip(moments).map(|(f, m)| drive.loaded_motion(f, m)).collect()
+    };
+    coupling.settle(actuate, |flaps, _| Ok(((), hinge_moments(flaps))))
+}
+
+/// `delta = delta_free / (1 - g (k + i n c - n^2 m))`: the spring of the air makes the flap move less, in
+/// closed form, whatever the iteration knows of it; here the plain iteration would diverge, `g k` being
+/// -4.
+#[test]
+fn a_linear_actuator_under_a_linear_hinge_moment() {
+    let drive = soft(0.9);
+    let give_rad = drive.give_deg_per_newton_metre().to_radians();
+    assert!(give_rad * SPRINGS[0][0] < -3.0, "{}", give_rad * SPRINGS[0][0]);
+    for (share, most) in [(1.0, 2), (0.7, 12), (0.0, 30)] {
+        let (flaps, (), residual) = settled(&drive, share).unwrap();
+        println!(
+            "known {share}: {} responses, {:e} deg",
+            residual.iterations, residual.residual_deg
+        );
+        assert!(residual.iterations <= most, "{residual:?}");
+        for (flap, (n, volt, [k, c, m])) in
+            flaps.iter().zip([(4, 40.0, SPRINGS[0]), (3, 20.0, SPRINGS[1])])
+        {
+            let nf = n as f64;
+            let (real, imaginary) = (1.0 - give_rad * (k - nf * nf * m), -give_rad * nf * c);
+            let size = real * real + imaginary * imaginary;
+            // sin is the imaginary part of exp(i n psi): in phase real / size, ahead imaginary
+            let got = flap.flap_deg.harmonic(n);
+            assert_abs_diff_eq!(got.sine, 0.1 * volt * real / size, epsilon = 1e-6);
+            assert_abs_diff_eq!(got.cosine, -0.1 * volt * imaginary / size, epsilon = 1e-6);
+            assert!(flap.flap_deg.mean.abs() < 1e-6, "the bias holds the mean");
+        }
+    }
+}
+
+/// A load that has next to no effect leaves the free motion, and without give there is no coupling.
+#[test]
+fn a_stiff_actuator_is_the_free_one() {
+    let free = soft(0.0).motion(&sine(4, 40.0)).unwrap();
+    let (flaps, ..) = settled(&soft(1e-14), 1.0).unwrap();
+    for n in 1..=12 {
+        let (a, b) = (free.flap_deg.harmonic(n), flaps[0].flap_deg.harmonic(n));
+        assert_abs_diff_eq!(a.cosine, b.cosine, epsilon = 1e-12);
+        assert_abs_diff_eq!(a.sine, b.sine, epsilon = 1e-12);
+    }
+    let stiff = soft(0.0).give_deg_per_newton_metre();
+    assert!(HingeCoupling::new(stiff, vec![], DMatrix::zeros(0, 0)).is_none());
+}
+
+#[test]
+fn what_does_not_settle_says_so_with_its_best_state() {
+    let drive = soft(0.9);
+    let free = vec![drive.motion(&sine(4, 40.0)).unwrap()];
+    let give = drive.give_deg_per_newton_metre();
+    let rest = vec![HarmonicSeries::zero(12)];
+    let coupling = HingeCoupling::new(give, rest, response(1, 1.0)).unwrap();
+    let count = std::cell::Cell::new(0_u32);
+    let result: Result<(_, (), _), _> = coupling.settle(
+        |moments| Ok(vec![drive.loaded_motion(&free[0], &moments[0])?]),
+        |_, _| {
+            // a rotor that never answers the same
+            count.set(count.get() + 1);
+            let mean = 0.01 * ((f64::from(count.get()) * 1.7).sin() * 1e4).fract();
+            Ok(((), vec![HarmonicSeries { mean, ..HarmonicSeries::zero(12) }]))
+        },
+    );
+    let Err(PlantError::Coupling { iterations, residual_deg, best, .. }) = result else {
+        panic!("it settled");
+    };
+    assert_eq!(iterations, 40);
+    assert!(residual_deg > COUPLING_TOLERANCE_DEG && best.len() == 1);
+}
+
+/// Hover without pitch and inflow, blades that hardly move, quasi-steady sections.
+fn stiff_rotor() -> TrimmedRotor {
+    let text = "(
+        advance_ratio: 0.0,
+        rotor: (ei_flap: 1e5, ei_lag: 1e5, gj: 1e5, ea: 1e5, twist_deg: 0.0),
+        aerodynamics: (model: QuasiSteady, compressibility: None),
+        inflow: (model: Prescribed(lambda_i: 0.0)),
+        trim: Prescribed(theta0_deg: 0.0, theta1c_deg: 0.0, theta1s_deg: 0.0, shaft_tilt_deg: 0.0),
+    )";
+    let source = Source { name: "case.ron".into(), text: text.into() };
+    let loaded = read_case(&source, &Folder::Shipped("fixtures/cases".into())).unwrap();
+    TrimmedRotor::new(&loaded, None).unwrap()
+}
+
+/// The whole plant: linear actuator, hinge moment of air and inertia in closed form.
+///
+/// ```text
+/// H = (1/2) rho c^2 ( C_h,delta delta int x^2 dx + C_h,delta' c delta' int x dx )
+///     + I n^2 delta L - (I + m d X) delta L        delta' = i n delta
+/// ```
+#[test]
+fn the_plant_settles_on_the_closed_form_of_a_stiff_rotor() {
+    let rotor = stiff_rotor();
+    let model = rotor.rotor().model().clone();
+    let scale = FullScale { amplitude_volt: 85.0, stroke_deg: 8.5 };
+    let volts = [0.0, 0.0, 0.0, 40.0];
+    let plant =
+        |compliance| RotorPlant::new(rotor.clone(), soft(compliance), &[4], &[scale]).unwrap();
+    let free = plant(0.0).state(&volts).unwrap();
+    assert!(free.coupling.is_none());
+    let (drive, flap) = (soft(0.2), model.flaps[1]);
+    let coupled = plant(0.2).state(&volts).unwrap();
+    let residual = coupled.coupling.unwrap();
+    println!("{} responses, {:e} deg", residual.iterations, residual.residual_deg);
+
+    let section =
+        AttachedFlowModel::QuasiSteady.of_flap(FlapChord::new(flap.chord_fraction).unwrap());
+    let direct = section.unwrap().coefficients(Mach::new(0.0).unwrap()).unwrap().direct[2];
+    let span = |n: i32| (flap.end.powi(n + 1) - flap.start.powi(n + 1)) / f64::from(n + 1);
+    let (c, n) = (model.chord, 4.0);
+    let pressure = 0.5 * model.density_chord() * c;
+    let cf = flap.chord_fraction * c;
+    let (x, d) = (flap.cg_fraction * cf, (0.75 - flap.chord_fraction) * c);
+    let inertia = flap.mass_fraction * (x * x + cf * cf / 12.0);
+    let mass = flap.mass_fraction;
+    let real =
+        pressure * direct[2] * span(2) + (n * n * inertia - inertia - mass * d * x) * span(0);
+    let imaginary = pressure * direct[3] * c * n * span(1);
+    // 383 rpm, 4.94 m, 6.46 kg/m
+    let omega = 383.0 * std::f64::consts::TAU / 60.0;
+    let unit = 6.46 * omega * omega * 4.94_f64.powi(3);
+    let give = drive.give_deg_per_newton_metre().to_radians() * unit;
+    let (re, im) = (1.0 - give * real, -give * imaginary);
+    let size = re * re + im * im;
+    let (got, before) = (coupled.flaps[1].flap_deg.harmonic(4), free.flaps[1].flap_deg.harmonic(4));
+    assert_relative_eq!(before.sine, 4.0, max_relative = 1e-9);
+    println!("{got:?}, closed {} {}", -4.0 * im / size, 4.0 * re / size);
+    assert_relative_eq!(got.sine, 4.0 * re / size, max_relative = 1e-3);
+    assert_abs_diff_eq!(got.cosine, -4.0 * im / size, epsilon = 4e-3);
+    // taken out, the bound does not hold
+    assert!((got.amplitude() / before.amplitude() - 1.0).abs() > 0.2);
+    // and what the rotor answers is what the flap was moved by
+    let hinge = coupled.rotor.hinge[1].total().harmonic(4);
+    let turned = give.to_degrees() * hinge.amplitude();
+    let gap = (got.cosine - before.cosine).hypot(got.sine - before.sine);
+    assert_relative_eq!(turned, gap, max_relative = 1e-5);
+}
+
+/// In forward flight too, and from the voltages alone: the same bits whatever was asked before.
+#[test]
+fn the_coupled_answer_depends_on_the_voltages_alone() {
+    use hhc_control::Plant;
+    let source = Source { name: "case.ron".into(), text: "(title: \"coupled\")".into() };
+    let loaded = read_case(&source, &Folder::Shipped("fixtures/cases".into())).unwrap();
+    let rotor = TrimmedRotor::new(&loaded, None).unwrap();
+    let scale = FullScale { amplitude_volt: 85.0, stroke_deg: 8.5 };
+    let plant =
+        |compliance| RotorPlant::new(rotor.clone(), soft(compliance), &[3], &[scale]).unwrap();
+    let (first, second) = ([20.0, -10.0, 5.0, 30.0], [-15.0, 10.0, 25.0, 0.0]);
+    let mut one = plant(0.9);
+    let alone = one.measure(&second).unwrap();
+    let mut other = plant(0.9);
+    other.measure(&first).unwrap();
+    other.strokes_deg(&second).unwrap();
+    assert_eq!(other.measure(&second).unwrap(), alone);
+    let state = one.state(&second).unwrap();
+    let residual = state.coupling.unwrap();
+    println!("forward flight: {} responses, {:e} deg", residual.iterations, residual.residual_deg);
+    assert!(residual.residual_deg <= COUPLING_TOLERANCE_DEG && residual.iterations <= 6);
+    // the free actuator answers otherwise
+    let free = plant(0.0).measure(&second).unwrap();
+    assert!(free.flap_motion_deg[0].amplitude() > 1.1 * alone.flap_motion_deg[0].amplitude());
+}
