@@ -333,7 +333,8 @@ impl StallState {
     /// their difference from these.
     pub fn without_delay(&self, section: &StallSection, attached: [f64; 3]) -> StalledLoads {
         let separation = section.parameters.separation(attached[0] / section.slope);
-        Self { separation, vortex: 0.0, spent: [0.0; 2], travel: None, ..*self }.loads(section, attached)
+        Self { separation, vortex: 0.0, spent: [0.0; 2], travel: None, ..*self }
+            .loads(section, attached)
     }
 
     /// The loads of attached flow in the form of stalled ones: the chord force is the whole

@@ -8,8 +8,9 @@ use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseError,
-    ResponseTolerances, NonlinearSections, ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
+    Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
+    ResponseError, ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver,
+    TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::hint::black_box;

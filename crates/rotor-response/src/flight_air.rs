@@ -239,7 +239,12 @@ impl StationAir {
                 .collect::<Result<_, ResponseError>>()?;
             let place = (station, 0.5 * model.chord);
             let over_tables = nonlinear.airfoils.is_some();
-            Ok::<_, ResponseError>(StallHistory::new(place, sections, (points, speeds), over_tables))
+            Ok::<_, ResponseError>(StallHistory::new(
+                place,
+                sections,
+                (points, speeds),
+                over_tables,
+            ))
         });
         let (tables, stall) = (tables.transpose()?, stall.transpose()?);
         Ok(Self { prompt, settled, lags, tables, stall })

@@ -64,7 +64,10 @@ impl Rotor {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Compressibility, Couplings, Discretisation, NonlinearSections, ReverseFlow, Rotor, RotorModel};
+    use crate::{
+        Compressibility, Couplings, Discretisation, NonlinearSections, ReverseFlow, Rotor,
+        RotorModel,
+    };
     use approx::assert_relative_eq;
     use flap_aero::AttachedFlowModel;
     use rotor_fem::{BladeProperties, BladeSpec, Twist};

@@ -2,15 +2,15 @@
 
 use crate::SimError;
 use crate::case::{
-    Case, CompressibilityChoice, CouplingsChoice, InflowChoice, ReverseFlowChoice,
-    SectionModelChoice, TrimValues,
+    Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, InflowChoice,
+    ReverseFlowChoice, SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow,
-    RotorModel, TrailingEdgeFlap,
+    Compressibility, Controls, Couplings, Discretisation, DynamicStall, NonlinearSections,
+    ResponseTolerances, ReverseFlow, RotorModel, TrailingEdgeFlap,
 };
 use rotor_wake::LinearInflow;
 use trim::{TrimSettings, TrimTarget, Vehicle};
@@ -77,6 +77,13 @@ impl Case {
                     effectiveness: effectiveness(f.effectiveness),
                 })
                 .collect(),
+            nonlinear: NonlinearSections {
+                airfoils: self.section.airfoils.clone(),
+                dynamic_stall: match self.section.dynamic_stall {
+                    DynamicStallChoice::Off => None,
+                    DynamicStallChoice::Naca0012 => Some(DynamicStall::Naca0012),
+                },
+            },
         }
     }
 

@@ -5,8 +5,8 @@
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, NonlinearSections, ReverseFlow, Rotor,
-    RotorModel, RotorSolver,
+    Compressibility, Controls, Couplings, Discretisation, NonlinearSections, ResponseTolerances,
+    ReverseFlow, Rotor, RotorModel, RotorSolver,
 };
 use rotor_wake::LinearInflow;
 use std::sync::Arc;

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
-    NonlinearSections, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
+    Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads,
+    hub_loads,
 };
 use rotor_wake::{FlightState, InflowModel, LinearInflow};
 

@@ -3,7 +3,9 @@
 
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
-use rotor_response::{Compressibility, Couplings, NonlinearSections, ReverseFlow, RotorModel, TrailingEdgeFlap};
+use rotor_response::{
+    Compressibility, Couplings, NonlinearSections, ReverseFlow, RotorModel, TrailingEdgeFlap,
+};
 
 /// Table 1 with the documented defaults where the paper is silent.
 pub(crate) fn paper_spec() -> BladeSpec {

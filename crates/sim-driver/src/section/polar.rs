@@ -2,7 +2,7 @@
 
 use super::{SectionChoice, SectionTable, within};
 use crate::SimError;
-use crate::files::Source;
+use crate::files::{Folder, Source};
 use flap_aero::{C81Airfoil, StallParameters, StallSection, steady_response};
 use std::path::PathBuf;
 
@@ -35,7 +35,14 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     let incidences = (0..=points).map(|n| from + (to - from) * n as f64 / points as f64);
     let mach = question.section.mach;
     if let Some(path) = &question.table {
-        let airfoil = C81Airfoil::read(&Source::read(path)?.text)?;
+        let source = match path.to_str() {
+            Some(name) if name.starts_with("shipped:") => {
+                let (folder, name) = Folder::Disk(PathBuf::new()).airfoil(name);
+                folder.read(name)?
+            }
+            _ => Source::read(path)?,
+        };
+        let airfoil = C81Airfoil::read(&source.text)?;
         within("Mach number", mach, mach >= 0.0, "a finite number, 0 or more")?;
         let rows = incidences.map(|a| {
             let point = airfoil.at(a, mach).value;
