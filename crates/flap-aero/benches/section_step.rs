@@ -119,7 +119,12 @@ impl Batch {
             })
             .collect();
         let direct = std::array::from_fn(|o| std::array::from_fn(|m| over(&|c| c.direct[o][m])));
-        Self { states: vec![[0.0; SECTIONS]; lags.len()], lags, direct, inputs: [[0.0; SECTIONS]; 4] }
+        Self {
+            states: vec![[0.0; SECTIONS]; lags.len()],
+            lags,
+            direct,
+            inputs: [[0.0; SECTIONS]; 4],
+        }
     }
 
     fn step(&mut self, inputs: &[[f64; SECTIONS]; 4]) -> [[f64; SECTIONS]; 3] {
@@ -131,8 +136,7 @@ impl Batch {
                 }
             }
         }
-        for ((follows, [gone, mean, weights @ ..]), state) in
-            self.lags.iter().zip(&mut self.states)
+        for ((follows, [gone, mean, weights @ ..]), state) in self.lags.iter().zip(&mut self.states)
         {
             let (old, new) = (&self.inputs[*follows], &inputs[*follows]);
             for s in 0..SECTIONS {

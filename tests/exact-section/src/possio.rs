@@ -340,19 +340,31 @@ mod tests {
         })
     }
 
-    /// The rows of `possio_flap.csv` at `k = 2` are not settled to the 1e-4 of the others: this solver
-    /// and another method agree far closer.
+    /// The rows of `possio_flap.csv` at `k = 2` are good to some 3e-4: here this solver and the other
+    /// method agree far closer, and the table stands apart from both.
     #[test]
     fn reverse_flow_gives_the_same_loads_at_high_frequency() {
-        for (m, k, e) in [(0.6, 2.0, 0.2), (0.8, 2.0, 0.25), (0.5, 0.3, 0.2)] {
+        let tabulated = [
+            Complex64::new(1.041_789_98, -0.100_772_775),
+            Complex64::new(1.357_101_80, 0.356_920_528),
+        ];
+        for ((m, e, points), table) in
+            [(0.6, 0.2, [10, 13]), (0.8, 0.25, [16, 20])].into_iter().zip(tabulated)
+        {
+            let k = 2.0;
             let loads = Possio::new(m, k).unwrap().loads(e).unwrap();
-            let [coarse, fine] = [12, 16].map(|points| by_reverse_flow(m, k, e, points));
+            let others = points.map(|points| by_reverse_flow(m, k, e, points));
             for o in 0..2 {
                 let flap = loads[o][2] + Complex64::new(0.0, 2.0 * k) * loads[o][3];
-                let apart = [coarse[o], fine[o]].map(|other| (other - flap).norm() / flap.norm());
-                println!("M {m} k {k} E {e} load {o}: {flap:.7}, apart {apart:.1e?}");
-                assert!(apart[1] < 1e-6, "M {m} k {k} load {o}: {apart:?}");
+                let apart = others.map(|other| (other[o] - flap).norm() / flap.norm());
+                println!(
+                    "M {m} k {k} E {e} load {o}: {flap:.9}, apart {apart:?} with {points:?} points"
+                );
+                assert!(apart[1] < 1e-8 && apart[1] < 0.01 * apart[0], "{m} {o}: {apart:?}");
             }
+            let off = (table - others[1][0]).norm() / table.norm();
+            println!("M {m} k {k} E {e}: the table's lift is {off:.1e} off");
+            assert!((1e-4..3e-4).contains(&off), "{off:e}");
         }
     }
 

@@ -5,7 +5,7 @@
 /// Folder of the shipped cases.
 pub const SHIPPED_CASES: &str = "fixtures/cases";
 /// Folder of the shipped aerofoil tables.
-pub const SHIPPED_AIRFOILS: &str = "fixtures/airfoils";
+pub(super) const SHIPPED_AIRFOILS: &str = "fixtures/airfoils";
 /// Folder of the shipped bench data.
 pub const SHIPPED_BENCH: &str = "fixtures/bench/apa500l_synthetic";
 
