@@ -55,7 +55,8 @@ fn coefficients(degrees: f64, mach: f64) -> Result<[f64; 3], AeroError> {
     let (sin, cos) = alpha.sin_cos();
     let moment = ahead * arm * attached - (1.0 - ahead) * 0.45 * sin * (1.0 - 0.25 * cos);
     let drag = 0.008 + 0.2 * (mach - 0.75).max(0.0) + normal * sin - chord * cos;
-    Ok([normal * cos + chord * sin, drag, moment])
+    // four decimals: with more, negative numbers would lose one that positive ones keep
+    Ok([normal * cos + chord * sin, drag, moment].map(|c| (1e4 * c).round() / 1e4))
 }
 
 /// The aerofoil, as its file holds it.

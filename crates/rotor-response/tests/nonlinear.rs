@@ -199,9 +199,8 @@ fn a_stalled_table_lifts_less_in_hover() {
         let flight = (0.0, 0.0, controls(theta, 0.0, 0.0));
         try_solve(model, coarse(), flight, (LinearInflow::Uniform, 0.0)).unwrap().thrust_coefficient
     };
-    let lost = [6.0, 14.0, 22.0].map(|theta| {
-        1.0 - thrust(kirchhoff(), theta) / thrust(linear_law(0.01), theta)
-    });
+    let lost = [6.0, 14.0, 22.0]
+        .map(|theta| 1.0 - thrust(kirchhoff(), theta) / thrust(linear_law(0.01), theta));
     println!("share of the thrust lost at 6, 14, 22 deg: {lost:.4?}");
     assert!((0.0..0.02).contains(&lost[0]), "{lost:?}");
     assert!(lost[0] < lost[1] && lost[1] < lost[2] && lost[2] > 0.05, "{lost:?}");

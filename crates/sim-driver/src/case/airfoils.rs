@@ -1,9 +1,9 @@
 //! The aerofoil tables a case names.
 
 use super::AirfoilFile;
-use crate::files::{Folder, RonIndex};
-use crate::problem::{Fault, Place, Problem, Problems};
-use flap_aero::{AeroError, AirfoilSpan, C81Airfoil};
+use crate::files::{self, Folder, RonIndex};
+use crate::problem::{Fault, Problem, Problems};
+use flap_aero::{AirfoilSpan, C81Airfoil};
 use std::sync::Arc;
 
 /// Reads the tables of a case; none for a case without.
@@ -18,10 +18,12 @@ pub(super) fn read_airfoils(
     let mut problems = Problems::default();
     let mut stations = Vec::with_capacity(named.len());
     let mut inboard = 0.0;
+    // the first table may lie at the rotor centre, each further one beyond the one before
     for (i, airfoil) in named.iter().enumerate() {
         let (station, field) = (airfoil.station_r, format!("aerodynamics.airfoils[{i}].station_r"));
-        if station >= inboard && station <= 1.0 {
-            inboard = station + f64::EPSILON;
+        let beyond = if i == 0 { station >= 0.0 } else { station > inboard };
+        if beyond && station <= 1.0 {
+            inboard = station;
         } else {
             let remedy = "list the tables from root to tip, each station once";
             let fault =
@@ -57,14 +59,5 @@ fn read_airfoil(
         };
         return Err(Problem::new(index.place(&field), missing(shown)));
     }
-    let source = folder.read(file)?;
-    C81Airfoil::read(&source.text).map_err(|error| match error {
-        AeroError::C81Text { line, column, expected } => {
-            let message = format!("expected {expected}");
-            Problem::new(Place::at(&source.name, line, column), Fault::Refused { message })
-        }
-        other => {
-            Problem::new(Place::file(&source.name), Fault::Refused { message: other.to_string() })
-        }
-    })
+    files::read_airfoil(&folder.read(file)?)
 }
