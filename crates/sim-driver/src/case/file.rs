@@ -290,11 +290,9 @@ pub enum DynamicStallChoice {
     Naca0012,
 }
 
-impl DynamicStallChoice {
-    /// Whether there is none: not written then.
-    fn is_off(&self) -> bool {
-        *self == Self::Off
-    }
+/// Whether a choice is the default: not written then.
+fn is_default<T: Default + PartialEq>(choice: &T) -> bool {
+    *choice == T::default()
 }
 
 /// Section aerodynamics.
@@ -315,7 +313,7 @@ pub struct AerodynamicsFile {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub airfoils: Vec<AirfoilFile>,
     /// Dynamic stall.
-    #[serde(skip_serializing_if = "DynamicStallChoice::is_off")]
+    #[serde(skip_serializing_if = "is_default")]
     pub dynamic_stall: DynamicStallChoice,
 }
 
