@@ -208,3 +208,37 @@ proptest! {
         prop_assert_eq!(C81Airfoil::read(&text).unwrap(), airfoil);
     }
 }
+
+/// The shipped synthetic table: symmetric, attached and stalled as its formula says, and written as the
+/// writer writes.
+#[test]
+fn the_shipped_synthetic_table_is_its_formula() {
+    let path =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/airfoils/naca0012_synthetic.c81");
+    let text = std::fs::read_to_string(path).unwrap();
+    let airfoil = C81Airfoil::read(&text).unwrap();
+    assert_eq!(airfoil.write().unwrap(), text);
+    for degrees in [0.0_f64, 4.0, 12.0, 26.0, 60.0, 90.0, 135.0, 171.0] {
+        for mach in [0.0, 0.33, 0.8] {
+            let [up, down] = [1.0, -1.0].map(|s| airfoil.at(s * degrees.to_radians(), mach).value);
+            assert!((up.lift + down.lift).abs() < 1e-12, "{degrees} {mach}");
+            assert!((up.drag - down.drag).abs() < 1e-12 && up.drag > 0.0, "{degrees} {mach}");
+            assert!((up.moment + down.moment).abs() < 1e-12, "{degrees} {mach}");
+        }
+    }
+    // Mach 0.3, 10 and 18 deg: f by the two branches of the separation law, alpha1 15.25, S 3 and 2.3 deg
+    for (degrees, f) in [
+        (10.0_f64, 1.0 - 0.3 * ((10.0_f64 - 15.25) / 3.0).exp()),
+        (18.0, 0.04 + 0.66 * ((15.25_f64 - 18.0) / 2.3).exp()),
+    ] {
+        let a = degrees.to_radians();
+        let slope = std::f64::consts::TAU / (1.0_f64 - 0.09).sqrt();
+        let normal = slope * a * (0.5 * (1.0 + f.sqrt())).powi(2);
+        let chord = 0.965 * slope * a * a * f.sqrt();
+        let got = airfoil.at(a, 0.3).value;
+        assert!((got.lift - (normal * a.cos() + chord * a.sin())).abs() < 1e-4, "{degrees}");
+        assert!((got.drag - (0.008 + normal * a.sin() - chord * a.cos())).abs() < 1e-4);
+    }
+    // behind, lift follows the normal velocity too
+    assert!(airfoil.at(175.0_f64.to_radians(), 0.3).value.lift < -0.3);
+}

@@ -87,7 +87,9 @@ impl TabledStation {
         station: f64,
         points: Vec<(f64, f64)>,
     ) -> Result<Self, AeroError> {
-        if let Some((_, value)) = points.iter().copied().find(|(_, slope)| !(*slope > 0.0)) {
+        if let Some((_, value)) =
+            points.iter().copied().find(|(_, slope)| *slope <= 0.0 || slope.is_nan())
+        {
             let quantity = "lift slope of the attached model";
             return Err(AeroError::BadInput { quantity, value, expected: "a number above 0" });
         }

@@ -29,6 +29,8 @@ const REFRESH_CONTRACTION: f64 = 0.8;
 
 /// Iterations of the accelerations.
 const ACCELERATION_ITERATIONS: usize = 30;
+/// Iterations of the orbit allowed to sections that may stall, whose loads have kinks.
+const STALL_ITERATIONS: usize = 200;
 
 /// Tolerances of the response.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -205,6 +207,7 @@ impl RotorSolver {
         let settings = PeriodicSettings {
             tolerance: tolerances.periodicity,
             refresh_contraction: REFRESH_CONTRACTION,
+            max_iterations: if rotor.model.nonlinear.is_linear() { 60 } else { STALL_ITERATIONS },
             ..PeriodicSettings::default()
         };
         let solver = PeriodicSolver::new(time.clone(), settings)?;

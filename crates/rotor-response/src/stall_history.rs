@@ -118,14 +118,14 @@ impl StallHistory {
         let mut state = StallState::settled(section, last.attached[0], &last.modes);
         let mut change = f64::INFINITY;
         for _ in 0..MOST_REVOLUTIONS {
-            change = match self.march(&mut state, &drives, pasts) {
-                Ok(change) => change,
-                Err(_) => {
-                    // the search for the motion sees it and turns back
-                    pasts.iter_mut().for_each(|past| past.stall = [f64::NAN; 3]);
-                    return Ok(());
+            let Ok(marched) = self.march(&mut state, &drives, pasts) else {
+                // the search for the motion sees it and turns back
+                for past in pasts {
+                    past.stall = [f64::NAN; 3];
                 }
+                return Ok(());
             };
+            change = marched;
             if change <= REPEATED {
                 return Ok(());
             }

@@ -167,6 +167,7 @@ fn response_family(error: &ResponseError) -> Family {
     match error {
         ResponseError::MassMatrix { .. }
         | ResponseError::LagSingular { .. }
+        | ResponseError::StallNotPeriodic { .. }
         | ResponseError::Periodic(_)
         | ResponseError::InflowNotConverged { .. } => Family::NumericalFailure,
         ResponseError::Fem(source) => blade_family(source),

@@ -2,15 +2,16 @@
 
 use crate::SimError;
 use crate::case::{
-    Case, CompressibilityChoice, CouplingsChoice, FlapMassChoice, InflowChoice, ReverseFlowChoice,
-    SectionModelChoice, TrimValues,
+    Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, FlapMassChoice, InflowChoice,
+    ReverseFlowChoice, SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, FlapMass, ResponseTolerances,
-    ReverseFlow, RotorModel, TrailingEdgeFlap, with_flap_masses,
+    Compressibility, Controls, Couplings, Discretisation, DynamicStall, FlapMass,
+    NonlinearSections, ResponseTolerances, ReverseFlow, RotorModel, TrailingEdgeFlap,
+    with_flap_masses,
 };
 use rotor_wake::LinearInflow;
 use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle};
@@ -92,6 +93,13 @@ impl Case {
                     effectiveness: effectiveness(f.effectiveness),
                 })
                 .collect(),
+            nonlinear: NonlinearSections {
+                airfoils: self.section.airfoils.clone(),
+                dynamic_stall: match self.section.dynamic_stall {
+                    DynamicStallChoice::Off => None,
+                    DynamicStallChoice::Naca0012 => Some(DynamicStall::Naca0012),
+                },
+            },
         }
     }
 

@@ -41,8 +41,8 @@ fn possio_against_the_flap_table() {
         for ((w, g), name) in worst.iter_mut().zip(got).zip(["cn", "cm25", "ch"]) {
             let exact = complex(row, name);
             let error = (g - exact).norm() / exact.norm();
-            // at k = 2 the table itself is good to some 2e-4 only: the loading found here satisfies
-            // the equation to 1e-9 there (`the_loading_satisfies_the_equation`)
+            // at k = 2 the table itself is good to some 3e-4 only: another method agrees with the solver
+            // to 1e-8 there (`reverse_flow_gives_the_same_loads_at_high_frequency`)
             if k < 1.9 {
                 *w = w.max(error);
             } else {
@@ -115,19 +115,21 @@ fn possio_tends_to_theodorsen() {
 
 #[test]
 fn the_loading_converges() {
-    let at = |terms: usize| {
-        let loads = Possio::with_terms(0.7, 0.8, terms).unwrap().loads(0.15).unwrap();
-        Motion::Flap.of(&loads, 0.8)
-    };
-    let finest = at(384);
-    let error = |terms: usize| {
-        let got = at(terms);
-        [0, 1, 2].map(|o| (got[o] - finest[o]).norm() / finest[o].norm())
-    };
-    let (coarse, fine) = (error(48), error(96));
-    println!("48 terms {coarse:?}, 96 terms {fine:?}");
-    assert!(fine[0] < 1e-10 && fine[1] < 1e-10, "{fine:?}");
-    assert!(fine[2] < 2e-6 && fine[2] < 0.25 * coarse[2], "{fine:?} {coarse:?}");
+    for (mach, k, flap) in [(0.7, 0.8, 0.15), (0.6, 2.0, 0.2), (0.8, 2.0, 0.25)] {
+        let at = |terms: usize| {
+            let loads = Possio::with_terms(mach, k, terms).unwrap().loads(flap).unwrap();
+            Motion::Flap.of(&loads, k)
+        };
+        let finest = at(256);
+        let error = |terms: usize| {
+            let got = at(terms);
+            [0, 1, 2].map(|o| (got[o] - finest[o]).norm() / finest[o].norm())
+        };
+        let (coarse, fine) = (error(48), error(96));
+        println!("M {mach} k {k}: 48 terms {coarse:?}, 96 terms {fine:?}");
+        assert!(fine[0] < 1e-10 && fine[1] < 1e-10, "{fine:?}");
+        assert!(fine[2] < 5e-6 && fine[2] < 0.25 * coarse[2], "{fine:?} {coarse:?}");
+    }
 }
 
 /// The closed forms of the first moments against the quadrature of Evvard's rule and Lomax's table.

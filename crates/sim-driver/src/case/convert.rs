@@ -1,5 +1,6 @@
 //! From the case file to the validated case: every value is checked, every problem collected.
 
+use super::airfoils::read_airfoils;
 use super::checker::Checker;
 use super::file_control::SHIPPED_DATASET;
 use super::ranges::check_case;
@@ -9,8 +10,10 @@ use super::{
 };
 use crate::files::{Folder, RonIndex, SHIPPED_BENCH};
 use crate::problem::Problems;
+use flap_aero::AirfoilSpan;
 use rotor_base::RotorScales;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Validates a case file.
 ///
@@ -23,13 +26,25 @@ pub(super) fn convert(
 ) -> Result<Case, Problems> {
     let mut check = Checker::new(index);
     check_case(&mut check, file);
-    let problems = check.finish();
+    let mut problems = check.finish();
+    let airfoils = match read_airfoils(&file.aerodynamics.airfoils, folder, index) {
+        Ok(airfoils) => airfoils,
+        Err(more) => {
+            problems.append(more);
+            None
+        }
+    };
     let rotor = &file.rotor;
     let scales = RotorScales::new(rotor.omega_rpm * TAU / 60.0, rotor.radius_m, rotor.mass_kg_m);
-    problems.into_result(scales.ok().map(|scales| build(file, folder, scales)))
+    problems.into_result(scales.ok().map(|scales| build(file, folder, scales, airfoils)))
 }
 
-fn build(file: &CaseFile, folder: &Folder, scales: RotorScales) -> Case {
+fn build(
+    file: &CaseFile,
+    folder: &Folder,
+    scales: RotorScales,
+    airfoils: Option<Arc<AirfoilSpan>>,
+) -> Case {
     let (rotor, structure, control) = (&file.rotor, &file.structure, &file.control);
     let modes = &structure.modes;
     Case {
@@ -79,6 +94,8 @@ fn build(file: &CaseFile, folder: &Folder, scales: RotorScales) -> Case {
             reverse_flow: file.aerodynamics.reverse_flow,
             drag_coefficient: file.aerodynamics.drag_coefficient,
             speed_of_sound_m_s: file.aerodynamics.speed_of_sound_m_s,
+            airfoils,
+            dynamic_stall: file.aerodynamics.dynamic_stall,
         },
         inflow: file.inflow.model,
         trim: trim_values(&file.trim),

@@ -297,6 +297,31 @@ pub enum ReverseFlowChoice {
     Abrupt,
 }
 
+/// An aerofoil table along the span.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AirfoilFile {
+    /// Station, radius R: between two stations both tables are blended linearly.
+    pub station_r: f64,
+    /// C81 file, relative to the case file.
+    pub table: String,
+}
+
+/// Dynamic stall of the sections.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum DynamicStallChoice {
+    /// None: without a table the flow stays attached, with one the stall is static.
+    #[default]
+    Off,
+    /// Leishman and Beddoes with their constants of the NACA 0012.
+    Naca0012,
+}
+
+/// Whether a choice is the default: not written then.
+fn is_default<T: Default + PartialEq>(choice: &T) -> bool {
+    *choice == T::default()
+}
+
 /// Section aerodynamics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -307,10 +332,16 @@ pub struct AerodynamicsFile {
     pub compressibility: CompressibilityChoice,
     /// Circulation at the edge of the reverse-flow region.
     pub reverse_flow: ReverseFlowChoice,
-    /// Profile drag coefficient.
+    /// Profile drag coefficient, where there is no table.
     pub drag_coefficient: f64,
     /// Speed of sound, m/s.
     pub speed_of_sound_m_s: f64,
+    /// Aerofoil tables from root to tip; none for the linear law.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub airfoils: Vec<AirfoilFile>,
+    /// Dynamic stall.
+    #[serde(skip_serializing_if = "is_default")]
+    pub dynamic_stall: DynamicStallChoice,
 }
 
 impl Default for AerodynamicsFile {
@@ -321,6 +352,8 @@ impl Default for AerodynamicsFile {
             reverse_flow: ReverseFlowChoice::Gradual,
             drag_coefficient: 0.01,
             speed_of_sound_m_s: 340.3,
+            airfoils: vec![],
+            dynamic_stall: DynamicStallChoice::Off,
         }
     }
 }

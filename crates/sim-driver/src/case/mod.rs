@@ -3,6 +3,7 @@
 //! The file types ([`CaseFile`] and its sections) hold degrees and engineering units; the validated
 //! [`Case`] holds radians and rotor units. [`read_case`] reports every problem of a file at once.
 
+mod airfoils;
 mod checker;
 mod convert;
 mod file;
@@ -14,9 +15,10 @@ mod tests;
 mod validated;
 
 pub use file::{
-    AerodynamicsFile, CaseFile, CompressibilityChoice, CouplingsChoice, EffectivenessFile,
-    FlapFile, FlapMassChoice, InflowChoice, InflowFile, ModesFile, ResponseFile, ReverseFlowChoice,
-    RotorFile, SectionModelChoice, StructureFile, TolerancesFile,
+    AerodynamicsFile, AirfoilFile, CaseFile, CompressibilityChoice, CouplingsChoice,
+    DynamicStallChoice, EffectivenessFile, FlapFile, FlapMassChoice, InflowChoice, InflowFile,
+    ModesFile, ResponseFile, ReverseFlowChoice, RotorFile, SectionModelChoice, StructureFile,
+    TolerancesFile,
 };
 pub use file_control::{
     ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice,

@@ -43,6 +43,10 @@ fn shipped_cases_are_valid_and_complete() {
         physical.scales.rev_hz(),
         max_relative = 1e-14
     );
+    let stalled = shipped_case("stalled_mu030.ron").unwrap().case.rotor_model();
+    assert!(stalled.nonlinear.airfoils.is_some());
+    assert_eq!(stalled.nonlinear.dynamic_stall, Some(rotor_response::DynamicStall::Naca0012));
+    assert!(paper.case.rotor_model().nonlinear.is_linear());
     let s1 = shipped_case("crosscheck_s1.ron").unwrap().case;
     assert_eq!(s1.blade.couplings, CouplingsChoice::Linear);
     assert_eq!(s1.section.model, SectionModelChoice::QuasiSteady);

@@ -1,12 +1,14 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    CompressibilityChoice, ControlActuator, CouplingsChoice, EffortChoice, FlapMassChoice,
-    HorizontalTailFile, InflowChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice,
-    SectionModelChoice, StrokeChoice, TolerancesFile,
+    CompressibilityChoice, ControlActuator, CouplingsChoice, DynamicStallChoice, EffortChoice,
+    FlapMassChoice, HorizontalTailFile, InflowChoice, LoadWeightsFile, ResponseFile,
+    ReverseFlowChoice, SectionModelChoice, StrokeChoice, TolerancesFile,
 };
 use crate::files::Folder;
+use flap_aero::AirfoilSpan;
 use rotor_base::RotorScales;
+use std::sync::Arc;
 
 /// A case whose every value is in range.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,7 +112,7 @@ pub struct FlapValues {
 }
 
 /// Section aerodynamics.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SectionValues {
     /// Section model.
     pub model: SectionModelChoice,
@@ -122,6 +124,10 @@ pub struct SectionValues {
     pub drag_coefficient: f64,
     /// Speed of sound, m/s.
     pub speed_of_sound_m_s: f64,
+    /// Aerofoil tables along the span, stations in R.
+    pub airfoils: Option<Arc<AirfoilSpan>>,
+    /// Dynamic stall.
+    pub dynamic_stall: DynamicStallChoice,
 }
 
 /// What the rotor is trimmed to. Lengths in R, angles in rad.

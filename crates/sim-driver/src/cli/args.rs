@@ -326,7 +326,7 @@ pub struct SectionArgs {
     /// Stall of a loop or a polar.
     #[arg(long, value_enum, default_value_t = StallArg::Off)]
     pub stall: StallArg,
-    /// C81 file whose polar is wanted.
+    /// C81 file whose polar is wanted; `shipped:naca0012_synthetic.c81` is a synthetic one.
     #[arg(long, value_name = "FILE")]
     pub table: Option<PathBuf>,
     /// Flap effectiveness in lift, moment and hinge moment, such as 0.78,1,1.

@@ -229,7 +229,28 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     print(&text)
 }
 
+/// Refuses options that the response asked for would not heed.
+fn check_section_options(args: &SectionArgs) -> Result<(), SimError> {
+    let polar = args.response == ResponseArg::Polar;
+    let stalls = args.stall != StallArg::Off;
+    let option = if args.table.is_some() && !polar {
+        Some(("--table", "with --response polar only; a rotor takes tables from its case"))
+    } else if stalls && args.table.is_some() {
+        Some(("--stall", "without --table: a table holds its own stall"))
+    } else if stalls && !polar && args.response != ResponseArg::Loop {
+        Some(("--stall", "with --response loop or polar only"))
+    } else {
+        None
+    };
+    option.map_or(Ok(()), |(name, expected)| {
+        let message = format!("it is used {expected}");
+        let place = Place::file("hhc section").field(name);
+        Err(Problem::new(place, Fault::Refused { message }).into())
+    })
+}
+
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
+    check_section_options(args)?;
     let section = SectionChoice {
         model: args.model.into(),
         mach: args.mach,

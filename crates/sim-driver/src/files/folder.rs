@@ -1,6 +1,6 @@
 //! Where files come from: a folder on disk, or the files shipped inside the program.
 
-use super::shipped::shipped_file;
+use super::shipped::{SHIPPED_AIRFOILS, shipped_file};
 use crate::problem::{Fault, Place, Problem};
 use std::path::{Component, Path, PathBuf};
 
@@ -66,6 +66,15 @@ impl Folder {
         // a byte-order mark belongs to no format read here
         let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
         Ok(Source { name, text })
+    }
+
+    /// The folder and name of an aerofoil table: `shipped:NAME` is one shipped inside the program, any
+    /// other name a file of this folder.
+    pub fn airfoil<'a>(&self, name: &'a str) -> (Self, &'a str) {
+        match name.strip_prefix("shipped:") {
+            Some(name) => (Self::Shipped(SHIPPED_AIRFOILS.to_owned()), name),
+            None => (self.clone(), name),
+        }
     }
 
     /// Size of a file of this folder, bytes; 0 if it cannot be told.

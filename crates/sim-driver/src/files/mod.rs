@@ -1,5 +1,6 @@
 //! Files: reading with places, atomic writing, RON, measured tables, data folders.
 
+mod airfoil;
 mod bench;
 mod curves;
 mod dataset;
@@ -16,6 +17,7 @@ mod table_text;
 mod units;
 mod write;
 
+pub use airfoil::{airfoil_text, read_airfoil};
 pub(crate) use bench::check_bench_record;
 pub use bench::{BenchData, BenchRun, read_bench};
 pub use curves::{CurveData, CurveRun, ReversalCurve, read_curves};

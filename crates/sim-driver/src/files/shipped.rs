@@ -1,9 +1,11 @@
-//! The files shipped inside the program: the paper's cases and the synthetic bench.
+//! The files shipped inside the program: the paper's cases, the synthetic bench and aerofoil.
 //!
 //! The paper's study runs from any folder because its input is part of the binary.
 
 /// Folder of the shipped cases.
 pub const SHIPPED_CASES: &str = "fixtures/cases";
+/// Folder of the shipped aerofoil tables.
+pub(super) const SHIPPED_AIRFOILS: &str = "fixtures/airfoils";
 /// Folder of the shipped bench data.
 pub const SHIPPED_BENCH: &str = "fixtures/bench/apa500l_synthetic";
 
@@ -16,6 +18,8 @@ macro_rules! shipped {
 }
 
 shipped![
+    "fixtures/airfoils/SOURCE.md",
+    "fixtures/airfoils/naca0012_synthetic.c81",
     "fixtures/bench/apa500l_synthetic/README.md",
     "fixtures/bench/apa500l_synthetic/dataset.ron",
     "fixtures/bench/apa500l_synthetic/forc_from_150v.csv",
@@ -40,6 +44,7 @@ shipped![
     "fixtures/cases/crosscheck_s1.ron",
     "fixtures/cases/paper_mu030.ron",
     "fixtures/cases/paper_mu030_6p383hz.ron",
+    "fixtures/cases/stalled_mu030.ron",
 ];
 
 /// Content of a shipped file by its name, such as `fixtures/cases/paper_mu030.ron`.
@@ -61,7 +66,7 @@ mod tests {
     #[test]
     fn the_list_is_complete() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let mut on_disk: Vec<String> = [SHIPPED_BENCH, SHIPPED_CASES]
+        let mut on_disk: Vec<String> = [SHIPPED_AIRFOILS, SHIPPED_BENCH, SHIPPED_CASES]
             .iter()
             .flat_map(|folder| {
                 std::fs::read_dir(root.join(folder))

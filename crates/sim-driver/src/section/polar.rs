@@ -2,8 +2,8 @@
 
 use super::{SectionChoice, SectionTable, within};
 use crate::SimError;
-use crate::files::Source;
-use flap_aero::{C81Airfoil, StallParameters, StallSection, steady_response};
+use crate::files::{Folder, Source, airfoil_text, read_airfoil};
+use flap_aero::{StallParameters, StallSection, steady_response};
 use std::path::PathBuf;
 
 /// A static curve over incidence.
@@ -35,7 +35,12 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     let incidences = (0..=points).map(|n| from + (to - from) * n as f64 / points as f64);
     let mach = question.section.mach;
     if let Some(path) = &question.table {
-        let airfoil = C81Airfoil::read(&Source::read(path)?.text)?;
+        let here = Folder::Disk(PathBuf::new());
+        let source = match path.to_str() {
+            Some(name) if name.starts_with("shipped:") => airfoil_text(&here, name)?,
+            _ => Source::read(path)?,
+        };
+        let airfoil = read_airfoil(&source)?;
         within("Mach number", mach, mach >= 0.0, "a finite number, 0 or more")?;
         let rows = incidences.map(|a| {
             let point = airfoil.at(a, mach).value;

@@ -328,4 +328,25 @@ fn section_questions_outside_the_models() {
     ask(&["--response", "step", "--points", "0"]).rejected(&["number of points is 0"]);
     ask(&["--effectiveness", "0.8,1"]).rejected(&["flap effectiveness factors is 2"]);
     ask(&["--effectiveness", "0.8,1,7"]).rejected(&["flap effectiveness in hinge moment is 7"]);
+    ask(&["--stall", "naca0012"]).rejected(&["--stall: is refused", "loop or polar only"]);
+    ask(&["--table", "a.c81"]).rejected(&["--table: is refused", "polar only"]);
+}
+
+#[test]
+fn aerofoil_tables_of_a_case() {
+    let place = Place::new();
+    place.write("broken.c81", "PLATE\n1 2 3\n");
+    place.write(
+        "case.ron",
+        "(aerodynamics: (\nairfoils: [\n(station_r: 0.5, table: \"gone.c81\"),\n(station_r: 0.2, table: \"broken.c81\"),\n], dynamic_stall: Naca12))",
+    );
+    for command in ["check", "run"] {
+        place.hhc(&[command, "case.ron"]).rejected(&[
+            "case.ron:3:",
+            "aerodynamics.airfoils[0].table: names the file gone.c81",
+            "aerodynamics.airfoils[1].station_r: is 0.2 R, expected 0.5 to 1 R",
+            "broken.c81:1:31: is refused: expected a first line",
+            "unknown choice `Naca12`, did you mean `Naca0012`?",
+        ]);
+    }
 }

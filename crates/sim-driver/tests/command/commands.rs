@@ -226,7 +226,10 @@ fn loops_polars_and_tables_of_a_section() {
     assert_eq!(names, ["incidence_deg", "cl", "cd", "cm"]);
     close(rows[3][1], 0.05 + 0.25 * (0.0617 - 0.05), 1e-9);
     place.write("broken.c81", "PLATE\n1 2 3\n");
-    ask(&["--table", "broken.c81"]).rejected(&["C81 table, line 1"]);
+    ask(&["--table", "broken.c81"])
+        .rejected(&["broken.c81:1:31: is refused: expected a first line"]);
+    ask(&["--table", "shipped:naca0012_synthetic.c81"]).done();
+    ask(&["--table", "plate.c81", "--stall", "naca0012"]).rejected(&["--stall: is refused"]);
     ask(&["--table", "gone.c81"]).rejected(&["gone.c81"]);
 }
 

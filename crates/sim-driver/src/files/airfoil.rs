@@ -1,0 +1,31 @@
+//! Aerofoil tables from C81 files.
+
+use super::{Folder, Source};
+use crate::problem::{Fault, Place, Problem};
+use flap_aero::{AeroError, C81Airfoil};
+
+/// An aerofoil from the text of a C81 file.
+///
+/// # Errors
+/// [`Fault::Refused`] with the line and column of the first thing that is not understood.
+pub fn read_airfoil(source: &Source) -> Result<C81Airfoil, Problem> {
+    C81Airfoil::read(&source.text).map_err(|error| match error {
+        AeroError::C81Text { line, column, expected } => {
+            let message = format!("expected {expected}, as in a C81 table");
+            Problem::new(Place::at(&source.name, line, column), Fault::Refused { message })
+        }
+        other => {
+            Problem::new(Place::file(&source.name), Fault::Refused { message: other.to_string() })
+        }
+    })
+}
+
+/// The text of an aerofoil file; `shipped:NAME` is one shipped inside the program, any other name a file
+/// of the folder.
+///
+/// # Errors
+/// [`Fault::Unreadable`], [`Fault::NotText`] or [`Fault::NotShipped`].
+pub fn airfoil_text(folder: &Folder, name: &str) -> Result<Source, Problem> {
+    let (folder, name) = folder.airfoil(name);
+    folder.read(name)
+}
