@@ -19,8 +19,8 @@ pub use file::{
     SectionModelChoice, StructureFile, TolerancesFile,
 };
 pub use file_control::{
-    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice,
-    LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
+    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, ControllerChoice,
+    EffortChoice, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
     TrimFile, WindTunnelTrimFile,
 };
 pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};

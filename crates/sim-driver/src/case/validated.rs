@@ -1,8 +1,8 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    CompressibilityChoice, ControlActuator, CouplingsChoice, EffortChoice, InflowChoice,
-    LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice, StrokeChoice,
+    CompressibilityChoice, ControlActuator, ControllerChoice, CouplingsChoice, EffortChoice,
+    InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice, StrokeChoice,
     TolerancesFile,
 };
 use crate::files::Folder;
@@ -206,8 +206,12 @@ pub struct ControlValues {
     pub stroke_limit: StrokeChoice,
     /// Weights of the loads.
     pub load_weights: LoadWeightsFile,
+    /// What the weights multiply.
+    pub load_scale: LoadScaleChoice,
     /// Weight of the effort.
     pub effort: EffortChoice,
+    /// What the controller of the real actuator knows of T.
+    pub controller: ControllerChoice,
     /// Control steps allowed.
     pub max_steps: usize,
     /// Relative change of the voltages at which the control has settled.

@@ -1,18 +1,26 @@
 //! Studies: the trimmed rotor, its driven flaps and the controller put together.
 
+mod authority;
 mod drive;
 mod error;
 mod lines;
 mod paper;
 mod plant;
+mod robustness;
 mod run;
 mod sensitivity;
 mod tables;
 
+pub use authority::FlapAuthority;
 pub use drive::{FlapDrive, FlapMotion, MEAN_FLAP_TOLERANCE_DEG};
 pub use error::{PlantError, StudyError};
 pub use lines::control_line;
 pub use plant::{PlantState, RotorPlant, TrimmedRotor};
+pub use robustness::{
+    Disturbance, RobustnessCell, robustness, robustness_csv, robustness_maps,
+};
+pub(crate) use run::loads_cost;
+use run::load_weights;
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
-pub use sensitivity::{SENSITIVITY_ROWS, Sensitivity, sensitivities};
+pub use sensitivity::{SENSITIVITY_ROWS, Sensitivity, sensitivities, sensitivity_csv};
 pub use tables::{histories_csv, study_report};

@@ -1,14 +1,18 @@
 //! The trimmed rotor with its driven flaps as the plant of the controller.
 
-use super::{FlapDrive, FlapMotion, FullScale, PlantError};
+use super::{FlapAuthority, FlapDrive, FlapMotion, FullScale, PlantError};
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
-use hhc_control::{ControlError, ControlLayout, Measurement, Plant};
+use hhc_control::{
+    ControlError, ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, TMatrix, VoltageRange,
+};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_response::{Condition, ResponseError, Rotor, RotorSolution, RotorSolver};
+use rotor_response::{
+    Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver,
+};
 use rotor_wake::LinearInflow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};
 
 /// A rotor in trim, flaps at rest: where every control run starts.
@@ -17,6 +21,8 @@ pub struct TrimmedRotor {
     solver: RotorSolver,
     inflow: LinearInflow,
     trim: TrimSolution,
+    /// Made when first asked for, the same whoever asks.
+    authority: Arc<OnceLock<FlapAuthority>>,
 }
 
 impl TrimmedRotor {
@@ -44,7 +50,7 @@ impl TrimmedRotor {
             };
             SimError::Trim { place: loaded.index.place(field), source }
         })?;
-        Ok(Self { solver, inflow, trim })
+        Ok(Self { solver, inflow, trim, authority: Arc::default() })
     }
 
     /// The trim.
@@ -55,6 +61,30 @@ impl TrimmedRotor {
     /// The rotor.
     pub fn rotor(&self) -> &Rotor {
         self.solver.rotor()
+    }
+
+    /// What the flaps do to the hub, linearised about the trimmed orbit with the inflow settled.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn authority(&self) -> Result<&FlapAuthority, ResponseError> {
+        if let Some(known) = self.authority.get() {
+            return Ok(known);
+        }
+        let found = self.linearised(InflowState::Settled)?;
+        Ok(self.authority.get_or_init(|| found))
+    }
+
+    /// The same with the inflow as asked for, made anew.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn linearised(&self, state: InflowState) -> Result<FlapAuthority, ResponseError> {
+        let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
+        let condition =
+            Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad };
+        let about = (&condition, &self.trim.rotor);
+        FlapAuthority::about(&mut self.solver.clone(), about, &self.inflow, state)
     }
 
     /// What another response leaves unbalanced at the controls and attitude of this trim, over the
@@ -85,6 +115,13 @@ impl TrimmedRotor {
         self.solver.clone().solve(&condition, &self.inflow, Some(&self.trim.rotor))
     }
 }
+
+/// Azimuths at which the range of the voltage is held.
+const LIMIT_AZIMUTHS: usize = 720;
+/// Part of full scale from which the gain of an actuator is read off its motion.
+const LEAST_GAIN_PART: f64 = 0.2;
+/// Voltage step of the tangent of an actuator, V: wide enough to see past the steps of its memory.
+const TANGENT_STEP_VOLT: f64 = 1.0;
 
 /// Everything about one control vector.
 #[derive(Debug, Clone)]
@@ -140,6 +177,11 @@ impl RotorPlant {
         &self.rotor
     }
 
+    /// What drives its flaps.
+    pub fn drive(&self) -> &FlapDrive {
+        &self.drive
+    }
+
     /// Harmonics of the voltage of every flap.
     fn voltages(&self, control_volt: &[f64]) -> Result<Vec<Vec<(usize, Harmonic)>>, PlantError> {
         let pairs = self.layout.voltages_volt(control_volt).map_err(PlantError::Bias)?;
@@ -168,7 +210,14 @@ impl RotorPlant {
     /// # Errors
     /// The errors of actuator and rotor.
     pub fn state(&self, control_volt: &[f64]) -> Result<PlantState, PlantError> {
-        let flaps = self.flap_motion(control_volt)?;
+        self.state_of(self.flap_motion(control_volt)?)
+    }
+
+    /// Rotor response for given flap motions.
+    ///
+    /// # Errors
+    /// The errors of the rotor.
+    pub fn state_of(&self, flaps: Vec<FlapMotion>) -> Result<PlantState, PlantError> {
         let angles = flaps
             .iter()
             .map(|f| {
@@ -267,5 +316,50 @@ impl Plant for RotorPlant {
 
     fn admits(&self, control_volt: &[f64]) -> bool {
         self.flap_motion(control_volt).is_ok()
+    }
+
+    fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, PlantError> {
+        let flaps = self.flap_motion(control_volt)?;
+        let range = self.drive.range_volt();
+        let voltage = VoltageRange {
+            range_volt: [range.lowest_volt(), range.highest_volt()],
+            bias_volt: flaps.iter().map(|f| f.voltage_volt.mean).collect(),
+            azimuths: LIMIT_AZIMUTHS,
+        };
+        let voltages = self.layout.voltages_volt(control_volt).map_err(PlantError::Bias)?;
+        let mut limits = ControlLimits::none(&self.layout)
+            .with_amplitudes_volt(self.full_scale_volt.clone())
+            .and_then(|limits| limits.with_voltage_range(voltage))
+            .map_err(PlantError::Bias)?;
+        for (pair, (voltage, motion)) in voltages.iter().zip(self.pair_motion(&flaps)).enumerate() {
+            // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
+            if voltage.amplitude() > LEAST_GAIN_PART * self.full_scale_volt[pair] {
+                let gain = motion.amplitude() / voltage.amplitude();
+                let (sin, cos) = (motion.phase_rad() - voltage.phase_rad()).sin_cos();
+                let circle = FlapCircle {
+                    gain_deg_per_volt: [[gain * cos, -gain * sin], [gain * sin, gain * cos]],
+                    limit_deg: self.stroke_limits_deg[pair],
+                };
+                limits = limits.with_flap_circle(pair, circle).map_err(PlantError::Bias)?;
+            }
+        }
+        Ok(limits)
+    }
+
+    fn linearised_t(&mut self, control_volt: &[f64]) -> Result<Option<TMatrix>, PlantError> {
+        let authority = self.rotor.authority()?;
+        let tangents = self
+            .voltages(control_volt)?
+            .par_iter()
+            .map(|voltages| self.drive.tangent(voltages, TANGENT_STEP_VOLT))
+            .collect::<Result<Vec<_>, PlantError>>()?;
+        let columns: Vec<Vec<f64>> = tangents
+            .iter()
+            .enumerate()
+            .flat_map(|(flap, tangent)| {
+                tangent.iter().map(move |along| authority.loads(flap, along).to_vec())
+            })
+            .collect();
+        TMatrix::from_columns(&columns).map(Some).map_err(PlantError::Bias)
     }
 }
