@@ -17,6 +17,7 @@ mod moderate_blades;
 mod rotor;
 mod section;
 mod section_compressible;
+mod study;
 mod time_elements;
 mod trimmed;
 
@@ -38,6 +39,7 @@ pub const AREAS: &[Area] = &[
     trimmed::AREA,
     actuator::AREA,
     control::AREA,
+    study::AREA,
 ];
 
 /// Ids of all checks, in the order of the page.
