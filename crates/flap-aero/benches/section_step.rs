@@ -111,7 +111,7 @@ impl Batch {
         };
         let lags: Vec<_> = (0..sections[0].lags.len())
             .map(|l| {
-                let follows = sections[0].lags[l].input.iter().position(|w| *w == 1.0);
+                let follows = sections[0].lags[l].input.iter().position(|w| *w != 0.0);
                 let gone = over(&|c| -(-c.lags[l].pole * step).exp_m1());
                 let mean = over(&|c| -(-c.lags[l].pole * step).exp_m1() / (c.lags[l].pole * step));
                 let weight = |o: usize| over(&|c| c.lags[l].output[o]);

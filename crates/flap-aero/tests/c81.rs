@@ -1,5 +1,6 @@
 //! C81 files: read by column and by count, written and read back exactly, never a panic.
 #![expect(clippy::float_cmp, reason = "a file gives the number it spells, to the last bit")]
+#![expect(clippy::disallowed_methods, reason = "tests read the shipped table")]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use flap_aero::{AeroError, AirfoilSpan, C81Airfoil, C81Table};

@@ -136,10 +136,11 @@ impl FeedbackLaw {
         }
         program.add_circles(limits, volt);
         program.add_power(limits, volt);
-        let rows = limits.voltage_rows(1);
+        let rows = limits.voltage_rows();
         let per_flap = rows.len() / limits.layout().flaps();
-        let mut held: Vec<bool> =
-            (0..rows.len()).map(|k| (k % per_flap.max(1)) / 2 % COARSE_STRIDE == 0).collect();
+        let mut held: Vec<bool> = (0..rows.len())
+            .map(|k| ((k % per_flap.max(1)) / 2).is_multiple_of(COARSE_STRIDE))
+            .collect();
         let mut iterations = 0;
         for _ in 0..AZIMUTH_ROUNDS {
             let mut round = program.clone();

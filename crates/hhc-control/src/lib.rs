@@ -12,8 +12,9 @@
 //! ```
 //!
 //! Every step is *measured* on the plant, so the loop is a feedback one: it corrects what a constant
-//! T0 gets wrong. A step that raises the cost is halved. A stroke limit is met by weighting the
-//! control (`rho`), never by clipping a step: see [`FeedbackController::run_within_stroke`].
+//! T0 gets wrong; other [`Controller`]s renew T on the way. A step that raises the cost is halved. A stroke limit is met by weighting the
+//! control (`rho`) or as part of the optimum, never by clipping a step: see
+//! [`FeedbackController::run_within_stroke`] and [`FeedbackController::run_constrained`].
 //!
 //! Source: S. R. Viswamurthy, R. Ganguli, *Experimental and computational investigation of
 //! piezoceramic actuator hysteresis phenomenon in helicopter vibration control using dual

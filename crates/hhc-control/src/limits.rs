@@ -58,7 +58,8 @@ pub struct PowerLimit {
 pub struct ControlLimits {
     layout: ControlLayout,
     amplitude_volt: Vec<f64>,
-    voltage: Option<VoltageRange>,
+    /// With the cosines and sines of the harmonics at every sample.
+    voltage: Option<(VoltageRange, Vec<f64>)>,
     flaps: Vec<Option<FlapCircle>>,
     power: Option<(PowerLimit, DMatrix<f64>)>,
 }
@@ -113,7 +114,14 @@ impl ControlLimits {
             let (what, value) = ("azimuth samples of the voltage", voltage.azimuths as f64);
             return Err(ControlError::OutOfRange { what, value, expected: "8 or more" });
         }
-        Ok(Self { voltage: Some(voltage), ..self })
+        let azimuths = uniform_azimuths_rad(voltage.azimuths);
+        let harmonics = self.layout.harmonics();
+        let waves = azimuths
+            .iter()
+            .flat_map(|psi| harmonics.iter().map(move |&n| (f64::from(n) * psi).sin_cos()))
+            .flat_map(|(sin, cos)| [cos, sin])
+            .collect();
+        Ok(Self { voltage: Some((voltage, waves)), ..self })
     }
 
     /// With a largest flap amplitude of one pair of the layout.
@@ -178,27 +186,34 @@ impl ControlLimits {
             });
             of_flap.max(u[0].hypot(u[1]) / volt)
         });
-        let linear = self.voltage_rows(1).into_iter().map(|(row, room)| {
-            row.iter().map(|&(column, value)| value * control_volt[column]).sum::<f64>() / room
-        });
         let power = self.power.iter().map(|(power, _)| power.usage(control_volt));
-        Ok(circles.chain(linear).chain(power).fold(0.0, f64::max))
+        Ok(circles.chain(power).fold(self.voltage_usage(control_volt), f64::max))
     }
 
-    /// The range of the voltage as rows `row u <= room`, at every `stride`-th azimuth sample: for each
-    /// flap and sample the upper, then the lower end.
-    pub(crate) fn voltage_rows(&self, stride: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
-        let Some(voltage) = &self.voltage else { return Vec::new() };
-        let harmonics = self.layout.harmonics();
-        let azimuths = uniform_azimuths_rad(voltage.azimuths);
+    /// The part of the usage that is the range of the voltage.
+    fn voltage_usage(&self, control_volt: &[f64]) -> f64 {
+        let Some((voltage, waves)) = &self.voltage else { return 0.0 };
+        let per_flap = 2 * self.layout.harmonics().len();
+        let [lowest, highest] = voltage.range_volt;
+        control_volt.chunks_exact(per_flap).zip(&voltage.bias_volt).fold(0.0, |most, (u, bias)| {
+            waves.chunks_exact(per_flap).fold(most, |most: f64, wave| {
+                let volt: f64 = wave.iter().zip(u).map(|(w, u)| w * u).sum();
+                most.max(volt / (highest - bias)).max(volt / (lowest - bias))
+            })
+        })
+    }
+
+    /// The range of the voltage as rows `row u <= room`: for each flap and azimuth sample the upper, then
+    /// the lower end.
+    pub(crate) fn voltage_rows(&self) -> Vec<(Vec<(usize, f64)>, f64)> {
+        let Some((voltage, waves)) = &self.voltage else { return Vec::new() };
+        let per_flap = 2 * self.layout.harmonics().len();
         let mut rows = Vec::new();
         for (flap, bias) in voltage.bias_volt.iter().enumerate() {
-            for psi in azimuths.iter().step_by(stride) {
+            for wave in waves.chunks_exact(per_flap) {
                 let row = |sign: f64| -> Vec<(usize, f64)> {
-                    let waves = harmonics.iter().map(|&n| (f64::from(n) * psi).sin_cos());
-                    let first = 2 * flap * harmonics.len();
-                    let columns = waves.flat_map(|(sin, cos)| [sign * cos, sign * sin]);
-                    columns.enumerate().map(|(k, value)| (first + k, value)).collect()
+                    let first = per_flap * flap;
+                    wave.iter().enumerate().map(|(k, value)| (first + k, sign * value)).collect()
                 };
                 rows.push((row(1.0), voltage.range_volt[1] - bias));
                 rows.push((row(-1.0), bias - voltage.range_volt[0]));
@@ -224,7 +239,7 @@ impl ControlLimits {
 
     /// A voltage of the size the limits allow, V; none without limit in volt.
     pub(crate) fn typical_volt(&self) -> Option<f64> {
-        let room = self.voltage.iter().map(|v| 0.5 * (v.range_volt[1] - v.range_volt[0]));
+        let room = self.voltage.iter().map(|(v, _)| 0.5 * (v.range_volt[1] - v.range_volt[0]));
         let flaps = self.flaps.iter().flatten().map(|circle| {
             let largest = circle.gain_deg_per_volt.concat().iter().fold(0.0, |m, g| g.abs().max(m));
             circle.limit_deg / largest

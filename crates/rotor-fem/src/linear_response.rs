@@ -14,8 +14,8 @@ const DEPENDENT: f64 = 1e-10;
 /// Changes of an orbit, one for each change of load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearResponse {
-    /// Nodal change of the orbit per unit of each load, shape `dof x nodes`.
-    pub changes: Vec<DMatrix<f64>>,
+    /// Change of the orbit per unit of each load.
+    pub changes: Vec<Orbit>,
     /// Largest residual left by a linear equation, over its right-hand side.
     pub relative_residual: f64,
     /// Residuals of the system evaluated.
@@ -93,10 +93,9 @@ impl PeriodicSolver {
             history.push(worst);
             if worst <= tolerance {
                 self.factorisation = Some(matrix);
-                let relative_residual = worst;
                 return Ok(LinearResponse {
-                    changes,
-                    relative_residual,
+                    changes: changes.into_iter().map(|nodal| Orbit { nodal }).collect(),
+                    relative_residual: worst,
                     evaluations,
                     factorisations,
                 });

@@ -205,19 +205,6 @@ impl Orbit {
         orbit
     }
 
-    /// The orbit with given nodal values, shape `dof x nodes`.
-    ///
-    /// # Errors
-    /// [`FemError::TimeMesh`] when the columns are not the nodes of the mesh.
-    pub fn of_nodal(time: &TimeElements, nodal: DMatrix<f64>) -> Result<Self, FemError> {
-        let (found, nodes) = (nodal.ncols(), time.unknowns_per_dof());
-        if found != nodes {
-            let name = "columns of nodal values";
-            return Err(FemError::TimeMesh { name, found, least: nodes, most: nodes });
-        }
-        Ok(Self { nodal })
-    }
-
     /// Number of degrees of freedom.
     pub fn dof(&self) -> usize {
         self.nodal.nrows()

@@ -136,7 +136,7 @@ impl RotorSolver {
         let summed = changes
             .par_iter()
             .zip(&response.changes)
-            .map(|(change, nodal)| base.hub_change(change, nodal))
+            .map(|(change, motion)| base.hub_change(change, motion))
             .collect::<Result<Vec<_>, ResponseError>>()?;
         evaluations += summed.iter().map(|(_, count)| count).sum::<usize>();
         let mut hubs: Vec<SixLoads> = summed.into_iter().map(|(hub, _)| hub).collect();
@@ -230,15 +230,15 @@ impl<'a> Base<'a> {
     fn hub_change(
         &self,
         change: &Direction,
-        nodal: &DMatrix<f64>,
+        motion: &Orbit,
     ) -> Result<(SixLoads, usize), ResponseError> {
         let RotorSolver { rotor, time, .. } = self.solver;
         // the points were made for `change.size`; the motion goes with it
-        let mut motion = Orbit::of_nodal(time, nodal * change.size)?.sample(time);
-        let allowed = ACCELERATION_PART * motion.qdd.amax();
-        motion.q += &self.settled.q;
-        motion.qd += &self.settled.qd;
-        motion.qdd += &self.settled.qdd;
+        let mut motion = motion.sample(time);
+        let allowed = ACCELERATION_PART * change.size * motion.qdd.amax();
+        motion.q = &self.settled.q + motion.q * change.size;
+        motion.qd = &self.settled.qd + motion.qd * change.size;
+        motion.qdd = &self.settled.qdd + motion.qdd * change.size;
         let system = self.system(change.points.clone());
         let count = settle_accelerations(rotor, time, &system, (&mut motion, allowed))?;
         let mut hub = RevolutionLoads::summed(rotor, time, &system, &motion)?.hub(rotor, time);

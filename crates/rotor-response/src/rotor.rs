@@ -425,18 +425,15 @@ impl RevolutionLoads {
             let state = BladeState { motion, pitch, loads: &loads };
             let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
-            let (at_root, axial) = match &blade.modal {
-                Some(modal) => {
-                    let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
-                    let found = modal.loads(coordinates, pitch.into());
-                    let at_root = moderate_root_loads(blade, state, &found);
-                    let ModalLoads { axial: value, axial_rate: rate, pitch_moment, .. } = found;
-                    (at_root, AxialMotion { value, rate, pitch_moment })
-                }
-                None => {
-                    let axial = AxialMotion::inextensional(blade, motion, pitch);
-                    (root_loads(blade, state, &aerodynamic), axial)
-                }
+            let (at_root, axial) = if let Some(modal) = &blade.modal {
+                let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
+                let found = modal.loads(coordinates, pitch.into());
+                let at_root = moderate_root_loads(blade, state, &found);
+                let ModalLoads { axial: value, axial_rate: rate, pitch_moment, .. } = found;
+                (at_root, AxialMotion { value, rate, pitch_moment })
+            } else {
+                let axial = AxialMotion::inextensional(blade, motion, pitch);
+                (root_loads(blade, state, &aerodynamic), axial)
             };
             root.push(at_root);
             let damped = qd.iter().zip(&rotor.damping).map(|(rate, c)| c * rate * rate).sum();

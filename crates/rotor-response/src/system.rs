@@ -206,13 +206,12 @@ impl ResponseSystem<'_> {
         let Scratch { structure, loads } = scratch;
         let pitch = self.points[point].air.pitch;
         let state = BladeState { motion, pitch, loads };
-        match &self.blade.modal {
-            Some(modal) => moderate_residual(modal, self.mass, state, coordinates, out),
-            None => {
-                modal_residual(self.blade, self.couplings, state, structure, out);
-                for (o, springs) in out.iter_mut().zip(self.blade.root_spring.row_iter()) {
-                    *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
-                }
+        if let Some(modal) = &self.blade.modal {
+            moderate_residual(modal, self.mass, state, coordinates, out);
+        } else {
+            modal_residual(self.blade, self.couplings, state, structure, out);
+            for (o, springs) in out.iter_mut().zip(self.blade.root_spring.row_iter()) {
+                *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
             }
         }
         if self.blade.flaps_beside_blade() {

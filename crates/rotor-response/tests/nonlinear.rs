@@ -143,8 +143,7 @@ fn the_linear_law_in_a_table_is_the_linear_model() {
         let tabled = RotorModel { nonlinear: linear_law(0.0), ..linear.clone() };
         let twist = Twist::Linear { rate_rad: (-8.0 * scale).to_radians() };
         let blade = BladeProperties::new(BladeSpec { twist, ..paper_spec() }).unwrap();
-        let [a, b] =
-            [linear, tabled].map(|m| solve_blade(&blade, m, d, flight, air.clone()).unwrap());
+        let [a, b] = [linear, tabled].map(|m| solve_blade(&blade, m, d, flight, air).unwrap());
         distance(&a, &b)
     };
     for (section, tip_mach) in

@@ -91,6 +91,20 @@ pub enum SimError {
         /// What went wrong.
         source: TrimError,
     },
+    /// A stored reduction does not follow from the stored loads.
+    #[error(
+        "{set}/rev with the {actuator} actuator: the stored hub loads and weights give a reduction of {recomputed_percent} %, the file says {stored_percent} %; it was changed after it was written"
+    )]
+    NotReproduced {
+        /// Set of harmonics.
+        set: String,
+        /// The actuator.
+        actuator: String,
+        /// What the file says, percent.
+        stored_percent: f64,
+        /// What its loads give, percent.
+        recomputed_percent: f64,
+    },
     /// The control study.
     #[error("{place}: {source}")]
     Study {
@@ -132,6 +146,7 @@ impl SimError {
             | Self::NotWritten { .. }
             | Self::Section(_)
             | Self::Misfit { .. } => Family::RejectedInput,
+            Self::NotReproduced { .. } => Family::DataMismatch,
             Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),

@@ -31,6 +31,7 @@ pub mod modes;
 pub mod output;
 pub mod problem;
 pub mod progress;
+pub mod recompute;
 mod record_fault;
 pub mod report;
 pub mod results;

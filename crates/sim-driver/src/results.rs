@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// What `hhc run` prints. Loads nondimensional (`m0 Omega^2 R^2`, `m0 Omega^2 R^3`), a harmonic as
 /// `[cosine, sine]`, angles of harmonics in (-180, 180] deg.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RunResult {
     /// The trim found.
     pub trim: TrimLine,
@@ -91,6 +91,12 @@ impl HubLoads {
         Self { fx: pair(0), fy: pair(1), fz: pair(2), mx: pair(3), my: pair(4), mz: pair(5) }
     }
 
+    /// Cosine and sine parts `fx_c fx_s fy_c ... mz_s`.
+    pub fn parts(&self) -> [f64; 12] {
+        let pairs = [self.fx, self.fy, self.fz, self.mx, self.my, self.mz];
+        std::array::from_fn(|k| pairs[k / 2][k % 2])
+    }
+
     /// Amplitudes of the six loads.
     pub fn amplitudes(&self) -> [f64; 6] {
         [self.fx, self.fy, self.fz, self.mx, self.my, self.mz].map(|[c, s]| c.hypot(s))
@@ -98,7 +104,7 @@ impl HubLoads {
 }
 
 /// One control study: a set of harmonics and an actuator.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ControlLine {
     /// Harmonics per rev.
     pub harmonics: Vec<usize>,
@@ -114,6 +120,23 @@ pub struct ControlLine {
     pub hub_4_per_rev: HubLoads,
     /// One entry per flap, from root to tip; of a set of several harmonics, one after another.
     pub flaps: Vec<FlapLine>,
+    /// What the controller knew of T: `global`, `local`, `adaptive`, or `none` for voltages taken over or
+    /// inverted.
+    #[serde(default)]
+    pub controller: String,
+    /// Weight of each load in `J_Z`, order FX FY FZ MX MY MZ, on nondimensional loads.
+    #[serde(default = "unit_weights")]
+    pub load_weights: [f64; 6],
+    /// Error of the flap motion at the wanted harmonics over the largest of them, percent; of the
+    /// inverse alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion_error_percent: Option<f64>,
+    /// KKT residual of the last optimum within limits, where there were any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kkt_residual: Option<f64>,
+    /// Largest mean flap angle over all control steps, deg.
+    #[serde(default)]
+    pub largest_mean_flap_deg: f64,
     /// Control steps.
     pub steps: usize,
     /// Steps halved because they would have raised the cost.
@@ -145,6 +168,11 @@ impl ControlLine {
     }
 }
 
+/// The identity weights, those of results stored before weights were.
+fn unit_weights() -> [f64; 6] {
+    [1.0; 6]
+}
+
 /// Name of a flap, counted from 0 at the root.
 pub fn flap_name(index: usize) -> String {
     match index {
@@ -164,8 +192,14 @@ pub struct FlapLine {
     /// Voltage amplitude, V.
     #[serde(rename = "voltage_amplitude_V")]
     pub voltage_amplitude_volt: f64,
+    /// Phase of the voltage, `A cos(n psi - phase)`, deg.
+    #[serde(default)]
+    pub voltage_phase_deg: f64,
     /// Flap amplitude, deg.
     pub flap_amplitude_deg: f64,
+    /// Phase of the flap, deg.
+    #[serde(default)]
+    pub flap_phase_deg: f64,
     /// Phase by which the flap lags the voltage, deg.
     pub lag_deg: f64,
     /// Phase by which this flap leads the inboard one, deg; 0 for the inboard flap itself.

@@ -135,13 +135,15 @@ impl RunResult {
         let before = self.baseline.hub_4_per_rev.amplitudes();
         table(
             &[
-                "per rev", "actuator", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %", "MZ %",
-                "steps", "halved", "ended",
+                "per rev", "actuator", "T", "J/J0", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %",
+                "MZ %", "steps", "halved", "ended",
             ],
             self.control.iter().map(|line| {
                 let mut cells = vec![
                     line.set_name(),
                     line.actuator.clone(),
+                    line.controller.clone(),
+                    format!("{:.4}", line.j_after / line.j_before),
                     format!("{:.1}", line.reduction_percent),
                 ];
                 let after = line.hub_4_per_rev.amplitudes();
@@ -167,7 +169,9 @@ impl RunResult {
                     line.actuator.clone(),
                     format!("{}/rev {}", f.harmonic, flap_name(f.flap)),
                     format!("{:.2}", f.flap_amplitude_deg),
+                    format!("{:.1}", f.flap_phase_deg),
                     format!("{:.2}", f.voltage_amplitude_volt),
+                    format!("{:.1}", f.voltage_phase_deg),
                     format!("{:.1}", f.lag_deg),
                     format!("{:.1}", f.lead_over_inboard_deg),
                     format!("{:.2}", f.bias_volt),
@@ -185,7 +189,9 @@ impl RunResult {
                 "actuator",
                 "motion of",
                 "flap deg",
+                "phase",
                 "volt",
+                "phase",
                 "lag deg",
                 "lead deg",
                 "bias V",

@@ -145,12 +145,10 @@ fn bad_steps() -> Result<f64, CheckError> {
         return Ok(f64::NAN);
     };
     let (mut memory, _) = law.start(65.0, StartState::Rest);
-    let mut state = 1;
-    for _ in 0..1000 {
+    for state in 1..=1000 {
         for voltage in wander(state, 1000) {
             HysteresisLaw::step(law, &mut memory, voltage, 1e-3);
         }
-        state += 1;
     }
     Ok(law.counts(&memory).g1_not_negative as f64)
 }

@@ -20,6 +20,7 @@ mod moderate_blades;
 mod rotor;
 mod section;
 mod section_compressible;
+mod study;
 mod time_elements;
 mod trimmed;
 
@@ -43,6 +44,7 @@ pub const AREAS: &[Area] = &[
     actuator_stages::AREA,
     actuator_data::AREA,
     control::AREA,
+    study::AREA,
 ];
 
 /// Ids of all checks, in the order of the page.

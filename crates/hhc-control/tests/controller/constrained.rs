@@ -69,9 +69,9 @@ fn two_variables_meet_a_brute_force_grid() {
     };
     let power = PowerLimit {
         quadratic: DMatrix::from_row_slice(2, 2, &[2.0, 0.7, 0.7, 0.5]),
-        linear: vec![0.3, -0.2],
+        linear: vec![0.03, -0.02],
         constant: 0.1,
-        limit: 0.1 + 0.3 * free.norm_squared(),
+        limit: 0.1 + 0.05 * free.norm_squared(),
     };
     let each = [
         none.clone().with_amplitudes_volt(vec![0.5 * free.norm()]).unwrap(),
@@ -321,7 +321,7 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
     let z0: Vec<f64> = problem.z0.iter().copied().collect();
     let exact = law(&problem).optimum_within(0.0, &[0.0; 4], &z0, &limits).unwrap();
     let mut plant = Limited { plant: problem.plant.clone(), limits };
-    let settings = FeedbackSettings { step_tolerance: 1e-9, ..FeedbackSettings::default() };
+    let settings = FeedbackSettings { step_tolerance: 1e-6, ..FeedbackSettings::default() };
     for controller in [Controller::Local { step_volt: vec![0.1; 4] }, Controller::Global] {
         let t0 = problem.distorted_t(1.1, 8.0);
         let run = FeedbackController::new(&t0, &LoadWeights::Identity, settings.clone())

@@ -188,6 +188,9 @@ pub enum ControlActuator {
     Ignored,
     /// Feedback to convergence on the real one.
     Hysteretic,
+    /// The ideal actuator's optimal flap motion, made by the real one under the voltage that an inverse
+    /// of its model gives.
+    Inverse,
 }
 
 impl ControlActuator {
@@ -197,6 +200,7 @@ impl ControlActuator {
             Self::Ideal => "ideal",
             Self::Ignored => "ignored",
             Self::Hysteretic => "hysteretic",
+            Self::Inverse => "inverse",
         }
     }
 }
@@ -220,11 +224,37 @@ pub enum StrokeChoice {
 pub enum EffortChoice {
     /// `rho` such that the larger flap amplitude meets the stroke limit; 0 if it stays below.
     MeetStroke,
+    /// None: the optimum within the stroke of every flap at every harmonic and the range of the total
+    /// voltage, by a cone program at every step.
+    Limits,
     /// A given `rho`, per V^2.
     Given {
         /// `rho`, 1/V^2 on nondimensional loads.
         rho: f64,
     },
+}
+
+/// What the controller of the real actuator knows of T. That of the ideal actuator is constant: it is
+/// the same everywhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum ControllerChoice {
+    /// T0 about zero control, held: the paper's.
+    Global,
+    /// T about the present control, from the linearised rotor and the actuator's own tangent.
+    #[default]
+    Local,
+    /// T followed by a filter on the measured pairs.
+    Adaptive,
+}
+
+/// What the load weights multiply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum LoadScaleChoice {
+    /// The nondimensional loads.
+    #[default]
+    Nondimensional,
+    /// Each load over its own amplitude without control.
+    Baseline,
 }
 
 /// Weights of the six hub loads in `W_Z`, on nondimensional loads.
@@ -271,8 +301,12 @@ pub struct ControlFile {
     pub stroke_limit: StrokeChoice,
     /// Weights of the loads.
     pub load_weights: LoadWeightsFile,
+    /// What the weights multiply.
+    pub load_scale: LoadScaleChoice,
     /// Weight of the effort.
     pub effort: EffortChoice,
+    /// What the controller of the real actuator knows of T.
+    pub controller: ControllerChoice,
     /// Control steps allowed.
     pub max_steps: usize,
     /// Relative change of the voltages at which the control has settled.
@@ -282,18 +316,21 @@ pub struct ControlFile {
 impl Default for ControlFile {
     fn default() -> Self {
         Self {
-            harmonics: vec![vec![2], vec![3], vec![4]],
+            harmonics: vec![vec![2], vec![3], vec![4], vec![5], vec![2, 3, 4, 5]],
             actuators: vec![
                 ControlActuator::Ideal,
                 ControlActuator::Ignored,
                 ControlActuator::Hysteretic,
+                ControlActuator::Inverse,
             ],
             bias_volt: 65.0,
             amplitude_volt: 85.0,
             t_step_deg: 0.5,
             stroke_limit: StrokeChoice::FromActuator,
             load_weights: LoadWeightsFile::default(),
+            load_scale: LoadScaleChoice::default(),
             effort: EffortChoice::MeetStroke,
+            controller: ControllerChoice::default(),
             max_steps: 40,
             step_tolerance: 1e-4,
         }

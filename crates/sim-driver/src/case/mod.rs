@@ -21,9 +21,9 @@ pub use file::{
     TolerancesFile,
 };
 pub use file_control::{
-    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, EffortChoice,
-    HorizontalTailFile, LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile,
-    StoredActuatorFile, StrokeChoice, TrimFile, WindTunnelTrimFile,
+    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, ControllerChoice,
+    EffortChoice, HorizontalTailFile, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile,
+    PropulsiveTrimFile, StoredActuatorFile, StrokeChoice, TrimFile, WindTunnelTrimFile,
 };
 pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
 pub use validated::{

@@ -1,9 +1,10 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    CompressibilityChoice, ControlActuator, CouplingsChoice, DynamicStallChoice, EffortChoice,
-    FlapMassChoice, HorizontalTailFile, InflowChoice, LoadWeightsFile, ResponseFile,
-    ReverseFlowChoice, SectionModelChoice, StrokeChoice, TolerancesFile,
+    CompressibilityChoice, ControlActuator, ControllerChoice, CouplingsChoice, DynamicStallChoice,
+    EffortChoice, FlapMassChoice, HorizontalTailFile, InflowChoice, LoadScaleChoice,
+    LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice, StrokeChoice,
+    TolerancesFile,
 };
 use crate::files::Folder;
 use flap_aero::AirfoilSpan;
@@ -218,8 +219,12 @@ pub struct ControlValues {
     pub stroke_limit: StrokeChoice,
     /// Weights of the loads.
     pub load_weights: LoadWeightsFile,
+    /// What the weights multiply.
+    pub load_scale: LoadScaleChoice,
     /// Weight of the effort.
     pub effort: EffortChoice,
+    /// What the controller of the real actuator knows of T.
+    pub controller: ControllerChoice,
     /// Control steps allowed.
     pub max_steps: usize,
     /// Relative change of the voltages at which the control has settled.

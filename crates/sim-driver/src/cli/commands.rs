@@ -18,15 +18,19 @@ use crate::modes::{AboutState, FAN_SPEEDS, ModesQuestion, fan_csv, rotating_mode
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
+use crate::recompute::recomputed;
 use crate::report::{StudyReport, report_html};
-use crate::results::StoredResult;
+use crate::results::{RunResult, StoredResult};
 use crate::run::{run_case, steps_of};
 use crate::section::{
     LoopQuestion, PolarQuestion, SectionChoice, SectionQuestion, TransientQuestion, loop_history,
     polar, section_response, transient_history,
 };
 use crate::stored_actuator::{StoredActuator, read_actuator};
-use crate::study::{SENSITIVITY_ROWS, histories_csv, sensitivities, study_report};
+use crate::study::{
+    SENSITIVITY_ROWS, histories_csv, robustness_csv, robustness_maps, sensitivities,
+    sensitivity_csv, study_report,
+};
 use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
 use preisach_dyn::identify::Settings;
 use rotor_fem::GyroscopicTerms;
@@ -38,6 +42,10 @@ const STUDY_FILE: &str = "study.json";
 const REPORT_FILE: &str = "report.html";
 /// Name of the flap and voltage histories.
 const HISTORIES_FILE: &str = "histories.csv";
+/// Name of the sensitivities.
+const SENSITIVITY_FILE: &str = "sensitivity.csv";
+/// Name of the robustness maps.
+const ROBUSTNESS_FILE: &str = "robustness.csv";
 /// Name of the result of a run.
 const RESULT_FILE: &str = "result.json";
 
@@ -71,25 +79,30 @@ fn run_and_store(
     let more = if scope == Scope::WithSensitivity { SENSITIVITY_ROWS } else { 0 };
     let progress = Progress::new(steps_of(loaded) + more);
     let computed = run_case(loaded, &progress).and_then(|outcome| {
-        progress.doing("sensitivity");
-        let rows = match scope {
-            Scope::CaseAlone => vec![],
+        progress.doing("sensitivity and robustness");
+        let (rows, cells) = match scope {
+            Scope::CaseAlone => (vec![], vec![]),
             Scope::WithSensitivity => {
-                sensitivities(loaded, &outcome.trimmed, &outcome.drives, &|| {
-                    progress.step();
-                })?
+                let done = || progress.step();
+                let rows = sensitivities(loaded, &outcome.trimmed, &outcome.drives, &done)?;
+                (rows, robustness_maps(loaded, &outcome)?)
             }
         };
-        Ok((outcome, rows))
+        Ok((outcome, rows, cells))
     });
     progress.finish();
-    let (outcome, sensitivity) = computed?;
+    let (outcome, sensitivity, cells) = computed?;
     for warning in &outcome.result.warnings {
         eprintln!("warning: {warning}");
     }
     let inputs = outcome.actuators.inputs.clone();
     let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
-    let report = study_report(loaded, &outcome, &stored, &sensitivity)?;
+    let report = study_report(loaded, &outcome, &stored, (&sensitivity, &cells))?;
+    if scope == Scope::WithSensitivity {
+        let text = sensitivity_csv(loaded, &sensitivity);
+        write_atomic(&out.join(SENSITIVITY_FILE), text.as_bytes())?;
+        write_atomic(&out.join(ROBUSTNESS_FILE), robustness_csv(&cells).as_bytes())?;
+    }
     stored.write(&out.join(RESULT_FILE))?;
     write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
     let numbers = serde_json::to_string(&report)
@@ -340,12 +353,18 @@ fn starting_case() -> Result<String, Problem> {
 }
 
 pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
-    let source = Source::read(&args.dir.join(STUDY_FILE))?;
-    let report: StudyReport = serde_json::from_str(&source.text).map_err(|e| {
-        let place = Place::at(&source.name, e.line(), e.column());
-        Problem::new(place, Fault::Syntax { message: e.to_string() })
-    })?;
+    let report: StudyReport = json_of(&args.dir.join(STUDY_FILE))?;
+    let stored: StoredResult<RunResult> = json_of(&args.dir.join(RESULT_FILE))?;
+    let checked = recomputed(&stored)?;
     let path = args.dir.join(REPORT_FILE);
     write_atomic(&path, report_html(&report).as_bytes())?;
-    print(&format!("{} written\n", path.display()))
+    print(&format!("{checked}{} written\n", path.display()))
+}
+
+fn json_of<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, SimError> {
+    let source = Source::read(path)?;
+    serde_json::from_str(&source.text).map_err(|e| {
+        let place = Place::at(&source.name, e.line(), e.column());
+        Problem::new(place, Fault::Syntax { message: e.to_string() }).into()
+    })
 }

@@ -137,7 +137,7 @@ fn a_stiff_actuator_is_the_free_one() {
 #[test]
 fn what_does_not_settle_says_so_with_its_best_state() {
     let drive = soft(0.9);
-    let free = vec![drive.motion(&sine(4, 40.0)).unwrap()];
+    let free = [drive.motion(&sine(4, 40.0)).unwrap()];
     let give = drive.give_deg_per_newton_metre();
     let rest = vec![HarmonicSeries::zero(12)];
     let coupling = HingeCoupling::new(give, rest, response(1, 1.0)).unwrap();

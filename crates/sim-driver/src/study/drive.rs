@@ -3,8 +3,10 @@
 use super::{FullScale, PlantError};
 use hhc_control::{BiasSolver, RunError};
 use preisach_dyn::{
-    ActuatorModel, LinkageStage, PeriodicResponse, PeriodicSettings, PreisachError, VoltageRange,
+    ActuatorModel, InverseSettings, LinkageStage, PeriodicResponse, PeriodicSettings,
+    PreisachError, VoltageRange,
 };
+use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 use std::sync::Arc;
 
@@ -134,6 +136,87 @@ impl FlapDrive {
             }
             _ => give,
         })
+    }
+
+    /// Change of the flap motion with each control of the flap (cosine, then sine voltage of every
+    /// harmonic), deg/V, the bias following: central differences of the closed orbit, one-sided where
+    /// the range of voltages ends.
+    ///
+    /// # Errors
+    /// As [`Self::motion`].
+    pub fn tangent(
+        &self,
+        voltages: &[(usize, Harmonic)],
+        step_volt: f64,
+    ) -> Result<Vec<HarmonicSeries>, PlantError> {
+        if let Self::Ideal { gain_deg_per_volt, .. } = self {
+            let unit = |n: usize, cosine: f64, sine: f64| {
+                let mut series = HarmonicSeries::zero(0);
+                let (cosine, sine) = (gain_deg_per_volt * cosine, gain_deg_per_volt * sine);
+                series.set_harmonic(n, Harmonic { cosine, sine });
+                series
+            };
+            let each = voltages.iter().flat_map(|&(n, _)| [unit(n, 1.0, 0.0), unit(n, 0.0, 1.0)]);
+            return Ok(each.collect());
+        }
+        let here = self.motion(voltages)?.flap_deg;
+        (0..2 * voltages.len())
+            .into_par_iter()
+            .map(|control| {
+                let moved = |by_volt: f64| {
+                    let mut voltages = voltages.to_vec();
+                    let harmonic = &mut voltages[control / 2].1;
+                    if control % 2 == 0 {
+                        harmonic.cosine += by_volt;
+                    } else {
+                        harmonic.sine += by_volt;
+                    }
+                    self.motion(&voltages).map(|motion| motion.flap_deg)
+                };
+                match (moved(step_volt), moved(-step_volt)) {
+                    (Ok(up), Ok(down)) => Ok(weighted(&up, &down, 0.5 / step_volt)),
+                    (Ok(up), Err(_)) => Ok(weighted(&up, &here, 1.0 / step_volt)),
+                    (Err(_), Ok(down)) => Ok(weighted(&here, &down, 1.0 / step_volt)),
+                    (Err(error), Err(_)) => Err(error),
+                }
+            })
+            .collect()
+    }
+
+    /// The motion whose harmonics up to the highest wanted one are the wanted ones, mean included: by
+    /// the periodic inverse of the model, with as many voltage harmonics.
+    ///
+    /// # Errors
+    /// As [`ActuatorModel::periodic_inverse`].
+    pub fn inverse(&self, wanted_deg: &HarmonicSeries) -> Result<FlapMotion, PlantError> {
+        match self {
+            Self::Ideal { gain_deg_per_volt, .. } => {
+                let voltages: Vec<(usize, Harmonic)> = (1..=wanted_deg.harmonics.len())
+                    .map(|n| {
+                        let h = wanted_deg.harmonic(n);
+                        let (cosine, sine) =
+                            (h.cosine / gain_deg_per_volt, h.sine / gain_deg_per_volt);
+                        (n, Harmonic { cosine, sine })
+                    })
+                    .collect();
+                self.motion(&voltages)
+            }
+            Self::Model { model, rev_hz, .. } => {
+                let settings = InverseSettings {
+                    voltage_harmonics: wanted_deg.harmonics.len(),
+                    ..InverseSettings::default()
+                };
+                let response = model.periodic_inverse(wanted_deg, *rev_hz, &settings)?.response;
+                Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
+            }
+        }
+    }
+
+    /// The range of voltages.
+    pub fn range_volt(&self) -> VoltageRange {
+        match self {
+            Self::Ideal { range_volt, .. } | Self::Model { range_volt, .. } => *range_volt,
+        }
     }
 
     /// The swing of the voltage over what the range leaves it: above 1 it cannot be asked for.
@@ -269,6 +352,19 @@ const QUASI_STATIC_SLOPE_DEG_PER_VOLT: f64 = 20.0 / 170.0;
 /// Room left to the bias at full scale, V.
 const FULL_SCALE_MARGIN_VOLT: f64 = 0.1;
 const FULL_SCALE_PASSES: usize = 12;
+
+/// `factor (a - b)`.
+fn weighted(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+    let count = a.harmonics.len().max(b.harmonics.len());
+    let mut out = HarmonicSeries::zero(count);
+    out.mean = factor * (a.mean - b.mean);
+    for n in 1..=count {
+        let (a, b) = (a.harmonic(n), b.harmonic(n));
+        let (cosine, sine) = (factor * (a.cosine - b.cosine), factor * (a.sine - b.sine));
+        out.set_harmonic(n, Harmonic { cosine, sine });
+    }
+    out
+}
 
 fn cosine(amplitude: f64) -> Harmonic {
     Harmonic { cosine: amplitude, sine: 0.0 }

@@ -70,6 +70,14 @@ pub enum StudyError {
         /// What went wrong.
         source: PlantError,
     },
+    /// A robustness map.
+    #[error("robustness of the control of {harmonic}/rev: {source}")]
+    Robustness {
+        /// Harmonic, per rev.
+        harmonic: usize,
+        /// What went wrong.
+        source: PlantError,
+    },
     /// The range of voltages of the case is none.
     #[error(transparent)]
     Range(PreisachError),

@@ -1,6 +1,7 @@
 //! Studies: the trimmed rotor, its driven flaps and the controller put together.
 
 mod anderson;
+mod authority;
 mod coupling;
 mod drive;
 mod error;
@@ -8,16 +9,21 @@ mod hinge_power;
 mod lines;
 mod paper;
 mod plant;
+mod robustness;
 mod run;
 mod sensitivity;
 mod tables;
 
+pub use authority::FlapAuthority;
 pub use coupling::{COUPLING_TOLERANCE_DEG, CouplingResidual, HingeCoupling};
 pub use drive::{FlapDrive, FlapMotion, MEAN_FLAP_TOLERANCE_DEG};
 pub use error::{PlantError, StudyError};
 pub use hinge_power::HingePower;
 pub use lines::control_line;
 pub use plant::{PlantState, RotorPlant, TrimmedRotor};
+pub use robustness::{Disturbance, RobustnessCell, robustness, robustness_csv, robustness_maps};
+use run::load_weights;
+pub(crate) use run::loads_cost;
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
-pub use sensitivity::{SENSITIVITY_ROWS, Sensitivity, sensitivities};
+pub use sensitivity::{SENSITIVITY_ROWS, Sensitivity, sensitivities, sensitivity_csv};
 pub use tables::{histories_csv, study_report};

@@ -2,14 +2,19 @@
 
 use super::coupling::{coefficients, series};
 use super::drive::scaled;
-use super::{CouplingResidual, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError};
+use super::{
+    CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
+};
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
-use hhc_control::{ControlLayout, Measurement, Plant, PlantCall, RunError};
+use hhc_control::{
+    ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, RunError, TMatrix,
+    VoltageRange,
+};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_response::{Condition, ResponseError, Rotor, RotorSolution, RotorSolver};
+use rotor_response::{Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_wake::LinearInflow;
 use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};
@@ -24,6 +29,8 @@ pub struct TrimmedRotor {
     moment_newton_metre: f64,
     /// Change of the hinge moments with the flap motions, found when first asked for.
     hinge_response: Arc<OnceLock<DMatrix<f64>>>,
+    /// Made when first asked for, the same whoever asks.
+    authority: Arc<OnceLock<FlapAuthority>>,
 }
 
 impl TrimmedRotor {
@@ -53,7 +60,8 @@ impl TrimmedRotor {
         })?;
         let moment_newton_metre = case.scales.moment_newton_metre();
         let hinge_response = Arc::default();
-        Ok(Self { solver, inflow, trim, moment_newton_metre, hinge_response })
+        let authority = Arc::default();
+        Ok(Self { solver, inflow, trim, moment_newton_metre, hinge_response, authority })
     }
 
     /// The trim.
@@ -64,6 +72,30 @@ impl TrimmedRotor {
     /// The rotor.
     pub fn rotor(&self) -> &Rotor {
         self.solver.rotor()
+    }
+
+    /// What the flaps do to the hub, linearised about the trimmed orbit with the inflow settled.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn authority(&self) -> Result<&FlapAuthority, ResponseError> {
+        if let Some(known) = self.authority.get() {
+            return Ok(known);
+        }
+        let found = self.linearised(InflowState::Settled)?;
+        Ok(self.authority.get_or_init(|| found))
+    }
+
+    /// The same with the inflow as asked for, made anew.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn linearised(&self, state: InflowState) -> Result<FlapAuthority, ResponseError> {
+        let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
+        let condition =
+            Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad };
+        let about = (&condition, &self.trim.rotor);
+        FlapAuthority::about(&mut self.solver.clone(), about, &self.inflow, state)
     }
 
     /// What another response leaves unbalanced at the controls and attitude of this trim, over the
@@ -157,6 +189,12 @@ impl TrimmedRotor {
 
 /// Step of the differences in a harmonic of a flap angle, rad: the response is nearly linear in it.
 const RESPONSE_STEP_RAD: f64 = 1e-3;
+/// Azimuths at which the range of the voltage is held.
+const LIMIT_AZIMUTHS: usize = 720;
+/// Part of full scale from which the gain of an actuator is read off its motion.
+const LEAST_GAIN_PART: f64 = 0.2;
+/// Voltage step of the tangent of an actuator, V: wide enough to see past the steps of its memory.
+const TANGENT_STEP_VOLT: f64 = 1.0;
 
 /// Everything about one control vector.
 #[derive(Debug, Clone)]
@@ -223,6 +261,11 @@ impl RotorPlant {
     /// The rotor in trim.
     pub fn rotor(&self) -> &TrimmedRotor {
         &self.rotor
+    }
+
+    /// What drives its flaps.
+    pub fn drive(&self) -> &FlapDrive {
+        &self.drive
     }
 
     /// Harmonics of the voltage of every flap.
@@ -296,6 +339,15 @@ impl RotorPlant {
             self.remembered.remove(0);
         }
         self.remembered.push((control_volt.to_vec(), state.clone()));
+    }
+
+    /// Rotor response for given flap motions, whatever the actuator makes of the hinge moment.
+    ///
+    /// # Errors
+    /// The errors of the rotor.
+    pub fn state_of(&self, flaps: Vec<FlapMotion>) -> Result<PlantState, PlantError> {
+        let rotor = self.rotor.with_flaps(angles_rad(&flaps))?;
+        Ok(PlantState { rotor, flaps, coupling: None })
     }
 
     /// Motion of each pair of the layout at its own harmonic, deg.
@@ -402,5 +454,50 @@ impl Plant for RotorPlant {
 
     fn admits(&self, control_volt: &[f64]) -> bool {
         self.flap_motion(control_volt).is_ok()
+    }
+
+    fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, PlantError> {
+        let flaps = self.flap_motion(control_volt)?;
+        let range = self.drive.range_volt();
+        let voltage = VoltageRange {
+            range_volt: [range.lowest_volt(), range.highest_volt()],
+            bias_volt: flaps.iter().map(|f| f.voltage_volt.mean).collect(),
+            azimuths: LIMIT_AZIMUTHS,
+        };
+        let voltages = self.layout.voltages_volt(control_volt).map_err(PlantError::Bias)?;
+        let mut limits = ControlLimits::none(&self.layout)
+            .with_amplitudes_volt(self.full_scale_volt.clone())
+            .and_then(|limits| limits.with_voltage_range(voltage))
+            .map_err(PlantError::Bias)?;
+        for (pair, (voltage, motion)) in voltages.iter().zip(self.pair_motion(&flaps)).enumerate() {
+            // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
+            if voltage.amplitude() > LEAST_GAIN_PART * self.full_scale_volt[pair] {
+                let gain = motion.amplitude() / voltage.amplitude();
+                let (sin, cos) = (motion.phase_rad() - voltage.phase_rad()).sin_cos();
+                let circle = FlapCircle {
+                    gain_deg_per_volt: [[gain * cos, -gain * sin], [gain * sin, gain * cos]],
+                    limit_deg: self.stroke_limits_deg[pair],
+                };
+                limits = limits.with_flap_circle(pair, circle).map_err(PlantError::Bias)?;
+            }
+        }
+        Ok(limits)
+    }
+
+    fn linearised_t(&mut self, control_volt: &[f64]) -> Result<Option<TMatrix>, PlantError> {
+        let authority = self.rotor.authority()?;
+        let tangents = self
+            .voltages(control_volt)?
+            .par_iter()
+            .map(|voltages| self.drive.tangent(voltages, TANGENT_STEP_VOLT))
+            .collect::<Result<Vec<_>, PlantError>>()?;
+        let columns: Vec<Vec<f64>> = tangents
+            .iter()
+            .enumerate()
+            .flat_map(|(flap, tangent)| {
+                tangent.iter().map(move |along| authority.loads(flap, along).to_vec())
+            })
+            .collect();
+        TMatrix::from_columns(&columns).map(Some).map_err(PlantError::Bias)
     }
 }

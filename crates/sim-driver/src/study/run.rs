@@ -1,13 +1,16 @@
 //! One case from trim to controlled vibration.
 
 use super::{FlapDrive, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor};
-use crate::case::{Case, ControlActuator, EffortChoice, StrokeChoice};
+use crate::case::{
+    Case, ControlActuator, ControllerChoice, EffortChoice, LoadScaleChoice, StrokeChoice,
+};
 use hhc_control::{
-    ControlRun, FeedbackController, FeedbackSettings, LoadWeights, Outcome, Plant, RunError,
-    identify_t, reduction_percent,
+    AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackSettings, LoadWeights,
+    Outcome, Plant, RunError, TMatrix, identify_t, reduction_percent,
 };
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
+use rotor_base::{Harmonic, HarmonicSeries};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -26,8 +29,14 @@ pub struct ControlStudy {
     pub t_norm: f64,
     /// Control weight `W_u = rho I` of that run, 1/V^2.
     pub rho: f64,
+    /// What the controller knew of T; none where voltages were taken over or inverted.
+    pub controller: Option<&'static str>,
+    /// Largest error of a wanted flap harmonic over the largest wanted one of the flap; of the inverse.
+    pub motion_error: Option<f64>,
     /// Stroke limit of each controlled harmonic, deg.
     pub stroke_limit_deg: Vec<f64>,
+    /// Weight of each load in `J_Z`, order `FX FY FZ MX MY MZ`.
+    pub load_weights: [f64; 6],
     /// `J_Z` without control.
     pub j_before: f64,
     /// `J_Z` with control.
@@ -52,6 +61,14 @@ impl ControlStudy {
     /// Steps that were halved because they raised the cost.
     pub fn halvings(&self) -> u32 {
         self.run.as_ref().map_or(0, ControlRun::halvings)
+    }
+
+    /// Largest mean flap angle over all recorded steps, deg.
+    pub fn largest_mean_flap_deg(&self) -> f64 {
+        let of_steps = self.run.iter().flat_map(ControlRun::history);
+        let recorded = of_steps.flat_map(|step| step.measurement.mean_flap_deg.iter().copied());
+        let here = self.state.flaps.iter().map(|flap| flap.flap_deg.mean);
+        recorded.chain(here).fold(0.0, |m, mean| mean.abs().max(m))
     }
 
     /// How the loop ended; converged where voltages were taken over.
@@ -172,6 +189,7 @@ pub fn control_set(
         studies.push(match (actuator, &ideal) {
             (ControlActuator::Ideal, Some(ideal)) => ideal.clone(),
             (ControlActuator::Ignored, Some(ideal)) => set.taken_over(ideal)?,
+            (ControlActuator::Inverse, Some(ideal)) => set.inverted(ideal)?,
             _ => set.feedback(actuator)?,
         });
         done();
@@ -189,8 +207,14 @@ pub fn control_all(
     drives: &Drives,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<ControlStudy>, StudyError> {
-    let sets = case
-        .control
+    let control = &case.control;
+    let learns = control.controller == ControllerChoice::Local
+        && control.actuators.contains(&ControlActuator::Hysteretic);
+    if learns && !control.harmonics.is_empty() {
+        // made once before the sets run side by side; a failure is that of the set that needs it
+        let _ = rotor.authority();
+    }
+    let sets = control
         .harmonics
         .par_iter()
         .map(|harmonics| control_set(case, rotor, drives, harmonics, done))
@@ -228,7 +252,7 @@ impl ControlSet<'_> {
                     .collect();
                 (&self.drives.ideal, scale)
             }
-            ControlActuator::Ignored | ControlActuator::Hysteretic => {
+            ControlActuator::Ignored | ControlActuator::Hysteretic | ControlActuator::Inverse => {
                 let drive = self.drives.hysteretic.as_ref();
                 let name = actuator.name();
                 (drive.ok_or(StudyError::NoActuator { actuator: name })?, self.limits.clone())
@@ -238,17 +262,32 @@ impl ControlSet<'_> {
             .map_err(|e| self.failed(actuator, e))
     }
 
-    fn weights(&self) -> LoadWeights {
-        let w = &self.case.control.load_weights;
-        let each = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz];
-        LoadWeights::Diagonal(each.into_iter().flat_map(|w| [w, w]).collect())
+    /// Weight of each load: those of the case, over the squared baseline amplitude if it asks for that.
+    fn load_weights(&self) -> [f64; 6] {
+        load_weights(self.case, &self.rotor.trim().rotor.hub.harmonic(self.case.blades))
     }
 
-    /// `J_Z` of a hub load vector.
-    fn loads_cost(&self, loads: &[f64; 12]) -> f64 {
-        let w = &self.case.control.load_weights;
-        let each = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz];
-        loads.chunks_exact(2).zip(each).map(|(z, w)| w * (z[0] * z[0] + z[1] * z[1])).sum()
+    /// The step of the T matrix, V.
+    fn step_volt(&self) -> f64 {
+        let control = &self.case.control;
+        control.t_step_deg * control.amplitude_volt / self.case.actuator.ideal_amplitude_deg
+    }
+
+    /// T0 of a plant and the controller of the case, `way` of knowing T included.
+    fn controller(
+        &self,
+        t: &TMatrix,
+        way: Controller,
+    ) -> Result<FeedbackController, RunError<PlantError>> {
+        let control = &self.case.control;
+        let settings = FeedbackSettings {
+            max_steps: control.max_steps,
+            step_tolerance: control.step_tolerance,
+            ..FeedbackSettings::default()
+        };
+        let weights = self.load_weights().into_iter().flat_map(|w| [w, w]).collect();
+        Ok(FeedbackController::new(t, &LoadWeights::Diagonal(weights), settings)?
+            .with_controller(way)?)
     }
 
     fn study(
@@ -256,28 +295,43 @@ impl ControlSet<'_> {
         actuator: ControlActuator,
         plant: &RotorPlant,
         control_volt: Vec<f64>,
-        (run, t_norm, rho): (Option<ControlRun>, f64, f64),
+        state: PlantState,
     ) -> Result<ControlStudy, StudyError> {
-        let state = plant.state(&control_volt).map_err(|source| {
-            let call = hhc_control::PlantCall::Measure { control_volt: control_volt.clone() };
-            self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
-        })?;
         let blades = self.case.blades;
         let before = self.rotor.trim().rotor.hub.harmonic(blades);
         let target = self.case.trim_target();
         let trim_imbalance = self.rotor.imbalance(&target, &state.rotor)?;
+        let load_weights = self.load_weights();
+        let after = state.rotor.hub.harmonic(blades);
+        debug_assert_eq!(plant.layout().len(), control_volt.len());
         Ok(ControlStudy {
             harmonics: self.harmonics.to_vec(),
             actuator,
             trim_imbalance,
             control_volt,
-            run,
-            t_norm,
-            rho,
+            run: None,
+            t_norm: 0.0,
+            rho: 0.0,
+            controller: None,
+            motion_error: None,
             stroke_limit_deg: self.limits.iter().map(|l| l.stroke_deg).collect(),
-            j_before: self.loads_cost(&before),
-            j_after: self.loads_cost(&state.rotor.hub.harmonic(blades)),
+            load_weights,
+            j_before: loads_cost(&load_weights, &before),
+            j_after: loads_cost(&load_weights, &after),
             state,
+        })
+    }
+
+    /// The state at a control vector.
+    fn state(
+        &self,
+        actuator: ControlActuator,
+        plant: &RotorPlant,
+        control_volt: &[f64],
+    ) -> Result<PlantState, StudyError> {
+        plant.state(control_volt).map_err(|source| {
+            let call = hhc_control::PlantCall::Measure { control_volt: control_volt.to_vec() };
+            self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
         })
     }
 
@@ -286,33 +340,125 @@ impl ControlSet<'_> {
         let mut plant = self.plant(actuator)?;
         let failed = |e| self.failed(actuator, e);
         let control = &self.case.control;
-        let step_volt =
-            control.t_step_deg * control.amplitude_volt / self.case.actuator.ideal_amplitude_deg;
-        let steps = vec![step_volt; plant.layout().len()];
-        let t = identify_t(&mut plant, &steps).map_err(failed)?;
-        let settings = FeedbackSettings {
-            max_steps: control.max_steps,
-            step_tolerance: control.step_tolerance,
-            ..FeedbackSettings::default()
+        let step_volt = vec![self.step_volt(); plant.layout().len()];
+        let t = identify_t(&mut plant, &step_volt).map_err(failed)?;
+        // the ideal actuator has one T everywhere
+        let choice = match actuator {
+            ControlActuator::Ideal => ControllerChoice::Global,
+            _ => control.controller,
         };
-        let controller =
-            FeedbackController::new(&t, &self.weights(), settings).map_err(|e| failed(e.into()))?;
+        let way = match choice {
+            ControllerChoice::Global => Controller::Global,
+            ControllerChoice::Local => Controller::Local { step_volt },
+            ControllerChoice::Adaptive => {
+                Controller::Adaptive(AdaptiveSettings::of_full_scale(control.amplitude_volt))
+            }
+        };
+        let name = way.name();
+        let controller = self.controller(&t, way).map_err(failed)?;
         let (run, rho) = match control.effort {
             EffortChoice::MeetStroke => {
                 let limited = controller.run_within_stroke(&mut plant).map_err(failed)?;
                 (limited.run, limited.rho)
             }
+            EffortChoice::Limits => {
+                // with more controls than loads the optimum is one of many: the least voltage is taken
+                let surplus = t.controls() > t.loads();
+                let scale = controller.law().singular_values().first().map_or(0.0, |s| s * s);
+                let rho = if surplus { LEAST_EFFORT * scale } else { 0.0 };
+                (controller.run_constrained(&mut plant, rho).map_err(failed)?, rho)
+            }
             EffortChoice::Given { rho } => (controller.run(&mut plant, rho).map_err(failed)?, rho),
         };
         let volts = run.last().control_volt.clone();
-        self.study(actuator, &plant, volts, (Some(run), t.frobenius_norm(), rho))
+        let state = self.state(actuator, &plant, &volts)?;
+        Ok(ControlStudy {
+            run: Some(run),
+            t_norm: t.frobenius_norm(),
+            rho,
+            controller: Some(name),
+            ..self.study(actuator, &plant, volts, state)?
+        })
     }
 
     /// The ideal actuator's voltages applied to the hysteretic one: what ignoring hysteresis costs.
     fn taken_over(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
         let actuator = ControlActuator::Ignored;
         let plant = self.plant(actuator)?;
-        let from = (None, ideal.t_norm, ideal.rho);
-        self.study(actuator, &plant, ideal.control_volt.clone(), from)
+        let volts = ideal.control_volt.clone();
+        let state = self.state(actuator, &plant, &volts)?;
+        Ok(ControlStudy {
+            t_norm: ideal.t_norm,
+            rho: ideal.rho,
+            ..self.study(actuator, &plant, volts, state)?
+        })
     }
+
+    /// The ideal actuator's flap motion, made by the hysteretic one: its inverse gives the voltage.
+    fn inverted(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
+        let actuator = ControlActuator::Inverse;
+        let plant = self.plant(actuator)?;
+        let highest = self.harmonics.iter().copied().max().unwrap_or(1);
+        let failed = |source| {
+            let call = hhc_control::PlantCall::Measure { control_volt: ideal.control_volt.clone() };
+            self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
+        };
+        let inverted = ideal
+            .state
+            .flaps
+            .par_iter()
+            .map(|motion| {
+                let mut wanted = HarmonicSeries::zero(highest);
+                for &n in self.harmonics {
+                    wanted.set_harmonic(n, motion.flap_deg.harmonic(n));
+                }
+                let made = plant.drive().inverse(&wanted)?;
+                let size = self.harmonics.iter().map(|&n| wanted.harmonic(n).amplitude());
+                let size = size.fold(f64::MIN_POSITIVE, f64::max);
+                let errors = self.harmonics.iter().map(|&n| {
+                    let (a, b) = (made.flap_deg.harmonic(n), wanted.harmonic(n));
+                    (a.cosine - b.cosine).hypot(a.sine - b.sine) / size
+                });
+                let error = errors.fold(0.0, f64::max);
+                Ok((made, error))
+            })
+            .collect::<Result<Vec<_>, PlantError>>()
+            .map_err(failed)?;
+        let motion_error = inverted.iter().map(|(_, error)| *error).fold(0.0, f64::max);
+        let flaps: Vec<_> = inverted.into_iter().map(|(motion, _)| motion).collect();
+        let controlled: Vec<Harmonic> = flaps
+            .iter()
+            .flat_map(|f| self.harmonics.iter().map(|&n| f.voltage_volt.harmonic(n)))
+            .collect();
+        let volts = controlled.iter().flat_map(|h| [h.cosine, h.sine]).collect();
+        let state = plant.state_of(flaps).map_err(failed)?;
+        Ok(ControlStudy {
+            t_norm: ideal.t_norm,
+            rho: ideal.rho,
+            motion_error: Some(motion_error),
+            ..self.study(actuator, &plant, volts, state)?
+        })
+    }
+}
+
+/// Weight of the control, over the largest singular value of T squared, that picks the least voltage
+/// where the optimum is not unique.
+const LEAST_EFFORT: f64 = 1e-8;
+
+/// Weight of each load of a case, for the hub loads without control.
+pub(super) fn load_weights(case: &Case, baseline: &[f64; 12]) -> [f64; 6] {
+    let w = &case.control.load_weights;
+    let mut weights = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz];
+    if case.control.load_scale == LoadScaleChoice::Baseline {
+        for (weight, z) in weights.iter_mut().zip(baseline.chunks_exact(2)) {
+            let square = z[0] * z[0] + z[1] * z[1];
+            *weight = if square > 0.0 { *weight / square } else { *weight };
+        }
+    }
+    weights
+}
+
+/// `J_Z` of a hub load vector.
+pub(crate) fn loads_cost(weights: &[f64; 6], loads: &[f64; 12]) -> f64 {
+    loads.chunks_exact(2).zip(weights).map(|(z, w)| w * (z[0] * z[0] + z[1] * z[1])).sum()
 }

@@ -1,9 +1,13 @@
 //! How the reductions move with the assumptions the paper leaves open.
 
-use super::{Drives, TrimmedRotor, control_set};
+use super::{Drives, FlapDrive, TrimmedRotor, control_set};
 use crate::SimError;
-use crate::case::{ControlActuator, InflowChoice, LoadedCase, SectionModelChoice};
+use crate::case::{
+    ControlActuator, EffortChoice, InflowChoice, LoadedCase, SectionModelChoice, TrimValues,
+};
 use rayon::prelude::*;
+use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// Tolerances of the table: a tenth of a percent is printed.
 const TABLE_TRIM_TOLERANCE: f64 = 1e-7;
@@ -15,9 +19,11 @@ const TABLE_INFLOW_TOLERANCE: f64 = 1e-8;
 pub struct Sensitivity {
     /// What was changed, with the value it has in the case.
     pub assumption: String,
-    /// Reduction of `J_Z` (percent) for each set of harmonics of the case, ideal actuator within the
-    /// stroke of the real one.
+    /// Reduction of `J_Z` (percent) for each of the harmonics that the case controls alone, ideal actuator
+    /// within the stroke of the real one.
     pub reduction_percent: Vec<f64>,
+    /// Largest change of a reduction from the case as it is, percentage points.
+    pub largest_change: f64,
 }
 
 /// Whether an assumption changes the rotor.
@@ -29,10 +35,19 @@ enum RotorOf {
     TheChange,
 }
 
+/// The stroke an assumption leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum StrokeOf {
+    /// That of the case, times a factor.
+    TheCase(f64),
+    /// Found anew: the actuator is used in another way.
+    TheChange,
+}
+
 /// A change of the case and of the stroke.
 struct Assumption {
     text: &'static str,
-    stroke_factor: f64,
+    stroke: StrokeOf,
     rotor: RotorOf,
     change: Box<dyn Fn(&mut LoadedCase) + Sync + Send>,
 }
@@ -42,7 +57,8 @@ fn assume(
     change: impl Fn(&mut LoadedCase) + Sync + Send + 'static,
 ) -> Assumption {
     let change = Box::new(change);
-    Assumption { text, stroke_factor: 1.0, rotor: RotorOf::TheChange, change }
+    let stroke = StrokeOf::TheCase(1.0);
+    Assumption { text, stroke, rotor: RotorOf::TheChange, change }
 }
 
 fn shift_flaps(loaded: &mut LoadedCase, by_r: f64) {
@@ -59,17 +75,45 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
         let square = amplitudes[2 * k].powi(2) + amplitudes[2 * k + 1].powi(2);
         if square > 0.0 { 1.0 / square } else { 1.0 }
     };
+    let of_rotor = |text, change: fn(&mut LoadedCase)| assume(text, change);
+    let of_case = |text, change: fn(&mut LoadedCase)| Assumption {
+        rotor: RotorOf::TheCase,
+        ..assume(text, change)
+    };
+    let stroke =
+        |text, factor| Assumption { stroke: StrokeOf::TheCase(factor), ..of_case(text, |_| {}) };
     vec![
-        Assumption { rotor: RotorOf::TheCase, ..assume("as the case", |_| {}) },
-        assume("flaps .05 R further in", |c| shift_flaps(c, -0.05)),
-        assume("flaps .05 R further out", |c| shift_flaps(c, 0.05)),
-        assume("twist -4 deg", |c| c.case.blade.twist_rad = (-4.0_f64).to_radians()),
-        assume("twist -12 deg", |c| c.case.blade.twist_rad = (-12.0_f64).to_radians()),
-        assume("GJ -20 % (first torsion -10 %)", |c| c.case.blade.gj *= 0.8),
-        assume("GJ +20 % (first torsion +9 %)", |c| c.case.blade.gj *= 1.2),
-        assume("modal damping 1 % of critical", |c| c.case.blade.modal_damping = 0.01),
-        assume("uniform inflow", |c| c.case.inflow = InflowChoice::Uniform),
-        assume("quasi-steady sections", |c| c.case.section.model = SectionModelChoice::QuasiSteady),
+        of_case("as the case", |_| {}),
+        of_rotor("flaps .05 R further in", |c| shift_flaps(c, -0.05)),
+        of_rotor("flaps .05 R further out", |c| shift_flaps(c, 0.05)),
+        of_rotor("flaps .02 R further out", |c| shift_flaps(c, 0.02)),
+        of_rotor("twist -4 deg", |c| c.case.blade.twist_rad = (-4.0_f64).to_radians()),
+        of_rotor("twist -12 deg", |c| c.case.blade.twist_rad = (-12.0_f64).to_radians()),
+        of_rotor("GJ -20 % (first torsion -10 %)", |c| c.case.blade.gj *= 0.8),
+        of_rotor("GJ +20 % (first torsion +9 %)", |c| c.case.blade.gj *= 1.2),
+        of_rotor("radii of gyration +10 % (first torsion -9 %)", |c| {
+            c.case.blade.km1 *= 1.1;
+            c.case.blade.km2 *= 1.1;
+        }),
+        of_rotor("modal damping .2 % of critical", |c| c.case.blade.modal_damping = 0.002),
+        of_rotor("modal damping 1 % of critical", |c| c.case.blade.modal_damping = 0.01),
+        of_rotor("precone 2.5 deg", |c| c.case.blade.precone_rad = 2.5_f64.to_radians()),
+        of_rotor("root cut-out .15 R", |c| c.case.blade.root_cutout = 0.15),
+        of_rotor("profile drag .008", |c| c.case.section.drag_coefficient = 0.008),
+        of_rotor("fuselage drag area -30 %", |c| {
+            if let TrimValues::Propulsive { drag_area, .. } = &mut c.case.trim {
+                *drag_area *= 0.7;
+            }
+        }),
+        of_rotor("uniform inflow", |c| c.case.inflow = InflowChoice::Uniform),
+        of_rotor("quasi-steady sections", |c| {
+            c.case.section.model = SectionModelChoice::QuasiSteady;
+        }),
+        of_rotor("flap lift 80 % of thin-aerofoil theory", |c| {
+            for flap in &mut c.case.flaps {
+                flap.effectiveness[0] *= 0.8;
+            }
+        }),
         Assumption {
             rotor: RotorOf::TheCase,
             ..assume("each load weighted by its own baseline", move |c| {
@@ -78,15 +122,23 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
                 (w.mx, w.my, w.mz) = (weight(3), weight(4), weight(5));
             })
         },
+        of_case("optimum within the limits (cone program) for the tuned weight", |c| {
+            c.case.control.effort = EffortChoice::Limits;
+        }),
+        stroke("half the stroke", 0.5),
+        stroke("stroke +25 %", 1.25),
         Assumption {
-            stroke_factor: 0.5,
-            rotor: RotorOf::TheCase,
-            ..assume("half the stroke", |_| {})
+            stroke: StrokeOf::TheChange,
+            ..of_case("one bench second = 6.383 revolutions for 5 (or 5 for 6.383)", |c| {
+                let rev_hz = &mut c.case.actuator.bench_rev_hz;
+                *rev_hz = if *rev_hz < 5.7 { 6.383 } else { 5.0 };
+            })
         },
     ]
 }
 
-/// Trims and controls the case once for every assumption changed; in parallel, results in order.
+/// Trims and controls the case once for every assumption changed, in parallel. The case itself comes
+/// first, then the changes, the one that moves a reduction most leading.
 ///
 /// With the ideal actuator, held to the stroke of the real one: feedback on the hysteretic actuator
 /// reaches nearly the same reductions, at several times the cost.
@@ -99,13 +151,23 @@ pub fn sensitivities(
     drives: &Drives,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Sensitivity>, SimError> {
-    assumptions(base, loaded.case.blades)
+    let sets: Vec<Vec<usize>> =
+        loaded.case.control.harmonics.iter().filter(|set| set.len() == 1).cloned().collect();
+    let model = match &drives.hysteretic {
+        Some(FlapDrive::Model { model, .. }) => Some(Arc::clone(model)),
+        _ => None,
+    };
+    let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
+    let mut rows = assumptions(base, loaded.case.blades)
         .into_par_iter()
         .map(|assumption| {
             let mut varied = loaded.clone();
             (assumption.change)(&mut varied);
             varied.case.control.actuators = vec![ControlActuator::Ideal];
-            let limited = drives.with_strokes_scaled(assumption.stroke_factor);
+            let limited = match assumption.stroke {
+                StrokeOf::TheCase(factor) => drives.with_strokes_scaled(factor),
+                StrokeOf::TheChange => Drives::new(&varied.case, model.clone()).map_err(failed)?,
+            };
             varied.case.tolerances.trim = TABLE_TRIM_TOLERANCE;
             varied.case.tolerances.periodicity = TABLE_PERIODICITY_TOLERANCE;
             varied.case.tolerances.inflow = TABLE_INFLOW_TOLERANCE;
@@ -113,25 +175,45 @@ pub fn sensitivities(
                 RotorOf::TheCase => base.clone(),
                 RotorOf::TheChange => TrimmedRotor::new(&varied, Some(base.trim()))?,
             };
-            let reduction_percent = varied
-                .case
-                .control
-                .harmonics
+            let reduction_percent = sets
                 .iter()
                 .map(|set| {
-                    let studies = control_set(&varied.case, &rotor, &limited, set, &|| ())
-                        .map_err(|source| SimError::Study {
-                            place: loaded.index.place("control"),
-                            source,
-                        })?;
+                    let studies =
+                        control_set(&varied.case, &rotor, &limited, set, &|| ()).map_err(failed)?;
                     Ok(studies.first().map_or(f64::NAN, super::ControlStudy::reduction_percent))
                 })
                 .collect::<Result<Vec<f64>, SimError>>()?;
             done();
-            Ok(Sensitivity { assumption: assumption.text.to_owned(), reduction_percent })
+            let assumption = assumption.text.to_owned();
+            Ok(Sensitivity { assumption, reduction_percent, largest_change: 0.0 })
         })
-        .collect()
+        .collect::<Result<Vec<Sensitivity>, SimError>>()?;
+    let nominal = rows.first().map(|row| row.reduction_percent.clone()).unwrap_or_default();
+    for row in &mut rows {
+        let changes = row.reduction_percent.iter().zip(&nominal).map(|(a, b)| (a - b).abs());
+        row.largest_change = changes.fold(0.0, f64::max);
+    }
+    // the case itself stays first
+    if let Some((_, changed)) = rows.split_first_mut() {
+        changed.sort_by(|a, b| b.largest_change.total_cmp(&a.largest_change));
+    }
+    Ok(rows)
+}
+
+/// The rows as CSV text.
+pub fn sensitivity_csv(loaded: &LoadedCase, rows: &[Sensitivity]) -> String {
+    let sets = loaded.case.control.harmonics.iter().filter(|set| set.len() == 1);
+    let names: Vec<String> =
+        sets.map(|set| format!("reduction_{}_per_rev_percent", set[0])).collect();
+    let mut text = format!("assumption,{},largest_change\n", names.join(","));
+    for row in rows {
+        let numbers: Vec<String> =
+            row.reduction_percent.iter().map(|r| format!("{r:.3}")).collect();
+        let (numbers, change) = (numbers.join(","), row.largest_change);
+        let _ = writeln!(text, "\"{}\",{numbers},{change:.3}", row.assumption);
+    }
+    text
 }
 
 /// Number of rows [`sensitivities`] makes, for a progress bar.
-pub const SENSITIVITY_ROWS: usize = 12;
+pub const SENSITIVITY_ROWS: usize = 23;

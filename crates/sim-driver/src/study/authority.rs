@@ -1,0 +1,83 @@
+//! What every harmonic of every flap does to the hub, from the linearised rotor.
+
+use rotor_base::HarmonicSeries;
+use rotor_response::{
+    Condition, FlapDirection, InflowState, ResponseError, RotorSolution, RotorSolver,
+};
+use rotor_wake::InflowModel;
+
+/// Highest harmonic of the flap whose effect on the hub is kept. A flap harmonic reaches the hub at the
+/// blade number per rev through the periodic coefficients of the rotor, whose own harmonics fall off fast.
+const HARMONICS: usize = 10;
+
+/// Derivative of the hub loads at the blade number per rev with the flap harmonics, about the trimmed
+/// orbit: pilot controls held, inflow settled or frozen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlapAuthority {
+    /// By flap: mean, then cosine and sine of each harmonic; load per deg.
+    columns: Vec<Vec<[f64; 12]>>,
+    /// Largest residual of the linear equations, over the right-hand side.
+    pub relative_residual: f64,
+    /// Evaluations of the whole revolution it took.
+    pub evaluations: usize,
+}
+
+impl FlapAuthority {
+    /// The derivatives about a converged orbit.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::linearised`].
+    pub fn about(
+        solver: &mut RotorSolver,
+        at: (&Condition, &RotorSolution),
+        inflow: &dyn InflowModel,
+        state: InflowState,
+    ) -> Result<Self, ResponseError> {
+        let model = solver.rotor().model();
+        let (flaps, blades) = (model.flaps.len(), model.blades);
+        let per_flap = 2 * HARMONICS + 1;
+        let directions: Vec<FlapDirection> = (0..flaps * per_flap)
+            .map(|k| {
+                let mut direction = vec![HarmonicSeries::zero(0); flaps];
+                let (series, column) = (&mut direction[k / per_flap], k % per_flap);
+                let unit = 1.0_f64.to_radians();
+                let harmonic = column.div_ceil(2);
+                let mut part = series.harmonic(harmonic.max(1));
+                match column {
+                    0 => series.mean = unit,
+                    odd if odd % 2 == 1 => part.cosine = unit,
+                    _ => part.sine = unit,
+                }
+                if column > 0 {
+                    series.set_harmonic(harmonic, part);
+                }
+                direction
+            })
+            .collect();
+        let found = solver.linearised(at, inflow, &directions, state)?;
+        let all: Vec<[f64; 12]> =
+            found.sensitivities.iter().map(|s| s.hub.harmonic(blades)).collect();
+        Ok(Self {
+            columns: all.chunks(per_flap).map(<[[f64; 12]]>::to_vec).collect(),
+            relative_residual: found.relative_residual,
+            evaluations: found.evaluations,
+        })
+    }
+
+    /// Change of the hub loads for a small motion of one flap, deg. Harmonics beyond those kept have
+    /// no part in it.
+    pub fn loads(&self, flap: usize, motion_deg: &HarmonicSeries) -> [f64; 12] {
+        let mut loads = [0.0; 12];
+        let Some(columns) = self.columns.get(flap) else { return loads };
+        let parts = (1..=HARMONICS).flat_map(|n| {
+            let h = motion_deg.harmonic(n);
+            [h.cosine, h.sine]
+        });
+        for (part, column) in std::iter::once(motion_deg.mean).chain(parts).zip(columns) {
+            for (load, c) in loads.iter_mut().zip(column) {
+                *load += c * part;
+            }
+        }
+        loads
+    }
+}
