@@ -125,6 +125,24 @@ impl HingeCoupling {
         worst * self.give_deg_per_newton_metre.abs()
     }
 
+    /// Motion that agrees with the linear answer of the rotor, `H = H_rest + R delta`: no response is
+    /// computed. What it misses is the curvature of the rotor's answer.
+    ///
+    /// # Errors
+    /// As [`Self::settle`].
+    pub fn predict(
+        &self,
+        actuate: impl Fn(&[HarmonicSeries]) -> Result<Vec<FlapMotion>, PlantError>,
+    ) -> Result<Vec<FlapMotion>, PlantError> {
+        let rest = self.gather(&self.at_rest);
+        let linear = |flaps: &[FlapMotion], _: Option<&()>| {
+            let motions_rad: Vec<HarmonicSeries> =
+                flaps.iter().map(|flap| scaled(&flap.flap_deg, 1.0_f64.to_radians())).collect();
+            Ok(((), self.split(&(&rest + &self.response * self.gather(&motions_rad)))))
+        };
+        Ok(self.settle(actuate, linear)?.0)
+    }
+
     /// Motion and response that agree.
     ///
     /// `actuate` turns hinge moments (N m) into flap motions, `respond` these into the response of the

@@ -147,7 +147,7 @@ fn what_does_not_settle_says_so_with_its_best_state() {
         |_, _| {
             // a rotor that never answers the same
             count.set(count.get() + 1);
-            let mean = 0.01 * ((f64::from(count.get()) * 1.7).sin() * 1e4).fract();
+            let mean = 0.01 * ((f64::from(count.get()) * 12.9898).sin() * 43_758.545_3).fract();
             Ok(((), vec![HarmonicSeries { mean, ..HarmonicSeries::zero(12) }]))
         },
     );
@@ -241,12 +241,21 @@ fn the_coupled_answer_depends_on_the_voltages_alone() {
     let alone = one.measure(&second).unwrap();
     let mut other = plant(0.9);
     other.measure(&first).unwrap();
-    other.strokes_deg(&second).unwrap();
+    let strokes_deg = other.strokes_deg(&second).unwrap();
     assert_eq!(other.measure(&second).unwrap(), alone);
     let state = one.state(&second).unwrap();
     let residual = state.coupling.unwrap();
     println!("forward flight: {} responses, {:e} deg", residual.iterations, residual.residual_deg);
     assert!(residual.residual_deg <= COUPLING_TOLERANCE_DEG && residual.iterations <= 6);
+    // the stroke comes from the linear answer of the rotor
+    let predicted = other.flap_motion(&second).unwrap();
+    for (flap, motion) in predicted.iter().zip(&alone.flap_motion_deg) {
+        let got = flap.flap_deg.harmonic(3);
+        let gap = (got.cosine - motion.cosine).hypot(got.sine - motion.sine) / motion.amplitude();
+        println!("linear answer: {gap:e}");
+        assert!(gap < 0.01);
+    }
+    assert!(strokes_deg[0] >= predicted[0].flap_deg.harmonic(3).amplitude());
     // the free actuator answers otherwise
     let free = plant(0.0).measure(&second).unwrap();
     assert!(free.flap_motion_deg[0].amplitude() > 1.1 * alone.flap_motion_deg[0].amplitude());

@@ -215,8 +215,6 @@ pub struct RotorPlant {
     drive: FlapDrive,
     /// None where the actuator does not give way to the hinge moment.
     coupling: Option<HingeCoupling>,
-    /// The last coupled states with their control vectors, oldest first.
-    remembered: Vec<(Vec<f64>, PlantState)>,
     /// One per pair of the layout.
     stroke_limits_deg: Vec<f64>,
     /// Amplitude at which each pair reaches its limit, V.
@@ -254,7 +252,6 @@ impl RotorPlant {
             rotor,
             drive,
             coupling,
-            remembered: Vec::new(),
         })
     }
 
@@ -288,14 +285,28 @@ impl RotorPlant {
             .collect()
     }
 
-    /// Motion of every flap for a control vector.
+    /// The free motions under hinge moments, N m.
+    fn loaded(
+        &self,
+        free: &[FlapMotion],
+        moments: &[HarmonicSeries],
+    ) -> Result<Vec<FlapMotion>, PlantError> {
+        free.par_iter()
+            .zip(moments)
+            .map(|(free, moment)| self.drive.loaded_motion(free, moment))
+            .collect()
+    }
+
+    /// Motion of every flap for a control vector, without a response of the rotor: under a hinge moment
+    /// it is that of the rotor's linear answer ([`HingeCoupling::predict`]).
     ///
     /// # Errors
-    /// The actuator's errors; those of the rotor where they are coupled.
+    /// The actuator's errors; [`PlantError::Coupling`].
     pub fn flap_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
+        let free = self.free_motion(control_volt)?;
         match &self.coupling {
-            None => self.free_motion(control_volt),
-            Some(_) => Ok(self.state(control_volt)?.flaps),
+            None => Ok(free),
+            Some(coupling) => coupling.predict(|moments| self.loaded(&free, moments)),
         }
     }
 
@@ -305,21 +316,13 @@ impl RotorPlant {
     /// # Errors
     /// The errors of actuator and rotor; [`PlantError::Coupling`].
     pub fn state(&self, control_volt: &[f64]) -> Result<PlantState, PlantError> {
-        if let Some((_, state)) = self.remembered.iter().find(|(volt, _)| volt == control_volt) {
-            return Ok(state.clone());
-        }
         let free = self.free_motion(control_volt)?;
         let Some(coupling) = &self.coupling else {
             let rotor = self.rotor.with_flaps(angles_rad(&free))?;
             return Ok(PlantState { rotor, flaps: free, coupling: None });
         };
         let unit = self.rotor.moment_newton_metre;
-        let actuate = |moments: &[HarmonicSeries]| {
-            free.par_iter()
-                .zip(moments)
-                .map(|(free, moment)| self.drive.loaded_motion(free, moment))
-                .collect()
-        };
+        let actuate = |moments: &[HarmonicSeries]| self.loaded(&free, moments);
         let respond = |flaps: &[FlapMotion], last: Option<&RotorSolution>| {
             let start = last.unwrap_or(&self.rotor.trim.rotor);
             let rotor = self.rotor.with_flaps_from(angles_rad(flaps), start)?;
@@ -328,17 +331,6 @@ impl RotorPlant {
         };
         let (flaps, rotor, residual) = coupling.settle(actuate, respond)?;
         Ok(PlantState { rotor, flaps, coupling: Some(residual) })
-    }
-
-    /// Keeps a coupled state: the controller asks for stroke and loads of one control apart.
-    fn remember(&mut self, control_volt: &[f64], state: &PlantState) {
-        if self.coupling.is_none() || self.remembered.iter().any(|(volt, _)| volt == control_volt) {
-            return;
-        }
-        if self.remembered.len() >= REMEMBERED {
-            self.remembered.remove(0);
-        }
-        self.remembered.push((control_volt.to_vec(), state.clone()));
     }
 
     /// Rotor response for given flap motions, whatever the actuator makes of the hinge moment.
@@ -358,32 +350,16 @@ impl RotorPlant {
             .collect()
     }
 
-    fn measurement(&self, state: &PlantState) -> Measurement {
+    fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
+        let state = self.state(control_volt)?;
         let blades = self.rotor.rotor().model().blades;
-        Measurement {
+        Ok(Measurement {
             hub_loads: state.rotor.hub.harmonic(blades).to_vec(),
             flap_motion_deg: self.pair_motion(&state.flaps),
             mean_flap_deg: state.flaps.iter().map(|f| f.flap_deg.mean).collect(),
-        }
-    }
-
-    fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        Ok(self.measurement(&self.state(control_volt)?))
-    }
-
-    /// Flap motion for the stroke; where it is coupled, its state is kept for the measurement.
-    fn stroke_motion(&mut self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
-        if self.coupling.is_none() {
-            return self.free_motion(control_volt);
-        }
-        let state = self.state(control_volt)?;
-        self.remember(control_volt, &state);
-        Ok(state.flaps)
+        })
     }
 }
-
-/// Coupled states kept.
-const REMEMBERED: usize = 4;
 
 /// Flap angles as the rotor takes them, rad.
 fn angles_rad(flaps: &[FlapMotion]) -> Vec<HarmonicSeries> {
@@ -398,9 +374,7 @@ impl Plant for RotorPlant {
     }
 
     fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        let state = self.state(control_volt)?;
-        self.remember(control_volt, &state);
-        Ok(self.measurement(&state))
+        self.answer(control_volt)
     }
 
     fn measure_many(&mut self, controls_volt: &[Vec<f64>]) -> Result<Vec<Measurement>, PlantError> {
@@ -423,7 +397,6 @@ impl Plant for RotorPlant {
         // harmonics that share a flap share its range of voltages
         let ratios: Vec<f64> =
             self.voltages(control_volt)?.iter().map(|v| self.drive.range_ratio(v)).collect();
-        let motion = self.stroke_motion(control_volt);
         let in_range = |strokes: Vec<f64>| {
             let pairs = strokes.into_iter().zip(&self.stroke_limits_deg).enumerate();
             pairs
@@ -433,7 +406,7 @@ impl Plant for RotorPlant {
                 })
                 .collect()
         };
-        match motion {
+        match self.flap_motion(control_volt) {
             Ok(flaps) => {
                 let motion = self.pair_motion(&flaps);
                 Ok(in_range(motion.iter().map(Harmonic::amplitude).collect()))
