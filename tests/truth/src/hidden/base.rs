@@ -57,7 +57,7 @@ impl BaseActuator {
                 reach_volt: 110.0,
             }),
             1 => Family::BoucWen(BoucWenParameters {
-                stroke_um: draw.uniform(40.0, 55.0),
+                stroke_um: draw.uniform(22.0, 30.0),
                 elements: vec![(0.2, 6.0), (0.3, 16.0), (0.3, 36.0), (0.2, 70.0)],
                 shape: draw.uniform(0.5, 0.6),
                 asymmetry: draw.uniform(-0.05, 0.05),
@@ -75,10 +75,12 @@ impl BaseActuator {
                 bias_volt: BIAS_VOLT,
             }),
         };
+        // Bouc-Wen elements only take away: their base begins with a larger gain.
+        let extra = if matches!(family, Family::BoucWen(_)) { 0.9 } else { 0.0 };
         let channel = |weight, time_constant_s| RelaxationChannel { weight, time_constant_s };
         Self {
             family,
-            reversible: (draw.uniform(1.9, 2.2), draw.uniform(-1.2e-3, 1.2e-3)),
+            reversible: (extra + draw.uniform(1.9, 2.2), draw.uniform(-1.2e-3, 1.2e-3)),
             relaxing_share: draw.uniform(0.03, 0.06),
             relaxation: RelaxationParameters {
                 channels: vec![

@@ -2,10 +2,13 @@
 //!
 //! ```text
 //! dz_j/du = 1 - (z_j/Z_j)^2 (b + (1 - b) sgn(du z_j)),   Z_j(s) = Z_j (1 + s a),   s = sgn du
-//! h(u)    = S sum_j w_j z_j/Z_j
+//! h(u)    = - S sum_j w_j z_j/Z_j
 //! ```
 //! With `b > 1/2` an element unloads steeper than straight and closes its small loops only slowly:
 //! neither wiping-out nor congruency holds, no Preisach operator contains this one.
+//!
+//! The elements hold a reversible motion back, as T. S. Low, W. Guo, J. Microelectromech. Syst. 4 (1995)
+//! 230-237 write it for a piezo actuator.
 //!
 //! Source: Y.-K. Wen, J. Eng. Mech. Div. ASCE 102 (1976) 249-263. Differs from source: several elements, and
 //! strengths that depend on the direction (`a`).
@@ -15,7 +18,7 @@ use crate::stage::Stage;
 /// Parameters of [`BoucWen`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoucWenParameters {
-    /// Largest output of all elements together, `S`, um.
+    /// Largest pull of all elements together, `S`, um: it holds the motion back.
     pub stroke_um: f64,
     /// Share `w_j` and strength `Z_j` (V) of each element.
     pub elements: Vec<(f64, f64)>,
@@ -46,7 +49,7 @@ impl BoucWen {
     fn output_um(&self) -> f64 {
         let p = &self.parameters;
         let elements = p.elements.iter().zip(&self.z_volt);
-        p.stroke_um * elements.map(|((share, strength), z)| share * z / strength).sum::<f64>()
+        -p.stroke_um * elements.map(|((share, strength), z)| share * z / strength).sum::<f64>()
     }
 }
 

@@ -156,13 +156,15 @@ pub fn reference(base: u64, size: Size) -> Vec<Plan> {
         .map(|level| BIAS_VOLT + level * draw.uniform(0.85, 1.0))
         .collect();
     let mut runs = vec![
-        plan("reversals", 500, Waveform::ramps(BIAS_VOLT, 200.0, &reversals)),
-        plan("major", 500, Waveform::triangles(BIAS_VOLT, 0.5, &[85.0, 85.0])),
+        plan("reversals", 250, Waveform::ramps(BIAS_VOLT, 120.0, &reversals)),
+        plan("major", 250, Waveform::triangles(BIAS_VOLT, 0.25, &[85.0, 85.0])),
+        plan("sine_1hz_60v", 500, bursts(1.0, BIAS_VOLT, &[(60.0, 4)])),
+        plan("sine_10hz_60v", 1000, bursts(10.0, BIAS_VOLT, &[(60.0, 15)])),
+        plan("sine_10hz_25v", 1000, bursts(10.0, BIAS_VOLT, &[(25.0, 15)])),
         plan("flap_band_80v", 1000, multisine(base, 1, FLAP_BAND_HZ, 80.0, 4.0)),
         plan("flap_band_35v", 1000, multisine(base, 2, FLAP_BAND_HZ, 35.0, 4.0)),
         plan("wide_band_25v", 2000, multisine(base, 3, WIDE_BAND_HZ, 25.0, 2.0)),
         plan("steps", 500, Waveform::steps(BIAS_VOLT, &levels, 1.0)),
-        plan("sine_10hz", 1000, bursts(10.0, BIAS_VOLT, &[(60.0, 12), (25.0, 6)])),
     ];
     if size == Size::Full {
         lengthen(&mut runs, base, 40);

@@ -3,7 +3,7 @@
 use super::answer::{Answer, HiddenEffect, Quantity, RunAnswer};
 use super::assignment::Assignment;
 use super::base::BaseActuator;
-use super::catalogue::{Cause, Hidden};
+use super::catalogue::Hidden;
 use super::design::{self, BASES, Design, Experiment, Monitor, Plan, RANGE_VOLT, Size};
 use super::draw::{Draw, Purpose};
 use super::effect::{Character, Parameter, Physics};
@@ -167,13 +167,9 @@ pub fn truth(request: &Request, finer: u32) -> Result<Truth, TruthError> {
     let mut effects = Vec::new();
     let ids: Vec<String> = assignment.hidden.id().split('+').map(str::to_owned).collect();
     for ((character, share), id) in characters.iter().zip(&assignment.shares).zip(ids) {
-        // The long record is left out of the search where it does not decide.
-        let slow = id == Cause::DielectricHeating.id();
-        let sized: Vec<usize> =
-            driven.iter().copied().filter(|i| slow || plans[*i].id != "warm_up").collect();
         let reach = |strength: f64| -> Result<f64, TruthError> {
             let (physics, _) = character.with_strength(strength);
-            share_of(&prepared, &without, &sized, &physics)
+            share_of(&prepared, &without, &driven, &physics)
         };
         let strength = strength_for(character.strength_range(), *share, reach)?;
         let (found, parameters) = character.with_strength(strength);
