@@ -68,6 +68,9 @@ struct HiddenArguments {
     /// A further experiment of the catalogue.
     #[arg(long, value_parser = EXPERIMENTS)]
     experiment: Option<String>,
+    /// Another draw of the noise of the measured runs, for the same truth.
+    #[arg(long, default_value_t = 0)]
+    replicate: u64,
     /// Long records: 20 runs, about 5e5 samples.
     #[arg(long)]
     full: bool,
@@ -106,6 +109,7 @@ fn write_hidden(arguments: &HiddenArguments) -> Result<usize, TruthError> {
         share: arguments.share,
         experiment: arguments.experiment.clone(),
         size: if arguments.full { Size::Full } else { Size::Small },
+        replicate: arguments.replicate,
     };
     let base = request.assignment().base;
     let reference = hidden::reference_files(base, request.snr_db, request.size)?;

@@ -12,26 +12,25 @@ pub enum Amplifier {
         /// `tau_0`, s.
         tau_s: f64,
     },
-    /// `V' = S s((u - V)/(T S))`, `s(x) = x/(1 + |x|^4)^(1/4)`, `T` = 20 us: a loop that follows within
+    /// `V' = S s((u - V)/e)`, `s(x) = x/(1 + x^4)^(1/4)`, `e` = 0.2 V: a loop that follows within
     /// microseconds until its current runs out, softly.
     CurrentLimit {
         /// `S`, V/s.
         slew_volt_per_s: f64,
     },
-    /// Both ends bent over a knee of 1.5 V: `V = u - w ln(1 + e^((u - high)/w)) + w ln(1 + e^((low - u)/w))`.
+    /// Both ends bent over a knee: `V = u - w ln(1 + e^((u - high)/w)) + w ln(1 + e^((low - u)/w))`.
     Saturation {
         /// Lower asymptote, V.
         low_volt: f64,
         /// Upper asymptote, V.
         high_volt: f64,
+        /// Width of the knee `w`, V.
+        knee_volt: f64,
     },
 }
 
-/// Time constant of the amplifier's loop, s.
-const LOOP_S: f64 = 2e-5;
-
-/// Width of the knee of saturation, V.
-const KNEE_VOLT: f64 = 1.5;
+/// Error at which the amplifier's loop asks for all its current, V.
+const LOOP_VOLT: f64 = 0.2;
 
 impl Amplifier {
     /// Turns a command into the terminal voltage, V.
@@ -55,10 +54,10 @@ impl Amplifier {
                     *u = voltage;
                 }
             }
-            Self::Saturation { low_volt, high_volt } => {
+            Self::Saturation { low_volt, high_volt, knee_volt } => {
                 for u in signal {
-                    let over = KNEE_VOLT * softplus((*u - high_volt) / KNEE_VOLT);
-                    let under = KNEE_VOLT * softplus((low_volt - *u) / KNEE_VOLT);
+                    let over = knee_volt * softplus((*u - high_volt) / knee_volt);
+                    let under = knee_volt * softplus((low_volt - *u) / knee_volt);
                     *u += under - over;
                 }
             }
@@ -66,21 +65,21 @@ impl Amplifier {
     }
 }
 
-/// One implicit Euler step of the soft limit: the error `e = u - V` solves `e + dt S s(e/(T S)) = e0`.
+/// One implicit Euler step of the soft limit: the error `E` after it solves `E + dt S s(E/e) = E0`.
 ///
-/// The left side grows with `e`, steeper than 1: Newton from the unlimited solution, kept inside the
-/// interval that holds the root.
+/// The left side grows with `E`, at least as fast as `E` itself: Newton from the solution without limit,
+/// kept inside the interval that holds the root.
 fn limited(voltage: f64, command: f64, dt_s: f64, slew: f64) -> f64 {
     let gap = (command - voltage).abs();
-    let scale = LOOP_S * slew;
-    let mut error = gap / (1.0 + dt_s / LOOP_S);
+    let reach = dt_s * slew;
+    let mut error = gap / (1.0 + reach / LOOP_VOLT);
     for _ in 0..20 {
-        let x = error / scale;
+        let x = error / LOOP_VOLT;
         let root = (1.0 + x * x * x * x).sqrt().sqrt();
-        let value = error + dt_s * slew * x / root - gap;
-        let slope = 1.0 + dt_s / LOOP_S / (root * (1.0 + x * x * x * x));
+        let value = error + reach * x / root - gap;
+        let slope = 1.0 + reach / LOOP_VOLT / (root * (1.0 + x * x * x * x));
         let next = (error - value / slope).clamp(0.0, gap);
-        let done = (next - error).abs() <= 1e-10 * (gap + scale);
+        let done = (next - error).abs() <= 1e-10 * (gap + LOOP_VOLT);
         error = next;
         if done {
             break;

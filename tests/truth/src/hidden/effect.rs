@@ -1,10 +1,10 @@
 //! A hidden effect: which physics, how strong, with which true parameters.
 
 use super::amplifier::Amplifier;
-use super::catalogue::{Cause, Outside};
+use super::catalogue::{Cause, Hidden, Outside};
 use super::ceramic::Ceramic;
 use super::design::RANGE_VOLT;
-use super::draw::Draw;
+use super::draw::{Draw, Purpose};
 use super::mechanics::Mechanics;
 use super::sensor::Sensor;
 use crate::relaxation::{RelaxationChannel, RelaxationParameters};
@@ -50,14 +50,16 @@ enum Kind {
 }
 
 impl Character {
-    /// A cause of the library.
-    pub(super) fn of_cause(cause: Cause, draw: &mut Draw) -> Self {
-        Self::draw(Kind::Library(cause), draw)
-    }
-
-    /// An effect outside the library.
-    pub(super) fn of_outside(effect: Outside, draw: &mut Draw) -> Self {
-        Self::draw(Kind::Outside(effect), draw)
+    /// The characters of all effects that a seed hides; none for null.
+    pub fn of_seed(hidden: Hidden, seed: u64) -> Vec<Self> {
+        let mut draw = Draw::new(Purpose::Effect, &[seed]);
+        match hidden {
+            Hidden::Other(effect) => vec![Self::draw(Kind::Outside(effect), &mut draw)],
+            known => {
+                let kinds = known.causes().into_iter().map(Kind::Library);
+                kinds.map(|kind| Self::draw(kind, &mut draw)).collect()
+            }
+        }
     }
 
     fn draw(kind: Kind, draw: &mut Draw) -> Self {
@@ -87,7 +89,7 @@ impl Character {
             Kind::Outside(effect) => match effect {
                 Outside::QuadraticViscous => (1e-9, 1e-4),
                 Outside::RandomJumps => (0.05, 80.0),
-                Outside::CubicSpring => (1e-3, 0.3),
+                Outside::CubicSpring => (1e-3, 2.0),
                 Outside::IntermittentDropout => (1e-3, 0.2),
                 Outside::TimeVaryingDelay => (1e-5, 5e-3),
                 Outside::SecondMode => (1e-3, 0.3),
@@ -142,8 +144,13 @@ impl Character {
                 let lesser = x * self.between(0, 0.5, 0.9);
                 let (top, bottom) = if self.shape[1] < 0.5 { (x, lesser) } else { (lesser, x) };
                 let (low_volt, high_volt) = (RANGE_VOLT.0 + bottom, RANGE_VOLT.1 - top);
-                let physics = Physics::Amplifier(Amplifier::Saturation { low_volt, high_volt });
-                (physics, vec![("v_max", high_volt, "V"), ("v_min", low_volt, "V")])
+                // A knee of 1.5 V, and a weak one where hardly anything is cut off.
+                let knee_volt = (0.2 * lesser).min(1.5);
+                let clip = Amplifier::Saturation { low_volt, high_volt, knee_volt };
+                (
+                    Physics::Amplifier(clip),
+                    vec![("v_max", high_volt, "V"), ("v_min", low_volt, "V")],
+                )
             }
             Cause::MechanicalResonance => {
                 let (frequency_hz, damping_ratio) = (1.0 / x.sqrt(), self.between(0, 0.01, 0.05));

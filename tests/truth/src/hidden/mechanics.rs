@@ -35,9 +35,9 @@ pub enum Mechanics {
         /// `c`, s^2/um.
         coefficient: f64,
     },
-    /// A spring on a yielding base: `y + k y^3/(250 um)^2 = x`, the base following within 30 ms.
+    /// A spring on a yielding base: `y + k (y - b/2)^3/(250 um)^2 = x`, `b` follows `y` within 30 ms.
     CubicSpring {
-        /// `k` at small speed.
+        /// `k`.
         coefficient: f64,
     },
     /// A mode inside the band that takes a share of the motion.
@@ -79,13 +79,14 @@ impl Mechanics {
                 }
             }
             Self::QuadraticViscous { coefficient } => {
-                let mut y = signal[0];
+                // Implicit midpoint rule: c |v| v + y + v dt/2 = x in the middle of the step.
+                let (mut y, mut from) = (signal[0], signal[0]);
+                let half_s = 0.5 * dt_s;
                 for x in signal {
-                    let gap: f64 = *x - y;
-                    let root = (dt_s * dt_s + 4.0 * coefficient * gap.abs()).sqrt();
-                    // -dt + root, without cancellation where c is small
-                    let speed = 2.0 * gap / (dt_s + root);
-                    y += dt_s * speed;
+                    let gap: f64 = 0.5 * (from + *x) - y;
+                    let root = (half_s * half_s + 4.0 * coefficient * gap.abs()).sqrt();
+                    y += dt_s * 2.0 * gap / (half_s + root);
+                    from = *x;
                     *x = y;
                 }
             }
@@ -94,11 +95,12 @@ impl Mechanics {
                 let mut base = signal[0];
                 for x in signal {
                     // The base creeps after the target: only the difference strains the spring.
-                    let strained =
-                        |y: f64| coefficient * (y - 0.5 * base).powi(3) / REFERENCE_UM.powi(2);
+                    let stiffness = coefficient / REFERENCE_UM.powi(2);
                     let mut y = *x;
-                    for _ in 0..6 {
-                        y = *x - strained(y);
+                    for _ in 0..8 {
+                        let strain = y - 0.5 * base;
+                        let miss = y + stiffness * strain.powi(3) - *x;
+                        y -= miss / (1.0 + 3.0 * stiffness * strain * strain);
                     }
                     base = y + (base - y) * decay;
                     *x = y;

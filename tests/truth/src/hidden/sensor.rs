@@ -100,7 +100,7 @@ impl Sensor {
             Self::Dropout { hold_s } => {
                 let mut begin_s = draw.waiting_s(4.0);
                 let mut end_s = begin_s + hold_s * draw.uniform(0.5, 1.5);
-                let mut held = signal[0];
+                let (mut held, mut before) = (signal[0], signal[0]);
                 for (i, x) in signal.iter_mut().enumerate() {
                     let t = i as f64 * dt_s;
                     if t >= end_s {
@@ -108,9 +108,13 @@ impl Sensor {
                         end_s = begin_s + hold_s * draw.uniform(0.5, 1.5);
                     }
                     if t >= begin_s {
+                        if t - begin_s < dt_s {
+                            held = *x + (before - *x) * (t - begin_s) / dt_s;
+                        }
+                        before = *x;
                         *x = held;
                     } else {
-                        held = *x;
+                        before = *x;
                     }
                 }
             }

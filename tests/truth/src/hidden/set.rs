@@ -5,7 +5,6 @@ use super::assignment::Assignment;
 use super::base::BaseActuator;
 use super::catalogue::Hidden;
 use super::design::{self, BASES, Design, Experiment, Monitor, Plan, RANGE_VOLT, Size};
-use super::draw::{Draw, Purpose};
 use super::effect::{Character, Parameter, Physics};
 use super::simulate::{Exact, Prepared};
 use super::text::{self, Columns};
@@ -28,13 +27,15 @@ pub struct Request {
     pub experiment: Option<String>,
     /// How long the records are.
     pub size: Size,
+    /// Another draw of the noise of the measured runs, for the same truth.
+    pub replicate: u64,
 }
 
 impl Request {
     /// The small set of a seed.
     pub fn new(seed: u64, snr_db: f64) -> Self {
         let (hidden, base, share, experiment) = (None, None, None, None);
-        Self { seed, snr_db, hidden, base, share, experiment, size: Size::Small }
+        Self { seed, snr_db, hidden, base, share, experiment, size: Size::Small, replicate: 0 }
     }
 
     /// What the request comes to.
@@ -158,11 +159,7 @@ pub fn truth(request: &Request, finer: u32) -> Result<Truth, TruthError> {
     let driven: Vec<usize> =
         (0..own.len()).filter(|i| !own[*i].id.starts_with("zero_input")).collect();
 
-    let mut draw = Draw::new(Purpose::Effect, &[request.seed]);
-    let characters: Vec<Character> = match assignment.hidden {
-        Hidden::Other(effect) => vec![Character::of_outside(effect, &mut draw)],
-        known => known.causes().iter().map(|c| Character::of_cause(*c, &mut draw)).collect(),
-    };
+    let characters = Character::of_seed(assignment.hidden, request.seed);
     let mut physics: Vec<Physics> = Vec::new();
     let mut effects = Vec::new();
     let ids: Vec<String> = assignment.hidden.id().split('+').map(str::to_owned).collect();
@@ -266,7 +263,7 @@ pub fn measured_set(request: &Request) -> Result<MeasuredSet, TruthError> {
     });
     let mut files = Vec::new();
     for (number, (plan, run)) in (0_u64..).zip(truth.plans.iter().zip(&truth.with)) {
-        let keys = [request.seed, request.snr_db.to_bits(), stage, number];
+        let keys = [request.seed, request.snr_db.to_bits(), stage, number, request.replicate];
         let columns = Columns { run, monitors, noise_um, keys: &keys };
         files.push((format!("{}.csv", plan.id), text::csv(plan.rate_hz, &columns)));
     }
