@@ -229,3 +229,16 @@ fn names_are_read_back_and_an_unknown_one_is_refused() {
     let message = Hidden::parse("creeps").unwrap_err().to_string();
     assert!(message.contains("creeps") && message.contains("mains-hum"), "{message}");
 }
+
+#[test]
+fn the_pages_name_every_cause_and_every_experiment() {
+    let catalogue = include_str!("../EXPERIMENTS.md");
+    let book = include_str!("../../../docs/src/hidden-effects.md");
+    for id in EXPERIMENTS {
+        assert!(catalogue.contains(&format!("| `{id}` |")), "EXPERIMENTS.md lacks {id}");
+        assert!(book.contains(&format!("| `{id}` |")), "the book lacks {id}");
+    }
+    for cause in Cause::ALL {
+        assert!(catalogue.contains(cause.id()), "EXPERIMENTS.md lacks {}", cause.id());
+    }
+}
