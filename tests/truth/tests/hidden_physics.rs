@@ -273,9 +273,9 @@ fn creep_grows_by_its_rate_per_decade() {
     let mut motion = vec![100.0; 80_000];
     motion[0] = 0.0;
     creep(&elements, DT_S, &mut motion);
-    // Five elements of uneven compliance: a tenth about the mean slope from 0.1 to 5 s.
+    // Five elements of uneven compliance: 8 % about the mean slope from 0.1 to 5 s.
     let growth = (motion[40_000] - motion[800]) / 100.0 / 50.0_f64.log10();
-    assert_relative_eq!(growth, 0.04, max_relative = 0.1);
+    assert_relative_eq!(growth, 0.04, max_relative = 0.08);
 }
 
 #[test]

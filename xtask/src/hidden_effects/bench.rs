@@ -87,8 +87,9 @@ impl Hhc {
 
     /// Findings and wall time of one diagnosis of `folder/measured`.
     fn diagnose(&self, folder: &Path, only: &[&str]) -> Result<(Findings, f64), XtaskError> {
-        files::remove_folder(&folder.join("out"))?;
-        let mut arguments = vec!["diagnose", "actuator.ron", "--data", "measured", "-o", "out"];
+        files::remove_folder(&folder.join("found"))?;
+        // What the program keeps for a base lies in its own folder beside, and stays.
+        let mut arguments = vec!["diagnose", "actuator.ron", "--data", "measured", "-o", "found"];
         let list = only.join(",");
         if !only.is_empty() {
             arguments.extend(["--only", &list]);
@@ -99,7 +100,7 @@ impl Hhc {
         if !output.status.success() {
             return Err(self.failed(&output));
         }
-        let path = folder.join("out/findings.json");
+        let path = folder.join("found/findings.json");
         let findings = Findings::parse(&files::read(&path)?)
             .map_err(|source| XtaskError::Findings { path, source })?;
         Ok((findings, seconds))
@@ -114,9 +115,13 @@ pub(super) fn run_group(
     tell: &(impl Fn(&str) + Sync),
 ) -> Result<(Vec<Case>, Vec<Failure>), XtaskError> {
     let name = format!("base{}_{}db", group.base, group.snr_db);
-    let bench = Bench { hhc, folder: folder.join("bench").join(&name) };
+    let mut bench = Bench {
+        hhc,
+        folder: folder.join("bench").join(&name),
+        prepared: false,
+        follow_ups_left: FOLLOW_UPS,
+    };
     let (mut cases, mut failures) = (Vec::new(), Vec::new());
-    let mut warm = false;
     for seed in &group.seeds {
         let set = format!("seed {seed}, {} dB, base {}", group.snr_db, group.base);
         let kept = folder.join(format!("{name}_seed{seed}.json"));
@@ -126,7 +131,7 @@ pub(super) fn run_group(
             serde_json::from_str(&text)
                 .map_err(|source| XtaskError::Findings { path: kept.clone(), source })
         } else {
-            bench.case(&request, group, &mut warm)
+            bench.case(&request, group)
         };
         match case {
             Ok(case) => {
@@ -154,7 +159,12 @@ pub(super) fn run_group(
 struct Bench<'a> {
     hhc: &'a Hhc,
     folder: PathBuf,
+    prepared: bool,
+    follow_ups_left: u32,
 }
+
+/// Proposed experiments that are done in a group: each is a design of its own, whose first diagnosis is slow.
+const FOLLOW_UPS: u32 = 3;
 
 /// Every so many seeds the gain is found again with other noise.
 const REPLICATED: u64 = 6;
@@ -188,9 +198,9 @@ impl Bench<'_> {
         Ok(set.answer)
     }
 
-    fn case(&self, request: &Request, group: &Group, warm: &mut bool) -> Result<Case, XtaskError> {
-        let first_seconds = if *warm { None } else { Some(self.prepare(request, group)?) };
-        *warm = true;
+    fn case(&mut self, request: &Request, group: &Group) -> Result<Case, XtaskError> {
+        let first_seconds = if self.prepared { None } else { Some(self.prepare(request, group)?) };
+        self.prepared = true;
         let answer = self.measure(request)?;
         let (findings, seconds) = self.hhc.diagnose(&self.folder, &[])?;
         let (oracle, follow_up, replicates) = (None, None, Vec::new());
@@ -204,7 +214,8 @@ impl Bench<'_> {
 
     fn oracle_gain(&self, case: &Case) -> Result<Option<Gain>, XtaskError> {
         let causes = case.causes();
-        if causes.is_empty() || self.hhc.oracle() == Oracle::Absent {
+        let named = !case.findings.names().is_empty();
+        if causes.is_empty() || !named || self.hhc.oracle() == Oracle::Absent {
             return Ok(None);
         }
         Ok(Some(self.hhc.diagnose(&self.folder, &causes)?.0.gain))
@@ -224,13 +235,18 @@ impl Bench<'_> {
     }
 
     /// The proposed experiment, done where the verdict is ambiguous.
-    fn follow_up(&self, request: &Request, case: &Case) -> Result<Option<Findings>, XtaskError> {
+    fn follow_up(
+        &mut self,
+        request: &Request,
+        case: &Case,
+    ) -> Result<Option<Findings>, XtaskError> {
         let proposed = &case.findings.next_experiment;
         let known = EXPERIMENTS.contains(&proposed.as_str());
         let open = case.findings.verdict == Verdict::Ambiguous && case.single().is_some();
-        if !(known && open) {
+        if !(known && open && self.follow_ups_left > 0) {
             return Ok(None);
         }
+        self.follow_ups_left -= 1;
         self.measure(&Request { experiment: Some(proposed.clone()), ..request.clone() })?;
         Ok(Some(self.hhc.diagnose(&self.folder, &[])?.0))
     }

@@ -172,13 +172,19 @@ pub fn reference(base: u64, size: Size) -> Vec<Plan> {
     runs
 }
 
-/// Further multisines, until there are ten runs of the size a full set has.
+/// Samples of each folder of a full set, about.
+const FULL_SAMPLES: f64 = 250_000.0;
+
+/// Further multisines, until there are ten runs with the samples of a full set.
 fn lengthen(runs: &mut Vec<Plan>, base: u64, first_number: u64) {
-    for number in first_number..first_number + 10 - runs.len().min(10) as u64 {
-        let seconds = if number == first_number { 80.0 } else { 70.0 };
-        let peak = if number.is_multiple_of(2) { 80.0 } else { 45.0 };
-        let id = format!("long_{}", number - first_number + 1);
-        runs.push(plan(&id, 1000, multisine(base, number, FLAP_BAND_HZ, peak, seconds)));
+    let samples = |plan: &Plan| plan.waveform.duration_s() * f64::from(plan.rate_hz);
+    let missing = FULL_SAMPLES - runs.iter().map(samples).sum::<f64>();
+    let added = 10_usize.saturating_sub(runs.len()).max(1) as u64;
+    for number in 0..added {
+        let peak_volt = if number == 0 { 80.0 } else { 45.0 };
+        let seconds = (missing / added as f64 / 1000.0).floor();
+        let band = multisine(base, first_number + number, FLAP_BAND_HZ, peak_volt, seconds);
+        runs.push(plan(&format!("long_{}", number + 1), 1000, band));
     }
 }
 

@@ -64,7 +64,7 @@ impl Character {
 
     fn draw(kind: Kind, draw: &mut Draw) -> Self {
         let shape = [draw.uniform(0.0, 1.0), draw.uniform(0.0, 1.0)];
-        let mut creep = [0.0; 5].map(|_: f64| draw.uniform(0.75, 1.25));
+        let mut creep = [0.0; 5].map(|_: f64| draw.uniform(0.85, 1.15));
         let mean = creep.iter().sum::<f64>() / 5.0;
         creep.iter_mut().for_each(|c| *c /= mean);
         Self { kind, shape, creep }
@@ -116,9 +116,10 @@ impl Character {
     fn cause(&self, cause: Cause, x: f64) -> (Physics, Vec<Parameter>) {
         match cause {
             Cause::Creep => {
-                // Five elements, two to a decade, from 0.05 s: 0.05, 0.16, 0.5, 1.6, 5 s.
-                let times = [0.05, 0.158, 0.5, 1.58, 5.0];
-                let elements = self.creep.iter().zip(times).map(|(c, t)| (0.5 * x * c, t));
+                // Five elements, each five times slower than the one before: 0.7 decades apart.
+                let times = [0.03, 0.15, 0.75, 3.75, 18.75];
+                let compliance = x * 5.0_f64.log10();
+                let elements = self.creep.iter().zip(times).map(|(c, t)| (compliance * c, t));
                 (Physics::Creep(elements.collect()), vec![("rate_per_decade", x, "1")])
             }
             Cause::RateDependence => {
