@@ -1,5 +1,4 @@
 //! The stages of the hidden effects, each against its own theory: a parameter means what the answer says.
-#![expect(clippy::unwrap_used, reason = "a helper that fails fails its test")]
 
 use std::f64::consts::TAU;
 

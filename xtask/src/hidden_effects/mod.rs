@@ -97,6 +97,10 @@ pub fn run(
         Some(path) => path.clone(),
         None => bench::build(root)?,
     };
+    // It is started from the folders of the data.
+    let program = program
+        .canonicalize()
+        .map_err(|source| XtaskError::Read { path: program.clone(), source })?;
     let own = std::env::current_exe()
         .map_err(|source| XtaskError::Start { program: "xtask".to_owned(), source })?;
     let mut hasher = blake3::Hasher::new();

@@ -62,7 +62,7 @@ impl Draw {
     }
 }
 
-/// Mixes keys into one number: each step is the finaliser of SplitMix64.
+/// Mixes keys into one number: each step is the finaliser of `SplitMix64`.
 ///
 /// Source: Steele, Lea, Flood, OOPSLA 2014 (constants of the finaliser, variant 13 of D. Stafford).
 fn hash(first: u64, keys: &[u64]) -> u64 {

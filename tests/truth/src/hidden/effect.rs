@@ -66,7 +66,9 @@ impl Character {
         let shape = [draw.uniform(0.0, 1.0), draw.uniform(0.0, 1.0)];
         let mut creep = [0.0; 5].map(|_: f64| draw.uniform(0.85, 1.15));
         let mean = creep.iter().sum::<f64>() / 5.0;
-        creep.iter_mut().for_each(|c| *c /= mean);
+        for c in &mut creep {
+            *c /= mean;
+        }
         Self { kind, shape, creep }
     }
 
@@ -80,11 +82,12 @@ impl Character {
                 Cause::VoltageSaturation => (0.3, 80.0),
                 Cause::MechanicalResonance => (1.0 / 800.0_f64.powi(2), 1.0 / 60.0_f64.powi(2)),
                 Cause::TransportDelay | Cause::SensorFilter => (1e-5, 5e-3),
-                Cause::Backlash | Cause::CoulombFriction => (0.05, 80.0),
-                Cause::DielectricHeating => (1e-3, 1.0),
-                Cause::LoadStiffness => (1e-3, 1.0),
+                Cause::Backlash
+                | Cause::CoulombFriction
+                | Cause::SensorNonlinearity
+                | Cause::MainsHum => (0.05, 80.0),
+                Cause::DielectricHeating | Cause::LoadStiffness => (1e-3, 1.0),
                 Cause::Depolarisation => (1e-3, 3.0),
-                Cause::SensorNonlinearity | Cause::MainsHum => (0.05, 80.0),
             },
             Kind::Outside(effect) => match effect {
                 Outside::QuadraticViscous => (1e-9, 1e-4),

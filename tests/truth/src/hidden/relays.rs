@@ -66,7 +66,9 @@ impl Relays {
             falling.push((p.centre_volt + offset - half_width, k));
         }
         let total: f64 = weight_um.iter().sum();
-        weight_um.iter_mut().for_each(|w| *w *= 0.5 * p.stroke_um / total);
+        for w in &mut weight_um {
+            *w *= 0.5 * p.stroke_um / total;
+        }
         rising.sort_by(|a, b| a.0.total_cmp(&b.0));
         falling.sort_by(|a, b| a.0.total_cmp(&b.0));
         let up = vec![false; weight_um.len()];

@@ -104,7 +104,9 @@ impl<'a> Prepared<'a> {
             if let Physics::Relaxation(parameters) = effect {
                 let mut stage = Relaxation::new(parameters.clone())?;
                 stage.settle(y[0]);
-                y.iter_mut().for_each(|x| *x = stage.step(*x, dt_s));
+                for x in &mut y {
+                    *x = stage.step(*x, dt_s);
+                }
             }
         }
         self.base.creep(dt_s, &mut y);
@@ -150,7 +152,9 @@ impl<'a> Prepared<'a> {
         }
         let spring = if let Fitting::Spring(ratio) = self.plan.fitting { ratio } else { 0.0 };
         // A spring beside a load: the actuator with the spring is a softer motion on a stiffer base.
-        y.iter_mut().for_each(|x| *x /= 1.0 + spring);
+        for x in y.iter_mut() {
+            *x /= 1.0 + spring;
+        }
         if let Some(Mechanics::Load { ratio }) = load {
             Mechanics::Load { ratio: ratio / (1.0 + spring) }.apply(self.dt_s, y);
         }
