@@ -9,6 +9,7 @@
 mod bench;
 mod plan;
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -69,11 +70,11 @@ impl SuiteReport {
         text.push('\n');
         text += &report::metric_table(&self.metrics);
         for failure in &self.failures {
-            text += &format!("failed: {}: {}\n", failure.set, failure.said);
+            let _ = writeln!(text, "failed: {}: {}", failure.set, failure.said);
         }
         let missed = self.metrics.iter().filter(|m| m.outcome() == Outcome::Missed).count();
         let (sets, failed) = (self.cases.len(), self.failures.len());
-        text += &format!("{sets} sets scored, {failed} failed, {missed} bars missed\n");
+        let _ = writeln!(text, "{sets} sets scored, {failed} failed, {missed} bars missed");
         text
     }
 
