@@ -212,7 +212,7 @@ fn steps() -> Plan {
 }
 
 fn zero_input(rest_s: f64) -> Plan {
-    plan("zero_input", 1000, Waveform::pulse(BIAS_VOLT, rest_s, 40.0))
+    plan("zero_input", 1000, Waveform::pulse(BIAS_VOLT, rest_s, 60.0))
 }
 
 /// The runs of the measured folder of a base.

@@ -90,14 +90,14 @@ impl Waveform {
         Self::Path(points)
     }
 
-    /// A rest at the bias, then one triangle of 50 ms.
+    /// A rest at the bias, then one triangle of 0.2 s: ten periods of a hum pass over it.
     pub fn pulse(bias_volt: f64, rest_s: f64, amplitude_volt: f64) -> Self {
         Self::Path(vec![
             (0.0, bias_volt),
             (rest_s, bias_volt),
-            (rest_s + 0.025, bias_volt + amplitude_volt),
-            (rest_s + 0.050, bias_volt),
-            (rest_s + 0.1, bias_volt),
+            (rest_s + 0.1, bias_volt + amplitude_volt),
+            (rest_s + 0.2, bias_volt),
+            (rest_s + 0.25, bias_volt),
         ])
     }
 
