@@ -30,6 +30,25 @@ pub enum XtaskError {
         /// Why it could not be started.
         source: std::io::Error,
     },
+    /// A program did not do what it was asked to.
+    #[error("{program} failed; it said: {said}")]
+    Refused {
+        /// The program.
+        program: String,
+        /// The first line it wrote to standard error.
+        said: String,
+    },
+    /// Findings of a diagnosis are in another shape than published.
+    #[error("{}: not the findings of a diagnosis: {source}", path.display())]
+    Findings {
+        /// The file.
+        path: PathBuf,
+        /// What was not understood.
+        source: serde_json::Error,
+    },
+    /// A synthetic set could not be generated.
+    #[error(transparent)]
+    Truth(#[from] truth::error::TruthError),
     /// `cargo metadata` said no.
     #[error("cargo metadata failed, so the members are unknown; it said: {said}")]
     Metadata {

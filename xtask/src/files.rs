@@ -14,6 +14,27 @@ pub fn read(path: &Path) -> Result<String, XtaskError> {
         .map_err(|source| XtaskError::Read { path: path.to_path_buf(), source })
 }
 
+/// The bytes of a file.
+///
+/// # Errors
+/// [`XtaskError::Read`] if there is no such file.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, XtaskError> {
+    std::fs::read(path).map_err(|source| XtaskError::Read { path: path.to_path_buf(), source })
+}
+
+/// Removes a folder with all it holds; one that is not there is removed already.
+///
+/// # Errors
+/// [`XtaskError::Write`] if it cannot be removed.
+pub fn remove_folder(path: &Path) -> Result<(), XtaskError> {
+    match std::fs::remove_dir_all(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(XtaskError::Write { path: path.to_path_buf(), source })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Writes a file so that a reader sees the old text or the new one, never a part.
 ///
 /// # Errors

@@ -7,6 +7,7 @@
 //! | `validate` | runs every check against theory and published data, writes the page of the book | [`validate`] |
 //! | `calibrate` | fits the calibrated section model to exact theory and writes its table | [`calibrate`] |
 //! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
+//! | `hidden-effects` | has the program diagnose synthetic sets with known answers, prints the scores | [`hidden_effects`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
 //! Exit codes: 0 done, 1 physics or numerics failed, 2 bad input or broken rule, 3 a comparison
@@ -21,6 +22,7 @@ pub mod calibrate;
 pub mod ci;
 mod error;
 pub mod files;
+pub mod hidden_effects;
 pub mod layers;
 pub mod regress;
 pub mod tidy;

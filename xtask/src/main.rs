@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use xtask::{XtaskError, calibrate, ci, files, layers, regress, tidy, validate, workspace};
+use xtask::{
+    XtaskError, calibrate, ci, files, hidden_effects, layers, regress, tidy, validate, workspace,
+};
 
 /// Chores of the project.
 #[derive(Parser)]
@@ -47,6 +49,24 @@ enum Chore {
         /// Folder of the goldens
         #[arg(long, value_name = "DIR")]
         golden: Option<PathBuf>,
+    },
+    /// Diagnose synthetic sets with hidden effects and score the findings against the answers
+    HiddenEffects {
+        /// Sets of each cause at each noise level; ten without effect, four pairs, four unknown effects with each
+        #[arg(long, default_value_t = 10)]
+        seeds: u64,
+        /// Noise levels, dB
+        #[arg(long, value_delimiter = ',', default_values_t = [40.0, 30.0, 20.0])]
+        snr: Vec<f64>,
+        /// Only some sets: null, pairs, outside, or the id of what is hidden
+        #[arg(long, default_value = "")]
+        only: String,
+        /// Groups of sets at a time
+        #[arg(long, default_value_t = 2)]
+        threads: usize,
+        /// The program that diagnoses; left out, it is built
+        #[arg(long, value_name = "PROGRAM")]
+        hhc: Option<PathBuf>,
     },
     /// Run .ci/run: everything a change must pass
     Ci,
@@ -98,6 +118,14 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             let filter = regress::Filter::parse(&filter)?;
             let program = regress::Program::new()?;
             let report = regress::run(&folder, mode, &filter, |point| program.sweep_point(point))?;
+            say(&mut std::io::stdout(), &report.text());
+            Ok(ExitCode::from(report.exit_code()))
+        }
+        Chore::HiddenEffects { seeds, snr, only, threads, hhc } => {
+            let selection = hidden_effects::Selection { seeds, snr_db: snr, only };
+            let options = hidden_effects::Options { selection, threads, hhc };
+            let progress = |line: &str| say(&mut std::io::stderr(), line);
+            let report = hidden_effects::run(root, &options, progress)?;
             say(&mut std::io::stdout(), &report.text());
             Ok(ExitCode::from(report.exit_code()))
         }

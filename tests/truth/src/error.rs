@@ -50,6 +50,16 @@ pub enum TruthError {
         /// Upper limit, V.
         high_volt: f64,
     },
+    /// A name that is none of the known ones.
+    #[error("{what} {found:?} is not known; known are {known}")]
+    UnknownName {
+        /// What the name should be one of.
+        what: &'static str,
+        /// The name found.
+        found: String,
+        /// The names known.
+        known: String,
+    },
     /// A file could not be written.
     #[error("cannot write {path}: {source}; check that the folder exists and is writable")]
     Write {

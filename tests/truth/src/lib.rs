@@ -34,6 +34,7 @@ pub mod bench;
 pub mod command;
 pub mod creep;
 pub mod error;
+pub mod hidden;
 pub mod hysteresis;
 pub mod lag;
 pub mod lvdt;

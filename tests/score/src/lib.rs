@@ -1,0 +1,13 @@
+//! Compares what a diagnosis says with what a synthetic set hides.
+//!
+//! It knows findings by their published layout ([`findings`]) and answers by the generator ([`truth`]);
+//! it depends on no crate of the product. [`metrics::metrics`] computes every metric of the
+//! acceptance suite with the number of cases behind it, [`binomial`] the bounds of a share,
+//! [`report`] the tables, [`classes`] says which causes count as one.
+
+pub mod binomial;
+pub mod case;
+pub mod classes;
+pub mod findings;
+pub mod metrics;
+pub mod report;

@@ -1,0 +1,151 @@
+//! The suite of hidden effects: generated sets, diagnosed by the program, scored against their answers.
+//!
+//! Sets of one base and one noise level form a group: they share the reference folder and the actuator
+//! identified from it. Groups run side by side, the sets of a group one after the other. The result of each set
+//! is kept below `target/hidden-effects`, in a folder named after the two programs that made it (the one
+//! diagnosing and this one, which holds the generator): an interrupted suite goes on where it was, a
+//! changed program begins anew.
+
+mod bench;
+mod plan;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use score::case::Case;
+use score::metrics::{self, Metric, Outcome};
+use score::report;
+
+pub use bench::{Hhc, Oracle};
+pub use plan::{Group, Selection, groups};
+
+use crate::{XtaskError, files};
+
+/// What to run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Sets.
+    pub selection: Selection,
+    /// Groups at a time.
+    pub threads: usize,
+    /// The program that diagnoses; none: it is built.
+    pub hhc: Option<PathBuf>,
+}
+
+/// A set that could not be diagnosed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Failure {
+    /// The set.
+    pub set: String,
+    /// What was said.
+    pub said: String,
+}
+
+/// What the suite found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SuiteReport {
+    /// The scored sets, in order of seed and noise.
+    pub cases: Vec<Case>,
+    /// The metrics.
+    pub metrics: Vec<Metric>,
+    /// Sets without findings.
+    pub failures: Vec<Failure>,
+}
+
+impl SuiteReport {
+    /// The report of scored sets.
+    pub fn of(mut cases: Vec<Case>, failures: Vec<Failure>) -> Self {
+        cases.sort_by(|a, b| {
+            let key = |case: &Case| (case.answer.seed, case.answer.snr_db.to_bits());
+            key(a).cmp(&key(b))
+        });
+        Self { metrics: metrics::metrics(&cases), cases, failures }
+    }
+
+    /// Tables for the terminal.
+    pub fn text(&self) -> String {
+        let mut text = report::confusion_table(&self.cases);
+        text.push('\n');
+        text += &report::metric_table(&self.metrics);
+        for failure in &self.failures {
+            let _ = writeln!(text, "failed: {}: {}", failure.set, failure.said);
+        }
+        let missed = self.metrics.iter().filter(|m| m.outcome() == Outcome::Missed).count();
+        let (sets, failed) = (self.cases.len(), self.failures.len());
+        let _ = writeln!(text, "{sets} sets scored, {failed} failed, {missed} bars missed");
+        text
+    }
+
+    /// 0, or 3 where a bar is missed or a set failed.
+    pub fn exit_code(&self) -> u8 {
+        let missed = self.metrics.iter().any(|m| m.outcome() == Outcome::Missed);
+        if missed || !self.failures.is_empty() { 3 } else { 0 }
+    }
+}
+
+/// Runs the suite, telling its progress line by line.
+///
+/// # Errors
+/// [`XtaskError`] where files cannot be written, programs not be started, or results kept earlier not be read.
+pub fn run(
+    root: &Path,
+    options: &Options,
+    progress: impl Fn(&str) + Sync,
+) -> Result<SuiteReport, XtaskError> {
+    let program = match &options.hhc {
+        Some(path) => path.clone(),
+        None => bench::build(root)?,
+    };
+    // It is started from the folders of the data.
+    let program = program
+        .canonicalize()
+        .map_err(|source| XtaskError::Read { path: program.clone(), source })?;
+    let own = std::env::current_exe()
+        .map_err(|source| XtaskError::Start { program: "xtask".to_owned(), source })?;
+    let mut hasher = blake3::Hasher::new();
+    for path in [&program, &own] {
+        hasher.update(&files::read_bytes(path)?);
+    }
+    let key = hasher.finalize().to_hex();
+    let folder = root.join("target/hidden-effects").join(&key.as_str()[..16]);
+    let hhc = Hhc::new(program)?;
+    if hhc.oracle() == Oracle::Absent {
+        progress(
+            "hhc diagnose knows no --only: what a refit of the true cause gives stays unknown\n",
+        );
+    }
+    let groups = groups(&options.selection);
+    let total: usize = groups.iter().map(|group| group.seeds.len()).sum();
+    progress(&format!(
+        "{total} sets in {} groups, results in {}\n",
+        groups.len(),
+        folder.display()
+    ));
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().map_err(|error| {
+            XtaskError::Start {
+                program: "threads".to_owned(),
+                source: std::io::Error::other(error),
+            }
+        })?;
+    let done = AtomicUsize::new(0);
+    let tell = |line: &str| {
+        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress(&format!("{count}/{total} {line}\n"));
+    };
+    let results = pool.install(|| {
+        groups
+            .par_iter()
+            .with_max_len(1)
+            .map(|group| bench::run_group(&hhc, &folder, group, &tell))
+            .collect::<Result<Vec<_>, _>>()
+    })?;
+    let (mut cases, mut failures) = (Vec::new(), Vec::new());
+    for (scored, failed) in results {
+        cases.extend(scored);
+        failures.extend(failed);
+    }
+    Ok(SuiteReport::of(cases, failures))
+}

@@ -1,0 +1,85 @@
+//! Which sets the suite has.
+
+use std::collections::BTreeMap;
+
+use truth::hidden::{Assignment, BLOCK, Hidden};
+
+/// A choice of sets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selection {
+    /// Sets of each cause at each noise level; ten of no effect, four pairs and four of unknown effects come with it.
+    pub seeds: u64,
+    /// Noise levels, dB.
+    pub snr_db: Vec<f64>,
+    /// Only some: `null`, `pairs`, `outside`, or the id of what is hidden; all if empty.
+    pub only: String,
+}
+
+/// Sets with one reference folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// The base.
+    pub base: u64,
+    /// Noise level, dB.
+    pub snr_db: f64,
+    /// Seeds, ascending.
+    pub seeds: Vec<u64>,
+}
+
+impl Selection {
+    fn admits(&self, hidden: Hidden) -> bool {
+        match self.only.as_str() {
+            "" => true,
+            "pairs" => matches!(hidden, Hidden::Two(..)),
+            "outside" => matches!(hidden, Hidden::Other(_)),
+            only => hidden.id() == only,
+        }
+    }
+}
+
+/// The groups of a selection, by noise level in the order given and by base.
+pub fn groups(selection: &Selection) -> Vec<Group> {
+    let mut by_base: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
+    for seed in 0..selection.seeds * BLOCK {
+        let assignment = Assignment::of_seed(seed);
+        if selection.admits(assignment.hidden) {
+            by_base.entry(assignment.base).or_default().push(seed);
+        }
+    }
+    let mut groups = Vec::new();
+    for snr_db in &selection.snr_db {
+        for (base, seeds) in &by_base {
+            groups.push(Group { base: *base, snr_db: *snr_db, seeds: seeds.clone() });
+        }
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn selection(only: &str) -> Selection {
+        Selection { seeds: 10, snr_db: vec![40.0, 30.0, 20.0], only: only.to_owned() }
+    }
+
+    fn sets(only: &str) -> usize {
+        groups(&selection(only)).iter().map(|group| group.seeds.len()).sum()
+    }
+
+    #[test]
+    fn ten_seeds_make_the_suite_that_is_asked_for() {
+        assert_eq!(sets(""), 990);
+        assert_eq!(sets("null"), 300);
+        assert_eq!(sets("creep"), 30);
+        assert_eq!((sets("pairs"), sets("outside")), (120, 120));
+        assert_eq!(sets("no such thing"), 0);
+    }
+
+    #[test]
+    fn a_group_has_one_base() {
+        for group in groups(&selection("")) {
+            assert!(group.seeds.iter().all(|seed| Assignment::of_seed(*seed).base == group.base));
+        }
+    }
+}
