@@ -281,6 +281,8 @@ impl ControlSet<'_> {
         let settings = FeedbackSettings {
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
+            // a constant T promises what it cannot keep: its end is that of the paper's loop
+            cost_tolerance: if way == Controller::Global { 0.0 } else { COST_TOLERANCE },
             ..FeedbackSettings::default()
         };
         let weights = self.load_weights().into_iter().flat_map(|w| [w, w]).collect();
@@ -439,6 +441,8 @@ impl ControlSet<'_> {
     }
 }
 
+/// Fall of J, as a part of the uncontrolled J, below which a further step is not worth asking for.
+const COST_TOLERANCE: f64 = 1e-5;
 /// Weight of the control, over the largest singular value of T squared, that picks the least voltage
 /// where the optimum is not unique.
 const LEAST_EFFORT: f64 = 1e-8;
