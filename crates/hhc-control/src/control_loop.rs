@@ -75,6 +75,7 @@ impl FeedbackController {
         let mut measurements = 0;
         let mut kkt = None;
         let mut known = Knowledge::new(&self.controller, &self.law, start);
+        let strict = self.settings.cost_tolerance > 0.0;
         let outcome = loop {
             known.refresh(plant, &here)?;
             let rho = match effort {
@@ -126,7 +127,8 @@ impl FeedbackController {
                     Ok(largest_amplitude(&difference(&next, &control_volt))
                         <= SETTLING * asked_volt)
                 };
-                let allowed = halvings == 0 && rise <= self.settings.cost_rise_allowance;
+                let allowed =
+                    !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
                 if rise <= COST_ROUNDING || (allowed && settles()?) {
                     search.taken = Some(ControlStep {
                         control_volt,
@@ -141,8 +143,12 @@ impl FeedbackController {
                 search.shortest = Some(cost);
             }
             if let Some(step) = search.taken {
+                let fall = here.cost.total() - step.cost.total();
                 steps.push(step.clone());
                 here = step;
+                if strict && fall <= self.settings.cost_tolerance * start_cost {
+                    break Outcome::Converged;
+                }
                 continue;
             }
             if known.learn(plant, &here, &aim.control_volt)? {

@@ -16,9 +16,10 @@ pub struct FeedbackSettings {
     /// The loop has converged when eq. (10) asks for a change of no voltage harmonic by more than
     /// this fraction of the largest one.
     pub step_tolerance: f64,
-    /// The loop has also converged when the best that eq. (10) promises is a fall of the cost by no more
-    /// than this fraction of the cost at the start; 0 leaves the test of the step alone. Where hysteresis
-    /// bends the loads, the last steps creep along a cost that no longer falls.
+    /// The loop has also converged when eq. (10) promises, or a step brings, a fall of the cost by no more
+    /// than this fraction of the cost at the start; then no step may raise the cost at all. 0 leaves the
+    /// test of the step alone. For controllers that renew T: where hysteresis bends the loads, their last
+    /// steps may go round in a circle of nearly equal cost.
     pub cost_tolerance: f64,
     /// How much a full step may raise the cost and still be taken, as a fraction of the cost at the
     /// start, if the next step asked for after it is shorter by a fifth or more. Where T0 is not exact and
