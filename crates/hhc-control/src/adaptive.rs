@@ -196,12 +196,10 @@ mod tests {
     }
 
     fn filter(drift: f64) -> Kalman {
-        let wrong: Vec<Vec<f64>> = (0..4)
-            .map(|j| (0..LOADS).map(|i| 0.6 * true_t(i, j) + 0.2).collect())
-            .collect();
-        let law =
-            FeedbackLaw::new(&TMatrix::from_columns(&wrong).unwrap(), &LoadWeights::Identity)
-                .unwrap();
+        let wrong: Vec<Vec<f64>> =
+            (0..4).map(|j| (0..LOADS).map(|i| 0.6 * true_t(i, j) + 0.2).collect()).collect();
+        let law = FeedbackLaw::new(&TMatrix::from_columns(&wrong).unwrap(), &LoadWeights::Identity)
+            .unwrap();
         let settings = AdaptiveSettings { drift, ..AdaptiveSettings::of_full_scale(10.0) };
         Kalman::new(&settings, &law, &start(&loads(&[0.0; 4])))
     }

@@ -127,7 +127,12 @@ impl FeedbackLaw {
         };
         if limits.usage(&free)? <= 1.0 {
             let kkt = program.kkt(&(DVector::from_column_slice(&free) / volt), &[]);
-            return Ok(ConstrainedOptimum { control_volt: free, kkt, binding: false, iterations: 0 });
+            return Ok(ConstrainedOptimum {
+                control_volt: free,
+                kkt,
+                binding: false,
+                iterations: 0,
+            });
         }
         program.add_circles(limits, volt);
         program.add_power(limits, volt);
@@ -254,8 +259,7 @@ impl Program {
         let mut rows = vec![(linear, 2.0)];
         let factor = -2.0 * volt / room.sqrt();
         rows.extend(
-            root.row_iter()
-                .map(|row| (row.iter().map(|f| factor * f).enumerate().collect(), 0.0)),
+            root.row_iter().map(|row| (row.iter().map(|f| factor * f).enumerate().collect(), 0.0)),
         );
         rows.push((opposite, 0.0));
         self.cones.push(Cone { kind: Kind::SecondOrder, rows });

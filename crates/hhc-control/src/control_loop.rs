@@ -127,8 +127,7 @@ impl FeedbackController {
                     Ok(largest_amplitude(&difference(&next, &control_volt))
                         <= SETTLING * asked_volt)
                 };
-                let allowed =
-                    !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
+                let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
                 if rise <= COST_ROUNDING || (allowed && settles()?) {
                     search.taken = Some(ControlStep {
                         control_volt,

@@ -85,11 +85,12 @@ impl<'a> Knowledge<'a> {
             How::Local { step_volt, known_at } => {
                 let control = &here.control_volt;
                 if known_at != control {
-                    let offered = plant.linearised_t(control).map_err(|source| RunError::Plant {
-                        call: PlantCall::Linearise { control_volt: control.clone() },
-                        history: Vec::new(),
-                        source,
-                    })?;
+                    let offered =
+                        plant.linearised_t(control).map_err(|source| RunError::Plant {
+                            call: PlantCall::Linearise { control_volt: control.clone() },
+                            history: Vec::new(),
+                            source,
+                        })?;
                     let t = if let Some(t) = offered {
                         t
                     } else {

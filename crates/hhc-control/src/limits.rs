@@ -105,7 +105,10 @@ impl ControlLimits {
         error::check_vector("range of the voltage (V)", &voltage.range_volt, 2)?;
         let [low, high] = voltage.range_volt;
         for &bias in &voltage.bias_volt {
-            error::check_positive("room between bias and range (V)", (high - bias).min(bias - low))?;
+            error::check_positive(
+                "room between bias and range (V)",
+                (high - bias).min(bias - low),
+            )?;
         }
         if voltage.azimuths < 8 {
             let (what, value) = ("azimuth samples of the voltage", voltage.azimuths as f64);
@@ -125,7 +128,11 @@ impl ControlLimits {
     ///
     /// # Errors
     /// [`ControlError::OutOfRange`] for a pair beyond the last or a limit that is not positive.
-    pub fn with_flap_circle(mut self, pair: usize, circle: FlapCircle) -> Result<Self, ControlError> {
+    pub fn with_flap_circle(
+        mut self,
+        pair: usize,
+        circle: FlapCircle,
+    ) -> Result<Self, ControlError> {
         error::check_positive("largest flap amplitude (deg)", circle.limit_deg)?;
         let gains = circle.gain_deg_per_volt.concat();
         error::check_vector("gain of a flap (deg/V)", &gains, 4)?;
@@ -265,11 +272,8 @@ mod tests {
 
     #[test]
     fn a_control_divided_by_its_usage_just_keeps_every_limit() {
-        let voltage = VoltageRange {
-            range_volt: [-20.0, 150.0],
-            bias_volt: vec![60.0, 70.0],
-            azimuths: 720,
-        };
+        let voltage =
+            VoltageRange { range_volt: [-20.0, 150.0], bias_volt: vec![60.0, 70.0], azimuths: 720 };
         let power = PowerLimit {
             quadratic: DMatrix::from_fn(8, 8, |i, j| if i == j { 0.5 + i as f64 } else { 0.1 }),
             linear: (0..8).map(|i| 0.3 * f64::from(i) - 1.0).collect(),

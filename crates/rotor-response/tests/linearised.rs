@@ -32,8 +32,11 @@ impl InflowModel for Frozen {
 
 fn unit(flap: usize, n: usize, sine: bool) -> FlapDirection {
     let mut direction = vec![HarmonicSeries::zero(0); 2];
-    let harmonic =
-        if sine { Harmonic { cosine: 0.0, sine: 1.0 } } else { Harmonic { cosine: 1.0, sine: 0.0 } };
+    let harmonic = if sine {
+        Harmonic { cosine: 0.0, sine: 1.0 }
+    } else {
+        Harmonic { cosine: 1.0, sine: 0.0 }
+    };
     direction[flap].set_harmonic(n, harmonic);
     direction
 }
@@ -80,9 +83,8 @@ fn gap(model: InflowState, amplitude_deg: f64) -> f64 {
         .into_iter()
         .flat_map(|n| [unit(0, n, false), unit(0, n, true), unit(1, n, false), unit(1, n, true)])
         .collect();
-    let found = solver
-        .linearised((&condition, &rest), &LinearInflow::Drees, &directions, model)
-        .unwrap();
+    let found =
+        solver.linearised((&condition, &rest), &LinearInflow::Drees, &directions, model).unwrap();
     assert!(found.relative_residual <= 1e-6);
     let frozen = Frozen(rest.inflow.clone());
     let inflow: &dyn InflowModel = match model {
@@ -153,8 +155,7 @@ fn directions_add_up() {
     let found = solver
         .linearised((&condition, &rest), &LinearInflow::Drees, &directions, InflowState::Settled)
         .unwrap();
-    let z: Vec<[f64; 12]> =
-        found.sensitivities.iter().map(|s| s.hub.harmonic(BLADES)).collect();
+    let z: Vec<[f64; 12]> = found.sensitivities.iter().map(|s| s.hub.harmonic(BLADES)).collect();
     let off = norm((0..12).map(|k| z[0][k] - (z[1][k] - 2.0 * z[2][k] + 0.5 * z[3][k])));
     assert!(off <= 1e-4 * norm(z[0]), "{off:e}");
     // a direction for one flap only

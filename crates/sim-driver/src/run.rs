@@ -135,20 +135,8 @@ impl RunResult {
         let before = self.baseline.hub_4_per_rev.amplitudes();
         table(
             &[
-                "per rev",
-                "actuator",
-                "T",
-                "J/J0",
-                "J %",
-                "FX %",
-                "FY %",
-                "FZ %",
-                "MX %",
-                "MY %",
-                "MZ %",
-                "steps",
-                "halved",
-                "ended",
+                "per rev", "actuator", "T", "J/J0", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %",
+                "MZ %", "steps", "halved", "ended",
             ],
             self.control.iter().map(|line| {
                 let mut cells = vec![

@@ -47,7 +47,9 @@ pub(super) const AREA: Area = Area {
             source: "conditions of Karush, Kuhn and Tucker, formed anew",
             criterion: Criterion::AtMost(1e-6),
             repeatability: Repeatability::Everywhere,
-            measure: || worst("problems", 50, (0..50).map(|k| constrained(k).map(|found| found[0]))),
+            measure: || {
+                worst("problems", 50, (0..50).map(|k| constrained(k).map(|found| found[0])))
+            },
         },
         Check {
             id: "V-CTRL-05",
@@ -56,7 +58,9 @@ pub(super) const AREA: Area = Area {
             source: "enumeration",
             criterion: Criterion::AtMost(1.0),
             repeatability: Repeatability::Everywhere,
-            measure: || worst("problems", 50, (0..50).map(|k| constrained(k).map(|found| found[1]))),
+            measure: || {
+                worst("problems", 50, (0..50).map(|k| constrained(k).map(|found| found[1])))
+            },
         },
         Check {
             id: "V-CTRL-06",
@@ -119,7 +123,8 @@ fn constrained(problem: u32) -> Result<[f64; 2], CheckError> {
     // loads and limits vary from problem to problem, always the same
     let mut state = u64::from(problem) + 1;
     let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     };
     let loads: Vec<f64> = (0..LOADS).map(|_| 5.0 * random()).collect();

@@ -3,8 +3,8 @@
 use crate::plants::{Problem, as_t};
 use hhc_control::{
     ControlError, ControlLayout, ControlLimits, Controller, FeedbackController, FeedbackLaw,
-    FeedbackSettings, FlapCircle, LinearPlant, LoadWeights, Measurement, Outcome, Plant, PowerLimit,
-    RunError, VoltageRange,
+    FeedbackSettings, FlapCircle, LinearPlant, LoadWeights, Measurement, Outcome, Plant,
+    PowerLimit, RunError, VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -79,7 +79,9 @@ fn two_variables_meet_a_brute_force_grid() {
         none.clone().with_flap_circle(0, skewed).unwrap(),
         none.clone().with_power(power.clone()).unwrap(),
         none.with_amplitudes_volt(vec![0.7 * free.norm()])
-            .and_then(|l| l.with_flap_circle(0, FlapCircle { limit_deg: 0.03 * free.norm(), ..skewed }))
+            .and_then(|l| {
+                l.with_flap_circle(0, FlapCircle { limit_deg: 0.03 * free.norm(), ..skewed })
+            })
             .and_then(|l| l.with_power(power))
             .unwrap(),
     ];
@@ -89,7 +91,8 @@ fn two_variables_meet_a_brute_force_grid() {
         assert!(found.kkt.largest() <= 1e-8, "case {case}: {:?}", found.kkt);
         assert!(limits.usage(&found.control_volt).unwrap() <= 1.0 + 1e-14);
         let grid = brute_force(|u| loads_cost(&problem, u), limits);
-        let (cone, brute) = (loads_cost(&problem, &found.control_volt), loads_cost(&problem, &grid));
+        let (cone, brute) =
+            (loads_cost(&problem, &found.control_volt), loads_cost(&problem, &grid));
         assert!((cone / brute - 1.0).abs() <= 1e-6, "case {case}: {cone} against {brute}");
         let distance = (found.control_volt[0] - grid[0]).hypot(found.control_volt[1] - grid[1]);
         assert!(distance <= 1e-4 * free.norm(), "case {case}: off by {distance}");
@@ -115,7 +118,9 @@ fn where_no_limit_binds_it_is_the_fixed_point_of_the_law() {
     let law = controller.run(&mut plant, 0.0).unwrap();
     let u = DVector::from_column_slice(&constrained.last().control_volt);
     assert!((&u - &free).norm() <= 1e-8 * free.norm());
-    assert!((u - DVector::from_column_slice(&law.last().control_volt)).norm() <= 1e-8 * free.norm());
+    assert!(
+        (u - DVector::from_column_slice(&law.last().control_volt)).norm() <= 1e-8 * free.norm()
+    );
     assert!(constrained.kkt.unwrap().largest() <= 1e-12);
 }
 
@@ -168,7 +173,8 @@ fn opposed_flaps() -> (Problem, ControlLayout) {
 fn uniform(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }
@@ -325,7 +331,12 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
             .unwrap();
         let cost = run.last().cost.loads;
         let best = loads_cost(&problem, &exact.control_volt);
-        println!("{}: J / J* - 1 = {:.2e}, {:?}", controller.name(), cost / best - 1.0, run.outcome);
+        println!(
+            "{}: J / J* - 1 = {:.2e}, {:?}",
+            controller.name(),
+            cost / best - 1.0,
+            run.outcome
+        );
         assert!(run.kkt.unwrap().largest() <= 1e-6);
         if controller != Controller::Global {
             assert_eq!(run.outcome, Outcome::Converged);

@@ -111,7 +111,10 @@ fn hysteresis_the_constant_t_ends_short_those_that_learn_converge() {
         }
         costs.push(run.last().cost.loads);
     }
-    assert!(costs[1] <= costs[0] * (1.0 + 1e-9) && costs[2] <= costs[0] * (1.0 + 1e-6), "{costs:?}");
+    assert!(
+        costs[1] <= costs[0] * (1.0 + 1e-9) && costs[2] <= costs[0] * (1.0 + 1e-6),
+        "{costs:?}"
+    );
     // the optimum is one of flap motion: the same as without hysteresis
     let problem = ill_conditioned();
     let z = &problem.z0 * 0.5e-4;
@@ -136,30 +139,23 @@ fn an_ignored_lag_costs_what_theory_says() {
         };
         let ignored = problem.loads_cost(&late(&best));
         let measured = (ignored - least) / (before - least);
-        let loss = lag_loss(
-            &as_t(&problem.t),
-            &LoadWeights::Identity,
-            best.as_slice(),
-            &lag_rad,
-        )
-        .unwrap();
+        let loss =
+            lag_loss(&as_t(&problem.t), &LoadWeights::Identity, best.as_slice(), &lag_rad).unwrap();
         assert!((loss.part / measured - 1.0).abs() < 1e-8, "{loss:?} {measured}");
         println!("{lag_deg:?} deg: lost {:.4}, 4 sin^2(lag/2) = {:.4}", loss.part, loss.isotropic);
     }
     // T alike on all controls: the rule of thumb is exact
     let alike = Problem::new(1, &[3], DMatrix::identity(12, 2) * 0.3, &[1.0; 12]);
     let best = alike.optimum(&[1.0; 12], 0.0);
-    let loss =
-        lag_loss(&as_t(&alike.t), &LoadWeights::Identity, best.as_slice(), &[0.8]).unwrap();
+    let loss = lag_loss(&as_t(&alike.t), &LoadWeights::Identity, best.as_slice(), &[0.8]).unwrap();
     assert!((loss.part - loss.isotropic).abs() < 1e-14);
 }
 
 #[test]
 fn settings_out_of_range_are_refused() {
     let problem = ill_conditioned();
-    let controller = || {
-        FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings()).unwrap()
-    };
+    let controller =
+        || FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings()).unwrap();
     let base = AdaptiveSettings::of_full_scale(85.0);
     for bad in [
         AdaptiveSettings { full_scale_volt: 0.0, ..base.clone() },

@@ -20,8 +20,8 @@ pub use file::{
 };
 pub use file_control::{
     ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, ControllerChoice,
-    EffortChoice, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
-    TrimFile, WindTunnelTrimFile,
+    EffortChoice, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile,
+    StoredActuatorFile, StrokeChoice, TrimFile, WindTunnelTrimFile,
 };
 pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
 pub use validated::{

@@ -2,8 +2,8 @@
 
 use super::{
     CompressibilityChoice, ControlActuator, ControllerChoice, CouplingsChoice, EffortChoice,
-    InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice, StrokeChoice,
-    TolerancesFile,
+    InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice,
+    SectionModelChoice, StrokeChoice, TolerancesFile,
 };
 use crate::files::Folder;
 use rotor_base::RotorScales;

@@ -18,8 +18,8 @@ use crate::modes::{AboutState, FAN_SPEEDS, ModesQuestion, fan_csv, rotating_mode
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
-use crate::report::{StudyReport, report_html};
 use crate::recompute::recomputed;
+use crate::report::{StudyReport, report_html};
 use crate::results::{RunResult, StoredResult};
 use crate::run::{run_case, steps_of};
 use crate::section::{

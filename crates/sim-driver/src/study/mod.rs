@@ -16,11 +16,9 @@ pub use drive::{FlapDrive, FlapMotion, MEAN_FLAP_TOLERANCE_DEG};
 pub use error::{PlantError, StudyError};
 pub use lines::control_line;
 pub use plant::{PlantState, RotorPlant, TrimmedRotor};
-pub use robustness::{
-    Disturbance, RobustnessCell, robustness, robustness_csv, robustness_maps,
-};
-pub(crate) use run::loads_cost;
+pub use robustness::{Disturbance, RobustnessCell, robustness, robustness_csv, robustness_maps};
 use run::load_weights;
+pub(crate) use run::loads_cost;
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
 pub use sensitivity::{SENSITIVITY_ROWS, Sensitivity, sensitivities, sensitivity_csv};
 pub use tables::{histories_csv, study_report};

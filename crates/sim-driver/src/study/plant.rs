@@ -4,13 +4,12 @@ use super::{FlapAuthority, FlapDrive, FlapMotion, FullScale, PlantError};
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
 use hhc_control::{
-    ControlError, ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, TMatrix, VoltageRange,
+    ControlError, ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, TMatrix,
+    VoltageRange,
 };
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_response::{
-    Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver,
-};
+use rotor_response::{Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_wake::LinearInflow;
 use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};

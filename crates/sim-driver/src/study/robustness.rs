@@ -5,8 +5,9 @@ use crate::SimError;
 use crate::case::{Case, ControlActuator, LoadedCase};
 use crate::run::RunOutcome;
 use hhc_control::{
-    AdaptiveSettings, ControlLayout, ControlLimits, Controller, FeedbackController, FeedbackSettings, LoadWeights,
-    Measurement, Outcome, Plant, TMatrix, identify_t, reduction_percent,
+    AdaptiveSettings, ControlLayout, ControlLimits, Controller, FeedbackController,
+    FeedbackSettings, LoadWeights, Measurement, Outcome, Plant, TMatrix, identify_t,
+    reduction_percent,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -144,13 +145,15 @@ impl Plant for Disturbed {
 }
 
 fn disturbances() -> Vec<Disturbance> {
-    let none = Disturbance { noise_percent: 0.0, t_gain: 1.0, t_phase_deg: 0.0, drift_percent: 0.0 };
+    let none =
+        Disturbance { noise_percent: 0.0, t_gain: 1.0, t_phase_deg: 0.0, drift_percent: 0.0 };
     let noise = NOISE_PERCENT.map(|noise_percent| Disturbance { noise_percent, ..none });
     let wrong = T_GAINS.into_iter().flat_map(|t_gain| {
         T_PHASES_DEG.map(|t_phase_deg| Disturbance { t_gain, t_phase_deg, ..none })
     });
     let drift = DRIFT_PERCENT.map(|drift_percent| Disturbance { drift_percent, ..none });
-    let all = Disturbance { noise_percent: 3.0, t_gain: 0.8, t_phase_deg: 30.0, drift_percent: 0.5 };
+    let all =
+        Disturbance { noise_percent: 3.0, t_gain: 0.8, t_phase_deg: 30.0, drift_percent: 0.5 };
     let wrong = wrong.filter(|d| *d != none);
     noise.into_iter().chain(wrong).chain(drift).chain([all]).collect()
 }

@@ -254,9 +254,7 @@ impl ControlSet<'_> {
                     .collect();
                 (&self.drives.ideal, scale)
             }
-            ControlActuator::Ignored
-            | ControlActuator::Hysteretic
-            | ControlActuator::Inverse => {
+            ControlActuator::Ignored | ControlActuator::Hysteretic | ControlActuator::Inverse => {
                 let drive = self.drives.hysteretic.as_ref();
                 let name = actuator.name();
                 (drive.ok_or(StudyError::NoActuator { actuator: name })?, self.limits.clone())
@@ -278,7 +276,11 @@ impl ControlSet<'_> {
     }
 
     /// T0 of a plant and the controller of the case, `way` of knowing T included.
-    fn controller(&self, t: &TMatrix, way: Controller) -> Result<FeedbackController, RunError<PlantError>> {
+    fn controller(
+        &self,
+        t: &TMatrix,
+        way: Controller,
+    ) -> Result<FeedbackController, RunError<PlantError>> {
         let control = &self.case.control;
         let settings = FeedbackSettings {
             max_steps: control.max_steps,
@@ -466,9 +468,9 @@ impl ControlSet<'_> {
 /// Part of a wanted motion that the actuator reaches, if that is why its inverse failed.
 fn within_reach(error: &PlantError) -> Option<f64> {
     match error {
-        PlantError::Actuator(PreisachError::MotionOutOfReach { wanted_deg, reachable_deg, .. }) => {
-            Some(reachable_deg / wanted_deg)
-        }
+        PlantError::Actuator(PreisachError::MotionOutOfReach {
+            wanted_deg, reachable_deg, ..
+        }) => Some(reachable_deg / wanted_deg),
         PlantError::Actuator(PreisachError::InverseNotConverged { share, .. }) => Some(*share),
         _ => None,
     }

@@ -79,10 +79,8 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
         rotor: RotorOf::TheCase,
         ..assume(text, change)
     };
-    let stroke = |text, factor| Assumption {
-        stroke: StrokeOf::TheCase(factor),
-        ..of_case(text, |_| {})
-    };
+    let stroke =
+        |text, factor| Assumption { stroke: StrokeOf::TheCase(factor), ..of_case(text, |_| {}) };
     vec![
         of_case("as the case", |_| {}),
         of_rotor("flaps .05 R further in", |c| shift_flaps(c, -0.05)),
@@ -183,8 +181,8 @@ pub fn sensitivities(
             let reduction_percent = sets
                 .iter()
                 .map(|set| {
-                    let studies = control_set(&varied.case, &rotor, &limited, set, &|| ())
-                        .map_err(failed)?;
+                    let studies =
+                        control_set(&varied.case, &rotor, &limited, set, &|| ()).map_err(failed)?;
                     Ok(studies.first().map_or(f64::NAN, super::ControlStudy::reduction_percent))
                 })
                 .collect::<Result<Vec<f64>, SimError>>()?;
@@ -214,12 +212,8 @@ pub fn sensitivity_csv(loaded: &LoadedCase, rows: &[Sensitivity]) -> String {
     for row in rows {
         let numbers: Vec<String> =
             row.reduction_percent.iter().map(|r| format!("{r:.3}")).collect();
-        text += &format!(
-            "\"{}\",{},{:.3}\n",
-            row.assumption,
-            numbers.join(","),
-            row.largest_change
-        );
+        text +=
+            &format!("\"{}\",{},{:.3}\n", row.assumption, numbers.join(","), row.largest_change);
     }
     text
 }
