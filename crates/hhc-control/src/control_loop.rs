@@ -98,8 +98,10 @@ impl FeedbackController {
             if asked_volt <= (self.settings.step_tolerance * size).max(SMALLEST_CHANGE_VOLT) {
                 break Outcome::Converged;
             }
-            let promised = known.promise(rho, &here, &aim.control_volt)?;
-            if promised <= self.settings.cost_tolerance * start_cost {
+            if strict
+                && known.promise(rho, &here, &aim.control_volt)?
+                    <= self.settings.cost_tolerance * start_cost
+            {
                 break Outcome::Converged;
             }
             if steps.len() >= self.settings.max_steps {
