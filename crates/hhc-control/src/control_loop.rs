@@ -75,6 +75,7 @@ impl FeedbackController {
         let mut measurements = 0;
         let mut kkt = None;
         let mut known = Knowledge::new(&self.controller, &self.law, start);
+        let strict = self.settings.cost_tolerance > 0.0;
         let outcome = loop {
             known.refresh(plant, &here)?;
             let rho = match effort {
@@ -95,6 +96,12 @@ impl FeedbackController {
             let size =
                 largest_amplitude(&aim.control_volt).max(largest_amplitude(&here.control_volt));
             if asked_volt <= (self.settings.step_tolerance * size).max(SMALLEST_CHANGE_VOLT) {
+                break Outcome::Converged;
+            }
+            if strict
+                && known.promise(rho, &here, &aim.control_volt)?
+                    <= self.settings.cost_tolerance * start_cost
+            {
                 break Outcome::Converged;
             }
             if steps.len() >= self.settings.max_steps {
@@ -122,7 +129,7 @@ impl FeedbackController {
                     Ok(largest_amplitude(&difference(&next, &control_volt))
                         <= SETTLING * asked_volt)
                 };
-                let allowed = halvings == 0 && rise <= self.settings.cost_rise_allowance;
+                let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
                 if rise <= COST_ROUNDING || (allowed && settles()?) {
                     search.taken = Some(ControlStep {
                         control_volt,
@@ -137,8 +144,12 @@ impl FeedbackController {
                 search.shortest = Some(cost);
             }
             if let Some(step) = search.taken {
+                let fall = here.cost.total() - step.cost.total();
                 steps.push(step.clone());
                 here = step;
+                if strict && fall <= self.settings.cost_tolerance * start_cost {
+                    break Outcome::Converged;
+                }
                 continue;
             }
             if known.learn(plant, &here, &aim.control_volt)? {

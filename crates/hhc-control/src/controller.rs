@@ -130,6 +130,22 @@ impl<'a> Knowledge<'a> {
         }
     }
 
+    /// The fall of the cost that the law sees between a state and its aim.
+    pub(crate) fn promise(
+        &self,
+        rho: f64,
+        here: &ControlStep,
+        aim_volt: &[f64],
+    ) -> Result<f64, ControlError> {
+        let target = self.target(&here.control_volt, &here.measurement.hub_loads)?;
+        let (hessian, linear) = self.law.quadratic(rho, &target);
+        let twice = |u: &[f64]| -> f64 {
+            let u = DVector::from_column_slice(u);
+            u.dot(&(&hessian * &u)) + 2.0 * linear.dot(&u)
+        };
+        Ok(twice(&here.control_volt) - twice(aim_volt))
+    }
+
     /// After a step that no part of which was taken: whether something was learnt that makes another
     /// step worth asking for. The rejected measurements may have changed T already; if the step asked
     /// for is still much the same, each control is probed.

@@ -16,6 +16,11 @@ pub struct FeedbackSettings {
     /// The loop has converged when eq. (10) asks for a change of no voltage harmonic by more than
     /// this fraction of the largest one.
     pub step_tolerance: f64,
+    /// The loop has also converged when eq. (10) promises, or a step brings, a fall of the cost by no more
+    /// than this fraction of the cost at the start; then no step may raise the cost at all. 0 leaves the
+    /// test of the step alone. For controllers that renew T: where hysteresis bends the loads, their last
+    /// steps may go round in a circle of nearly equal cost.
+    pub cost_tolerance: f64,
     /// How much a full step may raise the cost and still be taken, as a fraction of the cost at the
     /// start, if the next step asked for after it is shorter by a fifth or more. Where T0 is not exact and
     /// the control is weighted, the fixed point of eq. (10) lies a little beside the least cost, and
@@ -33,6 +38,7 @@ impl Default for FeedbackSettings {
             max_steps: 30,
             max_halvings: 6,
             step_tolerance: 1e-4,
+            cost_tolerance: 0.0,
             cost_rise_allowance: 1e-2,
             stroke_tolerance: 1e-3,
         }
@@ -42,6 +48,7 @@ impl Default for FeedbackSettings {
 impl FeedbackSettings {
     fn check(&self) -> Result<(), ControlError> {
         error::check_positive("step tolerance", self.step_tolerance)?;
+        error::check_not_negative("cost tolerance", self.cost_tolerance)?;
         error::check_not_negative("cost rise allowance", self.cost_rise_allowance)?;
         error::check_positive("stroke tolerance", self.stroke_tolerance)?;
         let (value, expected) = (f64::from(self.max_halvings), "0 to 60");
@@ -72,7 +79,7 @@ pub struct ControlStep {
 /// How a control run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// Eq. (10) asks for no further change: its fixed point.
+    /// Eq. (10) asks for no further change, its fixed point, or promises no further fall of the cost.
     Converged,
     /// Some steps lowered the cost, but no part of the next one does: near the least cost, where a
     /// constant T0 no longer points downhill. The last state is the best found.

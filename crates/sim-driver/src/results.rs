@@ -131,6 +131,10 @@ pub struct ControlLine {
     /// inverse alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion_error_percent: Option<f64>,
+    /// Part of the ideal actuator's motion that the inverse makes, 1 where it is within reach; of the
+    /// inverse alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion_share: Option<f64>,
     /// KKT residual of the last optimum within limits, where there were any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kkt_residual: Option<f64>,

@@ -5,7 +5,6 @@
 //! same solidity on 16 blades of a quarter of the chord leaves a quarter of it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
-#![expect(clippy::print_stdout, reason = "the comparison is worth seeing")]
 
 use flap_aero::{AirfoilSpan, AttachedFlowModel, C81Airfoil, C81Table};
 use rotor_fem::{BladeProperties, BladeSpec, Joint, RootSupport, Twist};
@@ -73,8 +72,7 @@ fn trimmed(mu: f64, split: usize) -> TrimSolution {
     };
     let discretisation = Discretisation { modes: [1, 0, 0], ..Discretisation::default() };
     let rotor = Rotor::new(model, &blade, discretisation).unwrap();
-    let mut solver =
-        RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
+    let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
     let target = TrimTarget::Propulsive { weight_ct_sigma: 0.07, vehicle: Vehicle::default() };
     trim(&mut solver, &LinearInflow::Uniform, mu, &target, &TrimSettings::default(), None).unwrap()
 }

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use preisach_dyn::ActuatorModel;
 use sim_driver::SimError;
 use sim_driver::actuator::case_actuators;
-use sim_driver::case::{ControlActuator, InflowChoice, LoadedCase, PAPER_CASE, shipped_case};
+use sim_driver::case::{
+    ControlActuator, ControllerChoice, EffortChoice, InflowChoice, LoadedCase, PAPER_CASE,
+    shipped_case,
+};
 use sim_driver::study::{Drives, StudyError, TrimmedRotor, control_set};
 
 use super::sweep::{SweepPoint, SweepResult, TrimChannels};
@@ -50,7 +53,7 @@ impl Program {
     }
 
     /// Computes one case: the paper's rotor with Drees inflow at another advance ratio, one harmonic of
-    /// control, the identified actuator.
+    /// control, the identified actuator, constant T0 and a tuned control weight as in the paper.
     ///
     /// # Errors
     /// [`SweepError`]: what the driver or the study could not do.
@@ -61,6 +64,9 @@ impl Program {
         loaded.case.inflow = InflowChoice::Drees;
         loaded.case.control.harmonics = vec![harmonics.to_vec()];
         loaded.case.control.actuators = vec![ControlActuator::Hysteretic];
+        // the paper's controller, which sees every change of plant and law
+        loaded.case.control.controller = ControllerChoice::Global;
+        loaded.case.control.effort = EffortChoice::MeetStroke;
         let case = &loaded.case;
         let rotor = TrimmedRotor::new(&loaded, None)?;
         let drives = Drives::new(case, self.actuator.clone())?;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::InflowState;
 use sim_driver::SimError;
-use sim_driver::case::{PAPER_CASE, shipped_case};
+use sim_driver::case::{LoadedCase, PAPER_CASE, shipped_case};
 use sim_driver::progress::Progress;
 use sim_driver::results::ControlLine;
 use sim_driver::run::run_case;
@@ -73,12 +73,15 @@ pub(super) const AREA: Area = Area {
     ],
 };
 
+fn paper_case() -> Result<LoadedCase, SimError> {
+    Ok(shipped_case(PAPER_CASE)?)
+}
+
 /// Every control of the paper's case, computed once.
 fn study() -> Result<&'static [ControlLine], CheckError> {
     static LINES: OnceLock<Vec<ControlLine>> = OnceLock::new();
     if LINES.get().is_none() {
-        let outcome =
-            run_case(&shipped_case(PAPER_CASE).map_err(SimError::from)?, &Progress::hidden())?;
+        let outcome = run_case(&paper_case()?, &Progress::hidden())?;
         let _ = LINES.set(outcome.result.control);
     }
     Ok(LINES.get().map_or(&[], Vec::as_slice))
@@ -105,7 +108,7 @@ fn inverse_error() -> Result<f64, CheckError> {
 }
 
 fn linearised_error() -> Result<f64, CheckError> {
-    let loaded = shipped_case(PAPER_CASE).map_err(SimError::from)?;
+    let loaded = paper_case()?;
     let rotor = TrimmedRotor::new(&loaded, None)?;
     let linear = rotor.linearised(InflowState::Settled)?;
     let controls: Vec<(usize, usize, bool)> = (0..2)

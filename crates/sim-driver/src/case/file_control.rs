@@ -329,7 +329,7 @@ impl Default for ControlFile {
             stroke_limit: StrokeChoice::FromActuator,
             load_weights: LoadWeightsFile::default(),
             load_scale: LoadScaleChoice::default(),
-            effort: EffortChoice::MeetStroke,
+            effort: EffortChoice::Limits,
             controller: ControllerChoice::default(),
             max_steps: 40,
             step_tolerance: 1e-4,

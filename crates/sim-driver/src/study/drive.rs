@@ -159,6 +159,27 @@ impl FlapDrive {
             let each = voltages.iter().flat_map(|&(n, _)| [unit(n, 1.0, 0.0), unit(n, 0.0, 1.0)]);
             return Ok(each.collect());
         }
+        // at the edge of the range no control may be free to move: a little inside they are
+        let mut result = Err(PlantError::BiasSearch);
+        for part in TANGENT_PARTS {
+            let inside: Vec<(usize, Harmonic)> = voltages
+                .iter()
+                .map(|&(n, h)| (n, Harmonic { cosine: part * h.cosine, sine: part * h.sine }))
+                .collect();
+            result = self.tangent_at(&inside, step_volt);
+            if result.is_ok() {
+                break;
+            }
+        }
+        result
+    }
+
+    /// [`Self::tangent`] of a model at exactly these voltages.
+    fn tangent_at(
+        &self,
+        voltages: &[(usize, Harmonic)],
+        step_volt: f64,
+    ) -> Result<Vec<HarmonicSeries>, PlantError> {
         let here = self.motion(voltages)?.flap_deg;
         (0..2 * voltages.len())
             .into_par_iter()
@@ -349,6 +370,8 @@ pub(super) fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
 /// Change of the mean flap angle with the bias of a bench that makes +-10 deg over 170 V, deg/V: the
 /// bias search's first guess only.
 const QUASI_STATIC_SLOPE_DEG_PER_VOLT: f64 = 20.0 / 170.0;
+/// Parts of a voltage at which its tangent is sought, the first that has one.
+const TANGENT_PARTS: [f64; 4] = [1.0, 0.97, 0.93, 0.85];
 /// Room left to the bias at full scale, V.
 const FULL_SCALE_MARGIN_VOLT: f64 = 0.1;
 const FULL_SCALE_PASSES: usize = 12;

@@ -55,6 +55,7 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
         controller: study.controller.unwrap_or("none").to_owned(),
         load_weights: study.load_weights,
         motion_error_percent: study.motion_error.map(|error| 100.0 * error),
+        motion_share: study.motion_share,
         kkt_residual: study.run.as_ref().and_then(|run| run.kkt).map(|kkt| kkt.largest()),
         largest_mean_flap_deg: study.largest_mean_flap_deg(),
         steps: study.steps(),

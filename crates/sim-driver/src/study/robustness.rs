@@ -5,8 +5,9 @@ use crate::SimError;
 use crate::case::{Case, ControlActuator, LoadedCase};
 use crate::run::RunOutcome;
 use hhc_control::{
-    AdaptiveSettings, ControlLayout, Controller, FeedbackController, FeedbackSettings, LoadWeights,
-    Measurement, Outcome, Plant, RunError, TMatrix, identify_t, reduction_percent,
+    AdaptiveSettings, ControlLayout, ControlLimits, Controller, FeedbackController,
+    FeedbackSettings, LoadWeights, Measurement, Outcome, Plant, RunError, TMatrix, identify_t,
+    reduction_percent,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -137,6 +138,10 @@ impl Plant for Disturbed {
     fn admits(&self, control_volt: &[f64]) -> bool {
         self.plant.admits(control_volt)
     }
+
+    fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, PlantError> {
+        self.plant.limits(control_volt)
+    }
 }
 
 fn disturbances() -> Vec<Disturbance> {
@@ -162,8 +167,7 @@ fn plant_error(error: RunError<PlantError>) -> PlantError {
     }
 }
 
-/// Runs every controller of one harmonic under every disturbance, with the control weight of the
-/// undisturbed run.
+/// Runs every controller of one harmonic under every disturbance, within the limits of the actuators.
 ///
 /// The rotor is linearised about its trim, the actuators are the identified ones. Every run starts from
 /// zero control and a T0 identified without disturbance; the local controller measures its own T and
@@ -175,7 +179,7 @@ pub fn robustness(
     case: &Case,
     rotor: &TrimmedRotor,
     drives: &Drives,
-    (harmonic, rho): (usize, f64),
+    harmonic: usize,
 ) -> Result<Vec<RobustnessCell>, PlantError> {
     let (Some(drive), Some(limit)) = (&drives.hysteretic, drives.limit(harmonic)) else {
         return Ok(Vec::new());
@@ -234,7 +238,7 @@ pub fn robustness(
                 .and_then(|c| c.with_controller(way))
                 .map_err(PlantError::Bias)?;
             let before = super::loads_cost(&weights, &baseline);
-            let ended = made.run(&mut disturbed, rho);
+            let ended = made.run_constrained(&mut disturbed, 0.0);
             let truth = |u: &[f64]| -> Result<f64, PlantError> {
                 let loads = disturbed.loads(&disturbed.flaps(u)?)?;
                 Ok(reduction_percent(before, super::loads_cost(&weights, &loads)))
@@ -289,9 +293,9 @@ pub fn robustness_maps(
     });
     let maps = alone
         .map(|study| {
-            let at = (study.harmonics[0], study.rho);
-            robustness(case, &outcome.trimmed, &outcome.drives, at).map_err(|source| {
-                let source = StudyError::Robustness { harmonic: at.0, source };
+            let harmonic = study.harmonics[0];
+            robustness(case, &outcome.trimmed, &outcome.drives, harmonic).map_err(|source| {
+                let source = StudyError::Robustness { harmonic, source };
                 SimError::Study { place: loaded.index.place("control"), source }
             })
         })

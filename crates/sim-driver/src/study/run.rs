@@ -1,6 +1,6 @@
 //! One case from trim to controlled vibration.
 
-use super::{FlapDrive, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor};
+use super::{FlapDrive, FlapMotion, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor};
 use crate::case::{
     Case, ControlActuator, ControllerChoice, EffortChoice, LoadScaleChoice, StrokeChoice,
 };
@@ -8,7 +8,7 @@ use hhc_control::{
     AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackSettings, LoadWeights,
     Outcome, Plant, RunError, TMatrix, identify_t, reduction_percent,
 };
-use preisach_dyn::{ActuatorModel, VoltageRange};
+use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use std::collections::{BTreeMap, BTreeSet};
@@ -33,6 +33,8 @@ pub struct ControlStudy {
     pub controller: Option<&'static str>,
     /// Largest error of a wanted flap harmonic over the largest wanted one of the flap; of the inverse.
     pub motion_error: Option<f64>,
+    /// Part of the ideal motion that the inverse makes: below 1 where the range of voltages ends first.
+    pub motion_share: Option<f64>,
     /// Stroke limit of each controlled harmonic, deg.
     pub stroke_limit_deg: Vec<f64>,
     /// Weight of each load in `J_Z`, order `FX FY FZ MX MY MZ`.
@@ -283,6 +285,8 @@ impl ControlSet<'_> {
         let settings = FeedbackSettings {
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
+            // a constant T promises what it cannot keep: its end is that of the paper's loop
+            cost_tolerance: if way == Controller::Global { 0.0 } else { COST_TOLERANCE },
             ..FeedbackSettings::default()
         };
         let weights = self.load_weights().into_iter().flat_map(|w| [w, w]).collect();
@@ -314,6 +318,7 @@ impl ControlSet<'_> {
             rho: 0.0,
             controller: None,
             motion_error: None,
+            motion_share: None,
             stroke_limit_deg: self.limits.iter().map(|l| l.stroke_deg).collect(),
             load_weights,
             j_before: loads_cost(&load_weights, &before),
@@ -398,32 +403,25 @@ impl ControlSet<'_> {
     fn inverted(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
         let actuator = ControlActuator::Inverse;
         let plant = self.plant(actuator)?;
-        let highest = self.harmonics.iter().copied().max().unwrap_or(1);
         let failed = |source| {
             let call = hhc_control::PlantCall::Measure { control_volt: ideal.control_volt.clone() };
             self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
         };
-        let inverted = ideal
-            .state
-            .flaps
-            .par_iter()
-            .map(|motion| {
-                let mut wanted = HarmonicSeries::zero(highest);
-                for &n in self.harmonics {
-                    wanted.set_harmonic(n, motion.flap_deg.harmonic(n));
-                }
-                let made = plant.drive().inverse(&wanted)?;
-                let size = self.harmonics.iter().map(|&n| wanted.harmonic(n).amplitude());
-                let size = size.fold(f64::MIN_POSITIVE, f64::max);
-                let errors = self.harmonics.iter().map(|&n| {
-                    let (a, b) = (made.flap_deg.harmonic(n), wanted.harmonic(n));
-                    (a.cosine - b.cosine).hypot(a.sine - b.sine) / size
-                });
-                let error = errors.fold(0.0, f64::max);
-                Ok((made, error))
-            })
-            .collect::<Result<Vec<_>, PlantError>>()
-            .map_err(failed)?;
+        let made = |share: f64| {
+            let flaps = ideal.state.flaps.par_iter();
+            let each = flaps.map(|motion| self.made(plant.drive(), &motion.flap_deg, share));
+            each.collect::<Result<Vec<_>, PlantError>>()
+        };
+        // several harmonics together may ask for more than the range holds: the same motion, smaller
+        let mut share = 1.0;
+        let mut inverted = made(share);
+        for _ in 0..INVERSE_TRIALS {
+            let Err(error) = &inverted else { break };
+            let Some(within) = within_reach(error) else { break };
+            share *= (INVERSE_MARGIN * within).max(0.5);
+            inverted = made(share);
+        }
+        let inverted = inverted.map_err(failed)?;
         let motion_error = inverted.iter().map(|(_, error)| *error).fold(0.0, f64::max);
         let flaps: Vec<_> = inverted.into_iter().map(|(motion, _)| motion).collect();
         let controlled: Vec<Harmonic> = flaps
@@ -436,11 +434,55 @@ impl ControlSet<'_> {
             t_norm: ideal.t_norm,
             rho: ideal.rho,
             motion_error: Some(motion_error),
+            motion_share: Some(share),
             ..self.study(actuator, &plant, volts, state)?
         })
     }
+
+    /// A share of a flap motion made through the inverse, and the largest error of a wanted harmonic over
+    /// the largest wanted one.
+    fn made(
+        &self,
+        drive: &FlapDrive,
+        motion_deg: &HarmonicSeries,
+        share: f64,
+    ) -> Result<(FlapMotion, f64), PlantError> {
+        let highest = self.harmonics.iter().copied().max().unwrap_or(1);
+        let mut wanted = HarmonicSeries::zero(highest);
+        for &n in self.harmonics {
+            let h = motion_deg.harmonic(n);
+            wanted.set_harmonic(n, Harmonic { cosine: share * h.cosine, sine: share * h.sine });
+        }
+        let made = drive.inverse(&wanted)?;
+        let sizes = self.harmonics.iter().map(|&n| wanted.harmonic(n).amplitude());
+        let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
+        let errors = self.harmonics.iter().map(|&n| {
+            let (a, b) = (made.flap_deg.harmonic(n), wanted.harmonic(n));
+            (a.cosine - b.cosine).hypot(a.sine - b.sine) / size
+        });
+        let error = errors.fold(0.0, f64::max);
+        Ok((made, error))
+    }
 }
 
+/// Part of a wanted motion that the actuator reaches, if that is why its inverse failed.
+fn within_reach(error: &PlantError) -> Option<f64> {
+    match error {
+        PlantError::Actuator(PreisachError::MotionOutOfReach {
+            wanted_deg, reachable_deg, ..
+        }) => Some(reachable_deg / wanted_deg),
+        PlantError::Actuator(PreisachError::InverseNotConverged { share, .. }) => Some(*share),
+        _ => None,
+    }
+}
+
+/// Smaller motions to try where one is out of reach.
+const INVERSE_TRIALS: usize = 6;
+/// Part of the reachable motion that is asked for.
+const INVERSE_MARGIN: f64 = 0.98;
+
+/// Fall of J, as a part of the uncontrolled J, below which a further step is not worth asking for.
+const COST_TOLERANCE: f64 = 1e-5;
 /// Weight of the control, over the largest singular value of T squared, that picks the least voltage
 /// where the optimum is not unique.
 const LEAST_EFFORT: f64 = 1e-8;

@@ -122,8 +122,12 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
                 (w.mx, w.my, w.mz) = (weight(3), weight(4), weight(5));
             })
         },
-        of_case("optimum within the limits (cone program) for the tuned weight", |c| {
-            c.case.control.effort = EffortChoice::Limits;
+        of_case("stroke met by a tuned weight for the cone program (or the reverse)", |c| {
+            let effort = &mut c.case.control.effort;
+            *effort = match effort {
+                EffortChoice::Limits => EffortChoice::MeetStroke,
+                _ => EffortChoice::Limits,
+            };
         }),
         stroke("half the stroke", 0.5),
         stroke("stroke +25 %", 1.25),
