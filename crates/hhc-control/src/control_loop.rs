@@ -34,10 +34,23 @@ struct Aim {
 }
 
 /// The search along one step.
+#[derive(Default)]
 struct Search {
     taken: Option<ControlStep>,
     shortest: Option<Cost>,
     left_range: bool,
+    measurements: usize,
+}
+
+/// Where a step sets out from.
+struct Departure<'a> {
+    here: &'a ControlStep,
+    step: &'a [f64],
+    /// Largest amplitude of the step.
+    asked_volt: f64,
+    rho: f64,
+    /// Cost without control at this `rho`.
+    start_cost: f64,
 }
 
 impl FeedbackController {
@@ -109,40 +122,9 @@ impl FeedbackController {
             }
             let history =
                 || -> Vec<ControlStep> { std::iter::once(start).chain(&steps).cloned().collect() };
-            let mut search = Search { taken: None, shortest: None, left_range: false };
-            for halvings in 0..=self.settings.max_halvings {
-                let part = 0.5_f64.powi(halvings.cast_signed());
-                let control_volt: Vec<f64> =
-                    here.control_volt.iter().zip(&step).map(|(u, d)| u + part * d).collect();
-                if !plant.admits(&control_volt) {
-                    search.left_range = true;
-                    continue;
-                }
-                let measurement = self.measured(plant, &control_volt, &history())?;
-                measurements += 1;
-                known.observe(&control_volt, &measurement.hub_loads);
-                let cost = self.cost(&measurement, &control_volt, rho);
-                let rise = (cost.total() - here.cost.total()) / start_cost;
-                let settles = || -> Result<bool, ControlError> {
-                    let there = (control_volt.as_slice(), measurement.hub_loads.as_slice());
-                    let next = aim_of(&known, rho, there, limits.as_ref())?.control_volt;
-                    Ok(largest_amplitude(&difference(&next, &control_volt))
-                        <= SETTLING * asked_volt)
-                };
-                let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
-                if rise <= COST_ROUNDING || (allowed && settles()?) {
-                    search.taken = Some(ControlStep {
-                        control_volt,
-                        measurement,
-                        rho,
-                        cost,
-                        asked_volt,
-                        halvings,
-                    });
-                    break;
-                }
-                search.shortest = Some(cost);
-            }
+            let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost };
+            let search = self.search(plant, &mut known, &from, (limits.as_ref(), &history))?;
+            measurements += search.measurements;
             if let Some(step) = search.taken {
                 let fall = here.cost.total() - step.cost.total();
                 steps.push(step.clone());
@@ -178,6 +160,52 @@ impl FeedbackController {
             t: known.t()?,
             kkt,
         })
+    }
+
+    /// The step or the longest part of it, halved and halved again, that lowers the cost.
+    fn search<P: Plant>(
+        &self,
+        plant: &mut P,
+        known: &mut Knowledge<'_>,
+        from: &Departure<'_>,
+        (limits, history): (Option<&ControlLimits>, &dyn Fn() -> Vec<ControlStep>),
+    ) -> Result<Search, RunError<P::Error>> {
+        let Departure { here, step, asked_volt, rho, start_cost } = *from;
+        let strict = self.settings.cost_tolerance > 0.0;
+        let mut search = Search::default();
+        for halvings in 0..=self.settings.max_halvings {
+            let part = 0.5_f64.powi(halvings.cast_signed());
+            let control_volt: Vec<f64> =
+                here.control_volt.iter().zip(step).map(|(u, d)| u + part * d).collect();
+            if !plant.admits(&control_volt) {
+                search.left_range = true;
+                continue;
+            }
+            let measurement = self.measured(plant, &control_volt, &history())?;
+            search.measurements += 1;
+            known.observe(&control_volt, &measurement.hub_loads);
+            let cost = self.cost(&measurement, &control_volt, rho);
+            let rise = (cost.total() - here.cost.total()) / start_cost;
+            let settles = || -> Result<bool, ControlError> {
+                let there = (control_volt.as_slice(), measurement.hub_loads.as_slice());
+                let next = aim_of(known, rho, there, limits)?.control_volt;
+                Ok(largest_amplitude(&difference(&next, &control_volt)) <= SETTLING * asked_volt)
+            };
+            let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
+            if rise <= COST_ROUNDING || (allowed && settles()?) {
+                search.taken = Some(ControlStep {
+                    control_volt,
+                    measurement,
+                    rho,
+                    cost,
+                    asked_volt,
+                    halvings,
+                });
+                break;
+            }
+            search.shortest = Some(cost);
+        }
+        Ok(search)
     }
 
     /// One checked measurement.

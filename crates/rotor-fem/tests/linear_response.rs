@@ -20,7 +20,7 @@ fn coefficients(psi: f64) -> LinearCoefficients {
 }
 
 /// The linear system plus a memory of the first displacement over the whole revolution that the
-/// tangent does not know: `f_2 += 0.5 (q_1(psi) - mean q_1)^3 + 0.2 mean q_1`.
+/// tangent does not know: `f_2 += 0.02 (q_1(psi) - mean q_1)^3 + 0.2 mean q_1`.
 struct WithMemory<S>(S);
 
 impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithMemory<S> {
@@ -38,7 +38,7 @@ impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithMemory<S> {
         self.0.residual(orbit, out)?;
         let mean = orbit.q.row(0).mean();
         for i in 0..out.ncols() {
-            out[(1, i)] += 0.5 * (orbit.q[(0, i)] - mean).powi(3) + 0.2 * mean;
+            out[(1, i)] += 0.02 * (orbit.q[(0, i)] - mean).powi(3) + 0.2 * mean;
         }
         Ok(())
     }

@@ -239,9 +239,9 @@ pub enum EffortChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ControllerChoice {
     /// T0 about zero control, held: the paper's.
+    #[default]
     Global,
     /// T about the present control, from the linearised rotor and the actuator's own tangent.
-    #[default]
     Local,
     /// T followed by a filter on the measured pairs.
     Adaptive,
@@ -316,12 +316,11 @@ pub struct ControlFile {
 impl Default for ControlFile {
     fn default() -> Self {
         Self {
-            harmonics: vec![vec![2], vec![3], vec![4], vec![5], vec![2, 3, 4, 5]],
+            harmonics: vec![vec![2], vec![3], vec![4]],
             actuators: vec![
                 ControlActuator::Ideal,
                 ControlActuator::Ignored,
                 ControlActuator::Hysteretic,
-                ControlActuator::Inverse,
             ],
             bias_volt: 65.0,
             amplitude_volt: 85.0,
@@ -329,7 +328,7 @@ impl Default for ControlFile {
             stroke_limit: StrokeChoice::FromActuator,
             load_weights: LoadWeightsFile::default(),
             load_scale: LoadScaleChoice::default(),
-            effort: EffortChoice::Limits,
+            effort: EffortChoice::MeetStroke,
             controller: ControllerChoice::default(),
             max_steps: 40,
             step_tolerance: 1e-4,

@@ -25,7 +25,7 @@ pub use file_control::{
     EffortChoice, HorizontalTailFile, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile,
     PropulsiveTrimFile, StoredActuatorFile, StrokeChoice, TrimFile, WindTunnelTrimFile,
 };
-pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
+pub use read::{CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
 pub use validated::{
     ActuatorSource, ActuatorValues, BladeValues, Case, ControlValues, FlapValues, SectionValues,
     TrimValues,

@@ -8,6 +8,8 @@ use std::path::Path;
 
 /// Name of the shipped case that bare `hhc` runs.
 pub const PAPER_CASE: &str = "paper_mu030.ron";
+/// Shipped case of the paper's rotor under further controllers.
+pub const CONTROLLERS_CASE: &str = "controllers_mu030.ron";
 
 /// A case with everything needed to report on it later.
 #[derive(Debug, Clone)]

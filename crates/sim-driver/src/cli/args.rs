@@ -97,6 +97,12 @@ pub struct RunArgs {
     /// Inflow model instead of the case's.
     #[arg(long, value_enum)]
     pub inflow: Option<InflowOverride>,
+    /// Also change one assumption at a time: sensitivity.csv.
+    #[arg(long)]
+    pub sensitivity: bool,
+    /// Also control under noise, a wrong T and drift: robustness.csv.
+    #[arg(long)]
+    pub robustness: bool,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

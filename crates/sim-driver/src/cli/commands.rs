@@ -51,7 +51,12 @@ const RESULT_FILE: &str = "result.json";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
-    run_and_store(&loaded, &args.out, args.format.format, Scope::WithSensitivity)
+    run_and_store(
+        &loaded,
+        &args.out,
+        args.format.format,
+        Scope { sensitivity: true, robustness: false },
+    )
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
@@ -60,14 +65,19 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
         let stem = args.case.file_stem().map(PathBuf::from).unwrap_or_default();
         Path::new("out").join(stem)
     });
-    run_and_store(&loaded, &out, args.format.format, Scope::CaseAlone)
+    run_and_store(
+        &loaded,
+        &out,
+        args.format.format,
+        Scope { sensitivity: args.sensitivity, robustness: args.robustness },
+    )
 }
 
-/// How much of a case is computed.
+/// What is computed beside the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Scope {
-    CaseAlone,
-    WithSensitivity,
+struct Scope {
+    sensitivity: bool,
+    robustness: bool,
 }
 
 fn run_and_store(
@@ -76,18 +86,19 @@ fn run_and_store(
     format: Format,
     scope: Scope,
 ) -> Result<(), SimError> {
-    let more = if scope == Scope::WithSensitivity { SENSITIVITY_ROWS } else { 0 };
+    let more = if scope.sensitivity { SENSITIVITY_ROWS } else { 0 };
     let progress = Progress::new(steps_of(loaded) + more);
     let computed = run_case(loaded, &progress).and_then(|outcome| {
-        progress.doing("sensitivity and robustness");
-        let (rows, cells) = match scope {
-            Scope::CaseAlone => (vec![], vec![]),
-            Scope::WithSensitivity => {
-                let done = || progress.step();
-                let rows = sensitivities(loaded, &outcome.trimmed, &outcome.drives, &done)?;
-                (rows, robustness_maps(loaded, &outcome)?)
-            }
-        };
+        let (mut rows, mut cells) = (vec![], vec![]);
+        if scope.sensitivity {
+            progress.doing("sensitivity");
+            let done = || progress.step();
+            rows = sensitivities(loaded, &outcome.trimmed, &outcome.drives, &done)?;
+        }
+        if scope.robustness {
+            progress.doing("robustness");
+            cells = robustness_maps(loaded, &outcome)?;
+        }
         Ok((outcome, rows, cells))
     });
     progress.finish();
@@ -98,9 +109,11 @@ fn run_and_store(
     let inputs = outcome.actuators.inputs.clone();
     let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
     let report = study_report(loaded, &outcome, &stored, (&sensitivity, &cells))?;
-    if scope == Scope::WithSensitivity {
+    if scope.sensitivity {
         let text = sensitivity_csv(loaded, &sensitivity);
         write_atomic(&out.join(SENSITIVITY_FILE), text.as_bytes())?;
+    }
+    if scope.robustness {
         write_atomic(&out.join(ROBUSTNESS_FILE), robustness_csv(&cells).as_bytes())?;
     }
     stored.write(&out.join(RESULT_FILE))?;
