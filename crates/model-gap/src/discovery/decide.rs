@@ -20,14 +20,40 @@ pub(super) fn decide<S: Simulator>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
 ) -> Result<Finding, GapError> {
+    Search::new(discovery, evidence)?.run()
+}
+
+/// The candidates given, all of them, as the data fit them.
+pub(super) fn refit<S: Simulator>(
+    discovery: &Discovery<'_, S>,
+    evidence: &Evidence<'_>,
+    given: &[usize],
+) -> Result<Finding, GapError> {
+    let search = Search::new(discovery, evidence)?;
+    let mut current = search.base.clone();
+    let mut chosen = Vec::new();
+    for &candidate in given {
+        let starts = &discovery.candidates[candidate].starts;
+        if starts.is_empty() {
+            continue;
+        }
+        current = search.fitter.fit_with(&current.effects, candidate, starts)?;
+        chosen.push(candidate);
+    }
+    let none = vec![None; discovery.candidates.len()];
+    search.conclude(&chosen, &current, &none, none.iter().map(|_| None).collect(), Vec::new())
+}
+
+impl<'a, S: Simulator> Search<'a, S> {
+    fn new(discovery: &'a Discovery<'a, S>, evidence: &'a Evidence<'a>) -> Result<Self, GapError> {
     let base_prediction = discovery.simulator.predict(&[])?;
     let fitter =
         Fitter { simulator: discovery.simulator, evidence, candidates: discovery.candidates };
     let base = fitter.refine(Vec::new())?;
     let screening = screen(discovery, evidence, &base_prediction, &base.residual)?;
     let generic = Generic::new(discovery, evidence);
-    let search = Search { discovery, evidence, fitter, screening, generic, base };
-    search.run()
+    Ok(Self { discovery, evidence, fitter, screening, generic, base })
+    }
 }
 
 struct Search<'a, S> {

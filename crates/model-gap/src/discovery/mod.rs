@@ -89,4 +89,13 @@ impl<S: Simulator> Discovery<'_, S> {
         let evidence = Evidence::new(self.traces, self.settings.most_folds)?;
         decide::decide(self, &evidence)
     }
+
+    /// Fits the candidates given together and refuses nothing: what a refit with the true causes gains.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn refit(&self, given: &[usize]) -> Result<Finding, GapError> {
+        let evidence = Evidence::new(self.traces, self.settings.most_folds)?;
+        decide::refit(self, &evidence, given)
+    }
 }

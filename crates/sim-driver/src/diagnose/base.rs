@@ -62,8 +62,6 @@ pub(crate) struct BaseModel {
     weights: DVector<f64>,
     /// Prior chosen by leaving out each reference run in turn.
     pub(crate) prior: (f64, f64),
-    /// Whether there were reference runs.
-    pub(crate) has_reference: bool,
 }
 
 /// Normal equations of one run.
@@ -79,7 +77,11 @@ impl BaseModel {
     ///
     /// The prior's size and length are chosen by leaving out each run in turn. `fixed` takes over an
     /// earlier choice.
-    pub(crate) fn fit(runs: &[&Record], range: (f64, f64), fixed: Option<(f64, f64)>) -> Option<Self> {
+    pub(crate) fn fit(
+        runs: &[&Record],
+        range: (f64, f64),
+        fixed: Option<(f64, f64)>,
+    ) -> Option<Self> {
         let plays = Plays::new(range.0, range.1);
         let spread = pooled_spread(runs);
         let taus = time_constants_s();
@@ -133,7 +135,6 @@ impl BaseModel {
                 spread,
                 weights: solution,
                 prior,
-                has_reference: true,
             };
             let errors = model.measure_errors(runs, &equations, &precision)?;
             noise = errors;

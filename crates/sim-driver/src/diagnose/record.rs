@@ -50,6 +50,10 @@ pub struct Records {
     pub input_unit: String,
     /// Unit of the output.
     pub output_unit: String,
+    /// Name and unit of the input, such as `command_V`.
+    pub input_label: String,
+    /// Name and unit of the output.
+    pub output_label: String,
     /// Flap angle per output, deg/um, if it is an actuator and the data say it.
     pub deg_per_um: Option<f64>,
     /// Whether this is an actuator bench.
@@ -96,6 +100,8 @@ impl From<&BenchData> for Records {
             range: data.command_range_volt,
             input_unit: "V".into(),
             output_unit: "um".into(),
+            input_label: "command_V".into(),
+            output_label: "displacement_um".into(),
             deg_per_um: data.flap_deg_per_um,
             is_bench: true,
             content_hash: data.content_hash.clone(),
@@ -128,6 +134,8 @@ impl From<&LoopData> for Records {
             range: data.input_range.limits(),
             input_unit: data.channels.input.unit.symbol.to_owned(),
             output_unit: data.channels.output.unit.symbol.to_owned(),
+            input_label: data.channels.input.label(),
+            output_label: data.channels.output.label(),
             deg_per_um: None,
             is_bench: false,
             content_hash: data.content_hash.clone(),

@@ -154,6 +154,22 @@ impl<'a> BenchSimulator<'a> {
             .collect()
     }
 
+    /// Run, channel and sampling step of every trace.
+    pub(crate) fn kinds(&self) -> Vec<(usize, &'static str, f64)> {
+        self.channels
+            .iter()
+            .map(|&(number, kind)| {
+                let name = match kind {
+                    ChannelKind::Output => "output",
+                    ChannelKind::Amplifier => "amplifier",
+                    ChannelKind::Temperature => "temperature",
+                    ChannelKind::Load => "load",
+                };
+                (number, name, self.runs[number].step_s * self.block as f64)
+            })
+            .collect()
+    }
+
     fn measured(&self, number: usize, kind: ChannelKind) -> &[f64] {
         let run = self.runs[number];
         let given = match kind {
