@@ -37,6 +37,9 @@ pub struct Parameter {
     pub high: f64,
     /// How it is searched.
     pub scale: Scale,
+    /// Whether it only shapes the effect: fitted, but neither reported nor judged, because candidates of
+    /// one cause may shape it differently.
+    pub is_shape: bool,
 }
 
 impl Parameter {

@@ -134,7 +134,9 @@ pub enum GapError {
         message: String,
     },
     /// A covariance that is none.
-    #[error("the information of {columns} nuisance columns is not positive definite: a column holds NaN or is out of scale")]
+    #[error(
+        "the information of {columns} nuisance columns is not positive definite: a column holds NaN or is out of scale"
+    )]
     NotPositiveDefinite {
         /// Number of columns.
         columns: usize,

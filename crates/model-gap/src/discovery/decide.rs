@@ -4,11 +4,15 @@ use super::evidence::Evidence;
 use super::fit::{Fitted, Fitter};
 use super::gain::gain;
 use super::judge::{Generic, drift, paired, parameters};
-use super::screen::{Screening, screen};
+use super::screen::screen;
 use super::{Confidence, Discovery, Finding, Found, Screened, Simulator, Verdict};
 use crate::{Effect, GapError, Scale};
 use rayon::prelude::*;
 
+/// Relative spread from which on the name is wrong.
+const WRONG_NAME: f64 = 0.5;
+/// Part of its threshold that a candidate must promise before it is fitted.
+const PROMISE: f64 = 0.3;
 /// Relative spread of a parameter over the experiments from which on it drifts.
 const DRIFTING: f64 = 0.25;
 /// Share of the drop by the causes before that the next one must add: below it, it mends their form.
@@ -34,11 +38,10 @@ pub(super) fn refit<S: Simulator>(
     let mut chosen = Vec::new();
     for &candidate in given {
         let starts = &discovery.candidates[candidate].starts;
-        if starts.is_empty() {
-            continue;
+        if let Some(found) = search.fitter.fit_with(&current, candidate, starts, 0.0)? {
+            current = found;
+            chosen.push(candidate);
         }
-        current = search.fitter.fit_with(&current.effects, candidate, starts)?;
-        chosen.push(candidate);
     }
     let none = vec![None; discovery.candidates.len()];
     search.conclude(&chosen, &current, &none, none.iter().map(|_| None).collect(), Vec::new())
@@ -46,13 +49,13 @@ pub(super) fn refit<S: Simulator>(
 
 impl<'a, S: Simulator> Search<'a, S> {
     fn new(discovery: &'a Discovery<'a, S>, evidence: &'a Evidence<'a>) -> Result<Self, GapError> {
-    let base_prediction = discovery.simulator.predict(&[])?;
-    let fitter =
-        Fitter { simulator: discovery.simulator, evidence, candidates: discovery.candidates };
-    let base = fitter.refine(Vec::new())?;
-    let screening = screen(discovery, evidence, &base_prediction, &base.residual)?;
-    let generic = Generic::new(discovery, evidence);
-    Ok(Self { discovery, evidence, fitter, screening, generic, base })
+        let base_prediction = discovery.simulator.predict(&[])?;
+        let fitter =
+            Fitter { simulator: discovery.simulator, evidence, candidates: discovery.candidates };
+        let base = fitter.refine(Vec::new())?;
+        let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
+        let generic = Generic::new(discovery, evidence);
+        Ok(Self { discovery, evidence, fitter, screened, generic, base })
     }
 }
 
@@ -60,7 +63,7 @@ struct Search<'a, S> {
     discovery: &'a Discovery<'a, S>,
     evidence: &'a Evidence<'a>,
     fitter: Fitter<'a, S>,
-    screening: Screening,
+    screened: Vec<Screened>,
     generic: Generic,
     base: Fitted,
 }
@@ -110,7 +113,8 @@ impl<S: Simulator> Search<'_, S> {
                     return Ok(None);
                 }
                 let starts = &self.discovery.candidates[candidate].starts;
-                self.fitter.fit_with(&current.effects, candidate, starts).map(Some)
+                let least = PROMISE * self.screened[candidate].threshold;
+                self.fitter.fit_with(current, candidate, starts, least)
             })
             .collect()
     }
@@ -140,8 +144,7 @@ impl<S: Simulator> Search<'_, S> {
     fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, String> {
         let drop = current.cost - next.cost - self.penalty(candidate);
         let before = self.base.cost - current.cost;
-        let threshold =
-            self.screening.screened[candidate].threshold + NEXT_SHARE * before;
+        let threshold = self.screened[candidate].threshold + NEXT_SHARE * before;
         let id = self.id(candidate);
         if drop < threshold {
             return Err(format!(
@@ -154,6 +157,12 @@ impl<S: Simulator> Search<'_, S> {
             return Err(format!(
                 "{id} explains {drop:.0} noise units where it is fitted and {held_out:.0} where it is held out, less than the {needed:.0} asked for"
             ));
+        }
+        // one more cause must stand on its own feet: what drifts mends the form of those before it
+        if !current.effects.is_empty()
+            && let Some(doubt) = self.doubts(next).0.into_iter().next()
+        {
+            return Err(format!("{id} beside the causes before is refused: {doubt}"));
         }
         Ok(held_out)
     }
@@ -194,12 +203,16 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     /// Drops every cause that the others make superfluous.
-    fn check_backward(&self, chosen: &mut Vec<usize>, current: &mut Fitted) -> Result<(), GapError> {
+    fn check_backward(
+        &self,
+        chosen: &mut Vec<usize>,
+        current: &mut Fitted,
+    ) -> Result<(), GapError> {
         let mut at = 0;
         while chosen.len() > 1 && at < chosen.len() {
             let rest = self.fitter.refine(Self::without(&current.effects, at))?;
             let drop = rest.cost - current.cost - self.penalty(chosen[at]);
-            if drop < self.screening.screened[chosen[at]].threshold {
+            if drop < self.screened[chosen[at]].threshold {
                 chosen.remove(at);
                 *current = rest;
                 at = 0;
@@ -267,8 +280,12 @@ impl<S: Simulator> Search<'_, S> {
         let lack = (after - self.generic.threshold).max(0.0);
         let explained = if drop > 0.0 { drop / (drop + lack) } else { 0.0 };
         let ambiguous = causes.iter().any(|c| !c.alternatives.is_empty());
-        let mut doubts = self.doubts(current, &mut reasons);
-        if explained < settings.explained {
+        let (found, worst_drift) = self.doubts(current);
+        let mut doubts = !found.is_empty();
+        reasons.extend(found);
+        if chosen.is_empty() {
+            doubts = false;
+        } else if explained < settings.explained {
             doubts = true;
             reasons.push(format!(
                 "{:.0} % of the excess is explained; structure is left along directions without a name: {after:.0} noise units, {:.0} at the floor",
@@ -277,7 +294,7 @@ impl<S: Simulator> Search<'_, S> {
         }
         let verdict = if chosen.is_empty() {
             self.nothing_named(before, &mut reasons)
-        } else if explained < 0.5 {
+        } else if explained < 0.5 || worst_drift > WRONG_NAME {
             Verdict::Unknown
         } else if ambiguous {
             Verdict::Ambiguous
@@ -298,7 +315,7 @@ impl<S: Simulator> Search<'_, S> {
             causes,
             effects: current.effects.clone(),
             reasons,
-            screen: self.screening.screened.clone(),
+            screen: self.screened.clone(),
             single_drops,
             excess: [before, after],
             gain: gain(self.evidence, &self.base, current, settings.resamplings),
@@ -307,17 +324,22 @@ impl<S: Simulator> Search<'_, S> {
         })
     }
 
-    /// Parameters at their bounds or drifting from experiment to experiment.
-    fn doubts(&self, current: &Fitted, reasons: &mut Vec<String>) -> bool {
-        let mut any = false;
+    /// What speaks against the parameters of fitted effects: ends of ranges, drift from experiment to
+    /// experiment; and the largest drift.
+    fn doubts(&self, current: &Fitted) -> (Vec<String>, f64) {
+        let mut doubts = Vec::new();
+        let mut worst = 0.0_f64;
         for (k, &(effect, p)) in current.free.iter().enumerate() {
             let own = &current.effects[effect];
             let parameter = &self.discovery.candidates[own.candidate].cause.parameters[p];
+            if parameter.is_shape {
+                continue;
+            }
             let value = own.values[p];
             let name = format!("{} of {}", parameter.name, self.id(own.candidate));
             if parameter.at_bound(value) {
-                any = true;
-                reasons.push(format!("{name} lies at an end of its range, {value:.3e} {}", parameter.unit));
+                let unit = parameter.unit;
+                doubts.push(format!("{name} lies at an end of its range, {value:.3e} {unit}"));
             }
             let found = drift(self.evidence, current, k);
             let spread = match parameter.scale {
@@ -325,14 +347,14 @@ impl<S: Simulator> Search<'_, S> {
                 Scale::Linear => found.spread / value.abs().max(1e-300),
             };
             if found.is_significant() && spread > DRIFTING {
-                any = true;
-                reasons.push(format!(
+                worst = worst.max(spread);
+                doubts.push(format!(
                     "{name} drifts by {:.0} % from experiment to experiment: the name may be wrong",
                     100.0 * spread
                 ));
             }
         }
-        any
+        (doubts, worst)
     }
 
     fn nothing_named(&self, excess: f64, reasons: &mut Vec<String>) -> Verdict {
@@ -344,7 +366,7 @@ impl<S: Simulator> Search<'_, S> {
             return Verdict::Unknown;
         }
         let visible = |s: &Screened| s.weak_signal > s.threshold;
-        if self.screening.screened.iter().any(visible) {
+        if self.screened.iter().any(visible) {
             Verdict::NothingMissing
         } else {
             reasons.push("no cause of usual strength would show in these data".into());

@@ -2,7 +2,7 @@
 
 use super::Trace;
 use crate::GapError;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn};
 
 /// Products of a set of columns, weighted by the noise, over one experiment.
 #[derive(Debug, Clone)]
@@ -46,9 +46,9 @@ pub(crate) struct Evidence<'a> {
 impl<'a> Evidence<'a> {
     pub(crate) fn new(traces: &'a [Trace], most_folds: usize) -> Result<Self, GapError> {
         let experiments = traces.iter().map(|t| t.experiment + 1).max().unwrap_or(0);
-        let width = traces.first().map_or(0, |t| t.nuisance.ncols());
+        let width = traces.iter().map(|t| t.nuisance.ncols()).max().unwrap_or(0);
         let mut nuisance = vec![DMatrix::zeros(width, width); experiments];
-        for t in traces {
+        for t in traces.iter().filter(|t| t.nuisance.ncols() > 0) {
             nuisance[t.experiment] += t.nuisance.tr_mul(&t.nuisance) / (t.sigma * t.sigma);
         }
         let fold_count = experiments.min(most_folds);
@@ -81,28 +81,31 @@ impl<'a> Evidence<'a> {
 
     /// Products of columns, experiment by experiment.
     pub(crate) fn products(&self, columns: &Columns<'_>) -> Vec<Products> {
-        let width = self.traces.first().map_or(0, |t| t.nuisance.ncols());
+        let width = self.nuisance.first().map_or(0, DMatrix::ncols);
         let mut all = vec![Products::zero(columns.len(), width); self.experiments];
         for (number, trace) in self.traces.iter().enumerate() {
-            self.add_window(&mut all[trace.experiment], columns, number, 0..trace.measured.len());
+            self.add(&mut all[trace.experiment], columns, number);
         }
         all
     }
 
-    fn add_window(
-        &self,
-        into: &mut Products,
-        columns: &Columns<'_>,
-        number: usize,
-        window: std::ops::Range<usize>,
-    ) {
+    fn add(&self, into: &mut Products, columns: &Columns<'_>, number: usize) {
         let trace = &self.traces[number];
         let weight = 1.0 / (trace.sigma * trace.sigma);
-        let rows = window.len();
-        let matrix = DMatrix::from_fn(rows, columns.len(), |i, c| columns[c][number][window.start + i]);
-        let nuisance = trace.nuisance.rows(window.start, rows);
-        into.own += matrix.tr_mul(&matrix) * weight;
-        into.with_nuisance += nuisance.tr_mul(&matrix) * weight;
+        let view =
+            |c: usize| DVectorView::from_slice(&columns[c][number], columns[c][number].len());
+        for a in 0..columns.len() {
+            for b in 0..=a {
+                let product = weight * view(a).dot(&view(b));
+                into.own[(a, b)] += product;
+                if a != b {
+                    into.own[(b, a)] += product;
+                }
+            }
+            if trace.nuisance.ncols() > 0 {
+                into.with_nuisance.column_mut(a).gemv_tr(weight, &trace.nuisance, &view(a), 1.0);
+            }
+        }
     }
 
     /// The products with the nuisance projected out, over all experiments.
@@ -172,6 +175,9 @@ impl<'a> Evidence<'a> {
             .iter()
             .zip(self.traces)
             .map(|(r, t)| {
+                if t.nuisance.ncols() == 0 {
+                    return r.clone();
+                }
                 let moved = &t.nuisance * nuisance;
                 r.iter().zip(moved.iter()).map(|(a, b)| a - b).collect()
             })

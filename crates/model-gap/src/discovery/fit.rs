@@ -50,19 +50,32 @@ impl<S: Simulator> Fitter<'_, S> {
         self.evidence.projected(&products)[(0, 0)]
     }
 
-    /// The best fit of `fixed` effects (refitted too) and a further candidate, from every start given.
+    /// The best fit of the effects of `before` (refitted too) and a further candidate, from every
+    /// start given; none if no start promises a drop of `least` were its effect scaled freely.
     pub(crate) fn fit_with(
         &self,
-        before: &[Effect],
+        before: &Fitted,
         candidate: usize,
         starts: &[Vec<f64>],
-    ) -> Result<Fitted, GapError> {
+        least: f64,
+    ) -> Result<Option<Fitted>, GapError> {
         let mut tried = Vec::new();
+        let mut promise = 0.0_f64;
         for values in starts {
-            let mut effects = before.to_vec();
+            let mut effects = before.effects.clone();
             effects.push(Effect { candidate, values: values.clone() });
             let residual = self.residual(&effects)?;
-            tried.push((self.cost_of(&residual), effects));
+            let products = self.evidence.products(&[&before.residual, &residual]);
+            let gram = self.evidence.projected(&products);
+            let along = gram[(0, 0)] - gram[(0, 1)];
+            let size = gram[(0, 0)] - 2.0 * gram[(0, 1)] + gram[(1, 1)];
+            if along > 0.0 && size > 0.0 {
+                promise = promise.max(along * along / size);
+            }
+            tried.push((gram[(1, 1)], effects));
+        }
+        if promise < least {
+            return Ok(None);
         }
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<Fitted> = None;
@@ -72,7 +85,7 @@ impl<S: Simulator> Fitter<'_, S> {
                 best = Some(found);
             }
         }
-        best.ok_or(GapError::TooShort { what: "starts of a fit".into(), samples: 0, needed: 1 })
+        Ok(best)
     }
 
     /// Levenberg-Marquardt from given effects.
@@ -123,7 +136,11 @@ impl<S: Simulator> Fitter<'_, S> {
         Ok(Fitted { effects, cost, residual, slopes, free, products })
     }
 
-    fn gram(&self, residual: &[Vec<f64>], slopes: &[Vec<Vec<f64>>]) -> (DMatrix<f64>, Vec<Products>) {
+    fn gram(
+        &self,
+        residual: &[Vec<f64>],
+        slopes: &[Vec<Vec<f64>>],
+    ) -> (DMatrix<f64>, Vec<Products>) {
         let columns: Vec<&[Vec<f64>]> =
             std::iter::once(residual).chain(slopes.iter().map(Vec::as_slice)).collect();
         let columns: &Columns<'_> = &columns;

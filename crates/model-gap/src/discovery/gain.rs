@@ -2,6 +2,7 @@
 
 use super::evidence::Evidence;
 use super::fit::Fitted;
+use nalgebra::DVector;
 
 /// Held-out error before and after, in the output's unit, with the block bootstrap of the error
 /// after.
@@ -19,7 +20,12 @@ pub struct Gain {
 type Block = (f64, f64, f64);
 
 /// Resamples experiments first, then blocks inside them.
-pub(crate) fn gain(evidence: &Evidence<'_>, base: &Fitted, extended: &Fitted, resamplings: usize) -> Gain {
+pub(crate) fn gain(
+    evidence: &Evidence<'_>,
+    base: &Fitted,
+    extended: &Fitted,
+    resamplings: usize,
+) -> Gain {
     let before = held_out_residual(evidence, base);
     let after = held_out_residual(evidence, extended);
     let mut experiments: Vec<Vec<Block>> = vec![Vec::new(); evidence.experiments];
@@ -93,7 +99,11 @@ pub(crate) fn held_out_residual(evidence: &Evidence<'_>, fitted: &Fitted) -> Vec
         .enumerate()
         .map(|(number, trace)| {
             let (shift, nuisance) = &folds[evidence.folds[trace.experiment]];
-            let moved = &trace.nuisance * nuisance;
+            let moved = if trace.nuisance.ncols() == 0 {
+                DVector::zeros(trace.measured.len())
+            } else {
+                &trace.nuisance * nuisance
+            };
             (0..trace.measured.len())
                 .map(|i| {
                     let straight: f64 = fitted

@@ -6,11 +6,13 @@ use super::fit::Fitted;
 use super::{Discovery, Signal};
 use nalgebra::{DMatrix, DVector};
 
+/// Factor on the energy that surrogates leave along the directions without a name.
+const GENERIC_MARGIN: f64 = 1.5;
+
 /// The directions without a name, ready to be tested against residuals.
 pub(crate) struct Generic {
     /// Projected products of residual-free directions, inverted on their range.
     inverse: DMatrix<f64>,
-    pub(crate) directions: f64,
     /// Excess that surrogates with nothing missing reach, with a margin.
     pub(crate) threshold: f64,
 }
@@ -20,15 +22,15 @@ impl Generic {
         let columns: Vec<&[Vec<f64>]> = discovery.generic.iter().map(Vec::as_slice).collect();
         let gram = evidence.projected(&evidence.products(&columns));
         let (inverse, rank) = pseudo_inverse(&gram);
-        let mut own = Self { inverse, directions: rank, threshold: 0.0 };
+        let mut own = Self { inverse, threshold: 0.0 };
         let settings = discovery.settings;
         let structural = discovery
             .structures
             .iter()
             .map(|s| own.along(discovery, evidence, s))
             .fold(0.0, f64::max);
-        let noise = rank.sqrt() + settings.noise_deviations;
-        own.threshold = (settings.structure_margin * structural.sqrt() + noise).powi(2);
+        let noise = (rank.sqrt() + settings.noise_deviations).powi(2);
+        own.threshold = GENERIC_MARGIN * structural + noise;
         own
     }
 
@@ -39,10 +41,8 @@ impl Generic {
         evidence: &Evidence<'_>,
         residual: &Signal,
     ) -> f64 {
-        let columns: Vec<&[Vec<f64>]> = std::iter::once(residual)
-            .chain(discovery.generic.iter())
-            .map(Vec::as_slice)
-            .collect();
+        let columns: Vec<&[Vec<f64>]> =
+            std::iter::once(residual).chain(discovery.generic.iter()).map(Vec::as_slice).collect();
         let columns: &Columns<'_> = &columns;
         let gram = evidence.projected(&evidence.products(columns));
         let n = columns.len() - 1;
@@ -147,7 +147,13 @@ pub(crate) fn parameters<S>(
                 let x = parameter.coordinate(value);
                 [parameter.value(x - 1.96 * std), parameter.value(x + 1.96 * std)]
             });
-            FittedParameter { name: parameter.name, unit: parameter.unit, value, ci95 }
+            FittedParameter {
+                name: parameter.name,
+                unit: parameter.unit,
+                value,
+                ci95,
+                is_shape: parameter.is_shape,
+            }
         })
         .collect()
 }

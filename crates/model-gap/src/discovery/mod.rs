@@ -41,7 +41,7 @@ pub struct Discovery<'a, S> {
 /// Bounds of the decisions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Standard deviations of the noise that a score must exceed, beyond what surrogates reach.
+    /// Standard deviations of the noise that a score must exceed; noise and structure add as squares.
     pub noise_deviations: f64,
     /// Factor on what surrogates reach.
     pub structure_margin: f64,
@@ -67,7 +67,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             noise_deviations: 4.2,
-            structure_margin: 1.5,
+            structure_margin: 2.0,
             explained: 0.9,
             most_causes: 3,
             most_folds: 8,

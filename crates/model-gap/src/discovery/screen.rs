@@ -26,27 +26,21 @@ pub struct Screened {
     pub best_start: usize,
 }
 
-/// The screening with the effect of every candidate at its best start.
-pub(crate) struct Screening {
-    pub(crate) screened: Vec<Screened>,
-    pub(crate) effects: Vec<Option<Signal>>,
-    /// Projected products of the effects of all candidates with each other.
-    pub(crate) cosines: DMatrix<f64>,
-}
+/// Weight of what surrogates leave against the sign of an effect.
+const OTHER_SIGN: f64 = 0.5;
 
-/// Least part of a start's scale that still counts as the effect (a free scale may be any).
-const LEAST_SCALE: f64 = 0.0;
-
+/// The screening of every candidate, the effect of each at its best start compared with the others.
 pub(crate) fn screen<S: Simulator>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
     base: &[Vec<f64>],
     misfit: &[Vec<f64>],
-) -> Result<Screening, GapError> {
-    let results: Vec<Result<(Screened, Option<Signal>), GapError>> = (0..discovery.candidates.len())
-        .into_par_iter()
-        .map(|candidate| one(discovery, evidence, base, misfit, candidate))
-        .collect();
+) -> Result<Vec<Screened>, GapError> {
+    let results: Vec<Result<(Screened, Option<Signal>), GapError>> =
+        (0..discovery.candidates.len())
+            .into_par_iter()
+            .map(|candidate| one(discovery, evidence, base, misfit, candidate))
+            .collect();
     let mut screened = Vec::new();
     let mut effects = Vec::new();
     for result in results {
@@ -71,7 +65,7 @@ pub(crate) fn screen<S: Simulator>(
             .map(|&b| (b, cosines[(a, b)]))
             .max_by(|x, y| x.1.abs().total_cmp(&y.1.abs()));
     }
-    Ok(Screening { screened, effects, cosines })
+    Ok(screened)
 }
 
 fn one<S: Simulator>(
@@ -106,9 +100,8 @@ fn one<S: Simulator>(
         .collect();
     let products = evidence.products(&columns);
     let gram = evidence.projected(&products);
-    let whole: Vec<f64> = (0..columns.len())
-        .map(|c| products.iter().map(|p| p.own[(c, c)]).sum())
-        .collect();
+    let whole: Vec<f64> =
+        (0..columns.len()).map(|c| products.iter().map(|p| p.own[(c, c)]).sum()).collect();
     let weak = settings.weak_effect.powi(2) * evidence.output_energy();
     let mut best = nothing;
     let mut found = None;
@@ -120,11 +113,12 @@ fn one<S: Simulator>(
             continue;
         }
         for s in 1..known {
-            structural = structural.max(gram[(at, s)].abs() / size.sqrt());
+            let along = gram[(at, s)] / size.sqrt();
+            structural = structural.max(along).max(-OTHER_SIGN * along);
         }
         best.weak_signal = best.weak_signal.max(weak * size / whole[at]);
         let along = gram[(0, at)];
-        let score = if along > LEAST_SCALE { along * along / size } else { 0.0 };
+        let score = if along > 0.0 { along * along / size } else { 0.0 };
         if score > best.score || found.is_none() {
             best.score = score;
             best.absorbed = 1.0 - size / whole[at];
@@ -133,6 +127,6 @@ fn one<S: Simulator>(
         }
     }
     best.threshold =
-        (settings.structure_margin * structural + settings.noise_deviations).powi(2);
+        (settings.structure_margin * structural).powi(2) + settings.noise_deviations.powi(2);
     Ok((best, found.map(|start| signals.swap_remove(start))))
 }

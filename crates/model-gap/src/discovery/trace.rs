@@ -22,7 +22,8 @@ pub struct Trace {
     pub sigma: f64,
     /// Standard deviation of the noise alone, in the signal's unit.
     pub noise: f64,
-    /// What the base model may still move by, a row per sample; the same columns in every trace.
+    /// What the base model may still move by, a row per sample; the same columns in every trace,
+    /// or no column where it moves nothing.
     pub nuisance: DMatrix<f64>,
     /// Samples per block of the bootstrap: at least one period.
     pub block: usize,

@@ -43,6 +43,8 @@ pub struct FittedParameter {
     pub value: f64,
     /// 95 % interval.
     pub ci95: [f64; 2],
+    /// Whether it only shapes the effect.
+    pub is_shape: bool,
 }
 
 /// A cause that was found, or could be it.

@@ -1,8 +1,8 @@
 //! What each command does.
 
 use super::args::{
-    CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs,
-    ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs,
+    CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs,
+    ReportArgs, ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs,
 };
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
@@ -167,8 +167,9 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let found = crate::diagnose::diagnose(&measured, &question);
     progress.finish();
     let found = found?;
-    let findings = serde_json::to_string_pretty(&Findings::from(&found))
-        .map_err(|e| SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() })?;
+    let findings = serde_json::to_string_pretty(&Findings::from(&found)).map_err(|e| {
+        SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
+    })?;
     found.extended()?.write(&args.output.join("extended.ron"))?;
     for (name, text) in found.figures() {
         write_atomic(&args.output.join(name), text.as_bytes())?;
@@ -200,9 +201,10 @@ fn records_of(folder: &Path) -> Result<Records, SimError> {
         DataSet::Loops(loops) => Ok(loops.into()),
         DataSet::Curves(curves) => {
             let place = Place::file(format!("{}/dataset.ron", curves.folder)).field("kind");
-            let message = "reversal curves hold no time: nothing dynamic can be diagnosed from them; \
+            let message =
+                "reversal curves hold no time: nothing dynamic can be diagnosed from them; \
                            give an ActuatorBench or a GenericLoop"
-                .to_owned();
+                    .to_owned();
             Err(Problem::new(place, Fault::Refused { message }).into())
         }
     }

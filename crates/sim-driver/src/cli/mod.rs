@@ -4,8 +4,8 @@ mod args;
 mod commands;
 
 pub use args::{
-    CheckArgs, Cli, Command, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs,
-    ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs,
+    CheckArgs, Cli, Command, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride,
+    InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs,
 };
 
 use crate::SimError;

@@ -14,9 +14,10 @@ fn time_constants_s() -> Vec<f64> {
 /// Prior standard deviation of the share of one time constant.
 const SHARE: f64 = 0.1;
 /// Most rows that enter the normal equations.
-const MOST_ROWS: usize = 40_000;
+const MOST_ROWS: usize = 15_000;
 /// Amplitude of the density over the output's half range, and its length, to choose from.
-const PRIORS: [(f64, f64); 6] = [(0.3, 0.2), (1.0, 0.2), (3.0, 0.2), (0.3, 0.5), (1.0, 0.5), (3.0, 0.5)];
+const PRIORS: [(f64, f64); 6] =
+    [(0.3, 0.2), (1.0, 0.2), (3.0, 0.2), (0.3, 0.5), (1.0, 0.5), (3.0, 0.5)];
 /// Slope of the reversible part over the output's half range per half range of the input.
 const REVERSIBLE: f64 = 1.0;
 /// Rounds of static part and relaxation after one another.
@@ -177,7 +178,8 @@ impl BaseModel {
         let (mut left, mut all) = (0.0, 0.0);
         if equations.len() > 1 {
             for skip in 0..equations.len() {
-                let solution = fit_of(equations, Some(skip), precision, sigma.max(trained * self.spread))?;
+                let solution =
+                    fit_of(equations, Some(skip), precision, sigma.max(trained * self.spread))?;
                 let own = &equations[skip];
                 let square = own.square - 2.0 * own.right.dot(&solution)
                     + (solution.transpose() * &own.gram * &solution)[0];
@@ -229,7 +231,12 @@ impl BaseModel {
 
     /// What the base model may still move by on given runs: columns of standard deviation 1, the
     /// directions the runs can see, strongest first.
-    pub(crate) fn nuisance(&self, runs: &[&Record], sigmas: &[f64], most: usize) -> Vec<DMatrix<f64>> {
+    pub(crate) fn nuisance(
+        &self,
+        runs: &[&Record],
+        sigmas: &[f64],
+        most: usize,
+    ) -> Vec<DMatrix<f64>> {
         let rises = self.plays.from_rises();
         let width = self.weights.len();
         let taus: Vec<f64> = self.relaxation.iter().map(|r| r.0).collect();
@@ -246,7 +253,8 @@ impl BaseModel {
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let kept: Vec<usize> =
             order.into_iter().filter(|&k| eigen.eigenvalues[k] > 0.02).take(most).collect();
-        let directions = DMatrix::from_fn(width, kept.len(), |i, k| eigen.eigenvectors[(i, kept[k])]);
+        let directions =
+            DMatrix::from_fn(width, kept.len(), |i, k| eigen.eigenvectors[(i, kept[k])]);
         let basis = &self.root * directions;
         let splines = &rises * basis.rows(1, rises.ncols());
         let first_share = 1 + rises.ncols();
@@ -295,9 +303,7 @@ fn equations(
         Vec::new()
     } else {
         taus.iter()
-            .map(|&tau| {
-                lagged(law, tau, run.step_s).iter().zip(law).map(|(x, u)| x - u).collect()
-            })
+            .map(|&tau| lagged(law, tau, run.step_s).iter().zip(law).map(|(x, u)| x - u).collect())
             .collect()
     };
     let count = plays.count();
@@ -397,7 +403,12 @@ fn most_negative(solution: &DVector<f64>, first: usize) -> Option<usize> {
 }
 
 /// The prior whose fits predict left-out runs best; mean logarithm of the relative error.
-fn best_prior(plays: &Plays, equations: &[Equations], noise: f64, spread: f64) -> Option<(f64, f64)> {
+fn best_prior(
+    plays: &Plays,
+    equations: &[Equations],
+    noise: f64,
+    spread: f64,
+) -> Option<(f64, f64)> {
     let mut best: Option<(f64, (f64, f64))> = None;
     let taus = time_constants_s().len();
     let folds = equations.len().min(6);
@@ -487,8 +498,8 @@ fn correlation_samples(residual: &[f64], noise: f64) -> f64 {
     let mut lag = 1;
     let mut step = 1;
     while lag < n / 4 {
-        let products: f64 =
-            residual.iter().zip(&residual[lag..]).map(|(a, b)| a * b).sum::<f64>() / (n - lag) as f64;
+        let products: f64 = residual.iter().zip(&residual[lag..]).map(|(a, b)| a * b).sum::<f64>()
+            / (n - lag) as f64;
         let rho = products / smooth;
         if rho <= 0.05 {
             break;

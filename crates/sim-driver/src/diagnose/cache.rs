@@ -34,9 +34,8 @@ pub(crate) fn read(folder: &Path, key: &str, lengths: &[usize]) -> Option<Struct
     if per_surrogate == 0 || raw.len() % per_surrogate != 0 {
         return None;
     }
-    let mut values = raw.chunks_exact(4).map(|b| {
-        f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-    });
+    let mut values =
+        raw.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
     let count = raw.len() / per_surrogate;
     Some(
         (0..count)
@@ -48,12 +47,8 @@ pub(crate) fn read(folder: &Path, key: &str, lengths: &[usize]) -> Option<Struct
 /// Keeps structures; a folder that cannot be written is no error, the next run computes them again.
 #[expect(clippy::cast_possible_truncation, reason = "single precision is enough for a floor")]
 pub(crate) fn write(folder: &Path, key: &str, structures: &Structures) {
-    let raw: Vec<u8> = structures
-        .iter()
-        .flatten()
-        .flatten()
-        .flat_map(|&v| (v as f32).to_le_bytes())
-        .collect();
+    let raw: Vec<u8> =
+        structures.iter().flatten().flatten().flat_map(|&v| (v as f32).to_le_bytes()).collect();
     // a cache that cannot be written costs time, not results
     let _ = write_atomic(&file(folder, key), &raw);
 }

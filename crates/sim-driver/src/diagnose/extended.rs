@@ -82,7 +82,10 @@ impl Diagnosis {
             .relaxation
             .iter()
             .filter(|r| r.1 > 0.0)
-            .map(|&(time_constant_s, share)| RelaxationElement { share: scale * share, time_constant_s })
+            .map(|&(time_constant_s, share)| RelaxationElement {
+                share: scale * share,
+                time_constant_s,
+            })
             .collect()
     }
 }

@@ -84,7 +84,7 @@ impl From<&Diagnosis> for Findings {
                 let values = found
                     .parameters
                     .iter()
-                    .filter(|p| d.candidates[found.candidate].cause.id != "rate-dependence" || p.name == "tau")
+                    .filter(|p| !p.is_shape)
                     .map(|p| {
                         let value =
                             ParameterValue { value: p.value, unit: p.unit.into(), ci95: p.ci95 };

@@ -21,14 +21,22 @@ pub(crate) fn proposal(
     let names: Vec<&str> = open.iter().map(|&c| candidates[c].cause.id).collect();
     let any = |set: &[&str]| names.iter().any(|n| set.contains(n));
     let input = any(&["electrical-lag", "amplifier-current-limit", "voltage-saturation"]);
-    let lags = ["transport-delay", "sensor-filter", "rate-dependence", "electrical-lag", "mechanical-resonance"];
+    let lags = [
+        "transport-delay",
+        "sensor-filter",
+        "rate-dependence",
+        "electrical-lag",
+        "mechanical-resonance",
+    ];
     let choice = if names.len() < 2 && finding.verdict == Verdict::NothingMissing {
         "small-motion"
     } else if any(&["backlash", "coulomb-friction"]) {
         "preload"
     } else if input && !has_monitor {
         "amplifier-monitor"
-    } else if any(&["sensor-filter", "transport-delay"]) && any(&["rate-dependence", "mechanical-resonance", "electrical-lag"]) {
+    } else if any(&["sensor-filter", "transport-delay"])
+        && any(&["rate-dependence", "mechanical-resonance", "electrical-lag"])
+    {
         "laser-cross-check"
     } else if any(&lags) {
         "multisine-5-181Hz"

@@ -174,9 +174,7 @@ impl Plays {
             let (ra, rb) = (places[a], places[b]);
             let nugget = if a == b { 1e-3 } else { 0.0 };
             let together = near(ra.2 - rb.2) + nugget;
-            let size = |p: &(bool, f64, f64, f64, f64)| {
-                amplitude * p.3 * p.4
-            };
+            let size = |p: &(bool, f64, f64, f64, f64)| amplitude * p.3 * p.4;
             let dense = size(&ra) * size(&rb) * (near(ra.1 - rb.1) * near(ra.2 - rb.2) + nugget);
             let straight = if ra.0 && rb.0 {
                 (reversible * ra.3) * (reversible * rb.3) * together
@@ -196,7 +194,8 @@ impl Play {
     )]
     #[inline]
     fn place(&self, state: f64) -> (usize, f64) {
-        let x = (state + 1.0 - self.half_width) * self.cells as f64 / (2.0 * (1.0 - self.half_width));
+        let x =
+            (state + 1.0 - self.half_width) * self.cells as f64 / (2.0 * (1.0 - self.half_width));
         let cell = (x.max(0.0) as u32 as usize).min(self.cells - 1);
         (cell, x - cell as f64)
     }
@@ -240,9 +239,9 @@ mod tests {
     #[test]
     fn rows_times_coefficients_are_the_output() {
         let plays = Plays::new(-20.0, 150.0);
-        let coefficients: Vec<f64> =
-            (0..plays.count()).map(|k| (0.7 * k as f64).sin()).collect();
-        let inputs: Vec<f64> = (0..500).map(|i| 65.0 + 80.0 * (0.05 * f64::from(i)).sin()).collect();
+        let coefficients: Vec<f64> = (0..plays.count()).map(|k| (0.7 * k as f64).sin()).collect();
+        let inputs: Vec<f64> =
+            (0..500).map(|i| 65.0 + 80.0 * (0.05 * f64::from(i)).sin()).collect();
         let direct = plays.outputs(&plays.map(0.3, &coefficients), &inputs);
         plays.rows(&inputs, |i, row| {
             let sum: f64 = row.iter().map(|&(k, v)| v * coefficients[k]).sum();

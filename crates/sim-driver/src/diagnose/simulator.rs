@@ -14,7 +14,7 @@ use preisach_dyn::{
 /// Most samples of all traces together; longer sets are averaged in blocks.
 const MOST_SAMPLES: usize = 60_000;
 /// Directions in which the base model may move.
-const MOST_DIRECTIONS: usize = 40;
+const MOST_DIRECTIONS: usize = 32;
 /// Part of the range that a voltage monitor is trusted to.
 const MONITOR_ERROR: f64 = 1e-3;
 /// Temperature that a thermometer is trusted to, K.
@@ -105,7 +105,8 @@ impl<'a> BenchSimulator<'a> {
                 let run = self.runs[number];
                 let measured = averaged(self.measured(number, kind), self.block);
                 let block = self.block as f64;
-                let mut nuisance = DMatrix::zeros(measured.len(), width);
+                let columns = if kind == ChannelKind::Output { width } else { 0 };
+                let mut nuisance = DMatrix::zeros(measured.len(), columns);
                 let (noise, sigma) = match kind {
                     ChannelKind::Output => {
                         let own = &moving[number];
@@ -115,7 +116,9 @@ impl<'a> BenchSimulator<'a> {
                                 nuisance[(i, k)] = *v;
                             }
                         }
-                        nuisance.column_mut(directions + number).fill(ZERO_ERROR * self.base.spread);
+                        nuisance
+                            .column_mut(directions + number)
+                            .fill(ZERO_ERROR * self.base.spread);
                         let e = errors[number];
                         let white = e.noise.powi(2) / block;
                         let left = (e.correlation / block).max(1.0) * e.structure.powi(2);
@@ -211,7 +214,7 @@ impl<'a> BenchSimulator<'a> {
                     is_loaded |= matches!(stage, LinkageStage::LoadStiffness(_));
                     linkage.push(stage);
                 }
-                Part::Sensor(stage) if run.has_ideal_sensor() => drop(stage),
+                Part::Sensor(_) if run.has_ideal_sensor() => {}
                 Part::Sensor(stage) => sensor.push(stage),
                 Part::Hum { amplitude, frequency_hz } => {
                     special.push(Part::Hum { amplitude, frequency_hz });
@@ -233,7 +236,10 @@ impl<'a> BenchSimulator<'a> {
             match part {
                 Part::Heating(stage) => {
                     let (rise, scaled) = self.heated(number, *stage, &terminal)?;
-                    multiply(&mut gain, rise.iter().map(|t| 1.0 + stage.coefficient_per_k * t * scaled));
+                    multiply(
+                        &mut gain,
+                        rise.iter().map(|t| 1.0 + stage.coefficient_per_k * t * scaled),
+                    );
                     rise_k = Some(rise.iter().map(|t| t * scaled).collect());
                 }
                 Part::Depolarisation(stage) => {
@@ -260,7 +266,11 @@ impl<'a> BenchSimulator<'a> {
             }
             if let Some((tau_s, position)) = rate {
                 law = super::causes::rate_dependent(
-                    &law, tau_s, position, (self.neutral_middle(), self.base.spread), run.step_s,
+                    &law,
+                    tau_s,
+                    position,
+                    (self.neutral_middle(), self.base.spread),
+                    run.step_s,
                 );
             }
             self.base.relaxed(&law, run.step_s)
@@ -329,7 +339,8 @@ impl<'a> BenchSimulator<'a> {
         if run.has_ideal_sensor() {
             return;
         }
-        let angle = |i: usize| std::f64::consts::TAU * (frequency_hz * run.step_s * i as f64).fract();
+        let angle =
+            |i: usize| std::f64::consts::TAU * (frequency_hz * run.step_s * i as f64).fract();
         let (mut c, mut s) = (0.0, 0.0);
         for (i, r) in self.residuals[number].iter().enumerate() {
             let (sin, cos) = angle(i).sin_cos();
@@ -370,7 +381,8 @@ impl Simulator for BenchSimulator<'_> {
                             if own.is_loaded { slope(&own.output, measured) } else { 0.0 };
                         let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
                         let off = mean(measured) - per_output * mean(&own.output);
-                        let whole: Vec<f64> = own.output.iter().map(|y| off + per_output * y).collect();
+                        let whole: Vec<f64> =
+                            own.output.iter().map(|y| off + per_output * y).collect();
                         averaged(&whole, self.block)
                     }
                 };
@@ -426,7 +438,11 @@ fn block_of(run: &Record, samples: usize) -> usize {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive count of samples")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a positive count of samples"
+)]
 fn whole(value: f64) -> usize {
     value.ceil().max(0.0) as usize
 }

@@ -89,7 +89,11 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
         for p in &found.parameters {
             sheet.line(format_args!(
                 "    {} = {} {} (95 %: {} to {})",
-                p.name, significant(p.value, 4), p.unit, significant(p.ci95[0], 3), significant(p.ci95[1], 3)
+                p.name,
+                significant(p.value, 4),
+                p.unit,
+                significant(p.ci95[0], 3),
+                significant(p.ci95[1], 3)
             ));
         }
         sheet.line(format_args!(
@@ -104,12 +108,17 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
     if !findings.causes.is_empty() {
         sheet.line(format_args!(
             "\nGain on held-out experiments: {} -> {} {unit} rms, less by {} to {} (95 %)",
-            significant(gain.heldout_rms_before, 4), significant(gain.heldout_rms_after, 4),
-            significant(gain.ci95[0], 3), significant(gain.ci95[1], 3)
+            significant(gain.heldout_rms_before, 4),
+            significant(gain.heldout_rms_after, 4),
+            significant(gain.ci95[0], 3),
+            significant(gain.ci95[1], 3)
         ));
     }
     if !findings.not_observable.is_empty() {
-        sheet.line(format_args!("Not observable in these data at usual strength: {}", findings.not_observable.join(", ")));
+        sheet.line(format_args!(
+            "Not observable in these data at usual strength: {}",
+            findings.not_observable.join(", ")
+        ));
     }
     sheet.line(format_args!("Measure next: {}", findings.next_experiment));
     sheet.finish()
@@ -122,11 +131,20 @@ fn verdict_line(findings: &Findings) -> String {
         Confidence::Tentative => "tentative",
     };
     match findings.verdict {
-        Verdict::NothingMissing => format!("Nothing is missing ({sure}): the misfit is at the floor of the base model."),
+        Verdict::NothingMissing => {
+            format!("Nothing is missing ({sure}): the misfit is at the floor of the base model.")
+        }
         Verdict::Named => format!("Missing ({sure}): {names}"),
-        Verdict::NamedStructureRemains => format!("Missing ({sure}): {names}; structure remains that it does not explain"),
-        Verdict::Ambiguous => format!("Missing: one of {}; these data do not tell them apart", findings.causes.join(", ")),
-        Verdict::Unknown => "Something is missing, and no known cause explains it: no name is given.".to_owned(),
+        Verdict::NamedStructureRemains => {
+            format!("Missing ({sure}): {names}; structure remains that it does not explain")
+        }
+        Verdict::Ambiguous => format!(
+            "Missing: one of {}; these data do not tell them apart",
+            findings.causes.join(", ")
+        ),
+        Verdict::Unknown => {
+            "Something is missing, and no known cause explains it: no name is given.".to_owned()
+        }
         Verdict::NotObservable => "These data cannot show what could be missing.".to_owned(),
     }
 }

@@ -14,8 +14,10 @@ use rayon::prelude::*;
 
 /// Relays of the relay surrogate.
 const RELAYS: usize = 700;
-/// Largest factor by which structure of a surrogate is scaled up to that of the data.
+/// Largest factor by which the structure left of a surrogate is scaled to that left of the data.
 const LARGEST_SCALE: f64 = 3.0;
+/// Least factor, for surrogates that are harder to describe than the data.
+const LEAST_SCALE: f64 = 0.33;
 /// Part of the relaxation that depends on the state in some surrogates.
 const STATE_PART: f64 = 0.1;
 
@@ -85,7 +87,7 @@ fn one(
         .collect();
     let copies: Vec<&Record> = copies.iter().collect();
     let again = BaseModel::fit(&copies, range, Some(base.prior))?;
-    let scale = (base.floor / again.floor.max(1e-6)).clamp(1.0, LARGEST_SCALE);
+    let scale = (base.floor / again.floor.max(1e-6)).clamp(LEAST_SCALE, LARGEST_SCALE);
     Some(
         measured
             .iter()
@@ -278,12 +280,7 @@ impl Noise {
 
 /// Directions without a name, along which structure may be left that no cause explains: powers of
 /// output, rate and their products, lags of them, trends.
-pub(crate) fn generic(
-    inputs: &[f64],
-    law: &[f64],
-    spread: f64,
-    step_s: f64,
-) -> Vec<Vec<f64>> {
+pub(crate) fn generic(inputs: &[f64], law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
     let n = law.len();
     let middle = law.first().copied().unwrap_or_default();
     let x: Vec<f64> = law.iter().map(|h| (h - middle) / spread).collect();
@@ -310,8 +307,8 @@ pub(crate) fn generic(
     let scale = inputs.iter().map(|u| (u - middle_in).abs()).fold(1e-300, f64::max);
     all.push(inputs.iter().map(|u| ((u - middle_in) / scale).powi(3)).collect());
     all.push(inputs.iter().map(|u| ((u - middle_in) / scale).powi(2)).collect());
-    let dose: Vec<f64> = lagged(&x.iter().map(|v| v * v).collect::<Vec<_>>(), 0.3 * duration, step_s);
+    let dose: Vec<f64> =
+        lagged(&x.iter().map(|v| v * v).collect::<Vec<_>>(), 0.3 * duration, step_s);
     all.push(dose.iter().zip(&x).map(|(d, v)| d * v).collect());
     all
 }
-

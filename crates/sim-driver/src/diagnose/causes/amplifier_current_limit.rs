@@ -13,7 +13,12 @@ impl BenchCause for AmplifierCurrentLimit {
             id: "amplifier-current-limit",
             physics: "The amplifier's current is limited into the capacitance, |V'| <= I / C.",
             side: Side::Input,
-            parameters: vec![logarithmic("slew_rate", "V/s", 0.02 * design.fast_rate.max(1.0), 50.0 * design.fast_rate.max(1.0))],
+            parameters: vec![logarithmic(
+                "slew_rate",
+                "V/s",
+                0.02 * design.fast_rate.max(1.0),
+                50.0 * design.fast_rate.max(1.0),
+            )],
             fingerprint: "nothing below a threshold of amplitude times frequency, then triangular, third harmonic",
             confused_with: &["electrical-lag", "voltage-saturation", "rate-dependence"],
             separating: &["amplifier-monitor", "amplitude-sweep"],
@@ -21,7 +26,10 @@ impl BenchCause for AmplifierCurrentLimit {
     }
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        [1.8, 1.2, 0.9, 0.6, 0.4, 0.25].iter().map(|part| vec![part * design.fast_rate.max(1.0)]).collect()
+        [1.8, 1.2, 0.9, 0.6, 0.4, 0.25]
+            .iter()
+            .map(|part| vec![part * design.fast_rate.max(1.0)])
+            .collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
@@ -29,6 +37,8 @@ impl BenchCause for AmplifierCurrentLimit {
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Amplifier(AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: values[0] }))
+        Part::Amplifier(AmplifierStage::CurrentLimit(CurrentLimit {
+            slew_rate_volt_per_s: values[0],
+        }))
     }
 }

@@ -13,7 +13,12 @@ impl BenchCause for BacklashInLever {
             id: "backlash",
             physics: "Lost motion in a joint: the output stands until the gap is taken up; a free density absorbs it.",
             side: Side::Output,
-            parameters: vec![logarithmic("width", "um", 1e-4 * design.half_stroke, 0.5 * design.half_stroke)],
+            parameters: vec![logarithmic(
+                "width",
+                "um",
+                1e-4 * design.half_stroke,
+                0.5 * design.half_stroke,
+            )],
             fingerprint: "flat after every reversal, relatively larger at small motion",
             confused_with: &["coulomb-friction"],
             separating: &["preload", "small-motion"],

@@ -13,7 +13,12 @@ impl BenchCause for DryFriction {
             id: "coulomb-friction",
             physics: "Dry friction against the elasticity of the linkage, width 2 F_c / k.",
             side: Side::Output,
-            parameters: vec![logarithmic("width", "um", 1e-4 * design.half_stroke, 0.5 * design.half_stroke)],
+            parameters: vec![logarithmic(
+                "width",
+                "um",
+                1e-4 * design.half_stroke,
+                0.5 * design.half_stroke,
+            )],
             fingerprint: "as backlash with rounded corners, changed by preload",
             confused_with: &["backlash"],
             separating: &["preload", "small-motion"],

@@ -1,6 +1,6 @@
 //! Creep beyond that of the reference runs.
 
-use super::{BenchCause, Design, Part, linear, singles};
+use super::{BenchCause, Design, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::{LinkageStage, LogCreep};
 
@@ -13,7 +13,10 @@ impl BenchCause for Creep {
             id: "creep",
             physics: "Slow growth after a move, y = U [1 + rate log10(t / 0.1 s)], beyond the creep of the reference runs.",
             side: Side::Output,
-            parameters: vec![linear("rate_per_decade", "1", 0.0, 0.3)],
+            parameters: vec![
+                linear("rate_per_decade", "1", 0.0, 0.3),
+                shape(logarithmic("from", "s", 1e-3, 3.0)),
+            ],
             fingerprint: "grows as frequency falls, linear in amplitude, a straight line in log t after a step",
             confused_with: &["dielectric-heating", "load-stiffness", "rate-dependence"],
             separating: &["hold-steps-100s"],
@@ -21,14 +24,22 @@ impl BenchCause for Creep {
     }
 
     fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        singles(&[0.005, 0.02])
+        vec![vec![0.01, 0.1], vec![0.01, 0.01]]
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
-        (design.longest_s < 1.0).then(|| format!("the longest run lasts {:.2} s; creep needs seconds", design.longest_s)).or_else(|| design.one_frequency())
+        (design.longest_s < 1.0)
+            .then(|| {
+                format!("the longest run lasts {:.2} s; creep needs seconds", design.longest_s)
+            })
+            .or_else(|| design.one_frequency())
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Linkage(LinkageStage::LogCreep(LogCreep::new(values[0].max(0.0))))
+        Part::Linkage(LinkageStage::LogCreep(LogCreep {
+            rate_per_decade: values[0].max(0.0),
+            from_s: values[1],
+            to_s: 1000.0,
+        }))
     }
 }

@@ -1,6 +1,6 @@
 //! Polarisation lost under reverse voltage.
 
-use super::{BenchCause, Design, Part, linear, logarithmic};
+use super::{BenchCause, Design, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::Depolarisation;
 
@@ -13,7 +13,15 @@ impl BenchCause for ReverseVoltage {
             id: "depolarisation",
             physics: "Below a threshold the polarisation is lost and the gain with it, until a higher voltage brings it back.",
             side: Side::State,
-            parameters: vec![linear("threshold", "V", design.input.0 - 0.01, design.input.0.abs().mul_add(0.9, design.input.0)), logarithmic("loss_per_volt", "1/V", 1e-5, 0.1)],
+            parameters: vec![
+                linear(
+                    "threshold",
+                    "V",
+                    design.input.0 - 0.01,
+                    design.input.0.abs().mul_add(0.9, design.input.0),
+                ),
+                shape(logarithmic("loss_per_volt", "1/V", 1e-5, 0.1)),
+            ],
             fingerprint: "even harmonics on the negative half, and a change that stays",
             confused_with: &["voltage-saturation", "sensor-nonlinearity", "load-stiffness"],
             separating: &["bias-sweep", "overdrive-two-biases"],
@@ -22,7 +30,10 @@ impl BenchCause for ReverseVoltage {
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
         let low = design.input.0;
-        [0.2, 0.5, 0.8].iter().flat_map(|part| [vec![low * part, 0.001], vec![low * part, 0.005]]).collect()
+        [0.2, 0.5, 0.8]
+            .iter()
+            .flat_map(|part| [vec![low * part, 0.001], vec![low * part, 0.005]])
+            .collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {

@@ -13,7 +13,10 @@ impl BenchCause for Heating {
             id: "dielectric-heating",
             physics: "Dielectric loss warms the ceramic and raises its gain, gain (1 + a dT), C dT' = P - dT / R.",
             side: Side::State,
-            parameters: vec![logarithmic("time_constant", "s", 0.3, 3000.0), linear("coefficient", "1/K", -0.05, 0.5)],
+            parameters: vec![
+                logarithmic("time_constant", "s", 0.3, 3000.0),
+                linear("coefficient", "1/K", -0.05, 0.5),
+            ],
             fingerprint: "slow scaling ordered by the dose of f V^2, not by the time since a step",
             confused_with: &["creep", "load-stiffness"],
             separating: &["cold-hot-cold"],

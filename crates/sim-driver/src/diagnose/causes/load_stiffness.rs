@@ -25,10 +25,15 @@ impl BenchCause for Load {
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
-        (!design.has_reference).then(|| "without reference runs a pure gain cannot be told from the actuator's own".to_owned())
+        (!design.has_reference).then(|| {
+            "without reference runs a pure gain cannot be told from the actuator's own".to_owned()
+        })
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Linkage(LinkageStage::LoadStiffness(LoadStiffness { stiffness_ratio: values[0].max(0.0), compliance_um_per_newton: 0.0 }))
+        Part::Linkage(LinkageStage::LoadStiffness(LoadStiffness {
+            stiffness_ratio: values[0].max(0.0),
+            compliance_um_per_newton: 0.0,
+        }))
     }
 }

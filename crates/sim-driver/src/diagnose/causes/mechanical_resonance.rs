@@ -13,7 +13,10 @@ impl BenchCause for MechanicalResonance {
             id: "mechanical-resonance",
             physics: "First mode of actuator, linkage and flap, y'' + 2 zeta w y' + w^2 y = w^2 h.",
             side: Side::Output,
-            parameters: vec![logarithmic("frequency", "Hz", 15.0, 3.0 * design.nyquist_hz), logarithmic("damping_ratio", "1", 1e-3, 1.0)],
+            parameters: vec![
+                logarithmic("frequency", "Hz", 15.0, 0.98 * design.nyquist_hz),
+                logarithmic("damping_ratio", "1", 1e-3, 1.0),
+            ],
             fingerprint: "gain growing as (f / fn)^2, ringing after steps",
             confused_with: &["sensor-filter", "electrical-lag", "transport-delay"],
             separating: &["ring-down", "multisine-5-181Hz"],
@@ -21,21 +24,28 @@ impl BenchCause for MechanicalResonance {
     }
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        let highest = 1.2 * design.nyquist_hz;
+        let highest = 0.9 * design.nyquist_hz;
         let mut starts = Vec::new();
         let mut hz = 30.0;
         while hz < highest {
-            starts.extend([vec![hz, 0.015], vec![hz, 0.06]]);
-            hz *= 1.12;
+            starts.push(vec![hz, 0.03]);
+            hz *= 1.2;
         }
         starts
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
-        design.one_frequency().or_else(|| (design.nyquist_hz < 60.0).then(|| format!("sampling carries {:.0} Hz; a first mode lies higher", design.nyquist_hz)))
+        design.one_frequency().or_else(|| {
+            (design.nyquist_hz < 60.0).then(|| {
+                format!("sampling carries {:.0} Hz; a first mode lies higher", design.nyquist_hz)
+            })
+        })
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Linkage(LinkageStage::Resonance(Resonance { frequency_hz: values[0], damping_ratio: values[1] }))
+        Part::Linkage(LinkageStage::Resonance(Resonance {
+            frequency_hz: values[0],
+            damping_ratio: values[1],
+        }))
     }
 }

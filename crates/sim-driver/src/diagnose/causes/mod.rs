@@ -102,8 +102,7 @@ impl Design {
         let input = range(&mut all(|r| &r.input));
         let output = range(&mut all(|r| &r.output));
         let count: usize = runs.iter().map(|r| r.output.len()).sum();
-        let spread2 =
-            runs.iter().map(|r| variance(&r.output) * r.output.len() as f64).sum::<f64>();
+        let spread2 = runs.iter().map(|r| variance(&r.output) * r.output.len() as f64).sum::<f64>();
         let mut rates: Vec<f64> = runs
             .iter()
             .flat_map(|r| r.input.windows(2).map(|w| (w[1] - w[0]).abs() / r.step_s))
@@ -118,9 +117,8 @@ impl Design {
             })
             .collect();
         let first = frequencies.first().copied().flatten();
-        let only_hz = first.filter(|f| {
-            frequencies.iter().all(|g| g.is_some_and(|g| (g - f).abs() < 0.05 * f))
-        });
+        let only_hz = first
+            .filter(|f| frequencies.iter().all(|g| g.is_some_and(|g| (g - f).abs() < 0.05 * f)));
         Self {
             input,
             spread: (spread2 / count.max(1) as f64).sqrt(),
@@ -178,12 +176,17 @@ pub(crate) fn candidates(library: &[Box<dyn BenchCause>], design: &Design) -> Ve
 
 /// A parameter searched on a logarithmic scale.
 fn logarithmic(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Log }
+    Parameter { name, unit, low, high, scale: Scale::Log, is_shape: false }
 }
 
 /// A parameter searched on a straight scale.
 fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Linear }
+    Parameter { name, unit, low, high, scale: Scale::Linear, is_shape: false }
+}
+
+/// A parameter that only shapes the effect.
+fn shape(parameter: Parameter) -> Parameter {
+    Parameter { is_shape: true, ..parameter }
 }
 
 /// Starts of a single parameter.

@@ -1,6 +1,6 @@
 //! Rate dependence of the hysteresis.
 
-use super::{BenchCause, Design, Part, linear, logarithmic};
+use super::{BenchCause, Design, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 
 /// Rate dependence of the hysteresis.
@@ -12,7 +12,10 @@ impl BenchCause for RateDependence {
             id: "rate-dependence",
             physics: "Domains take time: the law relaxes towards its static value, with a time that depends on its state.",
             side: Side::State,
-            parameters: vec![logarithmic("tau", "s", 1e-5, 0.05), linear("position", "1", -0.6, 0.6)],
+            parameters: vec![
+                logarithmic("tau", "s", 1e-5, 0.05),
+                shape(linear("position", "1", -0.6, 0.6)),
+            ],
             fingerprint: "phase and loop area grow with frequency and depend on amplitude and place; odd harmonics",
             confused_with: &["electrical-lag", "transport-delay", "sensor-filter"],
             separating: &["multisine-5-181Hz", "amplitude-sweep", "laser-cross-check"],
@@ -20,7 +23,10 @@ impl BenchCause for RateDependence {
     }
 
     fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        [2e-4, 1e-3, 4e-3, 0.015].iter().flat_map(|tau| [vec![*tau, 0.1], vec![*tau, -0.1]]).collect()
+        [2e-4, 1e-3, 4e-3, 0.015]
+            .iter()
+            .flat_map(|tau| [vec![*tau, 0.1], vec![*tau, -0.1]])
+            .collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {

@@ -13,7 +13,20 @@ impl BenchCause for VoltageSaturation {
             id: "voltage-saturation",
             physics: "The amplifier's voltage ends at its supply, V = clip(u, v_min, v_max).",
             side: Side::Input,
-            parameters: vec![linear("v_max", "V", f64::midpoint(design.input.0, design.input.1), design.input.1 + 0.1 * (design.input.1 - design.input.0)), linear("v_min", "V", design.input.0 - 0.1 * (design.input.1 - design.input.0), f64::midpoint(design.input.0, design.input.1))],
+            parameters: vec![
+                linear(
+                    "v_max",
+                    "V",
+                    f64::midpoint(design.input.0, design.input.1),
+                    design.input.1 + 0.1 * (design.input.1 - design.input.0),
+                ),
+                linear(
+                    "v_min",
+                    "V",
+                    design.input.0 - 0.1 * (design.input.1 - design.input.0),
+                    f64::midpoint(design.input.0, design.input.1),
+                ),
+            ],
             fingerprint: "depends on amplitude only, flat tops; one-sided gives even harmonics",
             confused_with: &["depolarisation", "sensor-nonlinearity"],
             separating: &["overdrive-two-biases", "amplifier-monitor"],
@@ -26,9 +39,17 @@ impl BenchCause for VoltageSaturation {
         let cut = |top: f64, bottom: f64| vec![high - top * span, low + bottom * span];
         let none = -0.02;
         vec![
-            cut(0.02, none), cut(0.05, none), cut(0.1, none), cut(0.2, none),
-            cut(none, 0.02), cut(none, 0.05), cut(none, 0.1), cut(none, 0.2),
-            cut(0.03, 0.03), cut(0.08, 0.08), cut(0.15, 0.15),
+            cut(0.02, none),
+            cut(0.05, none),
+            cut(0.1, none),
+            cut(0.2, none),
+            cut(none, 0.02),
+            cut(none, 0.05),
+            cut(none, 0.1),
+            cut(none, 0.2),
+            cut(0.03, 0.03),
+            cut(0.08, 0.08),
+            cut(0.15, 0.15),
         ]
     }
 
