@@ -11,6 +11,8 @@ use rayon::prelude::*;
 
 /// Relative spread from which on the name is wrong.
 const WRONG_NAME: f64 = 0.5;
+/// Times its threshold that a cause must explain to be named with confidence.
+const STRONG: f64 = 2.0;
 /// Part of its threshold that a candidate must promise before it is fitted.
 const PROMISE: f64 = 0.3;
 /// Relative spread of a parameter over the experiments from which on it drifts.
@@ -303,8 +305,10 @@ impl<S: Simulator> Search<'_, S> {
         } else {
             Verdict::Named
         };
+        let strong = causes.iter().all(|c| c.drop > STRONG * self.screened[c.candidate].threshold);
         let sure = match verdict {
-            Verdict::Named | Verdict::NothingMissing => settings.has_reference,
+            Verdict::NothingMissing => settings.has_reference,
+            Verdict::Named => settings.has_reference && strong,
             _ => false,
         };
         let confidence = if sure { Confidence::Confident } else { Confidence::Tentative };

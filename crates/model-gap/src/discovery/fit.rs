@@ -19,6 +19,9 @@ pub(crate) struct Fitted {
     pub(crate) free: Vec<(usize, usize)>,
     /// Products of residual and slopes, experiment by experiment.
     pub(crate) products: Vec<Products>,
+    /// Rise of the cost of the whole set up to which a fold may move the parameters, the residual taken
+    /// as straight in them.
+    pub(crate) trust: f64,
 }
 
 /// Fits effects.
@@ -28,6 +31,8 @@ pub(crate) struct Fitter<'a, S> {
     pub(crate) candidates: &'a [Candidate],
 }
 
+/// Part of the drop of a fit up to which its residual counts as straight in the parameters.
+const TRUSTED: f64 = 0.1;
 /// Weight of the whole set in the fit of a fold.
 const KEPT: f64 = 0.02;
 const ITERATIONS: usize = 12;
@@ -80,7 +85,8 @@ impl<S: Simulator> Fitter<'_, S> {
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<Fitted> = None;
         for (_, effects) in tried.into_iter().take(2) {
-            let found = self.refine(effects)?;
+            let mut found = self.refine(effects)?;
+            found.trust = TRUSTED * (before.cost - found.cost).max(0.0);
             if best.as_ref().is_none_or(|b| found.cost < b.cost) {
                 best = Some(found);
             }
@@ -133,7 +139,7 @@ impl<S: Simulator> Fitter<'_, S> {
         }
         let slopes = self.slopes(&effects, &residual, &free)?;
         let (_, products) = self.gram(&residual, &slopes);
-        Ok(Fitted { effects, cost, residual, slopes, free, products })
+        Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
     }
 
     fn gram(
@@ -203,8 +209,9 @@ impl Fitted {
     /// straight in them. The first entry belongs to the residual and is 1.
     ///
     /// The products of the whole set weigh in with a fiftieth: a parameter that only the fold left out
-    /// shows keeps the value of the whole fit, where the others alone would leave it anywhere.
-    pub(crate) fn shift(matrix: &DMatrix<f64>, whole: &DMatrix<f64>) -> DVector<f64> {
+    /// shows keeps the value of the whole fit, where the others alone would leave it anywhere. A step is
+    /// cut back to where the residual may be taken as straight in the parameters.
+    pub(crate) fn shift(&self, matrix: &DMatrix<f64>, whole: &DMatrix<f64>) -> DVector<f64> {
         let n = matrix.nrows() - 1;
         let mut shift = DVector::zeros(n + 1);
         shift[0] = 1.0;
@@ -218,7 +225,11 @@ impl Fitted {
             normal[(i, i)] += 1e-9 * trace + 1e-12;
         }
         let right: DVector<f64> = -matrix.view((1, 0), (n, 1)).column(0).clone_owned();
-        if let Some(step) = normal.cholesky().map(|c| c.solve(&right)) {
+        if let Some(mut step) = normal.cholesky().map(|c| c.solve(&right)) {
+            let rise = (step.transpose() * whole.view((1, 1), (n, n)) * &step)[0];
+            if rise > self.trust {
+                step *= (self.trust / rise).sqrt();
+            }
             shift.rows_mut(1, n).copy_from(&step);
         }
         shift
@@ -231,7 +242,7 @@ impl Fitted {
         (0..evidence.experiments)
             .map(|e| {
                 let fold = (evidence.fold_count > 1).then_some(evidence.folds[e]);
-                let shift = Self::shift(&evidence.project(&self.products, fold), &whole);
+                let shift = self.shift(&evidence.project(&self.products, fold), &whole);
                 let nuisance = evidence.nuisance_of(&self.products, &shift, fold);
                 evidence.left_of(&self.products[e], &shift, &nuisance, e)
             })

@@ -88,7 +88,7 @@ pub(crate) fn held_out_residual(evidence: &Evidence<'_>, fitted: &Fitted) -> Vec
     let folds: Vec<_> = (0..evidence.fold_count)
         .map(|fold| {
             let left_out = (evidence.fold_count > 1).then_some(fold);
-            let shift = Fitted::shift(&evidence.project(&fitted.products, left_out), &whole);
+            let shift = fitted.shift(&evidence.project(&fitted.products, left_out), &whole);
             let nuisance = evidence.nuisance_of(&fitted.products, &shift, left_out);
             (shift, nuisance)
         })

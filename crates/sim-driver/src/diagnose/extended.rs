@@ -21,7 +21,8 @@ impl Diagnosis {
     /// The base model with the causes found as stages around it: what `hhc run` takes as an actuator.
     ///
     /// The law is the base model's static part, fitted anew as a Preisach density that is nowhere
-    /// negative. A relaxation of the law stands behind it as one relaxation time.
+    /// negative. A relaxation of the law stands behind it as one relaxation time; heat and depolarisation
+    /// act about the output at 0 V, as their stages do.
     ///
     /// # Errors
     /// [`SimError::Actuator`] at the place of the data set.
@@ -95,8 +96,10 @@ fn add(model: &mut ActuatorModel, part: Part) {
         Part::Amplifier(stage) => model.amplifier.push(stage),
         Part::Linkage(stage) => model.linkage.push(stage),
         Part::Sensor(stage) => model.sensor.push(stage),
-        Part::Heating(stage) => model.amplifier.push(AmplifierStage::DielectricHeating(stage)),
-        Part::Depolarisation(stage) => model.amplifier.push(AmplifierStage::Depolarisation(stage)),
+        Part::Heating(stage, _) => model.amplifier.push(AmplifierStage::DielectricHeating(stage)),
+        Part::Depolarisation(stage, _) => {
+            model.amplifier.push(AmplifierStage::Depolarisation(stage))
+        }
         Part::RateDependence { tau_s, .. } => {
             let elements = vec![RelaxationElement { share: 1.0, time_constant_s: tau_s }];
             model.linkage.insert(0, LinkageStage::Relaxation(Relaxation { elements }));

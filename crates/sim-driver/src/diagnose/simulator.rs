@@ -16,9 +16,9 @@ const MOST_SAMPLES: usize = 60_000;
 /// Directions in which the base model may move.
 const MOST_DIRECTIONS: usize = 32;
 /// Part of the range that a voltage monitor is trusted to.
-const MONITOR_ERROR: f64 = 1e-3;
+const MONITOR_ERROR: f64 = 1e-2;
 /// Temperature that a thermometer is trusted to, K.
-const THERMOMETER_ERROR_K: f64 = 0.1;
+const THERMOMETER_ERROR_K: f64 = 1.0;
 /// Standard deviation of the zero of a run, over the spread of the output.
 const ZERO_ERROR: f64 = 2e-3;
 
@@ -141,7 +141,7 @@ impl<'a> BenchSimulator<'a> {
                     ChannelKind::Load => {
                         let own = self.measured(number, kind);
                         let white = white_noise(own);
-                        (white, white.max(0.05 * variance(own).sqrt()))
+                        (white, (3.0 * white).max(0.3 * variance(own).sqrt()))
                     }
                 };
                 Trace {
@@ -232,9 +232,11 @@ impl<'a> BenchSimulator<'a> {
         let mut rise_k = None;
         let mut gain: Option<Vec<f64>> = None;
         let mut rate = None;
+        let mut about = 0.0;
         for part in &special {
             match part {
-                Part::Heating(stage) => {
+                Part::Heating(stage, point) => {
+                    about = *point;
                     let (rise, scaled) = self.heated(number, *stage, &terminal)?;
                     multiply(
                         &mut gain,
@@ -242,7 +244,8 @@ impl<'a> BenchSimulator<'a> {
                     );
                     rise_k = Some(rise.iter().map(|t| t * scaled).collect());
                 }
-                Part::Depolarisation(stage) => {
+                Part::Depolarisation(stage, point) => {
+                    about = *point;
                     multiply(&mut gain, super::causes::lost_gain(stage, &terminal));
                 }
                 Part::RateDependence { tau_s, position } => rate = Some((*tau_s, *position)),
@@ -259,7 +262,7 @@ impl<'a> BenchSimulator<'a> {
                 self.base.hysteresis(&terminal)
             };
             if let Some(gain) = gain {
-                let neutral = self.neutral();
+                let neutral = self.neutral() + about * (self.neutral_middle() - self.neutral());
                 for (y, g) in law.iter_mut().zip(gain) {
                     *y = neutral + g * (*y - neutral);
                 }

@@ -21,6 +21,7 @@ impl BenchCause for ReverseVoltage {
                     design.input.0.abs().mul_add(0.9, design.input.0),
                 ),
                 shape(logarithmic("loss_per_volt", "1/V", 1e-5, 0.1)),
+                shape(linear("about", "1", -0.5, 1.5)),
             ],
             fingerprint: "even harmonics on the negative half, and a change that stays",
             confused_with: &["voltage-saturation", "sensor-nonlinearity", "load-stiffness"],
@@ -32,7 +33,7 @@ impl BenchCause for ReverseVoltage {
         let low = design.input.0;
         [0.2, 0.5, 0.8]
             .iter()
-            .flat_map(|part| [vec![low * part, 0.001], vec![low * part, 0.005]])
+            .flat_map(|part| [vec![low * part, 0.001, 1.0], vec![low * part, 0.005, 1.0]])
             .collect()
     }
 
@@ -44,11 +45,12 @@ impl BenchCause for ReverseVoltage {
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Depolarisation(Depolarisation {
+        let stage = Depolarisation {
             threshold_volt: values[0],
             loss_per_volt: values[1],
             repoling_volt: None,
-        })
+        };
+        Part::Depolarisation(stage, values[2])
     }
 }
 

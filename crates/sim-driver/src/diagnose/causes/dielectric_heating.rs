@@ -1,6 +1,6 @@
 //! Warming by dielectric loss.
 
-use super::{BenchCause, Design, Part, linear, logarithmic};
+use super::{BenchCause, Design, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::DielectricHeating;
 
@@ -16,6 +16,7 @@ impl BenchCause for Heating {
             parameters: vec![
                 logarithmic("time_constant", "s", 0.3, 3000.0),
                 linear("coefficient", "1/K", -0.05, 0.5),
+                shape(linear("about", "1", -0.5, 1.5)),
             ],
             fingerprint: "slow scaling ordered by the dose of f V^2, not by the time since a step",
             confused_with: &["creep", "load-stiffness"],
@@ -25,7 +26,7 @@ impl BenchCause for Heating {
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
         let t = design.longest_s;
-        [0.3, 1.0, 4.0].iter().map(|part| vec![part * t, 0.002]).collect()
+        [0.3, 1.0, 4.0].iter().map(|part| vec![part * t, 0.002, 1.0]).collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
@@ -36,6 +37,6 @@ impl BenchCause for Heating {
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Heating(DielectricHeating::new(values[0], values[1]))
+        Part::Heating(DielectricHeating::new(values[0], values[1]), values[2])
     }
 }

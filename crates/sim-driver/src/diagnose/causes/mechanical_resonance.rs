@@ -4,6 +4,11 @@ use super::{BenchCause, Design, Part, logarithmic};
 use model_gap::{Cause, Side};
 use preisach_dyn::{LinkageStage, Resonance};
 
+/// Highest frequency of a first mode, Hz: 400 Hz or what sampling carries well.
+fn highest_hz(design: &Design) -> f64 {
+    (0.8 * design.nyquist_hz).clamp(30.0, 400.0)
+}
+
 /// First mechanical mode.
 pub(super) struct MechanicalResonance;
 
@@ -14,8 +19,8 @@ impl BenchCause for MechanicalResonance {
             physics: "First mode of actuator, linkage and flap, y'' + 2 zeta w y' + w^2 y = w^2 h.",
             side: Side::Output,
             parameters: vec![
-                logarithmic("frequency", "Hz", 15.0, 0.98 * design.nyquist_hz),
-                logarithmic("damping_ratio", "1", 1e-3, 1.0),
+                logarithmic("frequency", "Hz", 20.0, highest_hz(design)),
+                logarithmic("damping_ratio", "1", 1e-3, 0.2),
             ],
             fingerprint: "gain growing as (f / fn)^2, ringing after steps",
             confused_with: &["sensor-filter", "electrical-lag", "transport-delay"],
@@ -24,7 +29,7 @@ impl BenchCause for MechanicalResonance {
     }
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        let highest = 0.9 * design.nyquist_hz;
+        let highest = highest_hz(design);
         let mut starts = Vec::new();
         let mut hz = 30.0;
         while hz < highest {

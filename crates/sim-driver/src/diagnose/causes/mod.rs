@@ -36,10 +36,11 @@ pub(crate) enum Part {
     Linkage(LinkageStage),
     /// A stage of the bench sensor.
     Sensor(SensorStage),
-    /// Heating, whose temperature a thermometer may show.
-    Heating(DielectricHeating),
-    /// Loss of polarisation.
-    Depolarisation(Depolarisation),
+    /// Heating, whose temperature a thermometer may show; and the point its gain acts about, from 0 V
+    /// (0) to the middle of the range (1).
+    Heating(DielectricHeating, f64),
+    /// Loss of polarisation, and the same point.
+    Depolarisation(Depolarisation, f64),
     /// Relaxation of the law whose time depends on its state.
     RateDependence {
         /// Mean relaxation time, s.
@@ -79,7 +80,7 @@ pub(crate) struct Design {
     pub(crate) half_stroke: f64,
     /// Longest measured run, s.
     pub(crate) longest_s: f64,
-    /// Half the highest sampling frequency, Hz.
+    /// Half the lowest sampling frequency, Hz.
     pub(crate) nyquist_hz: f64,
     /// Rate of the input that a twentieth of the samples exceed, per s.
     pub(crate) fast_rate: f64,
@@ -124,7 +125,7 @@ impl Design {
             spread: (spread2 / count.max(1) as f64).sqrt(),
             half_stroke: 0.5 * (output.1 - output.0),
             longest_s: runs.iter().map(|r| r.duration_s()).fold(0.0, f64::max),
-            nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(0.0, f64::max),
+            nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(f64::INFINITY, f64::min),
             fast_rate,
             only_hz,
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
