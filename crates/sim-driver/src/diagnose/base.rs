@@ -512,3 +512,76 @@ fn correlation_samples(residual: &[f64], noise: f64) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three plays and a relaxation: in the class of the base model, but with half-widths of its own.
+    fn truth(input: &[f64], step_s: f64) -> Vec<f64> {
+        let mut plays = [input[0]; 3];
+        let law: Vec<f64> = input
+            .iter()
+            .map(|&u| {
+                for (p, r) in plays.iter_mut().zip([0.07, 0.22, 0.45]) {
+                    *p = p.min(u + r).max(u - r);
+                }
+                0.6 * u + 0.3 * plays[0] + 0.25 * plays[1] + 0.2 * plays[2]
+            })
+            .collect();
+        let late = lagged(&law, 0.05, step_s);
+        law.iter().zip(late).map(|(h, x)| h + 0.1 * (x - h)).collect()
+    }
+
+    fn run(hz: f64, amplitude: f64) -> Record {
+        let step_s = 2e-3;
+        let input: Vec<f64> = (0..2000)
+            .map(|i| {
+                let t = step_s * f64::from(i);
+                amplitude * (std::f64::consts::TAU * hz * t).sin() * (1.0 - (-t).exp())
+            })
+            .collect();
+        let output = truth(&input, step_s);
+        Record {
+            id: format!("{hz}"),
+            is_reference: true,
+            step_s,
+            input,
+            output,
+            amplifier: None,
+            temperature: None,
+            load: None,
+        }
+    }
+
+    #[test]
+    fn a_system_with_plays_between_its_own_is_described_on_runs_it_has_not_seen() {
+        let runs = [run(0.5, 1.0), run(1.7, 0.7), run(4.0, 0.9), run(9.0, 0.5), run(2.3, 0.25)];
+        let references: Vec<&Record> = runs.iter().collect();
+        let base = BaseModel::fit(&references, (-1.0, 1.0), None).unwrap();
+        let unseen = run(3.1, 0.8);
+        let left = mean_square(&base.residual(&unseen)).sqrt();
+        let spread = variance(&unseen.output).sqrt();
+        assert!(left < 0.01 * spread, "{left} of {spread}");
+        let nuisance = base.nuisance(&[&unseen], &[0.01], 30);
+        assert_eq!(nuisance[0].nrows(), unseen.input.len());
+        assert!(nuisance[0].ncols() > 0 && nuisance[0].iter().all(|v| v.is_finite()));
+    }
+
+    #[test]
+    fn noise_is_found_under_a_smooth_residual() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(99);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let noisy: Vec<f64> = (0..20_000)
+            .map(|i| {
+                let sum: f64 = (0..12).map(|_| random()).sum();
+                5.0 * (1e-3 * f64::from(i)).sin() + 0.1 * sum
+            })
+            .collect();
+        assert!((white_noise(&noisy) / 0.1 - 1.0).abs() < 0.03);
+        assert!(correlation_samples(&noisy, 0.1) > 200.0);
+    }
+}

@@ -44,7 +44,9 @@ pub(crate) struct BenchSimulator<'a> {
     pub(crate) channels: Vec<(usize, ChannelKind)>,
     /// Samples averaged into one.
     pub(crate) block: usize,
-    range: VoltageRange,
+    range: (f64, f64),
+    /// Stages that only see signals: any value may pass.
+    wide: VoltageRange,
 }
 
 /// Signals of one run under effects.
@@ -85,11 +87,8 @@ impl<'a> BenchSimulator<'a> {
             .zip(&plain)
             .map(|(r, p)| r.output.iter().zip(p).map(|(a, b)| a - b).collect())
             .collect();
-        let span = range.1 - range.0;
-        // stages that only see signals: any voltage may pass
-        let range = VoltageRange::new(range.0 - 10.0 * span, range.1 + 10.0 * span)
-            .map_err(|e| failed("the range", &e))?;
-        Ok(Self { base, runs, causes, laws, plain, residuals, channels, block, range })
+        let wide = VoltageRange::new(-1e9, 1e9).map_err(|e| failed("the range of signals", &e))?;
+        Ok(Self { base, runs, causes, laws, plain, residuals, channels, block, range, wide })
     }
 
     /// The traces with their noise and the covariance of the base model.
@@ -131,7 +130,7 @@ impl<'a> BenchSimulator<'a> {
                             .zip(&run.input)
                             .map(|(a, b)| a - b)
                             .collect();
-                        let least = MONITOR_ERROR * self.range.span_volt() / 21.0;
+                        let least = MONITOR_ERROR * (self.range.1 - self.range.0);
                         (white_noise(&off), white_noise(&off).max(least))
                     }
                     ChannelKind::Temperature => {
@@ -216,9 +215,6 @@ impl<'a> BenchSimulator<'a> {
                 }
                 Part::Sensor(_) if run.has_ideal_sensor() => {}
                 Part::Sensor(stage) => sensor.push(stage),
-                Part::Hum { amplitude, frequency_hz } => {
-                    special.push(Part::Hum { amplitude, frequency_hz });
-                }
                 other => special.push(other),
             }
         }
@@ -300,15 +296,11 @@ impl<'a> BenchSimulator<'a> {
     ) -> ActuatorModel {
         let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 1.0, bias_volt: 0.0 });
         let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
-        let mut model = ActuatorModel::new(law, self.wide(), calibration);
+        let mut model = ActuatorModel::new(law, self.wide, calibration);
         model.amplifier = amplifier.to_vec();
         model.linkage = linkage.to_vec();
         model.sensor = sensor.to_vec();
         model
-    }
-
-    fn wide(&self) -> VoltageRange {
-        VoltageRange::new(-1e9, 1e9).unwrap_or(self.range)
     }
 
     /// Output of the rested law at zero input.
@@ -317,7 +309,7 @@ impl<'a> BenchSimulator<'a> {
     }
 
     fn neutral_middle(&self) -> f64 {
-        let middle = self.range.middle_volt();
+        let middle = f64::midpoint(self.range.0, self.range.1);
         self.base.hysteresis(&[middle]).first().copied().unwrap_or_default()
     }
 
@@ -334,6 +326,27 @@ impl<'a> BenchSimulator<'a> {
         let rise = model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?.temperature_k;
         let factor = run.temperature.as_ref().map_or(1.0, |measured| slope(&rise, measured));
         Ok((rise, factor.max(0.0)))
+    }
+
+    /// What a channel reads; zero of thermometer and load cell, and the stiffness of a load spring, are
+    /// what the record says.
+    fn reading(&self, number: usize, kind: ChannelKind, own: &Simulated) -> Vec<f64> {
+        let measured = self.measured(number, kind);
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
+        match kind {
+            ChannelKind::Output => own.output.clone(),
+            ChannelKind::Amplifier => own.terminal.clone(),
+            ChannelKind::Temperature => {
+                let rise = own.rise_k.clone().unwrap_or_else(|| vec![0.0; measured.len()]);
+                let off = mean(measured) - mean(&rise);
+                rise.iter().map(|t| t + off).collect()
+            }
+            ChannelKind::Load => {
+                let per_output = if own.is_loaded { slope(&own.output, measured) } else { 0.0 };
+                let off = mean(measured) - per_output * mean(&own.output);
+                own.output.iter().map(|y| off + per_output * y).collect()
+            }
+        }
     }
 
     /// A line of given amplitude with the phase that the base model's residual asks for.
@@ -366,30 +379,7 @@ impl Simulator for BenchSimulator<'_> {
             .channels
             .iter()
             .map(|&(number, kind)| {
-                let own = &simulated[number];
-                let predicted = match kind {
-                    ChannelKind::Output => averaged(&own.output, self.block),
-                    ChannelKind::Amplifier => averaged(&own.terminal, self.block),
-                    ChannelKind::Temperature => {
-                        let measured = self.measured(number, kind);
-                        let rise = own.rise_k.clone().unwrap_or_else(|| vec![0.0; measured.len()]);
-                        let off: f64 = measured.iter().zip(&rise).map(|(m, t)| m - t).sum::<f64>()
-                            / measured.len().max(1) as f64;
-                        let whole: Vec<f64> = rise.iter().map(|t| t + off).collect();
-                        averaged(&whole, self.block)
-                    }
-                    ChannelKind::Load => {
-                        let measured = self.measured(number, kind);
-                        let per_output =
-                            if own.is_loaded { slope(&own.output, measured) } else { 0.0 };
-                        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
-                        let off = mean(measured) - per_output * mean(&own.output);
-                        let whole: Vec<f64> =
-                            own.output.iter().map(|y| off + per_output * y).collect();
-                        averaged(&whole, self.block)
-                    }
-                };
-                predicted
+                averaged(&self.reading(number, kind, &simulated[number]), self.block)
             })
             .collect())
     }

@@ -194,3 +194,103 @@ fn shape(parameter: Parameter) -> Parameter {
 fn singles(values: &[f64]) -> Vec<Vec<f64>> {
     values.iter().map(|&v| vec![v]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn design() -> Design {
+        let input: Vec<f64> = (0..4000)
+            .map(|i| 65.0 + 80.0 * (0.02 * f64::from(i)).sin() * (0.0031 * f64::from(i)).cos())
+            .collect();
+        let run = Record {
+            id: "a".into(),
+            is_reference: false,
+            step_s: 0.01,
+            output: input.iter().map(|u| 2.5 * u).collect(),
+            input,
+            amplifier: None,
+            temperature: None,
+            load: None,
+        };
+        Design::of(&[&run], true, true)
+    }
+
+    /// The names and units other programs read; parameters of form are not among them.
+    const REPORTED: [(&str, &[(&str, &str)]); 15] = [
+        ("creep", &[("rate_per_decade", "1")]),
+        ("rate-dependence", &[("tau", "s")]),
+        ("electrical-lag", &[("tau", "s")]),
+        ("amplifier-current-limit", &[("slew_rate", "V/s")]),
+        ("voltage-saturation", &[("v_max", "V"), ("v_min", "V")]),
+        ("mechanical-resonance", &[("frequency", "Hz"), ("damping_ratio", "1")]),
+        ("transport-delay", &[("delay", "s")]),
+        ("backlash", &[("width", "um")]),
+        ("coulomb-friction", &[("width", "um")]),
+        ("dielectric-heating", &[("time_constant", "s"), ("coefficient", "1/K")]),
+        ("load-stiffness", &[("stiffness_ratio", "1")]),
+        ("depolarisation", &[("threshold", "V")]),
+        ("sensor-filter", &[("tau", "s")]),
+        ("sensor-nonlinearity", &[("amplitude", "um")]),
+        ("mains-hum", &[("amplitude", "um"), ("frequency", "Hz")]),
+    ];
+
+    #[test]
+    fn every_cause_has_its_name_units_and_starts_inside_its_range() {
+        let design = design();
+        let library = library();
+        assert_eq!(library.len(), REPORTED.len());
+        for (cause, (id, parameters)) in library.iter().zip(REPORTED) {
+            let own = cause.cause(&design);
+            assert_eq!(own.id, id);
+            let reported: Vec<(&str, &str)> =
+                own.parameters.iter().filter(|p| !p.is_shape).map(|p| (p.name, p.unit)).collect();
+            assert_eq!(reported, parameters);
+            for other in own.confused_with {
+                assert!(REPORTED.iter().any(|r| r.0 == *other), "{id}: {other}");
+            }
+            if cause.blocked(&design).is_some() {
+                continue;
+            }
+            let starts = cause.starts(&design);
+            assert!(!starts.is_empty(), "{id}");
+            for start in starts {
+                assert_eq!(start.len(), own.parameters.len(), "{id}");
+                for (value, p) in start.iter().zip(&own.parameters) {
+                    assert!((p.low..=p.high).contains(value), "{id}: {} = {value}", p.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_frequency_says_nothing_about_rate() {
+        let input: Vec<f64> = (0..4000).map(|i| 150.0 * (0.0628 * f64::from(i)).sin()).collect();
+        let run = Record {
+            id: "a".into(),
+            is_reference: false,
+            step_s: 0.01,
+            output: input.clone(),
+            input,
+            amplifier: None,
+            temperature: None,
+            load: None,
+        };
+        let design = Design::of(&[&run], true, false);
+        for cause in library() {
+            let id = cause.cause(&design).id;
+            let about_rate = [
+                "creep",
+                "rate-dependence",
+                "electrical-lag",
+                "amplifier-current-limit",
+                "mechanical-resonance",
+                "transport-delay",
+                "sensor-filter",
+            ];
+            if about_rate.contains(&id) {
+                assert!(cause.blocked(&design).is_some(), "{id}");
+            }
+        }
+    }
+}
