@@ -18,7 +18,7 @@ impl BenchCause for ReverseVoltage {
                     "threshold",
                     "V",
                     design.input.0 - 0.01,
-                    design.input.0.abs().mul_add(0.9, design.input.0),
+                    design.input.0 + 0.25 * (design.input.1 - design.input.0),
                 ),
                 shape(logarithmic("loss_per_volt", "1/V", 1e-5, 0.1)),
                 shape(linear("about", "1", -0.5, 1.5)),
@@ -30,10 +30,11 @@ impl BenchCause for ReverseVoltage {
     }
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        let low = design.input.0;
-        [0.2, 0.5, 0.8]
+        let (low, high) = design.input;
+        [0.04, 0.08, 0.14]
             .iter()
-            .flat_map(|part| [vec![low * part, 0.001, 1.0], vec![low * part, 0.005, 1.0]])
+            .map(|part| low + part * (high - low))
+            .flat_map(|volt| [vec![volt, 0.001, 1.0], vec![volt, 0.005, 1.0]])
             .collect()
     }
 
