@@ -54,6 +54,9 @@ impl Generic {
 /// Inverse on the range of a positive semidefinite matrix, and its rank.
 fn pseudo_inverse(gram: &DMatrix<f64>) -> (DMatrix<f64>, f64) {
     let n = gram.nrows();
+    if n == 0 {
+        return (gram.clone(), 0.0);
+    }
     // columns of unit size first, so that the rank does not depend on units
     let size: Vec<f64> = (0..n).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
     let scaled = DMatrix::from_fn(n, n, |i, j| {
