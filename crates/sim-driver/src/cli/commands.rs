@@ -221,7 +221,9 @@ fn reference_runs(args: &DiagnoseArgs, measured: &Records) -> Result<Vec<Record>
         return Ok(Vec::new());
     }
     let mut runs = records_of(&folder)?.runs;
-    runs.iter_mut().for_each(|run| run.is_reference = true);
+    for run in &mut runs {
+        run.is_reference = true;
+    }
     Ok(runs)
 }
 

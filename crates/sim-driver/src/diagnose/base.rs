@@ -87,7 +87,7 @@ impl BaseModel {
         let spread = pooled_spread(runs);
         let taus = time_constants_s();
         let stride = stride_of(runs);
-        let rises = plays.from_rises();
+        let rises = plays.rises_to_coefficients();
         let mut history: Vec<Vec<f64>> = Vec::new();
         let mut noise = 0.01 * spread;
         let mut chosen = fixed;
@@ -237,7 +237,7 @@ impl BaseModel {
         sigmas: &[f64],
         most: usize,
     ) -> Vec<DMatrix<f64>> {
-        let rises = self.plays.from_rises();
+        let rises = self.plays.rises_to_coefficients();
         let width = self.weights.len();
         let taus: Vec<f64> = self.relaxation.iter().map(|r| r.0).collect();
         let stride = stride_of(runs);

@@ -98,7 +98,7 @@ fn add(model: &mut ActuatorModel, part: Part) {
         Part::Sensor(stage) => model.sensor.push(stage),
         Part::Heating(stage, _) => model.amplifier.push(AmplifierStage::DielectricHeating(stage)),
         Part::Depolarisation(stage, _) => {
-            model.amplifier.push(AmplifierStage::Depolarisation(stage))
+            model.amplifier.push(AmplifierStage::Depolarisation(stage));
         }
         Part::RateDependence { tau_s, .. } => {
             let elements = vec![RelaxationElement { share: 1.0, time_constant_s: tau_s }];

@@ -20,7 +20,7 @@ const CELLS: f64 = 12.0;
 pub(crate) struct Plays {
     middle: f64,
     half: f64,
-    plays: Vec<Play>,
+    all: Vec<Play>,
     count: usize,
 }
 
@@ -60,7 +60,7 @@ impl Plays {
                 Play { half_width, share, cells, first }
             })
             .collect();
-        Self { middle: 0.5 * (low + high), half: 0.5 * (high - low), plays, count }
+        Self { middle: 0.5 * (low + high), half: 0.5 * (high - low), all: plays, count }
     }
 
     /// Number of coefficients.
@@ -75,12 +75,12 @@ impl Plays {
     /// The plays at rest at an input.
     pub(crate) fn rest(&self, input: f64) -> Vec<f64> {
         let x = self.coordinate(input);
-        self.plays.iter().map(|p| x.clamp(p.half_width - 1.0, 1.0 - p.half_width)).collect()
+        self.all.iter().map(|p| x.clamp(p.half_width - 1.0, 1.0 - p.half_width)).collect()
     }
 
     fn advance(&self, states: &mut [f64], input: f64) {
         let x = self.coordinate(input);
-        for (state, play) in states.iter_mut().zip(&self.plays) {
+        for (state, play) in states.iter_mut().zip(&self.all) {
             *state = state.min(x + play.half_width).max(x - play.half_width);
         }
     }
@@ -89,11 +89,11 @@ impl Plays {
     pub(crate) fn rows(&self, inputs: &[f64], mut visit: impl FnMut(usize, &[(usize, f64)])) {
         let Some(&first) = inputs.first() else { return };
         let mut states = self.rest(first);
-        let mut row = Vec::with_capacity(3 * self.plays.len());
+        let mut row = Vec::with_capacity(3 * self.all.len());
         for (i, &input) in inputs.iter().enumerate() {
             self.advance(&mut states, input);
             row.clear();
-            for (play, &state) in self.plays.iter().zip(&states) {
+            for (play, &state) in self.all.iter().zip(&states) {
                 let (cell, t) = play.place(state);
                 let k = play.first + cell;
                 row.push((k, 0.5 * (1.0 - t) * (1.0 - t)));
@@ -113,7 +113,7 @@ impl Plays {
             .map(|&input| {
                 self.advance(&mut states, input);
                 let mut sum = map.offset;
-                for ((play, &state), cells) in self.plays.iter().zip(&states).zip(&map.cells) {
+                for ((play, &state), cells) in self.all.iter().zip(&states).zip(&map.cells) {
                     let (cell, t) = play.place(state);
                     let [a, b, c] = cells[cell];
                     sum += a + t * (b + t * c);
@@ -126,7 +126,7 @@ impl Plays {
     /// The output maps of given coefficients.
     pub(crate) fn map(&self, offset: f64, coefficients: &[f64]) -> OutputMap {
         let cells = self
-            .plays
+            .all
             .iter()
             .map(|play| {
                 (0..play.cells)
@@ -142,11 +142,11 @@ impl Plays {
 
     /// The rises of the maps that stand behind the coefficients: `coefficients = matrix rises`. Every
     /// map has opposite values at its ends.
-    pub(crate) fn from_rises(&self) -> DMatrix<f64> {
-        let rises: usize = self.plays.iter().map(|p| p.cells + 1).sum();
+    pub(crate) fn rises_to_coefficients(&self) -> DMatrix<f64> {
+        let rises: usize = self.all.iter().map(|p| p.cells + 1).sum();
         let mut matrix = DMatrix::zeros(self.count, rises);
         let mut column = 0;
-        for play in &self.plays {
+        for play in &self.all {
             for k in 0..=play.cells {
                 for j in 0..play.cells + 2 {
                     matrix[(play.first + j, column + k)] = if j > k { 0.5 } else { -0.5 };
@@ -162,7 +162,7 @@ impl Plays {
     /// reversible part of slope size `reversible`.
     pub(crate) fn prior(&self, amplitude: f64, reversible: f64, length: f64) -> DMatrix<f64> {
         let mut places = Vec::new();
-        for (number, play) in self.plays.iter().enumerate() {
+        for (number, play) in self.all.iter().enumerate() {
             let step = 2.0 * (1.0 - play.half_width) / play.cells as f64;
             for k in 0..=play.cells {
                 let place = play.half_width - 1.0 + step * k as f64;
@@ -252,9 +252,9 @@ mod tests {
     #[test]
     fn equal_rises_of_the_narrowest_play_are_a_straight_line() {
         let plays = Plays::new(-1.0, 1.0);
-        let matrix = plays.from_rises();
+        let matrix = plays.rises_to_coefficients();
         let mut rises = DVector::zeros(matrix.ncols());
-        let cells = plays.plays[0].cells;
+        let cells = plays.all[0].cells;
         for k in 0..=cells {
             rises[k] = 2.0 / cells as f64;
         }

@@ -1,6 +1,6 @@
 //! The bench as the engine sees it: base model, stages of the causes, channels.
 
-use super::base::{BaseModel, variance, white_noise};
+use super::base::{BaseModel, ErrorModel, variance, white_noise};
 use super::causes::{BenchCause, Part};
 use super::record::Record;
 use model_gap::discovery::{Signal, Simulator, Trace};
@@ -94,7 +94,7 @@ impl<'a> BenchSimulator<'a> {
     /// The traces with their noise and the covariance of the base model.
     pub(crate) fn traces(&self) -> Vec<Trace> {
         let errors: Vec<_> = self.runs.iter().map(|r| self.base.errors(r)).collect();
-        let sigmas: Vec<f64> = errors.iter().map(|e| e.effective()).collect();
+        let sigmas: Vec<f64> = errors.iter().map(ErrorModel::effective).collect();
         let moving = self.base.nuisance(&self.runs, &sigmas, MOST_DIRECTIONS);
         let directions = moving.first().map_or(0, DMatrix::ncols);
         let width = directions + self.runs.len();

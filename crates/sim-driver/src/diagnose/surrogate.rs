@@ -81,7 +81,9 @@ fn one(
         .map(|(r, run)| {
             let mut output = simulate(run);
             let mut noise = Noise(0x1234_5678 + r as u64);
-            output.iter_mut().for_each(|y| *y += base.noise * noise.normal());
+            for y in &mut output {
+                *y += base.noise * noise.normal();
+            }
             Record { output, ..(*run).clone() }
         })
         .collect();
