@@ -14,7 +14,7 @@ impl BenchCause for Heating {
             physics: "Dielectric loss warms the ceramic and raises its gain, gain (1 + a dT), C dT' = P - dT / R.",
             side: Side::State,
             parameters: vec![
-                logarithmic("time_constant", "s", 0.3, 3000.0),
+                logarithmic("time_constant", "s", 5.0, 3000.0),
                 linear("coefficient", "1/K", -0.05, 0.5),
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
@@ -26,7 +26,7 @@ impl BenchCause for Heating {
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
         let t = design.longest_s;
-        [0.3, 1.0, 4.0].iter().map(|part| vec![part * t, 0.002, 1.0]).collect()
+        [0.3, 1.0, 4.0].iter().map(|part| vec![(part * t).clamp(6.0, 2000.0), 0.002, 1.0]).collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
