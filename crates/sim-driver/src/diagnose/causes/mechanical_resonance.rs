@@ -34,7 +34,7 @@ impl BenchCause for MechanicalResonance {
         let mut hz = 30.0;
         while hz < highest {
             starts.push(vec![hz, 0.03]);
-            hz *= 1.2;
+            hz *= 1.07;
         }
         starts
     }
