@@ -125,6 +125,22 @@ pub enum GapError {
         /// Number of experiments.
         experiments: usize,
     },
+    /// The simulator could not simulate.
+    #[error("simulation of {what} failed: {message}")]
+    Simulation {
+        /// The effects asked for.
+        what: String,
+        /// The simulator's own words.
+        message: String,
+    },
+    /// A covariance that is none.
+    #[error(
+        "the information of {columns} nuisance columns is not positive definite: a column holds NaN or is out of scale"
+    )]
+    NotPositiveDefinite {
+        /// Number of columns.
+        columns: usize,
+    },
 }
 
 /// Accepts a record of finite samples, at least `needed`.

@@ -33,6 +33,8 @@
 //! # Ok::<(), model_gap::GapError>(())
 //! ```
 
+mod cause;
+pub mod discovery;
 mod energy;
 mod error;
 mod experiment;
@@ -43,6 +45,7 @@ mod split;
 mod stimulus;
 mod summary;
 
+pub use cause::{Candidate, Cause, Effect, Parameter, Scale, Side};
 pub use energy::EnergySplit;
 pub use error::GapError;
 pub use experiment::{Channel, Experiment, Role, Use};

@@ -21,6 +21,7 @@ pub mod case;
 pub mod check;
 pub mod cli;
 pub mod curve_identification;
+pub mod diagnose;
 mod error;
 pub mod figures;
 pub mod files;

@@ -31,6 +31,8 @@ pub enum Command {
     Run(RunArgs),
     /// Identify an actuator from bench data.
     Identify(IdentifyArgs),
+    /// Find what a simulation of measured data lacks: cause, extended model, gain.
+    Diagnose(DiagnoseArgs),
     /// Import measured data (CSV, MAT, FORC, JSON) into a data folder.
     Import(ImportArgs),
     /// Rotating frequencies of a blade, and the data of a fan plot.
@@ -190,6 +192,32 @@ fn range(text: &str) -> Result<(f64, f64), String> {
         Some(&[low, high]) => Ok((low, high)),
         _ => Err("expected LOW,HIGH, such as -20,150".to_owned()),
     }
+}
+
+/// `hhc diagnose`.
+#[derive(Debug, Clone, Args)]
+pub struct DiagnoseArgs {
+    /// Actuator file, or a case with its actuator: the simulation that is asked about.
+    #[arg(value_name = "ACTUATOR_OR_CASE.ron")]
+    pub model: PathBuf,
+    /// Folder with dataset.ron and the measured records.
+    #[arg(long, value_name = "DIR")]
+    pub data: PathBuf,
+    /// Folder to write findings.json, extended.ron and the residuals to.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Folder with reference records; beside those of the data, or `../reference`, if left out.
+    #[arg(long, value_name = "DIR")]
+    pub reference: Option<PathBuf>,
+    /// Take these causes for true and fit them, nothing refused.
+    #[arg(long, value_name = "CAUSES", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// Folder to keep what surrogates of a base model leave; computed once for a base and a design.
+    #[arg(long, value_name = "DIR", default_value = "out/cache")]
+    pub cache: PathBuf,
+    /// Form of the output.
+    #[command(flatten)]
+    pub format: FormatArgs,
 }
 
 /// `hhc modes`.

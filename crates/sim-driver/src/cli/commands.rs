@@ -1,13 +1,14 @@
 //! What each command does.
 
 use super::args::{
-    CheckArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs,
-    ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs,
+    CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs,
+    ReportArgs, ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs,
 };
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::check::check_file;
 use crate::curve_identification::identify_curves;
+use crate::diagnose::{Findings, Question, Record, Records, Story};
 use crate::figures::figure_files;
 use crate::files::{
     DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_inside, write_atomic, write_new,
@@ -32,6 +33,7 @@ use crate::study::{
     sensitivity_csv, study_report,
 };
 use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
+use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::Settings;
 use rotor_fem::GyroscopicTerms;
 use std::path::{Path, PathBuf};
@@ -174,6 +176,81 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         }
     }
     print(&text)
+}
+
+pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
+    let model = given_model(&args.model)?;
+    let measured = records_of(&args.data)?;
+    let reference = reference_runs(args, &measured)?;
+    let progress = Progress::new(1);
+    progress.doing(format!("diagnosing {} runs", measured.runs.len()));
+    let question = Question {
+        reference,
+        only: args.only.clone(),
+        cache: Some(&args.cache),
+        given: model.as_ref(),
+    };
+    let found = crate::diagnose::diagnose(&measured, &question);
+    progress.finish();
+    let found = found?;
+    let findings = serde_json::to_string_pretty(&Findings::from(&found)).map_err(|e| {
+        SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
+    })?;
+    found.extended()?.write(&args.output.join("extended.ron"))?;
+    for (name, text) in found.figures() {
+        write_atomic(&args.output.join(name), text.as_bytes())?;
+    }
+    write_atomic(&args.output.join("findings.json"), (findings + "\n").as_bytes())?;
+    print(&Story::of(&found).render(args.format.format)?)
+}
+
+/// The model of an actuator file, or of the actuator file a case names.
+fn given_model(path: &Path) -> Result<Option<ActuatorModel>, SimError> {
+    let source = Source::read(path)?;
+    match read_actuator(&source) {
+        Ok(stored) => Ok(Some(stored.model)),
+        Err(problems) if source.text.contains("kind: Actuator") => Err(problems.into()),
+        Err(_) => {
+            load_case(path)?;
+            Ok(None)
+        }
+    }
+}
+
+fn records_of(folder: &Path) -> Result<Records, SimError> {
+    let data = read_dataset(&Folder::Disk(folder.to_path_buf()))?;
+    for warning in data.warnings() {
+        eprintln!("warning: {warning}");
+    }
+    match &data {
+        DataSet::Bench(bench) => Ok(bench.into()),
+        DataSet::Loops(loops) => Ok(loops.into()),
+        DataSet::Curves(curves) => {
+            let place = Place::file(format!("{}/dataset.ron", curves.folder)).field("kind");
+            let message =
+                "reversal curves hold no time: nothing dynamic can be diagnosed from them; \
+                           give an ActuatorBench or a GenericLoop"
+                    .to_owned();
+            Err(Problem::new(place, Fault::Refused { message }).into())
+        }
+    }
+}
+
+/// Reference runs: of the folder given, else those of the data, else of `../reference`.
+fn reference_runs(args: &DiagnoseArgs, measured: &Records) -> Result<Vec<Record>, SimError> {
+    let folder = match &args.reference {
+        Some(folder) => folder.clone(),
+        None if measured.runs.iter().any(|run| run.is_reference) => return Ok(Vec::new()),
+        None => args.data.join("../reference"),
+    };
+    if args.reference.is_none() && !folder.join("dataset.ron").is_file() {
+        return Ok(Vec::new());
+    }
+    let mut runs = records_of(&folder)?.runs;
+    for run in &mut runs {
+        run.is_reference = true;
+    }
+    Ok(runs)
 }
 
 /// Model file, printed text and tables of the figures.

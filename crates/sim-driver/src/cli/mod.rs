@@ -4,8 +4,8 @@ mod args;
 mod commands;
 
 pub use args::{
-    CheckArgs, Cli, Command, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs,
-    ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs,
+    CheckArgs, Cli, Command, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride,
+    InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs,
 };
 
 use crate::SimError;
@@ -49,6 +49,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         None => commands::study(&cli.study),
         Some(Command::Run(args)) => commands::run(args),
         Some(Command::Identify(args)) => commands::identify(args),
+        Some(Command::Diagnose(args)) => commands::diagnose(args),
         Some(Command::Import(args)) => commands::import(args),
         Some(Command::Modes(args)) => commands::modes(args),
         Some(Command::Section(args)) => commands::section(args),

@@ -1,0 +1,118 @@
+//! What could be missing: causes as values.
+
+use serde::{Deserialize, Serialize};
+
+/// Where a cause acts on the way from input to reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Side {
+    /// Before the system: it changes what the system is driven with.
+    Input,
+    /// Inside: it changes the state or the gain.
+    State,
+    /// Behind the system.
+    Output,
+    /// In the reading alone.
+    Sensor,
+}
+
+/// How a parameter is searched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// On a straight scale.
+    Linear,
+    /// On a logarithmic scale; the range lies above zero.
+    Log,
+}
+
+/// A parameter of a cause: name, unit and physical range, which is its prior.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Name in every report.
+    pub name: &'static str,
+    /// Unit; `1` for a pure number.
+    pub unit: &'static str,
+    /// Least value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+    /// How it is searched.
+    pub scale: Scale,
+    /// Whether it only shapes the effect: fitted, but neither reported nor judged, because candidates of
+    /// one cause may shape it differently.
+    pub is_shape: bool,
+}
+
+impl Parameter {
+    /// The coordinate the search moves on.
+    pub(crate) fn coordinate(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => value,
+            Scale::Log => value.ln(),
+        }
+    }
+
+    /// The value at a coordinate, held inside the range.
+    pub(crate) fn value(&self, coordinate: f64) -> f64 {
+        let value = match self.scale {
+            Scale::Linear => coordinate,
+            Scale::Log => coordinate.exp(),
+        };
+        value.clamp(self.low, self.high)
+    }
+
+    /// Step of a numerical derivative, in the coordinate.
+    pub(crate) fn step(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => 0.02 * value.abs().max(0.01 * (self.high - self.low)),
+            Scale::Log => 0.02,
+        }
+    }
+
+    /// Whether a value lies at an end of the range, to one part in a thousand of it.
+    pub fn at_bound(&self, value: f64) -> bool {
+        let (low, high) = (self.coordinate(self.low), self.coordinate(self.high));
+        let slack = 1e-3 * (high - low);
+        let x = self.coordinate(value);
+        x <= low + slack || x >= high - slack
+    }
+}
+
+/// A cause: an effect the simulation may lack, in physical terms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cause {
+    /// Name in every report, such as `electrical-lag`.
+    pub id: &'static str,
+    /// The physics, one or two sentences with the equation.
+    pub physics: &'static str,
+    /// Where it acts.
+    pub side: Side,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// What the residual looks like.
+    pub fingerprint: &'static str,
+    /// Causes that look alike on ordinary data.
+    pub confused_with: &'static [&'static str],
+    /// Experiments that tell it from those.
+    pub separating: &'static [&'static str],
+}
+
+/// A cause made ready for one data set.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// The cause.
+    pub cause: Cause,
+    /// Where the search starts: values of the parameters, weak effects first. Several, because a lazy
+    /// search makes false names.
+    pub starts: Vec<Vec<f64>>,
+    /// Why these data cannot show it, found before any fit; none if they may.
+    pub blocked: Option<String>,
+}
+
+/// A cause switched on, with values of its parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Effect {
+    /// Position among the candidates.
+    pub candidate: usize,
+    /// Values of its parameters.
+    pub values: Vec<f64>,
+}

@@ -1,0 +1,200 @@
+//! Sums of squares with the nuisance projected out.
+
+use super::Trace;
+use crate::GapError;
+use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn};
+
+/// Products of a set of columns, weighted by the noise, over one experiment.
+#[derive(Debug, Clone)]
+pub(crate) struct Products {
+    /// Columns with columns.
+    pub(crate) own: DMatrix<f64>,
+    /// Nuisance with columns.
+    pub(crate) with_nuisance: DMatrix<f64>,
+}
+
+impl Products {
+    fn zero(columns: usize, nuisance: usize) -> Self {
+        Self {
+            own: DMatrix::zeros(columns, columns),
+            with_nuisance: DMatrix::zeros(nuisance, columns),
+        }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.own += &other.own;
+        self.with_nuisance += &other.with_nuisance;
+    }
+}
+
+/// Columns over all traces: `columns[c][t]` is column `c` on trace `t`.
+pub(crate) type Columns<'a> = [&'a [Vec<f64>]];
+
+/// The traces with their nuisance factorised, for all experiments and with each fold left out.
+#[derive(Debug, Clone)]
+pub(crate) struct Evidence<'a> {
+    pub(crate) traces: &'a [Trace],
+    pub(crate) experiments: usize,
+    /// Fold of every experiment.
+    pub(crate) folds: Vec<usize>,
+    pub(crate) fold_count: usize,
+    nuisance: Vec<DMatrix<f64>>,
+    all: Cholesky<f64, Dyn>,
+    without: Vec<Cholesky<f64, Dyn>>,
+}
+
+impl<'a> Evidence<'a> {
+    pub(crate) fn new(traces: &'a [Trace], most_folds: usize) -> Result<Self, GapError> {
+        let experiments = traces.iter().map(|t| t.experiment + 1).max().unwrap_or(0);
+        let width = traces.iter().map(|t| t.nuisance.ncols()).max().unwrap_or(0);
+        let mut nuisance = vec![DMatrix::zeros(width, width); experiments];
+        for t in traces.iter().filter(|t| t.nuisance.ncols() > 0) {
+            nuisance[t.experiment] += t.nuisance.tr_mul(&t.nuisance) / (t.sigma * t.sigma);
+        }
+        let fold_count = experiments.min(most_folds);
+        let folds: Vec<usize> = (0..experiments).map(|e| e % fold_count.max(1)).collect();
+        let factor = |left_out: Option<usize>| {
+            let mut sum = DMatrix::identity(width, width);
+            for (e, own) in nuisance.iter().enumerate() {
+                if left_out != Some(folds[e]) {
+                    sum += own;
+                }
+            }
+            Cholesky::new(sum).ok_or(GapError::NotPositiveDefinite { columns: width })
+        };
+        let all = factor(None)?;
+        let without = (0..fold_count).map(|f| factor(Some(f))).collect::<Result<_, _>>()?;
+        Ok(Self { traces, experiments, folds, fold_count, nuisance, all, without })
+    }
+
+    /// Energy of the outputs about their means, in units of the noise variance.
+    pub(crate) fn output_energy(&self) -> f64 {
+        self.traces
+            .iter()
+            .filter(|t| t.is_output)
+            .map(|t| {
+                let mean = t.measured.iter().sum::<f64>() / t.measured.len().max(1) as f64;
+                t.measured.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (t.sigma * t.sigma)
+            })
+            .sum()
+    }
+
+    /// Products of columns, experiment by experiment.
+    pub(crate) fn products(&self, columns: &Columns<'_>) -> Vec<Products> {
+        let width = self.nuisance.first().map_or(0, DMatrix::ncols);
+        let mut all = vec![Products::zero(columns.len(), width); self.experiments];
+        for (number, trace) in self.traces.iter().enumerate() {
+            self.add(&mut all[trace.experiment], columns, number);
+        }
+        all
+    }
+
+    fn add(&self, into: &mut Products, columns: &Columns<'_>, number: usize) {
+        let trace = &self.traces[number];
+        let weight = 1.0 / (trace.sigma * trace.sigma);
+        let view =
+            |c: usize| DVectorView::from_slice(&columns[c][number], columns[c][number].len());
+        for a in 0..columns.len() {
+            for b in 0..=a {
+                let product = weight * view(a).dot(&view(b));
+                into.own[(a, b)] += product;
+                if a != b {
+                    into.own[(b, a)] += product;
+                }
+            }
+            if trace.nuisance.ncols() > 0 {
+                into.with_nuisance.column_mut(a).gemv_tr(weight, &trace.nuisance, &view(a), 1.0);
+            }
+        }
+    }
+
+    /// The products with the nuisance projected out, over all experiments.
+    pub(crate) fn projected(&self, products: &[Products]) -> DMatrix<f64> {
+        self.project(products, None)
+    }
+
+    fn sum(&self, products: &[Products], left_out: Option<usize>) -> Products {
+        let (columns, width) = match products.first() {
+            Some(p) => (p.own.ncols(), p.with_nuisance.nrows()),
+            None => (0, 0),
+        };
+        let mut sum = Products::zero(columns, width);
+        for (e, own) in products.iter().enumerate() {
+            if left_out != Some(self.folds[e]) {
+                sum.add(own);
+            }
+        }
+        sum
+    }
+
+    fn factor(&self, left_out: Option<usize>) -> &Cholesky<f64, Dyn> {
+        left_out.map_or(&self.all, |fold| &self.without[fold])
+    }
+
+    /// The same with a fold left out.
+    pub(crate) fn project(&self, products: &[Products], left_out: Option<usize>) -> DMatrix<f64> {
+        let sum = self.sum(products, left_out);
+        let solved = self.factor(left_out).solve(&sum.with_nuisance);
+        sum.own - sum.with_nuisance.tr_mul(&solved)
+    }
+
+    /// The nuisance information of one experiment, factorised.
+    pub(crate) fn alone(&self, experiment: usize) -> Option<Cholesky<f64, Dyn>> {
+        let own = &self.nuisance[experiment];
+        Cholesky::new(own + DMatrix::identity(own.nrows(), own.ncols()))
+    }
+
+    /// The nuisance that a residual asks for, the residual being `column + rest shift`.
+    pub(crate) fn nuisance_of(
+        &self,
+        products: &[Products],
+        shift: &DVector<f64>,
+        left_out: Option<usize>,
+    ) -> DVector<f64> {
+        let sum = self.sum(products, left_out);
+        self.factor(left_out).solve(&(sum.with_nuisance * shift))
+    }
+
+    /// Sum of squares, over the noise, of a residual less its nuisance on one experiment.
+    pub(crate) fn left_of(
+        &self,
+        products: &Products,
+        shift: &DVector<f64>,
+        nuisance: &DVector<f64>,
+        experiment: usize,
+    ) -> f64 {
+        let own = (shift.transpose() * &products.own * shift)[0];
+        let cross = nuisance.dot(&(&products.with_nuisance * shift));
+        let square = (nuisance.transpose() * &self.nuisance[experiment] * nuisance)[0];
+        (own - 2.0 * cross + square).max(0.0)
+    }
+
+    /// Takes the nuisance out of a residual on all traces.
+    pub(crate) fn cleaned(&self, residual: &[Vec<f64>], nuisance: &DVector<f64>) -> Vec<Vec<f64>> {
+        residual
+            .iter()
+            .zip(self.traces)
+            .map(|(r, t)| {
+                if t.nuisance.ncols() == 0 {
+                    return r.clone();
+                }
+                let moved = &t.nuisance * nuisance;
+                r.iter().zip(moved.iter()).map(|(a, b)| a - b).collect()
+            })
+            .collect()
+    }
+}
+
+/// Measured less predicted, trace by trace.
+pub(crate) fn residual(traces: &[Trace], predicted: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    traces
+        .iter()
+        .zip(predicted)
+        .map(|(t, p)| t.measured.iter().zip(p).map(|(a, b)| a - b).collect())
+        .collect()
+}
+
+/// One signal less another, trace by trace.
+pub(crate) fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
+}

@@ -1,0 +1,258 @@
+//! Fits of the parameters of one or several causes, the nuisance projected out.
+
+use super::Simulator;
+use super::evidence::{Columns, Evidence, Products, residual};
+use crate::{Candidate, Effect, GapError, Parameter};
+use nalgebra::{DMatrix, DVector};
+
+/// Effects fitted to all experiments, with what is needed to fit them to fewer.
+#[derive(Debug, Clone)]
+pub(crate) struct Fitted {
+    pub(crate) effects: Vec<Effect>,
+    /// Projected sum of squares over the noise.
+    pub(crate) cost: f64,
+    /// Measured less predicted, nuisance not taken out.
+    pub(crate) residual: Vec<Vec<f64>>,
+    /// Change of the residual per coordinate, free coordinates only.
+    pub(crate) slopes: Vec<Vec<Vec<f64>>>,
+    /// Which coordinates are free: effect and parameter.
+    pub(crate) free: Vec<(usize, usize)>,
+    /// Products of residual and slopes, experiment by experiment.
+    pub(crate) products: Vec<Products>,
+    /// Rise of the cost of the whole set up to which a fold may move the parameters, the residual taken
+    /// as straight in them.
+    pub(crate) trust: f64,
+}
+
+/// Fits effects.
+pub(crate) struct Fitter<'a, S> {
+    pub(crate) simulator: &'a S,
+    pub(crate) evidence: &'a Evidence<'a>,
+    pub(crate) candidates: &'a [Candidate],
+}
+
+/// Part of the drop of a fit up to which its residual counts as straight in the parameters.
+const TRUSTED: f64 = 0.1;
+/// Weight of the whole set in the fit of a fold.
+const KEPT: f64 = 0.02;
+const ITERATIONS: usize = 12;
+/// Change of the cost below which a fit has settled.
+const SETTLED: f64 = 0.02;
+/// Largest step of a logarithmic coordinate.
+const LARGEST_LOG_STEP: f64 = 0.7;
+
+impl<S: Simulator> Fitter<'_, S> {
+    fn parameter(&self, effects: &[Effect], at: (usize, usize)) -> &Parameter {
+        &self.candidates[effects[at.0].candidate].cause.parameters[at.1]
+    }
+
+    pub(crate) fn residual(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
+        Ok(residual(self.evidence.traces, &self.simulator.predict(effects)?))
+    }
+
+    pub(crate) fn cost_of(&self, residual: &[Vec<f64>]) -> f64 {
+        let products = self.evidence.products(&[residual]);
+        self.evidence.projected(&products)[(0, 0)]
+    }
+
+    /// The best fit of the effects of `before` (refitted too) and a further candidate, from every
+    /// start given; none if no start promises a drop of `least` were its effect scaled freely.
+    pub(crate) fn fit_with(
+        &self,
+        before: &Fitted,
+        candidate: usize,
+        starts: &[Vec<f64>],
+        least: f64,
+    ) -> Result<Option<Fitted>, GapError> {
+        let mut tried = Vec::new();
+        let mut promise = 0.0_f64;
+        for values in starts {
+            let mut effects = before.effects.clone();
+            effects.push(Effect { candidate, values: values.clone() });
+            let residual = self.residual(&effects)?;
+            let products = self.evidence.products(&[&before.residual, &residual]);
+            let gram = self.evidence.projected(&products);
+            let along = gram[(0, 0)] - gram[(0, 1)];
+            let size = gram[(0, 0)] - 2.0 * gram[(0, 1)] + gram[(1, 1)];
+            if along > 0.0 && size > 0.0 {
+                promise = promise.max(along * along / size);
+            }
+            tried.push((gram[(1, 1)], effects));
+        }
+        if promise < least {
+            return Ok(None);
+        }
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best: Option<Fitted> = None;
+        for (_, effects) in tried.into_iter().take(2) {
+            let mut found = self.refine(effects)?;
+            found.trust = TRUSTED * (before.cost - found.cost).max(0.0);
+            if best.as_ref().is_none_or(|b| found.cost < b.cost) {
+                best = Some(found);
+            }
+        }
+        Ok(best)
+    }
+
+    /// Levenberg-Marquardt from given effects.
+    pub(crate) fn refine(&self, mut effects: Vec<Effect>) -> Result<Fitted, GapError> {
+        let free: Vec<(usize, usize)> = effects
+            .iter()
+            .enumerate()
+            .flat_map(|(e, effect)| (0..effect.values.len()).map(move |p| (e, p)))
+            .collect();
+        let mut residual = self.residual(&effects)?;
+        let mut cost = self.cost_of(&residual);
+        let mut damping = 1e-3;
+        for _ in 0..ITERATIONS {
+            let slopes = self.slopes(&effects, &residual, &free)?;
+            let (matrix, _) = self.gram(&residual, &slopes);
+            let n = free.len();
+            let normal = matrix.view((1, 1), (n, n)).clone_owned();
+            let right: DVector<f64> = -matrix.view((1, 0), (n, 1)).column(0).clone_owned();
+            let mut improved = None;
+            for _ in 0..4 {
+                let mut damped = normal.clone();
+                for i in 0..n {
+                    damped[(i, i)] += damping * normal[(i, i)] + 1e-12 + 1e-9 * normal.trace();
+                }
+                let Some(step) = damped.cholesky().map(|c| c.solve(&right)) else { break };
+                let moved = self.moved(&effects, &free, &step);
+                let new_residual = self.residual(&moved)?;
+                let new_cost = self.cost_of(&new_residual);
+                if new_cost < cost {
+                    improved = Some((moved, new_residual, new_cost));
+                    damping = (damping * 0.1).max(1e-9);
+                    break;
+                }
+                damping *= 10.0;
+                if cost - new_cost > -SETTLED && damping > 1.0 {
+                    break;
+                }
+            }
+            let Some((moved, new_residual, new_cost)) = improved else { break };
+            let gained = cost - new_cost;
+            (effects, residual, cost) = (moved, new_residual, new_cost);
+            if gained < SETTLED {
+                break;
+            }
+        }
+        let slopes = self.slopes(&effects, &residual, &free)?;
+        let (_, products) = self.gram(&residual, &slopes);
+        Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
+    }
+
+    fn gram(
+        &self,
+        residual: &[Vec<f64>],
+        slopes: &[Vec<Vec<f64>>],
+    ) -> (DMatrix<f64>, Vec<Products>) {
+        let columns: Vec<&[Vec<f64>]> =
+            std::iter::once(residual).chain(slopes.iter().map(Vec::as_slice)).collect();
+        let columns: &Columns<'_> = &columns;
+        let products = self.evidence.products(columns);
+        (self.evidence.projected(&products), products)
+    }
+
+    /// Slopes of the residual by one-sided differences, turned inward at the upper bound.
+    pub(crate) fn slopes(
+        &self,
+        effects: &[Effect],
+        residual: &[Vec<f64>],
+        free: &[(usize, usize)],
+    ) -> Result<Vec<Vec<Vec<f64>>>, GapError> {
+        free.iter()
+            .map(|&at| {
+                let parameter = self.parameter(effects, at);
+                let value = effects[at.0].values[at.1];
+                let x = parameter.coordinate(value);
+                let mut step = parameter.step(value);
+                let other = parameter.value(x + step);
+                if (parameter.coordinate(other) - x).abs() < 0.5 * step {
+                    step = -step;
+                }
+                let mut shifted = effects.to_vec();
+                shifted[at.0].values[at.1] = parameter.value(x + step);
+                let change = parameter.coordinate(shifted[at.0].values[at.1]) - x;
+                let there = self.residual(&shifted)?;
+                Ok(there
+                    .iter()
+                    .zip(residual)
+                    .map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / change).collect())
+                    .collect())
+            })
+            .collect()
+    }
+
+    pub(crate) fn moved(
+        &self,
+        effects: &[Effect],
+        free: &[(usize, usize)],
+        step: &DVector<f64>,
+    ) -> Vec<Effect> {
+        let mut moved = effects.to_vec();
+        for (&at, &change) in free.iter().zip(step.iter()) {
+            let parameter = self.parameter(effects, at);
+            let change = match parameter.scale {
+                crate::Scale::Log => change.clamp(-LARGEST_LOG_STEP, LARGEST_LOG_STEP),
+                crate::Scale::Linear => change,
+            };
+            let x = parameter.coordinate(effects[at.0].values[at.1]) + change;
+            moved[at.0].values[at.1] = parameter.value(x);
+        }
+        moved
+    }
+}
+
+impl Fitted {
+    /// The step of the coordinates that fits the projected products of a fold best, the residual
+    /// straight in them. The first entry belongs to the residual and is 1.
+    ///
+    /// The products of the whole set weigh in with a fiftieth: a parameter that only the fold left out
+    /// shows keeps the value of the whole fit, where the others alone would leave it anywhere. A step is
+    /// cut back to where the residual may be taken as straight in the parameters.
+    pub(crate) fn shift(&self, matrix: &DMatrix<f64>, whole: &DMatrix<f64>) -> DVector<f64> {
+        let n = matrix.nrows() - 1;
+        let mut shift = DVector::zeros(n + 1);
+        shift[0] = 1.0;
+        if n == 0 {
+            return shift;
+        }
+        let mut normal = matrix.view((1, 1), (n, n)).clone_owned();
+        normal += whole.view((1, 1), (n, n)) * KEPT;
+        let trace = normal.trace();
+        for i in 0..n {
+            normal[(i, i)] += 1e-9 * trace + 1e-12;
+        }
+        let right: DVector<f64> = -matrix.view((1, 0), (n, 1)).column(0).clone_owned();
+        if let Some(mut step) = normal.cholesky().map(|c| c.solve(&right)) {
+            let rise = (step.transpose() * whole.view((1, 1), (n, n)) * &step)[0];
+            if rise > self.trust {
+                step *= (self.trust / rise).sqrt();
+            }
+            shift.rows_mut(1, n).copy_from(&step);
+        }
+        shift
+    }
+
+    /// Sums of squares over the noise on every experiment, each predicted by a fit that has not seen
+    /// its fold.
+    pub(crate) fn held_out(&self, evidence: &Evidence<'_>) -> Vec<f64> {
+        let whole = evidence.projected(&self.products);
+        (0..evidence.experiments)
+            .map(|e| {
+                let fold = (evidence.fold_count > 1).then_some(evidence.folds[e]);
+                let shift = self.shift(&evidence.project(&self.products, fold), &whole);
+                let nuisance = evidence.nuisance_of(&self.products, &shift, fold);
+                evidence.left_of(&self.products[e], &shift, &nuisance, e)
+            })
+            .collect()
+    }
+
+    /// The residual less the nuisance it asks for.
+    pub(crate) fn cleaned(&self, evidence: &Evidence<'_>) -> Vec<Vec<f64>> {
+        let shift = super::judge::unmoved(self.free.len() + 1);
+        let nuisance = evidence.nuisance_of(&self.products, &shift, None);
+        evidence.cleaned(&self.residual, &nuisance)
+    }
+}

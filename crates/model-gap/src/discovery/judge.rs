@@ -1,0 +1,196 @@
+//! The open set: what is left, whether parameters hold still, how well they are known.
+
+use super::FittedParameter;
+use super::evidence::{Columns, Evidence, Products};
+use super::fit::Fitted;
+use super::{Discovery, Signal};
+use nalgebra::{DMatrix, DVector};
+
+/// Factor on the energy that surrogates leave along the directions without a name.
+const GENERIC_MARGIN: f64 = 1.5;
+
+/// The directions without a name, ready to be tested against residuals.
+pub(crate) struct Generic {
+    /// Projected products of residual-free directions, inverted on their range.
+    inverse: DMatrix<f64>,
+    /// Excess that surrogates with nothing missing reach, with a margin.
+    pub(crate) threshold: f64,
+}
+
+impl Generic {
+    pub(crate) fn new<S>(discovery: &Discovery<'_, S>, evidence: &Evidence<'_>) -> Self {
+        let columns: Vec<&[Vec<f64>]> = discovery.generic.iter().map(Vec::as_slice).collect();
+        let gram = evidence.projected(&evidence.products(&columns));
+        let (inverse, rank) = pseudo_inverse(&gram);
+        let mut own = Self { inverse, threshold: 0.0 };
+        let settings = discovery.settings;
+        let structural = discovery
+            .structures
+            .iter()
+            .map(|s| own.along(discovery, evidence, s))
+            .fold(0.0, f64::max);
+        let noise = (rank.sqrt() + settings.noise_deviations).powi(2);
+        own.threshold = GENERIC_MARGIN * structural + noise;
+        own
+    }
+
+    /// Energy of a residual along the directions, in units of the noise variance.
+    pub(crate) fn along<S>(
+        &self,
+        discovery: &Discovery<'_, S>,
+        evidence: &Evidence<'_>,
+        residual: &Signal,
+    ) -> f64 {
+        let columns: Vec<&[Vec<f64>]> =
+            std::iter::once(residual).chain(discovery.generic.iter()).map(Vec::as_slice).collect();
+        let columns: &Columns<'_> = &columns;
+        let gram = evidence.projected(&evidence.products(columns));
+        let n = columns.len() - 1;
+        let along = gram.view((1, 0), (n, 1)).column(0).clone_owned();
+        (along.transpose() * &self.inverse * along)[0].max(0.0)
+    }
+}
+
+/// Inverse on the range of a positive semidefinite matrix, and its rank.
+fn pseudo_inverse(gram: &DMatrix<f64>) -> (DMatrix<f64>, f64) {
+    let n = gram.nrows();
+    if n == 0 {
+        return (gram.clone(), 0.0);
+    }
+    // columns of unit size first, so that the rank does not depend on units
+    let size: Vec<f64> = (0..n).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
+    let scaled = DMatrix::from_fn(n, n, |i, j| {
+        let s = size[i] * size[j];
+        if s > 0.0 { gram[(i, j)] / s } else { 0.0 }
+    });
+    let eigen = scaled.symmetric_eigen();
+    let mut inverse = DMatrix::zeros(n, n);
+    let mut rank = 0.0;
+    for (k, &value) in eigen.eigenvalues.iter().enumerate() {
+        if value > 1e-6 {
+            rank += 1.0;
+            let v = eigen.eigenvectors.column(k);
+            inverse += v * v.transpose() / value;
+        }
+    }
+    let back = DMatrix::from_fn(n, n, |i, j| {
+        let s = size[i] * size[j];
+        if s > 0.0 { inverse[(i, j)] / s } else { 0.0 }
+    });
+    (back, rank)
+}
+
+/// How one fitted coordinate varies from experiment to experiment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Drift {
+    /// Sum of squared deviations over their variances, per degree of freedom.
+    pub(crate) chi2_per_degree: f64,
+    /// Weighted standard deviation of the coordinate over the experiments, noise taken out.
+    pub(crate) spread: f64,
+    degrees: f64,
+}
+
+impl Drift {
+    pub(crate) fn is_significant(&self) -> bool {
+        self.degrees >= 1.0 && self.chi2_per_degree > 1.0 + 4.0 * (2.0 / self.degrees).sqrt()
+    }
+}
+
+/// The variation of a free coordinate (number from 0) over the experiments that show it.
+pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize) -> Drift {
+    let mut shifts = Vec::new();
+    for (experiment, products) in fitted.products.iter().enumerate() {
+        let gram = evidence.projected_alone(products, experiment);
+        let information = gram[(coordinate + 1, coordinate + 1)];
+        shifts.push((-gram[(0, coordinate + 1)] / information.max(1e-300), information));
+    }
+    let total: f64 = shifts.iter().map(|s| s.1).sum();
+    shifts.retain(|s| s.1 > 0.02 * total);
+    let kept: f64 = shifts.iter().map(|s| s.1).sum();
+    let mean = shifts.iter().map(|s| s.0 * s.1).sum::<f64>() / kept.max(1e-300);
+    let chi2: f64 = shifts.iter().map(|s| (s.0 - mean).powi(2) * s.1).sum();
+    let degrees = (shifts.len() as f64 - 1.0).max(0.0);
+    let excess = (chi2 - degrees).max(0.0);
+    Drift {
+        chi2_per_degree: if degrees > 0.0 { chi2 / degrees } else { 0.0 },
+        spread: (excess / kept.max(1e-300)).sqrt(),
+        degrees,
+    }
+}
+
+/// Values with 95 % intervals of the parameters of effect `effect`.
+pub(crate) fn parameters<S>(
+    discovery: &Discovery<'_, S>,
+    evidence: &Evidence<'_>,
+    fitted: &Fitted,
+    effect: usize,
+) -> Vec<FittedParameter> {
+    let gram = evidence.projected(&fitted.products);
+    let n = fitted.free.len();
+    let mut normal = gram.view((1, 1), (n, n)).clone_owned();
+    let ridge = 1e-12 * normal.trace();
+    for i in 0..n {
+        normal[(i, i)] += ridge;
+    }
+    let covariance = normal.cholesky().map(|c| c.inverse());
+    let own = &fitted.effects[effect];
+    let given = &discovery.candidates[own.candidate].cause.parameters;
+    given
+        .iter()
+        .enumerate()
+        .map(|(p, parameter)| {
+            let value = own.values[p];
+            let place = fitted.free.iter().position(|&at| at == (effect, p));
+            let std = place.and_then(|k| {
+                let variance = covariance.as_ref()?[(k, k)];
+                let inflation = drift(evidence, fitted, k).chi2_per_degree.max(1.0);
+                Some((variance * inflation).sqrt())
+            });
+            let ci95 = std.map_or([parameter.low, parameter.high], |std| {
+                let x = parameter.coordinate(value);
+                [parameter.value(x - 1.96 * std), parameter.value(x + 1.96 * std)]
+            });
+            FittedParameter {
+                name: parameter.name,
+                unit: parameter.unit,
+                value,
+                ci95,
+                is_shape: parameter.is_shape,
+            }
+        })
+        .collect()
+}
+
+/// Drop of the misfit from one fit to another, with its standard error over the blocks.
+pub(crate) fn paired(evidence: &Evidence<'_>, worse: &Fitted, better: &Fitted) -> (f64, f64) {
+    let (a, b) = (worse.cleaned(evidence), better.cleaned(evidence));
+    let mut square = 0.0;
+    for ((a, b), trace) in a.iter().zip(&b).zip(evidence.traces) {
+        let weight = 1.0 / (trace.sigma * trace.sigma);
+        for (a, b) in a.chunks(trace.block).zip(b.chunks(trace.block)) {
+            let sum = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>();
+            square += ((sum(a) - sum(b)) * weight).powi(2);
+        }
+    }
+    (worse.cost - better.cost, square.sqrt())
+}
+
+impl Evidence<'_> {
+    /// The products of one experiment with its own nuisance projected out.
+    pub(crate) fn projected_alone(&self, products: &Products, experiment: usize) -> DMatrix<f64> {
+        let solved = self.alone(experiment).map(|c| c.solve(&products.with_nuisance));
+        solved.map_or_else(
+            || products.own.clone(),
+            |solved| &products.own - products.with_nuisance.tr_mul(&solved),
+        )
+    }
+}
+
+/// A vector whose first entry is 1: the residual as it is.
+pub(crate) fn unmoved(columns: usize) -> DVector<f64> {
+    let mut shift = DVector::zeros(columns);
+    if let Some(first) = shift.get_mut(0) {
+        *first = 1.0;
+    }
+    shift
+}

@@ -1,0 +1,132 @@
+//! What each candidate could explain, before any fit.
+
+use super::evidence::{Evidence, difference};
+use super::{Discovery, Signal, Simulator};
+use crate::{Effect, GapError};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+/// What the screening says of one candidate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Screened {
+    /// Largest score over the starts: the drop of the misfit that the effect, scaled freely, would bring,
+    /// in units of the noise variance.
+    pub score: f64,
+    /// Share of the effect that the base model would absorb, at the start of that score.
+    pub absorbed: f64,
+    /// What surrogates without any missing effect reach, with a margin for noise: below it there is
+    /// nothing to name.
+    pub threshold: f64,
+    /// Drop of the misfit expected of a weak effect, [`super::Settings::weak_effect`] of the output, in
+    /// units of the noise variance.
+    pub weak_signal: f64,
+    /// The candidate whose effect points the same way, with the cosine.
+    pub most_confused: Option<(usize, f64)>,
+    /// Start of the largest score.
+    pub best_start: usize,
+}
+
+/// Weight of what surrogates leave against the sign of an effect.
+const OTHER_SIGN: f64 = 0.5;
+
+/// The screening of every candidate, the effect of each at its best start compared with the others.
+pub(crate) fn screen<S: Simulator>(
+    discovery: &Discovery<'_, S>,
+    evidence: &Evidence<'_>,
+    base: &[Vec<f64>],
+    misfit: &[Vec<f64>],
+) -> Result<Vec<Screened>, GapError> {
+    let results: Vec<Result<(Screened, Option<Signal>), GapError>> =
+        (0..discovery.candidates.len())
+            .into_par_iter()
+            .map(|candidate| one(discovery, evidence, base, misfit, candidate))
+            .collect();
+    let mut screened = Vec::new();
+    let mut effects = Vec::new();
+    for result in results {
+        let (own, effect) = result?;
+        screened.push(own);
+        effects.push(effect);
+    }
+    let present: Vec<usize> = (0..effects.len()).filter(|&c| effects[c].is_some()).collect();
+    let columns: Vec<&[Vec<f64>]> = effects.iter().flatten().map(Vec::as_slice).collect();
+    let gram = evidence.projected(&evidence.products(&columns));
+    let mut cosines = DMatrix::identity(effects.len(), effects.len());
+    for (i, &a) in present.iter().enumerate() {
+        for (j, &b) in present.iter().enumerate() {
+            let size = (gram[(i, i)] * gram[(j, j)]).sqrt();
+            cosines[(a, b)] = if size > 0.0 { gram[(i, j)] / size } else { 0.0 };
+        }
+    }
+    for &a in &present {
+        screened[a].most_confused = present
+            .iter()
+            .filter(|&&b| b != a)
+            .map(|&b| (b, cosines[(a, b)]))
+            .max_by(|x, y| x.1.abs().total_cmp(&y.1.abs()));
+    }
+    Ok(screened)
+}
+
+fn one<S: Simulator>(
+    discovery: &Discovery<'_, S>,
+    evidence: &Evidence<'_>,
+    base: &[Vec<f64>],
+    misfit: &[Vec<f64>],
+    candidate: usize,
+) -> Result<(Screened, Option<Signal>), GapError> {
+    let settings = discovery.settings;
+    let nothing = Screened {
+        score: 0.0,
+        absorbed: 1.0,
+        threshold: settings.noise_deviations.powi(2),
+        weak_signal: 0.0,
+        most_confused: None,
+        best_start: 0,
+    };
+    let given = &discovery.candidates[candidate];
+    if given.blocked.is_some() {
+        return Ok((nothing, None));
+    }
+    let mut signals: Vec<Signal> = Vec::with_capacity(given.starts.len());
+    for values in &given.starts {
+        let effect = Effect { candidate, values: values.clone() };
+        signals.push(difference(&discovery.simulator.predict(&[effect])?, base));
+    }
+    let known = 1 + discovery.structures.len();
+    let columns: Vec<&[Vec<f64>]> = std::iter::once(misfit)
+        .chain(discovery.structures.iter().map(Vec::as_slice))
+        .chain(signals.iter().map(Vec::as_slice))
+        .collect();
+    let products = evidence.products(&columns);
+    let gram = evidence.projected(&products);
+    let whole: Vec<f64> =
+        (0..columns.len()).map(|c| products.iter().map(|p| p.own[(c, c)]).sum()).collect();
+    let weak = settings.weak_effect.powi(2) * evidence.output_energy();
+    let mut best = nothing;
+    let mut found = None;
+    let mut structural = 0.0_f64;
+    for start in 0..signals.len() {
+        let at = known + start;
+        let size = gram[(at, at)];
+        if size <= 1e-9 * whole[at].max(1e-300) {
+            continue;
+        }
+        for s in 1..known {
+            let along = gram[(at, s)] / size.sqrt();
+            structural = structural.max(along).max(-OTHER_SIGN * along);
+        }
+        best.weak_signal = best.weak_signal.max(weak * size / whole[at]);
+        let along = gram[(0, at)];
+        let score = if along > 0.0 { along * along / size } else { 0.0 };
+        if score > best.score || found.is_none() {
+            best.score = score;
+            best.absorbed = 1.0 - size / whole[at];
+            best.best_start = start;
+            found = Some(start);
+        }
+    }
+    best.threshold =
+        (settings.structure_margin * structural).powi(2) + settings.noise_deviations.powi(2);
+    Ok((best, found.map(|start| signals.swap_remove(start))))
+}

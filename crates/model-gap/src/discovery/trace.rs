@@ -1,0 +1,41 @@
+//! Measured signals and what simulates them.
+
+use crate::{Effect, GapError};
+use nalgebra::DMatrix;
+
+/// One measured signal of one experiment, with what is known about its errors when nothing is
+/// missing from the simulation.
+///
+/// ```text
+/// measured = predicted + nuisance delta + error,   delta ~ N(0, 1),   error ~ N(0, sigma^2)
+/// ```
+/// The nuisance columns carry the covariance that the reference fit left to the base model: it may
+/// move on the measured runs as far as the reference runs allow, never freely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    /// Number of the experiment it belongs to, from 0.
+    pub experiment: usize,
+    /// The samples, thinned or averaged as the simulator's predictions are.
+    pub measured: Vec<f64>,
+    /// Standard deviation that a sample weighs with, in the signal's unit: noise and what the
+    /// structure of the base model leaves, as if white.
+    pub sigma: f64,
+    /// Standard deviation of the noise alone, in the signal's unit.
+    pub noise: f64,
+    /// What the base model may still move by, a row per sample; the same columns in every trace,
+    /// or no column where it moves nothing.
+    pub nuisance: DMatrix<f64>,
+    /// Samples per block of the bootstrap: at least one period.
+    pub block: usize,
+    /// Whether this is the output whose error counts (or a further channel, such as a monitor).
+    pub is_output: bool,
+}
+
+/// What predicts every trace under given effects.
+pub trait Simulator: Sync {
+    /// Predictions of all traces with these effects switched on.
+    ///
+    /// # Errors
+    /// [`GapError::Simulation`] with the simulator's own words.
+    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError>;
+}

@@ -1,0 +1,90 @@
+//! What can be said at the end.
+
+use super::{Gain, Screened};
+use crate::Effect;
+use serde::{Deserialize, Serialize};
+
+/// The six verdicts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The misfit is what the base model leaves of systems with nothing missing.
+    NothingMissing,
+    /// The causes explain the excess; nothing but the floor is left.
+    Named,
+    /// The causes are real, but structure is left that they do not explain.
+    NamedStructureRemains,
+    /// Several causes explain the data alike.
+    Ambiguous,
+    /// Something is missing, and no known cause explains it.
+    Unknown,
+    /// The data cannot show what could be missing.
+    NotObservable,
+}
+
+/// How sure a verdict is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Confidence {
+    /// Every key turned.
+    Confident,
+    /// Something speaks against it, or too little for it.
+    Tentative,
+}
+
+/// A fitted parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedParameter {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Value.
+    pub value: f64,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+    /// Whether it only shapes the effect.
+    pub is_shape: bool,
+}
+
+/// A cause that was found, or could be it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// Position among the candidates.
+    pub candidate: usize,
+    /// Its parameters.
+    pub parameters: Vec<FittedParameter>,
+    /// Drop of the misfit without and with it, in units of the noise variance.
+    pub drop: f64,
+    /// The same where it was held out, by experiment.
+    pub held_out_drop: f64,
+    /// The candidates that explain the same data about as well, best first, itself left out.
+    pub alternatives: Vec<usize>,
+}
+
+/// Everything found.
+#[derive(Debug, Clone)]
+pub struct Finding {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// How sure it is.
+    pub confidence: Confidence,
+    /// The causes, largest drop first.
+    pub causes: Vec<Found>,
+    /// The effects as fitted together.
+    pub effects: Vec<Effect>,
+    /// Why the verdict is what it is, in order of the decisions.
+    pub reasons: Vec<String>,
+    /// The screening, candidate by candidate.
+    pub screen: Vec<Screened>,
+    /// Drop of the misfit by each candidate alone, fitted; none where it was not fitted.
+    pub single_drops: Vec<Option<f64>>,
+    /// Excess along the directions without a name, before and after; in units of the noise variance.
+    pub excess: [f64; 2],
+    /// Held-out error before and after.
+    pub gain: Gain,
+    /// Residual of the base model, its nuisance taken out.
+    pub residual_before: Vec<Vec<f64>>,
+    /// Residual of the extended model, likewise.
+    pub residual_after: Vec<Vec<f64>>,
+}

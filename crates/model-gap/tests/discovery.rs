@@ -1,0 +1,231 @@
+//! Decisions of the engine on a system whose answers are known.
+
+use model_gap::discovery::{
+    Confidence, Discovery, Finding, Settings, Signal, Simulator, Trace, Verdict,
+};
+use model_gap::{Candidate, Cause, Effect, GapError, Parameter, Scale, Side};
+use nalgebra::DMatrix;
+use std::f64::consts::TAU;
+
+const SAMPLES: usize = 400;
+const EXPERIMENTS: usize = 4;
+const NOISE: f64 = 0.02;
+
+/// A sine of another frequency and amplitude in every experiment, and what may act on it.
+struct Toy;
+
+fn input(experiment: usize, i: usize) -> f64 {
+    let cycles = [2.0, 5.0, 9.0, 14.0][experiment];
+    let amplitude = [1.0, 0.6, 1.4, 1.0][experiment];
+    amplitude * (TAU * cycles * i as f64 / SAMPLES as f64).sin()
+}
+
+/// What a cause adds: 0 cubic, 1 lag, 2 the cubic once more under another name, 3 an even distortion.
+fn added(kind: usize, value: f64, experiment: usize, i: usize) -> f64 {
+    let u = input(experiment, i);
+    let before = input(experiment, i.saturating_sub(1));
+    match kind {
+        0 | 2 => value * u.powi(3),
+        1 => value * (u - before) * 10.0,
+        _ => value * u * u,
+    }
+}
+
+impl Simulator for Toy {
+    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
+        Ok((0..EXPERIMENTS)
+            .map(|e| {
+                (0..SAMPLES)
+                    .map(|i| {
+                        let own: f64 =
+                            effects.iter().map(|x| added(x.candidate, x.values[0], e, i)).sum();
+                        input(e, i) + own
+                    })
+                    .collect()
+            })
+            .collect())
+    }
+}
+
+fn candidate(id: &'static str) -> Candidate {
+    let scale = Scale::Linear;
+    let cause = Cause {
+        id,
+        physics: "",
+        side: Side::Output,
+        parameters: vec![Parameter {
+            name: "size",
+            unit: "1",
+            low: -2.0,
+            high: 2.0,
+            scale,
+            is_shape: false,
+        }],
+        fingerprint: "",
+        confused_with: &[],
+        separating: &[],
+    };
+    Candidate { cause, starts: vec![vec![0.05], vec![-0.05]], blocked: None }
+}
+
+fn noise(seed: &mut u64) -> f64 {
+    // sum of twelve uniform numbers less six: variance 1
+    (0..12)
+        .map(|_| {
+            *seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (*seed >> 11) as f64 / (1_u64 << 53) as f64
+        })
+        .sum::<f64>()
+        - 6.0
+}
+
+/// Traces of the toy with something added; the base may move its gain by one per cent.
+fn traces(truth: impl Fn(usize, usize) -> f64, seed: u64) -> Vec<Trace> {
+    let mut state = seed;
+    (0..EXPERIMENTS)
+        .map(|e| Trace {
+            experiment: e,
+            measured: (0..SAMPLES)
+                .map(|i| input(e, i) + truth(e, i) + NOISE * noise(&mut state))
+                .collect(),
+            sigma: NOISE,
+            noise: NOISE,
+            nuisance: DMatrix::from_fn(SAMPLES, 1, |i, _| 0.01 * input(e, i)),
+            block: 40,
+            is_output: true,
+        })
+        .collect()
+}
+
+fn find(traces: &[Trace], candidates: &[Candidate]) -> Finding {
+    let generic: Vec<Signal> = [4, 5]
+        .map(|power| {
+            (0..EXPERIMENTS)
+                .map(|e| (0..SAMPLES).map(|i| input(e, i).powi(power)).collect())
+                .collect()
+        })
+        .into_iter()
+        .collect();
+    let discovery = Discovery {
+        traces,
+        simulator: &Toy,
+        candidates,
+        generic: &generic,
+        structures: &[],
+        settings: Settings { resamplings: 200, ..Settings::default() },
+    };
+    discovery.find().unwrap()
+}
+
+#[test]
+fn nothing_missing_is_said_of_noise_alone() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    for seed in 1..40 {
+        let finding = find(&traces(|_, _| 0.0, seed), &candidates);
+        assert_eq!(finding.verdict, Verdict::NothingMissing, "seed {seed}: {:?}", finding.reasons);
+        assert!(finding.causes.is_empty());
+    }
+}
+
+#[test]
+fn a_single_cause_is_named_with_its_parameter_and_gain() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let mut inside = 0;
+    for seed in 1..41 {
+        let finding = find(&traces(|e, i| added(1, 0.06, e, i), seed), &candidates);
+        assert_eq!(finding.verdict, Verdict::Named, "seed {seed}: {:?}", finding.reasons);
+        assert_eq!(finding.confidence, Confidence::Confident);
+        let found = &finding.causes[0];
+        assert_eq!((found.candidate, found.alternatives.len()), (1, 0));
+        let size = found.parameters[0];
+        assert!((size.value - 0.06).abs() < 0.012, "{size:?}");
+        inside += i32::from((size.ci95[0]..=size.ci95[1]).contains(&0.06));
+        // the noise is all that is left where the cause was fitted without the run
+        assert!((finding.gain.rms_after / NOISE - 1.0).abs() < 0.1, "{:?}", finding.gain);
+        assert!(finding.gain.drop_ci95[0] < finding.gain.rms_before - finding.gain.rms_after);
+    }
+    assert!(inside >= 34, "{inside} of 40 intervals hold the truth");
+}
+
+#[test]
+fn two_names_for_one_effect_are_ambiguous() {
+    let candidates = [candidate("cubic"), candidate("lag"), candidate("cubic-twin")];
+    let finding = find(&traces(|e, i| added(0, 0.06, e, i), 5), &candidates);
+    assert_eq!(finding.verdict, Verdict::Ambiguous);
+    let mut set = vec![finding.causes[0].candidate];
+    set.extend(&finding.causes[0].alternatives);
+    set.sort_unstable();
+    assert_eq!(set, [0, 2]);
+    assert!(finding.screen[0].most_confused.is_some_and(|(c, cosine)| c == 2 && cosine > 0.999));
+}
+
+#[test]
+fn two_causes_are_both_found_and_no_third() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let truth = |e, i| added(0, 0.07, e, i) + added(1, -0.08, e, i);
+    let finding = find(&traces(truth, 9), &candidates);
+    let mut found: Vec<usize> = finding.causes.iter().map(|c| c.candidate).collect();
+    found.sort_unstable();
+    assert_eq!(found, [0, 1], "{:?}", finding.reasons);
+}
+
+#[test]
+fn what_no_candidate_explains_gets_no_name() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let finding = find(&traces(|e, i| 0.05 * input(e, i).powi(4), 3), &candidates);
+    assert_eq!(finding.verdict, Verdict::Unknown, "{:?}", finding.reasons);
+    assert_eq!(finding.confidence, Confidence::Tentative);
+}
+
+#[test]
+fn a_parameter_that_drifts_from_run_to_run_is_no_confident_name() {
+    let candidates = [candidate("lag-free"), candidate("lag")];
+    let truth = |e: usize, i| added(1, [0.02, 0.03, 0.06, 0.2][e], e, i);
+    let finding = find(&traces(truth, 4), &candidates);
+    assert_ne!(finding.confidence, Confidence::Confident, "{:?}", finding.reasons);
+    assert!(finding.reasons.iter().any(|r| r.contains("drifts")), "{:?}", finding.reasons);
+}
+
+#[test]
+fn what_surrogates_leave_is_no_cause() {
+    // the same cubic in the data and in what surrogates with nothing missing leave
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let traces = traces(|e, i| added(0, 0.06, e, i), 6);
+    let structure: Signal =
+        (0..EXPERIMENTS).map(|e| (0..SAMPLES).map(|i| added(0, 0.06, e, i)).collect()).collect();
+    let discovery = Discovery {
+        traces: &traces,
+        simulator: &Toy,
+        candidates: &candidates,
+        generic: &[],
+        structures: &[structure],
+        settings: Settings::default(),
+    };
+    let finding = discovery.find().unwrap();
+    assert!(finding.causes.is_empty(), "{:?}", finding.causes);
+}
+
+#[test]
+fn without_reference_runs_nothing_is_confident() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let traces = traces(|e, i| added(1, 0.06, e, i), 2);
+    let discovery = Discovery {
+        traces: &traces,
+        simulator: &Toy,
+        candidates: &candidates,
+        generic: &[],
+        structures: &[],
+        settings: Settings { has_reference: false, ..Settings::default() },
+    };
+    assert_eq!(discovery.find().unwrap().confidence, Confidence::Tentative);
+}
+
+#[test]
+fn a_blocked_candidate_is_never_named() {
+    let mut candidates = [candidate("cubic"), candidate("lag")];
+    candidates[1].blocked = Some("no".into());
+    let finding = find(&traces(|e, i| added(1, 0.06, e, i), 2), &candidates);
+    assert!(finding.causes.iter().all(|c| c.candidate != 1));
+}

@@ -1,0 +1,54 @@
+//! Surrogate structures kept on disk between runs, by the content they depend on.
+
+use crate::files::write_atomic;
+use std::path::{Path, PathBuf};
+
+/// Signals of every surrogate on every run.
+type Structures = Vec<Vec<Vec<f64>>>;
+
+/// Name of a file of structures: everything they depend on goes into the hash.
+pub(crate) fn key(parts: &[&[u8]]) -> String {
+    let mut hash = blake3::Hasher::new();
+    hash.update(crate::VERSION.as_bytes());
+    for part in parts {
+        hash.update(&(part.len() as u64).to_le_bytes());
+        hash.update(part);
+    }
+    hash.finalize().to_hex().to_string()
+}
+
+/// Bytes of numbers, for a hash.
+pub(crate) fn bytes(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+fn file(folder: &Path, key: &str) -> PathBuf {
+    folder.join(format!("null-{key}.bin"))
+}
+
+/// Reads structures of the expected lengths; none if there are no such, or they do not fit.
+#[expect(clippy::disallowed_methods, reason = "the one place that reads its own cache")]
+pub(crate) fn read(folder: &Path, key: &str, lengths: &[usize]) -> Option<Structures> {
+    let raw = std::fs::read(file(folder, key)).ok()?;
+    let per_surrogate: usize = lengths.iter().sum::<usize>() * 4;
+    if per_surrogate == 0 || raw.len() % per_surrogate != 0 {
+        return None;
+    }
+    let mut values =
+        raw.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
+    let count = raw.len() / per_surrogate;
+    Some(
+        (0..count)
+            .map(|_| lengths.iter().map(|&n| values.by_ref().take(n).collect()).collect())
+            .collect(),
+    )
+}
+
+/// Keeps structures; a folder that cannot be written is no error, the next run computes them again.
+#[expect(clippy::cast_possible_truncation, reason = "single precision is enough for a floor")]
+pub(crate) fn write(folder: &Path, key: &str, structures: &Structures) {
+    let raw: Vec<u8> =
+        structures.iter().flatten().flatten().flat_map(|&v| (v as f32).to_le_bytes()).collect();
+    // a cache that cannot be written costs time, not results
+    let _ = write_atomic(&file(folder, key), &raw);
+}

@@ -1,0 +1,39 @@
+//! Backlash in the lever.
+
+use super::{BenchCause, Design, Part, logarithmic};
+use model_gap::{Cause, Side};
+use preisach_dyn::{Backlash, LinkageStage};
+
+/// Backlash in the lever.
+pub(super) struct BacklashInLever;
+
+impl BenchCause for BacklashInLever {
+    fn cause(&self, design: &Design) -> Cause {
+        Cause {
+            id: "backlash",
+            physics: "Lost motion in a joint: the output stands until the gap is taken up; a free density absorbs it.",
+            side: Side::Output,
+            parameters: vec![logarithmic(
+                "width",
+                "um",
+                1e-4 * design.half_stroke,
+                0.5 * design.half_stroke,
+            )],
+            fingerprint: "flat after every reversal, relatively larger at small motion",
+            confused_with: &["coulomb-friction"],
+            separating: &["preload", "small-motion"],
+        }
+    }
+
+    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
+        [0.005, 0.015, 0.04, 0.1].iter().map(|part| vec![part * design.half_stroke]).collect()
+    }
+
+    fn blocked(&self, _: &Design) -> Option<String> {
+        None
+    }
+
+    fn part(&self, values: &[f64]) -> Part {
+        Part::Linkage(LinkageStage::Backlash(Backlash { width_um: values[0] }))
+    }
+}

@@ -1,0 +1,39 @@
+//! Dry friction in the linkage.
+
+use super::{BenchCause, Design, Part, logarithmic};
+use model_gap::{Cause, Side};
+use preisach_dyn::{CoulombFriction, LinkageStage};
+
+/// Dry friction in the linkage.
+pub(super) struct DryFriction;
+
+impl BenchCause for DryFriction {
+    fn cause(&self, design: &Design) -> Cause {
+        Cause {
+            id: "coulomb-friction",
+            physics: "Dry friction against the elasticity of the linkage, width 2 F_c / k.",
+            side: Side::Output,
+            parameters: vec![logarithmic(
+                "width",
+                "um",
+                1e-4 * design.half_stroke,
+                0.5 * design.half_stroke,
+            )],
+            fingerprint: "as backlash with rounded corners, changed by preload",
+            confused_with: &["backlash"],
+            separating: &["preload", "small-motion"],
+        }
+    }
+
+    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
+        [0.005, 0.015, 0.04, 0.1].iter().map(|part| vec![part * design.half_stroke]).collect()
+    }
+
+    fn blocked(&self, _: &Design) -> Option<String> {
+        None
+    }
+
+    fn part(&self, values: &[f64]) -> Part {
+        Part::Linkage(LinkageStage::CoulombFriction(CoulombFriction { width_um: values[0] }))
+    }
+}

@@ -1,0 +1,42 @@
+//! Warming by dielectric loss.
+
+use super::{BenchCause, Design, Part, linear, logarithmic, shape};
+use model_gap::{Cause, Side};
+use preisach_dyn::DielectricHeating;
+
+/// Warming by dielectric loss.
+pub(super) struct Heating;
+
+impl BenchCause for Heating {
+    fn cause(&self, _: &Design) -> Cause {
+        Cause {
+            id: "dielectric-heating",
+            physics: "Dielectric loss warms the ceramic and raises its gain, gain (1 + a dT), C dT' = P - dT / R.",
+            side: Side::State,
+            parameters: vec![
+                logarithmic("time_constant", "s", 5.0, 3000.0),
+                linear("coefficient", "1/K", -0.05, 0.5),
+                shape(linear("about", "1", -0.5, 1.5)),
+            ],
+            fingerprint: "slow scaling ordered by the dose of f V^2, not by the time since a step",
+            confused_with: &["creep", "load-stiffness"],
+            separating: &["cold-hot-cold"],
+        }
+    }
+
+    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
+        let t = design.longest_s;
+        [0.3, 1.0, 4.0].iter().map(|part| vec![(part * t).clamp(6.0, 2000.0), 0.002, 1.0]).collect()
+    }
+
+    fn blocked(&self, design: &Design) -> Option<String> {
+        if !design.is_bench {
+            return Some("the loss of a dielectric belongs to a piezo actuator".into());
+        }
+        (design.longest_s < 8.0 && !design.has_temperature).then(|| format!("the longest run lasts {:.1} s; heating needs records of about its time constant, 30 s and more", design.longest_s))
+    }
+
+    fn part(&self, values: &[f64]) -> Part {
+        Part::Heating(DielectricHeating::new(values[0], values[1]), values[2])
+    }
+}

@@ -1,0 +1,39 @@
+//! Stiffness of the load.
+
+use super::{BenchCause, Design, Part, linear, singles};
+use model_gap::{Cause, Side};
+use preisach_dyn::{LinkageStage, LoadStiffness};
+
+/// Stiffness of the load.
+pub(super) struct Load;
+
+impl BenchCause for Load {
+    fn cause(&self, _: &Design) -> Cause {
+        Cause {
+            id: "load-stiffness",
+            physics: "A load spring takes part of the stroke, y = h k_a / (k_a + k_load).",
+            side: Side::Output,
+            parameters: vec![linear("stiffness_ratio", "1", 0.0, 2.0)],
+            fingerprint: "pure gain, no harmonics",
+            confused_with: &["dielectric-heating", "creep", "sensor-nonlinearity"],
+            separating: &["two-springs"],
+        }
+    }
+
+    fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
+        singles(&[0.01, 0.05])
+    }
+
+    fn blocked(&self, design: &Design) -> Option<String> {
+        (!design.has_reference).then(|| {
+            "without reference runs a pure gain cannot be told from the actuator's own".to_owned()
+        })
+    }
+
+    fn part(&self, values: &[f64]) -> Part {
+        Part::Linkage(LinkageStage::LoadStiffness(LoadStiffness {
+            stiffness_ratio: values[0].max(0.0),
+            compliance_um_per_newton: 0.0,
+        }))
+    }
+}

@@ -1,0 +1,56 @@
+//! First mechanical mode.
+
+use super::{BenchCause, Design, Part, logarithmic};
+use model_gap::{Cause, Side};
+use preisach_dyn::{LinkageStage, Resonance};
+
+/// Highest frequency of a first mode, Hz: 400 Hz or what sampling carries well.
+fn highest_hz(design: &Design) -> f64 {
+    (0.8 * design.nyquist_hz).clamp(30.0, 400.0)
+}
+
+/// First mechanical mode.
+pub(super) struct MechanicalResonance;
+
+impl BenchCause for MechanicalResonance {
+    fn cause(&self, design: &Design) -> Cause {
+        Cause {
+            id: "mechanical-resonance",
+            physics: "First mode of actuator, linkage and flap, y'' + 2 zeta w y' + w^2 y = w^2 h.",
+            side: Side::Output,
+            parameters: vec![
+                logarithmic("frequency", "Hz", 20.0, highest_hz(design)),
+                logarithmic("damping_ratio", "1", 1e-3, 0.2),
+            ],
+            fingerprint: "gain growing as (f / fn)^2, ringing after steps",
+            confused_with: &["sensor-filter", "electrical-lag", "transport-delay"],
+            separating: &["ring-down", "multisine-5-181Hz"],
+        }
+    }
+
+    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
+        let highest = highest_hz(design);
+        let mut starts = Vec::new();
+        let mut hz = 30.0;
+        while hz < highest {
+            starts.push(vec![hz, 0.03]);
+            hz *= 1.07;
+        }
+        starts
+    }
+
+    fn blocked(&self, design: &Design) -> Option<String> {
+        design.one_frequency().or_else(|| {
+            (design.nyquist_hz < 60.0).then(|| {
+                format!("sampling carries {:.0} Hz; a first mode lies higher", design.nyquist_hz)
+            })
+        })
+    }
+
+    fn part(&self, values: &[f64]) -> Part {
+        Part::Linkage(LinkageStage::Resonance(Resonance {
+            frequency_hz: values[0],
+            damping_ratio: values[1],
+        }))
+    }
+}

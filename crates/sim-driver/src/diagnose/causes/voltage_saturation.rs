@@ -1,0 +1,64 @@
+//! Voltage limits of the amplifier.
+
+use super::{BenchCause, Design, Part, linear};
+use model_gap::{Cause, Side};
+use preisach_dyn::{AmplifierStage, Saturation};
+
+/// Voltage limits of the amplifier.
+pub(super) struct VoltageSaturation;
+
+impl BenchCause for VoltageSaturation {
+    fn cause(&self, design: &Design) -> Cause {
+        Cause {
+            id: "voltage-saturation",
+            physics: "The amplifier's voltage ends at its supply, V = clip(u, v_min, v_max).",
+            side: Side::Input,
+            parameters: vec![
+                linear(
+                    "v_max",
+                    "V",
+                    f64::midpoint(design.input.0, design.input.1),
+                    design.input.1 + 0.1 * (design.input.1 - design.input.0),
+                ),
+                linear(
+                    "v_min",
+                    "V",
+                    design.input.0 - 0.1 * (design.input.1 - design.input.0),
+                    f64::midpoint(design.input.0, design.input.1),
+                ),
+            ],
+            fingerprint: "depends on amplitude only, flat tops; one-sided gives even harmonics",
+            confused_with: &["depolarisation", "sensor-nonlinearity"],
+            separating: &["overdrive-two-biases", "amplifier-monitor"],
+        }
+    }
+
+    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
+        let (low, high) = design.input;
+        let span = high - low;
+        let cut = |top: f64, bottom: f64| vec![high - top * span, low + bottom * span];
+        let none = -0.02;
+        vec![
+            cut(0.02, none),
+            cut(0.05, none),
+            cut(0.1, none),
+            cut(0.2, none),
+            cut(none, 0.02),
+            cut(none, 0.05),
+            cut(none, 0.1),
+            cut(none, 0.2),
+            cut(0.03, 0.03),
+            cut(0.08, 0.08),
+            cut(0.15, 0.15),
+        ]
+    }
+
+    fn blocked(&self, _: &Design) -> Option<String> {
+        None
+    }
+
+    fn part(&self, values: &[f64]) -> Part {
+        let [v_max_volt, v_min_volt] = [values[0], values[1].min(values[0] - 1e-6)];
+        Part::Amplifier(AmplifierStage::Saturation(Saturation { v_min_volt, v_max_volt }))
+    }
+}

@@ -1,0 +1,296 @@
+//! `hhc diagnose`: what a simulation of a bench gets wrong, why, and what it is worth to know.
+
+mod base;
+mod cache;
+mod causes;
+mod extended;
+mod figures;
+mod findings;
+mod next;
+mod plays;
+mod record;
+mod simulator;
+mod story;
+mod surrogate;
+
+pub use findings::Findings;
+pub use record::{Record, Records};
+pub use story::Story;
+
+use crate::SimError;
+use crate::problem::Place;
+use crate::stored_actuator::StoredChannels;
+use base::BaseModel;
+use causes::{BenchCause, Design};
+use model_gap::discovery::{Discovery, Finding, Settings, Signal};
+use model_gap::{Candidate, GapError};
+use preisach_dyn::ActuatorModel;
+use simulator::BenchSimulator;
+use std::path::Path;
+
+/// A diagnosis with everything it rests on.
+pub struct Diagnosis {
+    /// What was found.
+    pub finding: Finding,
+    /// The candidates, in the order of the library.
+    pub candidates: Vec<Candidate>,
+    library: Vec<Box<dyn BenchCause>>,
+    base: BaseModel,
+    /// Inputs that the base model was fitted to.
+    law_inputs: Vec<Vec<f64>>,
+    /// Names of the measured runs.
+    pub run_ids: Vec<String>,
+    /// Run and channel of every trace, and the time between its samples, s.
+    traces: Vec<(usize, &'static str, f64)>,
+    /// Energy of every measured run.
+    pub energy: Vec<RunEnergy>,
+    /// Title of the data.
+    pub title: String,
+    /// Folder of the data.
+    pub folder: String,
+    content_hash: String,
+    range: (f64, f64),
+    deg_per_um: Option<f64>,
+    is_bench: bool,
+    channels: Option<StoredChannels>,
+    /// Whether reference runs fix the base model.
+    pub has_reference: bool,
+    /// Error of the model given on the measured runs, rms over spread, percent; none if it was not
+    /// simulated.
+    pub given_error_percent: Option<f64>,
+    /// Unit of the output.
+    pub output_unit: String,
+    /// What to measure next.
+    pub next_experiment: String,
+    /// Error of the base model on reference runs left out of its fit, over the spread of the output.
+    pub floor: f64,
+    /// Noise of the reading on the reference runs, in the output's unit.
+    pub noise: f64,
+}
+
+/// Where the energy of a measured run goes under the base model, fractions that sum to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunEnergy {
+    /// The run.
+    pub id: String,
+    /// Explained.
+    pub explained: f64,
+    /// Noise.
+    pub noise: f64,
+    /// Left over and not noise.
+    pub structured: f64,
+}
+
+/// What a diagnosis is asked.
+#[derive(Debug, Clone, Default)]
+pub struct Question<'a> {
+    /// Reference runs from another folder.
+    pub reference: Vec<Record>,
+    /// Only these causes, all of them taken for true: what a refit with the known causes would gain.
+    pub only: Vec<String>,
+    /// Folder to keep surrogate structures in; none computes them anew.
+    pub cache: Option<&'a Path>,
+    /// The model given, to be shown beside the base model.
+    pub given: Option<&'a ActuatorModel>,
+}
+
+impl Diagnosis {
+    /// Causes that these data could not have shown at usual strength.
+    pub fn not_observable(&self) -> Vec<String> {
+        self.candidates
+            .iter()
+            .zip(&self.finding.screen)
+            .filter(|(candidate, screened)| {
+                candidate.blocked.is_some() || screened.weak_signal < screened.threshold
+            })
+            .map(|(candidate, _)| candidate.cause.id.to_owned())
+            .collect()
+    }
+}
+
+/// Diagnoses measured runs against the base model of the reference runs.
+///
+/// # Errors
+/// [`SimError::Misfit`] where the numerics fail, where there are no measured runs, or where a cause
+/// of [`Question::only`] is not in the library.
+pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, SimError> {
+    let place = || Place::file(format!("{}/dataset.ron", measured.folder));
+    let fail = |source| SimError::Misfit { place: place(), source };
+    let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
+    let library: Vec<Box<dyn BenchCause>> = causes::library();
+    let runs: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
+    if runs.is_empty() {
+        return Err(fail(too_few("measured runs")));
+    }
+    let mut references: Vec<&Record> = question.reference.iter().collect();
+    references.extend(measured.runs.iter().filter(|r| r.is_reference));
+    let has_reference = !references.is_empty();
+    let fitted = if has_reference { &references } else { &runs };
+    let range = range_of(measured.range, fitted, &runs);
+    let base = BaseModel::fit(fitted, range, None)
+        .ok_or_else(|| fail(too_few("runs of the base model")))?;
+    let design = Design::of(&runs, measured.is_bench, has_reference);
+    let mut candidates = causes::candidates(&library, &design);
+    let given = restrict(&mut candidates, &question.only).map_err(fail)?;
+    let simulator = BenchSimulator::new(&base, runs.clone(), &library, range).map_err(fail)?;
+    let traces = simulator.traces();
+    let structures: Vec<Signal> = kept_structures(&base, fitted, &runs, range, question.cache)
+        .iter()
+        .map(|s| simulator.on_traces(s))
+        .collect();
+    let generic = generic(&simulator, base.spread);
+    let settings = Settings { has_reference, ..Settings::default() };
+    let discovery = Discovery {
+        traces: &traces,
+        simulator: &simulator,
+        candidates: &candidates,
+        generic: &generic,
+        structures: &structures,
+        settings,
+    };
+    let finding = match given {
+        Some(given) => discovery.refit(&given),
+        None => discovery.find(),
+    }
+    .map_err(fail)?;
+    let next_experiment = next::proposal(&finding, &candidates, &design, &runs);
+    let energy = energy(&runs, &base);
+    let kinds = simulator.kinds();
+    Ok(Diagnosis {
+        finding,
+        candidates: candidates.clone(),
+        law_inputs: fitted.iter().map(|r| r.input.clone()).collect(),
+        run_ids: runs.iter().map(|r| r.id.clone()).collect(),
+        traces: kinds,
+        energy,
+        title: measured.title.clone(),
+        folder: measured.folder.clone(),
+        content_hash: measured.content_hash.clone(),
+        range,
+        deg_per_um: measured.deg_per_um,
+        is_bench: measured.is_bench,
+        channels: (!measured.is_bench).then(|| StoredChannels {
+            input: measured.input_label.clone(),
+            output: measured.output_label.clone(),
+        }),
+        has_reference,
+        given_error_percent: question.given.and_then(|model| given_error(model, &runs)),
+        output_unit: measured.output_unit.clone(),
+        next_experiment,
+        floor: base.floor,
+        noise: base.noise,
+        library,
+        base,
+    })
+}
+
+/// Blocks every candidate that is not asked for; the places of those that are.
+fn restrict(candidates: &mut [Candidate], only: &[String]) -> Result<Option<Vec<usize>>, GapError> {
+    if only.is_empty() {
+        return Ok(None);
+    }
+    let mut places = Vec::new();
+    for id in only {
+        let place = candidates.iter().position(|c| c.cause.id == id.as_str());
+        places.push(place.ok_or_else(|| {
+            let known: Vec<&str> = candidates.iter().map(|c| c.cause.id).collect();
+            let message = format!("not in the library: {}", known.join(", "));
+            GapError::Simulation { what: id.clone(), message }
+        })?);
+    }
+    for (c, candidate) in candidates.iter_mut().enumerate() {
+        if !places.contains(&c) {
+            candidate.blocked = Some("not asked for".into());
+        }
+    }
+    Ok(Some(places))
+}
+
+/// The structures of the surrogates, from the cache where they are there.
+fn kept_structures(
+    base: &BaseModel,
+    fitted: &[&Record],
+    runs: &[&Record],
+    range: (f64, f64),
+    folder: Option<&Path>,
+) -> Vec<Signal> {
+    let Some(folder) = folder else { return surrogate::structures(base, fitted, runs, range) };
+    let lengths: Vec<usize> = runs.iter().map(|r| r.input.len()).collect();
+    let mut parts: Vec<Vec<u8>> = vec![cache::bytes(&[range.0, range.1])];
+    for run in fitted {
+        parts.push(cache::bytes(&[run.step_s]));
+        parts.push(cache::bytes(&run.input));
+        parts.push(cache::bytes(&run.output));
+    }
+    for run in runs {
+        parts.push(cache::bytes(&[run.step_s]));
+        parts.push(cache::bytes(&run.input));
+    }
+    let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
+    let key = cache::key(&parts);
+    cache::read(folder, &key, &lengths).unwrap_or_else(|| {
+        let found = surrogate::structures(base, fitted, runs, range);
+        cache::write(folder, &key, &found);
+        found
+    })
+}
+
+fn energy(runs: &[&Record], base: &BaseModel) -> Vec<RunEnergy> {
+    runs.iter()
+        .map(|run| {
+            let residual = base.residual(run);
+            let total = base::variance(&run.output).max(1e-300);
+            let left = base::mean_square(&residual);
+            let noise = base::white_noise(&residual).powi(2).min(left);
+            RunEnergy {
+                id: run.id.clone(),
+                explained: 1.0 - left / total,
+                noise: noise / total,
+                structured: (left - noise) / total,
+            }
+        })
+        .collect()
+}
+
+/// RMS over spread of a given model on the measured runs, zero displacement left free, percent.
+fn given_error(model: &ActuatorModel, runs: &[&Record]) -> Option<f64> {
+    let (mut left, mut all) = (0.0, 0.0);
+    for run in runs {
+        let drive = preisach_dyn::Drive::new(&run.input, run.step_s);
+        let simulated = model.simulate_bench(&drive).ok()?;
+        let off: Vec<f64> = simulated
+            .measured_deg
+            .iter()
+            .zip(&run.output)
+            .map(|(deg, y)| y - model.calibration.displacement_um(*deg))
+            .collect();
+        left += base::variance(&off) * off.len() as f64;
+        all += base::variance(&run.output) * off.len() as f64;
+    }
+    Some(100.0 * (left / all.max(1e-300)).sqrt())
+}
+
+/// The range of the base model: that of the data set, widened to every input that occurs.
+fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
+    a.iter()
+        .chain(b)
+        .flat_map(|r| r.input.iter())
+        .fold(given, |(low, high), &u| (low.min(u), high.max(u)))
+}
+
+/// The directions without a name on all traces.
+fn generic(simulator: &BenchSimulator<'_>, spread: f64) -> Vec<Signal> {
+    let per_run: Vec<Vec<Vec<f64>>> = (0..simulator.runs.len())
+        .map(|number| {
+            let (input, _, plain) = simulator.plain(number);
+            surrogate::generic(input, plain, spread, simulator.runs[number].step_s)
+        })
+        .collect();
+    let count = per_run.first().map_or(0, Vec::len);
+    (0..count)
+        .map(|k| {
+            let outputs: Vec<Vec<f64>> = per_run.iter().map(|run| run[k].clone()).collect();
+            simulator.on_traces(&outputs)
+        })
+        .collect()
+}

@@ -1,0 +1,268 @@
+//! The static part of the base model: plays with smooth output maps, linear in its coefficients.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Number of plays.
+const PLAYS: usize = 20;
+/// Half-widths grow as this power of the number: small loops need narrow plays.
+const GROWTH: f64 = 1.4;
+/// Cells of the output map of the narrowest play.
+const CELLS: f64 = 12.0;
+
+/// Plays of fixed half-widths over an input range, each with a quadratic spline of its state.
+///
+/// ```text
+/// h = offset + sum_i g_i(p_i),   p_i the play of half-width r_i,   g_i a quadratic spline
+/// ```
+/// the Preisach operator in play form, `g_i' = integral of the density`. In coefficients `c`:
+/// `h = offset + sum c_k N_k`. The range is mapped onto -1 to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Plays {
+    middle: f64,
+    half: f64,
+    all: Vec<Play>,
+    count: usize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Play {
+    half_width: f64,
+    /// Part of the half-widths that this play stands for.
+    share: f64,
+    cells: usize,
+    /// Place of the first coefficient; `cells + 2` belong to the play.
+    first: usize,
+}
+
+/// A quadratic on one cell: value, slope, curvature in the place inside it.
+type Quadratic = [f64; 3];
+
+/// The output maps laid out for speed.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct OutputMap {
+    offset: f64,
+    cells: Vec<Vec<Quadratic>>,
+}
+
+impl Plays {
+    pub(crate) fn new(low: f64, high: f64) -> Self {
+        let n = PLAYS as f64;
+        let width = |i: f64| (i / n).powf(GROWTH);
+        let mut count = 0;
+        let plays = (0..PLAYS)
+            .map(|i| {
+                let at = i as f64;
+                let half_width = width(at);
+                let share = width(at + 0.5) - if i == 0 { 0.0 } else { width(at - 0.5) };
+                let cells = cells_of(1.0 - half_width);
+                let first = count;
+                count += cells + 2;
+                Play { half_width, share, cells, first }
+            })
+            .collect();
+        Self { middle: 0.5 * (low + high), half: 0.5 * (high - low), all: plays, count }
+    }
+
+    /// Number of coefficients.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    fn coordinate(&self, input: f64) -> f64 {
+        ((input - self.middle) / self.half).clamp(-1.0, 1.0)
+    }
+
+    /// The plays at rest at an input.
+    pub(crate) fn rest(&self, input: f64) -> Vec<f64> {
+        let x = self.coordinate(input);
+        self.all.iter().map(|p| x.clamp(p.half_width - 1.0, 1.0 - p.half_width)).collect()
+    }
+
+    fn advance(&self, states: &mut [f64], input: f64) {
+        let x = self.coordinate(input);
+        for (state, play) in states.iter_mut().zip(&self.all) {
+            *state = state.min(x + play.half_width).max(x - play.half_width);
+        }
+    }
+
+    /// Hands the nonzero spline values of every sample to `visit`: sample, coefficients with values.
+    pub(crate) fn rows(&self, inputs: &[f64], mut visit: impl FnMut(usize, &[(usize, f64)])) {
+        let Some(&first) = inputs.first() else { return };
+        let mut states = self.rest(first);
+        let mut row = Vec::with_capacity(3 * self.all.len());
+        for (i, &input) in inputs.iter().enumerate() {
+            self.advance(&mut states, input);
+            row.clear();
+            for (play, &state) in self.all.iter().zip(&states) {
+                let (cell, t) = play.place(state);
+                let k = play.first + cell;
+                row.push((k, 0.5 * (1.0 - t) * (1.0 - t)));
+                row.push((k + 1, 0.5 + t - t * t));
+                row.push((k + 2, 0.5 * t * t));
+            }
+            visit(i, &row);
+        }
+    }
+
+    /// The output for a history of inputs that begins at rest.
+    pub(crate) fn outputs(&self, map: &OutputMap, inputs: &[f64]) -> Vec<f64> {
+        let Some(&first) = inputs.first() else { return Vec::new() };
+        let mut states = self.rest(first);
+        inputs
+            .iter()
+            .map(|&input| {
+                self.advance(&mut states, input);
+                let mut sum = map.offset;
+                for ((play, &state), cells) in self.all.iter().zip(&states).zip(&map.cells) {
+                    let (cell, t) = play.place(state);
+                    let [a, b, c] = cells[cell];
+                    sum += a + t * (b + t * c);
+                }
+                sum
+            })
+            .collect()
+    }
+
+    /// The output maps of given coefficients.
+    pub(crate) fn map(&self, offset: f64, coefficients: &[f64]) -> OutputMap {
+        let cells = self
+            .all
+            .iter()
+            .map(|play| {
+                (0..play.cells)
+                    .map(|k| {
+                        let c = &coefficients[play.first + k..play.first + k + 3];
+                        [0.5 * (c[0] + c[1]), c[1] - c[0], 0.5 * (c[0] - 2.0 * c[1] + c[2])]
+                    })
+                    .collect()
+            })
+            .collect();
+        OutputMap { offset, cells }
+    }
+
+    /// The rises of the maps that stand behind the coefficients: `coefficients = matrix rises`. Every
+    /// map has opposite values at its ends.
+    pub(crate) fn rises_to_coefficients(&self) -> DMatrix<f64> {
+        let rises: usize = self.all.iter().map(|p| p.cells + 1).sum();
+        let mut matrix = DMatrix::zeros(self.count, rises);
+        let mut column = 0;
+        for play in &self.all {
+            for k in 0..=play.cells {
+                for j in 0..play.cells + 2 {
+                    matrix[(play.first + j, column + k)] = if j > k { 0.5 } else { -0.5 };
+                }
+            }
+            column += play.cells + 1;
+        }
+        matrix
+    }
+
+    /// Covariance of the rises: a density that is smooth over half-width and place, of a size
+    /// `amplitude` (output per half range squared), over the length `length`, and a smooth
+    /// reversible part of slope size `reversible`.
+    pub(crate) fn prior(&self, amplitude: f64, reversible: f64, length: f64) -> DMatrix<f64> {
+        let mut places = Vec::new();
+        for (number, play) in self.all.iter().enumerate() {
+            let step = 2.0 * (1.0 - play.half_width) / play.cells as f64;
+            for k in 0..=play.cells {
+                let place = play.half_width - 1.0 + step * k as f64;
+                places.push((number == 0, play.half_width, place, step, play.share));
+            }
+        }
+        let near = |d: f64| (-0.5 * d * d / (length * length)).exp();
+        DMatrix::from_fn(places.len(), places.len(), |a, b| {
+            let (ra, rb) = (places[a], places[b]);
+            let nugget = if a == b { 1e-3 } else { 0.0 };
+            let together = near(ra.2 - rb.2) + nugget;
+            let size = |p: &(bool, f64, f64, f64, f64)| amplitude * p.3 * p.4;
+            let dense = size(&ra) * size(&rb) * (near(ra.1 - rb.1) * near(ra.2 - rb.2) + nugget);
+            let straight = if ra.0 && rb.0 {
+                (reversible * ra.3) * (reversible * rb.3) * together
+            } else {
+                0.0
+            };
+            dense + straight
+        })
+    }
+}
+
+impl Play {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a play state lies inside its cells"
+    )]
+    #[inline]
+    fn place(&self, state: f64) -> (usize, f64) {
+        let x =
+            (state + 1.0 - self.half_width) * self.cells as f64 / (2.0 * (1.0 - self.half_width));
+        let cell = (x.max(0.0) as u32 as usize).min(self.cells - 1);
+        (cell, x - cell as f64)
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small positive number"
+)]
+fn cells_of(room: f64) -> usize {
+    ((CELLS * room).ceil() as usize).max(2)
+}
+
+/// Output of a first-order lag for an input straight between samples, at rest at first.
+pub(crate) fn lagged(input: &[f64], tau_s: f64, step_s: f64) -> Vec<f64> {
+    let x = step_s / tau_s;
+    let (decay, ramp) = ((-x).exp(), -(-x).exp_m1() / x);
+    let mut deviation = 0.0;
+    let mut before = input.first().copied().unwrap_or_default();
+    input
+        .iter()
+        .map(|&u| {
+            deviation = decay * deviation - ramp * (u - before);
+            before = u;
+            u + deviation
+        })
+        .collect()
+}
+
+/// Solves for the coefficients of a Gaussian prior and Gaussian data: `(gram + precision) x = right`.
+pub(crate) fn solve(gram: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    gram.clone().cholesky().map(|c| c.solve(right))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    #[test]
+    fn rows_times_coefficients_are_the_output() {
+        let plays = Plays::new(-20.0, 150.0);
+        let coefficients: Vec<f64> = (0..plays.count()).map(|k| (0.7 * k as f64).sin()).collect();
+        let inputs: Vec<f64> =
+            (0..500).map(|i| 65.0 + 80.0 * (0.05 * f64::from(i)).sin()).collect();
+        let direct = plays.outputs(&plays.map(0.3, &coefficients), &inputs);
+        plays.rows(&inputs, |i, row| {
+            let sum: f64 = row.iter().map(|&(k, v)| v * coefficients[k]).sum();
+            assert_abs_diff_eq!(0.3 + sum, direct[i], epsilon = 1e-12);
+        });
+    }
+
+    #[test]
+    fn equal_rises_of_the_narrowest_play_are_a_straight_line() {
+        let plays = Plays::new(-1.0, 1.0);
+        let matrix = plays.rises_to_coefficients();
+        let mut rises = DVector::zeros(matrix.ncols());
+        let cells = plays.all[0].cells;
+        for k in 0..=cells {
+            rises[k] = 2.0 / cells as f64;
+        }
+        let coefficients = matrix * rises;
+        let inputs = [0.0, 0.3, -0.7, 1.0];
+        let outputs = plays.outputs(&plays.map(0.0, coefficients.as_slice()), &inputs);
+        for (y, u) in outputs.iter().zip(inputs) {
+            assert_abs_diff_eq!(*y, u, epsilon = 1e-12);
+        }
+    }
+}

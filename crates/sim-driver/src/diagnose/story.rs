@@ -1,0 +1,150 @@
+//! What the terminal says: what is wrong, how we know, the name or the honest absence of one, the
+//! gain, what to measure next.
+
+use super::{Diagnosis, Findings};
+use crate::files::significant;
+use crate::output::{Printable, Sheet, table};
+use model_gap::discovery::{Confidence, Verdict};
+use serde::Serialize;
+
+/// The story of a diagnosis, printable.
+#[derive(Debug, Clone, Serialize)]
+#[serde(transparent)]
+pub struct Story {
+    findings: Findings,
+    #[serde(skip)]
+    text: String,
+}
+
+impl Printable for Story {
+    fn text(&self) -> String {
+        self.text.clone()
+    }
+}
+
+impl Story {
+    /// The story of a diagnosis.
+    pub fn of(d: &Diagnosis) -> Self {
+        let findings = Findings::from(d);
+        let text = text(d, &findings);
+        Self { findings, text }
+    }
+}
+
+fn text(d: &Diagnosis, findings: &Findings) -> String {
+    let mut sheet = Sheet::default();
+    let unit = &d.output_unit;
+    sheet.line(format_args!("Diagnosis: {}", d.title));
+    sheet.line(format_args!(
+        "  {} measured runs against a base model of {}; its error on runs left out of its fit is {:.2} % of the output, the noise {} {unit}",
+        d.run_ids.len(),
+        if d.has_reference { format!("{} reference runs", d.law_inputs.len()) } else { "the same runs (no reference runs)".to_owned() },
+        100.0 * d.floor,
+        significant(d.noise, 3),
+    ));
+    if !d.has_reference {
+        sheet.line(format_args!(
+            "  Without reference runs the floor cannot be calibrated: what these runs share is taken for ordinary, and nothing is said with confidence."
+        ));
+    }
+    if let Some(percent) = d.given_error_percent {
+        sheet.line(format_args!("  The model given leaves {percent:.1} % of the output of the measured runs (rms over spread)."));
+    }
+    sheet.line(format_args!("\nWhat the base model leaves, run by run"));
+    let rows = d.energy.iter().map(|row| {
+        vec![
+            row.id.clone(),
+            format!("{:.3}", 100.0 * row.explained),
+            format!("{:.4}", 100.0 * row.noise),
+            format!("{:.4}", 100.0 * row.structured),
+        ]
+    });
+    sheet.block(&table(&["run", "explained %", "noise %", "structured %"], rows));
+    sheet.line(format_args!("\nScreening: what each cause could explain (noise units), beside what surrogates with nothing missing reach"));
+    let mut order: Vec<usize> = (0..d.candidates.len()).collect();
+    let ratio = |c: usize| d.finding.screen[c].score / d.finding.screen[c].threshold.max(1e-9);
+    order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
+    let rows = order.iter().map(|&c| {
+        let s = &d.finding.screen[c];
+        let name = d.candidates[c].cause.id.to_owned();
+        if let Some(why) = &d.candidates[c].blocked {
+            return vec![name, "-".into(), "-".into(), "-".into(), why.clone()];
+        }
+        let alike = s.most_confused.map_or_else(String::new, |(b, cosine)| {
+            format!("{} {cosine:+.2}", d.candidates[b].cause.id)
+        });
+        vec![
+            name,
+            format!("{:.0}", s.score),
+            format!("{:.0}", s.threshold),
+            format!("{:.1}", 100.0 * s.absorbed),
+            alike,
+        ]
+    });
+    sheet.block(&table(&["cause", "score", "floor", "absorbed %", "most alike"], rows));
+    sheet.line(format_args!("\n{}", verdict_line(findings)));
+    for found in &d.finding.causes {
+        let cause = &d.candidates[found.candidate].cause;
+        sheet.line(format_args!("  {}: {}", cause.id, cause.physics));
+        for p in &found.parameters {
+            sheet.line(format_args!(
+                "    {} = {} {} (95 %: {} to {})",
+                p.name,
+                significant(p.value, 4),
+                p.unit,
+                significant(p.ci95[0], 3),
+                significant(p.ci95[1], 3)
+            ));
+        }
+        sheet.line(format_args!(
+            "    signature: {}; explains {:.0} noise units, {:.0} where it is held out",
+            cause.fingerprint, found.drop, found.held_out_drop
+        ));
+    }
+    for reason in &d.finding.reasons {
+        sheet.line(format_args!("  {reason}"));
+    }
+    let gain = &findings.gain;
+    if !findings.causes.is_empty() {
+        sheet.line(format_args!(
+            "\nGain on held-out experiments: {} -> {} {unit} rms, less by {} to {} (95 %)",
+            significant(gain.heldout_rms_before, 4),
+            significant(gain.heldout_rms_after, 4),
+            significant(gain.ci95[0], 3),
+            significant(gain.ci95[1], 3)
+        ));
+    }
+    if !findings.not_observable.is_empty() {
+        sheet.line(format_args!(
+            "Not observable in these data at usual strength: {}",
+            findings.not_observable.join(", ")
+        ));
+    }
+    sheet.line(format_args!("Measure next: {}", findings.next_experiment));
+    sheet.finish()
+}
+
+fn verdict_line(findings: &Findings) -> String {
+    let names = findings.causes.join(" + ");
+    let sure = match findings.confidence {
+        Confidence::Confident => "confident",
+        Confidence::Tentative => "tentative",
+    };
+    match findings.verdict {
+        Verdict::NothingMissing => {
+            format!("Nothing is missing ({sure}): the misfit is at the floor of the base model.")
+        }
+        Verdict::Named => format!("Missing ({sure}): {names}"),
+        Verdict::NamedStructureRemains => {
+            format!("Missing ({sure}): {names}; structure remains that it does not explain")
+        }
+        Verdict::Ambiguous => format!(
+            "Missing: one of {}; these data do not tell them apart",
+            findings.causes.join(", ")
+        ),
+        Verdict::Unknown => {
+            "Something is missing, and no known cause explains it: no name is given.".to_owned()
+        }
+        Verdict::NotObservable => "These data cannot show what could be missing.".to_owned(),
+    }
+}
