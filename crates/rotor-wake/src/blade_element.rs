@@ -2,7 +2,8 @@
 
 use crate::vector::Vec3;
 use crate::wake::{
-    BladeLines, CirculationMap, FreeWake, FreeWakeSettings, InflowMap, LineInduction, WakeRotor,
+    BladeLines, CirculationMap, FreeWake, FreeWakeSettings, InflowMap, LineInduction, WakeMarch,
+    WakeRotor,
 };
 use crate::{FlightState, WakeError, momentum_inflow};
 use nalgebra::DVector;
@@ -280,6 +281,46 @@ impl BladeElementRotor<'_> {
                 history.push(wake.sweep(&still.circulation)?);
             }
             induction = wake.line_induction(&still.circulation)?;
+        }
+        Err(WakeError::CirculationNotConverged {
+            iterations: coupling.updates,
+            change,
+            tolerance: coupling.inflow_tolerance,
+        })
+    }
+
+    /// The same with the wake marched in time, revolution by revolution: hover and low speed.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve); an update is a revolution.
+    pub fn solve_marching(
+        &self,
+        march: &mut WakeMarch,
+        coupling: &CouplingSettings,
+    ) -> Result<BladeElementSolution, WakeError> {
+        let azimuths = march.wake().settings().azimuths;
+        let size = azimuths * self.rotor.panels();
+        let start = CirculationMap::constant(azimuths, self.rotor.panels(), 1e-3)?;
+        let mut circulation = start;
+        let mut inflow = vec![march.wake().carrying_inflow(); size];
+        let mut history = Vec::new();
+        let mut change = f64::INFINITY;
+        for update in 1..=coupling.updates {
+            let induction = march.wake().line_induction(&circulation)?;
+            let mut still = self.circulation_in(march.wake().flight(), &induction, &inflow)?;
+            let pairs = still.inflow.values().iter().zip(&inflow);
+            change = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+            inflow = still.inflow.values().to_vec();
+            if update > 2 && change <= coupling.inflow_tolerance {
+                let flight = *march.wake().flight();
+                return Ok(self.finish(&flight, still, (update, change, history)));
+            }
+            if update > 1 {
+                // half of a change at once: the wake answers over several revolutions
+                still.circulation = still.circulation.mixed(&circulation, 0.5)?;
+            }
+            circulation = still.circulation;
+            history.extend(march.revolutions(coupling.sweeps, &circulation)?);
         }
         Err(WakeError::CirculationNotConverged {
             iterations: coupling.updates,

@@ -96,6 +96,22 @@ impl CirculationMap {
         rotor.blades() as f64 / std::f64::consts::PI * sum / count as f64
     }
 
+    /// The share `part` of this circulation and the rest of another one of the same grid.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] if the grids differ.
+    pub fn mixed(&self, other: &Self, part: f64) -> Result<Self, WakeError> {
+        if self.panels != other.panels || self.values.len() != other.values.len() {
+            return Err(WakeError::BadInput {
+                quantity: "values of the other circulation",
+                value: other.values.len() as f64,
+                expected: "the same grid",
+            });
+        }
+        let pairs = self.values.iter().zip(&other.values);
+        Self::new(self.panels, pairs.map(|(a, b)| part * a + (1.0 - part) * b).collect())
+    }
+
     /// The same function of azimuth on another number of azimuths, by its harmonics.
     ///
     /// # Errors

@@ -75,7 +75,7 @@ impl FreeWake {
         let sources: Vec<_> = self.with_context(circulation, |context| {
             (0..self.phases())
                 .map(|phase| {
-                    let sources = self.sources(phase, context);
+                    let sources = self.load_sources(phase, context);
                     let segments = sources.unit_segments(context);
                     (sources, segments)
                 })

@@ -176,7 +176,7 @@ impl WakeMarch {
             young: &wake.young_lengths(),
         };
         let views: Vec<BladeView<'_>> = self.blades.iter().map(|b| self.view(b)).collect();
-        let set = Sources::new(&views, &context).segments(&context, circulation.values());
+        let set = Sources::of_geometry(&views, &context).segments(&context, circulation.values());
         let targets: Vec<Vec3> =
             self.blades.iter().flat_map(|b| b.levels[0].iter().flatten().copied()).collect();
         let mut values = induced_velocities(&targets, &set).into_iter();

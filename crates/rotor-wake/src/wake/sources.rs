@@ -1,6 +1,8 @@
 //! The vortex segments of all blades at one instant, and how each depends on the circulation.
 
-use super::settings::{FarTrailers, FreeWakeSettings, ShedVorticity, StrainEffect};
+use super::settings::{
+    FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity, StrainEffect,
+};
 use super::{CirculationMap, WakeRotor};
 use crate::SegmentSet;
 use crate::vector::{Vec3, add, norm, scale, sub};
@@ -138,12 +140,27 @@ pub(crate) struct Sources {
 }
 
 impl Sources {
-    pub(crate) fn new(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
+    /// What the blades feel: lifting lines, the full span of the near wake, the rolled-up vortices behind it.
+    pub(crate) fn of_loads(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
         let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
         for view in views {
             out.bound(view, context);
             out.near(view, context);
-            out.far(view, context);
+            out.far(view, context, context.settings.near_steps());
+        }
+        out
+    }
+
+    /// What the rolled-up vortices feel: lifting lines and themselves, rolled up from the blade on. The sheet
+    /// of the near wake, that rolls up around them, would lift them off their own track.
+    pub(crate) fn of_geometry(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
+        if context.settings.near_wake_motion == NearWakeMotion::Free {
+            return Self::of_loads(views, context);
+        }
+        let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
+        for view in views {
+            out.bound(view, context);
+            out.far(view, context, 0);
         }
         out
     }
@@ -233,7 +250,7 @@ impl Sources {
     }
 
     /// Rolled-up filaments behind the near wake and their repeated last turn.
-    fn far(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
+    fn far(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>, first: usize) {
         let settings = context.settings;
         let azimuths = settings.azimuths;
         let release = |age: usize| (view.azimuth + azimuths - age % azimuths) % azimuths;
@@ -248,7 +265,7 @@ impl Sources {
                 let young = context.young[f][release(age)];
                 core_radius(settings, age, strength, norm(sub(ends[1], ends[0])) / young)
             };
-            for k in settings.near_steps()..steps {
+            for k in first..steps {
                 let ends = [points[k], points[k + 1]];
                 self.push(ends, radius(k, &ends), terms(k));
             }

@@ -287,19 +287,48 @@ impl FreeWake {
         f(&context)
     }
 
-    /// Sources of one instant.
-    pub(crate) fn sources(&self, phase: usize, context: &SourceContext<'_>) -> Sources {
-        let views: Vec<_> = self.blade_azimuths(phase).map(|i| self.view(i)).collect();
-        Sources::new(&views, context)
+    fn views(&self, phase: usize) -> Vec<BladeView<'_>> {
+        self.blade_azimuths(phase).map(|i| self.view(i)).collect()
+    }
+
+    /// Sources of one instant as the blades feel them.
+    pub(crate) fn load_sources(&self, phase: usize, context: &SourceContext<'_>) -> Sources {
+        Sources::of_loads(&self.views(phase), context)
     }
 
     /// Segments of every instant, for the kernel.
-    pub(crate) fn all_segments(&self, circulation: &CirculationMap) -> Vec<SegmentSet> {
+    fn all_segments(
+        &self,
+        circulation: &CirculationMap,
+        sources: fn(&[BladeView<'_>], &SourceContext<'_>) -> Sources,
+    ) -> Vec<SegmentSet> {
         self.with_context(circulation, |context| {
             (0..self.phases())
-                .map(|p| self.sources(p, context).segments(context, circulation.values()))
+                .map(|p| {
+                    sources(&self.views(p), context).segments(context, circulation.values())
+                })
                 .collect()
         })
+    }
+
+    /// Induced velocity at points in hub axes, averaged over the revolution: what a slow probe measures.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn mean_velocity(
+        &self,
+        points: &[Vec3],
+        circulation: &CirculationMap,
+    ) -> Result<Vec<Vec3>, WakeError> {
+        self.check(circulation)?;
+        let sets = self.all_segments(circulation, Sources::of_loads);
+        let mut mean = vec![[0.0; 3]; points.len()];
+        for set in &sets {
+            for (m, v) in mean.iter_mut().zip(induced_velocities(points, set)) {
+                *m = add(*m, scale(v, 1.0 / sets.len() as f64));
+            }
+        }
+        Ok(mean)
     }
 
     /// Checks a circulation against the grid.
@@ -322,7 +351,7 @@ impl FreeWake {
 
     /// Induced velocity at every node of the free filaments.
     fn velocities(&self, circulation: &CirculationMap) -> Velocities {
-        let sets = self.all_segments(circulation);
+        let sets = self.all_segments(circulation, Sources::of_geometry);
         let free: Vec<&Filament> = self.free().collect();
         let mut out: Velocities = free.iter().map(|f| vec![[0.0; 3]; f.points.len()]).collect();
         let stride = self.settings.velocity_stride;
@@ -363,7 +392,7 @@ impl FreeWake {
             }
             for i in 0..azimuths {
                 let points = f.at(i);
-                for k in self.settings.near_steps() + 1..f.steps {
+                for k in 1..f.steps {
                     let release = (i + azimuths - k % azimuths) % azimuths;
                     let strength = circulation.row(release)[peaks[release]];
                     let arc = [points[k - 1], points[k], points[k + 1]];
