@@ -1,5 +1,6 @@
 //! Aeroelastic coupling: periodic blade response, force-summation blade loads, hub loads.
 
+mod acceleration;
 mod air;
 mod blade;
 mod error;
@@ -13,6 +14,7 @@ mod rotor;
 mod span;
 mod structure;
 mod system;
+mod wake_coupling;
 
 pub use blade::{Couplings, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;

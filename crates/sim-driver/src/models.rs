@@ -2,8 +2,7 @@
 
 use crate::SimError;
 use crate::case::{
-    Case, CompressibilityChoice, CouplingsChoice, InflowChoice, ReverseFlowChoice,
-    SectionModelChoice, TrimValues,
+    Case, CompressibilityChoice, CouplingsChoice, ReverseFlowChoice, SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
@@ -12,7 +11,6 @@ use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow,
     RotorModel, TrailingEdgeFlap,
 };
-use rotor_wake::LinearInflow;
 use trim::{TrimSettings, TrimTarget, Vehicle};
 
 impl Case {
@@ -87,17 +85,6 @@ impl Case {
             SectionModelChoice::Incompressible => AttachedFlowModel::Incompressible,
             SectionModelChoice::HariharanLeishman => AttachedFlowModel::HariharanLeishman,
             SectionModelChoice::Calibrated => AttachedFlowModel::Calibrated,
-        }
-    }
-
-    /// Inflow model.
-    pub fn inflow_model(&self) -> LinearInflow {
-        match self.inflow {
-            InflowChoice::Uniform => LinearInflow::Uniform,
-            InflowChoice::Drees => LinearInflow::Drees,
-            InflowChoice::Prescribed { lambda_i } => {
-                LinearInflow::Prescribed { induced_inflow: lambda_i }
-            }
         }
     }
 

@@ -3,9 +3,13 @@
 mod error;
 mod solve;
 mod vehicle;
+mod wake;
 
 pub use error::TrimError;
 pub use solve::{TrimSettings, TrimSolution, TrimTarget, imbalance, trim};
+pub use wake::{
+    WakeOutcome, WakeTrim, WakeTrimSettings, WakeUpdate, trim_in_free_wake,
+};
 pub use vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
 
 /// The example of the crate's README, run as a documentation test.

@@ -6,6 +6,7 @@ use crate::vector::{Vec3, add, scale};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
 
 /// Induced velocity at the lifting line of all panels and azimuths per unit of circulation at all panels
 /// and azimuths, for one geometry of the wake.
@@ -175,6 +176,9 @@ impl LineInduction {
     }
 }
 
+/// Speed across the chord that turns the sense of the circulation, tip speed: about the inflow.
+const SMALL_SPEED: f64 = 0.04;
+
 /// An inflow model: the wake as it is, carrying whatever circulation the blades have.
 ///
 /// The geometry stays; the inflow follows the circulation at once. This is what a response or a trim sees
@@ -187,9 +191,9 @@ pub struct FrozenWake {
 }
 
 impl FrozenWake {
-    /// The wake's map with the inflow to start from, for blades of a chord (unit `R`) whose sections have
-    /// about the lift-curve slope of thin-aerofoil theory; the slope sets the speed of convergence, not
-    /// the result.
+    /// The wake's map with the inflow to start from, for blades of a chord (unit `R`) at an advance ratio,
+    /// whose sections have about the lift-curve slope of thin-aerofoil theory; the slope sets the speed of
+    /// convergence, not the result.
     ///
     /// # Errors
     /// [`WakeError::BadInput`] for a circulation of another grid.
@@ -197,9 +201,21 @@ impl FrozenWake {
         induction: LineInduction,
         circulation: &CirculationMap,
         chord: f64,
+        advance_ratio: f64,
     ) -> Result<Self, WakeError> {
         let reference = induction.inflow(circulation)?;
-        let slope = vec![std::f64::consts::PI * chord; reference.values().len()];
+        let azimuths = induction.azimuths;
+        let stations = reference.stations();
+        let slope: Vec<f64> = (0..azimuths)
+            .flat_map(|i| {
+                let sin = (TAU * i as f64 / azimuths as f64).sin();
+                // in reverse flow the circulation has the other sense
+                stations.iter().map(move |r| {
+                    let along = r + advance_ratio * sin;
+                    PI * chord * along / along.hypot(SMALL_SPEED)
+                })
+            })
+            .collect();
         let newton = induction.newton_matrix(&slope);
         Ok(Self { induction, reference, newton })
     }

@@ -7,6 +7,7 @@ mod checker;
 mod convert;
 mod file;
 mod file_control;
+mod file_wake;
 mod ranges;
 mod read;
 #[cfg(test)]
@@ -23,6 +24,7 @@ pub use file_control::{
     LoadWeightsFile, PrescribedTrimFile, PropulsiveTrimFile, StoredActuatorFile, StrokeChoice,
     TrimFile, WindTunnelTrimFile,
 };
+pub use file_wake::{CoreChoice, FreeWakeFile, NearWakeChoice, RolledUpChoice};
 pub use read::{LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
 pub use validated::{
     ActuatorSource, ActuatorValues, BladeValues, Case, ControlValues, FlapValues, SectionValues,

@@ -2,7 +2,7 @@
 
 use super::args::{
     CheckArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs, ReportArgs,
-    ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs,
+    ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs, WakeArgs,
 };
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
@@ -26,6 +26,7 @@ use crate::section::{
     polar, section_response, transient_history,
 };
 use crate::stored_actuator::{StoredActuator, read_actuator};
+use crate::wake::wake_of_case;
 use crate::study::{SENSITIVITY_ROWS, histories_csv, sensitivities, study_report};
 use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
 use preisach_dyn::identify::Settings;
@@ -227,6 +228,31 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
         write_atomic(path, fan_csv(&result).as_bytes())?;
     }
     print(&text)
+}
+
+pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
+    let mut loaded = match &args.case {
+        Some(path) => load_case(path)?,
+        None => shipped_case(PAPER_CASE)?,
+    };
+    if let Some(mu) = args.mu {
+        loaded.case.advance_ratio = mu;
+        loaded.file.advance_ratio = mu;
+    }
+    let progress = Progress::new(1);
+    progress.doing("free wake and trim");
+    let outcome = wake_of_case(&loaded);
+    progress.finish();
+    let (result, files) = outcome?;
+    for warning in &result.warnings {
+        eprintln!("warning: {warning}");
+    }
+    if let Some(folder) = &args.out {
+        for (name, text) in files {
+            write_atomic(&folder.join(name), text.as_bytes())?;
+        }
+    }
+    print(&result.render(args.format.format)?)
 }
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {

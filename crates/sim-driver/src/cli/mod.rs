@@ -5,7 +5,7 @@ mod commands;
 
 pub use args::{
     CheckArgs, Cli, Command, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs,
-    ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs,
+    ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
 };
 
 use crate::SimError;
@@ -51,6 +51,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Identify(args)) => commands::identify(args),
         Some(Command::Import(args)) => commands::import(args),
         Some(Command::Modes(args)) => commands::modes(args),
+        Some(Command::Wake(args)) => commands::wake(args),
         Some(Command::Section(args)) => commands::section(args),
         Some(Command::Check(args)) => commands::check(args),
         Some(Command::Init(args)) => commands::init(args),

@@ -3,20 +3,21 @@
 use super::{FlapDrive, FlapMotion, FullScale, PlantError};
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
+use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use hhc_control::{ControlError, ControlLayout, Measurement, Plant};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{Condition, ResponseError, Rotor, RotorSolution, RotorSolver};
-use rotor_wake::LinearInflow;
 use std::sync::Arc;
-use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};
+use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
 
 /// A rotor in trim, flaps at rest: where every control run starts.
 #[derive(Debug, Clone)]
 pub struct TrimmedRotor {
     solver: RotorSolver,
-    inflow: LinearInflow,
+    inflow: SettledInflow,
     trim: TrimSolution,
+    wake: Option<Arc<WakeTrim>>,
 }
 
 impl TrimmedRotor {
@@ -35,21 +36,25 @@ impl TrimmedRotor {
         let mu = case.advance_ratio;
         let tolerances = case.response_tolerances();
         let mut solver = RotorSolver::new(Arc::new(rotor), mu, tolerances).map_err(at_rotor)?;
-        let inflow = case.inflow_model();
-        let (target, settings) = (case.trim_target(), case.trim_settings());
-        let trim = trim(&mut solver, &inflow, mu, &target, &settings, start).map_err(|source| {
+        let settled = settled_trim(loaded, &mut solver, start).map_err(|source| {
             let field = match case.trim {
                 TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => "trim.ct_sigma",
                 TrimValues::Prescribed { .. } => "trim",
             };
             SimError::Trim { place: loaded.index.place(field), source }
         })?;
-        Ok(Self { solver, inflow, trim })
+        let SettledTrim { trim, inflow, wake } = settled;
+        Ok(Self { solver, inflow, trim, wake })
     }
 
     /// The trim.
     pub fn trim(&self) -> &TrimSolution {
         &self.trim
+    }
+
+    /// The free wake the trim settled with, if the case asks for one.
+    pub fn wake(&self) -> Option<&WakeTrim> {
+        self.wake.as_deref()
     }
 
     /// The rotor.
