@@ -235,8 +235,8 @@ impl RotorSolver {
         }
         let dof = self.rotor.mass.nrows();
         let mut orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
-        let mut inflow = inflow_model
-            .induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
+        let mut inflow =
+            inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
         if let Some(s) = start {
             // a start with another kind of inflow gives its motion only
             inflow = inflow.with_parameters(&s.inflow.parameters()).unwrap_or(inflow);

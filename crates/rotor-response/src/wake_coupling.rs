@@ -75,8 +75,11 @@ impl RevolutionLoads {
         for ((azimuth, share), row) in
             time.points().iter().zip(unit_weights(time)).zip(&self.lifting)
         {
-            let moment: f64 =
-                row.iter().enumerate().map(|(s, l)| weight[first + s] * x[first + s] * l.lift).sum();
+            let moment: f64 = row
+                .iter()
+                .enumerate()
+                .map(|(s, l)| weight[first + s] * x[first + s] * l.lift)
+                .sum();
             harmonics[0] += share * azimuth.cos() * moment;
             harmonics[1] += share * azimuth.sin() * moment;
         }

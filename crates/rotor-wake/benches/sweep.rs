@@ -7,9 +7,7 @@
 #![expect(clippy::disallowed_methods, reason = "a bench reads the clock")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use rotor_wake::{
-    BladeLines, CirculationMap, FlightState, FreeWake, FreeWakeSettings, WakeRotor,
-};
+use rotor_wake::{BladeLines, CirculationMap, FlightState, FreeWake, FreeWakeSettings, WakeRotor};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::time::{Duration, Instant};

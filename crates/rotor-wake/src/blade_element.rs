@@ -35,10 +35,7 @@ impl SectionPolar for AttachedPolar {
         let beta = (1.0 - mach.min(0.9).powi(2)).sqrt();
         // sin of the angle itself carries the sense of the lift through reverse flow
         let sense = if alpha_rad.cos() < 0.0 { -1.0 } else { 1.0 };
-        [
-            sense * TAU * folded / beta,
-            self.zero_lift_drag + self.drag_growth * folded * folded,
-        ]
+        [sense * TAU * folded / beta, self.zero_lift_drag + self.drag_growth * folded * folded]
     }
 }
 
@@ -190,7 +187,8 @@ impl BladeElementRotor<'_> {
         let (azimuths, panels) = (induction.azimuths(), self.rotor.panels());
         let stations = self.rotor.stations();
         let place = |k: usize| (TAU * (k / panels) as f64 / azimuths as f64, stations[k % panels]);
-        let gamma = |k: usize, induced: [f64; 2]| self.element(flight, place(k), induced).circulation;
+        let gamma =
+            |k: usize, induced: [f64; 2]| self.element(flight, place(k), induced).circulation;
         let mut inflow = start.to_vec();
         let mut in_plane = vec![0.0; start.len()];
         let mut change = f64::INFINITY;
@@ -203,8 +201,7 @@ impl BladeElementRotor<'_> {
             let residual: Vec<f64> =
                 wanted.values().iter().zip(&inflow).map(|(w, l)| w - l).collect();
             let moved = wanted_in_plane.values().iter().zip(&in_plane).map(|(w, l)| w - l);
-            let size =
-                residual.iter().copied().chain(moved).fold(0.0_f64, |m, r| m.max(r.abs()));
+            let size = residual.iter().copied().chain(moved).fold(0.0_f64, |m, r| m.max(r.abs()));
             if size <= NEWTON_TOLERANCE {
                 return Ok(StillWake { circulation, inflow: wanted, in_plane: wanted_in_plane });
             }
@@ -266,6 +263,7 @@ impl BladeElementRotor<'_> {
         let size = azimuths * self.rotor.panels();
         let start = CirculationMap::constant(azimuths, self.rotor.panels(), 1e-3)?;
         let mut induction = wake.line_induction(&start)?;
+        let mut moving: Option<CirculationMap> = None;
         let mut inflow = vec![wake.carrying_inflow(); size];
         let mut history = Vec::new();
         let mut change = f64::INFINITY;
@@ -277,10 +275,16 @@ impl BladeElementRotor<'_> {
             if update > 1 && change <= coupling.inflow_tolerance {
                 return Ok(self.finish(wake.flight(), still, (update, change, history)));
             }
+            // half of a change at once: near passages of vortices answer strongly
+            let circulation = match &moving {
+                Some(before) => still.circulation.mixed(before, 0.5)?,
+                None => still.circulation,
+            };
             for _ in 0..coupling.sweeps {
-                history.push(wake.sweep(&still.circulation)?);
+                history.push(wake.sweep(&circulation)?);
             }
-            induction = wake.line_induction(&still.circulation)?;
+            induction = wake.line_induction(&circulation)?;
+            moving = Some(circulation);
         }
         Err(WakeError::CirculationNotConverged {
             iterations: coupling.updates,

@@ -1,7 +1,7 @@
 //! What every inflow model shares: its inputs, its answer and the trait.
 
-use crate::wake::{CirculationMap, InflowMap, WakeRotor};
 use crate::WakeError;
+use crate::wake::{CirculationMap, InflowMap, WakeRotor};
 
 /// State of flight of the rotor's hub in still air, in the shaft frame.
 ///

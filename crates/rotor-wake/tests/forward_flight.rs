@@ -34,8 +34,7 @@ fn helices_over_glauert(advance_ratio: f64, stations: usize) -> f64 {
             }
         }
         let (sin, cos) = (TAU * i as f64 / azimuths as f64).sin_cos();
-        let radii: Vec<f64> =
-            (0..stations).map(|k| (k as f64 + 0.5) / stations as f64).collect();
+        let radii: Vec<f64> = (0..stations).map(|k| (k as f64 + 0.5) / stations as f64).collect();
         let targets: Vec<Vec3> = radii.iter().map(|r| [r * cos, r * sin, 0.0]).collect();
         for (r, v) in radii.iter().zip(induced_velocities(&targets, &set)) {
             sum -= r * v[2];
@@ -65,11 +64,8 @@ fn reference(near_wake_deg: f64) -> BladeElementSolution {
 #[test]
 fn the_reference_rotor_has_its_mean_and_vibratory_thrust() {
     let solution = reference(360.0);
-    let thrust: Vec<f64> = solution
-        .rotating_sums(4)
-        .iter()
-        .map(|sum| sum[2] * reference_thrust_newton())
-        .collect();
+    let thrust: Vec<f64> =
+        solution.rotating_sums(4).iter().map(|sum| sum[2] * reference_thrust_newton()).collect();
     let [mean, amplitude, phase] = harmonic(&thrust, 4);
     assert!((mean / 18770.5 - 1.0).abs() < 0.02, "mean {mean}");
     assert!((amplitude / 1127.4 - 1.0).abs() < 0.10, "4/rev {amplitude}");
@@ -135,8 +131,7 @@ fn grids_in_sequence_and_interpolated_velocities() {
     let distance = |a: &FreeWake, b: &FreeWake| {
         let (a, b) = (a.vortices().remove(0).points, b.vortices().remove(0).points);
         let pairs = a.iter().flatten().zip(b.iter().flatten());
-        let sum: f64 =
-            pairs.map(|(p, q)| (0..3).map(|c| (p[c] - q[c]).powi(2)).sum::<f64>()).sum();
+        let sum: f64 = pairs.map(|(p, q)| (0..3).map(|c| (p[c] - q[c]).powi(2)).sum::<f64>()).sum();
         (sum / (24.0 * 49.0)).sqrt()
     };
     assert!(distance(&sequenced, &fine) < 1e-3, "{}", distance(&sequenced, &fine));
@@ -174,9 +169,8 @@ fn a_wake_that_runs_away_is_reported_and_stays_finite() {
         ),
         "{error}"
     );
-    let finite = |f: &rotor_wake::WakeFilament| {
-        f.points.iter().flatten().flatten().all(|x| x.is_finite())
-    };
+    let finite =
+        |f: &rotor_wake::WakeFilament| f.points.iter().flatten().flatten().all(|x| x.is_finite());
     assert!(wake.vortices().iter().all(finite));
 }
 

@@ -3,7 +3,7 @@
 use crate::case::{
     Case, CoreChoice, FreeWakeFile, InflowChoice, LoadedCase, NearWakeChoice, RolledUpChoice,
 };
-use rotor_response::RotorSolver;
+use rotor_response::{ResponseTolerances, RotorSolver};
 use rotor_wake::{
     CoreModel, CoreSettings, FarTrailers, FlightState, FreeWakeSettings, FrozenWake, InducedInflow,
     InflowModel, LinearInflow, NearWakeMotion, PittPeters, RotorLoading, WakeError, WakeRotor,
@@ -15,6 +15,9 @@ use trim::{
 
 /// Kinematic viscosity of air at sea level, m^2/s (ISA).
 const VISCOSITY_M2_S: f64 = 1.46e-5;
+
+/// Iterations of circulation and inflow allowed in a free wake, at least.
+const WAKE_ITERATIONS: usize = 200;
 
 /// The inflow model that a trim has settled on.
 #[derive(Debug, Clone)]
@@ -88,6 +91,7 @@ impl Case {
             near_wake_motion: match file.near_wake {
                 NearWakeChoice::BladePlane => NearWakeMotion::BladePlane,
                 NearWakeChoice::Convected => NearWakeMotion::Convected,
+                NearWakeChoice::FollowsTip => NearWakeMotion::FollowsTip,
                 NearWakeChoice::Free => NearWakeMotion::Free,
             },
             far,
@@ -133,6 +137,10 @@ pub fn settled_trim(
         }
         InflowChoice::FreeWake(file) => {
             let coupling = case.wake_trim_settings(&file);
+            let tolerances = solver.tolerances();
+            let inflow_iterations = tolerances.inflow_iterations.max(WAKE_ITERATIONS);
+            *solver =
+                solver.with_tolerances(ResponseTolerances { inflow_iterations, ..tolerances });
             let wake = trim_in_free_wake(solver, &coupling, mu, &target, &settings)?;
             return Ok(SettledTrim {
                 trim: wake.trim.clone(),

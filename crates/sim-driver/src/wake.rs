@@ -79,9 +79,7 @@ pub fn wake_of_case(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimE
     }
     let trimmed = TrimmedRotor::new(&loaded, None)?;
     match trimmed.wake() {
-        Some(wake) => {
-            Ok((result_of(&loaded, wake), files_of(wake)))
-        }
+        Some(wake) => Ok((result_of(&loaded, wake), files_of(wake))),
         // the inflow has just been made a free wake
         None => Ok((WakeResult::default(), Vec::new())),
     }
@@ -233,7 +231,11 @@ fn vtk(wake: &FreeWake) -> String {
         }
         out.push('\n');
     }
-    let _ = writeln!(out, "POINT_DATA {}\nSCALARS age_deg double 1\nLOOKUP_TABLE default", points.len());
+    let _ = writeln!(
+        out,
+        "POINT_DATA {}\nSCALARS age_deg double 1\nLOOKUP_TABLE default",
+        points.len()
+    );
     for (_, age, _) in &points {
         let _ = writeln!(out, "{age}");
     }

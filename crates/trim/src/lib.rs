@@ -7,10 +7,8 @@ mod wake;
 
 pub use error::TrimError;
 pub use solve::{TrimSettings, TrimSolution, TrimTarget, imbalance, trim};
-pub use wake::{
-    WakeOutcome, WakeTrim, WakeTrimSettings, WakeUpdate, trim_in_free_wake,
-};
 pub use vehicle::{Attitude, Vehicle, equilibrium, fuselage_drag};
+pub use wake::{WakeOutcome, WakeTrim, WakeTrimSettings, WakeUpdate, trim_in_free_wake};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -3,8 +3,8 @@
 use crate::{TrimError, TrimSettings, TrimSolution, TrimTarget, trim};
 use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
-    ClosestPassage, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, LinearInflow, WakeError,
-    WakeRotor, momentum_inflow,
+    CirculationMap, ClosestPassage, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow,
+    LinearInflow, WakeError, WakeRotor, momentum_inflow,
 };
 
 /// Residual of the trim between updates of the wake, over the weight.
@@ -87,6 +87,8 @@ pub struct WakeTrim {
     pub updates: Vec<WakeUpdate>,
     /// Nearest approach of a tip vortex to a blade.
     pub closest_passage: Option<ClosestPassage>,
+    /// Circulation that moved the wake in the last update.
+    moving: CirculationMap,
 }
 
 /// Trims a rotor in its free wake, flaps at rest.
@@ -144,12 +146,20 @@ pub fn trim_in_free_wake(
         }
         .map_err(wrong)?;
         let induction = wake.line_induction(&circulation).map_err(wrong)?;
-        let frozen = FrozenWake::new(induction, &circulation, chord, advance_ratio).map_err(wrong)?;
+        let frozen =
+            FrozenWake::new(induction, &circulation, chord, advance_ratio).map_err(wrong)?;
         let trimmed = trim(solver, &frozen, advance_ratio, target, trim_settings, Some(start))?;
         let updates = state.take().map_or_else(Vec::new, |s| s.updates);
         let outcome = WakeOutcome::NotSettled { inflow_change: f64::INFINITY };
-        let mut stage =
-            WakeTrim { trim: trimmed, wake, frozen, outcome, updates, closest_passage: None };
+        let mut stage = WakeTrim {
+            trim: trimmed,
+            wake,
+            frozen,
+            outcome,
+            updates,
+            closest_passage: None,
+            moving: circulation,
+        };
         for _ in 0..settings.updates {
             if stage.update(solver, settings, target, trim_settings)? {
                 break;
@@ -184,6 +194,8 @@ impl WakeTrim {
         let panels = self.wake.rotor().clone();
         let lines = solver.blade_lines(&self.trim.rotor, &panels, azimuths);
         let circulation = solver.circulation(&self.trim.rotor, &panels, azimuths)?;
+        // half of a change at once: near passages of vortices answer strongly
+        let circulation = circulation.mixed(&self.moving, 0.5).map_err(wrong)?;
         let mean = momentum_inflow(&self.trim.flight, self.trim.rotor.thrust_coefficient);
         let mut wake = self.wake.clone();
         let mut displacement = f64::INFINITY;
@@ -214,15 +226,13 @@ impl WakeTrim {
             theta0_rad: trimmed.controls.theta0_rad,
         });
         (self.trim, self.wake, self.frozen) = (trimmed, wake, frozen);
+        self.moving = circulation;
         let last = azimuths == settings.wake.azimuths;
         // a stage that only prepares the next one need not settle as well
         let tolerance = if last { 1.0 } else { 10.0 } * settings.inflow_tolerance;
         let settled = inflow_change <= tolerance;
-        self.outcome = if settled {
-            WakeOutcome::Settled
-        } else {
-            WakeOutcome::NotSettled { inflow_change }
-        };
+        self.outcome =
+            if settled { WakeOutcome::Settled } else { WakeOutcome::NotSettled { inflow_change } };
         Ok(settled)
     }
 }

@@ -19,6 +19,7 @@ mod section;
 mod section_compressible;
 mod time_elements;
 mod trimmed;
+mod wake;
 
 pub use check::{Area, Check, Criterion, Repeatability, Row};
 pub use error::CheckError;
@@ -34,6 +35,7 @@ pub const AREAS: &[Area] = &[
     section::AREA,
     section_compressible::AREA,
     inflow::AREA,
+    wake::AREA,
     rotor::AREA,
     trimmed::AREA,
     actuator::AREA,

@@ -64,8 +64,7 @@ pub(super) struct RosenheadMoore;
 impl Law for RosenheadMoore {
     #[inline(always)]
     fn factor(lr: [f64; 2], squares: [f64; 2], cross: f64, segment: &Prepared) -> f64 {
-        let (a, b) =
-            ((squares[0] + segment.cut_off).sqrt(), (squares[1] + segment.cut_off).sqrt());
+        let (a, b) = ((squares[0] + segment.cut_off).sqrt(), (squares[1] + segment.cut_off).sqrt());
         (lr[0] * b - lr[1] * a) / (a * b * (cross + segment.core) + GUARD)
     }
 }

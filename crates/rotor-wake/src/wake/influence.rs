@@ -40,10 +40,8 @@ impl FreeWake {
         let panels = self.rotor.panels();
         let mut blocks = Vec::new();
         for phase in 0..self.phases() {
-            let targets: Vec<(usize, usize)> = self
-                .blade_azimuths(phase)
-                .flat_map(|i| (0..panels).map(move |s| (i, s)))
-                .collect();
+            let targets: Vec<(usize, usize)> =
+                self.blade_azimuths(phase).flat_map(|i| (0..panels).map(move |s| (i, s))).collect();
             for chunk in targets.chunks(BLOCK) {
                 let mut block = TargetBlock {
                     phase,

@@ -46,8 +46,7 @@ impl WakeMarch {
             wake.near.iter().filter(|_| near_is_free).chain(&wake.far).collect();
         let free = filaments.iter().map(|f| f.node).collect();
         let azimuths = wake.settings.azimuths;
-        let shape =
-            |i: usize| -> Shape { filaments.iter().map(|f| f.at(i).to_vec()).collect() };
+        let shape = |i: usize| -> Shape { filaments.iter().map(|f| f.at(i).to_vec()).collect() };
         let blades = wake
             .blade_azimuths(0)
             .map(|azimuth| BladeState {

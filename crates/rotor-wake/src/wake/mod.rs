@@ -3,8 +3,8 @@
 mod blades;
 mod circulation;
 mod filament;
-mod influence;
 mod inflow_map;
+mod influence;
 mod march;
 mod rotor;
 mod settings;
@@ -14,8 +14,8 @@ mod sweep;
 
 pub use blades::BladeLines;
 pub use circulation::CirculationMap;
-pub use influence::{FrozenWake, LineInduction};
 pub use inflow_map::InflowMap;
+pub use influence::{FrozenWake, LineInduction};
 pub use march::{WakeMarch, contraction_drift};
 pub use rotor::WakeRotor;
 pub use settings::{

@@ -18,7 +18,8 @@ impl WakeRotor {
     /// [`WakeError::BadInput`] unless there are 1 to 12 blades and at least two panels, nodes ascend and
     /// the last one is 1.
     pub fn new(blades: usize, nodes: Vec<f64>) -> Result<Self, WakeError> {
-        let bad = |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
+        let bad =
+            |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
         if !(1..=12).contains(&blades) {
             return bad("blades", blades as f64, "1 to 12");
         }

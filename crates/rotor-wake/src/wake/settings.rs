@@ -10,8 +10,11 @@ pub enum NearWakeMotion {
     /// about 30 deg.
     BladePlane,
     /// With the free stream and the mean induced velocity of momentum theory.
-    #[default]
     Convected,
+    /// As `Convected`, distorted by what the free motion has done to the tip vortex of the same age, in
+    /// proportion to the station: the whole of it at the tip, nothing at the centre.
+    #[default]
+    FollowsTip,
     /// Free, as the tip vortex is.
     Free,
 }
@@ -66,6 +69,9 @@ pub struct CoreSettings {
     pub radius: f64,
     /// Core radius of near-wake trailers, shed and bound vortices, unit `R`.
     pub near_radius: f64,
+    /// Core radius of the youngest trailers over the width of the panel beside them, at most: a core wider
+    /// than the panels would take the downwash away that a tip makes at itself.
+    pub panel_share: f64,
     /// Kinematic viscosity `nu / (Omega R^2)`; 0 for no growth.
     pub viscosity: f64,
     /// Squire's coefficient `a_1` of turbulent growth.
@@ -80,6 +86,7 @@ impl Default for CoreSettings {
             model: CoreModel::Vatistas,
             radius: 0.02,
             near_radius: 0.02,
+            panel_share: 0.3,
             viscosity: 1.5e-8,
             squire: 2e-4,
             strain: StrainEffect::Ignored,
@@ -166,8 +173,10 @@ impl FreeWakeSettings {
     /// # Errors
     /// [`WakeError::BadInput`] with the first value out of range.
     pub fn validate(&self, blades: usize) -> Result<(), WakeError> {
-        let bad = |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
-        if self.azimuths < 8 || !self.azimuths.is_multiple_of(blades.max(1)) || self.azimuths > 720 {
+        let bad =
+            |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
+        if self.azimuths < 8 || !self.azimuths.is_multiple_of(blades.max(1)) || self.azimuths > 720
+        {
             let expected = "8 to 720 and a multiple of the number of blades";
             return bad("azimuths", self.azimuths as f64, expected);
         }
@@ -189,7 +198,11 @@ impl FreeWakeSettings {
                 return bad(quantity, value, "more than 0 and at most 0.5 R");
             }
         }
-        for (quantity, value) in [("core viscosity", core.viscosity), ("core squire", core.squire)] {
+        if core.panel_share.is_nan() || core.panel_share <= 0.0 {
+            return bad("core panel_share", core.panel_share, "more than 0");
+        }
+        for (quantity, value) in [("core viscosity", core.viscosity), ("core squire", core.squire)]
+        {
             if !(value.is_finite() && value >= 0.0) {
                 return bad(quantity, value, "0 or more");
             }

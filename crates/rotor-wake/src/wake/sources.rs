@@ -1,8 +1,6 @@
 //! The vortex segments of all blades at one instant, and how each depends on the circulation.
 
-use super::settings::{
-    FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity, StrainEffect,
-};
+use super::settings::{FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity, StrainEffect};
 use super::{CirculationMap, WakeRotor};
 use crate::SegmentSet;
 use crate::vector::{Vec3, add, norm, scale, sub};
@@ -207,8 +205,7 @@ impl Sources {
                 let panel = |n: usize| view.azimuth * panels + n;
                 let inboard = if n > 0 { (panel(n - 1), 1.0) } else { (0, 0.0) };
                 let outboard = if n < panels { (panel(n), -1.0) } else { (0, 0.0) };
-                let radius = context.settings.core.near_radius;
-                self.push([*from, *to], radius, Terms::pair(inboard, outboard));
+                self.push([*from, *to], young_radius(context, n), Terms::pair(inboard, outboard));
             }
         }
     }
@@ -217,7 +214,8 @@ impl Sources {
     fn near(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
         let (settings, panels) = (context.settings, context.rotor.panels());
         let azimuths = settings.azimuths;
-        let release = |age: usize| (view.azimuth + azimuths * (1 + age / azimuths) - age) % azimuths;
+        let release =
+            |age: usize| (view.azimuth + azimuths * (1 + age / azimuths) - age) % azimuths;
         let radius = settings.core.near_radius;
         let steps = settings.near_steps();
         for (n, points) in view.near.iter().enumerate() {
@@ -232,6 +230,7 @@ impl Sources {
                         pair[1] = narrow((at + n, -0.5));
                     }
                 }
+                let radius = if k == 0 { young_radius(context, n) } else { radius };
                 self.push([points[k], points[k + 1]], radius, Terms(terms));
             }
         }
@@ -272,8 +271,7 @@ impl Sources {
             let mut last = points[steps];
             for turn in 1..=settings.far_turns {
                 for j in 1..=azimuths {
-                    let next =
-                        add(points[steps - azimuths + j], scale(context.turn, turn as f64));
+                    let next = add(points[steps - azimuths + j], scale(context.turn, turn as f64));
                     let age = steps + (turn - 1) * azimuths + j - 1;
                     let ends = [last, next];
                     self.push(ends, radius(age, &ends), terms(age));
@@ -282,6 +280,16 @@ impl Sources {
             }
         }
     }
+}
+
+/// Core radius of the youngest trailers of a node.
+fn young_radius(context: &SourceContext<'_>, node: usize) -> f64 {
+    let nodes = context.rotor.nodes();
+    let inboard = node.checked_sub(1).map(|n| nodes[node] - nodes[n]);
+    let outboard = nodes.get(node + 1).map(|next| next - nodes[node]);
+    let width = inboard.into_iter().chain(outboard).fold(f64::INFINITY, f64::min);
+    let core = &context.settings.core;
+    core.near_radius.min(core.panel_share * width)
 }
 
 /// Core radius of a rolled-up segment by age (steps), strength and length over its length when young.

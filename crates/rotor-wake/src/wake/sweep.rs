@@ -204,6 +204,7 @@ impl FreeWake {
                 // a free one keeps its shape but for the release
                 NearWakeMotion::Free if k > 0 => filament.at(i)[k],
                 NearWakeMotion::BladePlane => self.swept(node, i, k),
+                NearWakeMotion::FollowsTip => self.following(node, i, k),
                 _ => self.carried(node, i, k),
             };
             let mut points = Vec::with_capacity(filament.points.len());
@@ -213,6 +214,18 @@ impl FreeWake {
             filament.points = points;
         }
         self.near = near;
+    }
+
+    /// The carried point moved by its share of the distortion of the tip vortex.
+    fn following(&self, node: usize, i: usize, k: usize) -> Vec3 {
+        let carried = self.carried(node, i, k);
+        match self.far.last() {
+            Some(tip) if k <= tip.steps => {
+                let moved = sub(tip.at(i)[k], self.carried(tip.node, i, k));
+                add(carried, scale(moved, self.rotor.nodes()[node]))
+            }
+            _ => carried,
+        }
     }
 
     /// The arc behind a blade at azimuth `i` on which its node would come back by `k` steps.
@@ -304,9 +317,7 @@ impl FreeWake {
     ) -> Vec<SegmentSet> {
         self.with_context(circulation, |context| {
             (0..self.phases())
-                .map(|p| {
-                    sources(&self.views(p), context).segments(context, circulation.values())
-                })
+                .map(|p| sources(&self.views(p), context).segments(context, circulation.values()))
                 .collect()
         })
     }
@@ -455,7 +466,8 @@ impl FreeWake {
         for (new, old) in second.iter_mut().flatten().zip(first.iter().flatten()) {
             *new = add(scale(*new, weight), scale(*old, 1.0 - weight));
         }
-        let corrected = self.moved(&second);
+        let mut corrected = self.moved(&second);
+        corrected.place_near_wake();
         let (mut sum, mut count) = (0.0, 0);
         for (new, old) in corrected.free().zip(self.free()) {
             for (a, b) in new.points.iter().zip(&old.points) {

@@ -56,6 +56,7 @@ pub fn reference_settings(near_wake_deg: f64) -> FreeWakeSettings {
         core: CoreSettings {
             radius: core,
             near_radius: core,
+            panel_share: f64::INFINITY,
             viscosity: 0.0,
             ..CoreSettings::default()
         },

@@ -9,6 +9,8 @@ pub enum NearWakeChoice {
     BladePlane,
     /// With the free stream and the mean induced velocity.
     Convected,
+    /// As convected, distorted in proportion to the station by what has become of the tip vortex.
+    FollowsTip,
     /// Free, as the tip vortex is: slow.
     Free,
 }
@@ -68,7 +70,7 @@ impl Default for FreeWakeFile {
             turns: 4,
             panels: 20,
             near_wake_deg: 360.0,
-            near_wake: NearWakeChoice::Convected,
+            near_wake: NearWakeChoice::FollowsTip,
             rolled_up: RolledUpChoice::Tip,
             core: CoreChoice::Vatistas,
             core_r: 0.02,

@@ -3,8 +3,7 @@
 use super::checker::{Checker, Number};
 use super::{
     ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice, FreeWakeFile,
-    InflowChoice,
-    SectionModelChoice, StrokeChoice, TrimFile,
+    InflowChoice, SectionModelChoice, StrokeChoice, TrimFile,
 };
 use crate::problem::Fault;
 use std::f64::consts::TAU;

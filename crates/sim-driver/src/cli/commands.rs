@@ -26,8 +26,8 @@ use crate::section::{
     polar, section_response, transient_history,
 };
 use crate::stored_actuator::{StoredActuator, read_actuator};
-use crate::wake::wake_of_case;
 use crate::study::{SENSITIVITY_ROWS, histories_csv, sensitivities, study_report};
+use crate::wake::wake_of_case;
 use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
 use preisach_dyn::identify::Settings;
 use rotor_fem::GyroscopicTerms;
