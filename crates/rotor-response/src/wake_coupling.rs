@@ -6,7 +6,6 @@ use crate::{ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use rotor_fem::TimeElements;
 use rotor_wake::{BladeLines, CirculationMap, RotorLoading, WakeRotor};
-use std::f64::consts::PI;
 
 /// Lift per length and circulation of one section, rotor units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -129,10 +128,8 @@ impl RotorSolver {
             .into_iter()
             .map(|psi| solution.modal.iter().map(|m| m.value(psi)).collect::<Vec<f64>>())
             .collect::<Vec<_>>();
-        let step = 2.0 * PI / azimuths as f64;
-        BladeLines::deflected(wake_rotor, azimuths, |azimuth, n| {
-            // the azimuths are multiples of the step
-            let q = &motion[(azimuth / step).round() as usize % azimuths];
+        BladeLines::deflected(wake_rotor, azimuths, |i, n| {
+            let q = &motion[i];
             let mut out = [blade.precone * wake_rotor.nodes()[n], 0.0];
             for (j, shape) in at_nodes.iter().enumerate() {
                 out[usize::from(j >= flaps)] += q[j] * shape[n];

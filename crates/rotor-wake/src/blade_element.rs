@@ -143,7 +143,8 @@ impl BladeElementRotor<'_> {
     /// Lifting lines of the flapping blades on a number of azimuths; the wake leaves at the trailing edge.
     pub fn lines(&self, azimuths: usize) -> BladeLines {
         let nodes = self.rotor.nodes();
-        BladeLines::deflected(&self.rotor, azimuths, |azimuth, n| {
+        BladeLines::deflected(&self.rotor, azimuths, |i, n| {
+            let azimuth = TAU * i as f64 / azimuths as f64;
             [nodes[n] * RigidMotion::series(self.motion.flap_rad, azimuth)[0], 0.0]
         })
         .with_trailing_edge(0.75 * self.chord)

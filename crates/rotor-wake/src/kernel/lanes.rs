@@ -1,6 +1,8 @@
 //! The arithmetic of the kernel over a block of targets, written so that the compiler makes vector
 //! instructions of it.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use super::segment::Prepared;
 use crate::vector::Vec3;
 

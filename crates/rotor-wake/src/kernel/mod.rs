@@ -56,6 +56,7 @@ pub fn induced_velocities_serial(targets: &[Vec3], segments: &SegmentSet, out: &
     }
 }
 
+#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
 #[inline(always)]
 fn sum_over<L: Law>(block: &Lanes, segments: &SegmentSet) -> Lanes {
     let mut sum = Lanes::default();

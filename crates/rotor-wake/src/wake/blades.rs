@@ -19,11 +19,12 @@ impl BladeLines {
         Self::deflected(rotor, azimuths, |_, _| [0.0, 0.0])
     }
 
-    /// Blades displaced by `[up, toward the leading edge]` (unit `R`) at an azimuth (rad) and node.
+    /// Blades displaced by `[up, toward the leading edge]` (unit `R`) at an azimuth, counted in steps, and
+    /// node.
     pub fn deflected(
         rotor: &WakeRotor,
         azimuths: usize,
-        displacement: impl Fn(f64, usize) -> [f64; 2],
+        displacement: impl Fn(usize, usize) -> [f64; 2],
     ) -> Self {
         let nodes = rotor.nodes().len();
         let mut points = Vec::with_capacity(azimuths * nodes);
@@ -31,7 +32,7 @@ impl BladeLines {
             let azimuth = TAU * i as f64 / azimuths as f64;
             let (sin, cos) = azimuth.sin_cos();
             for (n, &r) in rotor.nodes().iter().enumerate() {
-                let [up, lead] = displacement(azimuth, n);
+                let [up, lead] = displacement(i, n);
                 points.push([r * cos - lead * sin, r * sin + lead * cos, up]);
             }
         }

@@ -151,10 +151,9 @@ impl FreeWakeSettings {
 
     /// Age steps of the near wake: at least one.
     pub fn near_steps(&self) -> usize {
-        let steps = (self.near_wake_rad / self.step_rad()).round();
-        let most = (self.turns * self.azimuths) as f64;
-        // between 1 and the count of free ages
-        steps.clamp(1.0, most.max(1.0)) as usize
+        let (step, most) = (self.step_rad(), self.far_steps());
+        let below = |k: &usize| (*k as f64 + 0.5) * step < self.near_wake_rad;
+        (1..most).take_while(below).count() + 1
     }
 
     /// Age steps of the rolled-up vortices.

@@ -167,7 +167,7 @@ impl FreeWake {
             self.carrying_inflow,
             lines,
         )?;
-        let ratio = self.settings.azimuths as f64 / azimuths as f64;
+        let ratio = (self.settings.azimuths, azimuths);
         let pairs = out.far.iter_mut().zip(&self.far).chain(out.near.iter_mut().zip(&self.near));
         for (new, old) in pairs {
             let release = out.lines.clone();
@@ -485,13 +485,12 @@ impl FreeWake {
     }
 }
 
-/// Point of a filament of another grid, linear between its nodes.
-fn sampled(old: &Filament, i: usize, k: usize, ratio: f64) -> Vec3 {
-    let azimuths = old.points.len() / (old.steps + 1);
-    let (at, age) = (i as f64 * ratio, (k as f64 * ratio).min(old.steps as f64));
-    // both are not negative and below the size of the old grid
-    let (p, z) = (at.floor() as usize, age.floor() as usize);
-    let (s, t) = (at - p as f64, age - z as f64);
+/// Point of a filament of another grid, linear between its nodes; grids by their azimuth steps.
+fn sampled(old: &Filament, i: usize, k: usize, (before, now): (usize, usize)) -> Vec3 {
+    let azimuths = before;
+    let (p, z) = (i * before / now, k * before / now);
+    let fraction = |n: usize| (n * before % now) as f64 / now as f64;
+    let (s, t) = (fraction(i), fraction(k));
     let value = |p: usize, z: usize| old.at(p % azimuths)[z.min(old.steps)];
     let mix = |a: Vec3, b: Vec3, t: f64| add(scale(a, 1.0 - t), scale(b, t));
     mix(mix(value(p, z), value(p, z + 1), t), mix(value(p + 1, z), value(p + 1, z + 1), t), s)

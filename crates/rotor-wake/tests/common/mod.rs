@@ -8,7 +8,7 @@ use rotor_wake::{
 use std::f64::consts::{PI, TAU};
 
 /// Polar of `fixtures/reference/wake`.
-pub struct ReferencePolar;
+pub(crate) struct ReferencePolar;
 
 impl SectionPolar for ReferencePolar {
     fn lift_drag(&self, alpha_rad: f64, _mach: f64) -> [f64; 2] {
@@ -21,18 +21,18 @@ impl SectionPolar for ReferencePolar {
 }
 
 /// Newton per unit of thrust coefficient of the rotor of `fixtures/reference/wake`.
-pub fn reference_thrust_newton() -> f64 {
+pub(crate) fn reference_thrust_newton() -> f64 {
     let (radius, omega) = (4.94_f64, 383.0 * TAU / 60.0);
     1.225 * PI * radius.powi(2) * (omega * radius).powi(2)
 }
 
-pub fn reference_flight() -> FlightState {
+pub(crate) fn reference_flight() -> FlightState {
     let tilt = 5.0_f64.to_radians();
     let tip_speed = 383.0 * TAU / 60.0 * 4.94;
     FlightState { advance_ratio: 59.44 * tilt.cos() / tip_speed, shaft_tilt_rad: tilt }
 }
 
-pub fn reference_rotor(panels: usize) -> BladeElementRotor<'static> {
+pub(crate) fn reference_rotor(panels: usize) -> BladeElementRotor<'static> {
     BladeElementRotor {
         rotor: WakeRotor::uniform(4, 0.2, panels).unwrap(),
         chord: 0.2717 / 4.94,
@@ -47,7 +47,7 @@ pub fn reference_rotor(panels: usize) -> BladeElementRotor<'static> {
 }
 
 /// The wake of the reference: cores of 0.3764 m, shed vorticity in the wake.
-pub fn reference_settings(near_wake_deg: f64) -> FreeWakeSettings {
+pub(crate) fn reference_settings(near_wake_deg: f64) -> FreeWakeSettings {
     let core = 0.3764 / 4.94;
     FreeWakeSettings {
         turns: 3,
@@ -67,7 +67,7 @@ pub fn reference_settings(near_wake_deg: f64) -> FreeWakeSettings {
 }
 
 /// Mean, and amplitude and phase (deg) of harmonic `n`, of uniform samples over a revolution.
-pub fn harmonic(samples: &[f64], n: usize) -> [f64; 3] {
+pub(crate) fn harmonic(samples: &[f64], n: usize) -> [f64; 3] {
     let count = samples.len() as f64;
     let (mut c, mut s) = (0.0, 0.0);
     for (i, value) in samples.iter().enumerate() {
