@@ -294,14 +294,13 @@ impl RotorSolver {
             }
             last = (size, ct);
             orbit = solution.orbit;
-            let next = match inflow_model.improved_step(&change) {
-                Some(step) => anderson.next(&used, &step),
-                None => {
-                    let relaxation = irons_tuck(previous.as_ref(), &change);
-                    let next = used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
-                    previous = Some((change, relaxation));
-                    next
-                }
+            let next = if let Some(step) = inflow_model.improved_step(&change) {
+                anderson.next(&used, &step)
+            } else {
+                let relaxation = irons_tuck(previous.as_ref(), &change);
+                let next = used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
+                previous = Some((change, relaxation));
+                next
             };
             inflow = inflow.with_parameters(&next)?;
         }

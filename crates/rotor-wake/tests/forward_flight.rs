@@ -1,5 +1,7 @@
 //! The wake in forward flight: prescribed helices, and the rotor of an independent free wake.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod common;
 
 use common::{

@@ -163,7 +163,7 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
         WakeOutcome::WakeFailed(error) => warnings.push(error.to_string()),
         _ => {}
     }
-    if let Some(passage) = wake.closest_passage.filter(|p| p.within_core()) {
+    if let Some(passage) = wake.closest_passage.filter(rotor_wake::ClosestPassage::within_core) {
         warnings.push(format!(
             "a tip vortex of age {:.0} deg passes the blade at azimuth {:.0} deg, {:.2} R, at {:.4} R, closer than its core ({:.4} R): the core radius decides the load there",
             passage.age_rad.to_degrees(),

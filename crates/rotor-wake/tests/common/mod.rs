@@ -1,5 +1,6 @@
 //! The rotors of the references.
-#![expect(dead_code, reason = "each test file uses its part")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(dead_code, reason = "each test file uses a part of it")]
 
 use rotor_wake::{
     BladeElementRotor, CoreSettings, FarTrailers, FlightState, FreeWakeSettings, RigidMotion,
