@@ -86,7 +86,7 @@ impl Default for CoreSettings {
             model: CoreModel::Vatistas,
             radius: 0.02,
             near_radius: 0.02,
-            panel_share: 0.3,
+            panel_share: f64::INFINITY,
             viscosity: 1.5e-8,
             squire: 2e-4,
             strain: StrainEffect::Ignored,

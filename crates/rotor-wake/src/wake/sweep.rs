@@ -153,8 +153,8 @@ impl FreeWake {
         Ok(())
     }
 
-    /// The same wake on another number of azimuth steps, interpolated linearly along the azimuth and the
-    /// age; the start of the next stage of a sequence of grids.
+    /// The same wake on another number of azimuth steps: its distortion against undistorted helices,
+    /// interpolated linearly along azimuth and age; the start of the next stage of a sequence of grids.
     ///
     /// # Errors
     /// [`WakeError::BadInput`] if the number does not suit the rotor.
@@ -168,12 +168,15 @@ impl FreeWake {
             lines,
         )?;
         let ratio = (self.settings.azimuths, azimuths);
+        let helix = out.clone();
         let pairs = out.far.iter_mut().zip(&self.far).chain(out.near.iter_mut().zip(&self.near));
         for (new, old) in pairs {
-            let release = out.lines.clone();
             let node = new.node;
+            let mut distortion = old.clone();
+            distortion
+                .fill(self.settings.azimuths, |i, k| sub(old.at(i)[k], self.carried(node, i, k)));
             new.fill(azimuths, |i, k| {
-                if k == 0 { release.edge_at(i)[node] } else { sampled(old, i, k, ratio) }
+                add(helix.carried(node, i, k), sampled(&distortion, i, k, ratio))
             });
         }
         out.place_near_wake();
