@@ -4,10 +4,9 @@ use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
 use rotor_wake::{
-    AttachedPolar, BladeElementRotor, BladeElementSolution, BladeLines, CoreModel, CoreSettings,
-    CouplingSettings, FarTrailers, FlightState, FreeWake, FreeWakeSettings, RigidMotion,
-    SectionPolar, SegmentSet, ShedVorticity, Vec3, WakeError, WakeRotor, arc_velocity,
-    induced_velocities, momentum_inflow,
+    BladeElementRotor, BladeElementSolution, BladeLines, CoreModel, CoreSettings, CouplingSettings,
+    FarTrailers, FlightState, FreeWake, FreeWakeSettings, RigidMotion, SectionPolar, SegmentSet,
+    ShedVorticity, Vec3, WakeError, WakeRotor, arc_velocity, induced_velocities, momentum_inflow,
 };
 
 use super::CheckError;
