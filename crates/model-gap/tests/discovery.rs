@@ -1,4 +1,5 @@
 //! Decisions of the engine on a system whose answers are known.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use model_gap::discovery::{
     Confidence, Discovery, Finding, Settings, Signal, Simulator, Trace, Verdict,

@@ -91,6 +91,8 @@ pub(crate) struct SectionLoads {
     pub(crate) fy: f64,
     pub(crate) moment: f64,
     pub(crate) hinge: f64,
+    /// Bound circulation, tip speed times R, positive with lift up in flow from the leading edge.
+    pub(crate) circulation: f64,
 }
 
 /// What the past of a section adds to its loads.
@@ -149,5 +151,6 @@ pub(crate) fn section_loads(
             * (flow.sense * circulating[0] * flow.u_p + scales.drag * flow.u_t.abs() * flow.u_t),
         moment: loads.moment,
         hinge: loads.hinge,
+        circulation: 0.5 * scales.chord * flow.sense * circulating[0],
     }
 }

@@ -1,5 +1,6 @@
 //! Aeroelastic coupling: periodic blade response, force-summation blade loads, hub loads.
 
+mod acceleration;
 mod air;
 mod blade;
 mod error;
@@ -21,6 +22,7 @@ mod stability;
 mod stall_history;
 mod structure;
 mod system;
+mod wake_coupling;
 
 pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
 pub use error::ResponseError;

@@ -1,5 +1,6 @@
 //! The periodic response of a rotor: blade motion, inflow and hub loads together.
 
+use crate::acceleration::Anderson;
 use crate::air::{AirPoint, AirScales, FlapAngle, SectionLoads};
 use crate::blade::ResponseBlade;
 use crate::flap_mass::with_flap_masses;
@@ -12,6 +13,7 @@ use crate::loads::{
 use crate::power::{AxialMotion, PowerBalance, power};
 use crate::structure::{BladeState, SpanLoads};
 use crate::system::{PointInput, ResponseSystem};
+use crate::wake_coupling::Lifting;
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
@@ -164,6 +166,8 @@ pub struct RotorSolution {
     pub modal: Vec<HarmonicSeries>,
     /// Induced inflow.
     pub inflow: InducedInflow,
+    /// Lift and circulation at every point and lifting station.
+    pub(crate) lifting: Vec<Vec<Lifting>>,
     /// Thrust coefficient `C_T`.
     pub thrust_coefficient: f64,
     /// Root loads of the blade, rotating frame.
@@ -219,6 +223,21 @@ impl RotorSolver {
         &self.rotor
     }
 
+    /// The same solver with other tolerances.
+    #[must_use]
+    pub fn with_tolerances(&self, tolerances: ResponseTolerances) -> Self {
+        Self { tolerances, ..self.clone() }
+    }
+
+    /// The tolerances.
+    pub fn tolerances(&self) -> ResponseTolerances {
+        self.tolerances
+    }
+
+    pub(crate) fn time(&self) -> &TimeElements {
+        &self.time
+    }
+
     /// Periodic response with the inflow settled on the thrust it carries.
     ///
     /// `start` is a solution nearby (or none: the undeformed blade and the inflow of zero thrust).
@@ -248,13 +267,15 @@ impl RotorSolver {
         }
         let dof = self.rotor.mass.nrows();
         let mut orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
-        let mut inflow = match start {
-            Some(s) => s.inflow.clone(),
-            None => inflow_model
-                .induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?,
-        };
+        let mut inflow =
+            inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
+        if let Some(s) = start {
+            // a start with another kind of inflow gives its motion only
+            inflow = inflow.with_parameters(&s.inflow.parameters()).unwrap_or(inflow);
+        }
         let (mut iterations, mut factorisations) = (0, 0);
         let mut previous: Option<(Vec<f64>, f64)> = None;
+        let mut anderson = Anderson::default();
         let mut last = (f64::INFINITY, 0.0);
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
             let rotor = Arc::clone(&self.rotor);
@@ -266,15 +287,17 @@ impl RotorSolver {
             let loads = RevolutionLoads::new(&rotor, &self.time, &system, &solution.samples)?;
             let hub = loads.hub(&rotor, &self.time);
             let ct = rotor.model.thrust_coefficient(hub.components[2].mean);
-            let wanted = inflow_model
-                .induced(&condition.flight, &RotorLoading::from_thrust_coefficient(ct))?;
+            let loading = loads.loading(&rotor, &self.time, ct, inflow_model.circulation_grid())?;
+            let wanted = inflow_model.induced(&condition.flight, &loading)?;
             let used = inflow.parameters();
             let change: Vec<f64> =
                 wanted.parameters().iter().zip(&used).map(|(a, b)| a - b).collect();
             let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+
             if size <= self.tolerances.inflow {
                 let root = loads.root(&self.time, rotor.discretisation.load_harmonics);
                 return Ok(RotorSolution {
+                    lifting: loads.lifting.clone(),
                     modal: self.modal_harmonics(&solution.samples),
                     orbit: solution.orbit,
                     thrust_coefficient: ct,
@@ -296,11 +319,15 @@ impl RotorSolver {
             }
             last = (size, ct);
             orbit = solution.orbit;
-            let relaxation = irons_tuck(previous.as_ref(), &change);
-            let next: Vec<f64> =
-                used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
+            let next = if let Some(step) = inflow_model.improved_step(&change) {
+                anderson.next(&used, &step)
+            } else {
+                let relaxation = irons_tuck(previous.as_ref(), &change);
+                let next = used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
+                previous = Some((change, relaxation));
+                next
+            };
             inflow = inflow.with_parameters(&next)?;
-            previous = Some((change, relaxation));
         }
         Err(ResponseError::InflowNotConverged {
             iterations: self.tolerances.inflow_iterations,
@@ -338,7 +365,7 @@ impl RotorSolver {
                     condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
                 PointInput {
                     air: AirPoint { sin, cos, advance_ratio: mu, pitch, reverse_flow },
-                    inflow: stations.iter().map(|&x| through + inflow.at(azimuth, x)).collect(),
+                    inflow: inflow.along(azimuth, stations).iter().map(|i| through + i).collect(),
                     flap,
                 }
             })
@@ -374,12 +401,14 @@ fn irons_tuck(previous: Option<&(Vec<f64>, f64)>, change: &[f64]) -> f64 {
 }
 
 /// Quadrature weights of the time points that sum to 1.
-fn unit_weights(time: &TimeElements) -> Vec<f64> {
+pub(crate) fn unit_weights(time: &TimeElements) -> Vec<f64> {
     time.weights().iter().map(|w| w / TAU).collect()
 }
 
 /// Root loads and hinge moments at every azimuth point.
 pub(crate) struct RevolutionLoads {
+    /// Aerodynamic lift and circulation at the lifting stations, by point.
+    pub(crate) lifting: Vec<Vec<Lifting>>,
     root: Vec<[f64; 6]>,
     /// Aerodynamic and inertial hinge moment of each flap.
     hinge: Vec<[Vec<f64>; 2]>,
@@ -417,8 +446,10 @@ impl RevolutionLoads {
         let mut loads = SpanLoads::default();
         let mut balance = PowerBalance::default();
         let weights = unit_weights(time);
+        let mut lifting = Vec::with_capacity(revolution.motions.len());
         for (p, motion) in revolution.motions.iter().enumerate() {
             let sections = system.section_loads(p, &revolution.flows[p], &revolution.pasts[p]);
+            lifting.push(sections.iter().map(Lifting::of).collect());
             system.span_loads(p, motion, &sections, &mut loads);
             let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
             let pitch = system.points[p].air.pitch;
@@ -448,7 +479,7 @@ impl RevolutionLoads {
                 }
             }
         }
-        Ok(Self { root, hinge, bending, power: balance })
+        Ok(Self { lifting, root, hinge, bending, power: balance })
     }
 
     fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {

@@ -69,4 +69,52 @@ pub enum WakeError {
         /// The last iterate of the induced inflow.
         last_inflow: f64,
     },
+    /// A node of the free wake is no number any more.
+    #[error(
+        "the free wake was lost: RMS displacement {displacement} R in one step; the geometry before it \
+         is kept; use a finer azimuth step or a larger core"
+    )]
+    WakeLost {
+        /// RMS displacement of the step, unit `R`.
+        displacement: f64,
+    },
+    /// The sweeps of the free wake run away from each other.
+    #[error(
+        "the free wake diverges: RMS displacement {displacement:.3e} R in sweep {iteration}, at best \
+         {least:.3e} R; the best geometry is kept; use more relaxation, a larger core or a march in time"
+    )]
+    WakeDiverged {
+        /// Sweep that was given up.
+        iteration: usize,
+        /// Its RMS displacement, unit `R`.
+        displacement: f64,
+        /// Smallest RMS displacement met, unit `R`.
+        least: f64,
+    },
+    /// The sweeps of the free wake do not settle.
+    #[error(
+        "the free wake has not settled after {iterations} sweeps: RMS displacement {displacement:.3e} R, \
+         asked {tolerance:.1e} R; the best geometry is kept; allow more sweeps or march in time"
+    )]
+    WakeNotSettled {
+        /// Sweeps done.
+        iterations: usize,
+        /// Smallest RMS displacement met, unit `R`.
+        displacement: f64,
+        /// Displacement asked for, unit `R`.
+        tolerance: f64,
+    },
+    /// The circulation of the blades and the inflow of the wake do not agree.
+    #[error(
+        "circulation and inflow do not agree after {iterations} iterations: largest change {change:.3e} of \
+         the tip speed, asked {tolerance:.1e}"
+    )]
+    CirculationNotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Largest change of the inflow in the last one, tip speed.
+        change: f64,
+        /// Change asked for, tip speed.
+        tolerance: f64,
+    },
 }

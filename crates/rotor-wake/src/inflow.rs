@@ -1,6 +1,7 @@
 //! What every inflow model shares: its inputs, its answer and the trait.
 
 use crate::WakeError;
+use crate::wake::{CirculationMap, InflowMap, WakeRotor};
 
 /// State of flight of the rotor's hub in still air, in the shaft frame.
 ///
@@ -48,12 +49,30 @@ impl FlightState {
 pub struct RotorLoading {
     /// Thrust coefficient `C_T = T / (rho pi R^2 (Omega R)^2)`, thrust up +.
     pub thrust_coefficient: f64,
+    /// First harmonics of the thrust over the disk, `[longitudinal, lateral]`: the integrals of
+    /// `r cos psi` and of `r sin psi` over the thrust coefficient, per tip radius.
+    pub moment_coefficients: [f64; 2],
+    /// Bound circulation over the disk, on the grid the model asks for
+    /// ([`InflowModel::circulation_grid`]).
+    pub circulation: Option<CirculationMap>,
 }
 
 impl RotorLoading {
-    /// The loading known by its thrust alone: all that the linear models need.
+    /// The loading known by its thrust alone: all that uniform and Drees's inflow need.
     pub fn from_thrust_coefficient(thrust_coefficient: f64) -> Self {
-        Self { thrust_coefficient }
+        Self { thrust_coefficient, moment_coefficients: [0.0; 2], circulation: None }
+    }
+
+    /// The same loading with the longitudinal and lateral first harmonics of the thrust.
+    #[must_use]
+    pub fn with_moment_coefficients(self, moment_coefficients: [f64; 2]) -> Self {
+        Self { moment_coefficients, ..self }
+    }
+
+    /// The same loading with its circulation over the disk.
+    #[must_use]
+    pub fn with_circulation(self, circulation: CirculationMap) -> Self {
+        Self { circulation: Some(circulation), ..self }
     }
 }
 
@@ -61,6 +80,7 @@ impl RotorLoading {
 ///
 /// ```text
 /// Linear:  lambda_i(psi, r) = mean + r (cosine cos psi + sine sin psi)
+/// Map:     a table over azimuth and radius
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -74,6 +94,8 @@ pub enum InducedInflow {
         /// Lateral gradient: more inflow on the advancing side (`psi = 90 deg`) if positive.
         sine: f64,
     },
+    /// A table over the disk.
+    Map(InflowMap),
 }
 
 impl InducedInflow {
@@ -84,26 +106,38 @@ impl InducedInflow {
 
     /// Induced inflow at an azimuth (rad) and a radial station `r` (unit `R`), positive down.
     pub fn at(&self, azimuth_rad: f64, r: f64) -> f64 {
-        match *self {
+        match self {
             Self::Linear { mean, cosine, sine } => {
                 let (sin, cos) = azimuth_rad.sin_cos();
                 mean + r * (cosine * cos + sine * sin)
             }
+            Self::Map(map) => map.at(azimuth_rad, r),
         }
     }
 
-    /// Mean over the disk, by area.
+    /// Induced inflow at several radial stations (unit `R`) of one azimuth (rad), positive down: the
+    /// values of [`at`](Self::at) at less cost.
+    pub fn along(&self, azimuth_rad: f64, stations: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Linear { .. } => stations.iter().map(|&r| self.at(azimuth_rad, r)).collect(),
+            Self::Map(map) => map.along(azimuth_rad, stations),
+        }
+    }
+
+    /// Mean over the disk, by area; of a table, over the lifting part of it.
     pub fn mean(&self) -> f64 {
-        match *self {
-            Self::Linear { mean, .. } => mean,
+        match self {
+            Self::Linear { mean, .. } => *mean,
+            Self::Map(map) => map.mean(),
         }
     }
 
     /// The numbers that make up the inflow, in an order that does not change: what a fixed-point
-    /// iteration relaxes. `Linear`: mean, cosine, sine.
+    /// iteration relaxes. `Linear`: mean, cosine, sine; `Map`: the table, azimuth by azimuth.
     pub fn parameters(&self) -> Vec<f64> {
-        match *self {
-            Self::Linear { mean, cosine, sine } => vec![mean, cosine, sine],
+        match self {
+            Self::Linear { mean, cosine, sine } => vec![*mean, *cosine, *sine],
+            Self::Map(map) => map.values().to_vec(),
         }
     }
 
@@ -126,6 +160,7 @@ impl InducedInflow {
             (Self::Linear { .. }, _) => {
                 Err(WakeError::ParameterCount { expected: 3, got: parameters.len() })
             }
+            (Self::Map(map), _) => Ok(Self::Map(map.with_values(parameters)?)),
         }
     }
 }
@@ -148,6 +183,19 @@ pub trait InflowModel: Send + Sync {
         flight: &FlightState,
         loading: &RotorLoading,
     ) -> Result<InducedInflow, WakeError>;
+
+    /// Panels and number of azimuths on which the model wants the circulation in
+    /// [`RotorLoading::circulation`]; none if it asks for none.
+    fn circulation_grid(&self) -> Option<(&WakeRotor, usize)> {
+        None
+    }
+
+    /// For a change of the parameters that a fixed-point iteration found, a step that takes into account
+    /// how the loading answers to it; none if the model has nothing to say. It alters the way to the
+    /// fixed point, not the fixed point.
+    fn improved_step(&self, _change: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
 }
 
 #[cfg(test)]

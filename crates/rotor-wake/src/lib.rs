@@ -26,15 +26,34 @@
 //! Velocities are divided by the tip speed `Omega R`, radial stations by `R`; azimuth is zero with
 //! the blade over the tail and grows with rotation, counter-clockwise seen from above.
 
+mod blade_element;
 mod error;
 mod inflow;
+mod kernel;
 mod linear;
 mod momentum;
+mod pitt_peters;
+mod vector;
+mod wake;
 
+pub use blade_element::{
+    AttachedPolar, BladeElementRotor, BladeElementSolution, CouplingSettings, RigidMotion,
+    SectionPolar, StillWake,
+};
 pub use error::WakeError;
 pub use inflow::{FlightState, InducedInflow, InflowModel, RotorLoading};
+pub use kernel::{
+    CoreModel, SegmentSet, arc_velocity, induced_velocities, induced_velocities_serial,
+};
 pub use linear::{LinearInflow, drees_factors};
 pub use momentum::{VORTEX_RING_TRANSPORT, momentum_inflow, momentum_residual, wake_skew_rad};
+pub use pitt_peters::PittPeters;
+pub use vector::Vec3;
+pub use wake::{
+    BladeLines, CirculationMap, ClosestPassage, CoreSettings, FarTrailers, FreeWake,
+    FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ShedVorticity,
+    StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeRotor, contraction_drift,
+};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -27,6 +27,7 @@ pub mod figures;
 pub mod files;
 pub mod identification;
 pub mod import;
+pub mod inflow;
 mod models;
 pub mod modes;
 pub mod output;
@@ -40,6 +41,7 @@ pub mod run;
 pub mod section;
 pub mod stored_actuator;
 pub mod study;
+pub mod wake;
 
 pub use error::{Family, SimError};
 

@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::case::{
-    Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, FlapMassChoice, InflowChoice,
+    Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, FlapMassChoice,
     ReverseFlowChoice, SectionModelChoice, TrimValues,
 };
 use crate::problem::Place;
@@ -13,7 +13,6 @@ use rotor_response::{
     NonlinearSections, ResponseTolerances, ReverseFlow, RotorModel, TrailingEdgeFlap,
     with_flap_masses,
 };
-use rotor_wake::LinearInflow;
 use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle};
 
 impl Case {
@@ -110,17 +109,6 @@ impl Case {
             SectionModelChoice::Incompressible => AttachedFlowModel::Incompressible,
             SectionModelChoice::HariharanLeishman => AttachedFlowModel::HariharanLeishman,
             SectionModelChoice::Calibrated => AttachedFlowModel::Calibrated,
-        }
-    }
-
-    /// Inflow model.
-    pub fn inflow_model(&self) -> LinearInflow {
-        match self.inflow {
-            InflowChoice::Uniform => LinearInflow::Uniform,
-            InflowChoice::Drees => LinearInflow::Drees,
-            InflowChoice::Prescribed { lambda_i } => {
-                LinearInflow::Prescribed { induced_inflow: lambda_i }
-            }
         }
     }
 

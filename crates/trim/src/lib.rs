@@ -4,11 +4,13 @@ mod balance;
 mod error;
 mod solve;
 mod vehicle;
+mod wake;
 
 pub use balance::{TrimTarget, imbalance};
 pub use error::TrimError;
 pub use solve::{TrimSettings, TrimSolution, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
+pub use wake::{WakeOutcome, WakeTrim, WakeTrimSettings, WakeUpdate, trim_in_free_wake};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -23,6 +23,7 @@ mod section_compressible;
 mod study;
 mod time_elements;
 mod trimmed;
+mod wake;
 
 pub use check::{Area, Check, Criterion, Repeatability, Row};
 pub use error::CheckError;
@@ -38,6 +39,7 @@ pub const AREAS: &[Area] = &[
     section::AREA,
     section_compressible::AREA,
     inflow::AREA,
+    wake::AREA,
     rotor::AREA,
     trimmed::AREA,
     actuator::AREA,

@@ -4,7 +4,7 @@
 //! variation of the paper's. Field names carry their unit; a name without unit is a pure number or a
 //! stiffness in the paper's nondimensional form, as its line says.
 
-use super::{ActuatorFile, ControlFile, TrimFile};
+use super::{ActuatorFile, ControlFile, FreeWakeFile, TrimFile};
 use serde::{Deserialize, Serialize};
 
 /// A whole case.
@@ -371,6 +371,10 @@ pub enum InflowChoice {
         /// `lambda_i`, tip speed, positive down.
         lambda_i: f64,
     },
+    /// Pitt and Peters: mean and gradients follow thrust and its first harmonics.
+    PittPeters,
+    /// The free wake of the rolled-up vortices, settled together with the trim.
+    FreeWake(FreeWakeFile),
 }
 
 /// Inflow.

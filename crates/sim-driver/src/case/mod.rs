@@ -8,6 +8,7 @@ mod checker;
 mod convert;
 mod file;
 mod file_control;
+mod file_wake;
 mod ranges;
 mod read;
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use file_control::{
     EffortChoice, HorizontalTailFile, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile,
     PropulsiveTrimFile, StoredActuatorFile, StrokeChoice, TrimFile, WindTunnelTrimFile,
 };
+pub use file_wake::{CoreChoice, FreeWakeFile, NearWakeChoice, RolledUpChoice};
 pub use read::{CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
 pub use validated::{
     ActuatorSource, ActuatorValues, BladeValues, Case, ControlValues, FlapValues, SectionValues,

@@ -2,7 +2,7 @@
 
 use super::checker::{Checker, Number};
 use super::{
-    ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice,
+    ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice, FreeWakeFile,
     HorizontalTailFile, InflowChoice, SectionModelChoice, StrokeChoice, TrimFile,
 };
 use crate::problem::Fault;
@@ -33,6 +33,28 @@ fn check_flight(check: &mut Checker<'_>, file: &CaseFile) {
     if let InflowChoice::Prescribed { lambda_i } = file.inflow.model {
         let remedy = "give the induced inflow over the tip speed, down positive (0.01 is usual)";
         check.within(number("inflow.model.lambda_i", lambda_i, "", remedy), -0.2, 0.2);
+    }
+    if let InflowChoice::FreeWake(wake) = &file.inflow.model {
+        check_wake(check, wake, file.rotor.blades);
+    }
+}
+
+fn check_wake(check: &mut Checker<'_>, wake: &FreeWakeFile, blades: usize) {
+    let at = |key: &str| format!("inflow.model.{key}");
+    check.count(&at("azimuths"), wake.azimuths, (8, 144), "24 are steps of 15 deg");
+    let whole = wake.azimuths - wake.azimuths % blades.max(1);
+    let remedy = "make it a multiple of the number of blades";
+    check.count(&at("azimuths"), wake.azimuths, (whole, whole), remedy);
+    check.count(&at("turns"), wake.turns, (1, 12), "4 are usual in forward flight");
+    check.count(&at("panels"), wake.panels, (6, 60), "20 are usual");
+    check.count(&at("updates"), wake.updates, (1, 200), "12 are usual");
+    for (key, value, low, high, unit, remedy) in [
+        ("near_wake_deg", wake.near_wake_deg, 1.0, 1440.0, "deg", "360 is one revolution"),
+        ("core_r", wake.core_r, 1e-3, 0.2, "R", "about a third of the chord is usual"),
+        ("near_core_r", wake.near_core_r, 1e-3, 0.2, "R", "about a third of the chord is usual"),
+        ("tolerance", wake.tolerance, 1e-8, 1e-2, "", "2e-4 of the tip speed is usual"),
+    ] {
+        check.within(number(&at(key), value, unit, remedy), low, high);
     }
 }
 

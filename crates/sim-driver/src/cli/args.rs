@@ -1,6 +1,6 @@
 //! The arguments of `hhc`.
 
-use crate::case::InflowChoice;
+use crate::case::{FreeWakeFile, InflowChoice};
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -37,6 +37,8 @@ pub enum Command {
     Import(ImportArgs),
     /// Rotating frequencies of a blade, and the data of a fan plot.
     Modes(ModesArgs),
+    /// Trim a case in its free wake: geometry, inflow over the disk, convergence.
+    Wake(WakeArgs),
     /// Responses of a section with a trailing-edge flap: harmonic, step, ramp, loop, polar.
     Section(SectionArgs),
     /// Check a case, a data folder or an actuator file; reports every problem with its line.
@@ -62,6 +64,10 @@ pub enum InflowOverride {
     Uniform,
     /// Momentum theory with Drees's gradients.
     Drees,
+    /// Pitt and Peters.
+    PittPeters,
+    /// The free wake.
+    Free,
 }
 
 impl From<InflowOverride> for InflowChoice {
@@ -69,6 +75,8 @@ impl From<InflowOverride> for InflowChoice {
         match given {
             InflowOverride::Uniform => Self::Uniform,
             InflowOverride::Drees => Self::Drees,
+            InflowOverride::PittPeters => Self::PittPeters,
+            InflowOverride::Free => Self::FreeWake(FreeWakeFile::default()),
         }
     }
 }
@@ -80,7 +88,7 @@ pub struct StudyArgs {
     #[arg(long, value_name = "DIR", default_value = "out/paper")]
     pub out: PathBuf,
     /// Inflow model instead of the case's.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, alias = "wake")]
     pub inflow: Option<InflowOverride>,
     /// Form of the output.
     #[command(flatten)]
@@ -97,7 +105,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Inflow model instead of the case's.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, alias = "wake")]
     pub inflow: Option<InflowOverride>,
     /// Also change one assumption at a time: sensitivity.csv.
     #[arg(long)]
@@ -241,6 +249,23 @@ pub struct ModesArgs {
     /// CSV file to write the fan plot to; without --speeds, from 0 to 1.2 in steps of 0.1.
     #[arg(long, value_name = "FILE.csv")]
     pub fan: Option<PathBuf>,
+    /// Form of the output.
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// `hhc wake`.
+#[derive(Debug, Clone, Args)]
+pub struct WakeArgs {
+    /// Case file; the paper's rotor if left out.
+    #[arg(value_name = "CASE.ron")]
+    pub case: Option<PathBuf>,
+    /// Advance ratio instead of the case's.
+    #[arg(long, value_name = "MU")]
+    pub mu: Option<f64>,
+    /// Folder for geometry (CSV, VTK legacy), inflow over the disk and convergence.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

@@ -2,7 +2,7 @@
 
 use super::args::{
     CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs,
-    ReportArgs, ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs,
+    ReportArgs, ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs, WakeArgs,
 };
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
@@ -32,6 +32,7 @@ use crate::study::{
     SENSITIVITY_ROWS, histories_csv, robustness_csv, robustness_maps, sensitivities,
     sensitivity_csv, study_report,
 };
+use crate::wake::wake_of_case;
 use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::Settings;
@@ -350,6 +351,31 @@ fn check_section_options(args: &SectionArgs) -> Result<(), SimError> {
         let place = Place::file("hhc section").field(name);
         Err(Problem::new(place, Fault::Refused { message }).into())
     })
+}
+
+pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
+    let mut loaded = match &args.case {
+        Some(path) => load_case(path)?,
+        None => shipped_case(PAPER_CASE)?,
+    };
+    if let Some(mu) = args.mu {
+        loaded.case.advance_ratio = mu;
+        loaded.file.advance_ratio = mu;
+    }
+    let progress = Progress::new(1);
+    progress.doing("free wake and trim");
+    let outcome = wake_of_case(&loaded);
+    progress.finish();
+    let (result, files) = outcome?;
+    for warning in &result.warnings {
+        eprintln!("warning: {warning}");
+    }
+    if let Some(folder) = &args.out {
+        for (name, text) in files {
+            write_atomic(&folder.join(name), text.as_bytes())?;
+        }
+    }
+    print(&result.render(args.format.format)?)
 }
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {

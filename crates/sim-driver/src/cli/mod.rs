@@ -5,7 +5,7 @@ mod commands;
 
 pub use args::{
     CheckArgs, Cli, Command, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride,
-    InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs,
+    InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
 };
 
 use crate::SimError;
@@ -52,6 +52,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Diagnose(args)) => commands::diagnose(args),
         Some(Command::Import(args)) => commands::import(args),
         Some(Command::Modes(args)) => commands::modes(args),
+        Some(Command::Wake(args)) => commands::wake(args),
         Some(Command::Section(args)) => commands::section(args),
         Some(Command::Check(args)) => commands::check(args),
         Some(Command::Init(args)) => commands::init(args),

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::SimError;
 use crate::case::{LoadedCase, TrimValues};
+use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use hhc_control::{
     ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, RunError, TMatrix,
     VoltageRange,
@@ -15,15 +16,14 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver};
-use rotor_wake::LinearInflow;
 use std::sync::{Arc, OnceLock};
-use trim::{TrimError, TrimSolution, TrimTarget, imbalance, trim};
+use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
 
 /// A rotor in trim, flaps at rest: where every control run starts.
 #[derive(Debug, Clone)]
 pub struct TrimmedRotor {
     solver: RotorSolver,
-    inflow: LinearInflow,
+    inflow: SettledInflow,
     trim: TrimSolution,
     /// Moment unit `m0 Omega^2 R^3`, N m.
     moment_newton_metre: f64,
@@ -31,6 +31,7 @@ pub struct TrimmedRotor {
     hinge_response: Arc<OnceLock<DMatrix<f64>>>,
     /// Made when first asked for, the same whoever asks.
     authority: Arc<OnceLock<FlapAuthority>>,
+    wake: Option<Arc<WakeTrim>>,
 }
 
 impl TrimmedRotor {
@@ -49,9 +50,7 @@ impl TrimmedRotor {
         let mu = case.advance_ratio;
         let tolerances = case.response_tolerances();
         let mut solver = RotorSolver::new(Arc::new(rotor), mu, tolerances).map_err(at_rotor)?;
-        let inflow = case.inflow_model();
-        let (target, settings) = (case.trim_target(), case.trim_settings());
-        let trim = trim(&mut solver, &inflow, mu, &target, &settings, start).map_err(|source| {
+        let settled = settled_trim(loaded, &mut solver, start).map_err(|source| {
             let field = match case.trim {
                 TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => "trim.ct_sigma",
                 TrimValues::Prescribed { .. } => "trim",
@@ -61,12 +60,18 @@ impl TrimmedRotor {
         let moment_newton_metre = case.scales.moment_newton_metre();
         let hinge_response = Arc::default();
         let authority = Arc::default();
-        Ok(Self { solver, inflow, trim, moment_newton_metre, hinge_response, authority })
+        let SettledTrim { trim, inflow, wake } = settled;
+        Ok(Self { solver, inflow, trim, moment_newton_metre, hinge_response, authority, wake })
     }
 
     /// The trim.
     pub fn trim(&self) -> &TrimSolution {
         &self.trim
+    }
+
+    /// The free wake the trim settled with, if the case asks for one.
+    pub fn wake(&self) -> Option<&WakeTrim> {
+        self.wake.as_deref()
     }
 
     /// The rotor.

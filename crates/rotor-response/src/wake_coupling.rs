@@ -1,0 +1,141 @@
+//! What a wake wants to know of a response: circulation over the disk and where the blades are.
+
+use crate::air::SectionLoads;
+use crate::rotor::{RevolutionLoads, unit_weights};
+use crate::{ResponseError, Rotor, RotorSolution, RotorSolver};
+use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
+use rotor_fem::TimeElements;
+use rotor_wake::{BladeLines, CirculationMap, RotorLoading, WakeRotor};
+
+/// Lift per length and circulation of one section, rotor units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Lifting {
+    lift: f64,
+    circulation: f64,
+}
+
+impl Lifting {
+    pub(crate) fn of(loads: &SectionLoads) -> Self {
+        Self { lift: loads.fz, circulation: loads.circulation }
+    }
+}
+
+/// Value at `r` of a table over ascending stations: linear between them, constant beyond.
+fn between(stations: &[f64], values: &[f64], r: f64) -> f64 {
+    let above = stations.partition_point(|x| *x <= r);
+    match (above, stations.len()) {
+        (_, 0) => 0.0,
+        (0, _) => values[0],
+        (above, count) if above == count => values[count - 1],
+        (above, _) => {
+            let (a, b) = (stations[above - 1], stations[above]);
+            values[above - 1] + (r - a) / (b - a) * (values[above] - values[above - 1])
+        }
+    }
+}
+
+/// Circulation at the panels of a wake: linear between stations, and in azimuth by the harmonics that the
+/// wake's azimuths resolve.
+fn circulation(
+    rotor: &Rotor,
+    time: &TimeElements,
+    lifting: &[Vec<Lifting>],
+    (wake_rotor, azimuths): (&WakeRotor, usize),
+) -> Result<CirculationMap, ResponseError> {
+    let x = rotor.blade().grid().x();
+    let stations = &x[x.len() - lifting.first().map_or(0, Vec::len)..];
+    let weights = unit_weights(time);
+    let rows: Vec<Vec<f64>> =
+        lifting.iter().map(|row| row.iter().map(|l| l.circulation).collect()).collect();
+    let series: Vec<HarmonicSeries> = wake_rotor
+        .stations()
+        .iter()
+        .map(|&r| {
+            let history: Vec<f64> = rows.iter().map(|row| between(stations, row, r)).collect();
+            HarmonicSeries::project(time.points(), &weights, &history, (azimuths - 1) / 2)
+        })
+        .collect();
+    let at = uniform_azimuths_rad(azimuths);
+    Ok(CirculationMap::from_fn(azimuths, series.len(), |i, s| series[s].value(at[i]))?)
+}
+
+impl RevolutionLoads {
+    /// The loading that an inflow model asks for.
+    pub(crate) fn loading(
+        &self,
+        rotor: &Rotor,
+        time: &TimeElements,
+        thrust_coefficient: f64,
+        grid: Option<(&WakeRotor, usize)>,
+    ) -> Result<RotorLoading, ResponseError> {
+        let (x, weight) = (rotor.blade().grid().x(), rotor.blade().grid().weight());
+        let first = x.len() - self.lifting.first().map_or(0, Vec::len);
+        let mut harmonics = [0.0; 2];
+        for ((azimuth, share), row) in
+            time.points().iter().zip(unit_weights(time)).zip(&self.lifting)
+        {
+            let moment: f64 = row
+                .iter()
+                .enumerate()
+                .map(|(s, l)| weight[first + s] * x[first + s] * l.lift)
+                .sum();
+            harmonics[0] += share * azimuth.cos() * moment;
+            harmonics[1] += share * azimuth.sin() * moment;
+        }
+        let blades = rotor.model().blades as f64;
+        let moments = harmonics.map(|h| rotor.model().thrust_coefficient(blades * h));
+        let loading = RotorLoading::from_thrust_coefficient(thrust_coefficient)
+            .with_moment_coefficients(moments);
+        match grid {
+            None => Ok(loading),
+            Some(grid) => {
+                Ok(loading.with_circulation(circulation(rotor, time, &self.lifting, grid)?))
+            }
+        }
+    }
+}
+
+impl RotorSolver {
+    /// Bound circulation of a solution on the panels and azimuths of a wake.
+    ///
+    /// # Errors
+    /// [`ResponseError::Wake`] if a value is not finite.
+    pub fn circulation(
+        &self,
+        solution: &RotorSolution,
+        wake_rotor: &WakeRotor,
+        azimuths: usize,
+    ) -> Result<CirculationMap, ResponseError> {
+        circulation(self.rotor(), self.time(), &solution.lifting, (wake_rotor, azimuths))
+    }
+
+    /// The lifting lines of the deflected blades: quarter chord of the coned blade, displaced by flap and
+    /// lag bending; the wake leaves at the trailing edge.
+    pub fn blade_lines(
+        &self,
+        solution: &RotorSolution,
+        wake_rotor: &WakeRotor,
+        azimuths: usize,
+    ) -> BladeLines {
+        let blade = self.rotor().blade();
+        let x = blade.grid().x();
+        let shapes = blade.flap.value.iter().chain(&blade.lag.value);
+        let at_nodes: Vec<Vec<f64>> = shapes
+            .map(|shape| wake_rotor.nodes().iter().map(|&r| between(x, shape, r)).collect())
+            .collect();
+        let flaps = blade.flap.value.len();
+        let motion = uniform_azimuths_rad(azimuths)
+            .into_iter()
+            .map(|psi| solution.modal.iter().map(|m| m.value(psi)).collect::<Vec<f64>>())
+            .collect::<Vec<_>>();
+        BladeLines::deflected(wake_rotor, azimuths, |i, n| {
+            let q = &motion[i];
+            let mut out = [blade.precone * wake_rotor.nodes()[n], 0.0];
+            for (j, shape) in at_nodes.iter().enumerate() {
+                out[usize::from(j >= flaps)] += q[j] * shape[n];
+            }
+            out
+        })
+        .with_trailing_edge(0.75 * self.rotor().model().chord)
+    }
+}

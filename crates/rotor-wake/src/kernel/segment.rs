@@ -1,0 +1,132 @@
+//! Segments as the kernel wants them, and the part of the corrected model that adjacent segments lack.
+
+use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
+use std::f64::consts::PI;
+
+/// What keeps the velocity finite at a vortex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum CoreModel {
+    /// Vatistas's profile with n = 2 on the distance to the line of each segment: what the free wakes of
+    /// the literature use. The speed of a curved filament is not Kelvin's: the cut-off acts at about
+    /// the root of core radius times radius of curvature.
+    #[default]
+    Vatistas,
+    /// Rosenhead and Moore's cut-off, with the curvature of a filament between neighbouring segments
+    /// ([`arc_velocity`]): a ring travels at Kelvin's speed.
+    RosenheadMoore,
+}
+
+impl CoreModel {
+    /// Cut-off length of the Rosenhead-Moore model over the radius of a core of uniform vorticity:
+    /// `e^(-3/4)`.
+    pub fn cut_off_ratio() -> f64 {
+        (-0.75_f64).exp()
+    }
+}
+
+/// One segment with what does not depend on the target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Prepared {
+    pub(super) start: Vec3,
+    pub(super) along: Vec3,
+    /// Circulation over 4 pi.
+    pub(super) strength: f64,
+    /// `r_c^4 |l|^4` (Vatistas) or `delta^2 |l|^2`.
+    pub(super) core: f64,
+    /// `delta^2`.
+    pub(super) cut_off: f64,
+}
+
+/// Straight vortex segments under one core model.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SegmentSet {
+    core: CoreModel,
+    prepared: Vec<Prepared>,
+}
+
+impl SegmentSet {
+    /// No segments.
+    pub fn new(core: CoreModel) -> Self {
+        Self { core, prepared: Vec::new() }
+    }
+
+    /// Adds a segment from `start` to `end` with a circulation in the right-hand sense about that
+    /// direction and the core radius there.
+    pub fn push(&mut self, start: Vec3, end: Vec3, circulation: f64, core_radius: f64) {
+        let along = sub(end, start);
+        let square = dot(along, along);
+        let (core, cut_off) = match self.core {
+            CoreModel::Vatistas => {
+                let product = core_radius * core_radius * square;
+                (product * product, 0.0)
+            }
+            CoreModel::RosenheadMoore => {
+                let delta = core_radius * CoreModel::cut_off_ratio();
+                (delta * delta * square, delta * delta)
+            }
+        };
+        let strength = circulation / (4.0 * PI);
+        self.prepared.push(Prepared { start, along, strength, core, cut_off });
+    }
+
+    /// The core model.
+    pub fn core(&self) -> CoreModel {
+        self.core
+    }
+
+    /// Number of segments.
+    pub fn len(&self) -> usize {
+        self.prepared.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.prepared.is_empty()
+    }
+
+    /// Takes all segments out and keeps the memory.
+    pub fn clear(&mut self) {
+        self.prepared.clear();
+    }
+
+    pub(super) fn prepared(&self) -> &[Prepared] {
+        &self.prepared
+    }
+}
+
+/// Euler's constant.
+const EULER: f64 = 0.577_215_664_901_532_9;
+
+/// Velocity at the middle one of three points on a filament by the arcs to its neighbours, which straight
+/// segments cannot give: on their own line they induce nothing.
+///
+/// ```text
+/// v = Gamma kappa / 8pi  b  sum over both arcs of
+///     [asinh(L/delta) - L / sqrt(L^2 + delta^2) - (C - 1/2) / (1 + delta^2/L^2)^2]
+/// ```
+/// with the curvature `kappa` and the binormal `b` of the circle through the points, arc lengths `L`
+/// taken as chords, and `delta = r_c e^(-3/4)`. Zero where the points are in line. The last term, with Euler's
+/// constant `C`, is what the chords beyond the neighbours induce too much: of chord `n` the excess over its
+/// arc is `(1/n + 1/(n+1))/2 - ln((n+1)/n)` whatever the length of the chords, and the sum over them is
+/// `C - 1/2`; where the chords resolve the core it fades (fitted factor).
+///
+/// Source: the Rosenhead-Moore integral of a circular arc to first order in its curvature.
+pub fn arc_velocity(points: [Vec3; 3], circulation: f64, core_radius: f64) -> Vec3 {
+    let [before, at, after] = points;
+    let (a, b) = (sub(at, before), sub(after, at));
+    let chord = norm(add(a, b));
+    let (la, lb) = (norm(a), norm(b));
+    let normal = cross(a, b);
+    let product = la * lb * chord;
+    if !(product > 0.0 && core_radius > 0.0) {
+        return [0.0; 3];
+    }
+    let delta = core_radius * CoreModel::cut_off_ratio();
+    let arc = |l: f64| {
+        let fade = (1.0 + (delta / l).powi(2)).powi(2);
+        (l / delta).asinh() - l / l.hypot(delta) - (EULER - 0.5) / fade
+    };
+    // curvature times binormal: 2 a x b / (|a| |b| |a + b|)
+    scale(normal, 2.0 / product * circulation / (8.0 * PI) * (arc(la) + arc(lb)))
+}

@@ -1,0 +1,71 @@
+//! Where the lifting line of a blade is at every azimuth.
+
+use super::WakeRotor;
+use crate::vector::Vec3;
+use std::f64::consts::TAU;
+
+/// Ends of the panels in hub axes (unit `R`) at uniform azimuths, `[azimuth][node]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BladeLines {
+    nodes: usize,
+    points: Vec<Vec3>,
+    /// Where the trailers leave the blade.
+    edges: Vec<Vec3>,
+}
+
+impl BladeLines {
+    /// Straight blades in the plane of the hub.
+    pub fn flat(rotor: &WakeRotor, azimuths: usize) -> Self {
+        Self::deflected(rotor, azimuths, |_, _| [0.0, 0.0])
+    }
+
+    /// Blades displaced by `[up, toward the leading edge]` (unit `R`) at an azimuth, counted in steps, and
+    /// node.
+    pub fn deflected(
+        rotor: &WakeRotor,
+        azimuths: usize,
+        displacement: impl Fn(usize, usize) -> [f64; 2],
+    ) -> Self {
+        let nodes = rotor.nodes().len();
+        let mut points = Vec::with_capacity(azimuths * nodes);
+        for i in 0..azimuths {
+            let azimuth = TAU * i as f64 / azimuths as f64;
+            let (sin, cos) = azimuth.sin_cos();
+            for (n, &r) in rotor.nodes().iter().enumerate() {
+                let [up, lead] = displacement(i, n);
+                points.push([r * cos - lead * sin, r * sin + lead * cos, up]);
+            }
+        }
+        let edges = points.clone();
+        Self { nodes, points, edges }
+    }
+
+    /// The same blades with the wake leaving at a distance (unit `R`) behind the lifting line, against the
+    /// sense of rotation: `0.75 c` is the trailing edge. Between line and edge the circulation is that of the
+    /// blade. Without it the wake leaves at the line.
+    #[must_use]
+    pub fn with_trailing_edge(self, distance: f64) -> Self {
+        let azimuths = self.azimuths();
+        let mut edges = self.points.clone();
+        for (k, edge) in edges.iter_mut().enumerate() {
+            let (sin, cos) = (TAU * (k / self.nodes) as f64 / azimuths as f64).sin_cos();
+            *edge = [edge[0] + distance * sin, edge[1] - distance * cos, edge[2]];
+        }
+        Self { edges, ..self }
+    }
+
+    /// Number of azimuths.
+    pub fn azimuths(&self) -> usize {
+        self.points.len() / self.nodes
+    }
+
+    /// Where the trailers leave the blade at one azimuth.
+    pub fn edge_at(&self, azimuth: usize) -> &[Vec3] {
+        &self.edges[azimuth * self.nodes..(azimuth + 1) * self.nodes]
+    }
+
+    /// All nodes of the lifting line at one azimuth.
+    pub fn at(&self, azimuth: usize) -> &[Vec3] {
+        &self.points[azimuth * self.nodes..(azimuth + 1) * self.nodes]
+    }
+}

@@ -1,0 +1,257 @@
+//! The wake held still: inflow as a linear function of the circulation.
+
+use super::{CirculationMap, FreeWake, InflowMap, WakeRotor};
+use crate::kernel::{BLOCK, for_each_velocity};
+use crate::vector::{Vec3, add, scale};
+use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Induced velocity at the lifting line of all panels and azimuths per unit of circulation at all panels
+/// and azimuths, for one geometry of the wake.
+///
+/// ```text
+/// lambda_i = A Gamma                      down through the disk
+/// u_t      = B Gamma                      from leading to trailing edge, in the plane of the disk
+/// ```
+/// Vectors are ordered azimuth by azimuth; velocities in tip speed, circulation in `Omega R^2`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineInduction {
+    rotor: WakeRotor,
+    azimuths: usize,
+    down: DMatrix<f64>,
+    along: DMatrix<f64>,
+}
+
+/// Middles of panels at one instant: at most a block of the kernel.
+struct TargetBlock {
+    phase: usize,
+    /// Row of the matrices.
+    rows: Vec<usize>,
+    points: Vec<Vec3>,
+    /// Sine and cosine of the azimuth of each.
+    sines: [f64; BLOCK],
+    cosines: [f64; BLOCK],
+}
+
+impl FreeWake {
+    fn line_targets(&self) -> Vec<TargetBlock> {
+        let panels = self.rotor.panels();
+        let mut blocks = Vec::new();
+        for phase in 0..self.phases() {
+            let targets: Vec<(usize, usize)> =
+                self.blade_azimuths(phase).flat_map(|i| (0..panels).map(move |s| (i, s))).collect();
+            for chunk in targets.chunks(BLOCK) {
+                let mut block = TargetBlock {
+                    phase,
+                    rows: chunk.iter().map(|(i, s)| i * panels + s).collect(),
+                    points: Vec::with_capacity(BLOCK),
+                    sines: [0.0; BLOCK],
+                    cosines: [0.0; BLOCK],
+                };
+                for (lane, &(i, s)) in chunk.iter().enumerate() {
+                    let line = self.lines.at(i);
+                    block.points.push(scale(add(line[s], line[s + 1]), 0.5));
+                    let azimuth = i as f64 * self.settings.step_rad();
+                    (block.sines[lane], block.cosines[lane]) = azimuth.sin_cos();
+                }
+                blocks.push(block);
+            }
+        }
+        blocks
+    }
+
+    /// The linear map from circulation to induced velocity of this geometry. The circulation says where
+    /// the outboard peak lies and how thick the cores are.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn line_induction(&self, circulation: &CirculationMap) -> Result<LineInduction, WakeError> {
+        self.check(circulation)?;
+        let (azimuths, panels) = (self.settings.azimuths, self.rotor.panels());
+        let size = azimuths * panels;
+        let sources: Vec<_> = self.with_context(circulation, |context| {
+            (0..self.phases())
+                .map(|phase| {
+                    let sources = self.load_sources(phase, context);
+                    let segments = sources.unit_segments(context);
+                    (sources, segments)
+                })
+                .collect()
+        });
+        let blocks = self.line_targets();
+        let columns: Vec<[Vec<[f64; BLOCK]>; 2]> = blocks
+            .par_iter()
+            .map(|block| {
+                let (sources, segments) = &sources[block.phase];
+                let mut down = vec![[0.0; BLOCK]; size];
+                let mut along = down.clone();
+                for_each_velocity(&block.points, segments, |index, [x, y, z]| {
+                    for (at, factor) in sources.terms()[index].iter() {
+                        let (down, along) = (&mut down[at], &mut along[at]);
+                        for k in 0..BLOCK {
+                            down[k] -= factor * z[k];
+                            along[k] += factor * (x[k] * block.sines[k] - y[k] * block.cosines[k]);
+                        }
+                    }
+                });
+                [down, along]
+            })
+            .collect();
+        let mut out = LineInduction {
+            rotor: self.rotor.clone(),
+            azimuths,
+            down: DMatrix::zeros(size, size),
+            along: DMatrix::zeros(size, size),
+        };
+        for (block, [down, along]) in blocks.iter().zip(&columns) {
+            for (column, (down, along)) in down.iter().zip(along).enumerate() {
+                for (lane, &row) in block.rows.iter().enumerate() {
+                    out.down[(row, column)] = down[lane];
+                    out.along[(row, column)] = along[lane];
+                }
+            }
+        }
+        Ok(out)
+    }
+}
+
+impl LineInduction {
+    /// The rotor whose panels are meant.
+    pub fn rotor(&self) -> &WakeRotor {
+        &self.rotor
+    }
+
+    /// Number of azimuths.
+    pub fn azimuths(&self) -> usize {
+        self.azimuths
+    }
+
+    /// Inflow of a circulation.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn inflow(&self, circulation: &CirculationMap) -> Result<InflowMap, WakeError> {
+        self.applied(&self.down, circulation)
+    }
+
+    /// Induced velocity in the plane of the disk from the leading to the trailing edge.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn in_plane(&self, circulation: &CirculationMap) -> Result<InflowMap, WakeError> {
+        self.applied(&self.along, circulation)
+    }
+
+    fn applied(
+        &self,
+        matrix: &DMatrix<f64>,
+        circulation: &CirculationMap,
+    ) -> Result<InflowMap, WakeError> {
+        if circulation.values().len() != matrix.nrows() {
+            return Err(WakeError::BadInput {
+                quantity: "values of the circulation",
+                value: circulation.values().len() as f64,
+                expected: "azimuths times panels of the wake",
+            });
+        }
+        let gamma = DVector::from_column_slice(circulation.values());
+        InflowMap::new(&self.rotor, (matrix * gamma).as_slice().to_vec())
+    }
+
+    /// `I + A diag(slope)`, factorised: the matrix of a Newton step where the circulation falls by
+    /// `slope` per unit of inflow.
+    pub(crate) fn newton_matrix(&self, slope: &[f64]) -> LU<f64, Dyn, Dyn> {
+        let mut matrix = self.down.clone();
+        for (mut column, s) in matrix.column_iter_mut().zip(slope) {
+            column *= *s;
+        }
+        for k in 0..matrix.nrows() {
+            matrix[(k, k)] += 1.0;
+        }
+        matrix.lu()
+    }
+}
+
+/// Speed across the chord that turns the sense of the circulation, tip speed: about the inflow.
+const SMALL_SPEED: f64 = 0.04;
+
+/// An inflow model: the wake as it is, carrying whatever circulation the blades have.
+///
+/// The geometry stays; the inflow follows the circulation at once. This is what a response or a trim sees
+/// between two updates of the geometry.
+#[derive(Debug, Clone)]
+pub struct FrozenWake {
+    induction: LineInduction,
+    reference: InflowMap,
+    newton: LU<f64, Dyn, Dyn>,
+}
+
+impl FrozenWake {
+    /// The wake's map with the inflow to start from, for blades of a chord (unit `R`) at an advance ratio,
+    /// whose sections have about the lift-curve slope of thin-aerofoil theory; the slope sets the speed of
+    /// convergence, not the result.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn new(
+        induction: LineInduction,
+        circulation: &CirculationMap,
+        chord: f64,
+        advance_ratio: f64,
+    ) -> Result<Self, WakeError> {
+        let reference = induction.inflow(circulation)?;
+        let azimuths = induction.azimuths;
+        let stations = reference.stations();
+        let slope: Vec<f64> = (0..azimuths)
+            .flat_map(|i| {
+                let sin = (TAU * i as f64 / azimuths as f64).sin();
+                // in reverse flow the circulation has the other sense
+                stations.iter().map(move |r| {
+                    let along = r + advance_ratio * sin;
+                    PI * chord * along / along.hypot(SMALL_SPEED)
+                })
+            })
+            .collect();
+        let newton = induction.newton_matrix(&slope);
+        Ok(Self { induction, reference, newton })
+    }
+
+    /// The inflow the wake was built with.
+    pub fn reference(&self) -> &InflowMap {
+        &self.reference
+    }
+
+    /// The linear map.
+    pub fn induction(&self) -> &LineInduction {
+        &self.induction
+    }
+}
+
+impl InflowModel for FrozenWake {
+    fn name(&self) -> &'static str {
+        "free wake"
+    }
+
+    fn induced(
+        &self,
+        flight: &FlightState,
+        loading: &RotorLoading,
+    ) -> Result<InducedInflow, WakeError> {
+        flight.validated()?;
+        Ok(InducedInflow::Map(match &loading.circulation {
+            Some(circulation) => self.induction.inflow(circulation)?,
+            None => self.reference.clone(),
+        }))
+    }
+
+    fn circulation_grid(&self) -> Option<(&WakeRotor, usize)> {
+        Some((&self.induction.rotor, self.induction.azimuths))
+    }
+
+    fn improved_step(&self, change: &[f64]) -> Option<Vec<f64>> {
+        let step = self.newton.solve(&DVector::from_column_slice(change))?;
+        Some(step.as_slice().to_vec())
+    }
+}

@@ -1,0 +1,268 @@
+//! The wake marched in time, blade by blade.
+
+use super::filament::Filament;
+use super::settings::NearWakeMotion;
+use super::sources::{BladeView, RollUp, SourceContext, Sources};
+use super::{CirculationMap, FreeWake};
+use crate::WakeError;
+use crate::kernel::induced_velocities;
+use crate::vector::{Vec3, add, is_finite, norm, scale, sub};
+
+/// Free filaments of one blade: `[filament][age]`.
+type Shape = Vec<Vec<Vec3>>;
+
+/// The present and the three earlier shapes of one blade's wake, and the velocities of the present one.
+#[derive(Debug, Clone)]
+struct BladeState {
+    azimuth: usize,
+    levels: [Shape; 4],
+    velocity: Shape,
+}
+
+/// A time-accurate free wake, every blade on its own: predictor-corrector with a second-order backward
+/// difference in azimuth (PC2B).
+///
+/// ```text
+/// 7 r(p,z) = r(p,z-1) - 3 r(p-1,z) + 5 r(p-1,z-1) + 3 [r(p-2,z) + r(p-2,z-1)]
+///            - r(p-3,z) - r(p-3,z-1) + 8 d [V_inf + mean of v at the four corners]
+/// ```
+/// which is `(3 r_p - r_(p-1) - 3 r_(p-2) + r_(p-3)) / 4d` on both faces of the cell with the central
+/// difference in age. In hover and at low speed, where relaxation may settle on what no real wake does.
+///
+/// Source: Bhagwat and Leishman, J. Am. Helicopter Soc. 46 (2001) 59.
+#[derive(Debug, Clone)]
+pub struct WakeMarch {
+    wake: FreeWake,
+    blades: Vec<BladeState>,
+    free: Vec<usize>,
+    near_is_free: bool,
+}
+
+impl WakeMarch {
+    /// Starts from a wake; its three earlier shapes are those of the periodic grid.
+    pub fn new(wake: FreeWake) -> Self {
+        let near_is_free = wake.settings.near_wake_motion == NearWakeMotion::Free;
+        let filaments: Vec<&Filament> =
+            wake.near.iter().filter(|_| near_is_free).chain(&wake.far).collect();
+        let free = filaments.iter().map(|f| f.node).collect();
+        let azimuths = wake.settings.azimuths;
+        let shape = |i: usize| -> Shape { filaments.iter().map(|f| f.at(i).to_vec()).collect() };
+        let blades = wake
+            .blade_azimuths(0)
+            .map(|azimuth| BladeState {
+                azimuth,
+                levels: [0, 1, 2, 3].map(|back| shape((azimuth + azimuths - back) % azimuths)),
+                velocity: Vec::new(),
+            })
+            .collect();
+        Self { wake, blades, free, near_is_free }
+    }
+
+    /// The wake of blade 0 over the last revolution.
+    pub fn wake(&self) -> &FreeWake {
+        &self.wake
+    }
+
+    /// Goes on for some revolutions; returns for each the RMS change of the wake of blade 0 against the
+    /// revolution before, unit `R`.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid; [`WakeError::WakeLost`] if a node left
+    /// the numbers.
+    pub fn revolutions(
+        &mut self,
+        count: usize,
+        circulation: &CirculationMap,
+    ) -> Result<Vec<f64>, WakeError> {
+        self.wake.check(circulation)?;
+        let mut changes = Vec::with_capacity(count);
+        for _ in 0..count {
+            let before = self.wake.clone();
+            for _ in 0..self.wake.settings.azimuths {
+                self.step(circulation)?;
+            }
+            let change = difference(&before, &self.wake);
+            if !change.is_finite() {
+                self.wake = before;
+                return Err(WakeError::WakeLost { displacement: change });
+            }
+            changes.push(change);
+        }
+        Ok(changes)
+    }
+
+    /// The same with every blade's wake given its neighbour's in turn: how far the wakes of the blades
+    /// are from being alike, the largest distance of corresponding nodes over one revolution, unit `R`.
+    ///
+    /// # Errors
+    /// As [`revolutions`](Self::revolutions).
+    pub fn asymmetry(&mut self, circulation: &CirculationMap) -> Result<f64, WakeError> {
+        let azimuths = self.wake.settings.azimuths;
+        let blades = self.blades.len();
+        let mut seen: Vec<Vec<Shape>> = vec![vec![Shape::new(); azimuths]; blades];
+        for _ in 0..azimuths {
+            self.step(circulation)?;
+            for (state, seen) in self.blades.iter().zip(&mut seen) {
+                seen[state.azimuth].clone_from(&state.levels[0]);
+            }
+        }
+        let mut worst = 0.0_f64;
+        for other in &seen[1..] {
+            let pairs = other.iter().flatten().flatten().zip(seen[0].iter().flatten().flatten());
+            worst = pairs.fold(worst, |w, (a, b)| w.max(norm(sub(*a, *b))));
+        }
+        Ok(worst)
+    }
+
+    fn step(&mut self, circulation: &CirculationMap) -> Result<(), WakeError> {
+        if self.blades.iter().any(|b| b.velocity.is_empty()) {
+            self.refresh_velocities(circulation);
+        }
+        let old: Vec<Shape> = self.blades.iter().map(|b| b.velocity.clone()).collect();
+        let before: Vec<[Shape; 4]> = self.blades.iter().map(|b| b.levels.clone()).collect();
+        let azimuths = self.wake.settings.azimuths;
+        for (b, state) in self.blades.iter_mut().enumerate() {
+            state.azimuth = (state.azimuth + 1) % azimuths;
+            let [a, b1, c, _] = before[b].clone();
+            state.levels = [a.clone(), a, b1, c];
+        }
+        // predictor: the velocities at the new azimuth are those of the last one
+        self.carry(&old, &old);
+        self.refresh_velocities(circulation);
+        let new: Vec<Shape> = self.blades.iter().map(|b| b.velocity.clone()).collect();
+        self.carry(&old, &new);
+        self.refresh_velocities(circulation);
+        self.record()
+    }
+
+    /// Fills the newest level of every blade.
+    fn carry(&mut self, old: &[Shape], new: &[Shape]) {
+        let wake = &self.wake;
+        let (step, stream) = (wake.settings.step_rad(), wake.free_stream());
+        for ((state, old), new) in self.blades.iter_mut().zip(old).zip(new) {
+            let [now, a, b, c] = &mut state.levels;
+            for (j, points) in now.iter_mut().enumerate() {
+                points[0] = wake.lines.edge_at(state.azimuth)[self.free[j]];
+                for z in 1..points.len() {
+                    let mut sum = [0.0; 3];
+                    for v in [new[j][z], new[j][z - 1], old[j][z], old[j][z - 1]] {
+                        sum = add(sum, v);
+                    }
+                    let wind = scale(add(stream, scale(sum, 0.25)), 8.0 * step);
+                    let terms = [
+                        points[z - 1],
+                        scale(a[j][z], -3.0),
+                        scale(a[j][z - 1], 5.0),
+                        scale(add(b[j][z], b[j][z - 1]), 3.0),
+                        scale(add(c[j][z], c[j][z - 1]), -1.0),
+                    ];
+                    points[z] = scale(terms.into_iter().fold(wind, add), 1.0 / 7.0);
+                }
+            }
+        }
+    }
+
+    /// Induced velocities of the newest level of every blade.
+    fn refresh_velocities(&mut self, circulation: &CirculationMap) {
+        let wake = &self.wake;
+        let roll_up = RollUp::new(&wake.settings.far, &wake.rotor, circulation);
+        let context = SourceContext {
+            rotor: &wake.rotor,
+            settings: &wake.settings,
+            roll_up: &roll_up,
+            circulation,
+            turn: self.turn(),
+            young: &wake.young_lengths(),
+        };
+        let views: Vec<BladeView<'_>> = self.blades.iter().map(|b| self.view(b)).collect();
+        let set = Sources::of_geometry(&views, &context).segments(&context, circulation.values());
+        let targets: Vec<Vec3> =
+            self.blades.iter().flat_map(|b| b.levels[0].iter().flatten().copied()).collect();
+        let mut values = induced_velocities(&targets, &set).into_iter();
+        for state in &mut self.blades {
+            state.velocity = state.levels[0]
+                .iter()
+                .map(|points| values.by_ref().take(points.len()).collect())
+                .collect();
+        }
+    }
+
+    fn view<'a>(&'a self, state: &'a BladeState) -> BladeView<'a> {
+        let wake = &self.wake;
+        let shape = &state.levels[0];
+        let near_count = if self.near_is_free { wake.near.len() } else { 0 };
+        let near = if self.near_is_free {
+            shape[..near_count].iter().map(Vec::as_slice).collect()
+        } else {
+            wake.near.iter().map(|f| f.at(state.azimuth)).collect()
+        };
+        BladeView {
+            azimuth: state.azimuth,
+            line: wake.lines.at(state.azimuth),
+            edge: wake.lines.edge_at(state.azimuth),
+            near,
+            far: shape[near_count..].iter().map(Vec::as_slice).collect(),
+        }
+    }
+
+    /// Mean displacement over the last free turn, over all blades.
+    fn turn(&self) -> Vec3 {
+        let azimuths = self.wake.settings.azimuths;
+        let skip = if self.near_is_free { self.wake.near.len() } else { 0 };
+        let (mut sum, mut count) = ([0.0; 3], 0);
+        for points in self.blades.iter().flat_map(|b| &b.levels[0][skip..]) {
+            for k in (points.len() - azimuths).max(azimuths)..points.len() {
+                sum = add(sum, sub(points[k], points[k - azimuths]));
+                count += 1;
+            }
+        }
+        scale(sum, 1.0 / f64::from(count.max(1)))
+    }
+
+    /// Stores the newest shape of blade 0 in the periodic grid.
+    fn record(&mut self) -> Result<(), WakeError> {
+        let Some(state) = self.blades.first() else { return Ok(()) };
+        let wake = &mut self.wake;
+        let near_is_free = self.near_is_free;
+        let filaments = wake.near.iter_mut().filter(|_| near_is_free).chain(&mut wake.far);
+        for (f, points) in filaments.zip(&state.levels[0]) {
+            if !points.iter().all(|p| is_finite(*p)) {
+                return Err(WakeError::WakeLost { displacement: f64::NAN });
+            }
+            let at = f.index(state.azimuth, 0);
+            f.points[at..at + points.len()].copy_from_slice(points);
+        }
+        Ok(())
+    }
+}
+
+/// RMS distance of the rolled-up vortices of two wakes of the same grid, unit `R`.
+fn difference(a: &FreeWake, b: &FreeWake) -> f64 {
+    let (mut sum, mut count) = (0.0, 0);
+    for (f, g) in a.far.iter().zip(&b.far) {
+        for (p, q) in f.points.iter().zip(&g.points) {
+            let d = norm(sub(*p, *q));
+            sum += d * d;
+            count += 1;
+        }
+    }
+    (sum / f64::from(count.max(1))).sqrt()
+}
+
+/// Mean radius and mean height of the tip vortex over the azimuth at each age step: what a hovering
+/// wake is compared with. `[radius, height]`, unit `R`.
+pub fn contraction_drift(wake: &FreeWake) -> Vec<[f64; 2]> {
+    let azimuths = wake.settings.azimuths;
+    let Some(tip) = wake.far.last() else { return Vec::new() };
+    (0..=tip.steps)
+        .map(|k| {
+            let (mut radius, mut height) = (0.0, 0.0);
+            for i in 0..azimuths {
+                let [x, y, z] = tip.at(i)[k];
+                radius += x.hypot(y);
+                height += z;
+            }
+            [radius / azimuths as f64, height / azimuths as f64]
+        })
+        .collect()
+}

@@ -1,0 +1,25 @@
+//! The free vortex wake on the grid of azimuth and wake age.
+
+mod blades;
+mod circulation;
+mod filament;
+mod inflow_map;
+mod influence;
+mod march;
+mod rotor;
+mod settings;
+mod solve;
+mod sources;
+mod sweep;
+
+pub use blades::BladeLines;
+pub use circulation::CirculationMap;
+pub use inflow_map::InflowMap;
+pub use influence::{FrozenWake, LineInduction};
+pub use march::{WakeMarch, contraction_drift};
+pub use rotor::WakeRotor;
+pub use settings::{
+    CoreSettings, FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity, StrainEffect,
+};
+pub use solve::{ClosestPassage, WakeConvergence};
+pub use sweep::{FreeWake, WakeFilament};

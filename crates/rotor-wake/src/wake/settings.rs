@@ -1,0 +1,221 @@
+//! The choices of a free wake.
+
+use crate::{CoreModel, WakeError};
+
+/// How the trailers of the near wake travel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum NearWakeMotion {
+    /// Fixed to the plane of the blade, on the arcs its stations have swept: for near wakes of up to
+    /// about 30 deg.
+    BladePlane,
+    /// With the free stream and the mean induced velocity of momentum theory.
+    Convected,
+    /// As `Convected`, distorted by what the free motion has done to the tip vortex of the same age, in
+    /// proportion to the station: the whole of it at the tip, nothing at the centre.
+    #[default]
+    FollowsTip,
+    /// Free, as the tip vortex is.
+    Free,
+}
+
+/// Who accounts for the vorticity shed when the circulation of a section changes in time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ShedVorticity {
+    /// The section model (indicial functions): the wake holds trailers alone.
+    #[default]
+    InSections,
+    /// The near wake, as spanwise segments between the trailers: for quasi-steady sections.
+    InWake,
+}
+
+/// Which filaments go on after the near wake.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub enum FarTrailers {
+    /// One rolled-up tip vortex with the strength of the outboard peak of circulation.
+    #[default]
+    Tip,
+    /// Tip vortex and a root vortex of the opposite strength.
+    TipAndRoot,
+    /// Tip vortex, root vortex and further vortices released at these stations (unit `R`, ends of
+    /// trailing-edge flaps for example), each with what is trailed nearest to it inboard of the peak.
+    Stations(Vec<f64>),
+}
+
+/// Whether stretching makes a vortex thinner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum StrainEffect {
+    /// The core depends on age alone.
+    #[default]
+    Ignored,
+    /// The volume of the core is conserved: `r_c` goes with the root of the inverse length.
+    VolumeConserved,
+}
+
+/// The viscous core of the filaments.
+///
+/// ```text
+/// r_c^2 = r_c0^2 + 4 alpha nu (1 + a_1 |Gamma| / nu) zeta / Omega,      alpha = 1.25643
+/// ```
+/// Source: Squire, Aeronaut. Q. 16 (1965); Bhagwat and Leishman, AHS Forum 58 (2002), for `a_1`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoreSettings {
+    /// Velocity profile.
+    pub model: CoreModel,
+    /// Core radius `r_c0` of the rolled-up vortices at release, unit `R`.
+    pub radius: f64,
+    /// Core radius of near-wake trailers, shed and bound vortices, unit `R`.
+    pub near_radius: f64,
+    /// Core radius of the youngest trailers over the width of the panel beside them, at most: a core wider
+    /// than the panels would take the downwash away that a tip makes at itself.
+    pub panel_share: f64,
+    /// Kinematic viscosity `nu / (Omega R^2)`; 0 for no growth.
+    pub viscosity: f64,
+    /// Squire's coefficient `a_1` of turbulent growth.
+    pub squire: f64,
+    /// Effect of stretching.
+    pub strain: StrainEffect,
+}
+
+impl Default for CoreSettings {
+    fn default() -> Self {
+        Self {
+            model: CoreModel::Vatistas,
+            radius: 0.02,
+            near_radius: 0.02,
+            panel_share: f64::INFINITY,
+            viscosity: 1.5e-8,
+            squire: 2e-4,
+            strain: StrainEffect::Ignored,
+        }
+    }
+}
+
+/// Choices of a free wake: grid, near wake, cores, iteration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeWakeSettings {
+    /// Azimuth steps per revolution, a multiple of the number of blades; age steps are the same.
+    pub azimuths: usize,
+    /// Free turns of the rolled-up vortices.
+    pub turns: usize,
+    /// Turns that repeat the last free one behind it.
+    pub far_turns: usize,
+    /// Age up to which the full span of trailers is kept, rad.
+    pub near_wake_rad: f64,
+    /// How the near wake travels.
+    pub near_wake_motion: NearWakeMotion,
+    /// Who accounts for shed vorticity.
+    pub shed: ShedVorticity,
+    /// Filaments behind the near wake.
+    pub far: FarTrailers,
+    /// Vortex cores.
+    pub core: CoreSettings,
+    /// Induced velocities are computed at every `velocity_stride`-th age and interpolated between
+    /// along the path of the air; 1 computes all.
+    pub velocity_stride: usize,
+    /// Weight of the corrector's velocities against the predictor's, 0 to 1.
+    pub relaxation: f64,
+    /// RMS displacement per iteration at which the geometry counts as converged, unit `R`.
+    pub tolerance: f64,
+    /// Iterations allowed.
+    pub max_iterations: usize,
+}
+
+impl Default for FreeWakeSettings {
+    fn default() -> Self {
+        Self {
+            azimuths: 24,
+            turns: 4,
+            far_turns: 2,
+            near_wake_rad: std::f64::consts::TAU,
+            near_wake_motion: NearWakeMotion::default(),
+            shed: ShedVorticity::default(),
+            far: FarTrailers::default(),
+            core: CoreSettings::default(),
+            velocity_stride: 1,
+            relaxation: 0.5,
+            tolerance: 1e-4,
+            max_iterations: 60,
+        }
+    }
+}
+
+impl FreeWakeSettings {
+    /// Azimuth step, rad.
+    pub fn step_rad(&self) -> f64 {
+        std::f64::consts::TAU / self.azimuths as f64
+    }
+
+    /// Age steps of the near wake: at least one.
+    pub fn near_steps(&self) -> usize {
+        let (step, most) = (self.step_rad(), self.far_steps());
+        let below = |k: &usize| (*k as f64 + 0.5) * step < self.near_wake_rad;
+        (1..most).take_while(below).count() + 1
+    }
+
+    /// Age steps of the rolled-up vortices.
+    pub fn far_steps(&self) -> usize {
+        self.turns * self.azimuths
+    }
+
+    /// The same choices on another grid.
+    #[must_use]
+    pub fn with_azimuths(&self, azimuths: usize) -> Self {
+        Self { azimuths, ..self.clone() }
+    }
+
+    /// Checks the ranges for a number of blades.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] with the first value out of range.
+    pub fn validate(&self, blades: usize) -> Result<(), WakeError> {
+        let bad =
+            |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
+        if self.azimuths < 8 || !self.azimuths.is_multiple_of(blades.max(1)) || self.azimuths > 720
+        {
+            let expected = "8 to 720 and a multiple of the number of blades";
+            return bad("azimuths", self.azimuths as f64, expected);
+        }
+        if !(1..=20).contains(&self.turns) {
+            return bad("turns", self.turns as f64, "1 to 20");
+        }
+        if self.far_turns > 20 {
+            return bad("far_turns", self.far_turns as f64, "0 to 20");
+        }
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        if !positive(self.near_wake_rad) {
+            return bad("near_wake_rad", self.near_wake_rad, "more than 0");
+        }
+        let core = &self.core;
+        for (quantity, value) in
+            [("core radius", core.radius), ("core near_radius", core.near_radius)]
+        {
+            if !positive(value) || value > 0.5 {
+                return bad(quantity, value, "more than 0 and at most 0.5 R");
+            }
+        }
+        if core.panel_share.is_nan() || core.panel_share <= 0.0 {
+            return bad("core panel_share", core.panel_share, "more than 0");
+        }
+        for (quantity, value) in [("core viscosity", core.viscosity), ("core squire", core.squire)]
+        {
+            if !(value.is_finite() && value >= 0.0) {
+                return bad(quantity, value, "0 or more");
+            }
+        }
+        if self.velocity_stride == 0 || self.velocity_stride > self.azimuths / 4 {
+            let expected = "1 to a quarter of the azimuth steps";
+            return bad("velocity_stride", self.velocity_stride as f64, expected);
+        }
+        if !(self.relaxation > 0.0 && self.relaxation <= 1.0) {
+            return bad("relaxation", self.relaxation, "more than 0 and at most 1");
+        }
+        if !positive(self.tolerance) {
+            return bad("wake tolerance", self.tolerance, "more than 0");
+        }
+        Ok(())
+    }
+}

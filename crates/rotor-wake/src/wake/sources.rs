@@ -1,0 +1,309 @@
+//! The vortex segments of all blades at one instant, and how each depends on the circulation.
+
+use super::settings::{FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity, StrainEffect};
+use super::{CirculationMap, WakeRotor};
+use crate::SegmentSet;
+use crate::vector::{Vec3, add, norm, scale, sub};
+
+/// Vatistas's (Lamb's) constant of core growth.
+const ALPHA: f64 = 1.256_43;
+/// Thinnest and thickest that strain makes a core, over its unstrained radius.
+const STRAIN_LIMITS: [f64; 2] = [0.5, 2.0];
+
+/// Strength of a segment: a sum of at most four circulations `(index in the map, factor)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Terms([(u32, f64); 4]);
+
+impl Terms {
+    fn pair(a: (usize, f64), b: (usize, f64)) -> Self {
+        Self([narrow(a), narrow(b), (0, 0.0), (0, 0.0)])
+    }
+
+    /// The terms that count.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.0.iter().filter(|(_, f)| *f != 0.0).map(|&(index, f)| (index as usize, f))
+    }
+
+    fn strength(&self, circulation: &[f64]) -> f64 {
+        self.iter().map(|(index, factor)| factor * circulation[index]).sum()
+    }
+}
+
+/// Indices are below `720 azimuths x panels`.
+fn narrow((index, factor): (usize, f64)) -> (u32, f64) {
+    (u32::try_from(index).unwrap_or(u32::MAX), factor)
+}
+
+/// Which circulation each rolled-up filament takes up at every azimuth.
+///
+/// A filament that collects what the nodes from `a` up to before `b` trail has the strength
+/// `Gamma_(a-1) - Gamma_(b-1)`: the sums telescope.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RollUp {
+    /// Spanwise nodes that release the filaments.
+    pub(crate) nodes: Vec<usize>,
+    /// `[filament][azimuth]`: panels counted from 1 (0: none), the first with sign +, the second -.
+    panels: Vec<Vec<[usize; 2]>>,
+}
+
+impl RollUp {
+    /// Nodes that release filaments.
+    pub(crate) fn release_nodes(far: &FarTrailers, rotor: &WakeRotor) -> Vec<usize> {
+        let tip = rotor.panels();
+        let mut nodes = match far {
+            FarTrailers::Tip => vec![tip],
+            FarTrailers::TipAndRoot => vec![0, tip],
+            FarTrailers::Stations(stations) => {
+                let inner = stations.iter().map(|r| rotor.inner_node_near(*r));
+                inner.chain([0, tip]).collect()
+            }
+        };
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    pub(crate) fn new(far: &FarTrailers, rotor: &WakeRotor, circulation: &CirculationMap) -> Self {
+        let nodes = Self::release_nodes(far, rotor);
+        let tip = rotor.panels();
+        let peaks = circulation.outboard_peaks();
+        let panels = (0..nodes.len())
+            .map(|f| {
+                let share = |peak: usize| -> [usize; 2] {
+                    if nodes[f] == tip {
+                        return [peak + 1, 0];
+                    }
+                    // borders halfway to the neighbours; nothing outboard of the peak
+                    let border = |other: usize| (nodes[f] + other).div_ceil(2);
+                    let from = if f == 0 { 0 } else { border(nodes[f - 1]) };
+                    let to = if f + 2 < nodes.len() { border(nodes[f + 1]) } else { peak + 1 };
+                    [from.min(peak + 1), to.min(peak + 1)]
+                };
+                peaks.iter().map(|&peak| share(peak)).collect()
+            })
+            .collect();
+        Self { nodes, panels }
+    }
+
+    /// Terms of filament `f` between two release azimuths.
+    fn terms(&self, f: usize, releases: [usize; 2], panels: usize) -> Terms {
+        let mut terms = [(0, 0.0); 4];
+        for (pair, &release) in terms.chunks_exact_mut(2).zip(&releases) {
+            for ((term, panel), sign) in
+                pair.iter_mut().zip(self.panels[f][release]).zip([0.5, -0.5])
+            {
+                if panel > 0 {
+                    *term = narrow((release * panels + panel - 1, sign));
+                }
+            }
+        }
+        Terms(terms)
+    }
+}
+
+/// One blade with its wake at one instant.
+#[derive(Debug, Clone)]
+pub(crate) struct BladeView<'a> {
+    /// Azimuth of the blade, steps.
+    pub(crate) azimuth: usize,
+    /// Nodes of the lifting line.
+    pub(crate) line: &'a [Vec3],
+    /// Where the trailers leave the blade.
+    pub(crate) edge: &'a [Vec3],
+    /// Near-wake trailer of every spanwise node, from its release.
+    pub(crate) near: Vec<&'a [Vec3]>,
+    /// Rolled-up filaments, from their release.
+    pub(crate) far: Vec<&'a [Vec3]>,
+}
+
+/// What the sources are built with.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SourceContext<'a> {
+    pub(crate) rotor: &'a WakeRotor,
+    pub(crate) settings: &'a FreeWakeSettings,
+    pub(crate) roll_up: &'a RollUp,
+    pub(crate) circulation: &'a CirculationMap,
+    /// Displacement of the wake in one turn at its free end.
+    pub(crate) turn: Vec3,
+    /// Length of the youngest segment of each rolled-up filament, `[filament][azimuth]`.
+    pub(crate) young: &'a [Vec<f64>],
+}
+
+/// Segments of one instant.
+#[derive(Debug, Clone)]
+pub(crate) struct Sources {
+    ends: Vec<[Vec3; 2]>,
+    radii: Vec<f64>,
+    terms: Vec<Terms>,
+}
+
+impl Sources {
+    /// What the blades feel: lifting lines, the full span of the near wake, the rolled-up vortices behind it.
+    pub(crate) fn of_loads(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
+        let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
+        for view in views {
+            out.bound(view, context);
+            out.near(view, context);
+            out.far(view, context, context.settings.near_steps());
+        }
+        out
+    }
+
+    /// What the rolled-up vortices feel: lifting lines and themselves, rolled up from the blade on. The sheet
+    /// of the near wake, that rolls up around them, would lift them off their own track.
+    pub(crate) fn of_geometry(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
+        if context.settings.near_wake_motion == NearWakeMotion::Free {
+            return Self::of_loads(views, context);
+        }
+        let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
+        for view in views {
+            out.bound(view, context);
+            out.far(view, context, 0);
+        }
+        out
+    }
+
+    pub(crate) fn terms(&self) -> &[Terms] {
+        &self.terms
+    }
+
+    /// For the kernel, with the strengths of a circulation.
+    pub(crate) fn segments(&self, context: &SourceContext<'_>, circulation: &[f64]) -> SegmentSet {
+        self.set(context, |terms| terms.strength(circulation))
+    }
+
+    /// For the kernel, all of unit strength.
+    pub(crate) fn unit_segments(&self, context: &SourceContext<'_>) -> SegmentSet {
+        self.set(context, |_| 1.0)
+    }
+
+    fn set(&self, context: &SourceContext<'_>, strength: impl Fn(&Terms) -> f64) -> SegmentSet {
+        let mut set = SegmentSet::new(context.settings.core.model);
+        for ((ends, &radius), terms) in self.ends.iter().zip(&self.radii).zip(&self.terms) {
+            set.push(ends[0], ends[1], strength(terms), radius);
+        }
+        set
+    }
+
+    fn push(&mut self, ends: [Vec3; 2], radius: f64, terms: Terms) {
+        if terms.iter().next().is_some() {
+            self.ends.push(ends);
+            self.radii.push(radius);
+            self.terms.push(terms);
+        }
+    }
+
+    fn bound(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
+        let panels = context.rotor.panels();
+        for (s, ends) in view.line.windows(2).enumerate() {
+            let terms = Terms::pair((view.azimuth * panels + s, 1.0), (0, 0.0));
+            self.push([ends[0], ends[1]], context.settings.core.near_radius, terms);
+        }
+        // along the chord to where the trailers leave
+        for (n, (from, to)) in view.line.iter().zip(view.edge).enumerate() {
+            if norm(sub(*to, *from)) > 0.0 {
+                let panel = |n: usize| view.azimuth * panels + n;
+                let inboard = if n > 0 { (panel(n - 1), 1.0) } else { (0, 0.0) };
+                let outboard = if n < panels { (panel(n), -1.0) } else { (0, 0.0) };
+                self.push([*from, *to], young_radius(context, n), Terms::pair(inboard, outboard));
+            }
+        }
+    }
+
+    /// Trailers and shed vortices of the near wake.
+    fn near(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
+        let (settings, panels) = (context.settings, context.rotor.panels());
+        let azimuths = settings.azimuths;
+        let release =
+            |age: usize| (view.azimuth + azimuths * (1 + age / azimuths) - age) % azimuths;
+        let radius = settings.core.near_radius;
+        let steps = settings.near_steps();
+        for (n, points) in view.near.iter().enumerate() {
+            for k in 0..steps {
+                let mut terms = [(0, 0.0); 4];
+                for (pair, age) in terms.chunks_exact_mut(2).zip([k, k + 1]) {
+                    let at = release(age) * panels;
+                    if n > 0 {
+                        pair[0] = narrow((at + n - 1, 0.5));
+                    }
+                    if n < panels {
+                        pair[1] = narrow((at + n, -0.5));
+                    }
+                }
+                let radius = if k == 0 { young_radius(context, n) } else { radius };
+                self.push([points[k], points[k + 1]], radius, Terms(terms));
+            }
+        }
+        if settings.shed == ShedVorticity::InSections {
+            return;
+        }
+        for k in 0..steps {
+            // at the edge itself the circulation changes from the blade's own
+            let younger = release(k.saturating_sub(1)) * panels;
+            let older = release(k + 1) * panels;
+            for s in 0..panels {
+                let ends = [view.near[s][k], view.near[s + 1][k]];
+                self.push(ends, radius, Terms::pair((older + s, 0.5), (younger + s, -0.5)));
+            }
+        }
+    }
+
+    /// Rolled-up filaments behind the near wake and their repeated last turn.
+    fn far(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>, first: usize) {
+        let settings = context.settings;
+        let azimuths = settings.azimuths;
+        let release = |age: usize| (view.azimuth + azimuths - age % azimuths) % azimuths;
+        for (f, points) in view.far.iter().enumerate() {
+            let steps = points.len() - 1;
+            let terms = |age: usize| {
+                let releases = [release(age), release(age + 1)];
+                context.roll_up.terms(f, releases, context.rotor.panels())
+            };
+            let radius = |age: usize, ends: &[Vec3; 2]| {
+                let strength = terms(age).strength(context.circulation.values());
+                let young = context.young[f][release(age)];
+                core_radius(settings, age, strength, norm(sub(ends[1], ends[0])) / young)
+            };
+            for k in first..steps {
+                let ends = [points[k], points[k + 1]];
+                self.push(ends, radius(k, &ends), terms(k));
+            }
+            let mut last = points[steps];
+            for turn in 1..=settings.far_turns {
+                for j in 1..=azimuths {
+                    let next = add(points[steps - azimuths + j], scale(context.turn, turn as f64));
+                    let age = steps + (turn - 1) * azimuths + j - 1;
+                    let ends = [last, next];
+                    self.push(ends, radius(age, &ends), terms(age));
+                    last = next;
+                }
+            }
+        }
+    }
+}
+
+/// Core radius of the youngest trailers of a node.
+fn young_radius(context: &SourceContext<'_>, node: usize) -> f64 {
+    let nodes = context.rotor.nodes();
+    let inboard = node.checked_sub(1).map(|n| nodes[node] - nodes[n]);
+    let outboard = nodes.get(node + 1).map(|next| next - nodes[node]);
+    let width = inboard.into_iter().chain(outboard).fold(f64::INFINITY, f64::min);
+    let core = &context.settings.core;
+    core.near_radius.min(core.panel_share * width)
+}
+
+/// Core radius of a rolled-up segment by age (steps), strength and length over its length when young.
+fn core_radius(settings: &FreeWakeSettings, age: usize, strength: f64, stretch: f64) -> f64 {
+    let core = &settings.core;
+    let eddy = core.viscosity + core.squire * strength.abs();
+    let growth =
+        if core.viscosity > 0.0 { eddy * (age as f64 + 0.5) * settings.step_rad() } else { 0.0 };
+    let radius = (core.radius * core.radius + 4.0 * ALPHA * growth).sqrt();
+    match core.strain {
+        StrainEffect::Ignored => radius,
+        StrainEffect::VolumeConserved => {
+            let factor = if stretch > 0.0 { stretch.sqrt().recip() } else { 1.0 };
+            radius * factor.clamp(STRAIN_LIMITS[0], STRAIN_LIMITS[1])
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The free wake in the case file.
+
+use serde::{Deserialize, Serialize};
+
+/// How the trailers of the near wake travel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum NearWakeChoice {
+    /// Fixed to the plane of the blade: for short near wakes.
+    BladePlane,
+    /// With the free stream and the mean induced velocity.
+    Convected,
+    /// As convected, distorted in proportion to the station by what has become of the tip vortex.
+    FollowsTip,
+    /// Free, as the tip vortex is: slow.
+    Free,
+}
+
+/// Which rolled-up vortices go on behind the near wake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RolledUpChoice {
+    /// The tip vortex.
+    Tip,
+    /// Tip and root vortex.
+    TipAndRoot,
+    /// Tip and root vortex and one at each end of the trailing-edge flaps.
+    TipRootAndFlaps,
+}
+
+/// Velocity profile of the cores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CoreChoice {
+    /// Vatistas's profile, n = 2.
+    Vatistas,
+    /// Rosenhead and Moore's cut-off with the curvature between segments: rings travel at Kelvin's speed.
+    Corrected,
+}
+
+/// The free wake of Bagai and Leishman. Every field has a default.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FreeWakeFile {
+    /// Azimuth steps per revolution, a multiple of the number of blades.
+    pub azimuths: usize,
+    /// Free turns of the rolled-up vortices.
+    pub turns: usize,
+    /// Spanwise panels of a blade.
+    pub panels: usize,
+    /// Age up to which all trailers are kept, deg.
+    pub near_wake_deg: f64,
+    /// How these trailers travel.
+    pub near_wake: NearWakeChoice,
+    /// Vortices behind the near wake.
+    pub rolled_up: RolledUpChoice,
+    /// Velocity profile of the cores.
+    pub core: CoreChoice,
+    /// Core radius of the rolled-up vortices at release, radius R.
+    pub core_r: f64,
+    /// Core radius of the near wake, radius R.
+    pub near_core_r: f64,
+    /// Largest change of the inflow between two updates of the wake, tip speed.
+    pub tolerance: f64,
+    /// Updates of the wake allowed.
+    pub updates: usize,
+}
+
+impl Default for FreeWakeFile {
+    fn default() -> Self {
+        Self {
+            azimuths: 24,
+            turns: 4,
+            panels: 20,
+            near_wake_deg: 360.0,
+            near_wake: NearWakeChoice::FollowsTip,
+            rolled_up: RolledUpChoice::Tip,
+            core: CoreChoice::Vatistas,
+            core_r: 0.02,
+            near_core_r: 0.02,
+            tolerance: 2e-4,
+            updates: 12,
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! The free wake.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::LazyLock;
+
+use rotor_wake::{
+    BladeElementRotor, BladeElementSolution, BladeLines, CoreModel, CoreSettings, CouplingSettings,
+    FarTrailers, FlightState, FreeWake, FreeWakeSettings, RigidMotion, SectionPolar, SegmentSet,
+    ShedVorticity, Vec3, WakeError, WakeRotor, arc_velocity, induced_velocities, momentum_inflow,
+};
+
+use super::CheckError;
+use super::check::{Area, Check, Criterion, Repeatability};
+use super::reference::{Table, worst};
+
+pub(super) const AREA: Area = Area {
+    heading: "Free wake (`rotor-wake`)",
+    checks: &[
+        Check {
+            id: "V-WAKE-05",
+            quantity: "velocity at the centre of a polygon ring, 36 to 288 segments: order of convergence, \
+                       farthest from 2",
+            unit: "-",
+            source: "Gamma / 2 R, exact for the circle",
+            criterion: Criterion::AtMost(0.02),
+            repeatability: Repeatability::Everywhere,
+            measure: ring_order,
+        },
+        Check {
+            id: "V-WAKE-06",
+            quantity: "speed of a ring of 2000 segments, core 0.05 and 0.02 R, Vatistas: largest relative error",
+            unit: "-",
+            source: "converged value of the kernel, 0.215298 and 0.252013 Gamma/R, computed apart",
+            criterion: Criterion::AtMost(0.005),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let one = |core: f64, speed: f64| {
+                    Ok((ring_speed(2000, CoreModel::Vatistas, core) / speed - 1.0).abs())
+                };
+                worst("cores", 2, [one(0.05, 0.215_298), one(0.02, 0.252_013)])
+            },
+        },
+        Check {
+            id: "V-WAKE-07",
+            quantity: "speed of a ring of 72 to 288 segments, corrected core: largest relative error",
+            unit: "-",
+            source: "Kelvin, (ln(8 R / r_c) - 1/4) Gamma / 4 pi R",
+            criterion: Criterion::AtMost(0.005),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let cases = [72, 144, 288].into_iter().flat_map(|n| [(n, 0.05), (n, 0.02)]);
+                worst(
+                    "rings",
+                    6,
+                    cases.map(|(n, core)| {
+                        let kelvin = (f64::ln(8.0 / core) - 0.25) / (4.0 * PI);
+                        Ok((ring_speed(n, CoreModel::RosenheadMoore, core) / kelvin - 1.0).abs())
+                    }),
+                )
+            },
+        },
+        Check {
+            id: "V-WAKE-08",
+            quantity: "undistorted tip helices, mu 0.1 to 0.35: mean inflow over Glauert's, largest relative \
+                       distance from 1.06, 1.10, 1.21, 1.24",
+            unit: "-",
+            source: "the same helices computed apart; 40 stations (with 80, mu 0.35 is 2.4 % off)",
+            criterion: Criterion::AtMost(0.02),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let cases = [(0.1, 1.06), (0.2, 1.10), (0.3, 1.21), (0.35, 1.24)];
+                worst(
+                    "advance ratios",
+                    4,
+                    cases.map(|(mu, expected)| Ok((helices(mu)? / expected - 1.0).abs())),
+                )
+            },
+        },
+        Check {
+            id: "V-WAKE-09",
+            quantity: "rotor of an independent free wake, full-revolution near wake: mean thrust, relative error",
+            unit: "-",
+            source: "OLAF, fixtures/reference/wake/full72_lastrev.csv",
+            criterion: Criterion::AtMost(0.02),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok((thrust(360)?[0] / olaf()?[0] - 1.0).abs()),
+        },
+        Check {
+            id: "V-WAKE-10",
+            quantity: "the same: amplitude of the 4/rev thrust, relative error",
+            unit: "-",
+            source: "the same",
+            criterion: Criterion::AtMost(0.10),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok((thrust(360)?[1] / olaf()?[1] - 1.0).abs()),
+        },
+        Check {
+            id: "V-WAKE-11",
+            quantity: "the same: phase of the 4/rev thrust, error",
+            unit: "deg",
+            source: "the same",
+            criterion: Criterion::AtMost(10.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok((thrust(360)?[2] - olaf()?[2]).abs()),
+        },
+        Check {
+            id: "V-WAKE-12",
+            quantity: "the same: rotating sums that vanish with four alike blades, largest over the thrust",
+            unit: "-",
+            source: "symmetry",
+            criterion: Criterion::AtMost(1e-6),
+            repeatability: Repeatability::MachineDependent,
+            measure: asymmetry,
+        },
+        Check {
+            id: "V-WAKE-13",
+            quantity: "4/rev thrust with a near wake of 90 deg over that of a full revolution (OLAF: 0.69)",
+            unit: "-",
+            source: "must differ visibly: the near wake is physics to converge",
+            criterion: Criterion::Between(0.60, 0.95),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(thrust(90)?[1] / thrust(360)?[1]),
+        },
+    ],
+};
+
+/// A ring of unit circulation and radius and its nodes.
+fn ring(segments: usize, core: CoreModel, radius: f64) -> (SegmentSet, Vec<Vec3>) {
+    let node = |k: usize| {
+        let angle = TAU * (k % segments) as f64 / segments as f64;
+        [angle.cos(), angle.sin(), 0.0]
+    };
+    let mut set = SegmentSet::new(core);
+    for k in 0..segments {
+        set.push(node(k), node(k + 1), 1.0, radius);
+    }
+    (set, (0..segments).map(node).collect())
+}
+
+fn ring_order() -> Result<f64, CheckError> {
+    let error = |n: usize| {
+        let (set, _) = ring(n, CoreModel::Vatistas, 1e-6);
+        (induced_velocities(&[[0.0; 3]], &set)[0][2] / 0.5 - 1.0).abs()
+    };
+    let steps = [(36, 72), (72, 144), (144, 288)];
+    worst("refinements", 3, steps.map(|(a, b)| Ok(((error(a) / error(b)).log2() - 2.0).abs())))
+}
+
+fn ring_speed(n: usize, core: CoreModel, radius: f64) -> f64 {
+    let (set, nodes) = ring(n, core, radius);
+    let chords = induced_velocities(&nodes[..1], &set)[0][2];
+    match core {
+        CoreModel::RosenheadMoore => {
+            chords + arc_velocity([nodes[n - 1], nodes[0], nodes[1]], 1.0, radius)[2]
+        }
+        _ => chords,
+    }
+}
+
+const THRUST: f64 = 0.0049;
+
+/// Mean over the disk, by area, at the blade that turns through it, over Glauert's.
+fn helices(advance_ratio: f64) -> Result<f64, CheckError> {
+    const STATIONS: usize = 40;
+    let flight = FlightState { advance_ratio, shaft_tilt_rad: 5.0_f64.to_radians() };
+    let inflow = momentum_inflow(&flight, THRUST)?;
+    let rotor = WakeRotor::uniform(4, 0.2, 20)?;
+    let azimuths = 72;
+    let settings = FreeWakeSettings { azimuths, turns: 3, ..FreeWakeSettings::default() };
+    let lines = BladeLines::flat(&rotor, azimuths);
+    let wake = FreeWake::undistorted(rotor, settings, flight, inflow, lines)?;
+    let vortices = wake.vortices();
+    let (mut sum, mut area) = (0.0, 0.0);
+    for i in 0..azimuths {
+        let mut set = SegmentSet::new(CoreModel::Vatistas);
+        for b in 0..4 {
+            for ends in vortices[0].points[(i + 18 * b) % azimuths].windows(2) {
+                set.push(ends[0], ends[1], TAU * THRUST / 4.0, 0.02);
+            }
+        }
+        let (sin, cos) = (TAU * i as f64 / azimuths as f64).sin_cos();
+        let radii = (0..STATIONS).map(|k| (k as f64 + 0.5) / STATIONS as f64);
+        let targets: Vec<Vec3> = radii.clone().map(|r| [r * cos, r * sin, 0.0]).collect();
+        for (r, v) in radii.zip(induced_velocities(&targets, &set)) {
+            sum -= r * v[2];
+            area += r;
+        }
+    }
+    Ok(sum / area / inflow)
+}
+
+/// Polar of the reference rotor.
+struct ReferencePolar;
+
+impl SectionPolar for ReferencePolar {
+    fn lift_drag(&self, alpha_rad: f64, _mach: f64) -> [f64; 2] {
+        let a = (alpha_rad + PI).rem_euclid(TAU) - PI;
+        let f = 1.0 / (1.0 + ((a.to_degrees().abs() - 14.0) / 1.5).exp());
+        let attached = [TAU * a.sin(), 0.008 + 0.1 * a * a];
+        let separated = [1.1 * (2.0 * a).sin(), 0.02 + 1.8 * a.sin().powi(2)];
+        [0, 1].map(|k| f * attached[k] + (1.0 - f) * separated[k])
+    }
+}
+
+const RADIUS_M: f64 = 4.94;
+const TIP_SPEED_M_S: f64 = 383.0 * TAU / 60.0 * RADIUS_M;
+
+fn reference(near_wake_deg: u32) -> Result<BladeElementSolution, WakeError> {
+    let tilt = 5.0_f64.to_radians();
+    let advance_ratio = 59.44 * tilt.cos() / TIP_SPEED_M_S;
+    let flight = FlightState { advance_ratio, shaft_tilt_rad: tilt };
+    let rotor = BladeElementRotor {
+        rotor: WakeRotor::uniform(4, 0.2, 20)?,
+        chord: 0.2717 / RADIUS_M,
+        twist_rad: (-8.0_f64).to_radians(),
+        tip_mach: 0.0,
+        motion: RigidMotion {
+            pitch_rad: [8.0, 2.0, -4.5].map(f64::to_radians),
+            flap_rad: [0.0; 3],
+        },
+        polar: &ReferencePolar,
+    };
+    let core = 0.3764 / RADIUS_M;
+    let settings = FreeWakeSettings {
+        turns: 3,
+        far_turns: 1,
+        near_wake_rad: f64::from(near_wake_deg).to_radians(),
+        core: CoreSettings {
+            radius: core,
+            near_radius: core,
+            panel_share: f64::INFINITY,
+            viscosity: 0.0,
+            ..CoreSettings::default()
+        },
+        shed: ShedVorticity::InWake,
+        far: FarTrailers::TipAndRoot,
+        ..FreeWakeSettings::default()
+    };
+    let mut wake = rotor.starting_wake(&settings, flight, 0.005)?;
+    let coupling =
+        CouplingSettings { inflow_tolerance: 2e-4, sweeps: 3, ..CouplingSettings::default() };
+    rotor.solve(&mut wake, &coupling)
+}
+
+type Reference = LazyLock<Result<BladeElementSolution, WakeError>>;
+static FULL_NEAR_WAKE: Reference = LazyLock::new(|| reference(360));
+static SHORT_NEAR_WAKE: Reference = LazyLock::new(|| reference(90));
+
+fn solved(near_wake_deg: u32) -> Result<&'static BladeElementSolution, CheckError> {
+    let solution = if near_wake_deg == 360 { &*FULL_NEAR_WAKE } else { &*SHORT_NEAR_WAKE };
+    Ok(solution.as_ref().map_err(Clone::clone)?)
+}
+
+/// Mean, and amplitude and phase (deg) of 4/rev, of samples at azimuths in rad.
+fn four_per_rev(samples: &[(f64, f64)]) -> [f64; 3] {
+    let count = samples.len() as f64;
+    let (mut mean, mut c, mut s) = (0.0, 0.0, 0.0);
+    for (azimuth, value) in samples {
+        mean += value / count;
+        c += 2.0 * value * (4.0 * azimuth).cos() / count;
+        s += 2.0 * value * (4.0 * azimuth).sin() / count;
+    }
+    [mean, c.hypot(s), s.atan2(c).to_degrees()]
+}
+
+/// Thrust of the reference rotor, N.
+fn thrust(near_wake_deg: u32) -> Result<[f64; 3], CheckError> {
+    let solution = solved(near_wake_deg)?;
+    let scale = 1.225 * PI * RADIUS_M.powi(2) * TIP_SPEED_M_S.powi(2);
+    let sums = solution.rotating_sums(4);
+    let step = TAU / sums.len() as f64;
+    let samples: Vec<(f64, f64)> =
+        sums.iter().enumerate().map(|(i, sum)| (i as f64 * step, sum[2] * scale)).collect();
+    Ok(four_per_rev(&samples))
+}
+
+/// The same of the independent wake: azimuth 0 of its table is psi 180 deg.
+fn olaf() -> Result<[f64; 3], CheckError> {
+    let table = Table::read("wake/full72_lastrev.csv")?;
+    let samples = table
+        .rows()
+        .map(|row| {
+            let azimuth = (row.number("Azimuth")? + 180.0).to_radians();
+            Ok((azimuth, row.number("RtAeroFxh")?))
+        })
+        .collect::<Result<Vec<_>, CheckError>>()?;
+    Ok(four_per_rev(&samples))
+}
+
+fn asymmetry() -> Result<f64, CheckError> {
+    let solution = solved(360)?;
+    let sums = solution.rotating_sums(4);
+    let count = sums.len();
+    let amplitude = |component: usize, n: usize| {
+        let (mut c, mut s) = (0.0, 0.0);
+        for (i, sum) in sums.iter().enumerate() {
+            let angle = TAU * (n * i) as f64 / count as f64;
+            c += sum[component] * angle.cos() / count as f64;
+            s += sum[component] * angle.sin() / count as f64;
+        }
+        Ok(c.hypot(s) / solution.thrust_coefficient)
+    };
+    let vanishing = [(2, 1), (2, 2), (2, 3), (0, 0), (0, 2), (0, 4), (1, 0), (1, 2), (1, 4)];
+    worst("sums", 9, vanishing.map(|(component, n)| amplitude(component, n)))
+}
