@@ -79,7 +79,7 @@ fn every_problem_is_reported_with_its_line() {
             "case.ron:6:5: rotor.blades: is 0, expected 1 to 16; the paper's rotor has 4",
             "case.ron:7:5: rotor.gj: is NaN, expected a positive finite number; a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)",
             "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) < start_r < end_r <= 1 R; list the flaps from root to tip without overlap",
-            "case.ron:10:12: inflow.model: unknown choice `Dress`, did you mean `Drees`?; known here: Uniform, Drees, Prescribed",
+            "case.ron:10:12: inflow.model: unknown choice `Dress`, did you mean `Drees`?; known here: Uniform, Drees, Prescribed, PittPeters, FreeWake",
             "7 problems",
         ],
         "{text}"
