@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use flap_aero::AttachedFlowModel;
-use rotor_fem::{BladeProperties, BladeSpec, Twist};
+use rotor_fem::{BladeProperties, BladeSpec, TorsionTerms, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
     ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads,
@@ -151,6 +151,25 @@ pub(super) const AREA: Area = Area {
             criterion: Criterion::AtMost(1e-5),
             repeatability: Repeatability::Everywhere,
             measure: hinge::aerodynamic_error,
+        },
+        Check {
+            id: "V-RESP-15",
+            quantity: "power of air, damping, shaft and pitch control over a revolution, moderate \
+                       deflections, mu 0.30: sum over the shaft's",
+            unit: "-",
+            source: "conservation of energy",
+            criterion: Criterion::AtMost(1e-5),
+            repeatability: Repeatability::Everywhere,
+            measure: || power_imbalance(8),
+        },
+        Check {
+            id: "V-RESP-16",
+            quantity: "that sum with eight time elements over that with four",
+            unit: "-",
+            source: "the sum is a discretisation error",
+            criterion: Criterion::AtMost(0.5),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(power_imbalance(8)? / power_imbalance(4)?),
         },
     ],
 };
@@ -322,6 +341,14 @@ fn bending_gap(flap_modes: usize) -> Result<f64, CheckError> {
     let (summed, curved) = (bending.force_summation.harmonic(3), bending.curvature.harmonic(3));
     let gap = (summed.cosine - curved.cosine).hypot(summed.sine - curved.sine);
     Ok(gap / summed.amplitude())
+}
+
+/// What the powers of the moderately deflected blade leave, over that of the shaft.
+fn power_imbalance(time_elements: usize) -> Result<f64, CheckError> {
+    let d = Discretisation { time_elements, ..Discretisation::default() };
+    let model = paper_rotor(Couplings::Moderate(TorsionTerms::default()), 0.2);
+    let found = response(model, &paper_blade(1.0)?, d, &fixed_controls(), &PRESCRIBED)?;
+    Ok(found.power.imbalance().abs())
 }
 
 fn bending_convergence() -> Result<f64, CheckError> {

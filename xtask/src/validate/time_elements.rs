@@ -1,9 +1,12 @@
 //! Time finite elements on the flap equation of a rotor in forward flight.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DMatrix, DVector};
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
-    LinearCoefficients, LinearPeriodic, Orbit, PeriodicSettings, PeriodicSolver, TimeElements,
+    Floquet, LinearCoefficients, LinearPeriodic, LocalTangent, Orbit, PeriodicSettings,
+    PeriodicSolver, TimeElements,
 };
 
 use super::CheckError;
@@ -39,6 +42,16 @@ pub(super) const AREA: Area = Area {
             criterion: Criterion::Between(5.5, 7.0),
             repeatability: Repeatability::Everywhere,
             measure: flap_order,
+        },
+        Check {
+            id: "V-TIME-04",
+            quantity: "Floquet exponents of the flap equation: largest error of growth (per rad) and \
+                       frequency (per rev)",
+            unit: "-",
+            source: "Runge-Kutta integration in 20 000 steps; growth -gamma/16 by Liouville",
+            criterion: Criterion::AtMost(1e-6),
+            repeatability: Repeatability::Everywhere,
+            measure: floquet_error,
         },
     ],
 };
@@ -114,4 +127,49 @@ fn flap_error(elements: usize, range: std::ops::RangeInclusive<usize>) -> Result
 fn flap_order() -> Result<f64, CheckError> {
     let (coarse, fine) = (harmonic_error(8, 3, 1..=3)?, harmonic_error(16, 3, 1..=3)?);
     Ok((coarse / fine).log2())
+}
+
+/// Trace of the monodromy matrix by the classical Runge-Kutta method.
+fn integrated_trace(steps: u32) -> f64 {
+    let rate = |psi: f64, [x, v]: [f64; 2]| {
+        let c = flap_equation(psi);
+        [v, -c.damping[(0, 0)] * v - c.stiffness[(0, 0)] * x]
+    };
+    let h = TAU / f64::from(steps);
+    let shift = |[x, v]: [f64; 2], [a, b]: [f64; 2], s: f64| [x + s * a, v + s * b];
+    let carried = |start: [f64; 2]| {
+        (0..steps).fold(start, |y, i| {
+            let psi = h * f64::from(i);
+            let k1 = rate(psi, y);
+            let k2 = rate(psi + 0.5 * h, shift(y, k1, 0.5 * h));
+            let k3 = rate(psi + 0.5 * h, shift(y, k2, 0.5 * h));
+            let k4 = rate(psi + h, shift(y, k3, h));
+            [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)]
+                .into_iter()
+                .fold(y, |sum, (k, weight)| shift(sum, k, weight * h / 6.0))
+        })
+    };
+    carried([1.0, 0.0])[0] + carried([0.0, 1.0])[1]
+}
+
+fn floquet_error() -> Result<f64, CheckError> {
+    // the growths add up to the mean damping, gamma / 8
+    let growth = -LOCK / 16.0;
+    let half = 0.5 * integrated_trace(20_000);
+    let frequency = ((2.0 * TAU * growth).exp() - half * half).sqrt().atan2(half) / TAU;
+    let time = TimeElements::default();
+    let tangents: Vec<LocalTangent> = time
+        .points()
+        .iter()
+        .map(|&psi| {
+            let c = flap_equation(psi);
+            LocalTangent { dq: c.stiffness, dqd: c.damping, dqdd: DMatrix::zeros(1, 1) }
+        })
+        .collect();
+    let found = Floquet::of(&time, &DMatrix::identity(1, 1), &tangents)?;
+    let modes = found.modes().iter();
+    let errors = modes.flat_map(|m| {
+        [Ok((m.growth_per_rad - growth).abs()), Ok((m.frequency_per_rev - frequency).abs())]
+    });
+    worst("exponents", 2, errors)
 }
