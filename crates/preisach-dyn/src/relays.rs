@@ -58,12 +58,16 @@ pub struct RelayMemory {
     up: Vec<u32>,
 }
 
+/// Relays of one grid at most: more make no output less grainy that a record could show.
+const MOST_RELAYS: usize = 10_000_000;
+
 impl RelayGrid {
     /// The relays of the density of `map` (deg).
     ///
     /// # Errors
     /// [`PreisachError::NodeCount`], [`PreisachError::NotFinite`],
-    /// [`PreisachError::NegativeDensity`], or [`PreisachError::TooFew`] relays.
+    /// [`PreisachError::NegativeDensity`], [`PreisachError::TooFew`] relays, or
+    /// [`PreisachError::OutOfRange`] for more than ten million in all.
     pub fn new(
         grid: PreisachGrid,
         map: PlayMap,
@@ -74,7 +78,13 @@ impl RelayGrid {
         if relays_per_cell == 0 {
             return Err(PreisachError::TooFew { quantity: "relays_per_cell", value: 0, least: 1 });
         }
+        let cells: usize = map.nodes.iter().map(|row| row.len() - 1).sum();
+        let most = f64::from(u32::try_from(MOST_RELAYS / cells.max(1)).unwrap_or(u32::MAX));
         let parts = f64::from(relays_per_cell);
+        if parts > most {
+            let quantity = "relays_per_cell";
+            return Err(PreisachError::OutOfRange { quantity, value: parts, least: 1.0, most });
+        }
         let sums = map
             .nodes
             .iter()

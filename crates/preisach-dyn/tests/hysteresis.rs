@@ -5,8 +5,8 @@ mod common;
 
 use common::Wavy;
 use preisach_dyn::{
-    EverettStaircase, HysteresisLaw, PlayMap, PlayMemory, PreisachGrid, RelayGrid, StartState,
-    StaticPreisach, VoltageRange,
+    EverettStaircase, HysteresisLaw, PlayMap, PlayMemory, PreisachError, PreisachGrid, RelayGrid,
+    StartState, StaticPreisach, VoltageRange,
 };
 use proptest::prelude::*;
 
@@ -266,4 +266,13 @@ fn a_falling_map_is_refused() {
     assert!(StaticPreisach::new(grid, map).is_err());
     let other = PreisachGrid::new(VoltageRange::amplified_stack(), 5).unwrap();
     assert!(StaticPreisach::new(other, PlayMap::constant(&grid, 0.0)).is_err());
+}
+
+#[test]
+fn relays_without_end_are_refused_before_they_are_made() {
+    let model = model(9);
+    let make = |count| RelayGrid::new(*model.grid(), model.map().clone(), count);
+    assert!(matches!(make(0), Err(PreisachError::TooFew { .. })));
+    let refused = make(4_000_000_000);
+    assert!(matches!(refused, Err(PreisachError::OutOfRange { .. })), "{refused:?}");
 }

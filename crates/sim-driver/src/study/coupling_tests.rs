@@ -134,6 +134,35 @@ fn a_stiff_actuator_is_the_free_one() {
     assert!(HingeCoupling::new(stiff, vec![], DMatrix::zeros(0, 0)).is_none());
 }
 
+/// The inverse asks for what the load will take: the wanted motion comes out, and the voltage is that of
+/// the linear actuator for motion plus give. Without the load it would miss by the whole give.
+#[test]
+fn the_inverse_makes_up_for_the_hinge_moment() {
+    let drive = soft(0.9);
+    let mut wanted = HarmonicSeries::zero(4);
+    wanted.set_harmonic(3, Harmonic { cosine: 1.0, sine: 0.5 });
+    wanted.set_harmonic(4, Harmonic { cosine: -0.3, sine: 0.2 });
+    let mut moment = HarmonicSeries::zero(4);
+    moment.set_harmonic(3, Harmonic { cosine: -0.2, sine: 0.1 });
+    let made = drive.loaded_inverse(&wanted, &moment).unwrap();
+    let give = drive.give_deg_per_newton_metre();
+    for n in [3, 4] {
+        let (want, got, load) = (wanted.harmonic(n), made.flap_deg.harmonic(n), moment.harmonic(n));
+        assert_abs_diff_eq!(got.cosine, want.cosine, epsilon = 1e-4);
+        assert_abs_diff_eq!(got.sine, want.sine, epsilon = 1e-4);
+        let volt = made.voltage_volt.harmonic(n);
+        assert_abs_diff_eq!(0.1 * volt.cosine, want.cosine - give * load.cosine, epsilon = 1e-3);
+        assert_abs_diff_eq!(0.1 * volt.sine, want.sine - give * load.sine, epsilon = 1e-3);
+    }
+    let free = drive.inverse(&wanted).unwrap();
+    let missed = drive.loaded_motion(&free, &moment).unwrap().flap_deg.harmonic(3);
+    assert!((missed.cosine - 1.0).abs() > 0.2 * give, "{missed:?}");
+    // out of reach is an error, loaded or not
+    let mut large = wanted.clone();
+    large.set_harmonic(3, Harmonic { cosine: 50.0, sine: 0.0 });
+    assert!(drive.loaded_inverse(&large, &moment).is_err());
+}
+
 #[test]
 fn what_does_not_settle_says_so_with_its_best_state() {
     let drive = soft(0.9);

@@ -233,6 +233,41 @@ impl FlapDrive {
         }
     }
 
+    /// The same under a hinge moment (N m, positive in the sense of the flap angle, against azimuth):
+    /// what the load takes from the motion is asked for beforehand.
+    ///
+    /// # Errors
+    /// As [`Self::inverse`] and [`Self::loaded_motion`].
+    pub fn loaded_inverse(
+        &self,
+        wanted_deg: &HarmonicSeries,
+        hinge_moment_newton_metre: &HarmonicSeries,
+    ) -> Result<FlapMotion, PlantError> {
+        let mut made = self.inverse(wanted_deg)?;
+        if self.give_deg_per_newton_metre() == 0.0 {
+            return Ok(made);
+        }
+        let mut asked = wanted_deg.clone();
+        for _ in 0..LOADED_INVERSE_ROUNDS {
+            made = self.loaded_motion(&made, hinge_moment_newton_metre)?;
+            let mut largest = 0.0_f64;
+            for n in 1..=wanted_deg.harmonics.len() {
+                let (want, got, ask) =
+                    (wanted_deg.harmonic(n), made.flap_deg.harmonic(n), asked.harmonic(n));
+                let miss =
+                    Harmonic { cosine: want.cosine - got.cosine, sine: want.sine - got.sine };
+                largest = largest.max(miss.amplitude());
+                let (cosine, sine) = (ask.cosine + miss.cosine, ask.sine + miss.sine);
+                asked.set_harmonic(n, Harmonic { cosine, sine });
+            }
+            if largest <= LOADED_INVERSE_TOLERANCE_DEG {
+                return Ok(made);
+            }
+            made = self.inverse(&asked)?;
+        }
+        self.loaded_motion(&made, hinge_moment_newton_metre)
+    }
+
     /// The range of voltages.
     pub fn range_volt(&self) -> VoltageRange {
         match self {
@@ -305,6 +340,11 @@ impl FlapDrive {
         Ok(FullScale { amplitude_volt: amplitude, stroke_deg })
     }
 }
+
+/// Rounds of the inverse under load: the load takes nearly the same whatever the voltage.
+const LOADED_INVERSE_ROUNDS: usize = 6;
+/// Miss of a wanted harmonic at which these rounds end, deg.
+const LOADED_INVERSE_TOLERANCE_DEG: f64 = 1e-4;
 
 /// An actuator model in the time of the rotor, with the load on it, N.
 struct PeriodicDrive<'a> {

@@ -338,6 +338,19 @@ impl RotorPlant {
         Ok(PlantState { rotor, flaps, coupling: Some(residual) })
     }
 
+    /// Hinge moment of every flap under given flap motions, N m, positive in the sense of the angle.
+    ///
+    /// # Errors
+    /// The errors of the rotor.
+    pub fn hinge_moments_newton_metre(
+        &self,
+        flaps: Vec<FlapMotion>,
+    ) -> Result<Vec<HarmonicSeries>, PlantError> {
+        let unit = self.rotor.moment_newton_metre;
+        let state = self.state_of(flaps)?;
+        Ok(state.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect())
+    }
+
     /// Rotor response for given flap motions, whatever the actuator makes of the hinge moment.
     ///
     /// # Errors

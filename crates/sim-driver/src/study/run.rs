@@ -408,9 +408,24 @@ impl ControlSet<'_> {
             self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
         };
         let made = |share: f64| {
-            let flaps = ideal.state.flaps.par_iter();
-            let each = flaps.map(|motion| self.made(plant.drive(), &motion.flap_deg, share));
-            each.collect::<Result<Vec<_>, PlantError>>()
+            let wanted: Vec<HarmonicSeries> = ideal
+                .state
+                .flaps
+                .iter()
+                .map(|motion| self.wanted(&motion.flap_deg, share))
+                .collect();
+            let loads = if plant.drive().give_deg_per_newton_metre() == 0.0 {
+                vec![HarmonicSeries::zero(0); wanted.len()]
+            } else {
+                let flaps = wanted.iter().map(|flap_deg| FlapMotion {
+                    voltage_volt: HarmonicSeries::zero(0),
+                    flap_deg: flap_deg.clone(),
+                });
+                plant.hinge_moments_newton_metre(flaps.collect())?
+            };
+            let each = wanted.par_iter().zip(&loads);
+            each.map(|(wanted, load)| self.made(plant.drive(), wanted, load))
+                .collect::<Result<Vec<_>, PlantError>>()
         };
         // several harmonics together may ask for more than the range holds: the same motion, smaller
         let mut share = 1.0;
@@ -439,21 +454,26 @@ impl ControlSet<'_> {
         })
     }
 
-    /// A share of a flap motion made through the inverse, and the largest error of a wanted harmonic over
-    /// the largest wanted one.
-    fn made(
-        &self,
-        drive: &FlapDrive,
-        motion_deg: &HarmonicSeries,
-        share: f64,
-    ) -> Result<(FlapMotion, f64), PlantError> {
+    /// A share of the controlled harmonics of a flap motion.
+    fn wanted(&self, motion_deg: &HarmonicSeries, share: f64) -> HarmonicSeries {
         let highest = self.harmonics.iter().copied().max().unwrap_or(1);
         let mut wanted = HarmonicSeries::zero(highest);
         for &n in self.harmonics {
             let h = motion_deg.harmonic(n);
             wanted.set_harmonic(n, Harmonic { cosine: share * h.cosine, sine: share * h.sine });
         }
-        let made = drive.inverse(&wanted)?;
+        wanted
+    }
+
+    /// A flap motion made through the inverse under a hinge moment, N m, and the largest error of a
+    /// wanted harmonic over the largest wanted one.
+    fn made(
+        &self,
+        drive: &FlapDrive,
+        wanted: &HarmonicSeries,
+        hinge_moment_newton_metre: &HarmonicSeries,
+    ) -> Result<(FlapMotion, f64), PlantError> {
+        let made = drive.loaded_inverse(wanted, hinge_moment_newton_metre)?;
         let sizes = self.harmonics.iter().map(|&n| wanted.harmonic(n).amplitude());
         let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
         let errors = self.harmonics.iter().map(|&n| {
