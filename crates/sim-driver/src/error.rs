@@ -165,7 +165,6 @@ fn actuator_family(error: &PreisachError) -> Family {
     match error {
         PreisachError::Diverged { .. }
         | PreisachError::OrbitNotClosed { .. }
-        | PreisachError::NotDescribed { .. }
         | PreisachError::QuadraticProgram { .. } => Family::NumericalFailure,
         _ => Family::RejectedInput,
     }

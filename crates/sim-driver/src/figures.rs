@@ -2,9 +2,9 @@
 //!
 //! | file | columns |
 //! |---|---|
-//! | `loop_RUN.csv` | time, input, measured and simulated output, residual (simulated less measured) |
+//! | `loop_RUN.csv` | time, input, measured and simulated output, residual (simulated less measured), 1 for the samples judged and 0 outside the run's window |
 //! | `forc_diagram.csv` | of reversal curves: reversal, input, half-width, centre, density |
-//! | `density.csv` | half-width and centre of the cells of the Preisach triangle, rise and density |
+//! | `density.csv` | half-width and centre of the cells of the Preisach triangle, rise and density, of the model or, if its law has none, of the static Preisach model fitted beside it |
 //!
 //! Columns carry their units: V and deg for an actuator, those of the data for a generic loop.
 
@@ -45,27 +45,40 @@ fn loop_table(
     number: usize,
 ) -> Result<(String, String), PreisachError> {
     let record = &found.records[number];
-    let identification = &found.identification;
-    let model = &identification.dynamic;
-    let simulated = model.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
+    let zero_deg = found.identification.zero_deg;
+    let simulated = found.model.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
     let (input, output, unit) = labels(found);
-    let mut text = format!("time_s,{input},measured_{output},simulated_{output},residual{unit}\n");
+    let mut text =
+        format!("time_s,{input},measured_{output},simulated_{output},residual{unit},judged\n");
+    let window = record.judged_samples();
     let samples = record.voltage_volt.iter().zip(&record.output_deg).zip(simulated);
     for (i, ((u, measured), simulated)) in samples.enumerate() {
         let time_s = record.time_step_s * i as f64;
-        let measured = measured - identification.zero_deg;
+        let measured = measured - zero_deg;
         let residual = simulated - measured;
-        let _ = writeln!(text, "{time_s:.9},{u:.9e},{measured:.9e},{simulated:.9e},{residual:.3e}");
+        let judged = u8::from(window.contains(&i));
+        let _ = writeln!(
+            text,
+            "{time_s:.9},{u:.9e},{measured:.9e},{simulated:.9e},{residual:.3e},{judged}"
+        );
     }
     Ok((format!("loop_{}.csv", record.id), text))
 }
 
-/// The static density of the model, cell by cell; none for a law that has none.
+/// The static density of the model, cell by cell; for a law without one that of the static Preisach
+/// model fitted beside it.
 fn density_table(found: &BenchIdentification) -> Result<Option<(String, String)>, PreisachError> {
-    let model = match &found.identification.dynamic.law {
-        ActuatorLaw::StaticPreisach(model) => model.clone(),
-        ActuatorLaw::DynamicPreisach(model) => model.static_part()?,
-        _ => return Ok(None),
+    let of = |law: &ActuatorLaw| match law {
+        ActuatorLaw::StaticPreisach(model) => Ok(Some(model.clone())),
+        ActuatorLaw::DynamicPreisach(model) => model.static_part().map(Some),
+        _ => Ok(None),
+    };
+    let model = match of(&found.model.law)? {
+        Some(model) => model,
+        None => match of(&found.identification.static_only.law)? {
+            Some(model) => model,
+            None => return Ok(None),
+        },
     };
     let (input, _, unit) = labels(found);
     let text = density_csv(model.grid(), model.map(), &input, &unit);

@@ -350,7 +350,10 @@ pub enum Fault {
         expected: usize,
     },
     /// A field is no number.
-    #[error("`{text}` is not a number; expected a decimal number such as -1.25e-3")]
+    #[error(
+        "`{text}` is not a number; expected a decimal number such as -1.25e-3{}",
+        if .text.contains(',') { ", with a decimal point: replace the decimal commas" } else { "" }
+    )]
     NotANumber {
         /// The field.
         text: String,

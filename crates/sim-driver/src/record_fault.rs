@@ -129,6 +129,24 @@ pub enum RecordFault {
         /// What to do.
         remedy: &'static str,
     },
+    /// Columns of one name, of which only one can be taken.
+    #[error(
+        "{count} columns are called `{name}`: say which one is meant by its number, --columns time_s=#1,{name}_UNIT=#2,... (the others are then left out), or rename them in the header"
+    )]
+    RepeatedName {
+        /// The name without unit.
+        name: String,
+        /// How many columns have it.
+        count: usize,
+    },
+    /// The fields of a record of a data folder are not separated by commas.
+    #[error(
+        "the fields are separated by {separator}, expected commas; `hhc import FILE -o DIR` reads such tables and writes the record as it should be"
+    )]
+    OtherSeparator {
+        /// What separates them, in words.
+        separator: &'static str,
+    },
     /// Two runs of a data set have different columns.
     #[error("the columns are {found}, those of the runs before {expected}; convert one of them")]
     OtherColumns {

@@ -73,7 +73,17 @@ pub struct StoredFit {
     pub amplitude_volt: f64,
     /// RMS error over the standard deviation of the measured output, percent.
     pub nrmse_percent: f64,
-    /// The same of the static model alone, percent.
+    /// RMS error with its mean removed over the range of the measured output, percent.
+    #[serde(default)]
+    pub range_percent: Option<f64>,
+    /// Mean error, measured less simulated, in the unit of the output.
+    #[serde(default)]
+    pub offset: Option<f64>,
+    /// Largest error before the run's window over the range of the measured output, percent; none
+    /// without a window that begins later than the record.
+    #[serde(default)]
+    pub start_up_percent: Option<f64>,
+    /// NRMSE of the static model alone, percent.
     pub static_nrmse_percent: f64,
     /// Amplitude error, percent; none for transients.
     #[serde(default)]

@@ -220,11 +220,7 @@ impl Drive {
     }
 
     /// The last whole steady periods inside a window; none if there is not one.
-    pub(super) fn steady_within(
-        &self,
-        window: &Range<usize>,
-        time_step_s: f64,
-    ) -> Option<Range<usize>> {
+    pub fn steady_within(&self, window: &Range<usize>, time_step_s: f64) -> Option<Range<usize>> {
         if !self.is_periodic() {
             return None;
         }

@@ -1,6 +1,7 @@
 //! The arguments of `hhc`.
 
 use crate::case::{FreeWakeFile, InflowChoice};
+use crate::identification::ModelChoice;
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -133,9 +134,9 @@ pub struct IdentifyArgs {
     /// Folder for the data of the figures: loops with residuals, density; CSV.
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
-    /// Write the model that cross-validation chooses, not the dynamic Preisach model.
-    #[arg(long)]
-    pub best: bool,
+    /// Model to judge and to write; all of them are fitted and compared in any case.
+    #[arg(long, value_enum, default_value = "best")]
+    pub model: ModelChoice,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

@@ -266,7 +266,7 @@ fn record_files(
     Ok((found.stored(), found.summary(written).render(args.format.format)?, figures))
 }
 
-/// The identification with the table of all models, its best one in place if that is asked for.
+/// The identification with the table of all models and the one that is wanted in place.
 fn compared(
     found: Result<BenchIdentification, SimError>,
     args: &IdentifyArgs,
@@ -275,9 +275,7 @@ fn compared(
     progress.doing("comparing all models".to_owned());
     let found = found.and_then(|mut found| {
         found.compare()?;
-        if args.best {
-            found.adopt_best()?;
-        }
+        found.pick(args.model)?;
         Ok(found)
     });
     progress.finish();

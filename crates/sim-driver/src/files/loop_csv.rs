@@ -4,8 +4,8 @@ use super::Source;
 use super::dataset::ChannelFile;
 use super::measured_csv::{is_unit_cell, strip_brackets};
 use super::table_text::{
-    LEAST_ROWS, Line, ROUNDING_JITTER, Rows, Sampling, check_time, increases_evenly, resample,
-    resampled, split_lines,
+    LEAST_ROWS, Line, ROUNDING_JITTER, Rows, Sampling, check_time, increases_evenly,
+    other_separator, resample, resampled, split_lines,
 };
 use super::units::{Channel, Unit};
 use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
@@ -199,9 +199,8 @@ pub(super) fn parse_loop_csv(
         return problems.into_result(None);
     };
     let [time_s, input, output] = &mut columns;
-    let before = problems.as_slice().len();
     let sampling = check_time(&source.name, "time_s", time_s, &lines, &mut problems);
-    if problems.as_slice().len() > before {
+    if !problems.is_empty() {
         for (channel, values) in [(&channels.input, &*input), (&channels.output, &*output)] {
             if increases_evenly(values) {
                 let fault = RecordFault::TimeSwapped { other: channel.label() };
@@ -266,6 +265,10 @@ fn read(
     if header.cells.is_empty() {
         let fault = Fault::TooFewRows { rows: 0, least: LEAST_ROWS };
         problems.push(Place::file(file), fault);
+        return None;
+    }
+    if let Some(fault) = lines.first().and_then(|line| other_separator(line.text)) {
+        problems.push(Place::at(file, lines[0].number, 1), fault.into());
         return None;
     }
     let first = header.leading(file, leading, problems)?;

@@ -2,8 +2,8 @@
 
 use super::Source;
 use super::table_text::{
-    LEAST_ROWS, Line, ROUNDING_JITTER, Rows, check_time, increases_evenly, resample, resampled,
-    split_lines,
+    LEAST_ROWS, Line, ROUNDING_JITTER, Rows, check_time, increases_evenly, other_separator,
+    resample, resampled, split_lines,
 };
 use crate::problem::{Fault, Place, Problem, Problems, RecordFault, nearest};
 
@@ -143,6 +143,10 @@ fn read_header(
         problems.push(Place::file(&source.name), fault);
         return (vec![], 0);
     };
+    if let Some(fault) = other_separator(header.text) {
+        problems.push(Place::at(&source.name, header.number, 1), fault.into());
+        return (vec![], 0);
+    }
     let names = header.fields();
     let units = lines.get(1).map(|l| l.fields()).filter(|f| f.iter().all(|(t, _)| is_unit_cell(t)));
     let first_row = if units.is_some() { 2 } else { 1 };
@@ -217,6 +221,9 @@ fn finish(
     if count < LEAST_ROWS {
         let fault = Fault::TooFewRows { rows: count, least: LEAST_ROWS };
         problems.push(Place::file(&source.name), fault);
+    }
+    // rows that are no numbers tear holes into the time: nothing can be said about its steps
+    if !problems.is_empty() {
         return None;
     }
     let mut take = |quantity: usize| {
@@ -226,9 +233,8 @@ fn finish(
     let mut time_s = take(TIME)?;
     let label = QUANTITIES[TIME].column;
     let mut command_volt = take(COMMAND)?;
-    let before = problems.as_slice().len();
     let sampling = check_time(&source.name, label, &time_s, &rows.lines, problems);
-    if problems.as_slice().len() > before && increases_evenly(&command_volt) {
+    if !problems.is_empty() && increases_evenly(&command_volt) {
         let fault =
             RecordFault::TimeSwapped { other: QUANTITIES[COMMAND].column.to_owned() }.into();
         problems.push(Place::at(&source.name, rows.lines[0], 1).field(label), fault);

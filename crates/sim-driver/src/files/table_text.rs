@@ -48,6 +48,16 @@ pub(super) fn split_lines(text: &str) -> Vec<Line<'_>> {
         .collect()
 }
 
+/// The fault of a header whose fields something else than commas separates.
+pub(super) fn other_separator(header: &str) -> Option<RecordFault> {
+    let separator = match (header.contains(','), header.contains(';'), header.contains('\t')) {
+        (_, true, _) => "semicolons",
+        (false, false, true) => "tabs",
+        _ => return None,
+    };
+    Some(RecordFault::OtherSeparator { separator })
+}
+
 /// The numbers of a table while it is read.
 pub(super) struct Rows {
     /// The columns.

@@ -171,6 +171,15 @@ pub(super) fn choose(
         Shape::Bench => bench_columns(&data, &mut left_out)?,
         Shape::Loop => loop_columns(&data, options, &mut left_out)?,
     };
+    for taken in time.iter().chain(&columns) {
+        let name = &taken.channel.name;
+        let alike =
+            |c: &Channel| if taken.channel.is_time() { c.is_time() } else { c.name == *name };
+        let count = times.iter().chain(&data).filter(|(_, c)| alike(c)).count();
+        if count > 1 {
+            return Err(RecordFault::RepeatedName { name: name.clone(), count });
+        }
+    }
     Ok(Choice { time, columns, shape, left_out })
 }
 

@@ -65,9 +65,10 @@ impl<R: BufRead> Lines<'_, R> {
     }
 }
 
-/// What separates the fields: the first of comma, semicolon and tab in the first line, else blanks.
+/// What separates the fields: the first of semicolon, tab and comma in the first line, else blanks. A
+/// comma beside a semicolon is a decimal one, which the numbers then say.
 fn separator(line: &str) -> Option<char> {
-    [',', ';', '\t'].into_iter().find(|s| line.contains(*s))
+    [';', '\t', ','].into_iter().find(|s| line.contains(*s))
 }
 
 fn fields(line: &str, separator: Option<char>) -> Vec<&str> {
@@ -204,6 +205,7 @@ impl Row<'_> {
         if cells.len() != self.expected {
             let fault = Fault::FieldCount { found: cells.len(), expected: self.expected };
             self.lists[0].push(problems, place(), fault);
+            gather.leave_out();
             return;
         }
         let mut good = true;
@@ -227,6 +229,8 @@ impl Row<'_> {
             let index = gather.count();
             self.choice.take(&self.values, self.step_s, index, &mut self.taken);
             gather.push(&self.taken, line, problems);
+        } else {
+            gather.leave_out();
         }
     }
 }

@@ -44,6 +44,12 @@ struct TimeTrack {
     shortest: Option<(f64, usize)>,
     longest: Option<(f64, usize)>,
     backward: Listing,
+    /// Whether a step went back or was far from the usual one.
+    faulty: bool,
+    /// Whether a row that cannot be read was left out since the last sample.
+    hole: bool,
+    /// Whether one ever was.
+    holes: bool,
 }
 
 /// A record that has come in whole.
@@ -89,6 +95,11 @@ impl Gather {
         self.count
     }
 
+    /// Tells of a row that cannot be read: the time steps across it say nothing.
+    pub(super) fn leave_out(&mut self) {
+        (self.time.hole, self.time.holes) = (true, true);
+    }
+
     /// Takes one sample up: the time, s, and the other columns. `line` is 0 where there are none.
     pub(super) fn push(&mut self, row: &[f64], line: usize, problems: &mut Problems) {
         self.track_time(row[0], line, problems);
@@ -121,7 +132,7 @@ impl Gather {
         let track = &mut self.time;
         if self.count == 0 {
             track.first_s = time_s;
-        } else {
+        } else if !track.hole {
             let step = time_s - track.last_s;
             if step <= 0.0 {
                 let place = match line {
@@ -130,6 +141,7 @@ impl Gather {
                 };
                 let fault = Fault::TimeNotIncreasing { time_s, before_s: track.last_s };
                 track.backward.push(problems, place.field(&self.labels[0]), fault);
+                track.faulty = true;
             }
             if track.shortest.is_none_or(|(s, _)| step < s) {
                 track.shortest = Some((step, line));
@@ -139,6 +151,7 @@ impl Gather {
             }
         }
         track.last_s = time_s;
+        track.hole = false;
     }
 
     /// Averages each `factor` neighbours; those at the end that are fewer are left out.
@@ -162,9 +175,12 @@ impl Gather {
             return None;
         }
         let step_s = (self.time.last_s - self.time.first_s) / (self.count - 1) as f64;
-        let sampling = Sampling { step_s, jitter: self.jitter(step_s, &label, problems) };
+        let jitter = self.jitter(step_s, &label, problems);
+        let sampling = Sampling { step_s, jitter };
         if !problems.is_empty() {
-            self.swapped(&label, problems);
+            if self.time.faulty {
+                self.swapped(&label, problems);
+            }
             return None;
         }
         if let Some(wanted_hz) = self.reduction.reduce_to_hz {
@@ -209,14 +225,15 @@ impl Gather {
     /// Largest deviation of a step from the usual one; a problem if it is no jitter.
     ///
     /// The usual step is the mean; where a gap spoils the mean, the median of the steps kept.
-    fn jitter(&self, mean_s: f64, label: &str, problems: &mut Problems) -> f64 {
+    fn jitter(&mut self, mean_s: f64, label: &str, problems: &mut Problems) -> f64 {
         let (Some(shortest), Some(longest)) = (self.time.shortest, self.time.longest) else {
             return 0.0;
         };
         let mut steps: Vec<f64> = self.columns[0].windows(2).map(|w| w[1] - w[0]).collect();
         steps.sort_by(f64::total_cmp);
         let median_s = steps.get(steps.len() / 2).map_or(mean_s, |s| s / self.block as f64);
-        let usual_s = if longest.0 > 2.0 * median_s { median_s } else { mean_s };
+        let torn = self.time.holes || longest.0 > 2.0 * median_s;
+        let usual_s = if torn { median_s } else { mean_s };
         let deviation = |step: (f64, usize)| (step.0 - usual_s).abs() / usual_s;
         let worst = if deviation(shortest) > deviation(longest) { shortest } else { longest };
         let (step_s, line) = worst;
@@ -227,6 +244,7 @@ impl Gather {
                 line => Place::at(&self.file, line, 1),
             };
             problems.push(place.field(label), Fault::TimeStepUneven { step_s, usual_s });
+            self.time.faulty = true;
         }
         deviation(worst)
     }

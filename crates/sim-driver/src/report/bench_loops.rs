@@ -32,7 +32,7 @@ pub fn bench_loops(
                 SimError::Actuator { place: Place::file(&data.folder).field(&record.id), source }
             })
         };
-        let dynamic = simulate(&identification.dynamic)?.output_deg;
+        let dynamic = simulate(&found.model)?.output_deg;
         let quasi_static = simulate(&identification.static_only)?.output_deg;
         let samples = last_cycle(drive.steady.end, drive.base_hz, record.time_step_s);
         let pick = |values: &[f64], shift: f64| -> Vec<f64> {

@@ -4,7 +4,7 @@ use crate::place::Place;
 use std::fmt::Write;
 
 /// A triangle through a play of half-width `r`: hysteresis of a known kind. Columns time, input, output.
-fn play(r: f64, samples: usize) -> Vec<[f64; 3]> {
+pub(crate) fn play(r: f64, samples: usize) -> Vec<[f64; 3]> {
     let mut w = 0.0;
     (0..samples)
         .map(|i| {
@@ -16,7 +16,7 @@ fn play(r: f64, samples: usize) -> Vec<[f64; 3]> {
         .collect()
 }
 
-fn csv(header: &str, rows: &[[f64; 3]], scale: [f64; 3]) -> String {
+pub(crate) fn csv(header: &str, rows: &[[f64; 3]], scale: [f64; 3]) -> String {
     let mut text = header.to_owned();
     for row in rows {
         let [t, u, y] = [0, 1, 2].map(|i| row[i] * scale[i]);
@@ -309,6 +309,60 @@ fn formats_that_are_not_read() {
     assert_eq!(place.listing(), ["a.csv", "b.csv", "new.mat", "old.mat", "page.html"]);
 }
 
+/// A cell of text, a short row: the row is reported, and nothing is said about the time across the hole.
+#[test]
+fn holes_are_reported_once() {
+    let rows = play(0.2, 500);
+    let text = csv(ACTUATOR, &rows, [1.0, 80.0, 200.0]);
+    let broken = |line: usize, new: &str| {
+        let mut lines: Vec<&str> = text.lines().collect();
+        lines[line - 1] = new;
+        lines.join("\n") + "\n"
+    };
+    for (new, part) in [
+        ("2.98,abc,0.5", "a.csv:300:1: command_V: `abc` is not a number"),
+        ("abc,1,0.5", "a.csv:300:1: time_s: `abc` is not a number"),
+        ("2.98,1", "a.csv:300:1: the row has 2 fields, the header has 3"),
+    ] {
+        let place = Place::new();
+        place.write("a.csv", &broken(300, new));
+        let said = place.hhc(&["import", "a.csv"]).rejected(&[part]);
+        assert_eq!(said.trim().lines().count(), 1, "{said}");
+        place.write("d/a.csv", &broken(300, new));
+        place.write(
+            "d/dataset.ron",
+            "(kind: ActuatorBench, title: \"t\", runs: [(id: \"a\", file: \"a.csv\", role: Reference)])",
+        );
+        let said =
+            place.hhc(&["check", "d"]).rejected(&[&part[5..][part[5..].find(' ').unwrap()..]]);
+        assert_eq!(said.trim().lines().count(), 1, "{said}");
+    }
+}
+
+#[test]
+fn names_and_separators_that_are_not_clear() {
+    let place = Place::new();
+    place.write("a.csv", "time_s,command_V,command_V,displacement_um\n0,1,1,2\n1,2,2,3\n2,3,3,5\n");
+    place.hhc(&["import", "a.csv"]).rejected(&["2 columns are called `command`", "--columns"]);
+    let columns = "time_s=#1,command_V=#3,displacement_um=#4";
+    place.hhc(&["import", "a.csv", "--columns", columns]).done();
+    let comma = "time_s;command_V;displacement_um\n0,0;1,0;2,0\n0,1;2,0;3,0\n0,2;3,0;5,0\n";
+    place.write("b.csv", comma);
+    place
+        .hhc(&["import", "b.csv"])
+        .rejected(&["`0,0` is not a number", "replace the decimal commas"]);
+    place.write("c.csv", &comma.replace(',', "."));
+    place.hhc(&["import", "c.csv"]).done();
+    place.write("d/a.csv", &comma.replace(',', "."));
+    place.write(
+        "d/dataset.ron",
+        "(kind: ActuatorBench, title: \"t\", runs: [(id: \"a\", file: \"a.csv\", role: Reference)])",
+    );
+    place
+        .hhc(&["check", "d"])
+        .rejected(&["separated by semicolons, expected commas", "hhc import"]);
+}
+
 #[test]
 fn windows_and_keys_of_a_data_set() {
     let place = Place::new();
@@ -403,7 +457,7 @@ fn the_measured_friction_damper() {
 #[test]
 fn the_measured_friction_damper_is_a_stop_and_no_play() {
     let place = Place::new();
-    let args = ["identify", &measured("friction_damper"), "-o", "damper.ron", "--best"];
+    let args = ["identify", &measured("friction_damper"), "-o", "damper.ron"];
     let json = place.hhc(&[&args[..], &["--format", "json"]].concat()).json();
     for run in json["runs"].as_array().unwrap() {
         let id = run["id"].as_str().unwrap();
@@ -483,7 +537,7 @@ fn a_generic_loop_is_identified_in_its_own_units() {
     let mut lines = table.lines();
     assert_eq!(
         lines.next().unwrap(),
-        "time_s,field_Oe,measured_moment_emu,simulated_moment_emu,residual_emu"
+        "time_s,field_Oe,measured_moment_emu,simulated_moment_emu,residual_emu,judged"
     );
     for line in lines {
         let v: Vec<f64> = line.split(',').map(|f| f.parse().unwrap()).collect();

@@ -1,0 +1,282 @@
+//! `hhc identify`: bench data in, actuator model out.
+
+mod choice;
+mod judge;
+mod summary;
+
+pub use choice::{ModelChoice, Pick, PickReason};
+pub use judge::RunFit;
+pub(crate) use summary::fit_table;
+pub use summary::{FindingLine, IdentifyResult, ModelLine, ParameterLine};
+
+use crate::SimError;
+use crate::files::{BenchData, LoopData, RunRole, RunUse};
+use crate::problem::Place;
+use crate::stored_actuator::{StoredActuator, StoredChannels, StoredKind};
+use preisach_dyn::identify::{
+    BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
+    RecordWindows, Settings, Subject, compare_models, identify,
+};
+use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
+use std::ops::Range;
+
+/// Half peak to peak of the slowest full-scale loop where the data set gives no gain, deg.
+///
+/// Source: the paper scales the displacement so that the quasi-static response is +-10 deg.
+pub const QUASI_STATIC_AMPLITUDE_DEG: f64 = 10.0;
+
+/// What the reports say about the data of an identification.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataHeading {
+    /// Title of the data.
+    pub title: String,
+    /// Folder of the data.
+    pub folder: String,
+    /// blake3 of the data.
+    pub content_hash: String,
+    /// Whether a run leaves its side of the split to the rule.
+    pub split_by_rule: bool,
+    /// Whether `dataset.ron` gives a run its side of the split, by its use or by its role.
+    pub split_by_data: bool,
+    /// Input and output of a generic loop; none for an actuator: V and deg.
+    pub channels: Option<StoredChannels>,
+    /// Where the range of the inputs comes from.
+    pub range_rule: &'static str,
+    /// Where the gain comes from.
+    pub gain_rule: &'static str,
+}
+
+impl DataHeading {
+    /// The words and units of messages about the data.
+    pub fn subject(&self) -> Subject<'static> {
+        self.channels.as_ref().map_or(Subject::Actuator, |channels| {
+            let unit =
+                |label: &str| crate::files::Channel::parse(label).map_or("", |c| c.unit.symbol);
+            Subject::Loop { input_unit: unit(&channels.input), output_unit: unit(&channels.output) }
+        })
+    }
+
+    /// An error of the model or its identification, at the place of the data set.
+    pub(crate) fn failed(&self, source: PreisachError) -> SimError {
+        let place = Place::file(format!("{}/dataset.ron", self.folder));
+        match self.subject() {
+            Subject::Actuator => SimError::Actuator { place, source },
+            subject @ Subject::Loop { .. } => {
+                SimError::Loop { place, message: subject.error(&source), source }
+            }
+        }
+    }
+}
+
+/// An identification with the data it came from.
+#[derive(Debug, Clone)]
+pub struct BenchIdentification {
+    /// What the data are.
+    pub heading: DataHeading,
+    /// The models and how they fit.
+    pub identification: Identification,
+    /// The settings used, range and gain included.
+    pub settings: Settings,
+    /// The records as the identification saw them.
+    pub records: Vec<BenchRecord>,
+    /// The model to use: the dynamic Preisach model until another one is picked.
+    pub model: ActuatorModel,
+    /// Which model that is, and why.
+    pub pick: Pick,
+    /// How the model fits each record.
+    pub fits: Vec<RunFit>,
+    /// The table of all models, once it was asked for.
+    pub comparison: Option<ModelComparison>,
+}
+
+/// Identifies an actuator from a bench.
+///
+/// `base` gives what the data set does not: levels, form, split rule. Range and gain are the data
+/// set's; without a gain the displacement is scaled so that the slowest full-scale loop is
+/// [`QUASI_STATIC_AMPLITUDE_DEG`].
+///
+/// # Errors
+/// [`SimError::Actuator`] at the place of the data set.
+pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentification, SimError> {
+    let fail = |source: PreisachError| SimError::Actuator {
+        place: Place::file(format!("{}/dataset.ron", data.folder)),
+        source,
+    };
+    let (low, high) = data.command_range_volt;
+    let range_volt = VoltageRange::new(low, high).map_err(fail)?;
+    let (deg_per_um, gain_rule) = match data.flap_deg_per_um {
+        Some(gain) => (gain, "flap_deg_per_um of dataset.ron"),
+        None => quasi_static_gain(data, base),
+    };
+    let settings = Settings { range_volt, deg_per_um, ..base.clone() };
+    let records: Vec<BenchRecord> = data
+        .runs
+        .iter()
+        .map(|run| BenchRecord {
+            id: run.id.clone(),
+            time_step_s: run.table.time_step_s,
+            voltage_volt: run.table.command_volt.clone(),
+            output_deg: run.table.displacement_um.iter().map(|x| deg_per_um * x).collect(),
+            record_use: record_use(run.use_as, run.role),
+            windows: windows(run.window_s, run.window()),
+            ..BenchRecord::default()
+        })
+        .collect();
+    let heading = DataHeading {
+        title: data.title.clone(),
+        folder: data.folder.clone(),
+        content_hash: data.content_hash.clone(),
+        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
+        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
+        channels: None,
+        range_rule: "command_range_V",
+        gain_rule,
+    };
+    identified(heading, records, settings)
+}
+
+/// Identifies a model of a generic loop, in the units of its data.
+///
+/// The models see the input where an actuator has its voltage, and the output where it has its flap
+/// angle, with a gain of 1: their unit names stand for those of the channels. The range is the data
+/// set's; zero output stays where it was recorded.
+///
+/// # Errors
+/// [`SimError::Loop`] at the place of the data set.
+pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentification, SimError> {
+    let [input, output] = data.channels.both().map(crate::files::Channel::label);
+    let heading = DataHeading {
+        title: data.title.clone(),
+        folder: data.folder.clone(),
+        content_hash: data.content_hash.clone(),
+        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
+        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
+        channels: Some(StoredChannels { input, output }),
+        range_rule: data.input_range.rule(),
+        gain_rule: "",
+    };
+    let (low, high) = data.input_range.limits();
+    let range_volt = VoltageRange::new(low, high).map_err(|source| heading.failed(source))?;
+    let zero = FlapZero::AsRecorded;
+    let settings = Settings { range_volt, deg_per_um: 1.0, zero, ..base.clone() };
+    let records = data
+        .runs
+        .iter()
+        .map(|run| BenchRecord {
+            id: run.id.clone(),
+            time_step_s: run.table.time_step_s,
+            voltage_volt: run.table.input.clone(),
+            output_deg: run.table.output.clone(),
+            record_use: record_use(run.use_as, run.role),
+            windows: windows(run.window_s, run.window()),
+            ..BenchRecord::default()
+        })
+        .collect();
+    identified(heading, records, settings)
+}
+
+/// Side of the split that the data set fixes: what it says of the run, and otherwise that measured
+/// runs, which are there to be explained, never train.
+fn record_use(given: Option<RunUse>, role: RunRole) -> Option<RecordUse> {
+    match (given, role) {
+        (Some(RunUse::Train), _) => Some(RecordUse::Train),
+        (Some(RunUse::HeldOut), _) | (None, RunRole::Measured) => Some(RecordUse::HeldOut),
+        (None, RunRole::Reference) => None,
+    }
+}
+
+/// A window of a run trains and judges alike; without one all of the run does.
+fn windows(window_s: Option<(f64, f64)>, samples: Range<usize>) -> RecordWindows {
+    let window = window_s.map(|_| samples);
+    RecordWindows { train: window.clone(), judge: window }
+}
+
+/// Identifies from records and judges the models by them.
+fn identified(
+    heading: DataHeading,
+    records: Vec<BenchRecord>,
+    settings: Settings,
+) -> Result<BenchIdentification, SimError> {
+    let identification = identify(&records, &settings).map_err(|e| heading.failed(e))?;
+    // of a generic loop the table of models may still be of use; a rotor needs an actuator
+    let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
+        Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),
+        _ => None,
+    });
+    if let (Some(nrmse_percent), None) = (not_described, &heading.channels) {
+        return Err(heading.failed(PreisachError::NotDescribed { nrmse_percent }));
+    }
+    let model = identification.dynamic.clone();
+    let fits = judge::judged(&heading, &records, &identification, &model)?;
+    let pick = Pick::first_fit(&settings);
+    let comparison = None;
+    Ok(BenchIdentification {
+        heading,
+        identification,
+        settings,
+        records,
+        model,
+        pick,
+        fits,
+        comparison,
+    })
+}
+
+/// Gain that makes the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`], deg/um,
+/// and the rule in words; 1 if there is no slow loop at all.
+fn quasi_static_gain(data: &BenchData, base: &Settings) -> (f64, &'static str) {
+    let half_stroke = |displacement_um: &[f64]| {
+        let (low, high) = displacement_um
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+        0.5 * (high - low)
+    };
+    let widest_um = data
+        .runs
+        .iter()
+        .filter(|run| {
+            let record = BenchRecord {
+                id: String::new(),
+                time_step_s: run.table.time_step_s,
+                voltage_volt: run.table.command_volt.clone(),
+                output_deg: run.table.displacement_um.clone(),
+                ..BenchRecord::default()
+            };
+            let drive = record.drive();
+            drive.is_periodic() && base.split.is_quasi_static(&drive)
+        })
+        .map(|run| half_stroke(&run.table.displacement_um[run.window()]))
+        .fold(0.0, f64::max);
+    if widest_um > 0.0 {
+        (QUASI_STATIC_AMPLITUDE_DEG / widest_um, "so that the widest slow loop is +-10 deg")
+    } else {
+        (1.0, "ASSUMED: no slow loop to scale by; give flap_deg_per_um in dataset.ron")
+    }
+}
+
+impl BenchIdentification {
+    /// Fits all families of models to the same records and keeps the table.
+    ///
+    /// # Errors
+    /// [`SimError::Actuator`] or [`SimError::Loop`] at the place of the data set.
+    pub fn compare(&mut self) -> Result<(), SimError> {
+        let table = compare_models(&self.records, &self.settings, &Candidates::default());
+        self.comparison = Some(table.map_err(|source| self.heading.failed(source))?);
+        Ok(())
+    }
+
+    /// The actuator file of this identification.
+    pub fn stored(&self) -> StoredActuator {
+        StoredActuator {
+            kind: StoredKind::Actuator,
+            title: self.heading.title.clone(),
+            dataset: self.heading.folder.clone(),
+            data_hash: self.heading.content_hash.clone(),
+            program_version: crate::VERSION.to_owned(),
+            channels: self.heading.channels.clone(),
+            settings: self.settings.clone(),
+            runs: self.fits.iter().map(RunFit::stored).collect(),
+            model: self.model.clone(),
+        }
+    }
+}
