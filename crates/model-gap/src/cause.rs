@@ -40,6 +40,9 @@ pub struct Parameter {
     /// Whether it only shapes the effect: fitted, but neither reported nor judged, because candidates of
     /// one cause may shape it differently.
     pub is_shape: bool,
+    /// What must be measured besides before the value means anything; none if these data suffice. Without
+    /// it only a product with something unknown is found, and the interval is the whole range.
+    pub needs: Option<&'static str>,
 }
 
 impl Parameter {

@@ -61,6 +61,7 @@ fn candidate(id: &'static str) -> Candidate {
             high: 2.0,
             scale,
             is_shape: false,
+            needs: None,
         }],
         fingerprint: "",
         confused_with: &[],

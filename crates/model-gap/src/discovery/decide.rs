@@ -17,6 +17,9 @@ const STRONG: f64 = 2.0;
 const PROMISE: f64 = 0.3;
 /// Relative spread of a parameter over the experiments from which on it drifts.
 const DRIFTING: f64 = 0.25;
+/// Share of the drop that values of its own for every experiment must add before a drift speaks
+/// against a name, and the share before it makes the name wrong.
+const DRIFT_COSTS: [f64; 2] = [0.03, 0.1];
 /// Share of the drop by the causes before that the next one must add: below it, it mends their form.
 const NEXT_SHARE: f64 = 0.04;
 /// Share of a drop within which two causes are not told apart: no model of a cause is better.
@@ -350,8 +353,11 @@ impl<S: Simulator> Search<'_, S> {
                 Scale::Log => found.spread,
                 Scale::Linear => found.spread / value.abs().max(1e-300),
             };
-            if found.is_significant() && spread > DRIFTING {
-                worst = worst.max(spread);
+            let cost = found.lost() / (self.base.cost - current.cost).max(1.0);
+            if found.is_significant() && spread > DRIFTING && cost > DRIFT_COSTS[0] {
+                if cost > DRIFT_COSTS[1] {
+                    worst = worst.max(spread);
+                }
                 doubts.push(format!(
                     "{name} drifts by {:.0} % from experiment to experiment: the name may be wrong",
                     100.0 * spread

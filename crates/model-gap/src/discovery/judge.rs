@@ -91,6 +91,12 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
+    /// What the misfit would drop by if every experiment had a value of its own, in units of the noise
+    /// variance.
+    pub(crate) fn lost(&self) -> f64 {
+        (self.chi2_per_degree - 1.0).max(0.0) * self.degrees
+    }
+
     pub(crate) fn is_significant(&self) -> bool {
         self.degrees >= 1.0 && self.chi2_per_degree > 1.0 + 4.0 * (2.0 / self.degrees).sqrt()
     }
@@ -146,7 +152,8 @@ pub(crate) fn parameters<S>(
                 let inflation = drift(evidence, fitted, k).chi2_per_degree.max(1.0);
                 Some((variance * inflation).sqrt())
             });
-            let ci95 = std.map_or([parameter.low, parameter.high], |std| {
+            let known = std.filter(|_| parameter.needs.is_none());
+            let ci95 = known.map_or([parameter.low, parameter.high], |std| {
                 let x = parameter.coordinate(value);
                 [parameter.value(x - 1.96 * std), parameter.value(x + 1.96 * std)]
             });
@@ -156,6 +163,7 @@ pub(crate) fn parameters<S>(
                 value,
                 ci95,
                 is_shape: parameter.is_shape,
+                needs: parameter.needs,
             }
         })
         .collect()

@@ -29,6 +29,9 @@ pub struct Screened {
 /// Weight of what surrogates leave against the sign of an effect.
 const OTHER_SIGN: f64 = 0.5;
 
+/// Mean length of a vector of two standard normal numbers, root(pi / 2).
+const RAYLEIGH_MEAN: f64 = 1.253_314_137_315_500_3;
+
 /// The screening of every candidate, the effect of each at its best start compared with the others.
 pub(crate) fn screen<S: Simulator>(
     discovery: &Discovery<'_, S>,
@@ -106,6 +109,17 @@ fn one<S: Simulator>(
     let mut best = nothing;
     let mut found = None;
     let mut structural = 0.0_f64;
+    // an effect that adapts to every experiment finds something to adapt to in noise too: the length of
+    // a Rayleigh vector per experiment
+    let adapts = match given.starts.first() {
+        Some(values) => {
+            let effect = Effect { candidate, values: values.clone() };
+            discovery.simulator.adapted(&effect, misfit)?.is_some()
+        }
+        None => false,
+    };
+    let noise = settings.noise_deviations
+        + if adapts { RAYLEIGH_MEAN * (evidence.experiments as f64).sqrt() } else { 0.0 };
     for start in 0..signals.len() {
         let at = known + start;
         let size = gram[(at, at)];
@@ -115,6 +129,16 @@ fn one<S: Simulator>(
         for s in 1..known {
             let along = gram[(at, s)] / size.sqrt();
             structural = structural.max(along).max(-OTHER_SIGN * along);
+        }
+        if adapts {
+            let effect = Effect { candidate, values: given.starts[start].clone() };
+            for structure in discovery.structures {
+                if let Some(signal) = discovery.simulator.adapted(&effect, structure)? {
+                    let columns: [&[Vec<f64>]; 2] = [&signal, structure];
+                    let gram = evidence.projected(&evidence.products(&columns));
+                    structural = structural.max(gram[(0, 1)] / gram[(0, 0)].max(1e-300).sqrt());
+                }
+            }
         }
         best.weak_signal = best.weak_signal.max(weak * size / whole[at]);
         let along = gram[(0, at)];
@@ -127,6 +151,6 @@ fn one<S: Simulator>(
         }
     }
     best.threshold =
-        (settings.structure_margin * structural).powi(2) + settings.noise_deviations.powi(2);
+        (settings.structure_margin * structural).powi(2) + noise.powi(2);
     Ok((best, found.map(|start| signals.swap_remove(start))))
 }

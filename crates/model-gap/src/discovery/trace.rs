@@ -38,4 +38,18 @@ pub trait Simulator: Sync {
     /// # Errors
     /// [`GapError::Simulation`] with the simulator's own words.
     fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError>;
+
+    /// What an effect adds when what it adapts to each experiment, such as a phase, is fitted to a
+    /// given residual instead of the measured one. None for effects that adapt to nothing: theirs is
+    /// what [`Self::predict`] says.
+    ///
+    /// # Errors
+    /// As [`Self::predict`].
+    fn adapted(
+        &self,
+        _effect: &Effect,
+        _residual: &[Vec<f64>],
+    ) -> Result<Option<Vec<Vec<f64>>>, GapError> {
+        Ok(None)
+    }
 }

@@ -45,6 +45,8 @@ pub struct FittedParameter {
     pub ci95: [f64; 2],
     /// Whether it only shapes the effect.
     pub is_shape: bool,
+    /// What must be measured besides before the value means anything; its interval is then the range.
+    pub needs: Option<&'static str>,
 }
 
 /// A cause that was found, or could be it.

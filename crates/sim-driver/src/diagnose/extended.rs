@@ -95,7 +95,7 @@ fn add(model: &mut ActuatorModel, part: Part) {
     match part {
         Part::Amplifier(stage) => model.amplifier.push(stage),
         Part::Linkage(stage) => model.linkage.push(stage),
-        Part::Sensor(stage) => model.sensor.push(stage),
+        Part::Sensor(stages) => model.sensor.extend(stages),
         Part::Heating(stage, _) => model.amplifier.push(AmplifierStage::DielectricHeating(stage)),
         Part::Depolarisation(stage, _) => {
             model.amplifier.push(AmplifierStage::Depolarisation(stage));

@@ -214,7 +214,7 @@ impl<'a> BenchSimulator<'a> {
                     linkage.push(stage);
                 }
                 Part::Sensor(_) if run.has_ideal_sensor() => {}
-                Part::Sensor(stage) => sensor.push(stage),
+                Part::Sensor(stages) => sensor.extend(stages),
                 other => special.push(other),
             }
         }
@@ -281,7 +281,8 @@ impl<'a> BenchSimulator<'a> {
         }
         for part in &special {
             if let Part::Hum { amplitude, frequency_hz } = part {
-                self.hum(number, *amplitude, *frequency_hz, &mut output);
+                let own = &self.residuals[number];
+                self.hum(number, (*amplitude, *frequency_hz), (own, 1), &mut output);
             }
         }
         Ok(Simulated { output, terminal, rise_k, is_loaded })
@@ -349,16 +350,23 @@ impl<'a> BenchSimulator<'a> {
         }
     }
 
-    /// A line of given amplitude with the phase that the base model's residual asks for.
-    fn hum(&self, number: usize, amplitude: f64, frequency_hz: f64, output: &mut [f64]) {
+    /// A line of given amplitude and frequency, with the phase that a residual asks for; of both one
+    /// sample in `block`.
+    fn hum(
+        &self,
+        number: usize,
+        (amplitude, frequency_hz): (f64, f64),
+        (residual, block): (&[f64], usize),
+        output: &mut [f64],
+    ) {
         let run = self.runs[number];
         if run.has_ideal_sensor() {
             return;
         }
-        let angle =
-            |i: usize| std::f64::consts::TAU * (frequency_hz * run.step_s * i as f64).fract();
+        let per_sample = frequency_hz * run.step_s * block as f64;
+        let angle = |i: usize| std::f64::consts::TAU * (per_sample * i as f64).fract();
         let (mut c, mut s) = (0.0, 0.0);
-        for (i, r) in self.residuals[number].iter().enumerate() {
+        for (i, r) in residual.iter().enumerate() {
             let (sin, cos) = angle(i).sin_cos();
             c += r * cos;
             s += r * sin;
@@ -382,6 +390,27 @@ impl Simulator for BenchSimulator<'_> {
                 averaged(&self.reading(number, kind, &simulated[number]), self.block)
             })
             .collect())
+    }
+
+    /// Mains hum has a phase of its own in every record.
+    fn adapted(
+        &self,
+        effect: &Effect,
+        residual: &[Vec<f64>],
+    ) -> Result<Option<Vec<Vec<f64>>>, GapError> {
+        let Part::Hum { amplitude, frequency_hz } =
+            self.causes[effect.candidate].part(&effect.values)
+        else {
+            return Ok(None);
+        };
+        let line = |(&(number, kind), own): (&(usize, ChannelKind), &Vec<f64>)| {
+            let mut line = vec![0.0; own.len()];
+            if kind == ChannelKind::Output {
+                self.hum(number, (amplitude, frequency_hz), (own, self.block), &mut line);
+            }
+            line
+        };
+        Ok(Some(self.channels.iter().zip(residual).map(line).collect()))
     }
 }
 

@@ -95,6 +95,11 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
                 significant(p.ci95[0], 3),
                 significant(p.ci95[1], 3)
             ));
+            if let Some(needs) = p.needs {
+                sheet.line(format_args!(
+                    "      the value is a guess: without {needs} only its product with something unknown is found"
+                ));
+            }
         }
         sheet.line(format_args!(
             "    signature: {}; explains {:.0} noise units, {:.0} where it is held out",

@@ -1,21 +1,23 @@
 //! Warming by dielectric loss.
 
 use super::{BenchCause, Design, Part, linear, logarithmic, shape};
-use model_gap::{Cause, Side};
+use model_gap::{Cause, Parameter, Side};
 use preisach_dyn::DielectricHeating;
 
 /// Warming by dielectric loss.
 pub(super) struct Heating;
 
 impl BenchCause for Heating {
-    fn cause(&self, _: &Design) -> Cause {
+    fn cause(&self, design: &Design) -> Cause {
+        // the warmth per loss is anyone's guess: only its product with the coefficient shows in the output
+        let needs = (!design.has_temperature).then_some("temperature_C");
         Cause {
             id: "dielectric-heating",
             physics: "Dielectric loss warms the ceramic and raises its gain, gain (1 + a dT), C dT' = P - dT / R.",
             side: Side::State,
             parameters: vec![
                 logarithmic("time_constant", "s", 5.0, 3000.0),
-                linear("coefficient", "1/K", -0.05, 0.5),
+                Parameter { needs, ..linear("coefficient", "1/K", -0.05, 0.5) },
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
             fingerprint: "slow scaling ordered by the dose of f V^2, not by the time since a step",

@@ -34,8 +34,8 @@ pub(crate) enum Part {
     Amplifier(AmplifierStage),
     /// A stage behind it.
     Linkage(LinkageStage),
-    /// A stage of the bench sensor.
-    Sensor(SensorStage),
+    /// Stages of the bench sensor.
+    Sensor(Vec<SensorStage>),
     /// Heating, whose temperature a thermometer may show; and the point its gain acts about, from 0 V
     /// (0) to the middle of the range (1).
     Heating(DielectricHeating, f64),
@@ -80,7 +80,7 @@ pub(crate) struct Design {
     pub(crate) half_stroke: f64,
     /// Longest measured run, s.
     pub(crate) longest_s: f64,
-    /// Half the lowest sampling frequency, Hz.
+    /// Half the highest sampling frequency, Hz: what one run carries, the data carry.
     pub(crate) nyquist_hz: f64,
     /// Rate of the input that a twentieth of the samples exceed, per s.
     pub(crate) fast_rate: f64,
@@ -125,7 +125,7 @@ impl Design {
             spread: (spread2 / count.max(1) as f64).sqrt(),
             half_stroke: 0.5 * (output.1 - output.0),
             longest_s: runs.iter().map(|r| r.duration_s()).fold(0.0, f64::max),
-            nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(f64::INFINITY, f64::min),
+            nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(0.0, f64::max),
             fast_rate,
             only_hz,
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
@@ -177,12 +177,12 @@ pub(crate) fn candidates(library: &[Box<dyn BenchCause>], design: &Design) -> Ve
 
 /// A parameter searched on a logarithmic scale.
 fn logarithmic(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Log, is_shape: false }
+    Parameter { name, unit, low, high, scale: Scale::Log, is_shape: false, needs: None }
 }
 
 /// A parameter searched on a straight scale.
 fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Linear, is_shape: false }
+    Parameter { name, unit, low, high, scale: Scale::Linear, is_shape: false, needs: None }
 }
 
 /// A parameter that only shapes the effect.

@@ -1,19 +1,25 @@
 //! Filter of the sensor.
 
-use super::{BenchCause, Design, Part, logarithmic, singles};
+use super::{BenchCause, Design, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::{Lag, SensorStage};
 
 /// Filter of the sensor.
+///
+/// Two real poles share the delay at low frequency, `tau`: one alone at a share of 0, two alike at 0.5.
+/// A conditioner rarely has one pole, and a filter that is taken for one is taken for a delay.
 pub(super) struct SensorFilter;
 
 impl BenchCause for SensorFilter {
     fn cause(&self, _: &Design) -> Cause {
         Cause {
             id: "sensor-filter",
-            physics: "Low-pass filter of the displacement sensor, tau y' + y = x.",
+            physics: "Low-pass filter of the displacement sensor, (1 + (1 - c) tau s)(1 + c tau s) y = x.",
             side: Side::Sensor,
-            parameters: vec![logarithmic("tau", "s", 1e-5, 0.05)],
+            parameters: vec![
+                logarithmic("tau", "s", 1e-5, 0.05),
+                shape(linear("second_share", "1", 0.0, 0.5)),
+            ],
             fingerprint: "a lag of the reading behind everything else, amplitude and phase",
             confused_with: &["transport-delay", "electrical-lag", "rate-dependence"],
             separating: &["laser-cross-check", "multisine-5-181Hz"],
@@ -21,7 +27,7 @@ impl BenchCause for SensorFilter {
     }
 
     fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        singles(&[2e-4, 1e-3, 4e-3, 0.015])
+        [2e-4, 1e-3, 4e-3, 0.015].iter().flat_map(|&tau| [vec![tau, 0.02], vec![tau, 0.3]]).collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
@@ -29,6 +35,9 @@ impl BenchCause for SensorFilter {
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Sensor(SensorStage::Filter(Lag { tau_s: values[0] }))
+        let (tau_s, second) = (values[0], values[1]);
+        let pole = |share: f64| SensorStage::Filter(Lag { tau_s: share * tau_s });
+        let first = pole(1.0 - second);
+        Part::Sensor(if second > 0.0 { vec![first, pole(second)] } else { vec![first] })
     }
 }

@@ -32,10 +32,10 @@ impl BenchCause for SensorNonlinearity {
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Sensor(SensorStage::Nonlinearity(Nonlinearity {
+        Part::Sensor(vec![SensorStage::Nonlinearity(Nonlinearity {
             amplitude_um: values[0],
             half_range_um: HALF_RANGE_UM,
             shape: NonlinearityShape::Cubic,
-        }))
+        })])
     }
 }

@@ -29,6 +29,6 @@ impl BenchCause for TransportDelay {
     }
 
     fn part(&self, values: &[f64]) -> Part {
-        Part::Sensor(SensorStage::Delay(Delay { delay_s: values[0] }))
+        Part::Sensor(vec![SensorStage::Delay(Delay { delay_s: values[0] })])
     }
 }
