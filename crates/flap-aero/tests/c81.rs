@@ -92,7 +92,13 @@ fn what_is_wrong_is_said_with_its_place() {
     assert!(matches!(C81Airfoil::read(&short), Err(AeroError::C81Text { line: 9, .. })));
     let backward = TOUCHING.replace(" 180.00 0.1234", "-190.00 0.1234");
     let error = C81Airfoil::read(&backward).unwrap_err();
-    assert_eq!(error, AeroError::C81Order { what: "incidences", index: 2 });
+    assert_eq!(error, AeroError::C81Order { what: "incidences of the lift table", index: 2 });
+    // a count too small cuts a table off; a remark after the tables does no harm
+    let cut = TOUCHING.replace(" 1 2\n", " 1 1\n");
+    assert_ne!(cut, TOUCHING);
+    assert!(matches!(C81Airfoil::read(&cut), Err(AeroError::C81Text { line: 15, .. })));
+    let remark = format!("{TOUCHING}measured by nobody, 3 times\n");
+    assert_eq!(C81Airfoil::read(&remark), C81Airfoil::read(TOUCHING));
     for text in ["", "\n\n", "no counts", "NAME                           0 0 0 0 0 0"] {
         assert!(C81Airfoil::read(text).is_err(), "{text:?}");
     }
