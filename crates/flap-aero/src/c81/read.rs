@@ -68,6 +68,7 @@ fn nothing_follows(lines: &mut Lines<'_>) -> Result<(), AeroError> {
 }
 
 /// What the axes of a table are called in errors.
+#[derive(Clone, Copy)]
 struct TableNames {
     machs: &'static str,
     incidences: &'static str,

@@ -188,7 +188,7 @@ pub struct SectionTable {
 }
 
 fn notes(remarks: &[&'static str]) -> String {
-    remarks.iter().map(|remark| format!("Note: {remark}\n")).collect()
+    remarks.iter().flat_map(|remark| ["Note: ", remark, "\n"]).collect()
 }
 
 /// Rows a person is shown; a file or JSON has all of them.
