@@ -183,6 +183,13 @@ pub(super) const AREA: Area = Area {
             ("theory: second order", Criterion::Between(1.8, 2.2)),
             stall_order,
         ),
+        check(
+            "V-AERO-42",
+            "initial slopes of the slope-matched form, M 0.05 to 0.9, all it can match: largest error, of the slope",
+            "-",
+            ("closed forms of the first moments after a step", Criterion::AtMost(1e-10)),
+            initial_slopes,
+        ),
     ],
 };
 
@@ -274,6 +281,33 @@ fn start_values() -> Result<f64, CheckError> {
         }
     }
     worst("start values", 400, errors)
+}
+
+/// Largest error of the initial slopes that the slope-matched form says it matches: the lags' against
+/// those of the closed forms, which are cubic in the distance.
+fn initial_slopes() -> Result<f64, CheckError> {
+    let mut errors = Vec::new();
+    for mach in [0.05, 0.1, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9] {
+        for flap in [0.1, 0.2, 0.25, 0.4] {
+            let section = AttachedFlowModel::HariharanLeishman
+                .coefficients(Mach::new(mach)?, FlapChord::new(flap)?)?;
+            let step = 0.6 * mach * flap / (1.0 + mach);
+            let exact = (0..4)
+                .map(|n| short_time(mach, flap, step * f64::from(n)))
+                .collect::<Result<Vec<_>, _>>()?;
+            for (o, j) in (0..3).flat_map(|o| (0..4).map(move |j| (o, j))) {
+                let values: Vec<f64> = exact.iter().filter_map(|loads| loads[o][j]).collect();
+                let [a, b, c, d] = values[..] else { continue };
+                if section.remarks.slope_unmatched[o][j] {
+                    continue;
+                }
+                let slope = (-11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d) / (6.0 * step);
+                let lags = section.lags.iter().map(|lag| lag.pole * lag.input[j] * lag.output[o]);
+                errors.push(Ok((lags.sum::<f64>() / slope - 1.0).abs()));
+            }
+        }
+    }
+    worst("initial slopes", 200, errors)
 }
 
 /// Mach numbers of the grid up to 0.55 and beyond, and its flap chords: those of the reference tables,
