@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use exact_section::calibration::{Calibration, calibrate};
-use exact_section::{ExactError, Possio, short_time};
+use exact_section::{ExactError, Possio, incompressible_loads, short_time, steady_loads};
 use flap_aero::{
     AttachedFlowModel, FlapChord, Mach, Mode, Motion, harmonic_response, indicial_response,
 };
@@ -84,36 +84,70 @@ const CONDITIONS: [(f64, f64); 9] = [
     (0.69, 0.18),
 ];
 
-/// Largest errors against Possio's equation, per cent of the magnitude of each load: `[k <= 0.3,
-/// k <= 1]` of `Cn`, `Cm`, `Ch`.
+/// Largest errors of `Cn`, `Cm`, `Ch` in per cent of the magnitude of each load, `[k <= 0.3, k <= 1]`.
+pub type ErrorBands = [[f64; 2]; 3];
+
+/// Reduced frequencies at which the errors are taken.
+const REDUCED_FREQUENCIES: [f64; 16] =
+    [0.005, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
+
+/// Motions with an error of their own, in the order of [`errors_of_flaps`].
+const MOTIONS: [(Motion, exact_section::Motion); 3] = [
+    (Motion::Flap, exact_section::Motion::Flap),
+    (Motion::Pitch, exact_section::Motion::Pitch),
+    (Motion::Plunge, exact_section::Motion::Plunge),
+];
+
+/// Largest errors against Possio's equation (Theodorsen's theory at Mach 0) of sections with several
+/// flap chords: for each the errors of a flap motion, of pitch and of plunge.
 ///
 /// # Errors
 /// [`CheckError`] outside the theory or a model.
-pub fn errors_against_possio(
+pub fn errors_of_flaps(
     model: AttachedFlowModel,
-    (mach, flap_chord): (f64, f64),
-    motion: Motion,
-) -> Result<[[f64; 2]; 3], CheckError> {
-    let section = model.coefficients(Mach::new(mach)?, FlapChord::new(flap_chord)?)?;
-    let mut worst = [[0.0_f64; 2]; 3];
-    for k in [0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0] {
-        let loads = Possio::new(mach, k)?.loads(flap_chord)?;
-        let exact = match motion {
-            Motion::Flap => exact_section::Motion::Flap,
-            Motion::Pitch => exact_section::Motion::Pitch,
-            Motion::Plunge => exact_section::Motion::Plunge,
-        }
-        .of(&loads, k);
-        let got = harmonic_response(&section, k, motion);
-        for ((w, g), x) in worst.iter_mut().zip(got).zip(exact) {
-            let error = 100.0 * (g - x).norm() / x.norm();
-            w[1] = w[1].max(error);
-            if k < 0.301 {
-                w[0] = w[0].max(error);
+    mach: f64,
+    flap_chords: &[f64],
+) -> Result<Vec<[ErrorBands; 3]>, CheckError> {
+    let sections = flap_chords
+        .iter()
+        .map(|e| Ok(model.coefficients(Mach::new(mach)?, FlapChord::new(*e)?)?))
+        .collect::<Result<Vec<_>, CheckError>>()?;
+    let still: Vec<_> = flap_chords.iter().map(|e| steady_loads(0.0, *e)).collect();
+    let mut worst = vec![[ErrorBands::default(); 3]; flap_chords.len()];
+    for k in REDUCED_FREQUENCIES {
+        let equation = if mach > 0.0 { Some(Possio::new(mach, k)?) } else { None };
+        for (i, section) in sections.iter().enumerate() {
+            let loads = match &equation {
+                Some(equation) => equation.loads_with(flap_chords[i], &still[i])?,
+                None => incompressible_loads(k, flap_chords[i])?,
+            };
+            for ((motion, of_exact), worst) in MOTIONS.into_iter().zip(&mut worst[i]) {
+                let got = harmonic_response(section, k, motion);
+                for ((w, g), x) in worst.iter_mut().zip(got).zip(of_exact.of(&loads, k)) {
+                    let error = 100.0 * (g - x).norm() / x.norm();
+                    w[1] = w[1].max(error);
+                    if k < 0.301 {
+                        w[0] = w[0].max(error);
+                    }
+                }
             }
         }
     }
     Ok(worst)
+}
+
+/// The errors of one motion of one section.
+///
+/// # Errors
+/// As [`errors_of_flaps`].
+pub fn errors_against_possio(
+    model: AttachedFlowModel,
+    (mach, flap_chord): (f64, f64),
+    motion: Motion,
+) -> Result<ErrorBands, CheckError> {
+    let errors = errors_of_flaps(model, mach, &[flap_chord])?;
+    let place = MOTIONS.iter().position(|(m, _)| *m == motion);
+    Ok(place.map_or_else(ErrorBands::default, |place| errors[0][place]))
 }
 
 /// Largest deviation of an indicial function from the exact first moments after a step, over its

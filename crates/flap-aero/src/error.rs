@@ -99,7 +99,7 @@ pub enum AeroError {
         coefficients: usize,
     },
     /// An input of a time step is not a number, or the step goes backward.
-    #[error("{quantity} is {value}: expected {expected}; find where the section's motion lost it")]
+    #[error("{quantity} is {value}: expected {expected}")]
     BadInput {
         /// Name of the quantity.
         quantity: &'static str,

@@ -24,6 +24,8 @@ pub struct StallParameters {
     pub k2: f64,
     /// Recovery of the leading-edge suction.
     pub eta: f64,
+    /// How fast the suction is lost when the normal force exceeds the critical one.
+    pub df: f64,
     /// Normal force at which the leading edge lets go.
     pub cn1: f64,
     /// Lag of the leading-edge pressure, semichords.
@@ -37,18 +39,18 @@ pub struct StallParameters {
 }
 
 /// NACA 0012, one row per Mach number: `M`, `alpha1`, `S1`, `S2` (deg), `K0`, `K1`, `K2`, `eta`,
-/// `Cn1`, `Tp`, `Tf`, `Tv`, `Tvl`.
+/// `Df`, `Cn1`, `Tp`, `Tf`, `Tv`, `Tvl`.
 ///
 /// Source: Leishman and Beddoes, J. Am. Helicopter Soc. 34(3), 1989, table 1; the values agree with
 /// those of the public program laurapla/BLcode2.0.
-const NACA_0012: [[f64; 13]; 7] = [
-    [0.3, 15.25, 3.0, 2.3, 0.0025, -0.135, 0.04, 0.965, 1.45, 1.7, 3.0, 6.0, 7.0],
-    [0.4, 12.5, 3.25, 1.6, 0.006, -0.135, 0.05, 0.96, 1.2, 1.8, 2.5, 6.0, 9.0],
-    [0.5, 10.5, 3.5, 1.2, 0.02, -0.125, 0.04, 0.96, 1.05, 2.0, 2.2, 6.0, 9.0],
-    [0.6, 8.5, 4.0, 0.7, 0.038, -0.12, 0.04, 0.96, 0.92, 2.5, 2.0, 6.0, 9.0],
-    [0.7, 5.6, 4.5, 0.5, 0.03, -0.09, 0.15, 0.96, 0.68, 3.0, 2.0, 6.0, 9.0],
-    [0.75, 3.5, 3.5, 0.8, 0.001, -0.13, -0.02, 0.955, 0.5, 3.3, 2.0, 6.0, 9.0],
-    [0.8, 0.7, 0.7, 0.18, -0.01, 0.02, -0.01, 0.955, 0.18, 4.3, 2.0, 4.0, 9.0],
+const NACA_0012: [[f64; 14]; 7] = [
+    [0.3, 15.25, 3.0, 2.3, 0.0025, -0.135, 0.04, 0.965, 8.0, 1.45, 1.7, 3.0, 6.0, 7.0],
+    [0.4, 12.5, 3.25, 1.6, 0.006, -0.135, 0.05, 0.96, 7.75, 1.2, 1.8, 2.5, 6.0, 9.0],
+    [0.5, 10.5, 3.5, 1.2, 0.02, -0.125, 0.04, 0.96, 6.2, 1.05, 2.0, 2.2, 6.0, 9.0],
+    [0.6, 8.5, 4.0, 0.7, 0.038, -0.12, 0.04, 0.96, 6.0, 0.92, 2.5, 2.0, 6.0, 9.0],
+    [0.7, 5.6, 4.5, 0.5, 0.03, -0.09, 0.15, 0.96, 5.9, 0.68, 3.0, 2.0, 6.0, 9.0],
+    [0.75, 3.5, 3.5, 0.8, 0.001, -0.13, -0.02, 0.955, 5.5, 0.5, 3.3, 2.0, 6.0, 9.0],
+    [0.8, 0.7, 0.7, 0.18, -0.01, 0.02, -0.01, 0.955, 4.0, 0.18, 4.3, 2.0, 4.0, 9.0],
 ];
 
 impl StallParameters {
@@ -68,11 +70,12 @@ impl StallParameters {
             k1: value(5),
             k2: value(6),
             eta: value(7),
-            cn1: value(8),
-            tp: value(9),
-            tf: value(10),
-            tv: value(11),
-            tvl: value(12),
+            df: value(8),
+            cn1: value(9),
+            tp: value(10),
+            tf: value(11),
+            tv: value(12),
+            tvl: value(13),
         }
     }
 
@@ -98,6 +101,18 @@ impl StallParameters {
         half * half
     }
 
+    /// Share of the leading-edge suction that is left at a place of separation and a delayed normal
+    /// force, before `eta`:
+    ///
+    /// ```text
+    /// sqrt(f) f^x,     x = 0 up to Cn1, then Df (|Cn'| - Cn1), at most 1
+    /// ```
+    fn suction(&self, f: f64, delayed: f64) -> f64 {
+        let lost = (self.df * (delayed.abs() - self.cn1)).clamp(0.0, 1.0);
+        let f = f.max(0.0);
+        f.sqrt() * f.powf(lost)
+    }
+
     /// Moment about the quarter chord over the normal force: `k0 + k1 (1 - f) + k2 sin(pi f^2)`.
     fn moment_arm(&self, f: f64) -> f64 {
         self.k0 + self.k1 * (1.0 - f) + self.k2 * (PI * f * f).sin()
@@ -119,7 +134,7 @@ impl StallParameters {
             }
         }
         for (quantity, value) in
-            [("k0", self.k0), ("k1", self.k1), ("k2", self.k2), ("eta", self.eta)]
+            [("k0", self.k0), ("k1", self.k1), ("k2", self.k2), ("eta", self.eta), ("Df", self.df)]
         {
             if !value.is_finite() {
                 return Err(AeroError::BadInput { quantity, value, expected: "a finite number" });
@@ -138,7 +153,8 @@ impl StallParameters {
 /// Cn  = Cn_attached - Cn_alpha alpha_E (1 - K(f'')) + Cn_v
 /// Cm  = Cm_attached + [k0 + k1 (1 - f'') + k2 sin(pi f''^2)] Cn_alpha alpha_E K(f'')
 ///                   - 0.2 (1 - cos(pi tau/Tvl)) Cn_v
-/// Cc  = eta Cn_alpha alpha_E^2 sqrt(f'')                             toward the leading edge
+/// Cc  = eta Cn_alpha alpha_E^2 sqrt(f'') f''^x                       toward the leading edge,
+///       x = Df (|Cn'| - Cn1), 0 to 1: the suction goes with the vortex
 /// alpha_E: two lags on the circulatory downwash alpha + q/2 + (T10/pi) delta + (T11/4 pi) q_delta
 /// Cn' : lag Tp on Cn_attached;      f'' : lag Tf on f(Cn'/Cn_alpha)
 /// d Cn_v/dS = d/dS [Cn_alpha alpha_E (1 - K)] - Cn_v/Tv;   the feed ends when tau reaches Tvl
@@ -150,7 +166,9 @@ impl StallParameters {
 /// Differs from source: the time constants are not changed during the vortex's travel; a vortex once
 /// shed runs its course, also when the force falls below the critical one, and when another is shed
 /// before it is gone keeps its place (the loads are then continuous in time); and the impulsive part of the attached load is not separated from it when
-/// its lag `Tp` is formed (it is in the source too) nor touched by the separation. Assumes the flap
+/// its lag `Tp` is formed (it is in the source too) nor touched by the separation; the separation of
+/// a falling incidence follows the same static curve as that of a rising one, so that the flow
+/// attaches again too early. Assumes the flap
 /// acts on the separation through the lift it makes. Not modelled: the hinge moment of separated
 /// flow (the attached one is kept), reattachment beyond the lags.
 ///
@@ -333,7 +351,8 @@ impl StallState {
     /// their difference from these.
     pub fn without_delay(&self, section: &StallSection, attached: [f64; 3]) -> StalledLoads {
         let separation = section.parameters.separation(attached[0] / section.slope);
-        Self { separation, vortex: 0.0, spent: [0.0; 2], travel: None, ..*self }
+        let delayed = attached[0];
+        Self { separation, delayed, vortex: 0.0, spent: [0.0; 2], travel: None, ..*self }
             .loads(section, attached)
     }
 
@@ -429,7 +448,7 @@ impl StallState {
             normal: normal - effective * (1.0 - left) + vortex,
             moment: moment + p.moment_arm(f) * effective * left - nose_down,
             hinge,
-            chord: p.eta * effective * effective / section.slope * f.max(0.0).sqrt(),
+            chord: p.eta * effective * effective / section.slope * p.suction(f, self.delayed),
             separation: f,
             vortex,
         }

@@ -65,6 +65,28 @@ fn numbers_apart_by_blanks_are_counted() {
     assert_eq!(airfoil.lift.incidences_deg(), [-10.0, 10.0]);
 }
 
+/// Programs break rows of nine Mach numbers or more at different places: the count decides.
+#[test]
+fn rows_may_be_broken_anywhere_between_blanks() {
+    let machs: Vec<String> = (0..10).map(|i| format!("0.{i}5")).collect();
+    let row = |alpha: i32| -> Vec<String> {
+        let values = (0..10).map(|i| format!("{:.3}", 0.1 * f64::from(alpha + i)));
+        std::iter::once(alpha.to_string()).chain(values).collect()
+    };
+    let text = |at: usize| {
+        let broken = |words: &[String]| -> String {
+            words.chunks(at).map(|line| line.join(" ") + "\n").collect()
+        };
+        let table = [broken(&machs), broken(&row(-2)), broken(&row(3))].concat();
+        format!("ANYWHERE 10 2 10 2 10 2\n{table}{table}{table}")
+    };
+    let whole = C81Airfoil::read(&text(20)).unwrap();
+    assert_eq!(whole.lift.row(1)[9], 1.2);
+    for at in [2, 4, 8, 9, 10] {
+        assert_eq!(C81Airfoil::read(&text(at)).unwrap(), whole, "lines of {at}");
+    }
+}
+
 #[test]
 fn written_and_read_back_exactly() {
     let airfoil = C81Airfoil::read(TOUCHING).unwrap();
@@ -92,7 +114,13 @@ fn what_is_wrong_is_said_with_its_place() {
     assert!(matches!(C81Airfoil::read(&short), Err(AeroError::C81Text { line: 9, .. })));
     let backward = TOUCHING.replace(" 180.00 0.1234", "-190.00 0.1234");
     let error = C81Airfoil::read(&backward).unwrap_err();
-    assert_eq!(error, AeroError::C81Order { what: "incidences", index: 2 });
+    assert_eq!(error, AeroError::C81Order { what: "incidences of the lift table", index: 2 });
+    // a count too small cuts a table off; a remark after the tables does no harm
+    let cut = TOUCHING.replace(" 1 2\n", " 1 1\n");
+    assert_ne!(cut, TOUCHING);
+    assert!(matches!(C81Airfoil::read(&cut), Err(AeroError::C81Text { line: 15, .. })));
+    let remark = format!("{TOUCHING}measured by nobody, 3 times\n");
+    assert_eq!(C81Airfoil::read(&remark), C81Airfoil::read(TOUCHING));
     for text in ["", "\n\n", "no counts", "NAME                           0 0 0 0 0 0"] {
         assert!(C81Airfoil::read(text).is_err(), "{text:?}");
     }

@@ -74,7 +74,9 @@ fn held_for_ever_it_is_kirchhoffs_static_curve() {
         assert_abs_diff_eq!(got.normal, normal, epsilon = 1e-12);
         let arm = p.k0 + p.k1 * (1.0 - f) + p.k2 * (std::f64::consts::PI * f * f).sin();
         assert_abs_diff_eq!(got.moment, arm * normal, epsilon = 1e-12);
-        assert_abs_diff_eq!(got.chord, p.eta * slope * alpha * alpha * f.sqrt(), epsilon = 1e-12);
+        let lost = (p.df * (slope * alpha.abs() - p.cn1)).clamp(0.0, 1.0);
+        let suction = p.eta * slope * alpha * alpha * f.powf(0.5 + lost);
+        assert_abs_diff_eq!(got.chord, suction, epsilon = 1e-12);
         assert_abs_diff_eq!(got.vortex, 0.0);
         // the drag of the pressures is small in attached flow and large in stall
         let drag = got.pressure_drag(alpha);
@@ -138,6 +140,100 @@ fn a_deep_stall_loop_looks_like_the_published_ones() {
     assert!(up.1.normal > down.1.normal + 0.3, "{} {}", up.1.normal, down.1.normal);
     // the lower half of the incidences is attached again
     assert!(loop_[3 * quarter].1.separation > 0.95);
+}
+
+/// A vortex that has left the chord is fed no more, however the attached load goes on growing: it
+/// decays as `e^(-S/Tv)`, and over another chord it is gone.
+#[test]
+fn a_vortex_off_the_chord_only_decays() {
+    let p = naca_0012();
+    let section = stalling(p);
+    let ds = 0.05;
+    let mut state = StallState::settled(&section, 0.0, &[0.0; 4]);
+    let mut since: Option<f64> = None;
+    let (mut before, mut last, mut compared) = (0.0, 0.0, 0);
+    for n in 1..=1200 {
+        // an incidence that rises for ever
+        let alpha = 0.012 * ds * f64::from(n);
+        let normal = TAU * alpha;
+        let loads = state.step(&section, [normal, 0.0, 0.0], &[alpha, 0.0, 0.0, 0.0], ds).unwrap();
+        // the delayed force of a ramp is late by Tp once its start is forgotten
+        let delayed = TAU * 0.012 * (ds * f64::from(n) - p.tp);
+        since = since.map(|s| s + ds).or_else(|| (delayed > p.cn1 + 0.02).then_some(0.3));
+        if since.is_some_and(|s| s > p.tvl + 0.5) {
+            assert_relative_eq!(loads.vortex, before * (-ds / p.tv).exp(), max_relative = 1e-9);
+            compared += 1;
+        } else {
+            last = loads.vortex;
+        }
+        before = loads.vortex;
+    }
+    assert!(compared > 300 && last > 0.2, "{compared} {last}");
+}
+
+/// Incidences and values of a digitised loop, in time.
+fn measured(text: &str) -> Vec<(f64, f64)> {
+    let mut rows =
+        text.lines().map(|line| line.split_whitespace().map(|word| word.parse::<f64>().unwrap()));
+    let (angles, values) = (rows.next().unwrap(), rows.next().unwrap());
+    angles.zip(values).collect()
+}
+
+/// A measured deep-stall loop of the NACA 0012 (Mach 0.301, `12 + 9.9 sin` deg, k 0.098): how near the
+/// model comes, and where it does not. The figures are held from both sides.
+#[test]
+fn a_measured_deep_stall_loop() {
+    let cycle = pitching(naca_0012(), [12.0, 9.9], 0.098, 720);
+    let axes = |(alpha, l, _): &(f64, StalledLoads, [f64; 3])| {
+        let (sin, cos) = alpha.sin_cos();
+        [l.normal * cos + l.chord * sin, l.pressure_drag(*alpha)]
+    };
+    let model: Vec<[f64; 2]> = cycle.iter().map(axes).collect();
+    let at = |angle: f64, rising: bool, which: usize| {
+        let quarter = ((angle - 12.0) / 9.9).clamp(-1.0, 1.0).asin();
+        let phase = if rising { quarter } else { std::f64::consts::PI - quarter };
+        let place = (720.0 * phase / TAU).rem_euclid(720.0);
+        // the first entry is one step after phase 0
+        let n = (0..720).find(|n| f64::from(*n) + 1.0 > place).unwrap_or(0);
+        let share = place - f64::from(n);
+        let value = |n: i32| model[usize::try_from((n + 719).rem_euclid(720)).unwrap()][which];
+        value(n) + share * (value(n + 1) - value(n))
+    };
+    // the lift that falls is too high by 0.4: the model attaches again too early
+    for (text, which, [height, place], known) in [
+        (
+            include_str!("../../../fixtures/reference/deep_stall/exp_cl.txt"),
+            0,
+            [1.023, 0.45],
+            [0.240, 0.391],
+        ),
+        (
+            include_str!("../../../fixtures/reference/deep_stall/exp_cd.txt"),
+            1,
+            [0.747, 1.45],
+            [0.123, 0.046],
+        ),
+    ] {
+        let points = measured(text);
+        let top = (0..points.len()).max_by(|a, b| points[*a].0.total_cmp(&points[*b].0)).unwrap();
+        let rms = |rising: bool| {
+            let half = if rising { &points[..=top] } else { &points[top + 1..] };
+            let squares = half.iter().map(|(a, v)| (at(*a, rising, which) - v).powi(2));
+            (squares.sum::<f64>() / half.len() as f64).sqrt()
+        };
+        let peak = |values: &mut dyn Iterator<Item = (f64, f64)>| {
+            values.fold((0.0, 0.0), |best, now| if now.1 > best.1 { now } else { best })
+        };
+        let real = peak(&mut points.iter().copied());
+        let made = peak(&mut cycle.iter().zip(&model).map(|(c, m)| (c.0.to_degrees(), m[which])));
+        let errors = [rms(true), rms(false)];
+        println!("peak measured {real:.3?}, model {made:.3?}; rms up, down {errors:.3?}");
+        assert_abs_diff_eq!(made.1 / real.1, height, epsilon = 0.01);
+        assert_abs_diff_eq!(made.0 - real.0, place, epsilon = 0.1);
+        for (error, known) in errors.into_iter().zip(known) {
+            assert_abs_diff_eq!(error, known, epsilon = 0.005);
+        }
+    }
 }
 
 #[test]

@@ -99,6 +99,24 @@ impl FlightAir {
         loads
     }
 
+    /// Whether any section stalls dynamically: its loads are then not linear in the flap.
+    pub(crate) fn stalls(&self) -> bool {
+        self.stations.iter().any(|station| station.stall.is_some())
+    }
+
+    /// What the loads of a lifting station change by with the inputs of its flap, `flow` holding their
+    /// changes and `lag` those of the lags; also of a section with tables, which know no flap.
+    pub(crate) fn flap_slope(
+        &self,
+        scales: AirScales,
+        (station, point): (usize, usize),
+        flow: &SectionFlow,
+        lag: [f64; 3],
+    ) -> SectionLoads {
+        let frictionless = AirScales { drag: 0.0, ..scales };
+        section_loads(frictionless, flow, &self.stations[station].prompt[point], lag)
+    }
+
     /// What the past adds to the loads at all lifting stations and points, `[point][station]`, for the
     /// flows `[point][station]`.
     ///

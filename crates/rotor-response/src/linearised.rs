@@ -1,5 +1,6 @@
 //! How the hub loads answer to small flap motions about a converged orbit.
 
+use crate::air::FlapAngle;
 use crate::loads::SixLoads;
 use crate::rotor::{RevolutionLoads, settle_accelerations};
 use crate::system::{PointInput, ResponseSystem};
@@ -60,6 +61,8 @@ const THRUST_DIFFERENCE: f64 = 1e-5;
 struct Direction {
     points: Vec<PointInput>,
     size: f64,
+    /// The direction itself at every point, if it is one of the flaps.
+    flaps: Option<Vec<Vec<FlapAngle>>>,
 }
 
 /// The orbit about which is linearised.
@@ -177,7 +180,9 @@ impl RotorSolver {
             .map(|(angle, along)| sum(angle, along, size))
             .collect();
         let moved = Condition { flap_angles_rad, ..condition.clone() };
-        Direction { points: self.point_inputs(&moved, inflow), size }
+        let at = |azimuth: &f64| direction.iter().map(|f| f.value_and_rates(*azimuth)).collect();
+        let flaps = Some(self.time.points().iter().map(at).collect());
+        Direction { points: self.point_inputs(&moved, inflow), size, flaps }
     }
 
     /// The condition with the inflow moved a little along its slope with thrust.
@@ -192,7 +197,7 @@ impl RotorSolver {
         let parameters: Vec<f64> =
             inflow.parameters().iter().zip(slope).map(|(p, s)| p + size * s).collect();
         let moved = inflow.with_parameters(&parameters)?;
-        Ok(Direction { points: self.point_inputs(condition, &moved), size })
+        Ok(Direction { points: self.point_inputs(condition, &moved), size, flaps: None })
     }
 }
 
@@ -218,9 +223,14 @@ impl<'a> Base<'a> {
         self.solver.rotor.system(&self.solver.air, points)
     }
 
-    /// `df/dp` at all points, the motion held.
+    /// `df/dp` at all points, the motion held: in closed form along the flaps, else by a difference.
     fn load_change(&self, change: &Direction) -> Result<DMatrix<f64>, ResponseError> {
         let system = self.system(change.points.clone());
+        if let Some(flaps) = &change.flaps
+            && let Some(slope) = system.flap_slope(&self.orbit, flaps)?
+        {
+            return Ok(slope);
+        }
         let mut forces = DMatrix::zeros(self.forces.nrows(), self.forces.ncols());
         system.residual(&self.orbit, &mut forces)?;
         Ok((forces - &self.forces) / change.size)
@@ -292,5 +302,107 @@ fn add_scaled(hub: &mut SixLoads, other: &SixLoads, factor: f64) {
 fn scale(hub: &mut SixLoads, factor: f64) {
     for component in &mut hub.components {
         *component = sum(&HarmonicSeries::zero(component.harmonics.len()), component, factor);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Compressibility, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
+        ResponseTolerances, ReverseFlow, Rotor, RotorModel, TrailingEdgeFlap,
+    };
+    use flap_aero::{AirfoilSpan, AttachedFlowModel, C81Airfoil, C81Table, FlapEffectiveness};
+    use rotor_base::Harmonic;
+    use rotor_fem::{BladeProperties, BladeSpec};
+    use rotor_wake::{FlightState, LinearInflow};
+
+    fn model(couplings: Couplings, airfoils: Option<Arc<AirfoilSpan>>) -> RotorModel {
+        RotorModel {
+            blades: 4,
+            chord: 0.055,
+            lock_number: 5.2,
+            drag_coefficient: 0.01,
+            root_cutout: 0.2,
+            modal_damping: 0.005,
+            couplings,
+            section_model: AttachedFlowModel::Calibrated,
+            compressibility: Compressibility::LocalMach { tip_mach: 0.58 },
+            reverse_flow: ReverseFlow::default(),
+            flaps: vec![TrailingEdgeFlap {
+                start: 0.7,
+                end: 0.8,
+                chord_fraction: 0.25,
+                mass_fraction: 0.1,
+                cg_fraction: 0.2,
+                gyration_fraction: None,
+                mass: FlapMass::PartOfBlade,
+                effectiveness: FlapEffectiveness::new(0.78, 1.0, 0.9).unwrap(),
+            }],
+            nonlinear: NonlinearSections { airfoils, dynamic_stall: None },
+        }
+    }
+
+    fn stalling_table() -> Arc<AirfoilSpan> {
+        let angles: Vec<f64> = (-36..=36).map(|i| 5.0 * f64::from(i)).collect();
+        let table = |f: fn(f64) -> f64| {
+            let values = angles.iter().map(|a| f(a.to_radians())).collect();
+            C81Table::new(vec![0.0], angles.clone(), values).unwrap()
+        };
+        let airfoil = C81Airfoil {
+            name: "PLATE".into(),
+            lift: table(|a| 2.5 * (2.0 * a).sin()),
+            drag: table(|a| 0.01 + 1.5 * a.sin().powi(2)),
+            moment: table(|a| -0.1 * a.sin()),
+        };
+        Arc::new(AirfoilSpan::new(vec![(0.0, airfoil)]).unwrap())
+    }
+
+    /// The closed slope of the residual along the flaps against central differences.
+    #[test]
+    fn slopes_along_the_flaps_are_those_of_differences() {
+        let moderate = Couplings::Moderate(rotor_fem::TorsionTerms::default());
+        for (couplings, airfoils) in
+            [(Couplings::Full, None), (moderate, None), (Couplings::Full, Some(stalling_table()))]
+        {
+            let blade = BladeProperties::new(BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1000.0));
+            let d = Discretisation {
+                blade_elements: 5,
+                modes: [2, 1, 1],
+                load_harmonics: 8,
+                ..Discretisation::default()
+            };
+            let rotor = Rotor::new(model(couplings, airfoils), &blade.unwrap(), d).unwrap();
+            let mut solver =
+                RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
+            let mut direction = vec![HarmonicSeries::zero(3)];
+            direction[0].mean = 0.3;
+            direction[0].set_harmonic(3, Harmonic { cosine: 1.0, sine: -0.4 });
+            let condition = Condition {
+                flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.08 },
+                controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.02, theta1s_rad: -0.07 },
+                flap_angles_rad: vec![sum(&HarmonicSeries::zero(3), &direction[0], 0.02)],
+            };
+            let inflow = LinearInflow::Prescribed { induced_inflow: 0.01 };
+            let about = solver.solve(&condition, &inflow, None).unwrap();
+            let base = Base::new(&solver, &condition, &about).unwrap();
+            let forces = |by: f64| {
+                let flap_angles_rad = vec![sum(&condition.flap_angles_rad[0], &direction[0], by)];
+                let moved = Condition { flap_angles_rad, ..condition.clone() };
+                let system = base.system(solver.point_inputs(&moved, &about.inflow));
+                let mut out = base.forces.clone();
+                system.residual(&base.orbit, &mut out).unwrap();
+                out
+            };
+            let difference = (forces(0.1) - forces(-0.1)) / 0.2;
+            let change = solver.moved_flaps(&condition, &about.inflow, &direction);
+            let slope = base.load_change(&change).unwrap();
+            let off = (&slope - &difference).amax() / difference.amax();
+            println!("{couplings:?}: {off:.1e}");
+            assert!(off <= 1e-8, "{couplings:?}: {off:e}");
+            // and it was the closed slope that was compared
+            let system = base.system(change.points.clone());
+            assert!(system.flap_slope(&base.orbit, &change.flaps.unwrap()).unwrap().is_some());
+        }
     }
 }

@@ -141,3 +141,32 @@ pub(crate) fn add_stall(
     loads.fy += scale * (chord * cos - normal * sin);
     loads.moment += scale * scales.chord * moment;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    /// What stall adds stands in section axes, scales with the whole speed, and is nothing in reverse flow.
+    #[test]
+    fn stall_acts_along_the_axes_of_the_section() {
+        let scales = AirScales { density_chord: 0.8, chord: 0.055, drag: 0.01 };
+        let [normal, chord, moment] = [-0.4, -0.3, -0.2];
+        let added = |u_t: f64| {
+            let flow = SectionFlow { u_t, u_p: 0.05, pitch: 0.21, ..SectionFlow::default() };
+            let mut loads = SectionLoads::default();
+            add_stall(scales, &flow, [normal, chord, moment], &mut loads);
+            loads
+        };
+        let loads = added(0.6);
+        let pressure = 0.5 * 0.8 * 0.6_f64.hypot(0.05) * 0.6;
+        // turned back by the pitch: up is normal, toward the leading edge is chord
+        let (sin, cos) = 0.21_f64.sin_cos();
+        assert_abs_diff_eq!(loads.fz * cos - loads.fy * sin, pressure * normal, epsilon = 1e-15);
+        assert_abs_diff_eq!(loads.fz * sin + loads.fy * cos, pressure * chord, epsilon = 1e-15);
+        assert_abs_diff_eq!(loads.moment, pressure * 0.055 * moment, epsilon = 1e-15);
+        // suction that is lost pulls the blade back
+        assert!(loads.fy < 0.0);
+        assert_eq!(added(-0.6), SectionLoads::default());
+    }
+}

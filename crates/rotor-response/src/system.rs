@@ -306,3 +306,75 @@ impl ResponseSystem<'_> {
         }
     }
 }
+
+impl ResponseSystem<'_> {
+    /// Slope of the residual along a motion of the flaps given at every point, the motion of the blade
+    /// held, in closed form:
+    ///
+    /// ```text
+    /// dw = [0, 0, U_T d delta, c d delta'],   dx/dt = (|U|/b) pole (input . dw - x)
+    /// dF = (1/2) rho c [ |U| (direct dw + sum output x) + b rate dw/dt ] + inertia of the flaps
+    /// dR = R(dF) - R(0)
+    /// ```
+    /// the slopes of the section loads carried along the flow, whose lags the operator that is kept for
+    /// them makes periodic; the residual is linear in its loads.
+    ///
+    /// `None` where the loads are not linear in the flap: sections that stall dynamically, flaps that
+    /// weigh beside the blade.
+    ///
+    /// # Errors
+    /// None that [`revolution`](Self::revolution) does not have.
+    pub(crate) fn flap_slope(
+        &self,
+        samples: &OrbitSamples,
+        flaps: &[Vec<FlapAngle>],
+    ) -> Result<Option<DMatrix<f64>>, ResponseError> {
+        if self.air.stalls() || self.blade.flaps_beside_blade() {
+            return Ok(None);
+        }
+        let along = |(point, flap): (&PointInput, &Vec<FlapAngle>)| PointInput {
+            flap: flap.clone(),
+            ..point.clone()
+        };
+        let along =
+            ResponseSystem { points: self.points.iter().zip(flaps).map(along).collect(), ..*self };
+        let mut motion = Motion::default();
+        let mut flows = Vec::with_capacity(self.points.len());
+        for p in 0..self.points.len() {
+            along.fill(&mut motion, samples, p);
+            // the inputs of the flap are linear in its motion: along the direction they are their changes
+            let mut changes = along.flows(p, &motion);
+            for flow in &mut changes {
+                flow.input[..2].fill(0.0);
+                flow.input_rate[..2].fill(0.0);
+            }
+            flows.push(changes);
+        }
+        let pasts = self.air.pasts(&flows)?;
+        let mut out = DMatrix::zeros(self.dof(), self.points.len());
+        let mut scratch = Scratch::default();
+        let [mut loaded, mut bare] = [0; 2].map(|_| vec![0.0; self.dof()]);
+        for (p, flows) in flows.iter().enumerate() {
+            along.fill(&mut motion, samples, p);
+            let sections: Vec<SectionLoads> = flows
+                .iter()
+                .zip(&pasts[p])
+                .enumerate()
+                .map(|(s, (flow, past))| self.air.flap_slope(self.scales, (s, p), flow, past.lag))
+                .collect();
+            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
+            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
+            let coordinates = [q.as_slice(), &qd, &qdd];
+            scratch.loads.clear(self.blade.grid.len());
+            self.project(p, (&motion, coordinates), &mut scratch, &mut bare);
+            along.span_loads(p, &motion, &sections, &mut scratch.loads);
+            self.project(p, (&motion, coordinates), &mut scratch, &mut loaded);
+            for (slope, (loaded, bare)) in
+                out.column_mut(p).iter_mut().zip(loaded.iter().zip(&bare))
+            {
+                *slope = loaded - bare;
+            }
+        }
+        Ok(Some(out))
+    }
+}

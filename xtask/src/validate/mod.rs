@@ -19,6 +19,7 @@ mod moderate;
 mod moderate_blades;
 mod rotor;
 mod section;
+mod section_beyond;
 mod section_compressible;
 mod study;
 mod time_elements;
@@ -38,6 +39,7 @@ pub const AREAS: &[Area] = &[
     time_elements::AREA,
     section::AREA,
     section_compressible::AREA,
+    section_beyond::AREA,
     inflow::AREA,
     wake::AREA,
     rotor::AREA,

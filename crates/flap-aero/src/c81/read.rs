@@ -1,5 +1,6 @@
 //! An aerofoil from a C81 file's text.
 
+use super::table::ascending;
 use super::write::{NAME, PER_LINE, WIDTH};
 use super::{C81Airfoil, C81Table};
 use crate::AeroError;
@@ -13,13 +14,17 @@ struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     fn next(&mut self, expected: &'static str) -> Result<&'a str, AeroError> {
+        self.next_filled().ok_or_else(|| self.fault(1, expected))
+    }
+
+    fn next_filled(&mut self) -> Option<&'a str> {
         for (index, line) in self.lines.by_ref() {
             self.line = index + 1;
             if !line.trim().is_empty() {
-                return Ok(line);
+                return Some(line);
             }
         }
-        Err(self.fault(1, expected))
+        None
     }
 
     fn fault(&self, column: usize, expected: &'static str) -> AeroError {
@@ -28,17 +33,45 @@ impl<'a> Lines<'a> {
 }
 
 pub(super) fn airfoil(text: &str) -> Result<C81Airfoil, AeroError> {
-    let mut lines = Lines { lines: text.lines().enumerate(), line: 0 };
+    let mut lines = Lines { lines: text.lines().enumerate(), line: 1 };
     let expected = "a first line with name (30 columns) and six counts (2 columns each)";
     let head = lines.next(expected)?;
     let Some((name, counts)) = header(head) else {
         return Err(lines.fault(NAME + 1, expected));
     };
     let [ml, al, md, ad, mm, am] = counts;
-    let lift = table(&mut lines, ml, al)?;
-    let drag = table(&mut lines, md, ad)?;
-    let moment = table(&mut lines, mm, am)?;
+    let names = |machs, incidences| TableNames { machs, incidences };
+    let lift = names("Mach numbers of the lift table", "incidences of the lift table");
+    let drag = names("Mach numbers of the drag table", "incidences of the drag table");
+    let moment = names("Mach numbers of the moment table", "incidences of the moment table");
+    let lift = table(&mut lines, lift, ml, al)?;
+    let drag = table(&mut lines, drag, md, ad)?;
+    let moment = table(&mut lines, moment, mm, am)?;
+    nothing_follows(&mut lines)?;
     Ok(C81Airfoil { name, lift, drag, moment })
+}
+
+/// That no row is left over: remarks may follow the tables, numbers are a table the counts cut off.
+fn nothing_follows(lines: &mut Lines<'_>) -> Result<(), AeroError> {
+    let is_row = |line: &str| {
+        let mut words = line.split_whitespace();
+        words.all(|word| parsed(word).is_some())
+            || by_columns(line, true, line.trim_end().chars().count().div_ceil(WIDTH) - 1).is_ok()
+    };
+    while let Some(line) = lines.next_filled() {
+        if is_row(line) {
+            let expected = "the end of the tables; the counts of the first line are too small";
+            return Err(lines.fault(1, expected));
+        }
+    }
+    Ok(())
+}
+
+/// What the axes of a table are called in errors.
+#[derive(Clone, Copy)]
+struct TableNames {
+    machs: &'static str,
+    incidences: &'static str,
 }
 
 /// Name and counts of the first line: by columns, or else the last six words.
@@ -66,7 +99,12 @@ fn header(line: &str) -> Option<(String, [usize; 6])> {
     Some((words[..first].join(" "), counts))
 }
 
-fn table(lines: &mut Lines<'_>, machs: usize, incidences: usize) -> Result<C81Table, AeroError> {
+fn table(
+    lines: &mut Lines<'_>,
+    names: TableNames,
+    machs: usize,
+    incidences: usize,
+) -> Result<C81Table, AeroError> {
     let (_, mach_numbers) = row(lines, false, machs)?;
     let mut angles = Vec::with_capacity(incidences);
     let mut values = Vec::with_capacity(machs * incidences);
@@ -75,6 +113,8 @@ fn table(lines: &mut Lines<'_>, machs: usize, incidences: usize) -> Result<C81Ta
         angles.extend(angle);
         values.extend(row);
     }
+    ascending(names.machs, &mach_numbers)?;
+    ascending(names.incidences, &angles)?;
     C81Table::new(mach_numbers, angles, values)
 }
 

@@ -1,6 +1,6 @@
 //! Histories of a section: after a step, along a ramp, round a cycle.
 
-use super::{SectionChoice, SectionTable, within};
+use super::{FASTEST, SectionChoice, SectionTable, within};
 use crate::SimError;
 use flap_aero::{
     CycleStep, MarchingSection, Motion, SectionInputs, SectionState, StallParameters, StallSection,
@@ -8,10 +8,20 @@ use flap_aero::{
 };
 use std::f64::consts::TAU;
 
+/// Lowest reduced frequency of a loop, and shortest rise of a ramp, semichords: below, it is a static
+/// curve or a step.
+const SLOWEST: f64 = 1e-6;
+/// Longest history, semichords.
+const LONGEST: f64 = 1e6;
+/// Largest incidence or flap angle of a loop, rad.
+const HALF_TURN: f64 = std::f64::consts::PI;
+
 /// Most rows of a history.
 const MOST_POINTS: usize = 1_000_000;
-/// Cycles marched for a stalled loop to repeat.
+/// Cycles marched for a stalled loop to repeat, and the distance added to them, semichords: some
+/// twenty-five decays of the slowest lag or the vortex make a difference of 1 to one of 1e-11.
 const MOST_CYCLES: usize = 60;
+const SETTLING_DISTANCE: f64 = 400.0;
 /// Change of the normal force from cycle to cycle that counts as none.
 const REPEATED: f64 = 1e-10;
 
@@ -78,10 +88,13 @@ fn inputs(motion: Motion, value: f64, rate: f64) -> SectionInputs {
 /// points.
 pub fn transient_history(question: &TransientQuestion) -> Result<SectionTable, SimError> {
     let TransientQuestion { motion, rise, distance, points, .. } = *question;
-    within("distance, semichords", distance, distance > 0.0, "a finite number above 0")?;
-    within("rise, semichords", rise, rise >= 0.0, "a finite number, 0 or more")?;
+    let fits = distance > 0.0 && distance <= LONGEST;
+    within("distance, semichords", distance, fits, "above 0, to 1e6")?;
+    let fits = rise == 0.0 || (SLOWEST..=LONGEST).contains(&rise);
+    within("rise, semichords", rise, fits, "0 (a step), or 1e-6 to 1e6")?;
     check_points(points)?;
     let (section, ..) = question.section.coefficients()?;
+    let remarks = question.section.remarks(&section.remarks, motion, None);
     let section = MarchingSection::new(&section);
     let mut state = SectionState::at_rest(&section);
     // on the way up the rate is there at once, at the top it is gone at once
@@ -113,6 +126,7 @@ pub fn transient_history(question: &TransientQuestion) -> Result<SectionTable, S
     let what = if rise > 0.0 { format!("ramp over {rise} semichords") } else { "step".to_owned() };
     Ok(SectionTable {
         title: format!("unit {what} of {motion:?}, {name}, Mach {}", question.section.mach),
+        remarks,
         columns: vec!["S", "input", "cn", "cm", "ch"],
         rows,
     })
@@ -126,11 +140,13 @@ pub fn transient_history(question: &TransientQuestion) -> Result<SectionTable, S
 pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
     let LoopQuestion { motion, mean_rad, amplitude_rad, reduced_frequency: k, points, .. } =
         *question;
-    within("reduced frequency", k, k > 0.0, "a finite number above 0")?;
-    within("mean incidence", mean_rad, true, "a finite number")?;
-    within("amplitude", amplitude_rad, true, "a finite number")?;
+    within("reduced frequency", k, (SLOWEST..=FASTEST).contains(&k), "1e-6 to 1000")?;
+    for (quantity, angle_rad) in [("mean, deg", mean_rad), ("amplitude, deg", amplitude_rad)] {
+        within(quantity, angle_rad.to_degrees(), angle_rad.abs() <= HALF_TURN, "-180 to 180")?;
+    }
     check_points(points)?;
     let (coefficients, mach, flap) = question.section.coefficients()?;
+    let remarks = question.section.remarks(&coefficients.remarks, motion, Some(k));
     let section = MarchingSection::new(&coefficients);
     let ds = TAU / k / points as f64;
     let cycle: Vec<CycleStep<'_>> = (1..=points)
@@ -152,6 +168,7 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
         }
         return Ok(SectionTable {
             title: title(question, "attached flow"),
+            remarks,
             columns: vec!["angle_deg", "cn", "cm", "ch"],
             rows,
         });
@@ -161,7 +178,8 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
     let [cn, ..] = state.loads(&section, last)?;
     let mut stall = StallState::settled(&stalling, cn, &last.modes);
     let mut rows: Vec<Vec<f64>> = Vec::new();
-    for _ in 0..MOST_CYCLES {
+    let cycles = MOST_CYCLES + whole(SETTLING_DISTANCE * k / TAU);
+    for _ in 0..cycles {
         let mut next = Vec::with_capacity(points);
         for step in &cycle {
             let attached = state.step(step.section, &step.inputs, ds)?;
@@ -185,14 +203,21 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
         if settled {
             return Ok(SectionTable {
                 title: title(question, &format!("dynamic stall, repeats to {change:.1e}")),
+                remarks,
                 columns: vec!["angle_deg", "cn", "cm", "ch", "cc", "cd_pressure", "f", "cn_vortex"],
                 rows,
             });
         }
     }
     let quantity = "number of cycles without repetition of the stalled loop";
-    let (value, expected) = (MOST_CYCLES as f64, "a loop that repeats; choose another frequency");
+    let (value, expected) = (cycles as f64, "a loop that repeats; choose another frequency");
     Err(flap_aero::AeroError::BadInput { quantity, value, expected }.into())
+}
+
+/// The whole part of a number of cycles.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1e5")]
+fn whole(cycles: f64) -> usize {
+    cycles as usize
 }
 
 fn title(question: &LoopQuestion, flow: &str) -> String {

@@ -21,6 +21,13 @@ use flap_aero::{
 };
 use serde::Serialize;
 
+/// Largest reduced frequency of a question: far beyond what a section can do, and far from overflow.
+const FASTEST: f64 = 1e3;
+/// Largest reduced frequency whose error the calibration bounds.
+const FASTEST_CALIBRATED: f64 = 1.0;
+/// Mach number to which linear theory is good.
+const FASTEST_LINEAR: f64 = 0.7;
+
 /// A section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionChoice {
@@ -44,6 +51,55 @@ impl SectionChoice {
         let flap = FlapChord::new(self.flap_chord)?;
         let section = self.model.coefficients(mach, flap)?;
         Ok((section.with_flap_effectiveness(&self.effectiveness), mach, flap))
+    }
+
+    /// What a reader of a response has to know: where the model left its own form, and how far it is
+    /// from exact theory where that is far.
+    ///
+    /// `reduced_frequency` is that of a harmonic motion; a step or a ramp has none.
+    fn remarks(
+        &self,
+        remarks: &ModelRemarks,
+        motion: Motion,
+        reduced_frequency: Option<f64>,
+    ) -> Vec<&'static str> {
+        let unmatched = remarks.slope_unmatched.iter().flatten().any(|unmatched| *unmatched);
+        let flap = motion == Motion::Flap;
+        let of = |model| self.model == model;
+        let reconstructed = of(AttachedFlowModel::HariharanLeishman);
+        let steady = reduced_frequency.is_some_and(|k| k <= 0.0);
+        let fast = reduced_frequency.is_some_and(|k| k > FASTEST_CALIBRATED);
+        [
+            (flap && self.flap_chord <= 0.0, "the section has no flap"),
+            (
+                reconstructed && flap && !steady,
+                "this form is about 30 % off exact theory in the lift of a flap; the calibrated \
+                 model is within 3 %",
+            ),
+            (
+                of(AttachedFlowModel::Calibrated) && fast,
+                "the bounds of the calibration hold for reduced frequencies to 1",
+            ),
+            (
+                self.mach > FASTEST_LINEAR && !of(AttachedFlowModel::QuasiSteady),
+                "linear theory is good to about Mach 0.7",
+            ),
+            (
+                remarks.mach_floored,
+                "the noncirculatory loads are those of a small Mach number above 0",
+            ),
+            (
+                remarks.mach_capped,
+                "the coefficients are those of the highest Mach number calibrated",
+            ),
+            (
+                unmatched,
+                "an initial slope could not be matched: its time constant is the smallest used",
+            ),
+        ]
+        .into_iter()
+        .filter_map(|(applies, text)| applies.then_some(text))
+        .collect()
     }
 }
 
@@ -82,27 +138,13 @@ pub struct SectionResult {
 /// [`SimError::Section`] for a Mach number, flap chord or frequency outside the model.
 pub fn section_response(question: &SectionQuestion) -> Result<SectionResult, SimError> {
     let k = question.reduced_frequency;
-    within("reduced frequency", k, k >= 0.0, "a finite number, 0 or more")?;
+    within("reduced frequency", k, (0.0..=FASTEST).contains(&k), "0 to 1000")?;
     let (section, ..) = question.section.coefficients()?;
     let [cn, cm, ch] =
         harmonic_response(&section, k, question.motion).map(|value| [value.re, value.im]);
     let model = question.section.model.title();
-    Ok(SectionResult { model, remarks: remarks(&section.remarks), cn, cm, ch })
-}
-
-fn remarks(remarks: &ModelRemarks) -> Vec<&'static str> {
-    let unmatched = remarks.slope_unmatched.iter().flatten().any(|unmatched| *unmatched);
-    [
-        (remarks.mach_floored, "the noncirculatory loads are those of a small Mach number above 0"),
-        (remarks.mach_capped, "the coefficients are those of the highest Mach number calibrated"),
-        (
-            unmatched,
-            "an initial slope could not be matched: its time constant is the smallest used",
-        ),
-    ]
-    .into_iter()
-    .filter_map(|(applies, text)| applies.then_some(text))
-    .collect()
+    let remarks = question.section.remarks(&section.remarks, question.motion, Some(k));
+    Ok(SectionResult { model, remarks, cn, cm, ch })
 }
 
 impl Printable for SectionResult {
@@ -112,11 +154,11 @@ impl Printable for SectionResult {
             ("Cm, about c/4", self.cm),
             ("Ch, about the hinge", self.ch),
         ];
-        let notes: Vec<String> = self.remarks.iter().map(|r| format!("Note: {r}\n")).collect();
         let loads = table(
             &["per radian (plunge: per h_dot/U)", "real", "imaginary", "amplitude", "lag, deg"],
             rows.map(|(name, [re, im])| {
-                let lag = -im.atan2(re).to_degrees();
+                // 0 less the part: no lag of -0 or -180 deg where there is none
+                let lag = (0.0 - im).atan2(re).to_degrees();
                 let amplitude = re.hypot(im);
                 vec![
                     name.to_owned(),
@@ -127,7 +169,7 @@ impl Printable for SectionResult {
                 ]
             }),
         );
-        format!("Model: {}\n{}{loads}", self.model, notes.concat())
+        format!("Model: {}\n{}{loads}", self.model, notes(&self.remarks))
     }
 }
 
@@ -136,10 +178,17 @@ impl Printable for SectionResult {
 pub struct SectionTable {
     /// What the table shows.
     pub title: String,
+    /// Where the model had to leave its own form, and how far off it is; not in the JSON.
+    #[serde(skip)]
+    pub remarks: Vec<&'static str>,
     /// Names of the columns, with units.
     pub columns: Vec<&'static str>,
     /// The rows.
     pub rows: Vec<Vec<f64>>,
+}
+
+fn notes(remarks: &[&'static str]) -> String {
+    remarks.iter().flat_map(|remark| ["Note: ", remark, "\n"]).collect()
 }
 
 /// Rows a person is shown; a file or JSON has all of them.
@@ -169,7 +218,8 @@ impl Printable for SectionTable {
         let every = self.rows.len().div_ceil(SHOWN).max(1);
         let rows = self.rows.iter().step_by(every);
         let cells = rows.map(|row| row.iter().map(|value| format!("{value:.6}")).collect());
-        format!("{}\n{}", self.title, table(&self.columns, cells))
+        let notes = notes(&self.remarks);
+        format!("{}\n{notes}{}", self.title, table(&self.columns, cells))
     }
 }
 

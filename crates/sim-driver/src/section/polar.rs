@@ -4,6 +4,7 @@ use super::{SectionChoice, SectionTable, within};
 use crate::SimError;
 use crate::files::{Folder, Source, airfoil_text, read_airfoil};
 use flap_aero::{StallParameters, StallSection, steady_response};
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 /// A static curve over incidence.
@@ -28,8 +29,10 @@ pub struct PolarQuestion {
 /// number is outside its range.
 pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     let [from, to] = question.incidences_rad;
-    within("first incidence", from, true, "a finite number")?;
-    within("last incidence", to, to > from, "a finite number above the first")?;
+    for (quantity, incidence) in [("first incidence, deg", from), ("last incidence, deg", to)] {
+        within(quantity, incidence.to_degrees(), incidence.abs() <= TAU, "-360 to 360")?;
+    }
+    within("range of incidences, deg", (to - from).to_degrees(), to > from, "above 0")?;
     let points = question.points;
     within("number of points", points as f64, (1..=1_000_000).contains(&points), "1 to 1000000")?;
     let incidences = (0..=points).map(|n| from + (to - from) * n as f64 / points as f64);
@@ -50,6 +53,7 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
             title: format!("{}, Mach {mach}", airfoil.name),
             columns: vec!["incidence_deg", "cl", "cd", "cm"],
             rows: rows.collect(),
+            remarks: Vec::new(),
         });
     }
     let (section, mach, flap) = question.section.coefficients()?;
@@ -73,5 +77,5 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     };
     let flow = if stalling.is_some() { "static stall" } else { "attached flow" };
     let title = format!("{}, Mach {}, {flow}", question.section.model.name(), mach.value());
-    Ok(SectionTable { title, columns, rows })
+    Ok(SectionTable { title, remarks: Vec::new(), columns, rows })
 }

@@ -317,7 +317,7 @@ fn section_questions_outside_the_models() {
     ask(&["--flap-chord", "1.5"]).rejected(&["flap chord ratio 1.5"]);
     place
         .hhc(&["section", "--reduced-frequency", "-1"])
-        .rejected(&["reduced frequency is -1: expected a finite number, 0 or more"]);
+        .rejected(&["reduced frequency is -1: expected 0 to 1000"]);
     ask(&["--model", "xfoil"]).rejected(&["invalid value 'xfoil'", "hariharan-leishman"]);
     place.hhc(&["section"]).rejected(&["--reduced-frequency"]);
     place.hhc(&["section", "--response", "loop"]).rejected(&["--reduced-frequency"]);
@@ -325,6 +325,13 @@ fn section_questions_outside_the_models() {
         .rejected(&["flap chord ratio 0.05", "0.1 to 0.4"]);
     ask(&["--response", "step", "--distance", "0"]).rejected(&["distance, semichords is 0"]);
     ask(&["--response", "ramp", "--rise", "-1"]).rejected(&["rise, semichords is -1"]);
+    // numbers beyond all sense are refused too, not answered with NaN
+    place.hhc(&["section", "--reduced-frequency", "1e300"]).rejected(&["expected 0 to 1000"]);
+    ask(&["--response", "step", "--distance", "1e308"]).rejected(&["above 0, to 1e6"]);
+    ask(&["--response", "ramp", "--rise", "1e-300"]).rejected(&["0 (a step), or 1e-6 to 1e6"]);
+    ask(&["--response", "loop", "--mean-deg", "1e6"]).rejected(&["mean, deg is", "-180 to 180"]);
+    ask(&["--response", "polar", "--amplitude-deg", "1e9"]).rejected(&["first incidence, deg"]);
+    ask(&["--response", "polar", "--amplitude-deg", "-3"]).rejected(&["range of incidences"]);
     ask(&["--response", "step", "--points", "0"]).rejected(&["number of points is 0"]);
     ask(&["--effectiveness", "0.8,1"]).rejected(&["flap effectiveness factors is 2"]);
     ask(&["--effectiveness", "0.8,1,7"]).rejected(&["flap effectiveness in hinge moment is 7"]);

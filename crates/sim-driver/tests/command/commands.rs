@@ -1,6 +1,7 @@
 //! The commands that need no long computation: what they print, write and return.
 
 use crate::place::{Place, QUICK_CASE, write_bench};
+use flap_aero::{C81Airfoil, C81Table};
 use serde_json::Value;
 
 fn pair(value: &Value) -> [f64; 2] {
@@ -178,6 +179,66 @@ fn calibrated_section_against_exact_theory() {
     let (_, ramp) = rows(&place.read("ramp.csv"));
     close(ramp[3][1], 0.6, 1e-9);
     close(ramp[300][2], step[300][2], 5e-3);
+}
+
+/// What a reader has to know of a model stands above its numbers.
+#[test]
+fn known_errors_of_a_section_model_are_said() {
+    let place = Place::new();
+    let ask = |more: &[&str]| {
+        let base = ["section", "--reduced-frequency", "0.1", "--mach", "0.5"];
+        place.hhc(&[&base[..], more].concat()).done()
+    };
+    let form = ask(&[]);
+    assert!(form.contains("Note: this form is about 30 % off exact theory"), "{form}");
+    assert!(ask(&["--response", "step"]).contains("about 30 % off"));
+    let calibrated = ask(&["--model", "calibrated"]);
+    assert!(!calibrated.contains("Note:"), "{calibrated}");
+    let bare = ask(&["--model", "calibrated", "--flap-chord", "0"]);
+    assert!(bare.contains("Note: the section has no flap"), "{bare}");
+    let args = ["section", "--model", "calibrated", "--mach", "0.75", "--reduced-frequency", "1.5"];
+    let beyond = place.hhc(&args).done();
+    assert!(beyond.contains("reduced frequencies to 1") && beyond.contains("Mach 0.7"), "{beyond}");
+    // a loop of short cycles repeats too, after many of them
+    let short = ["--reduced-frequency", "10", "--response", "loop", "--motion", "pitch"];
+    let stall = ["--stall", "naca0012", "--mean-deg", "10", "--mach", "0.3"];
+    let args = [&["section", "--model", "calibrated"], &short[..], &stall[..]].concat();
+    assert!(place.hhc(&args).done().contains("dynamic stall, repeats to"));
+}
+
+/// Two aerofoils along the blade, blended between: neither the one nor the other.
+#[test]
+fn a_rotor_with_two_tables_along_the_span() {
+    let place = Place::new();
+    let shipped = include_str!("../../../../fixtures/airfoils/naca0012_synthetic.c81");
+    let root = C81Airfoil::read(shipped).unwrap();
+    let (machs, angles) = (root.lift.machs().to_vec(), root.lift.incidences_deg().to_vec());
+    let less = (0..angles.len()).flat_map(|i| root.lift.row(i).iter().map(|cl| 0.8 * cl));
+    let lift = C81Table::new(machs, angles.clone(), less.collect()).unwrap();
+    let tip = C81Airfoil { name: "SYNTHETIC TIP".into(), lift, ..root }.rounded();
+    place.write("tip.c81", &tip.write().unwrap());
+    let fz = |tables: &str| {
+        let case = format!(
+            "(advance_ratio: 0.2, aerodynamics: (airfoils: [{tables}]), \
+              trim: WindTunnel(ct_sigma: 0.06, shaft_tilt_deg: 5), actuator: (model: Ideal), \
+              control: (harmonics: [[3]], actuators: [Ideal]))"
+        );
+        place.write("case.ron", &case);
+        place.hhc(&["run", "case.ron", "--out", "out"]).done();
+        let json: Value = serde_json::from_str(&place.read("out/result.json")).unwrap();
+        let [cosine, sine] = pair(&json["result"]["baseline"]["hub_4_per_rev"]["fz"]);
+        f64::hypot(cosine, sine)
+    };
+    let inner = "(station_r: 0.2, table: \"shipped:naca0012_synthetic.c81\")";
+    let [alone, blended, other] = [
+        fz(inner),
+        fz(&format!("{inner}, (station_r: 1.0, table: \"tip.c81\")")),
+        fz("(station_r: 0.2, table: \"tip.c81\")"),
+    ];
+    println!("{alone:e} {blended:e} {other:e}");
+    for end in [alone, other] {
+        assert!((blended / end - 1.0).abs() > 1e-2, "{end} {blended}");
+    }
 }
 
 #[test]
