@@ -305,8 +305,8 @@ impl<'a> Contest<'a> {
             Trial { whole: whole.clone(), errors }
         });
         let errors = trial.as_ref().map_or(&[][..], |trial| &trial.errors);
-        let cross_validation = (!errors.is_empty())
-            .then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
+        let cross_validation =
+            (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
         let fitted = whole.and_then(|Fitted { mut model, parameters }| {
             model.trained = Some(super::trained_range(&slow, &fast, &prepared));
             let fits = prepared.iter().map(|r| compare::compare(&model, r));

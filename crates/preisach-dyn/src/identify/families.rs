@@ -6,7 +6,7 @@ use super::{RateFit, RateSmoothness, Settings, layered, static_fit, stop_fit};
 use crate::{
     ActuatorLaw, ActuatorModel, AmplifierStage, BoucWen, BoucWenParameters, Envelope, Lag,
     LinearGain, PlayMap, PrandtlIshlinskii, PrandtlParameters, PreisachError, PreisachGrid,
-    StaticPreisach, TimeOrder, WeightedPlay,
+    StaticPreisach, TimeOrder, VoltageRange, WeightedPlay,
 };
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
@@ -204,19 +204,8 @@ fn by_output_error(
     };
     let bouc_wen = |x: &DVector<f64>, exponent: f64| {
         let gain_deg_per_volt = gain * x[0].exp();
-        let rise_volt = 20.0 * x[5].exp();
-        let sigma = 0.5 + 0.5 * x[6].exp();
-        let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
-        let parameters = BoucWenParameters {
-            range_volt: range,
-            gain_deg_per_volt,
-            half_height_deg: most_deg * share(x[4]),
-            rise_volt,
-            sigma,
-            exponent,
-            envelope: envelope(x),
-        };
-        Some(wrap(ActuatorLaw::BoucWen(BoucWen::new(parameters).ok()?)))
+        let law = bouc_wen_law(x, exponent, gain_deg_per_volt, range, envelope(x))?;
+        Some(wrap(ActuatorLaw::BoucWen(law)))
     };
     let prandtl = |x: &DVector<f64>| {
         let step_volt = 0.5 * range.span_volt() / (PLAYS + 1) as f64;
@@ -291,6 +280,30 @@ fn by_output_error(
             search(&prandtl, &[1e-3, 1e-2].map(start), &names)
         }
     }
+}
+
+/// The Bouc-Wen law of the parameters behind gain and envelope; none outside its domain.
+fn bouc_wen_law(
+    x: &DVector<f64>,
+    exponent: f64,
+    gain_deg_per_volt: f64,
+    range_volt: VoltageRange,
+    envelope: Envelope,
+) -> Option<BoucWen> {
+    let rise_volt = 20.0 * x[5].exp();
+    let sigma = 0.5 + 0.5 * x[6].exp();
+    let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
+    let half_height_deg = most_deg * share(x[4]);
+    let parameters = BoucWenParameters {
+        range_volt,
+        gain_deg_per_volt,
+        half_height_deg,
+        rise_volt,
+        sigma,
+        exponent,
+        envelope,
+    };
+    BoucWen::new(parameters).ok()
 }
 
 /// A number in 0..1 from any number.

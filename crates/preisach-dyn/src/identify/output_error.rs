@@ -102,8 +102,11 @@ pub(super) struct OutputError<'a> {
     best: Option<(DVector<f64>, DVector<f64>)>,
     /// The model at the parameters last tried that gave residuals, run over the records; none if they
     /// are too long to be kept.
-    passage: Option<(DVector<f64>, Passage)>,
+    passage: Option<Run>,
 }
+
+/// Parameters and the passage of their model.
+type Run = (DVector<f64>, Passage);
 
 impl<'a> OutputError<'a> {
     pub(super) fn new(build: Build<'a>, records: &'a [&'a Prepared<'a>], x: DVector<f64>) -> Self {
@@ -137,10 +140,7 @@ impl<'a> OutputError<'a> {
 
     /// Residuals at some parameters, with the passage they come from where it is kept; none if the
     /// model diverges.
-    fn evaluated(
-        &self,
-        x: &DVector<f64>,
-    ) -> (Option<DVector<f64>>, Option<(DVector<f64>, Passage)>) {
+    fn evaluated(&self, x: &DVector<f64>) -> (Option<DVector<f64>>, Option<Run>) {
         if !Passage::fits(self.records) {
             return (self.residuals_at(x), None);
         }

@@ -1,7 +1,7 @@
 //! The way of a model over the records, kept part by part.
 
 use super::prepared::Prepared;
-use crate::{ActuatorLaw, ActuatorModel, StaticPreisach};
+use crate::{ActuatorLaw, ActuatorModel};
 use rayon::prelude::*;
 
 /// Samples of a set of records up to which signals are kept: 8 MB per part of the chain.
@@ -33,13 +33,7 @@ impl Passage {
     pub(super) fn of(model: ActuatorModel, records: &[&Prepared]) -> Option<Self> {
         let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
         let free = |r: &&Prepared| {
-            let law = match (&bare.law, bare.amplifier.is_empty()) {
-                (ActuatorLaw::StaticPreisach(law), true) => {
-                    bare.check_samples(voltages(r)).ok()?;
-                    StaticPreisach::side_by_side(&[law], voltages(r)).pop()?
-                }
-                _ => bare.simulate(voltages(r), r.record.time_step_s).ok()?.output_deg,
-            };
+            let law = bare.simulate(voltages(r), r.record.time_step_s).ok()?.output_deg;
             through(&model, 0, law, r)
         };
         let signals = records.iter().map(free).collect::<Option<Vec<_>>>()?;
@@ -58,17 +52,16 @@ impl Passage {
         models: &[Option<ActuatorModel>],
         records: &[&Prepared],
     ) -> Vec<Option<Vec<Vec<f64>>>> {
-        let own: Vec<Option<&StaticPreisach>> =
+        let own: Vec<Option<&ActuatorLaw>> =
             models.iter().map(|model| self.other_law(model.as_ref()?)).collect();
-        let laws: Vec<&StaticPreisach> = own.iter().copied().flatten().collect();
-        let same_grid = laws.windows(2).all(|pair| pair[0].grid() == pair[1].grid());
-        if laws.is_empty() || !same_grid {
-            return vec![None; models.len()];
-        }
-        let by_record: Vec<Vec<Vec<f64>>> = records
+        let laws: Vec<&ActuatorLaw> = own.iter().copied().flatten().collect();
+        let by_record: Option<Vec<Vec<Vec<f64>>>> = records
             .par_iter()
-            .map(|r| StaticPreisach::side_by_side(&laws, voltages(r)))
+            .map(|r| ActuatorLaw::side_by_side(&laws, voltages(r), r.record.time_step_s))
             .collect();
+        let Some(by_record) = by_record else {
+            return vec![None; models.len()];
+        };
         let mut by_record: Vec<_> = by_record.into_iter().map(Vec::into_iter).collect();
         own.iter()
             .map(|law| {
@@ -102,16 +95,10 @@ impl Passage {
         pairs.map(|(signal, r)| through(model, first, signal, r)?.pop()).collect()
     }
 
-    /// The static law of a model that differs from this one by it and acts on the command itself.
-    fn other_law<'a>(&self, model: &'a ActuatorModel) -> Option<&'a StaticPreisach> {
-        match &model.law {
-            ActuatorLaw::StaticPreisach(law)
-                if model.amplifier.is_empty() && !self.same_front(model) =>
-            {
-                Some(law)
-            }
-            _ => None,
-        }
+    /// The law of a model that differs from this one and acts on the command itself.
+    fn other_law<'a>(&self, model: &'a ActuatorModel) -> Option<&'a ActuatorLaw> {
+        let own = model.amplifier.is_empty() && !self.same_front(model);
+        own.then_some(&model.law)
     }
 
     /// Whether a model has the amplifier and the law of this one.
@@ -140,4 +127,115 @@ fn through(
         signals.push(signal);
     }
     signals.last()?.iter().all(|y| y.is_finite()).then_some(signals)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::{BenchRecord, RecordUse, Settings};
+    use crate::{
+        Accommodation, AmplifierStage, Backlash, DynamicParameters, DynamicPreisach, KelvinVoigt,
+        KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep, PlayMap, PreisachGrid,
+        RateForm, Relaxation, RelaxationElement, Resonance, StaticPreisach, TimeOrder,
+    };
+    use std::f64::consts::TAU;
+
+    fn records(settings: &Settings) -> Vec<BenchRecord> {
+        [1.0, 7.0]
+            .map(|hz| BenchRecord {
+                id: "sine".into(),
+                time_step_s: settings.least_relaxation_s * 10.0,
+                voltage_volt: (0..1500)
+                    .map(|i| 65.0 + 80.0 * (TAU * hz * f64::from(i) * 1e-3).sin())
+                    .collect(),
+                output_deg: (0..1500).map(|i| f64::from(i % 7)).collect(),
+                ..BenchRecord::default()
+            })
+            .to_vec()
+    }
+
+    fn law(grid: &PreisachGrid, bend: f64, dynamic: bool) -> ActuatorLaw {
+        let n = grid.levels();
+        let rises: Vec<Vec<f64>> = (0..n)
+            .map(|j| (0..n - j).map(|k| 0.1 + bend * ((j + 2 * k) as f64).sin().abs()).collect())
+            .collect();
+        let g0_deg = PlayMap::from_rises(grid, 0.3, &rises).unwrap();
+        if !dynamic {
+            return ActuatorLaw::StaticPreisach(StaticPreisach::new(*grid, g0_deg).unwrap());
+        }
+        let law = DynamicPreisach::new(DynamicParameters {
+            grid: *grid,
+            g1_s: PlayMap::constant(grid, -0.003 - 0.01 * bend),
+            g2_s2_per_deg: PlayMap::constant(grid, 1e-7),
+            g0_deg,
+            form: RateForm::WellPosed,
+            unfolded_rate_deg_s: 10.0,
+            time_order: TimeOrder::Second,
+        });
+        ActuatorLaw::DynamicPreisach(law.unwrap())
+    }
+
+    fn actuator(settings: &Settings, law: ActuatorLaw, creep: f64, lag: bool) -> ActuatorModel {
+        let element = |share, time_constant_s| RelaxationElement { share, time_constant_s };
+        let mut model = settings.actuator_of(law);
+        model.linkage = vec![
+            LinkageStage::Accommodation(Accommodation { share: 0.1, travel_um: 5.0 }),
+            LinkageStage::Relaxation(Relaxation { elements: vec![element(0.9, 0.02)] }),
+            LinkageStage::LogCreep(LogCreep { to_s: 3e4, ..LogCreep::new(creep) }),
+            LinkageStage::KelvinVoigt(KelvinVoigt {
+                elements: vec![KelvinVoigtElement {
+                    compliance_ratio: creep,
+                    time_constant_s: 0.3,
+                }],
+            }),
+            LinkageStage::Resonance(Resonance { frequency_hz: 90.0, damping_ratio: 0.02 }),
+            LinkageStage::Backlash(Backlash { width_um: 0.1 }),
+            LinkageStage::LoadStiffness(LoadStiffness {
+                stiffness_ratio: 0.2,
+                compliance_um_per_newton: 0.0,
+            }),
+        ];
+        if lag {
+            model.amplifier.push(AmplifierStage::Lag(Lag { tau_s: 1e-3 }));
+        }
+        model
+    }
+
+    /// Whatever differs from the model that was run, and whatever is taken from it, the outputs are the
+    /// bits of a simulation from the start. The grids have and have not a multiple of four levels.
+    #[test]
+    fn what_is_kept_changes_no_bit() {
+        for (levels, dynamic, lag) in
+            [(12, false, false), (7, false, false), (6, true, false), (8, false, true)]
+        {
+            let settings = Settings { levels, ..Settings::default() };
+            let grid = PreisachGrid::new(settings.range_volt, levels).unwrap();
+            let records = records(&settings);
+            let prepared: Vec<Prepared> = records
+                .iter()
+                .map(|r| Prepared::new(r, r.drive(), RecordUse::Train, false, &grid, &settings))
+                .collect::<Result<_, _>>()
+                .unwrap();
+            let all: Vec<&Prepared> = prepared.iter().collect();
+            let model = |bend, creep| actuator(&settings, law(&grid, bend, dynamic), creep, lag);
+            let simulated = |model: &ActuatorModel| -> Vec<Vec<f64>> {
+                let of = |r: &&Prepared| model.simulate(voltages(r), r.record.time_step_s);
+                all.iter().map(|r| of(r).unwrap().output_deg).collect()
+            };
+            let passage = Passage::of(model(0.1, 0.02), &all).unwrap();
+            for (r, expected) in simulated(&model(0.1, 0.02)).iter().enumerate() {
+                assert_eq!(passage.output_deg(r), expected);
+            }
+            // more laws than are evaluated at once, one model without a neighbour, one with its law
+            let mut beside: Vec<Option<ActuatorModel>> =
+                (0..10).map(|i| Some(model(0.1 + 1e-3 * f64::from(i + 1), 0.02))).collect();
+            beside.extend([None, Some(model(0.1, 0.03)), Some(model(0.1, 0.02))]);
+            let laws = passage.laws_beside(&beside, &all);
+            assert_eq!(laws.iter().filter(|law| law.is_some()).count(), if lag { 0 } else { 10 });
+            for (model, law) in beside.iter().zip(laws) {
+                let Some(model) = model else { continue };
+                assert_eq!(passage.beside(model, law, &all).unwrap(), simulated(model));
+            }
+        }
+    }
 }
