@@ -137,6 +137,16 @@ impl OutputHistory {
             _ => (self.output_deg, step_s),
         }
     }
+
+    /// One time step on with the maps `G0, G1, G2` there; whether it was a fold.
+    #[inline]
+    fn advance(&mut self, g: [f64; 3], order: TimeOrder, step_s: f64) -> bool {
+        let (base, weight) = self.difference(order, step_s);
+        let OutputRate { rate_deg_s, folded } = output_rate(g, base, weight);
+        let output_deg = base + weight * rate_deg_s;
+        *self = Self { output_deg, earlier: Some((self.output_deg, step_s)) };
+        folded
+    }
 }
 
 /// A dynamic Preisach actuator: `delta = G0 + d G1 + d^2 G2`, `d = d(delta)/dt`.
@@ -301,14 +311,75 @@ impl DynamicPreisach {
         time_step_s: f64,
     ) -> f64 {
         let g = self.apply(memory, voltage_volt);
-        let (base, weight) = history.difference(self.parameters.time_order, time_step_s);
-        let OutputRate { rate_deg_s, folded } = output_rate(g, base, weight);
-        let output_deg = base + weight * rate_deg_s;
+        let folded = history.advance(g, self.parameters.time_order, time_step_s);
         counts.steps += 1;
         counts.g1_not_negative += usize::from(g[1] >= 0.0);
         counts.folds += usize::from(folded);
-        *history = OutputHistory { output_deg, earlier: Some((history.output_deg, time_step_s)) };
-        output_deg
+        history.output_deg
+    }
+}
+
+/// Models that are evaluated at once.
+const TOGETHER: usize = 4;
+
+impl DynamicPreisach {
+    /// The outputs of models on one grid over the same voltages, from rest at the first: the plays
+    /// move once for all of them. Each is that of its own simulation, to the last bit; one that
+    /// diverges is not stopped.
+    pub(crate) fn side_by_side(
+        models: &[&Self],
+        voltages_volt: &[f64],
+        time_step_s: f64,
+    ) -> Vec<Vec<f64>> {
+        let groups = models.chunks(TOGETHER);
+        groups.flat_map(|group| Self::group(group, voltages_volt, time_step_s)).collect()
+    }
+
+    /// As [`Self::side_by_side`], of at most [`TOGETHER`] models.
+    fn group(models: &[&Self], voltages_volt: &[f64], time_step_s: f64) -> Vec<Vec<f64>> {
+        const SUMS: usize = 3 * TOGETHER;
+        let (Some(first), Some(&start)) = (models.first(), voltages_volt.first()) else {
+            return vec![Vec::new(); models.len()];
+        };
+        let grid = first.grid();
+        let of = |lane: usize| models.get(lane).unwrap_or(first);
+        // G0 of all models, G1, G2, then the rises of each
+        let table = NodeTable::<{ 2 * SUMS }>::new(grid, |play, knot| {
+            std::array::from_fn(|i| of(i % TOGETHER).table.at(play, knot as f64).0[i / TOGETHER])
+        });
+        let constants: [f64; SUMS] = std::array::from_fn(|i| {
+            let p = &of(i % TOGETHER).parameters;
+            [p.g0_deg.constant, p.g1_s.constant, p.g2_s2_per_deg.constant][i / TOGETHER]
+        });
+        let mut memory = PlayMemory::new(grid, start, StartState::Rest);
+        let mut histories: Vec<OutputHistory> =
+            models.iter().map(|m| OutputHistory::at_rest(m.maps(&memory)[0])).collect();
+        let mut outputs: Vec<Vec<f64>> = histories
+            .iter()
+            .map(|history| {
+                let mut output = Vec::with_capacity(voltages_volt.len());
+                output.push(history.output_deg);
+                output
+            })
+            .collect();
+        for &volt in &voltages_volt[1..] {
+            memory.apply(grid, volt);
+            let mut sums = constants;
+            for (play, &x) in memory.cells().iter().enumerate() {
+                let (entry, t) = table.at(play, x);
+                let (values, rises) = entry.split_at(SUMS);
+                for i in 0..SUMS {
+                    sums[i] += values[i] + t * rises[i];
+                }
+            }
+            let own = models.iter().zip(&mut histories).zip(&mut outputs).enumerate();
+            for (lane, ((model, history), output)) in own {
+                let g = [sums[lane], sums[TOGETHER + lane], sums[2 * TOGETHER + lane]];
+                history.advance(g, model.parameters.time_order, time_step_s);
+                output.push(history.output_deg);
+            }
+        }
+        outputs
     }
 }
 

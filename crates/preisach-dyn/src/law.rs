@@ -180,6 +180,32 @@ impl ActuatorLaw {
     }
 }
 
+impl ActuatorLaw {
+    /// The outputs of Preisach laws of one kind on one grid over the same voltages, from rest at the
+    /// first; each is that of its own simulation, to the last bit. None for other laws.
+    pub(crate) fn side_by_side(
+        laws: &[&Self],
+        voltages_volt: &[f64],
+        time_step_s: f64,
+    ) -> Option<Vec<Vec<f64>>> {
+        let statics = laws.iter().map(|law| match law {
+            Self::StaticPreisach(law) => Some(law),
+            _ => None,
+        });
+        if let Some(laws) = statics.collect::<Option<Vec<_>>>() {
+            let same = laws.windows(2).all(|pair| pair[0].grid() == pair[1].grid());
+            return same.then(|| StaticPreisach::side_by_side(&laws, voltages_volt));
+        }
+        let dynamics = laws.iter().map(|law| match law {
+            Self::DynamicPreisach(law) => Some(law),
+            _ => None,
+        });
+        let laws = dynamics.collect::<Option<Vec<_>>>()?;
+        let same = laws.windows(2).all(|pair| pair[0].grid() == pair[1].grid());
+        same.then(|| DynamicPreisach::side_by_side(&laws, voltages_volt, time_step_s))
+    }
+}
+
 impl HysteresisLaw for ActuatorLaw {
     type Memory = LawMemory;
 

@@ -12,6 +12,7 @@
 //! | other families | [`PrandtlIshlinskii`], [`BoucWen`]; output ahead of the input: [`PrandtlStop`] |
 //! | what stands around the law | [`AmplifierStage`], [`LinkageStage`], [`SensorStage`] |
 //! | one actuator: simulation, bench, batch | [`ActuatorModel`], [`Drive`], [`Stepper`] |
+//! | what is impossible or unlikely about one | [`ActuatorModel::doubts`] |
 //! | closed orbits, and the voltage for a wanted one | [`PeriodicResponse`], [`PeriodicInverse`] |
 //! | reversal curves: density, FORC diagram | [`forc`] |
 //! | identification from bench records | [`identify`](mod@identify) |
@@ -24,6 +25,7 @@
 mod actuator;
 mod bouc_wen;
 mod chain;
+mod doubts;
 mod dynamics;
 mod envelope;
 mod error;
@@ -46,6 +48,7 @@ mod stop;
 pub use actuator::{ActuatorModel, Calibration, TrainedRange};
 pub use bouc_wen::{BoucWen, BoucWenMemory, BoucWenParameters};
 pub use chain::{ActuatorMemory, Stepper};
+pub use doubts::{Doubt, Weight};
 pub use dynamics::{
     DynamicMemory, DynamicParameters, DynamicPreisach, OutputHistory, OutputRate, RateForm,
     StepCounts, TimeOrder, output_rate,

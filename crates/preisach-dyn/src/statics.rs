@@ -101,7 +101,70 @@ impl StaticPreisach {
         }
         (sums[0] + sums[1]) + (sums[2] + sums[3])
     }
+
+    /// The outputs of models on one grid over the same voltages, from rest at the first: the plays
+    /// move once for all of them. Each is that of its own simulation, to the last bit.
+    pub(crate) fn side_by_side(models: &[&Self], voltages_volt: &[f64]) -> Vec<Vec<f64>> {
+        let mut outputs = Vec::with_capacity(models.len());
+        for group in models.chunks(TOGETHER) {
+            outputs.extend(Self::group(group, voltages_volt));
+        }
+        outputs
+    }
+
+    /// As [`Self::side_by_side`], of at most [`TOGETHER`] models.
+    fn group(models: &[&Self], voltages_volt: &[f64]) -> Vec<Vec<f64>> {
+        let (Some(first), Some(&start)) = (models.first(), voltages_volt.first()) else {
+            return vec![Vec::new(); models.len()];
+        };
+        let grid = &first.grid;
+        let of = |lane: usize| models.get(lane).unwrap_or(first);
+        // values of all models, then rises
+        let table = NodeTable::<{ 2 * TOGETHER }>::new(grid, |play, knot| {
+            std::array::from_fn(|i| {
+                let (&[value, rise], _) = of(i % TOGETHER).table.at(play, knot as f64);
+                if i < TOGETHER { value } else { rise }
+            })
+        });
+        let constants: [f64; TOGETHER] = std::array::from_fn(|lane| of(lane).map.constant);
+        let mut memory = PlayMemory::new(grid, start, StartState::Rest);
+        let mut outputs: Vec<Vec<f64>> = models
+            .iter()
+            .map(|model| {
+                let mut output = Vec::with_capacity(voltages_volt.len());
+                output.push(model.output_deg(&memory));
+                output
+            })
+            .collect();
+        let left = grid.levels() % 4;
+        let quads = grid.levels() - left;
+        for &volt in &voltages_volt[1..] {
+            memory.apply(grid, volt);
+            let cells = memory.cells();
+            // the order of additions is that of `apply`
+            let mut sums = [[0.0; TOGETHER]; 4];
+            sums[0] = constants;
+            for (i, sum) in sums.iter_mut().enumerate() {
+                let own = (quads + i..quads + left).take(1).chain((i..quads).step_by(4));
+                for play in own {
+                    let (entry, t) = table.at(play, cells[play]);
+                    let (values, rises) = entry.split_at(TOGETHER);
+                    for lane in 0..TOGETHER {
+                        sum[lane] += values[lane] + t * rises[lane];
+                    }
+                }
+            }
+            for (lane, output) in outputs.iter_mut().enumerate() {
+                let at = |i: usize| sums[i][lane];
+                output.push((at(0) + at(1)) + (at(2) + at(3)));
+            }
+        }
+        outputs
+    }
 }
+
+/// Models that are evaluated at once.
+const TOGETHER: usize = 8;
 
 impl HysteresisLaw for StaticPreisach {
     type Memory = PlayMemory;

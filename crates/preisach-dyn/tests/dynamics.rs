@@ -367,6 +367,69 @@ fn folds_beyond_the_covered_rate_are_taken_and_counted() {
     assert_eq!(counts.folds, folds);
 }
 
+/// What the bound on `G2` is for: with `G2` larger than it allows the same walk folds at rates below the one
+/// claimed. Built at all only as `Literal`, which counts every fold.
+#[test]
+fn without_the_bound_on_g2_the_same_walk_folds_below_the_rate() {
+    let p = parameters(TimeOrder::First);
+    let covered = p.unfolded_rate_deg_s;
+    let g2_s2_per_deg = PlayMap::constant(&p.grid, 6e-5);
+    let larger = DynamicParameters { g2_s2_per_deg, ..p };
+    let refused = DynamicPreisach::new(larger.clone());
+    assert!(matches!(refused, Err(PreisachError::FoldsTooEarly { .. })), "{refused:?}");
+    let literal = DynamicParameters { form: RateForm::Literal, ..larger };
+    let literal = DynamicPreisach::new(literal).unwrap();
+    let (mut below, mut folds) = (0, 0);
+    let counts = a_million_random_steps(&literal, |_, _, _, found| {
+        folds += usize::from(found.folded);
+        below += usize::from(found.folded && found.rate_deg_s.abs() <= covered);
+    });
+    assert!(below > 1000, "{below} of {folds} folds up to {covered} deg/s");
+    assert_eq!(counts, StepCounts { steps: 1_000_000, g1_not_negative: 0, folds });
+}
+
+/// An actuator with the equation as printed, written by hand, at either order in time: it runs, its memory
+/// is stored midway and goes on with the same bits, and its steps are counted.
+#[test]
+fn a_literal_actuator_written_by_hand_runs_and_is_taken_up_again() {
+    for order in ["First", "Second"] {
+        let text = format!(
+            r#"{{
+                "law": {{"DynamicPreisach": {{
+                    "grid": {{"range_volt": [-20.0, 150.0], "levels": 2}},
+                    "g0_deg": {{"constant": 0.0, "nodes": [[-6.0, 0.0, 6.0], [-2.0, 2.0]]}},
+                    "g1_s": {{"constant": -0.01, "nodes": [[-0.004, 0.0, 0.016], [0.0, 0.0]]}},
+                    "g2_s2_per_deg": {{"constant": 1e-6, "nodes": [[0.0, 0.0, 0.0], [0.0, 0.0]]}},
+                    "form": "Literal", "unfolded_rate_deg_s": 0.0, "time_order": "{order}"
+                }}}},
+                "range_volt": [-20.0, 150.0],
+                "calibration": {{"deg_per_um": 0.04, "zero_um": 0.0}},
+                "linkage": [{{"LogCreep": {{"rate_per_decade": 0.01}}}}]
+            }}"#
+        );
+        let model: ActuatorModel = serde_json::from_str(&text).unwrap();
+        let volts: Vec<f64> =
+            (0..800).map(|i| 65.0 + 84.0 * (TAU * f64::from(i) / 200.0).sin()).collect();
+        let whole = model.simulate(&volts, 1e-3).unwrap();
+        // G1 turns positive towards the upper end, and that is said
+        assert!(
+            whole.counts.g1_not_negative > 0 && whole.counts.steps == 799,
+            "{:?}",
+            whole.counts
+        );
+        let mut memory = model.start(volts[0], StartState::Rest).unwrap();
+        let first = model.continue_from(&mut memory, &volts[1..333], 1e-3).unwrap();
+        let file = serde_json::to_string(&memory).unwrap();
+        let mut restored: preisach_dyn::ActuatorMemory = serde_json::from_str(&file).unwrap();
+        let second = model.continue_from(&mut restored, &volts[333..], 1e-3).unwrap();
+        assert_eq!([vec![whole.output_deg[0]], first, second].concat(), whole.output_deg);
+        assert_eq!(restored.counts(), whole.counts);
+        let again: ActuatorModel =
+            serde_json::from_str(&serde_json::to_string(&model).unwrap()).unwrap();
+        assert_eq!(again, model);
+    }
+}
+
 #[test]
 fn the_literal_form_reports_what_it_meets() {
     let p = parameters(TimeOrder::First);

@@ -177,6 +177,55 @@ fn clipped_records_are_suspect() {
     assert!(identified.summary.findings.iter().any(clipped), "{:?}", identified.summary);
 }
 
+/// A sensor at its limit is noticed through its noise: 0.02 deg on 10 deg.
+#[test]
+fn a_clipped_record_is_suspect_through_noise() {
+    let mut records = full();
+    for (i, y) in records[0].output_deg.iter_mut().enumerate() {
+        *y = y.min(5.0) + 0.02 * (0.7 * (i * i) as f64).sin();
+    }
+    let clipped = |f: &Finding| {
+        matches!(f, Finding::ClippedOutput { id, level_deg, share_percent }
+            if id == "0.2 Hz 85 V" && (*level_deg - 5.0).abs() < 0.05 && *share_percent > 5.0)
+    };
+    let findings = found(&records).summary.findings;
+    assert!(findings.iter().any(clipped), "{findings:?}");
+}
+
+/// One lost sample in a slow and in a fast record: named, left out, and the model is as good as without.
+#[test]
+fn spikes_are_named_and_left_out() {
+    let whole = found(&full());
+    let mut records = full();
+    let slow = records.len() - 1;
+    records[0].output_deg[700] += 40.0;
+    records[slow].voltage_volt[500] = BIAS_VOLT + 80.0;
+    let spoilt = found(&records);
+    let has = |f: &dyn Fn(&Finding) -> bool| spoilt.summary.findings.iter().any(f);
+    assert!(
+        has(&|f| matches!(f, Finding::OutputSpikes { id, samples: 1, index: 700, time_s, .. }
+            if *id == records[0].id && (*time_s - 3.5).abs() < 1e-9)),
+        "{:?}",
+        spoilt.summary
+    );
+    assert!(
+        has(&|f| matches!(f, Finding::CommandSpikes { id, samples: 1, index: 500, .. }
+            if *id == records[slow].id)),
+        "{:?}",
+        spoilt.summary
+    );
+    for (a, b) in whole.records.iter().zip(&spoilt.records) {
+        let change = (a.dynamic.nrmse - b.dynamic.nrmse).abs();
+        assert!(
+            change < 1e-3 + 0.05 * a.dynamic.nrmse,
+            "{}: {:?} {:?}",
+            a.id,
+            a.dynamic,
+            b.dynamic
+        );
+    }
+}
+
 #[test]
 fn swapped_columns_are_refused_or_suspect() {
     // the output in um leaves the range of the command: refused

@@ -8,10 +8,14 @@ use common::{amplifier, effects, largest_difference, linkage, measured, sampled,
 use preisach_dyn::{
     Accommodation, ActuatorModel, AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay,
     Depolarisation, DielectricHeating, Drive, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage,
-    LoadStiffness, LogCreep, MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Resonance,
-    Saturation, SensorStage, StartState,
+    LoadStiffness, LogCreep, MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Relaxation,
+    RelaxationElement, Resonance, Saturation, SensorStage, StartState,
 };
 use std::f64::consts::{PI, TAU};
+
+fn share_of(share: f64) -> RelaxationElement {
+    RelaxationElement { share, time_constant_s: 0.02 }
+}
 
 /// The stages of the bench at values that mean nothing happens.
 fn identities() -> Vec<ActuatorModel> {
@@ -25,6 +29,9 @@ fn identities() -> Vec<ActuatorModel> {
         amplifier(AmplifierStage::Depolarisation(Depolarisation::new(-1e5))),
         linkage(LinkageStage::LogCreep(LogCreep::new(0.0))),
         linkage(LinkageStage::KelvinVoigt(KelvinVoigt { elements: vec![none, none] })),
+        linkage(LinkageStage::Relaxation(Relaxation::default())),
+        linkage(LinkageStage::Relaxation(Relaxation { elements: vec![share_of(0.0)] })),
+        linkage(LinkageStage::Resonance(Resonance { frequency_hz: 1e16, damping_ratio: 0.7 })),
         linkage(LinkageStage::Backlash(Backlash { width_um: 0.0 })),
         linkage(LinkageStage::CoulombFriction(CoulombFriction { width_um: 0.0 })),
         linkage(LinkageStage::Accommodation(Accommodation { share: 0.0, travel_um: 60.0 })),
@@ -110,6 +117,39 @@ fn effects_vanish_in_proportion_to_their_parameter() {
             Box::new(|x| {
                 let stage = Accommodation { share: 1e-4 * x, travel_um: 60.0 };
                 linkage(LinkageStage::Accommodation(stage))
+            }),
+        ),
+        (
+            "chain",
+            Box::new(|x| {
+                let element =
+                    KelvinVoigtElement { compliance_ratio: 1e-4 * x, time_constant_s: 0.1 };
+                linkage(LinkageStage::KelvinVoigt(KelvinVoigt { elements: vec![element] }))
+            }),
+        ),
+        (
+            "relaxation",
+            Box::new(|x| {
+                let elements = vec![share_of(1e-4 * x)];
+                linkage(LinkageStage::Relaxation(Relaxation { elements }))
+            }),
+        ),
+        ("filter", Box::new(|x| sensor(SensorStage::Filter(Lag { tau_s: 1e-5 * x })))),
+        ("sensor delay", Box::new(|x| sensor(SensorStage::Delay(Delay { delay_s: 1e-5 * x })))),
+        (
+            "nonlinearity",
+            Box::new(|x| {
+                let shape = NonlinearityShape::Quadratic;
+                let stage = Nonlinearity { amplitude_um: 1e-3 * x, half_range_um: 200.0, shape };
+                sensor(SensorStage::Nonlinearity(stage))
+            }),
+        ),
+        (
+            "hum",
+            Box::new(|x| {
+                let amplitude_um = 1e-3 * x;
+                let hum = MainsHum { amplitude_um, frequency_hz: 50.0, phase_rad: 1.0 };
+                sensor(SensorStage::MainsHum(hum))
             }),
         ),
         (

@@ -55,7 +55,8 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         Some(FileKind::Actuator) => {
             let stored = read_actuator(&source)?;
             let summary = format!("{}, {} runs", stored.title, stored.runs.len());
-            Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings: vec![] })
+            let warnings = stored.warnings();
+            Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings })
         }
         Some(FileKind::Case) => {
             let loaded = read_case(&source, &Folder::of_file(path))?;
@@ -109,8 +110,7 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
             Err(missing(folder, file))
         }
         ActuatorSource::Stored { folder, file } => {
-            read_actuator(&folder.read(file)?)?;
-            Ok(vec![])
+            Ok(read_actuator(&folder.read(file)?)?.warnings())
         }
     }
 }

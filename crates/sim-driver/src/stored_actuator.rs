@@ -4,7 +4,7 @@ use crate::SimError;
 use crate::files::{RonFile, Source, read_ron, ron_text, write_atomic};
 use crate::problem::{Fault, Problems};
 use preisach_dyn::identify::Settings;
-use preisach_dyn::{ActuatorLaw, ActuatorModel};
+use preisach_dyn::{ActuatorLaw, ActuatorModel, Doubt, Weight};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -109,6 +109,17 @@ pub enum FitUse {
 }
 
 impl StoredActuator {
+    /// What is impossible or unlikely about the actuator; nothing is known of that of a generic loop.
+    pub fn doubts(&self) -> Vec<Doubt> {
+        if self.channels.is_some() { Vec::new() } else { self.model.doubts() }
+    }
+
+    /// The unlikely, in sentences.
+    pub fn warnings(&self) -> Vec<String> {
+        let unlikely = self.doubts().into_iter().filter(|doubt| doubt.weight == Weight::Unlikely);
+        unlikely.map(|doubt| format!("model.{doubt}")).collect()
+    }
+
     /// Writes the file atomically.
     ///
     /// # Errors
@@ -159,6 +170,12 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
             if !(ok && value.is_finite()) {
                 let message = format!("{value} is no actuator's number");
                 problems.push(index.place(field), Fault::Refused { message });
+            }
+        }
+        if problems.is_empty() {
+            for doubt in stored.doubts().into_iter().filter(|d| d.weight == Weight::Impossible) {
+                let place = index.place(&format!("model.{}", doubt.field));
+                problems.push(place, Fault::Refused { message: doubt.to_string() });
             }
         }
     }
@@ -222,6 +239,22 @@ mod tests {
         // written and read again: the same
         let text = ron_text(&stored).unwrap();
         assert_eq!(read_actuator(&source(&text)).unwrap(), stored);
+    }
+
+    #[test]
+    fn the_impossible_is_a_problem_and_the_unlikely_a_warning() {
+        assert_eq!(read_actuator(&source(BY_HAND)).unwrap().warnings(), Vec::<String>::new());
+        let with = |good: &str, bad: &str| {
+            let text = BY_HAND.replacen(good, bad, 1);
+            assert_ne!(text, BY_HAND);
+            read_actuator(&source(&text))
+        };
+        let load = "LoadStiffness(stiffness_ratio: 0.1)";
+        let problems = with(load, &format!("{load}, {load}")).unwrap_err();
+        assert!(format!("{problems:?}").contains("2 LoadStiffness stages"), "{problems:?}");
+        let stored = with("v_min_volt: -20, v_max_volt: 150", "v_min_volt: -200, v_max_volt: 500");
+        let warnings = stored.unwrap().warnings();
+        assert!(warnings.len() == 1 && warnings[0].contains("model.amplifier[2]"), "{warnings:?}");
     }
 
     #[test]

@@ -146,11 +146,13 @@ pub fn compare_models(
 ) -> Result<ModelComparison, PreisachError> {
     let contest = Contest::new(records, settings)?;
     let own = Order::of(settings);
-    let mut rows: Vec<ModelRow> = candidates
+    let (mut rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = candidates
         .families
         .par_iter()
-        .map(|&family| contest.row(family, own, Folds::Conditions))
-        .collect::<Result<_, _>>()?;
+        .map(|&family| contest.row(family, own, Folds::Conditions, None))
+        .collect::<Result<Vec<_>, _>>()?
+        .into_iter()
+        .unzip();
     let chosen = best(&rows, WITHIN);
     let (mut orders, mut chosen_order) = (Vec::new(), 0);
     let family = rows.get(chosen).filter(|row| has_memory(row.family)).map(|row| row.family);
@@ -165,8 +167,11 @@ pub fn compare_models(
         tried.dedup();
         orders = tried
             .par_iter()
-            .map(|&order| contest.row(family, order, Folds::All))
-            .collect::<Result<Vec<_>, _>>()?;
+            .map(|&order| {
+                let known = trials[chosen].as_ref().filter(|_| order == own);
+                Ok(contest.row(family, order, Folds::All, known)?.0)
+            })
+            .collect::<Result<Vec<_>, PreisachError>>()?;
         // nothing to choose by: the order asked for stands
         let by_error = orders.iter().any(|row| row.cross_validation.is_some());
         let asked_for = tried.iter().position(|order| *order == own);
@@ -190,6 +195,13 @@ enum Folds {
     Conditions,
     /// Slow records too.
     All,
+}
+
+/// The fit of a family to all training records, and the errors of the folds left out.
+#[derive(Debug, Clone)]
+struct Trial {
+    whole: Fitted,
+    errors: Vec<f64>,
 }
 
 fn has_memory(family: Family) -> bool {
@@ -244,7 +256,15 @@ impl<'a> Contest<'a> {
         Ok(Self { bench, settings, zero_deg, summary, smoothness })
     }
 
-    fn row(&self, family: Family, order: Order, which: Folds) -> Result<ModelRow, PreisachError> {
+    /// A row of the table, and what a row with more folds can go on from; `known`: what one with fewer
+    /// left.
+    fn row(
+        &self,
+        family: Family,
+        order: Order,
+        which: Folds,
+        known: Option<&Trial>,
+    ) -> Result<(ModelRow, Option<Trial>), PreisachError> {
         let Order { levels, rate_levels, static_smoothness } = order;
         let settings = Settings { levels, rate_levels, static_smoothness, ..self.settings.clone() };
         settings.check()?;
@@ -255,7 +275,7 @@ impl<'a> Contest<'a> {
             let training = Training { grid: &grid, slow, fast, settings: &settings };
             families::fit(family, training, Given { smoothness: self.smoothness, whole })
         };
-        let whole = fit(&slow, &fast, None);
+        let whole = known.map_or_else(|| fit(&slow, &fast, None), |known| Ok(known.whole.clone()));
         // places in the slow and the fast records, one after another
         let left_out = |fold: &Vec<usize>, whole: &Fitted| -> Result<f64, PreisachError> {
             let mut own: [Vec<&Prepared>; 2] = [Vec::new(), Vec::new()];
@@ -276,23 +296,24 @@ impl<'a> Contest<'a> {
         if slow.len() >= fewest && (fast.is_empty() || which == Folds::All) {
             folds.extend((0..slow.len()).map(|place| vec![place]));
         }
-        let cross_validation = match &whole {
-            Ok(whole) if !folds.is_empty() => {
-                let errors: Vec<f64> = folds
-                    .par_iter()
-                    .map(|fold| left_out(fold, whole).unwrap_or(f64::INFINITY))
-                    .collect();
-                Some((errors.iter().sum::<f64>() / folds.len() as f64).sqrt())
-            }
-            _ => None,
-        };
+        let trial = whole.as_ref().ok().map(|whole| {
+            let mut errors = known.map_or_else(Vec::new, |known| known.errors.clone());
+            // the folds of conditions come first
+            let rest = folds.get(errors.len()..).unwrap_or_default().par_iter();
+            let rest = rest.map(|fold| left_out(fold, whole).unwrap_or(f64::INFINITY));
+            errors.extend(rest.collect::<Vec<f64>>());
+            Trial { whole: whole.clone(), errors }
+        });
+        let errors = trial.as_ref().map_or(&[][..], |trial| &trial.errors);
+        let cross_validation =
+            (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
         let fitted = whole.and_then(|Fitted { mut model, parameters }| {
             model.trained = Some(super::trained_range(&slow, &fast, &prepared));
             let fits = prepared.iter().map(|r| compare::compare(&model, r));
             let fits = fits.collect::<Result<Vec<_>, _>>()?;
             Ok(FittedModel { model, fits, parameters })
         });
-        Ok(ModelRow { family, order, cross_validation, fitted })
+        Ok((ModelRow { family, order, cross_validation, fitted }, trial))
     }
 }
 

@@ -1,12 +1,12 @@
 //! The families of models that the same records can be fitted with.
 
-use super::output_error::{Estimate, OutputError, Pull};
+use super::output_error::{Build, Estimate, Minimum, OutputError, Pull, Uncertainty};
 use super::prepared::Prepared;
 use super::{RateFit, RateSmoothness, Settings, layered, static_fit, stop_fit};
 use crate::{
     ActuatorLaw, ActuatorModel, AmplifierStage, BoucWen, BoucWenParameters, Envelope, Lag,
     LinearGain, PlayMap, PrandtlIshlinskii, PrandtlParameters, PreisachError, PreisachGrid,
-    StaticPreisach, TimeOrder, WeightedPlay,
+    StaticPreisach, TimeOrder, VoltageRange, WeightedPlay,
 };
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
@@ -113,6 +113,11 @@ pub(super) struct Given<'a> {
 }
 
 impl Given<'_> {
+    /// The parameters of a fold are not looked at, only its model.
+    pub(super) fn uncertainty(&self) -> Uncertainty {
+        if self.whole.is_some() { Uncertainty::LeftOut } else { Uncertainty::Wanted }
+    }
+
     /// Where to start a minimisation: at the parameters of the whole fit, or else everywhere.
     pub(super) fn starts(&self, everywhere: &[DVector<f64>]) -> Vec<DVector<f64>> {
         let at = |f: &Fitted| {
@@ -154,7 +159,14 @@ pub(super) fn fit(
             };
             let settings = Settings { time_order, ..settings.clone() };
             let Training { grid, slow, fast, .. } = training;
-            let rate = RateFit::new(grid, training.static_map()?, slow, fast, &settings)?;
+            let rate = RateFit::new(
+                grid,
+                training.static_map()?,
+                slow,
+                fast,
+                &settings,
+                given.uncertainty(),
+            )?;
             Ok(Fitted { model: settings.actuator_of(rate.law), parameters: rate.parameters })
         }
         Family::PrandtlStop => stop_fit::fit(training),
@@ -192,19 +204,8 @@ fn by_output_error(
     };
     let bouc_wen = |x: &DVector<f64>, exponent: f64| {
         let gain_deg_per_volt = gain * x[0].exp();
-        let rise_volt = 20.0 * x[5].exp();
-        let sigma = 0.5 + 0.5 * x[6].exp();
-        let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
-        let parameters = BoucWenParameters {
-            range_volt: range,
-            gain_deg_per_volt,
-            half_height_deg: most_deg * share(x[4]),
-            rise_volt,
-            sigma,
-            exponent,
-            envelope: envelope(x),
-        };
-        Some(wrap(ActuatorLaw::BoucWen(BoucWen::new(parameters).ok()?)))
+        let law = bouc_wen_law(x, exponent, gain_deg_per_volt, range, envelope(x))?;
+        Some(wrap(ActuatorLaw::BoucWen(law)))
     };
     let prandtl = |x: &DVector<f64>| {
         let step_volt = 0.5 * range.span_volt() / (PLAYS + 1) as f64;
@@ -223,11 +224,16 @@ fn by_output_error(
         Some(wrap(ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).ok()?)))
     };
     let common = ["ln gain", "offset, tenths of the stroke", "quadratic, artanh", "cubic, artanh"];
+    let search = |build: Build<'_>, everywhere: &[DVector<f64>], names: &[&str]| {
+        let search = Search { family, build, records: &all, names, pulls: &[] };
+        let minimum = search.minimum(&given.starts(everywhere))?;
+        Ok(search.fitted(minimum, given.uncertainty()))
+    };
     match family {
         Family::Linear => {
             let build = |x: &DVector<f64>| Some(linear(x));
             let names = ["gain, relative", "bias, tenths of the range"];
-            finish(family, &build, &all, &given.starts(&[DVector::zeros(2)]), &names)
+            search(&build, &[DVector::zeros(2)], &names)
         }
         Family::LinearLag => {
             let build = |x: &DVector<f64>| {
@@ -237,21 +243,29 @@ fn by_output_error(
             };
             let start = |tau_s: f64| DVector::from_vec(vec![0.0, 0.0, tau_s.ln()]);
             let names = ["gain, relative", "bias, tenths of the range", "ln time constant, s"];
-            let starts = given.starts(&[1e-3, 1e-2, 5e-2].map(start));
-            finish(family, &build, &all, &starts, &names)
+            search(&build, &[1e-3, 1e-2, 5e-2].map(start), &names)
         }
         Family::BoucWen => {
             let start = |rise: f64| DVector::from_vec(vec![0.1, 0.0, 0.0, 0.0, 0.0, rise, 0.0]);
             let starts = given.starts(&[-0.7, 0.5].map(start));
             let mut names = common.to_vec();
             names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
-            let with = |exponent: f64| {
-                let build = move |x: &DVector<f64>| bouc_wen(x, exponent);
-                finish_with_error(family, &build, &all, &starts, (&names, &[]))
-            };
             // the exponents with a closed solution
-            let (first, second) = (with(1.0)?, with(2.0)?);
-            Ok(if second.0 < first.0 { second.1 } else { first.1 })
+            let builds = [1.0, 2.0].map(|exponent| move |x: &DVector<f64>| bouc_wen(x, exponent));
+            let searches = [0, 1].map(|i| Search {
+                family,
+                build: &builds[i],
+                records: &all,
+                names: &names,
+                pulls: &[],
+            });
+            let (first, second) = (searches[0].minimum(&starts)?, searches[1].minimum(&starts)?);
+            let (search, minimum) = if second.nrmse < first.nrmse {
+                (&searches[1], second)
+            } else {
+                (&searches[0], first)
+            };
+            Ok(search.fitted(minimum, given.uncertainty()))
         }
         _ => {
             let start = |growth_s: f64| {
@@ -263,10 +277,33 @@ fn by_output_error(
             names.push("ln growth of the half-widths, s");
             let plays: Vec<String> = (1..=PLAYS).map(|i| format!("root of weight {i}")).collect();
             names.extend(plays.iter().map(String::as_str));
-            let starts = given.starts(&[1e-3, 1e-2].map(start));
-            finish(family, &prandtl, &all, &starts, &names)
+            search(&prandtl, &[1e-3, 1e-2].map(start), &names)
         }
     }
+}
+
+/// The Bouc-Wen law of the parameters behind gain and envelope; none outside its domain.
+fn bouc_wen_law(
+    x: &DVector<f64>,
+    exponent: f64,
+    gain_deg_per_volt: f64,
+    range_volt: VoltageRange,
+    envelope: Envelope,
+) -> Option<BoucWen> {
+    let rise_volt = 20.0 * x[5].exp();
+    let sigma = 0.5 + 0.5 * x[6].exp();
+    let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
+    let half_height_deg = most_deg * share(x[4]);
+    let parameters = BoucWenParameters {
+        range_volt,
+        gain_deg_per_volt,
+        half_height_deg,
+        rise_volt,
+        sigma,
+        exponent,
+        envelope,
+    };
+    BoucWen::new(parameters).ok()
 }
 
 /// A number in 0..1 from any number.
@@ -277,32 +314,37 @@ pub(super) fn share(x: f64) -> f64 {
 /// Steps the minimisation may try for each parameter.
 pub(super) const PATIENCE: usize = 4;
 
-fn finish<'a>(
-    family: Family,
-    build: &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> + Sync),
-    records: &'a [&'a Prepared<'a>],
-    starts: &[DVector<f64>],
-    names: &[&str],
-) -> Result<Fitted, PreisachError> {
-    Ok(finish_with_error(family, build, records, starts, (names, &[]))?.1)
+/// The minimisation of the output error of a family over some records.
+pub(super) struct Search<'a> {
+    pub(super) family: Family,
+    pub(super) build: Build<'a>,
+    pub(super) records: &'a [&'a Prepared<'a>],
+    /// Names of the parameters.
+    pub(super) names: &'a [&'a str],
+    /// What is known of the first of them.
+    pub(super) pulls: &'a [Pull],
 }
 
-/// The best of the starts, its error and the uncertainty of its parameters; names of the parameters
-/// and what is known of the first of them.
-pub(super) fn finish_with_error<'a>(
-    family: Family,
-    build: &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> + Sync),
-    records: &'a [&'a Prepared<'a>],
-    starts: &[DVector<f64>],
-    (names, pulls): (&[&str], &'a [Pull]),
-) -> Result<(f64, Fitted), PreisachError> {
-    let minimum = OutputError::best_of(build, records, pulls, starts, PATIENCE)
-        .ok_or(PreisachError::NotFitted { family: family.name() })?;
-    let covariance = OutputError::pulled(build, records, pulls, minimum.x.clone()).covariance();
-    let parameters = names.iter().zip(minimum.x.iter()).enumerate().map(|(k, (name, &value))| {
-        let deviation = covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k));
-        Estimate { name: (*name).to_owned(), value, std_deviation: deviation }
-    });
-    let fitted = Fitted { model: minimum.model, parameters: parameters.collect() };
-    Ok((minimum.nrmse, fitted))
+impl Search<'_> {
+    /// The best minimum found from some starts.
+    pub(super) fn minimum(&self, starts: &[DVector<f64>]) -> Result<Minimum, PreisachError> {
+        OutputError::best_of(self.build, self.records, self.pulls, starts, PATIENCE)
+            .ok_or(PreisachError::NotFitted { family: self.family.name() })
+    }
+
+    /// The model of a minimum with its parameters, and their standard deviations if they are wanted.
+    pub(super) fn fitted(&self, minimum: Minimum, uncertainty: Uncertainty) -> Fitted {
+        let Minimum { x, model, .. } = minimum;
+        let covariance = match uncertainty {
+            Uncertainty::Wanted => {
+                OutputError::pulled(self.build, self.records, self.pulls, x.clone()).covariance()
+            }
+            Uncertainty::LeftOut => None,
+        };
+        let parameters = self.names.iter().zip(x.iter()).enumerate().map(|(k, (name, &value))| {
+            let deviation = covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k));
+            Estimate { name: (*name).to_owned(), value, std_deviation: deviation }
+        });
+        Fitted { model, parameters: parameters.collect() }
+    }
 }

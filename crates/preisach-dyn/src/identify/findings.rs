@@ -75,6 +75,34 @@ pub enum Finding {
         /// Share of the steady samples at that level, percent.
         share_percent: f64,
     },
+    /// Samples of the output stand out from their neighbours while the command does not move: they were
+    /// left out, straight lines in their place.
+    OutputSpikes {
+        /// The record.
+        id: String,
+        /// Samples left out.
+        samples: usize,
+        /// First sample of the largest spike.
+        index: usize,
+        /// Time of it from the first sample, s.
+        time_s: f64,
+        /// Output recorded there, deg.
+        value_deg: f64,
+    },
+    /// Samples of the command stand out from their neighbours while the output does not move: they were
+    /// left out, straight lines in their place.
+    CommandSpikes {
+        /// The record.
+        id: String,
+        /// Samples left out.
+        samples: usize,
+        /// First sample of the largest spike.
+        index: usize,
+        /// Time of it from the first sample, s.
+        time_s: f64,
+        /// Command recorded there, V.
+        value_volt: f64,
+    },
     /// The output leads the command: the columns may have changed places.
     OutputLeads {
         /// The record.
@@ -100,7 +128,10 @@ impl Finding {
     /// What it means for the model.
     pub fn severity(&self) -> Severity {
         match self {
-            Self::ConstantCommand { .. } | Self::TrainedByDefault { .. } => Severity::Remark,
+            Self::ConstantCommand { .. }
+            | Self::TrainedByDefault { .. }
+            | Self::OutputSpikes { .. }
+            | Self::CommandSpikes { .. } => Severity::Remark,
             Self::OneFrequency { .. }
             | Self::NoRateRecords { .. }
             | Self::NoSlowRecords { .. }
@@ -134,6 +165,9 @@ impl Finding {
             Self::ClippedOutput { .. } => "widen the sensor's range and record again",
             Self::ClippedCommand { .. } => {
                 "record the voltage at the actuator's terminals, or keep the amplifier off its limit"
+            }
+            Self::OutputSpikes { .. } | Self::CommandSpikes { .. } => {
+                "look at the samples; check contacts and the recorder"
             }
             Self::OutputLeads { .. } => {
                 "exchange the columns, or correct the delay between the channels"
@@ -181,6 +215,14 @@ impl fmt::Display for Finding {
             Self::ClippedCommand { id, level_volt, share_percent } => write!(
                 f,
                 "record {id}: the periodic command rests at {level_volt:.2} V for {share_percent:.1} % of the samples: it is clipped"
+            ),
+            Self::OutputSpikes { id, samples, index, time_s, value_deg } => write!(
+                f,
+                "record {id}: {samples} samples of the output are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value_deg:.4} deg"
+            ),
+            Self::CommandSpikes { id, samples, index, time_s, value_volt } => write!(
+                f,
+                "record {id}: {samples} samples of the command are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value_volt:.2} V"
             ),
             Self::OutputLeads { id, lead_deg } => write!(
                 f,

@@ -1,7 +1,7 @@
 //! Fits of Preisach laws with linear stages behind them.
 
-use super::families::{Family, Fitted, Given, Training, finish_with_error, share};
-use super::output_error::Pull;
+use super::families::{Family, Fitted, Given, Search, Training, share};
+use super::output_error::{Minimum, Pull};
 use super::prepared::Prepared;
 use super::refine::{SHAPE, reshaped};
 use super::{BenchRecord, RateFit, compare, static_fit};
@@ -81,7 +81,14 @@ pub(super) fn dynamic_creep(
             let (own_slow, own_fast): (Vec<&Prepared>, Vec<&Prepared>) =
                 (own_slow.iter().collect(), own_fast.iter().collect());
             let own = Training { grid, slow: &own_slow, fast: &own_fast, settings };
-            let fitted = RateFit::new(grid, own.static_map()?, &own_slow, &own_fast, settings)?;
+            let fitted = RateFit::new(
+                grid,
+                own.static_map()?,
+                &own_slow,
+                &own_fast,
+                settings,
+                given.uncertainty(),
+            )?;
             let mut model = settings.actuator_of(fitted.law);
             model.linkage.push(creep);
             let squares = slow
@@ -137,30 +144,35 @@ pub(super) fn relaxation(
         map = remapped(training, &whole.model)?;
     }
     let stroke_um = (map.largest().0 - map.constant) / settings.deg_per_um.abs();
-    let mut best: Option<(f64, Fitted)> = None;
+    let built = |held: &PlayMap, x: &DVector<f64>| {
+        let law = StaticPreisach::new(*grid, reshaped(held, &x.as_slice()[STAGES..])).ok()?;
+        let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
+        Some(with_stages(model, x, stroke_um))
+    };
+    let family = Family::StaticPreisachRelaxation;
+    // the best minimum, with the density and the misfit its search began with
+    let mut best: Option<(Minimum, PlayMap, f64)> = None;
     let mut misfit = USUAL_NRMSE;
     for _ in 0..rounds {
-        let held = map.clone();
-        let build = |x: &DVector<f64>| {
-            let law = StaticPreisach::new(*grid, reshaped(&held, &x.as_slice()[STAGES..])).ok()?;
-            let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
-            Some(with_stages(model, x, stroke_um))
-        };
-        let family = Family::StaticPreisachRelaxation;
-        let (nrmse, fitted) =
-            finish_with_error(family, &build, &all, &starts, (&NAMES, &pulls(misfit)))?;
-        let x: Vec<f64> = fitted.parameters.iter().map(|p| p.value).collect();
-        let mut next = DVector::from_vec(x);
+        let (held, before) = (map, misfit);
+        let build = |x: &DVector<f64>| built(&held, x);
+        let pulls = pulls(before);
+        let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
+        let minimum = search.minimum(&starts)?;
+        let mut next = minimum.x.clone();
         next.rows_mut(STAGES, SHAPE).fill(0.0);
         starts = vec![next];
-        misfit = misfit.min(nrmse);
-        map = remapped(training, &fitted.model)?;
-        if best.as_ref().is_none_or(|(least, _)| nrmse < *least) {
-            best = Some((nrmse, fitted));
+        misfit = misfit.min(minimum.nrmse);
+        map = remapped(training, &minimum.model)?;
+        if best.as_ref().is_none_or(|(least, ..)| minimum.nrmse < least.nrmse) {
+            best = Some((minimum, held, before));
         }
     }
-    let family = Family::StaticPreisachRelaxation.name();
-    best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family })
+    let (minimum, held, before) = best.ok_or(PreisachError::NotFitted { family: family.name() })?;
+    let build = |x: &DVector<f64>| built(&held, x);
+    let pulls = pulls(before);
+    let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
+    Ok(search.fitted(minimum, given.uncertainty()))
 }
 
 /// Largest share that settles with the way.

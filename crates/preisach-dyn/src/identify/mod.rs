@@ -14,10 +14,12 @@ mod compare;
 mod comparison;
 mod families;
 mod findings;
+mod flat_top;
 mod fourier;
 mod layered;
 mod noise;
 mod output_error;
+mod passage;
 mod plausibility;
 mod prepared;
 pub(crate) mod program;
@@ -26,6 +28,7 @@ mod record;
 mod refine;
 mod roles;
 mod settings;
+mod spikes;
 pub(crate) mod static_fit;
 mod stop_fit;
 mod stream;
@@ -50,6 +53,7 @@ use crate::{
     ActuatorLaw, ActuatorModel, DynamicPreisach, LinearGain, PlayMap, PlayMemory, PreisachError,
     PreisachGrid, StartState, StaticPreisach, TrainedRange,
 };
+use output_error::Uncertainty;
 use prepared::Prepared;
 use roles::{Bench, Sorted};
 
@@ -150,7 +154,7 @@ pub fn identify(
             covariance: None,
         }
     } else {
-        RateFit::new(&grid, g0_deg, &slow, &fast, settings)?
+        RateFit::new(&grid, g0_deg, &slow, &fast, settings, Uncertainty::Wanted)?
     };
     let dynamic = wrap(rate.law);
 
@@ -223,6 +227,7 @@ impl RateFit {
         slow: &[&Prepared],
         fast: &[&Prepared],
         settings: &Settings,
+        uncertainty: Uncertainty,
     ) -> Result<Self, PreisachError> {
         let (mut smoothness, mut validation) = validate::smoothness(grid, &g0_deg, fast, settings);
         let mut model = rate_fit::fit(grid, &g0_deg, fast, smoothness, settings)?
@@ -240,7 +245,7 @@ impl RateFit {
         }
         let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
         let refine::Refined { model, refinement, parameters, covariance } =
-            refine::refine(&model, &all, settings)?;
+            refine::refine(&model, &all, settings, uncertainty)?;
         let law = ActuatorLaw::DynamicPreisach(model);
         Ok(Self { law, smoothness, validation, refinement, parameters, covariance })
     }

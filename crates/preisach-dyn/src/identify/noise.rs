@@ -59,6 +59,50 @@ impl CycleNoise {
     }
 }
 
+/// The fine grain of a signal: its white noise and the step it is rounded to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fine {
+    /// Standard deviation of what is rough from sample to sample, deg.
+    pub(super) std_deg: f64,
+    /// Step of the sensor, deg; 0 if the signal is not rounded.
+    pub(super) quantum_deg: f64,
+}
+
+impl Fine {
+    /// From differences of neighbours alone, so that neither a model nor repeated cycles are needed.
+    ///
+    /// ```text
+    /// t_i = y_(i+3) - 3 y_(i+2) + 3 y_(i+1) - y_i,   sigma = 1.4826 median |t| / sqrt(20)
+    /// ```
+    /// A parabola drops out, outliers do not count. Source: the normal-consistent median absolute
+    /// deviation, F. R. Hampel, Journal of the American Statistical Association 69 (1974).
+    pub(super) fn of(values: &[f64]) -> Self {
+        let thirds = values.windows(4).map(|v| (v[3] - v[0] + 3.0 * (v[1] - v[2])).abs());
+        let std_deg = 1.4826 * median(thirds.collect()) / 20.0_f64.sqrt();
+        // rounded: many neighbours are equal, and no other difference is smaller than a step
+        let [low, high] = values
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
+        let least = 1e-9 * (high - low);
+        let steps: Vec<f64> = values.windows(2).map(|v| (v[1] - v[0]).abs()).collect();
+        let moved: Vec<f64> = steps.iter().copied().filter(|step| *step > least).collect();
+        let smallest = moved.iter().copied().fold(f64::INFINITY, f64::min);
+        let whole = |step: &f64| (step / smallest - (step / smallest).round()).abs() < 0.01;
+        let small: Vec<f64> = moved.into_iter().filter(|step| *step < 20.0 * smallest).collect();
+        let rounded = small.len() >= 8 && small.iter().all(whole);
+        Self { std_deg, quantum_deg: if rounded { smallest } else { 0.0 } }
+    }
+}
+
+/// The middle of some numbers; 0 of none.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,11 +1,13 @@
 //! Output error: records are simulated from their first sample and compared.
 
+use super::passage::Passage;
 use super::prepared::Prepared;
 use crate::ActuatorModel;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Residuals kept of one record at most; all samples are simulated.
 const MOST_RESIDUALS: usize = 800;
@@ -39,6 +41,13 @@ pub struct Estimate {
     pub value: f64,
     /// Standard deviation; infinite if the records do not determine the parameter.
     pub std_deviation: f64,
+}
+
+/// Whether a fit finds the covariance of its parameters: the folds of a cross-validation need none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Uncertainty {
+    Wanted,
+    LeftOut,
 }
 
 /// Covariance of refined parameters.
@@ -91,7 +100,13 @@ pub(super) struct OutputError<'a> {
     here: Option<DVector<f64>>,
     /// The best parameters so far and their residuals.
     best: Option<(DVector<f64>, DVector<f64>)>,
+    /// The model at the parameters last tried that gave residuals, run over the records; none if they
+    /// are too long to be kept.
+    passage: Option<Run>,
 }
+
+/// Parameters and the passage of their model.
+type Run = (DVector<f64>, Passage);
 
 impl<'a> OutputError<'a> {
     pub(super) fn new(build: Build<'a>, records: &'a [&'a Prepared<'a>], x: DVector<f64>) -> Self {
@@ -105,8 +120,8 @@ impl<'a> OutputError<'a> {
         pulls: &'a [Pull],
         x: DVector<f64>,
     ) -> Self {
-        let mut problem = Self { build, records, pulls, x, here: None, best: None };
-        problem.here = problem.residuals_at(&problem.x);
+        let mut problem = Self { build, records, pulls, x, here: None, best: None, passage: None };
+        (problem.here, problem.passage) = problem.evaluated(&problem.x);
         problem.best = problem.here.clone().map(|here| (problem.x.clone(), here));
         problem
     }
@@ -123,23 +138,66 @@ impl<'a> OutputError<'a> {
         trained.step_by(stride)
     }
 
-    /// Weighted residuals of all records, one after another; none if the model diverges.
+    /// Residuals at some parameters, with the passage they come from where it is kept; none if the
+    /// model diverges.
+    fn evaluated(&self, x: &DVector<f64>) -> (Option<DVector<f64>>, Option<Run>) {
+        if !Passage::fits(self.records) {
+            return (self.residuals_at(x), None);
+        }
+        let passage = (self.build)(x).and_then(|model| Passage::of(model, self.records));
+        let here = passage
+            .as_ref()
+            .and_then(|passage| self.residuals(x, |r| Some(Cow::Borrowed(passage.output_deg(r)))));
+        let kept = passage.filter(|_| here.is_some()).map(|passage| (x.clone(), passage));
+        (here, kept)
+    }
+
+    /// Residuals at some parameters; none if the model diverges. One record is held at a time.
     fn residuals_at(&self, x: &DVector<f64>) -> Option<DVector<f64>> {
         let model = (self.build)(x)?;
+        self.residuals(x, |r| {
+            let record = self.records[r].record;
+            let voltages = &record.voltage_volt[..record.trained_samples().end];
+            Some(Cow::Owned(model.simulate(voltages, record.time_step_s).ok()?.output_deg))
+        })
+    }
+
+    /// Weighted residuals of all records, one after another, from the flap angles over each; none if
+    /// they are not finite.
+    fn residuals<'o>(
+        &self,
+        x: &DVector<f64>,
+        mut output_deg: impl FnMut(usize) -> Option<Cow<'o, [f64]>>,
+    ) -> Option<DVector<f64>> {
         let mut residuals = Vec::new();
-        for prepared in self.records {
+        for (r, prepared) in self.records.iter().enumerate() {
             let record = prepared.record;
             let kept = Self::kept(prepared).count() as f64 * self.records.len() as f64;
             let weight = 1.0 / (prepared.spread_deg * kept.sqrt());
-            let trained = record.trained_samples();
-            let voltages = &record.voltage_volt[..trained.end];
-            let output = model.simulate(voltages, record.time_step_s).ok()?.output_deg;
+            let output = output_deg(r)?;
             residuals
                 .extend(Self::kept(prepared).map(|i| weight * (output[i] - record.output_deg[i])));
         }
         residuals.extend(self.pulls.iter().zip(x.iter()).map(|(p, x)| p.weight * (x - p.at)));
         let residuals = DVector::from_vec(residuals);
         residuals.iter().all(|r| r.is_finite()).then_some(residuals)
+    }
+
+    /// Residuals one difference up in every parameter; none where the model diverges.
+    fn residuals_beside(&self, moved: &[DVector<f64>]) -> Vec<Option<DVector<f64>>> {
+        let Some((_, passage)) = self.passage.as_ref().filter(|(x, _)| *x == self.x) else {
+            return moved.par_iter().map(|x| self.residuals_at(x)).collect();
+        };
+        let models: Vec<Option<ActuatorModel>> = moved.iter().map(|x| (self.build)(x)).collect();
+        let laws = passage.laws_beside(&models, self.records);
+        let columns: Vec<_> = moved.iter().zip(models).zip(laws).collect();
+        columns
+            .into_par_iter()
+            .map(|((x, model), law)| {
+                let outputs = passage.beside(&model?, law, self.records)?;
+                self.residuals(x, |r| Some(Cow::Borrowed(outputs[r].as_slice())))
+            })
+            .collect()
     }
 
     /// Levenberg-Marquardt from the start; none if the start lies outside the domain.
@@ -226,7 +284,15 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
 
     fn set_params(&mut self, x: &DVector<f64>) {
         self.x.copy_from(x);
-        let found = self.residuals_at(x);
+        let found = match &self.best {
+            // a step taken back
+            Some((at, best)) if at == x => Some(best.clone()),
+            _ => {
+                let (found, passage) = self.evaluated(x);
+                self.passage = passage.or(self.passage.take());
+                found
+            }
+        };
         if let (Some(found), Some((_, best))) = (&found, &self.best)
             && found.norm() < best.norm()
         {
@@ -245,16 +311,20 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let here = self.here.as_ref()?;
-        let columns = (0..self.x.len())
-            .into_par_iter()
-            .map(|k| {
-                let shifted = |difference: f64| {
-                    let mut x = self.x.clone();
-                    x[k] += difference;
-                    Some((self.residuals_at(&x)? - here) / difference)
-                };
+        let moved = |k: usize, difference: f64| {
+            let mut x = self.x.clone();
+            x[k] += difference;
+            x
+        };
+        let ahead: Vec<_> = (0..self.x.len()).map(|k| moved(k, DIFFERENCE)).collect();
+        let columns = self
+            .residuals_beside(&ahead)
+            .into_iter()
+            .enumerate()
+            .map(|(k, found)| match found {
+                Some(found) => Some((found - here) / DIFFERENCE),
                 // the domain may end at the parameter
-                shifted(DIFFERENCE).or_else(|| shifted(-DIFFERENCE))
+                None => Some((self.residuals_at(&moved(k, -DIFFERENCE))? - here) / -DIFFERENCE),
             })
             .collect::<Option<Vec<_>>>()?;
         Some(DMatrix::from_columns(&columns))

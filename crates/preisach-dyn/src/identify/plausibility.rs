@@ -1,5 +1,6 @@
 //! Whether records can be what they are said to be.
 
+use super::flat_top::FlatTop;
 use super::fourier;
 use super::{BenchRecord, Drive, Finding, Settings, Waveform};
 use crate::PreisachError;
@@ -89,7 +90,8 @@ pub(super) fn suspicions(record: &BenchRecord, drive: &Drive, is_slow: bool) -> 
         return vec![Finding::ConstantCommand { id: id() }];
     }
     let mut findings = Vec::new();
-    if let Some((level_deg, share)) = flat_output(record) {
+    let noisy = || FlatTop::of(record, drive, is_slow).map(|top| (top.level_deg, top.share));
+    if let Some((level_deg, share)) = flat_output(record).or_else(noisy) {
         let share_percent = 100.0 * share;
         findings.push(Finding::ClippedOutput { id: id(), level_deg, share_percent });
     }
@@ -110,7 +112,8 @@ pub(super) fn suspicions(record: &BenchRecord, drive: &Drive, is_slow: bool) -> 
     findings
 }
 
-/// Level and share of samples of an output that rests at an extreme while the command moves.
+/// Level and share of samples of an output that rests at its extreme, to the last digit, while the
+/// command moves.
 fn flat_output(record: &BenchRecord) -> Option<(f64, f64)> {
     let (y, u) = (&record.output_deg, &record.voltage_volt);
     let [u_low, u_high] = extremes(u);
@@ -183,4 +186,58 @@ fn width(record: &BenchRecord, drive: &Drive) -> f64 {
         return 0.0;
     }
     (down.0 / down.1 - up.0 / up.1).abs() / (high - low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::{SplitRule, spikes};
+    use std::path::{Path, PathBuf};
+
+    /// The records of a folder, times in the first column.
+    #[expect(clippy::disallowed_methods, reason = "tests read fixtures")]
+    fn records(folder: &Path) -> Vec<BenchRecord> {
+        let mut files: Vec<PathBuf> =
+            std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.retain(|file| file.extension().is_some_and(|e| e == "csv"));
+        files.sort();
+        let read = |file: &PathBuf| {
+            let text = std::fs::read_to_string(file).unwrap();
+            let rows: Vec<Vec<f64>> = text
+                .lines()
+                .map(|line| line.split(',').filter_map(|field| field.parse().ok()).collect())
+                .filter(|row: &Vec<f64>| row.len() >= 3)
+                .collect();
+            let last = rows.len() - 1;
+            BenchRecord {
+                id: file.display().to_string(),
+                time_step_s: (rows[last][0] - rows[0][0]) / last as f64,
+                voltage_volt: rows.iter().map(|row| row[1]).collect(),
+                output_deg: rows.iter().map(|row| row[2]).collect(),
+                ..BenchRecord::default()
+            }
+        };
+        files.iter().map(read).collect()
+    }
+
+    /// Nothing in the synthetic bench set and in the records of a real damper, whose force rests at the
+    /// friction until the motion turns, is a cut or a spike.
+    #[test]
+    fn the_records_shipped_raise_no_alarm() {
+        let fixtures = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
+        for folder in ["bench/apa500l_synthetic", "measured/friction_damper"] {
+            let records = records(&fixtures.join(folder));
+            assert!(records.len() >= 5, "{folder}");
+            for record in &records {
+                assert!(spikes::mended(record).is_none(), "{}", record.id);
+                let drive = record.drive();
+                let slow = SplitRule::default().is_quasi_static(&drive);
+                let found = suspicions(record, &drive, slow);
+                let cut = found.iter().any(|f| {
+                    matches!(f, Finding::ClippedOutput { .. } | Finding::ClippedCommand { .. })
+                });
+                assert!(!cut, "{found:?}");
+            }
+        }
+    }
 }

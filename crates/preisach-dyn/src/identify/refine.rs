@@ -1,7 +1,7 @@
 //! Output-error refinement: the training records are simulated and compared.
 
 use super::Settings;
-use super::output_error::{Covariance, Estimate, OutputError};
+use super::output_error::{Covariance, Estimate, OutputError, Uncertainty};
 use super::prepared::Prepared;
 use super::rate_fit::room_for_g2;
 use crate::{
@@ -61,10 +61,13 @@ pub(super) struct Refined {
 /// ```
 /// `s` in -1..1 is the centre, `r` in 0..1 the half-width of a play, over half the range. The
 /// exponentials and the hyperbolic tangent keep every parameter inside the cone of the model.
+///
+/// The covariance is left out unless asked for.
 pub(super) fn refine(
     start: &DynamicPreisach,
     records: &[&Prepared],
     settings: &Settings,
+    uncertainty: Uncertainty,
 ) -> Result<Refined, PreisachError> {
     let first = start.parameters();
     let mut x = DVector::zeros(PARAMETERS);
@@ -99,7 +102,10 @@ pub(super) fn refine(
             }
         }
     }
-    let covariance = OutputError::new(&build, records, x.clone()).covariance();
+    let covariance = match uncertainty {
+        Uncertainty::Wanted => OutputError::new(&build, records, x.clone()).covariance(),
+        Uncertainty::LeftOut => None,
+    };
     let deviation =
         |k: usize| covariance.as_ref().map_or(f64::INFINITY, |matrix| matrix.std_deviation(k));
     let parameters = NAMES.iter().zip(x.iter()).enumerate().map(|(k, (name, &value))| Estimate {

@@ -2,8 +2,10 @@
 
 use super::findings::{Finding, Identifiability};
 use super::prepared::Prepared;
-use super::{BenchRecord, Drive, RecordUse, Settings, Waveform, plausibility, static_fit};
+use super::{BenchRecord, Drive, RecordUse, Settings, Waveform, plausibility, spikes, static_fit};
 use crate::{PreisachError, PreisachGrid};
+use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Frequencies that differ by less than this share are one.
 const SAME_HZ: f64 = 0.05;
@@ -14,7 +16,8 @@ const SAME_AMPLITUDE: f64 = 0.05;
 
 /// Checked records with their commands and uses.
 pub(super) struct Bench<'a> {
-    records: &'a [BenchRecord],
+    /// Spikes left out.
+    records: Vec<Cow<'a, BenchRecord>>,
     drives: Vec<Drive>,
     uses: Vec<RecordUse>,
     /// Whether a record trains the static map.
@@ -33,9 +36,20 @@ impl<'a> Bench<'a> {
         for record in records {
             record.check(settings.range_volt)?;
         }
-        let drives: Vec<Drive> = records.iter().map(BenchRecord::drive).collect();
-        let mut uses = settings.split.uses(records, &drives);
         let mut findings = Vec::new();
+        let mended: Vec<Option<_>> = records.par_iter().map(spikes::mended).collect();
+        let mut left_out = Vec::new();
+        let kept = records.iter().zip(mended).map(|(record, mended)| match mended {
+            Some((mended, found)) => {
+                left_out.extend(found);
+                Cow::Owned(mended)
+            }
+            None => Cow::Borrowed(record),
+        });
+        let given = records;
+        let records: Vec<Cow<BenchRecord>> = kept.collect();
+        let drives: Vec<Drive> = records.iter().map(|record| record.drive()).collect();
+        let mut uses = settings.split.uses(given, &drives);
         let moves = |i: usize| drives[i].waveform != Waveform::Constant;
         let lowest = |indices: &mut dyn Iterator<Item = usize>| {
             indices.map(|i| drives[i].strongest_hz()).fold(f64::INFINITY, f64::min)
@@ -71,6 +85,7 @@ impl<'a> Bench<'a> {
             let limit_hz = settings.split.quasi_static_hz;
             findings.push(Finding::NoSlowRecords { lowest_hz, limit_hz });
         }
+        findings.extend(left_out);
         for i in all {
             findings.extend(plausibility::suspicions(&records[i], &drives[i], quasi_static(i)));
         }
@@ -83,11 +98,11 @@ impl<'a> Bench<'a> {
     }
 
     /// The records made ready for the fits.
-    pub(super) fn prepared(
-        &self,
+    pub(super) fn prepared<'s>(
+        &'s self,
         grid: &PreisachGrid,
         settings: &Settings,
-    ) -> Result<Vec<Prepared<'a>>, PreisachError> {
+    ) -> Result<Vec<Prepared<'s>>, PreisachError> {
         (0..self.records.len())
             .map(|i| {
                 let drive = self.drives[i].clone();

@@ -43,6 +43,12 @@ impl<'a> Subject<'a> {
             Finding::ClippedCommand { id, level_volt, share_percent } => format!(
                 "record {id}: the periodic command rests at {level_volt:.2} {input} for {share_percent:.1} % of the samples: it is clipped"
             ),
+            Finding::OutputSpikes { id, samples, index, time_s, value_deg: value } => format!(
+                "record {id}: {samples} samples of the output are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value:.4} {output}"
+            ),
+            Finding::CommandSpikes { id, samples, index, time_s, value_volt: value } => format!(
+                "record {id}: {samples} samples of the command are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value:.2} {input}"
+            ),
             Finding::OutputLeads { id, lead_deg } if self != Self::Actuator => format!(
                 "record {id}: the output leads the input by {lead_deg:.1} deg of phase: friction does, sums of plays cannot"
             ),

@@ -188,4 +188,40 @@ impl Step for CreepStep {
         }
         input + creep
     }
+
+    fn pass(&self, signal: &mut [f64]) {
+        let Some(&start) = signal.first() else {
+            return;
+        };
+        let mut creep: Vec<f64> = signal.iter().map(|input| self.total * (input - start)).collect();
+        match self.terms.as_slice() {
+            [term] => add_lags::<1>(std::slice::from_ref(term), signal, &mut creep),
+            terms => terms.chunks(8).for_each(|terms| add_lags::<8>(terms, signal, &mut creep)),
+        }
+        for (value, creep) in signal.iter_mut().zip(creep).skip(1) {
+            *value += creep;
+        }
+    }
+}
+
+/// Adds the weighted deviations of at most `N` lags, all of them at once, in their order.
+fn add_lags<const N: usize>(terms: &[(f64, LagStep)], signal: &[f64], creep: &mut [f64]) {
+    let mut lanes = [(0.0, LagStep::new(0.0, 1.0)); N];
+    for (lane, term) in lanes.iter_mut().zip(terms) {
+        *lane = *term;
+    }
+    let (decays, ramps) = (lanes.map(|(_, lag)| lag.decay), lanes.map(|(_, lag)| lag.ramp));
+    let weights = lanes.map(|(weight, _)| weight);
+    let mut deviations = [0.0; N];
+    for (pair, creep) in signal.windows(2).zip(creep.iter_mut().skip(1)) {
+        let change = pair[1] - pair[0];
+        let mut parts = [0.0; N];
+        for k in 0..N {
+            deviations[k] = decays[k] * deviations[k] - ramps[k] * change;
+            parts[k] = weights[k] * deviations[k];
+        }
+        for part in &parts[..terms.len().min(N)] {
+            *creep += part;
+        }
+    }
 }

@@ -33,8 +33,8 @@ impl Lag {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LagStep {
     tau_s: f64,
-    decay: f64,
-    ramp: f64,
+    pub(super) decay: f64,
+    pub(super) ramp: f64,
 }
 
 impl LagStep {

@@ -105,6 +105,19 @@ pub(crate) trait Step {
 
     /// One sample on.
     fn advance(&self, memory: &mut Self::Memory, input: f64) -> f64;
+
+    /// A whole signal through the stage, settled at its first sample: the same numbers as sample by
+    /// sample.
+    fn pass(&self, signal: &mut [f64]) {
+        let Some((first, rest)) = signal.split_first_mut() else {
+            return;
+        };
+        let (mut memory, output) = self.start(*first);
+        *first = output;
+        for value in rest {
+            *value = self.advance(&mut memory, *value);
+        }
+    }
 }
 
 /// Any stage made ready for one time step.
@@ -203,6 +216,27 @@ impl StageStep {
     #[inline]
     pub(crate) fn advance(&self, memory: &mut StageMemory, input: f64) -> f64 {
         paired!(self, memory, (step, memory) => step.advance(memory, input), else f64::NAN)
+    }
+
+    /// A whole signal through the stage, settled at its first sample and without load: the same
+    /// numbers as sample by sample.
+    pub(crate) fn pass(&self, signal: &mut [f64]) {
+        match self {
+            Self::Lag(step) => step.pass(signal),
+            Self::CurrentLimit(step) => step.pass(signal),
+            Self::Saturation(step) => step.pass(signal),
+            Self::Delay(step) => step.pass(signal),
+            Self::Heating(step) => step.pass(signal),
+            Self::Depolarisation(step) => step.pass(signal),
+            Self::Creep(step) => step.pass(signal),
+            Self::Resonance(step) => step.pass(signal),
+            Self::Play(step) => step.pass(signal),
+            Self::Friction(step) => step.pass(signal),
+            Self::Load(step) => step.pass(signal),
+            Self::Nonlinearity(step) => step.pass(signal),
+            Self::Quantisation(step) => step.pass(signal),
+            Self::Hum(step) => step.pass(signal),
+        }
     }
 
     /// Whether a memory is one of this kind of stage.

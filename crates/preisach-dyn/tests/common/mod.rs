@@ -8,9 +8,9 @@ use preisach_dyn::{
     DielectricHeating, Drive, DynamicParameters, DynamicPreisach, Envelope, EverettStaircase,
     KelvinVoigt, KelvinVoigtElement, Lag, LinearGain, LinkageStage, LoadStiffness, LogCreep,
     MainsHum, Nonlinearity, NonlinearityShape, PlayMap, PrandtlIshlinskii, PrandtlParameters,
-    PrandtlStop, PreisachGrid, Quantisation, RateForm, RelayGrid, Resonance, Saturation,
-    SensorStage, StaticPreisach, StopParameters, TimeOrder, VoltageRange, WeightedPlay,
-    WeightedStop,
+    PrandtlStop, PreisachGrid, Quantisation, RateForm, Relaxation, RelaxationElement, RelayGrid,
+    Resonance, Saturation, SensorStage, StaticPreisach, StopParameters, TimeOrder, VoltageRange,
+    WeightedPlay, WeightedStop,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -239,6 +239,9 @@ pub(crate) fn effects() -> Vec<ActuatorModel> {
         })),
         linkage(LinkageStage::LogCreep(LogCreep::new(0.02))),
         linkage(LinkageStage::KelvinVoigt(KelvinVoigt { elements: vec![element] })),
+        linkage(LinkageStage::Relaxation(Relaxation {
+            elements: vec![RelaxationElement { share: 0.9, time_constant_s: 5e-3 }],
+        })),
         linkage(LinkageStage::Resonance(Resonance { frequency_hz: 90.0, damping_ratio: 0.03 })),
         linkage(LinkageStage::Backlash(Backlash { width_um: 3.0 })),
         linkage(LinkageStage::CoulombFriction(CoulombFriction { width_um: 3.0 })),

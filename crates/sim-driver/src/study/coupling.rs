@@ -24,6 +24,9 @@ pub const COUPLING_TOLERANCE_DEG: f64 = 1e-7;
 /// Iterations allowed.
 const MAX_ITERATIONS: usize = 40;
 
+/// Highest harmonic of the voltage, paper equation (6).
+const CONTROLLED: usize = 5;
+
 /// How well flap motion and hinge moment agree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CouplingResidual {
@@ -149,8 +152,46 @@ impl HingeCoupling {
     /// rotor and its hinge moments; `respond` is handed the last response to start from.
     ///
     /// # Errors
-    /// [`PlantError::Coupling`] with iterations, residual and the best motion; the errors of both.
+    /// [`PlantError::Coupling`] with iterations, residual and the best motion; the errors of both;
+    /// [`PlantError::TooSoft`] around either where the loop gain is 1 or more.
     pub fn settle<R>(
+        &self,
+        actuate: impl Fn(&[HarmonicSeries]) -> Result<Vec<FlapMotion>, PlantError>,
+        respond: impl Fn(&[FlapMotion], Option<&R>) -> Result<(R, Vec<HarmonicSeries>), PlantError>,
+    ) -> Result<(Vec<FlapMotion>, R, CouplingResidual), PlantError> {
+        self.iterate(actuate, respond).map_err(|source| {
+            let loop_gain = self.loop_gain();
+            if loop_gain < 1.0 {
+                return source;
+            }
+            let hinge_stiffness_newton_metre_per_rad =
+                self.give_deg_per_newton_metre.to_radians().recip();
+            let share_percent = 100.0 / loop_gain;
+            let source = Box::new(source);
+            PlantError::TooSoft {
+                hinge_stiffness_newton_metre_per_rad,
+                loop_gain,
+                share_percent,
+                source,
+            }
+        })
+    }
+
+    /// How far the flaps move by the hinge moments of a motion, over that motion, up to the highest
+    /// harmonic that is controlled: the largest eigenvalue of `g R` there. The means are left out, the bias
+    /// holds them. At 1 the motion feeds itself: the flap is in resonance on its actuator, or swept along.
+    pub fn loop_gain(&self) -> f64 {
+        let size = 2 * self.harmonics + 1;
+        let last = 2 * CONTROLLED.min(self.harmonics);
+        let kept: Vec<usize> =
+            (0..self.response.ncols()).filter(|k| (1..=last).contains(&(k % size))).collect();
+        let open = self.response.select_columns(&kept).select_rows(&kept);
+        let eigenvalues =
+            (self.give_deg_per_newton_metre.to_radians() * open).complex_eigenvalues();
+        eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max)
+    }
+
+    fn iterate<R>(
         &self,
         actuate: impl Fn(&[HarmonicSeries]) -> Result<Vec<FlapMotion>, PlantError>,
         respond: impl Fn(&[FlapMotion], Option<&R>) -> Result<(R, Vec<HarmonicSeries>), PlantError>,

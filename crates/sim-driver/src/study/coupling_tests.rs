@@ -187,6 +187,36 @@ fn what_does_not_settle_says_so_with_its_best_state() {
     assert!(residual_deg > COUPLING_TOLERANCE_DEG && best.len() == 1);
 }
 
+/// An actuator so soft that a motion feeds itself is named as the reason, with the share of its compliance
+/// at which the loop gain is 1; the gain is proportional to the compliance.
+#[test]
+fn an_actuator_too_soft_for_its_flap_is_named() {
+    let settled = |compliance: f64| {
+        let drive = soft(compliance);
+        let free = [drive.motion(&sine(4, 40.0)).unwrap()];
+        let give = drive.give_deg_per_newton_metre();
+        let coupling =
+            HingeCoupling::new(give, vec![HarmonicSeries::zero(12)], response(1, 1.0)).unwrap();
+        let result: Result<(_, (), _), _> = coupling.settle(
+            |moments| Ok(vec![drive.loaded_motion(&free[0], &moments[0])?]),
+            |_, _| Err(PlantError::BiasSearch),
+        );
+        (coupling.loop_gain(), result.unwrap_err())
+    };
+    let critical = 0.9 / settled(0.9).0;
+    let (half, error) = settled(0.5 * critical);
+    assert_abs_diff_eq!(half, 0.5, epsilon = 1e-9);
+    assert_eq!(error, PlantError::BiasSearch);
+    let (twice, error) = settled(2.0 * critical);
+    assert_abs_diff_eq!(twice, 2.0, epsilon = 1e-9);
+    let PlantError::TooSoft { loop_gain, share_percent, .. } = &error else {
+        panic!("{error}");
+    };
+    assert_abs_diff_eq!(*loop_gain, 2.0, epsilon = 1e-9);
+    assert_abs_diff_eq!(*share_percent, 50.0, epsilon = 1e-6);
+    assert!(error.to_string().contains("compliance_um_per_newton"), "{error}");
+}
+
 /// Hover without pitch and inflow, blades that hardly move, quasi-steady sections.
 fn stiff_rotor() -> TrimmedRotor {
     let text = "(

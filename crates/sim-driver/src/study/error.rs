@@ -34,6 +34,20 @@ pub enum PlantError {
         /// Flap motions at the least residual.
         best: Vec<super::FlapMotion>,
     },
+    /// The hinge moment of a motion moves the flap as much as the motion itself, or more.
+    #[error(
+        "the actuator is too soft for the hinge moment: its compliance leaves a hinge stiffness of {hinge_stiffness_newton_metre_per_rad:.3} N m/rad, where the hinge moment of a motion moves the flap {loop_gain:.2} times as far as the motion (loop gain up to 5/rev; 1 is the limit): lower compliance_um_per_newton to less than {share_percent:.0} % of what it is ({source})"
+    )]
+    TooSoft {
+        /// What the actuator holds the flap with, N m/rad.
+        hinge_stiffness_newton_metre_per_rad: f64,
+        /// Largest loop gain of a motion of the flaps up to 5/rev.
+        loop_gain: f64,
+        /// Share of the compliance at which the loop gain is 1, percent.
+        share_percent: f64,
+        /// What failed.
+        source: Box<PlantError>,
+    },
     /// The harmonics of the voltage are larger than the range.
     #[error(
         "the voltage swings over {swing_volt:.2} V, the actuator takes {span_volt:.2} V: lower the amplitudes"

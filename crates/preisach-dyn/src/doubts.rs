@@ -1,0 +1,435 @@
+//! What is impossible or unlikely about an actuator, number by number.
+
+use crate::{
+    ActuatorLaw, ActuatorModel, AmplifierStage, HysteresisLaw, LinkageStage, SensorStage,
+    StartState, VoltageRange,
+};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// How much a doubt weighs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Weight {
+    /// It can be, but hardly any actuator is like that.
+    Unlikely,
+    /// No actuator can be like that.
+    Impossible,
+}
+
+/// One thing about an actuator that is impossible or unlikely.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Doubt {
+    /// How much it weighs.
+    pub weight: Weight,
+    /// Place in the model: `law`, `linkage[2].width_um`.
+    pub field: String,
+    /// What is there, with its unit.
+    pub found: String,
+    /// What would be expected, with its unit.
+    pub expected: String,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}, expected {}; {}", self.field, self.found, self.expected, self.remedy)
+    }
+}
+
+/// Limits beyond the range by more than this share of it were not meant to be its ends.
+const BEYOND: f64 = 0.01;
+/// Share of the stroke that a gap or friction may take before it is doubted.
+const WIDE_GAP: f64 = 0.2;
+/// Stroke of a stack that is doubted, um.
+const MOST_STROKE_UM: f64 = 5000.0;
+/// Travel of a flap that is doubted, deg.
+const MOST_TRAVEL_DEG: f64 = 90.0;
+/// Travel of a law that counts as none, deg.
+const LEAST_TRAVEL_DEG: f64 = 1e-9;
+/// Steps of a sweep through the range, and the time each takes, s.
+const SWEEP: u32 = 32;
+const SLOW_S: f64 = 1e6;
+
+impl ActuatorModel {
+    /// What is impossible or unlikely about this actuator, in the order of its chain; empty for a sound
+    /// one. Parameters outside the ranges of their stages are errors of [`Self::check_stages`].
+    ///
+    /// The law moves, upwards, and over the whole range of commands; limits and thresholds act inside
+    /// that range; gaps are smaller than the stroke; one stage feels the load; no stage is without
+    /// effect; sizes are the usual ones of their stages, widened some ten times.
+    pub fn doubts(&self) -> Vec<Doubt> {
+        let mut doubts = Doubts::default();
+        let per_um = self.calibration.deg_per_um;
+        doubts.place = "calibration.deg_per_um".into();
+        if !(per_um.is_finite() && per_um != 0.0) {
+            let found = format!("{per_um} deg/um");
+            doubts.impossible("", found, "a number other than 0", "give the gain of the bench");
+        }
+        let stroke_um = (self.law_doubts(&mut doubts) / per_um).abs();
+        doubts.place = "calibration.deg_per_um".into();
+        if stroke_um.is_finite() && stroke_um > MOST_STROKE_UM {
+            let found = format!("a stroke of {stroke_um:.0} um");
+            doubts.unlikely("", found, "50 to 1000 um", "check deg_per_um and the law's unit");
+        }
+        for (i, stage) in self.amplifier.iter().enumerate() {
+            doubts.place = format!("amplifier[{i}]");
+            amplifier(stage, self.range_volt, &mut doubts);
+        }
+        for (i, stage) in self.linkage.iter().enumerate() {
+            doubts.place = format!("linkage[{i}]");
+            linkage(stage, stroke_um, &mut doubts);
+        }
+        let loads = |stage: &&LinkageStage| matches!(stage, LinkageStage::LoadStiffness(_));
+        let count = self.linkage.iter().filter(loads).count();
+        if count > 1 {
+            doubts.place = "linkage".into();
+            let found = format!("{count} LoadStiffness stages");
+            doubts.impossible("", found, "one: each takes the whole load", "make them one");
+        }
+        for (i, stage) in self.sensor.iter().enumerate() {
+            doubts.place = format!("sensor[{i}]");
+            sensor(stage, stroke_um, &mut doubts);
+        }
+        doubts.list
+    }
+
+    /// Doubts about the law alone; how far it moves over the range of commands, slowly, deg.
+    fn law_doubts(&self, doubts: &mut Doubts) -> f64 {
+        let range = self.range_volt;
+        let own = match &self.law {
+            ActuatorLaw::Linear(_) => range,
+            ActuatorLaw::StaticPreisach(law) => law.grid().range(),
+            ActuatorLaw::Everett(law) => law.grid().range(),
+            ActuatorLaw::RelayGrid(law) => law.grid().range(),
+            ActuatorLaw::DynamicPreisach(law) => law.grid().range(),
+            ActuatorLaw::PrandtlIshlinskii(law) => law.parameters().range_volt,
+            ActuatorLaw::BoucWen(law) => law.parameters().range_volt,
+            ActuatorLaw::PrandtlStop(law) => law.parameters().range_volt,
+        };
+        doubts.place = "range_volt".into();
+        let found = format!("{} to {} V", range.lowest_volt(), range.highest_volt());
+        let expected =
+            format!("inside the law's {} to {} V", own.lowest_volt(), own.highest_volt());
+        let allowed = BEYOND * own.span_volt();
+        let excess =
+            own.excess_volt(range.lowest_volt()).max(own.excess_volt(range.highest_volt()));
+        let apart =
+            range.highest_volt() <= own.lowest_volt() || range.lowest_volt() >= own.highest_volt();
+        if apart {
+            doubts.impossible("", found, &expected, "give the range the law was fitted in");
+        } else if excess > allowed {
+            let remedy = "the law has no numbers out there; narrow the range or fit again";
+            doubts.unlikely("", found, &expected, remedy);
+        }
+        // so slowly that no rate counts
+        let (mut memory, first) = self.law.start(range.lowest_volt(), StartState::RisingFromLowest);
+        let mut last = first;
+        for part in 1..=SWEEP {
+            let volt = range.lowest_volt() + range.span_volt() * f64::from(part) / f64::from(SWEEP);
+            last = self.law.step(&mut memory, volt, SLOW_S);
+        }
+        let travel = last - first;
+        doubts.place = "law".into();
+        let found = format!("{travel:.3e} deg over the range of commands");
+        if travel.is_nan() || travel.abs() < LEAST_TRAVEL_DEG {
+            doubts.impossible("", found, "a flap that moves", "give the law a gain other than 0");
+        } else if travel < 0.0 {
+            let remedy = "change its sign, or leave it if the linkage turns the motion round";
+            doubts.unlikely("", found, "an output that rises with the voltage", remedy);
+        } else if travel > MOST_TRAVEL_DEG {
+            doubts.unlikely("", found, "less than 90 deg", "check the unit of the law's output");
+        }
+        travel
+    }
+}
+
+/// Doubts found so far, and the place that is looked at.
+#[derive(Default)]
+struct Doubts {
+    list: Vec<Doubt>,
+    place: String,
+}
+
+impl Doubts {
+    fn push(&mut self, weight: Weight, field: &str, found: String, sound: (&str, &'static str)) {
+        let dot = if field.is_empty() { "" } else { "." };
+        let field = format!("{}{dot}{field}", self.place);
+        let (expected, remedy) = (sound.0.to_owned(), sound.1);
+        self.list.push(Doubt { weight, field, found, expected, remedy });
+    }
+
+    fn impossible(&mut self, field: &str, found: String, expected: &str, remedy: &'static str) {
+        self.push(Weight::Impossible, field, found, (expected, remedy));
+    }
+
+    fn unlikely(&mut self, field: &str, found: String, expected: &str, remedy: &'static str) {
+        self.push(Weight::Unlikely, field, found, (expected, remedy));
+    }
+
+    /// A number larger than `most`.
+    fn above(&mut self, field: &str, (value, unit): (f64, &str), most: f64) {
+        if value > most {
+            let expected = format!("up to {most} {unit}");
+            self.unlikely(field, format!("{value} {unit}"), &expected, "check value and unit");
+        }
+    }
+
+    /// A stage that is the identity.
+    fn idle(&mut self, field: &str, found: String) {
+        self.unlikely(field, found, "a stage that acts", "leave the stage out or correct it");
+    }
+}
+
+fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mut Doubts) {
+    let (low, high, span) = (range.lowest_volt(), range.highest_volt(), range.span_volt());
+    match stage {
+        AmplifierStage::Lag(lag) => doubts.above("tau_s", (lag.tau_s, "s"), 0.5),
+        AmplifierStage::Delay(delay) => doubts.above("delay_s", (delay.delay_s, "s"), 0.1),
+        AmplifierStage::CurrentLimit(limit) => {
+            let sweep_s = span / limit.slew_rate_volt_per_s;
+            if sweep_s > 10.0 {
+                let found =
+                    format!("{} V/s: {sweep_s:.0} s for the range", limit.slew_rate_volt_per_s);
+                doubts.unlikely(
+                    "slew_rate_volt_per_s",
+                    found,
+                    "500 to 500 000 V/s",
+                    "check the unit",
+                );
+            }
+        }
+        AmplifierStage::Saturation(limit) => {
+            let found = format!("{} to {} V", limit.v_min_volt, limit.v_max_volt);
+            let expected = format!("inside the commands' {low} to {high} V");
+            if limit.v_min_volt >= high || limit.v_max_volt <= low {
+                let remedy = "the voltage would never change; correct the limits";
+                doubts.impossible("", found, &expected, remedy);
+            } else if limit.v_min_volt < low - BEYOND * span
+                && limit.v_max_volt > high + BEYOND * span
+            {
+                doubts.unlikely("", found, &expected, "it never acts; correct it or leave it out");
+            }
+        }
+        AmplifierStage::DielectricHeating(heat) => {
+            if heat.coefficient_per_k == 0.0 || heat.rise_k_per_volt2_hz == 0.0 {
+                doubts.idle("", "no change of gain with heat".into());
+            }
+            doubts.above("coefficient_per_k", (heat.coefficient_per_k.abs(), "1/K"), 0.03);
+        }
+        AmplifierStage::Depolarisation(loss) => {
+            let threshold = loss.threshold_volt;
+            if loss.loss_per_volt == 0.0 || threshold <= low {
+                doubts.idle("threshold_volt", format!("{threshold} V, never passed below"));
+            } else if loss.loss_per_volt * (threshold - high) >= 1.0 {
+                let found = format!("{threshold} V: nothing is left of the polarisation");
+                let expected = "about -0.2 of the highest voltage";
+                doubts.impossible("threshold_volt", found, expected, "correct the threshold");
+            } else if threshold > 0.0 {
+                let found = format!("{threshold} V");
+                doubts.unlikely("threshold_volt", found, "a reverse voltage", "check the sign");
+            }
+        }
+    }
+}
+
+fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts) {
+    let gap = |field: &str, width_um: f64, doubts: &mut Doubts| {
+        let found = format!("{width_um} um of a stroke of {stroke_um:.1} um");
+        let expected = "0.1 to 3 % of the stroke";
+        if width_um == 0.0 {
+            doubts.idle(field, "0 um".into());
+        } else if width_um >= stroke_um {
+            doubts.impossible(
+                field,
+                found,
+                expected,
+                "the flap would never move; correct the width",
+            );
+        } else if width_um > WIDE_GAP * stroke_um {
+            doubts.unlikely(field, found, expected, "check the unit");
+        }
+    };
+    match stage {
+        LinkageStage::LogCreep(creep) => {
+            if creep.rate_per_decade == 0.0 {
+                doubts.idle("rate_per_decade", "0".into());
+            }
+            doubts.above("rate_per_decade", (creep.rate_per_decade, "of a step"), 0.1);
+        }
+        LinkageStage::KelvinVoigt(chain) => {
+            let sum: f64 = chain.elements.iter().map(|e| e.compliance_ratio).sum();
+            if sum == 0.0 {
+                doubts.idle("elements", "no compliance".into());
+            }
+            doubts.above("elements", (sum, "of a step in all"), 0.5);
+        }
+        LinkageStage::Relaxation(relaxation) => {
+            if relaxation.elements.iter().all(|e| e.share == 0.0) {
+                doubts.idle("elements", "no share".into());
+            }
+        }
+        LinkageStage::Accommodation(late) => {
+            if late.share == 0.0 {
+                doubts.idle("share", "0".into());
+            }
+            doubts.above("share", (late.share, "of the motion"), 0.5);
+        }
+        LinkageStage::Resonance(mode) => {
+            if mode.frequency_hz < 10.0 {
+                let found = format!("{} Hz", mode.frequency_hz);
+                doubts.unlikely("frequency_hz", found, "60 to 400 Hz", "check value and unit");
+            }
+        }
+        LinkageStage::Backlash(gap_stage) => gap("width_um", gap_stage.width_um, doubts),
+        LinkageStage::CoulombFriction(friction) => gap("width_um", friction.width_um, doubts),
+        LinkageStage::LoadStiffness(load) => {
+            if load.stiffness_ratio == 0.0 && load.compliance_um_per_newton == 0.0 {
+                doubts.idle("", "no stiffness and no compliance".into());
+            }
+            doubts.above("stiffness_ratio", (load.stiffness_ratio, "of the actuator's"), 10.0);
+            let compliance = (load.compliance_um_per_newton, "um/N");
+            doubts.above("compliance_um_per_newton", compliance, 20.0);
+        }
+    }
+}
+
+fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
+    match stage {
+        SensorStage::Filter(lag) => doubts.above("tau_s", (lag.tau_s, "s"), 0.5),
+        SensorStage::Delay(delay) => doubts.above("delay_s", (delay.delay_s, "s"), 0.1),
+        SensorStage::Nonlinearity(shape) => {
+            if 2.0 * shape.half_range_um < 0.5 * stroke_um {
+                let found = format!("{} um of a stroke of {stroke_um:.1} um", shape.half_range_um);
+                let remedy = "beyond it the polynomial runs away; check the unit";
+                doubts.unlikely("half_range_um", found, "half the stroke or more", remedy);
+            }
+        }
+        SensorStage::Quantisation(rounding) => {
+            if rounding.step_um >= stroke_um {
+                let found = format!("{} um of a stroke of {stroke_um:.1} um", rounding.step_um);
+                let remedy = "the reading would never change; correct the step";
+                doubts.impossible("step_um", found, "0.1 % of the stroke", remedy);
+            }
+        }
+        SensorStage::MainsHum(hum) => {
+            doubts.above("amplitude_um", (hum.amplitude_um, "um"), stroke_um);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Backlash, Calibration, CoulombFriction, Depolarisation, LinearGain, LoadStiffness, PlayMap,
+        PreisachGrid, Quantisation, Saturation, StaticPreisach,
+    };
+
+    fn sound() -> ActuatorModel {
+        ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04)
+    }
+
+    /// Field and weight of the only doubt.
+    fn only(model: &ActuatorModel) -> (String, Weight) {
+        let doubts = model.doubts();
+        assert_eq!(doubts.len(), 1, "{doubts:?}");
+        (doubts[0].field.clone(), doubts[0].weight)
+    }
+
+    fn with_linkage(stages: Vec<LinkageStage>) -> ActuatorModel {
+        ActuatorModel { linkage: stages, ..sound() }
+    }
+
+    #[test]
+    fn a_sound_actuator_raises_none() {
+        let mut model = sound();
+        let limit = Saturation { v_min_volt: -20.0, v_max_volt: 150.0 };
+        model.amplifier.push(AmplifierStage::Saturation(limit));
+        model.linkage.push(LinkageStage::Backlash(Backlash { width_um: 5.0 }));
+        model.linkage.push(LinkageStage::LoadStiffness(LoadStiffness {
+            stiffness_ratio: 0.2,
+            compliance_um_per_newton: 0.9,
+        }));
+        assert_eq!(model.doubts(), []);
+    }
+
+    #[test]
+    fn gains_that_are_zero_or_negative_are_doubted() {
+        let gain = |gain_deg_per_volt: f64| {
+            let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt, bias_volt: 65.0 });
+            only(&ActuatorModel { law, ..sound() })
+        };
+        assert_eq!(gain(0.0), ("law".into(), Weight::Impossible));
+        assert_eq!(gain(-0.1), ("law".into(), Weight::Unlikely));
+        assert_eq!(gain(1.0), ("law".into(), Weight::Unlikely));
+        let calibration = Calibration { deg_per_um: 0.0, zero_um: 0.0 };
+        let flat = ActuatorModel { calibration, ..sound() };
+        assert_eq!(only(&flat), ("calibration.deg_per_um".into(), Weight::Impossible));
+        let calibration = Calibration { deg_per_um: 0.001, zero_um: 0.0 };
+        let long = ActuatorModel { calibration, ..sound() };
+        assert_eq!(only(&long), ("calibration.deg_per_um".into(), Weight::Unlikely));
+    }
+
+    #[test]
+    fn the_range_of_commands_lies_in_that_of_the_law() {
+        let law = |low, high| {
+            let grid = PreisachGrid::new(VoltageRange::new(low, high).unwrap(), 4).unwrap();
+            let rises: Vec<Vec<f64>> = (0..4).map(|j| vec![1.0; 4 - j]).collect();
+            let map = PlayMap::from_rises(&grid, 0.0, &rises).unwrap();
+            let law = ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, map).unwrap());
+            ActuatorModel { law, ..sound() }
+        };
+        assert_eq!(law(-20.0, 150.0).doubts(), []);
+        assert_eq!(law(-50.0, 200.0).doubts(), []);
+        assert_eq!(only(&law(0.0, 100.0)), ("range_volt".into(), Weight::Unlikely));
+        let apart = law(200.0, 300.0).doubts();
+        assert_eq!((&*apart[0].field, apart[0].weight), ("range_volt", Weight::Impossible));
+    }
+
+    #[test]
+    fn limits_thresholds_and_gaps_act_inside_the_range() {
+        let amplifier = |stage| only(&ActuatorModel { amplifier: vec![stage], ..sound() });
+        let limits = |v_min_volt, v_max_volt| {
+            amplifier(AmplifierStage::Saturation(Saturation { v_min_volt, v_max_volt }))
+        };
+        assert_eq!(limits(-200.0, 400.0), ("amplifier[0]".into(), Weight::Unlikely));
+        assert_eq!(limits(160.0, 400.0), ("amplifier[0]".into(), Weight::Impossible));
+        let threshold = |volt| {
+            let stage = Depolarisation { loss_per_volt: 0.1, ..Depolarisation::new(volt) };
+            amplifier(AmplifierStage::Depolarisation(stage)).1
+        };
+        assert_eq!(threshold(-30.0), Weight::Unlikely);
+        assert_eq!(threshold(20.0), Weight::Unlikely);
+        assert_eq!(threshold(170.0), Weight::Impossible);
+        // the stroke is 500 um
+        for (width_um, weight) in
+            [(0.0, Weight::Unlikely), (150.0, Weight::Unlikely), (600.0, Weight::Impossible)]
+        {
+            let expected = ("linkage[0].width_um".into(), weight);
+            let gap = LinkageStage::Backlash(Backlash { width_um });
+            assert_eq!(only(&with_linkage(vec![gap])), expected);
+            let friction = LinkageStage::CoulombFriction(CoulombFriction { width_um });
+            assert_eq!(only(&with_linkage(vec![friction])), expected);
+        }
+        let coarse = SensorStage::Quantisation(Quantisation { step_um: 900.0 });
+        let model = ActuatorModel { sensor: vec![coarse], ..sound() };
+        assert_eq!(only(&model), ("sensor[0].step_um".into(), Weight::Impossible));
+    }
+
+    #[test]
+    fn the_load_is_taken_once_and_by_something_stiff() {
+        let load = |compliance_um_per_newton| {
+            LinkageStage::LoadStiffness(LoadStiffness {
+                stiffness_ratio: 0.1,
+                compliance_um_per_newton,
+            })
+        };
+        let twice = with_linkage(vec![load(0.9), load(0.9)]);
+        assert_eq!(only(&twice), ("linkage".into(), Weight::Impossible));
+        let soft = only(&with_linkage(vec![load(50.0)]));
+        assert_eq!(soft, ("linkage[0].compliance_um_per_newton".into(), Weight::Unlikely));
+        let text = with_linkage(vec![load(50.0)]).doubts()[0].to_string();
+        assert!(text.contains("50 um/N") && text.contains("up to 20 um/N"), "{text}");
+    }
+}
