@@ -12,7 +12,7 @@
 //! | case files and the validated case | [`case`], its hand-over to the models in `models` |
 //! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
 //! | one physics alone | [`modes`], [`section`] |
-//! | a whole case | [`run`], stored by [`results`] |
+//! | a whole case | [`run`], stored by [`results`]; [`stability`] of its trimmed blade |
 //! | the HTML report | [`report`] |
 //! | `hhc` | [`cli`] |
 
@@ -39,6 +39,7 @@ pub mod report;
 pub mod results;
 pub mod run;
 pub mod section;
+pub mod stability;
 pub mod stored_actuator;
 pub mod study;
 pub mod wake;

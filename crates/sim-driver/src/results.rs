@@ -3,6 +3,7 @@
 use crate::SimError;
 use crate::case::CaseFile;
 use crate::files::{ron_text, write_atomic};
+use crate::stability::StabilityLine;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -16,6 +17,9 @@ pub struct RunResult {
     pub residuals: Residuals,
     /// Loads without control.
     pub baseline: Baseline,
+    /// Stability of the trimmed blade.
+    #[serde(default)]
+    pub stability: StabilityLine,
     /// One entry per set of harmonics and actuator.
     pub control: Vec<ControlLine>,
     /// What a reader should know before using the numbers.

@@ -15,7 +15,9 @@ use hhc_control::{
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_response::{Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver};
+use rotor_response::{
+    Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver, Stability,
+};
 use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
 
@@ -114,6 +116,17 @@ impl TrimmedRotor {
         response: &RotorSolution,
     ) -> Result<f64, TrimError> {
         imbalance(&self.solver, target, &self.trim, response)
+    }
+
+    /// Stability of the trimmed blade, flaps at rest.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::stability`].
+    pub fn stability(&self) -> Result<Stability, ResponseError> {
+        let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
+        let condition =
+            Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad };
+        self.solver.stability(&condition, &self.trim.rotor)
     }
 
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
