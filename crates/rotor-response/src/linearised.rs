@@ -1,7 +1,7 @@
 //! How the hub loads answer to small flap motions about a converged orbit.
 
 use crate::loads::SixLoads;
-use crate::rotor::{RevolutionLoads, settle_accelerations};
+use crate::revolution::{RevolutionLoads, settle_accelerations};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;

@@ -17,6 +17,7 @@ fn stability(model: RotorModel, blade: &BladeProperties, modes: [usize; 3], mu: 
     let rotor = Rotor::new(model, blade, discretisation).unwrap();
     let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
     let condition = Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: mu, shaft_tilt_rad: 0.1 * mu },
         controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.01, theta1s_rad: -0.2 * mu },
         flap_angles_rad: vec![],

@@ -56,6 +56,9 @@ fn trimmed(mu: f64, split: usize) -> TrimSolution {
     .unwrap();
     let span = AirfoilSpan::new(vec![(0.0, airfoil())]).unwrap();
     let model = RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: rotor_response::SectionOffsets::default(),
         blades: 4 * split,
         chord: 0.07 * PI / (4.0 * split as f64),
         // the reference's Lock number is with its own lift slope, ours with 2 pi

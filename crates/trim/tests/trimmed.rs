@@ -19,6 +19,9 @@ fn solver(advance_ratio: f64) -> RotorSolver {
     })
     .unwrap();
     let model = RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: rotor_response::SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,
