@@ -3,6 +3,7 @@
 use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
 use crate::case::LoadedCase;
+use crate::dissimilar::unlike_lines;
 use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
 use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine, flap_name};
@@ -43,6 +44,19 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
     progress.doing("trim");
     let trimmed = TrimmedRotor::new(loaded, None)?;
     progress.step();
+    run_trimmed(loaded, actuators, trimmed, progress)
+}
+
+/// The same from the trim on.
+///
+/// # Errors
+/// As [`run_case`].
+pub fn run_trimmed(
+    loaded: &LoadedCase,
+    actuators: CaseActuators,
+    trimmed: TrimmedRotor,
+    progress: &Progress,
+) -> Result<RunOutcome, SimError> {
     progress.doing("control");
     let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
     let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new)).map_err(failed)?;
@@ -63,6 +77,7 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
             ),
         },
         stability,
+        unlike_blades: unlike_lines(loaded, &trimmed, &studies)?,
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
         warnings,
     };
@@ -137,6 +152,13 @@ impl Printable for RunResult {
             sheet.block(&self.control_table());
             sheet.line(format_args!("\nFlaps"));
             sheet.block(&self.flap_table());
+        }
+        for line in &self.unlike_blades {
+            sheet.line(format_args!(
+                "\nHub loads with the unlike blades, amplitudes; flaps: {}",
+                line.flaps
+            ));
+            sheet.block(&line.text());
         }
         sheet.finish()
     }
