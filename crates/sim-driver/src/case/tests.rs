@@ -174,7 +174,7 @@ fn single_problems_name_the_remedy() {
         ("(rotor: (gj: -1))", "rotor.gj: is -1, expected a positive finite number"),
         (
             "(rotor: (tables: (mass: [(0, 1), (0.5, 1), (0.4, 1), (1, 1)])))",
-            "rotor.tables.mass[2]: is 0.4 R, expected 0.5 R to 1 R; list the stations from root to tip",
+            "rotor.tables.mass[2]: is 0.4 R, expected 0.5 to 1 R; list the stations from root to tip",
         ),
         (
             "(rotor: (tables: (mass: [(0, 1), (0.9, 1)])))",
