@@ -102,7 +102,7 @@ impl Printable for SweepResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!(
-            "Trim (deg), 4/rev class hub loads without control, least damping ratio, best reduction of J"
+            "Trim (deg), hub loads at the blade number per rev without control, least damping ratio, best reduction of J"
         ));
         sheet.block(&table(&HEADER, self.rows.iter().map(SweepRow::cells)));
         sheet.finish()

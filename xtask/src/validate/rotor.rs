@@ -214,7 +214,7 @@ pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel 
 }
 
 /// Fixed controls of the crosscheck cases at advance ratio 0.30.
-fn fixed_controls() -> Condition {
+pub(super) fn fixed_controls() -> Condition {
     Condition {
         bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 5.0_f64.to_radians() },
@@ -249,7 +249,7 @@ fn solve(case: &Crosscheck) -> Result<RotorSolution, CheckError> {
     response(model, &paper_blade(1.0)?, d, &fixed_controls(), &PRESCRIBED)
 }
 
-fn norm(values: impl IntoIterator<Item = f64>) -> f64 {
+pub(super) fn norm(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
