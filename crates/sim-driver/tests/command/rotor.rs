@@ -26,20 +26,31 @@ fn every_result_says_whether_the_blade_is_stable() {
     assert!(text.contains("Stability  stable, least damped"), "{text}");
 }
 
-/// Without damping a lag motion in vacuum-like air does not die out; the result says so.
+/// A blade soft in torsion with its mass behind the elastic axis diverges in pitch; the same with its mass on
+/// the axis does not.
 #[test]
 fn an_unstable_blade_is_warned_of() {
     let place = Place::new();
-    let rotor = "(\n    rotor: (modal_damping: 0, lock_number: 0.01),";
-    let text = QUICK_CASE.replacen('(', rotor, 1).replace("ct_sigma: 0.07", "ct_sigma: 0.01");
-    place.write("case.ron", &text);
-    let ran = place.hhc(&["run", "case.ron", "--format", "json"]);
-    let err = ran.err.clone();
-    let json = ran.json();
-    if json["stability"]["stable"] == false {
-        assert!(err.contains("the trimmed blade is unstable"), "{err}");
-    }
-    assert!(number(&json["stability"]["least_damped"]["damping_ratio"]) < 1e-3, "{json}");
+    let run = |mass_centre_r: f64| {
+        let text = format!(
+            "(title: \"soft\", advance_ratio: 0.1, flaps: [],
+             rotor: (mass_centre_r: {mass_centre_r}, gj: 0.0005, modal_damping: 0),
+             structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1), couplings: Moderate),
+             aerodynamics: (model: QuasiSteady, compressibility: None),
+             inflow: (model: Prescribed(lambda_i: 0.02)), trim: Prescribed(theta0_deg: 3),
+             actuator: (model: Ideal), control: (harmonics: [], actuators: [Ideal]))"
+        );
+        place.write("soft.ron", &text);
+        let ran = place.hhc(&["run", "soft.ron", "--format", "json"]);
+        (ran.err.clone(), ran.json()["stability"].clone())
+    };
+    let (err, unstable) = run(-0.012);
+    assert_eq!(unstable["stable"], false);
+    assert!(number(&unstable["least_damped"]["damping_ratio"]) < 0.0, "{unstable}");
+    assert!(err.contains("warning: the trimmed blade is unstable"), "{err}");
+    let (err, stable) = run(0.0);
+    assert_eq!(stable["stable"], true);
+    assert!(!err.contains("unstable"), "{err}");
 }
 
 /// A sweep is the same trims as one by one, each in a folder of its own, and a table over them.
