@@ -4,7 +4,7 @@ use crate::SimError;
 use crate::case::LoadedCase;
 use crate::output::table;
 use crate::results::HubLoads;
-use crate::study::{ControlStudy, TrimmedRotor};
+use crate::study::{ControlStudy, FlapMotion, TrimmedRotor};
 use rotor_base::HarmonicSeries;
 use rotor_response::{ResponseError, SixLoads};
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ pub fn unlike_lines(
     let controlled = studies.iter().map(|study| {
         let sets: Vec<String> = study.harmonics.iter().map(usize::to_string).collect();
         let name = format!("{}/rev, {}", sets.join("+"), study.actuator.name());
-        let angles = study.state.flaps.iter().map(|flap| flap.angle_rad()).collect();
+        let angles = study.state.flaps.iter().map(FlapMotion::angle_rad).collect();
         (name, angles, &study.state.rotor)
     });
     let blame = |source: ResponseError| SimError::Response {

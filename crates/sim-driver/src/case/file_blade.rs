@@ -74,9 +74,12 @@ pub struct BladeTablesFile {
     pub twist_deg: Vec<(f64, f64)>,
 }
 
+/// A table with its name, and whether its values must be positive.
+pub(super) type NamedTable<'a> = (&'static str, &'a [(f64, f64)], bool);
+
 impl BladeTablesFile {
-    /// Every table with its name, and whether its values must be positive.
-    pub(super) fn named(&self) -> [(&'static str, &[(f64, f64)], bool); 9] {
+    /// Every table.
+    pub(super) fn named(&self) -> [NamedTable<'_>; 9] {
         [
             ("mass", &self.mass, true),
             ("ei_flap", &self.ei_flap, true),

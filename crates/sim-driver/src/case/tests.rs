@@ -153,6 +153,24 @@ fn single_problems_name_the_remedy() {
             "flaps[0].gyration_fraction: is 0.1, expected 0.2 to 1",
         ),
         ("(flaps: [(start_r: 0.7, end_r: 0.8, mass: Twice)])", "unknown choice `Twice`"),
+        ("(title: \"\")", "title: is empty; give one line about the case"),
+        ("(rotor: (blades: 4)", "is not valid RON"),
+        ("", "is not valid RON"),
+    ] {
+        says(text, expected);
+    }
+}
+
+#[track_caller]
+fn says(text: &str, expected: &str) {
+    let message = read(text).expect_err(text);
+    assert!(message.contains(expected), "{text}\n  gave {message}\n  wanted {expected}");
+    assert!(message.starts_with("case.ron"), "{message}");
+}
+
+#[test]
+fn problems_of_the_blade_name_the_remedy() {
+    for (text, expected) in [
         ("(rotor: (root_offset_r: 0.6))", "rotor.root_offset_r: is 0.6 R, expected 0 to 0.5 R"),
         (
             "(rotor: (root: (flap: Spring(stiffness: -0.1))))",
@@ -205,12 +223,7 @@ fn single_problems_name_the_remedy() {
             "(rotor: (modal_damping: 0, ei_flap: 1e3, ei_lag: 1e5, root: (lag: Spring(stiffness: 0.33333333))))",
             "lag 1 has 1.0000 per rev, a harmonic of the loads, and no damping: nothing bounds its response. Remedy: modal_damping",
         ),
-        ("(title: \"\")", "title: is empty; give one line about the case"),
-        ("(rotor: (blades: 4)", "is not valid RON"),
-        ("", "is not valid RON"),
     ] {
-        let message = read(text).expect_err(text);
-        assert!(message.contains(expected), "{text}\n  gave {message}\n  wanted {expected}");
-        assert!(message.starts_with("case.ron"), "{message}");
+        says(text, expected);
     }
 }
