@@ -11,7 +11,7 @@ use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, FlapDirection, FlapMass,
     InflowState, NonlinearSections, ResponseError, ResponseTolerances, ReverseFlow, Rotor,
-    RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
+    RotorModel, RotorSolution, RotorSolver, SectionOffsets, TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::hint::black_box;
@@ -38,7 +38,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
     let model = RotorModel {
         tip_loss: 1.0,
         gravity: 0.0,
-        offsets: rotor_response::SectionOffsets::default(),
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,

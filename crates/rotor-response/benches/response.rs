@@ -9,7 +9,7 @@ use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
-    ResponseError, ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver,
+    ResponseError, ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, SectionOffsets,
     TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
@@ -37,7 +37,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
     let model = RotorModel {
         tip_loss: 1.0,
         gravity: 0.0,
-        offsets: rotor_response::SectionOffsets::default(),
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,

@@ -66,7 +66,7 @@ impl Rotor {
 mod tests {
     use crate::{
         Compressibility, Couplings, Discretisation, NonlinearSections, ReverseFlow, Rotor,
-        RotorModel,
+        RotorModel, SectionOffsets,
     };
     use approx::assert_relative_eq;
     use flap_aero::AttachedFlowModel;
@@ -82,7 +82,7 @@ mod tests {
         let model = RotorModel {
             tip_loss: 1.0,
             gravity: 0.0,
-            offsets: crate::SectionOffsets::default(),
+            offsets: SectionOffsets::default(),
             blades: 4,
             chord: 0.055,
             lock_number: 5.2,

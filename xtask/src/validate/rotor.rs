@@ -7,8 +7,8 @@ use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, TorsionTerms, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
-    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads,
-    hub_loads,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SectionOffsets,
+    SixLoads, hub_loads,
 };
 use rotor_wake::{FlightState, InflowModel, LinearInflow};
 
@@ -197,7 +197,7 @@ pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel 
     RotorModel {
         tip_loss: 1.0,
         gravity: 0.0,
-        offsets: rotor_response::SectionOffsets::default(),
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,

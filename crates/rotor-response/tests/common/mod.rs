@@ -6,7 +6,8 @@ use rotor_base::HarmonicSeries;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
-    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, SectionOffsets,
+    TrailingEdgeFlap,
 };
 use rotor_wake::FlightState;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ pub(crate) fn paper_model(couplings: Couplings) -> RotorModel {
     RotorModel {
         tip_loss: 1.0,
         gravity: 0.0,
-        offsets: rotor_response::SectionOffsets::default(),
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,
