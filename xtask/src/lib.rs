@@ -6,6 +6,7 @@
 //! | `tidy` | checks the rules of the house that a text can break | [`tidy`] |
 //! | `validate` | runs every check against theory and published data, writes the page of the book | [`validate`] |
 //! | `calibrate` | fits the calibrated section model to exact theory and writes its table | [`calibrate`] |
+//! | `refinement` | shows what refining the paper's case does to its 4/rev hub loads | [`refinement`] |
 //! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
 //! | `hidden-effects` | has the program diagnose synthetic sets with known answers, prints the scores | [`hidden_effects`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
@@ -24,6 +25,7 @@ mod error;
 pub mod files;
 pub mod hidden_effects;
 pub mod layers;
+pub mod refinement;
 pub mod regress;
 pub mod tidy;
 pub mod validate;

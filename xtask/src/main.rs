@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use xtask::{
-    XtaskError, calibrate, ci, files, hidden_effects, layers, regress, tidy, validate, workspace,
+    XtaskError, calibrate, ci, files, hidden_effects, layers, refinement, regress, tidy, validate,
+    workspace,
 };
 
 /// Chores of the project.
@@ -38,6 +39,8 @@ enum Chore {
         #[arg(long)]
         check: bool,
     },
+    /// Show what refining the paper's case does to its 4/rev hub loads
+    Refinement,
     /// Compare a sweep of the whole program with its golden values
     Regress {
         /// Rewrite the goldens of the cases that differ
@@ -110,6 +113,10 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             calibrate::write(root)?;
             say(&mut std::io::stdout(), &format!("written: {}\n", calibrate::TABLE));
             say(&mut std::io::stdout(), &calibrate::error_tables()?);
+            Ok(ExitCode::SUCCESS)
+        }
+        Chore::Refinement => {
+            say(&mut std::io::stdout(), &refinement::table()?);
             Ok(ExitCode::SUCCESS)
         }
         Chore::Regress { bless, filter, golden } => {

@@ -1,4 +1,4 @@
-//! Anderson mixing of chord steps.
+//! Anderson mixing: acceleration of a fixed-point iteration.
 
 use std::collections::VecDeque;
 
@@ -12,11 +12,12 @@ const DEPENDENT: f64 = 1e-9;
 /// ```text
 /// x_next = x + s - sum_j gamma_j (dx_j + ds_j),   gamma minimises | s - sum_j gamma_j ds_j |
 /// ```
-/// with `s` the chord step at `x` and `dx_j`, `ds_j` the differences of the last iterates and steps.
+/// with `s` the step that the plain iteration takes at `x` and `dx_j`, `ds_j` the differences of the last iterates and steps.
 ///
 /// Source: D. G. Anderson, J. ACM 12 (1965) 547; the form is the "type II" of H. Fang and Y. Saad,
 /// Numer. Linear Algebra Appl. 16 (2009) 197.
-pub(crate) struct Anderson {
+#[derive(Debug, Clone)]
+pub struct Anderson {
     depth: usize,
     last: Option<(DMatrix<f64>, DMatrix<f64>)>,
     /// Differences of iterates and of steps, newest first.
@@ -25,18 +26,19 @@ pub(crate) struct Anderson {
 
 impl Anderson {
     /// Mixing of `depth` earlier steps; depth 0 leaves steps as they are.
-    pub(crate) fn new(depth: usize) -> Self {
+    pub fn new(depth: usize) -> Self {
         Self { depth, last: None, differences: VecDeque::new() }
     }
 
     /// Forgets all earlier steps.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.last = None;
         self.differences.clear();
     }
 
-    /// The next iterate from the present one and its chord step.
-    pub(crate) fn propose(&mut self, x: &DMatrix<f64>, step: &DMatrix<f64>) -> DMatrix<f64> {
+    /// The next iterate from the present one and the step the plain iteration takes there, both of one
+    /// shape.
+    pub fn propose(&mut self, x: &DMatrix<f64>, step: &DMatrix<f64>) -> DMatrix<f64> {
         if let Some((last_x, last_step)) = self.last.take()
             && self.depth > 0
         {
@@ -93,5 +95,20 @@ mod tests {
         };
         assert!(run(3) < 1e-12, "mixed: {:e}", run(3));
         assert!(run(0) > 0.1, "plain: {:e}", run(0));
+    }
+
+    /// Maps that the plain iteration runs away with.
+    #[test]
+    fn a_map_that_diverges_on_its_own_is_solved() {
+        let matrix =
+            DMatrix::from_row_slice(3, 3, &[5.0, 1.0, 0.0, -1.0, 2.0, 0.5, 0.0, 0.3, -4.0]);
+        let b = DMatrix::from_column_slice(3, 1, &[1.0, 2.0, 3.0]);
+        let mut x = DMatrix::zeros(3, 1);
+        let mut mixing = Anderson::new(8);
+        for _ in 0..5 {
+            x = mixing.propose(&x, &(&b - &matrix * &x));
+        }
+        let left = (&b - &matrix * &x).amax();
+        assert!(left < 1e-9, "{left:e}");
     }
 }

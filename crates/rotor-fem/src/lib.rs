@@ -54,6 +54,7 @@ mod root_support;
 mod shape;
 mod time_elements;
 
+pub use acceleration::Anderson;
 pub use assembly::{BladeModel, SectionMotion};
 pub use distribution::Distribution;
 pub use error::FemError;

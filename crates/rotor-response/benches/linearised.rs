@@ -11,7 +11,7 @@ use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, FlapDirection, FlapMass,
     InflowState, NonlinearSections, ResponseError, ResponseTolerances, ReverseFlow, Rotor,
-    RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
+    RotorModel, RotorSolution, RotorSolver, SectionOffsets, TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::hint::black_box;
@@ -36,6 +36,9 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
         effectiveness: FlapEffectiveness::IDEAL,
     };
     let model = RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,
@@ -58,6 +61,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
 
 fn condition() -> Condition {
     Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.1 },
         controls: Controls { theta0_rad: 0.145, theta1c_rad: 0.02, theta1s_rad: -0.08 },
         flap_angles_rad: vec![HarmonicSeries::zero(3); 2],

@@ -9,7 +9,7 @@ use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
-    ResponseError, ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver,
+    ResponseError, ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, SectionOffsets,
     TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
@@ -35,6 +35,9 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
         effectiveness: FlapEffectiveness::IDEAL,
     };
     let model = RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,
@@ -59,6 +62,7 @@ fn condition(amplitude_rad: f64) -> Condition {
     let mut angle = HarmonicSeries::zero(3);
     angle.set_harmonic(3, Harmonic { cosine: amplitude_rad, sine: 0.0 });
     Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.1 },
         controls: Controls { theta0_rad: 0.145, theta1c_rad: 0.02, theta1s_rad: -0.08 },
         flap_angles_rad: vec![angle.clone(), angle],

@@ -1,7 +1,7 @@
 //! The aeroelastic blade: what it is made of, and its values at the spanwise stations.
 
 use crate::flap_inertia::FlapBody;
-use crate::{Discretisation, ResponseError, RotorModel, SpanGrid};
+use crate::{Discretisation, ResponseError, RotorModel, SectionOffsets, SpanGrid};
 use flap_aero::FlapEffectiveness;
 use nalgebra::DMatrix;
 use rotor_base::{LagrangeBasis, gauss_legendre};
@@ -142,6 +142,9 @@ pub struct ResponseBlade {
     pub(crate) root_flap_curvature: Vec<f64>,
     /// Lag curvature of every lag mode at the root.
     pub(crate) root_lag_curvature: Vec<f64>,
+    /// Rate of twist of every torsion mode at the root, and the stiffness `GJ + k_A^2 T` there.
+    pub(crate) root_twist_rate: Vec<f64>,
+    pub(crate) root_torsion_stiffness: f64,
     /// Bending stiffnesses `[EI_y, EI_z]` and twist at the root.
     pub(crate) root_stiffness: [f64; 2],
     pub(crate) root_twist: f64,
@@ -159,6 +162,10 @@ pub struct ResponseBlade {
     pub(crate) flap_index: Vec<Option<usize>>,
     pub(crate) flap_inertia: Vec<FlapInertia>,
     pub(crate) cutout: f64,
+    /// Outboard of this station sections do not lift, radius R.
+    pub(crate) tip_loss: f64,
+    /// Mass centre ahead of the elastic axis, radius R.
+    pub(crate) mass_centre: f64,
     pub(crate) root_offset: f64,
     /// The blade's own modal equations, for [`Couplings::Moderate`].
     pub(crate) modal: Option<ModalBlade>,
@@ -183,7 +190,7 @@ impl ResponseBlade {
         let breaks: Vec<f64> = (1..elements)
             .map(|e| root + length * e as f64)
             .chain(properties.breaks().iter().copied())
-            .chain([model.root_cutout])
+            .chain([model.root_cutout, model.tip_loss])
             .chain(model.flaps.iter().flat_map(|f| [f.start, f.end]))
             .collect();
         let grid = SpanGrid::new(root, &breaks, discretisation.span_points_per_piece)?;
@@ -202,13 +209,13 @@ impl ResponseBlade {
             .map(|(e, s)| root + length * (e as f64 + 0.5 * (1.0 + s)))
             .collect();
         let to_root = LagrangeBasis::new(barlow.clone()).evaluate(root);
-        let root_curvature = |kind: ModeKind| -> Result<Vec<f64>, ResponseError> {
+        let root_derivative = |kind: ModeKind, order: usize| -> Result<Vec<f64>, ResponseError> {
             modes
                 .of(kind)
                 .iter()
                 .map(|mode| {
                     barlow.iter().zip(&to_root).try_fold(0.0, |sum, (x, [weight, ..])| {
-                        Ok(sum + weight * mode.shape(*x)?[2])
+                        Ok(sum + weight * mode.shape(*x)?[order])
                     })
                 })
                 .collect()
@@ -227,8 +234,11 @@ impl ResponseBlade {
             frequencies: modes.modes().iter().map(UncoupledMode::frequency).collect(),
             modal_masses: modes.modes().iter().map(UncoupledMode::modal_mass).collect(),
             root_spring: root_springs(properties, &modes)?,
-            root_flap_curvature: root_curvature(ModeKind::Flap)?,
-            root_lag_curvature: root_curvature(ModeKind::Lag)?,
+            root_flap_curvature: root_derivative(ModeKind::Flap, 2)?,
+            root_lag_curvature: root_derivative(ModeKind::Lag, 2)?,
+            root_twist_rate: root_derivative(ModeKind::Torsion, 1)?,
+            root_torsion_stiffness: properties.torsion_stiffness(root)
+                + properties.squared_area_radius(root) * properties.tension(root),
             root_stiffness: [properties.flap_stiffness(root), properties.lag_stiffness(root)],
             root_twist: properties.twist_rad(root),
             mass: along(&|x| properties.mass(x)),
@@ -244,10 +254,12 @@ impl ResponseBlade {
             flap_index,
             flap_inertia: model.flaps.iter().map(|f| f.inertia(model.chord)).collect(),
             cutout: model.root_cutout,
+            tip_loss: model.tip_loss,
+            mass_centre: model.offsets.mass_centre,
             root_offset: root,
             modal: match model.couplings {
                 Couplings::Moderate(torsion) => {
-                    Some(modal_blade(properties, torsion, &modes, &grid)?)
+                    Some(modal_blade(properties, (torsion, model.offsets), &modes, &grid)?)
                 }
                 Couplings::Linear | Couplings::Full => None,
             },
@@ -349,11 +361,16 @@ fn root_springs(
 /// The blade with moderate deflections in the coordinates of the uncoupled modes.
 fn modal_blade(
     properties: &BladeProperties,
-    torsion: TorsionTerms,
+    (torsion, offsets): (TorsionTerms, SectionOffsets),
     modes: &ModeSet,
     grid: &SpanGrid,
 ) -> Result<ModalBlade, ResponseError> {
-    let spec = ModerateSpec { torsion, ..properties.spec().clone().into() };
+    let spec = ModerateSpec {
+        torsion,
+        mass_centre: offsets.mass_centre.into(),
+        tension_centre: offsets.tension_centre.into(),
+        ..properties.spec().clone().into()
+    };
     let blade = ModerateBlade::new(spec)?;
     let shape = |mode: &UncoupledMode, x: f64| -> Result<SectionShape, ResponseError> {
         let value = mode.shape(x)?;

@@ -1,6 +1,6 @@
 //! The errors of this crate.
 
-use rotor_fem::{FemError, PeriodicError};
+use rotor_fem::{FemError, ModeKind, PeriodicError};
 
 /// What can go wrong between a blade, its air and its loads.
 ///
@@ -62,6 +62,18 @@ pub enum ResponseError {
     MassMatrix {
         /// Number of modes.
         modes: usize,
+    },
+    /// A mode without damping has the frequency of a harmonic.
+    #[error(
+        "{kind} {number} has {frequency_per_rev:.4} per rev, a harmonic of the loads, and no damping: nothing bounds its response. Remedy: modal_damping above 0, or another stiffness"
+    )]
+    Resonance {
+        /// Family of the mode.
+        kind: ModeKind,
+        /// Number in its family, from 1.
+        number: usize,
+        /// Its frequency.
+        frequency_per_rev: f64,
     },
     /// A lag channel of the section aerodynamics cannot be made periodic.
     #[error(

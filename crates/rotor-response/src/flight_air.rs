@@ -117,6 +117,19 @@ impl FlightAir {
         section_loads(frictionless, flow, &self.stations[station].prompt[point], lag)
     }
 
+    /// Loads of a station that has lost its lift to the tip: its drag at rest in the flow.
+    pub(crate) fn drag_alone(
+        &self,
+        scales: AirScales,
+        at: (usize, usize),
+        flow: &SectionFlow,
+    ) -> SectionLoads {
+        let SectionFlow { u_t, sense, .. } = *flow;
+        let still = SectionFlow { u_t, sense, ..SectionFlow::default() };
+        let SectionLoads { fy, .. } = self.loads(scales, at, &still, &SectionPast::default());
+        SectionLoads { fy, ..SectionLoads::default() }
+    }
+
     /// What the past adds to the loads at all lifting stations and points, `[point][station]`, for the
     /// flows `[point][station]`.
     ///

@@ -1,8 +1,8 @@
 //! Aeroelastic coupling: periodic blade response, force-summation blade loads, hub loads.
 
-mod acceleration;
 mod air;
 mod blade;
+mod dissimilar;
 mod error;
 mod flap_inertia;
 mod flap_mass;
@@ -15,6 +15,7 @@ mod model;
 mod motion;
 mod nonlinear;
 mod power;
+mod revolution;
 mod rigid;
 mod rotor;
 mod span;
@@ -25,12 +26,15 @@ mod system;
 mod wake_coupling;
 
 pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
+pub use dissimilar::{OtherBlade, dissimilar_hub_loads};
 pub use error::ResponseError;
 pub use flap_mass::with_flap_masses;
 pub use hinge::HingeMoment;
 pub use linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
 pub use loads::{SixLoads, hub_loads};
-pub use model::{Compressibility, Controls, Discretisation, ReverseFlow, RotorModel};
+pub use model::{
+    Compressibility, Controls, Discretisation, ReverseFlow, RotorModel, SectionOffsets,
+};
 pub use nonlinear::{DynamicStall, NonlinearSections};
 pub use power::PowerBalance;
 pub use rotor::{

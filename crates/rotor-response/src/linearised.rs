@@ -2,7 +2,7 @@
 
 use crate::air::FlapAngle;
 use crate::loads::SixLoads;
-use crate::rotor::{RevolutionLoads, settle_accelerations};
+use crate::revolution::{RevolutionLoads, settle_accelerations};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;

@@ -1,7 +1,6 @@
 //! Blade root loads by force summation, and hub loads in the fixed frame.
 
 use crate::blade::{Couplings, ResponseBlade};
-use crate::motion::Motion;
 use crate::structure::{BladeState, SpanLoads};
 use rotor_base::{HarmonicSeries, rotating_to_fixed, uniform_azimuths_rad};
 use rotor_fem::ModalLoads;
@@ -78,11 +77,14 @@ pub(crate) fn root_loads(
         let (m, x) = (blade.mass[i], blade.grid.x()[i]);
         let (u, u_rate, u_acceleration) = (-squares[i], -rates[i], -accelerations[i]);
         let bp = blade.precone;
+        let [weight_x, weight_y, weight_z] = loads.gravity.map(|g| m * g);
         let aero_x = -w.slope[i] * aerodynamic.fz[i] - v.slope[i] * aerodynamic.fy[i];
-        let fx = m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x + loads.axial[i];
+        let fx =
+            m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x + loads.axial[i] + weight_x;
         let fy = m * (v.value[i] - v.acceleration[i] - 2.0 * u_rate + 2.0 * bp * w.rate[i])
-            + loads.fy[i];
-        let fz = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i];
+            + loads.fy[i]
+            + weight_y;
+        let fz = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
         let theta = pitch.angle + blade.twist[i] + motion.phi.value[i];
         let theta_acceleration = pitch.acceleration + motion.phi.acceleration[i];
         let (sin, cos) = theta.sin_cos();
@@ -124,7 +126,7 @@ pub(crate) fn moderate_root_loads(
     let mut total = [0.0; 6];
     for (i, inertial) in modal.wrench.iter().enumerate() {
         let weight = blade.grid.weight()[i];
-        let force = [loads.fx(motion, i), loads.fy[i], loads.fz[i]];
+        let force = loads.force(blade, motion, i);
         let arm = [blade.grid.x()[i] + modal.axial[i], v.value[i], w.value[i]];
         let turn = loads.moment[i];
         let own =
@@ -152,56 +154,90 @@ fn coned_to_shaft(precone_rad: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     [x * cos - z * sin, y, x * sin + z * cos]
 }
 
-/// Flap bending moment at the root by force summation, `int x f_z - N w_x dx`, tip up positive.
+/// Moments of flap, lag and torsion at the root by force summation: tip up, tip forward, nose up.
 ///
-/// Carries the terms of the couplings `Linear` and `Full`, so that it is the exact counterpart of the
-/// curvature moment of the same modal equations; for `Moderate`, up to third-order terms. `x` is measured from the root.
-pub(crate) fn root_flap_moment(
+/// ```text
+/// M_w = int x f_z - N w_x      M_v = int x f_y - N v_x      M_phi = int m_x      x from the root
+/// ```
+/// Each is the modal equation with a rigid rotation for the mode shape. Carries the terms of the couplings
+/// `Linear` and `Full`, so that it is the exact counterpart of the curvature moments of the same equations;
+/// for `Moderate`, up to third-order terms.
+pub(crate) fn root_moments(
     blade: &ResponseBlade,
     couplings: Couplings,
-    motion: &Motion,
-    loads: &SpanLoads,
-) -> f64 {
+    state: BladeState<'_>,
+) -> [f64; 3] {
+    let BladeState { motion, pitch, loads } = state;
     let n = blade.grid.len();
-    let (w, v) = (&motion.w, &motion.v);
-    let coriolis: Vec<f64> = (0..n)
-        .map(|i| match couplings {
-            Couplings::Linear => 0.0,
-            Couplings::Full | Couplings::Moderate(_) => 2.0 * blade.mass[i] * v.rate[i],
-        })
-        .collect();
+    let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
+    let full = couplings != Couplings::Linear;
     let mut tension = vec![0.0; n];
-    blade.grid.integral_to_tip(&coriolis, &mut tension);
-    let integrand: Vec<f64> = (0..n)
-        .map(|i| {
-            let (m, x) = (blade.mass[i], blade.grid.x()[i]);
-            let inertia = -m * (w.acceleration[i] + blade.precone * (x + 2.0 * v.rate[i]));
-            (x - blade.root_offset) * (inertia + loads.fz[i])
-                - (blade.tension[i] + tension[i]) * w.slope[i]
-                + loads.slope[1][i]
-        })
-        .collect();
-    blade.grid.integral(&integrand)
+    let mut shortening = vec![0.0; n];
+    if full {
+        let coriolis: Vec<f64> = (0..n).map(|i| 2.0 * blade.mass[i] * v.rate[i]).collect();
+        blade.grid.integral_to_tip(&coriolis, &mut tension);
+        let rates: Vec<f64> =
+            (0..n).map(|i| v.slope[i] * v.slope_rate[i] + w.slope[i] * w.slope_rate[i]).collect();
+        blade.grid.integral_from_root(&rates, &mut shortening);
+    }
+    let bp = blade.precone;
+    let mut total = [0.0; 3];
+    for i in 0..n {
+        let (m, x) = (blade.mass[i], blade.grid.x()[i]);
+        let [_, weight_y, weight_z] = loads.gravity.map(|g| m * g);
+        let arm = x - blade.root_offset;
+        let pull = blade.tension[i] + tension[i];
+        let up = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
+        let forward = m
+            * (v.value[i] - v.acceleration[i] + 2.0 * shortening[i] + 2.0 * bp * w.rate[i])
+            + loads.fy[i]
+            + weight_y;
+        let theta = pitch.angle + blade.twist[i] + phi.value[i];
+        let radii = blade.km2_squared[i] - blade.km1_squared[i];
+        let (sin, cos) = theta.sin_cos();
+        let twisting = if full {
+            let kz = v.curvature[i] * cos + w.curvature[i] * sin;
+            let ky = w.curvature[i] * cos - v.curvature[i] * sin;
+            m * radii * sin * cos + (blade.ei_lag[i] - blade.ei_flap[i]) * kz * ky
+        } else {
+            m * radii * theta
+        };
+        let polar = m * (blade.km1_squared[i] + blade.km2_squared[i]);
+        let turning = polar * (pitch.acceleration + phi.acceleration[i]);
+        let parts = [
+            arm * up - pull * w.slope[i] + loads.slope[1][i],
+            arm * forward - pull * v.slope[i] + loads.slope[0][i],
+            loads.moment[i] - turning - twisting,
+        ];
+        for (t, part) in total.iter_mut().zip(parts) {
+            *t += blade.grid.weight()[i] * part;
+        }
+    }
+    total
 }
 
-/// Flap bending moment at the root from the curvature of the mode shapes, tip up positive.
-pub(crate) fn root_flap_curvature_moment(
+/// Moments of flap, lag and torsion at the root from the curvature and twist rate of the mode shapes.
+pub(crate) fn root_curvature_moments(
     blade: &ResponseBlade,
     couplings: Couplings,
     q: &[f64],
     pitch_rad: f64,
-) -> f64 {
+) -> [f64; 3] {
     let sum =
         |curvature: &[f64], q: &[f64]| -> f64 { curvature.iter().zip(q).map(|(c, q)| c * q).sum() };
-    let w_xx = sum(&blade.root_flap_curvature, q);
-    let v_xx = sum(&blade.root_lag_curvature, &q[blade.flap.count()..]);
+    let (flap, rest) = q.split_at(blade.flap.count());
+    let (lag, torsion) = rest.split_at(blade.lag.count());
+    let w_xx = sum(&blade.root_flap_curvature, flap);
+    let v_xx = sum(&blade.root_lag_curvature, lag);
+    let twisting = blade.root_torsion_stiffness * sum(&blade.root_twist_rate, torsion);
     let [ei_flap, ei_lag] = blade.root_stiffness;
     match couplings {
-        Couplings::Linear => ei_flap * w_xx,
+        Couplings::Linear => [ei_flap * w_xx, ei_lag * v_xx, twisting],
         Couplings::Full | Couplings::Moderate(_) => {
             let (sin, cos) = (pitch_rad + blade.root_twist).sin_cos();
             let (kz, ky) = (v_xx * cos + w_xx * sin, w_xx * cos - v_xx * sin);
-            ei_lag * kz * sin + ei_flap * ky * cos
+            let [lagging, flapping] = [ei_lag * kz, ei_flap * ky];
+            [lagging * sin + flapping * cos, lagging * cos - flapping * sin, twisting]
         }
     }
 }

@@ -36,6 +36,17 @@ pub enum ReverseFlow {
     Abrupt,
 }
 
+/// Centres of a section ahead of its elastic axis, radius R; the same all along the blade.
+///
+/// Only the equations of [`Couplings::Moderate`] know them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SectionOffsets {
+    /// Mass centre, `e_g`.
+    pub mass_centre: f64,
+    /// Tension centre, `e_A`.
+    pub tension_centre: f64,
+}
+
 /// The rotor apart from the structure of its blades. Rotor units: length R, mass per length `m0`,
 /// time 1/Omega.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +62,12 @@ pub struct RotorModel {
     pub drag_coefficient: f64,
     /// Aerodynamic root cut-out, radius R.
     pub root_cutout: f64,
+    /// Tip loss factor B, radius R: outboard of it a section drags but does not lift; 1 for none.
+    pub tip_loss: f64,
+    /// Acceleration of gravity over `Omega^2 R`, zero without gravity.
+    pub gravity: f64,
+    /// Mass and tension centre off the elastic axis.
+    pub offsets: SectionOffsets,
     /// Modal damping over critical.
     pub modal_damping: f64,
     /// Terms of the structural equations.
@@ -86,6 +103,19 @@ impl RotorModel {
         check("drag_coefficient", cd, within(cd, 0.0, 1.0), "0 to 1")?;
         let cutout = self.root_cutout;
         check("root_cutout", cutout, within(cutout, 0.0, 0.9), "0 to 0.9 R")?;
+        let tip_loss = self.tip_loss;
+        let beyond = "0.5 to 1 R, outboard of the root cut-out";
+        check("tip_loss", tip_loss, within(tip_loss, cutout.max(0.5), 1.0), beyond)?;
+        let gravity = self.gravity;
+        check("gravity", gravity, within(gravity, 0.0, 1.0), "0 to 1 Omega^2 R")?;
+        for (field, offset) in [
+            ("offsets.mass_centre", self.offsets.mass_centre),
+            ("offsets.tension_centre", self.offsets.tension_centre),
+        ] {
+            check(field, offset, within(offset, -0.1, 0.1), "-0.1 to 0.1 R")?;
+            let known = offset == 0.0 || matches!(self.couplings, Couplings::Moderate(_));
+            check(field, offset, known, "0 unless the couplings are Moderate")?;
+        }
         let zeta = self.modal_damping;
         check("modal_damping", zeta, within(zeta, 0.0, 0.5), "0 to 0.5 of critical")?;
         if let Compressibility::LocalMach { tip_mach } = self.compressibility {

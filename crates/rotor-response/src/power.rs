@@ -97,7 +97,7 @@ pub(crate) fn power(
     let (mut air, mut twisting) = (0.0, 0.0);
     for i in 0..blade.grid.len() {
         let weight = blade.grid.weight()[i];
-        let force = [loads.fx(motion, i), loads.fy[i], loads.fz[i]];
+        let force = loads.force(blade, motion, i);
         let velocity = [
             axial.rate[i] - across * v.value[i],
             v.rate[i] + across * (blade.grid.x()[i] + axial.value[i]) - along * w.value[i],

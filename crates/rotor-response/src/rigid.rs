@@ -44,7 +44,7 @@ impl Rotor {
         for psi in uniform_azimuths_rad(AZIMUTHS) {
             let (sin, cos) = psi.sin_cos();
             for (i, (&x, &weight)) in blade.grid.x().iter().zip(blade.grid.weight()).enumerate() {
-                if x < blade.cutout {
+                if x < blade.cutout || x > blade.tip_loss {
                     continue;
                 }
                 let speed = x + advance_ratio * sin;
@@ -66,7 +66,7 @@ impl Rotor {
 mod tests {
     use crate::{
         Compressibility, Couplings, Discretisation, NonlinearSections, ReverseFlow, Rotor,
-        RotorModel,
+        RotorModel, SectionOffsets,
     };
     use approx::assert_relative_eq;
     use flap_aero::AttachedFlowModel;
@@ -80,6 +80,9 @@ mod tests {
         })
         .unwrap();
         let model = RotorModel {
+            tip_loss: 1.0,
+            gravity: 0.0,
+            offsets: SectionOffsets::default(),
             blades: 4,
             chord: 0.055,
             lock_number: 5.2,

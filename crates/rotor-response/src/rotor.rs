@@ -1,36 +1,31 @@
 //! The periodic response of a rotor: blade motion, inflow and hub loads together.
 
-use crate::acceleration::Anderson;
-use crate::air::{AirPoint, AirScales, FlapAngle, SectionLoads};
+use crate::air::{AirPoint, AirScales, FlapAngle};
 use crate::blade::ResponseBlade;
 use crate::flap_mass::with_flap_masses;
 use crate::flight_air::FlightAir;
 use crate::hinge::HingeMoment;
-use crate::loads::{
-    SixLoads, hub_loads, moderate_root_loads, root_flap_curvature_moment, root_flap_moment,
-    root_loads,
-};
-use crate::power::{AxialMotion, PowerBalance, power};
-use crate::structure::{BladeState, SpanLoads};
+use crate::loads::SixLoads;
+use crate::power::PowerBalance;
+use crate::revolution::{RevolutionLoads, unit_weights};
 use crate::system::{PointInput, ResponseSystem};
 use crate::wake_coupling::Lifting;
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
-    BladeProperties, ModalLoads, ModalMotion, Orbit, OrbitSamples, PeriodicError, PeriodicSettings,
-    PeriodicSolver, PeriodicSystem, TimeElements,
+    Anderson, BladeProperties, Orbit, OrbitSamples, PeriodicError, PeriodicSettings,
+    PeriodicSolver, TimeElements,
 };
 use rotor_wake::{FlightState, InducedInflow, InflowModel, RotorLoading};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The Newton matrix leaves the lag states out, so chord steps contract slowly with any matrix: a new
 /// one, thirty times the cost of a step, pays only when they hardly contract at all.
 const REFRESH_CONTRACTION: f64 = 0.8;
 
-/// Iterations of the accelerations.
-const ACCELERATION_ITERATIONS: usize = 30;
+/// Steps of the inflow that Anderson's acceleration remembers.
+const INFLOW_STEPS_KEPT: usize = 16;
 /// Iterations of the orbit allowed to sections that may stall, whose loads have kinks.
 const STALL_ITERATIONS: usize = 200;
 
@@ -85,6 +80,23 @@ impl Rotor {
         &self.model
     }
 
+    /// Weight of all blades, `m0 Omega^2 R^2`; zero without gravity.
+    pub fn blades_weight(&self) -> f64 {
+        self.model.blades as f64 * self.model.gravity * self.blade.grid.integral(&self.blade.mass)
+    }
+
+    pub(crate) fn mass(&self) -> &DMatrix<f64> {
+        &self.mass
+    }
+
+    pub(crate) fn damping(&self) -> &[f64] {
+        &self.damping
+    }
+
+    pub(crate) fn discretisation(&self) -> Discretisation {
+        self.discretisation
+    }
+
     /// The blade at its stations.
     pub fn blade(&self) -> &ResponseBlade {
         &self.blade
@@ -121,6 +133,8 @@ impl Rotor {
 pub struct Condition {
     /// Advance ratio and shaft tilt.
     pub flight: FlightState,
+    /// Bank, rad, right positive: the direction of gravity besides the shaft tilt.
+    pub bank_rad: f64,
     /// Pitch controls.
     pub controls: Controls,
     /// Angle of every flap (rad, trailing edge down positive) against blade azimuth.
@@ -142,7 +156,8 @@ pub struct ResponseResiduals {
     pub inflow_iterations: usize,
 }
 
-/// Bending moment at the root about the axis of flap, tip up positive, `m0 Omega^2 R^3`.
+/// Moment at the root, `m0 Omega^2 R^3`: about the axis of flap (tip up positive), of lag (tip forward)
+/// or of the blade (nose up). For flap:
 ///
 /// ```text
 /// force summation  M_w(0) = int_0^1 x f_z - N w_x dx      curvature  M_w(0) = EI_z kz sin th + EI_y ky cos th
@@ -168,7 +183,8 @@ pub struct RotorSolution {
     pub inflow: InducedInflow,
     /// Lift and circulation at every point and lifting station.
     pub(crate) lifting: Vec<Vec<Lifting>>,
-    /// Thrust coefficient `C_T`.
+    /// Thrust coefficient `C_T`, of the air alone: the weight of the blades, if there is gravity, is a
+    /// load on the hub but no thrust.
     pub thrust_coefficient: f64,
     /// Root loads of the blade, rotating frame.
     pub root: SixLoads,
@@ -178,6 +194,10 @@ pub struct RotorSolution {
     pub hinge: Vec<HingeMoment>,
     /// Flapwise bending moment at the blade root, in two ways.
     pub root_flap_bending: RootBending,
+    /// Lagwise bending moment there.
+    pub root_lag_bending: RootBending,
+    /// Torsion moment there; by curvature `(GJ + k_A^2 T) phi_x`.
+    pub root_torsion: RootBending,
     /// Mean power of one blade.
     pub power: PowerBalance,
     /// Residuals and iterations.
@@ -275,7 +295,7 @@ impl RotorSolver {
         }
         let (mut iterations, mut factorisations) = (0, 0);
         let mut previous: Option<(Vec<f64>, f64)> = None;
-        let mut anderson = Anderson::default();
+        let mut anderson = Anderson::new(INFLOW_STEPS_KEPT);
         let mut last = (f64::INFINITY, 0.0);
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
             let rotor = Arc::clone(&self.rotor);
@@ -286,7 +306,9 @@ impl RotorSolver {
             factorisations += solution.factorisations;
             let loads = RevolutionLoads::new(&rotor, &self.time, &system, &solution.samples)?;
             let hub = loads.hub(&rotor, &self.time);
-            let ct = rotor.model.thrust_coefficient(hub.components[2].mean);
+            let ct = rotor.model.thrust_coefficient(
+                hub.components[2].mean + rotor.blades_weight() * up(condition)[2],
+            );
             let loading = loads.loading(&rotor, &self.time, ct, inflow_model.circulation_grid())?;
             let wanted = inflow_model.induced(&condition.flight, &loading)?;
             let used = inflow.parameters();
@@ -296,14 +318,17 @@ impl RotorSolver {
 
             if size <= self.tolerances.inflow {
                 let root = loads.root(&self.time, rotor.discretisation.load_harmonics);
+                let [root_flap_bending, root_lag_bending, root_torsion] =
+                    loads.root_bending(&self.time, rotor.discretisation.load_harmonics);
                 return Ok(RotorSolution {
                     lifting: loads.lifting.clone(),
                     modal: self.modal_harmonics(&solution.samples),
                     orbit: solution.orbit,
                     thrust_coefficient: ct,
                     hinge: loads.hinge(&self.time, rotor.discretisation.load_harmonics),
-                    root_flap_bending: loads
-                        .root_bending(&self.time, rotor.discretisation.load_harmonics),
+                    root_flap_bending,
+                    root_lag_bending,
+                    root_torsion,
                     inflow,
                     power: loads.power,
                     root,
@@ -320,7 +345,8 @@ impl RotorSolver {
             last = (size, ct);
             orbit = solution.orbit;
             let next = if let Some(step) = inflow_model.improved_step(&change) {
-                anderson.next(&used, &step)
+                let column = |v: &[f64]| DMatrix::from_column_slice(v.len(), 1, v);
+                anderson.propose(&column(&used), &column(&step)).as_slice().to_vec()
             } else {
                 let relaxation = irons_tuck(previous.as_ref(), &change);
                 let next = used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
@@ -364,12 +390,25 @@ impl RotorSolver {
                 let flap: Vec<FlapAngle> =
                     condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
                 PointInput {
+                    gravity: self.gravity(condition, (sin, cos)),
                     air: AirPoint { sin, cos, advance_ratio: mu, pitch, reverse_flow },
                     inflow: inflow.along(azimuth, stations).iter().map(|i| through + i).collect(),
                     flap,
                 }
             })
             .collect()
+    }
+
+    /// Acceleration of gravity in the axes of the coned blade at an azimuth.
+    ///
+    /// ```text
+    /// up = (sin a cos f, -sin f, cos a cos f) in hub axes,   a shaft tilt forward, f bank right
+    /// ```
+    fn gravity(&self, condition: &Condition, (sin, cos): (f64, f64)) -> [f64; 3] {
+        let up = up(condition).map(|c| -self.rotor.model.gravity * c);
+        let [outward, leading] = [up[0] * cos + up[1] * sin, up[1] * cos - up[0] * sin];
+        let (across, along) = self.rotor.blade.precone.sin_cos();
+        [outward * along + up[2] * across, leading, up[2] * along - outward * across]
     }
 
     fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
@@ -386,6 +425,13 @@ impl RotorSolver {
     }
 }
 
+/// The upward vertical in hub axes (X aft, Y starboard, Z along the shaft).
+pub(crate) fn up(condition: &Condition) -> [f64; 3] {
+    let (sin_a, cos_a) = condition.flight.shaft_tilt_rad.sin_cos();
+    let (sin_f, cos_f) = condition.bank_rad.sin_cos();
+    [sin_a * cos_f, -sin_f, cos_a * cos_f]
+}
+
 /// Irons and Tuck's relaxation factor of a fixed-point iteration (the vector form of Aitken's and the
 /// secant method): exact in one step for a scalar linear map.
 ///
@@ -398,174 +444,4 @@ fn irons_tuck(previous: Option<&(Vec<f64>, f64)>, change: &[f64]) -> f64 {
         den += (new - old) * (new - old);
     }
     if den > 0.0 { (-relaxation * num / den).clamp(0.05, 3.0) } else { 1.0 }
-}
-
-/// Quadrature weights of the time points that sum to 1.
-pub(crate) fn unit_weights(time: &TimeElements) -> Vec<f64> {
-    time.weights().iter().map(|w| w / TAU).collect()
-}
-
-/// Root loads and hinge moments at every azimuth point.
-pub(crate) struct RevolutionLoads {
-    /// Aerodynamic lift and circulation at the lifting stations, by point.
-    pub(crate) lifting: Vec<Vec<Lifting>>,
-    root: Vec<[f64; 6]>,
-    /// Aerodynamic and inertial hinge moment of each flap.
-    hinge: Vec<[Vec<f64>; 2]>,
-    /// Root flap bending by force summation and by curvature.
-    bending: [Vec<f64>; 2],
-    power: PowerBalance,
-}
-
-impl RevolutionLoads {
-    /// Force summation with accelerations that satisfy the equations of motion at each azimuth.
-    fn new(
-        rotor: &Rotor,
-        time: &TimeElements,
-        system: &ResponseSystem<'_>,
-        samples: &OrbitSamples,
-    ) -> Result<Self, ResponseError> {
-        let mut samples = samples.clone();
-        settle_accelerations(rotor, time, system, (&mut samples, 1e-14))?;
-        Self::summed(rotor, time, system, &samples)
-    }
-
-    /// Force summation of a motion as it is.
-    pub(crate) fn summed(
-        rotor: &Rotor,
-        time: &TimeElements,
-        system: &ResponseSystem<'_>,
-        samples: &OrbitSamples,
-    ) -> Result<Self, ResponseError> {
-        let revolution = system.revolution(samples)?;
-        let blade = &rotor.blade;
-        let first = system.air.first_station();
-        let mut root = Vec::with_capacity(revolution.motions.len());
-        let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model.flaps.len()];
-        let mut bending = [Vec::new(), Vec::new()];
-        let mut loads = SpanLoads::default();
-        let mut balance = PowerBalance::default();
-        let weights = unit_weights(time);
-        let mut lifting = Vec::with_capacity(revolution.motions.len());
-        for (p, motion) in revolution.motions.iter().enumerate() {
-            let sections = system.section_loads(p, &revolution.flows[p], &revolution.pasts[p]);
-            lifting.push(sections.iter().map(Lifting::of).collect());
-            system.span_loads(p, motion, &sections, &mut loads);
-            let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
-            let pitch = system.points[p].air.pitch;
-            let state = BladeState { motion, pitch, loads: &loads };
-            let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
-            let (at_root, axial) = if let Some(modal) = &blade.modal {
-                let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
-                let found = modal.loads(coordinates, pitch.into());
-                let at_root = moderate_root_loads(blade, state, &found);
-                let ModalLoads { axial: value, axial_rate: rate, pitch_moment, .. } = found;
-                (at_root, AxialMotion { value, rate, pitch_moment })
-            } else {
-                let axial = AxialMotion::inextensional(blade, motion, pitch);
-                (root_loads(blade, state, &aerodynamic), axial)
-            };
-            root.push(at_root);
-            let damped = qd.iter().zip(&rotor.damping).map(|(rate, c)| c * rate * rate).sum();
-            balance.add(weights[p], &power(blade, state, &axial, damped, at_root[5]));
-            let couplings = rotor.model.couplings;
-            bending[0].push(root_flap_moment(blade, couplings, motion, &loads));
-            bending[1].push(root_flap_curvature_moment(blade, couplings, &q, pitch.angle));
-            let moments = system.hinge_moments(p, motion, &sections);
-            for (k, history) in hinge.iter_mut().enumerate() {
-                for (part, moment) in history.iter_mut().zip(&moments) {
-                    part.push(moment[k]);
-                }
-            }
-        }
-        Ok(Self { lifting, root, hinge, bending, power: balance })
-    }
-
-    fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {
-        HarmonicSeries::project(time.points(), &unit_weights(time), values, count)
-    }
-
-    fn root(&self, time: &TimeElements, count: usize) -> SixLoads {
-        let component = |k: usize| {
-            let values: Vec<f64> = self.root.iter().map(|r| r[k]).collect();
-            Self::series(time, &values, count)
-        };
-        SixLoads {
-            components: [
-                component(0),
-                component(1),
-                component(2),
-                component(3),
-                component(4),
-                component(5),
-            ],
-        }
-    }
-
-    fn hinge(&self, time: &TimeElements, count: usize) -> Vec<HingeMoment> {
-        self.hinge
-            .iter()
-            .map(|[aerodynamic, inertial]| HingeMoment {
-                aerodynamic: Self::series(time, aerodynamic, count),
-                inertial: Self::series(time, inertial, count),
-            })
-            .collect()
-    }
-
-    fn root_bending(&self, time: &TimeElements, count: usize) -> RootBending {
-        let [forces, curvature] = &self.bending;
-        RootBending {
-            force_summation: Self::series(time, forces, count),
-            curvature: Self::series(time, curvature, count),
-        }
-    }
-
-    pub(crate) fn hub(&self, rotor: &Rotor, time: &TimeElements) -> SixLoads {
-        let count = rotor.discretisation.load_harmonics;
-        let blade = self.root(time, count + 1);
-        let blades: Vec<SixLoads> = (0..rotor.model.blades).map(|_| blade.clone()).collect();
-        hub_loads(&blades, count)
-    }
-}
-
-/// Accelerations that satisfy the equations of motion at each azimuth, and the evaluations they took.
-///
-/// The orbit gives positions and rates; the accelerations follow from
-/// `q'' = -M^-1 f(q, q', q'', psi)`, iterated because apparent mass makes `f` depend weakly on
-/// them, until they move by no more than `absolute` and 1e-13 of the largest.
-pub(crate) fn settle_accelerations(
-    rotor: &Rotor,
-    time: &TimeElements,
-    system: &ResponseSystem<'_>,
-    (samples, absolute): (&mut OrbitSamples, f64),
-) -> Result<usize, ResponseError> {
-    let inverse = rotor
-        .mass
-        .clone()
-        .cholesky()
-        .ok_or(ResponseError::MassMatrix { modes: rotor.mass.nrows() })?;
-    let mut forces = DMatrix::zeros(system.dof(), time.points().len());
-    for evaluation in 1..=ACCELERATION_ITERATIONS {
-        system.residual(samples, &mut forces)?;
-        let accelerations = -inverse.solve(&forces);
-        let moved = (&accelerations - &samples.qdd).amax();
-        samples.qdd = accelerations;
-        if moved <= absolute + 1e-13 * samples.qdd.amax() {
-            return Ok(evaluation);
-        }
-    }
-    Ok(ACCELERATION_ITERATIONS)
-}
-
-/// Aerodynamic forces alone at all stations.
-fn aerodynamic_loads(stations: usize, first: usize, sections: &[SectionLoads]) -> SpanLoads {
-    let mut out = SpanLoads::default();
-    out.clear(stations);
-    for (s, load) in sections.iter().enumerate() {
-        out.fz[first + s] = load.fz;
-        out.fy[first + s] = load.fy;
-        out.moment[first + s] = load.moment;
-    }
-    out
 }

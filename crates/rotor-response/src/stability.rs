@@ -1,19 +1,52 @@
 //! Stability of the blade's periodic response.
 
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
+use nalgebra::Complex;
 use rotor_fem::{Floquet, ModeKind, PeriodicSystem};
 
 /// One motion of the blade about its periodic response, `e^(s psi) p(psi)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BladeMotion {
+    /// Factor by which the motion grows and turns in one revolution.
+    pub multiplier: Complex<f64>,
     /// Real part of `s`, per rad of azimuth; negative when the motion dies out.
     pub growth_per_rad: f64,
     /// Frequency, per rev, 0 to 0.5: known up to whole numbers and sign.
     pub frequency_per_rev: f64,
+    /// That of the frequencies `n +- frequency_per_rev`, n whole, with which the motion comes nearest to
+    /// the leading mode, per rev: its `|s|` to the mode's undamped frequency.
+    pub modal_frequency_per_rev: f64,
     /// Family of the mode shape that leads the motion.
     pub kind: ModeKind,
     /// Its number in the family, from 1.
     pub number: usize,
+}
+
+impl BladeMotion {
+    /// Damping over critical, `-Re s / |s|` at [`Self::modal_frequency_per_rev`]; negative when the motion
+    /// grows.
+    pub fn damping_ratio(&self) -> f64 {
+        let size = self.growth_per_rad.hypot(self.modal_frequency_per_rev);
+        if size > 0.0 { -self.growth_per_rad / size } else { 0.0 }
+    }
+}
+
+/// Of the frequencies `n +- frequency`, n whole, that whose exponent is nearest in size to a natural
+/// frequency. Unit: per rev, growth per rad of azimuth.
+fn nearest_frequency(growth: f64, frequency: f64, natural: f64) -> f64 {
+    let highest = natural.ceil() + 1.0;
+    let mut best = frequency;
+    let mut n = 0.0;
+    while n <= highest {
+        for candidate in [n - frequency, n + frequency] {
+            let distance = |f: f64| (growth.hypot(f) - natural).abs();
+            if candidate >= 0.0 && distance(candidate) < distance(best) {
+                best = candidate;
+            }
+        }
+        n += 1.0;
+    }
+    best
 }
 
 /// Floquet exponents of one blade in flight.
@@ -28,6 +61,12 @@ pub struct Stability {
 }
 
 impl Stability {
+    /// The motion with the least damping over critical: what a reader asks for first. The fast torsion
+    /// motions die out in fewer radians than slow ones of the same damping.
+    pub fn least_damped(&self) -> Option<&BladeMotion> {
+        self.motions.iter().min_by(|a, b| a.damping_ratio().total_cmp(&b.damping_ratio()))
+    }
+
     /// The least stable motion.
     pub fn least_stable(&self) -> Option<&BladeMotion> {
         self.motions.first()
@@ -65,9 +104,13 @@ impl RotorSolver {
             .iter()
             .map(|mode| {
                 let (kind, number) = blade.mode(mode.leading_dof);
+                let natural = blade.frequencies[mode.leading_dof];
+                let (growth, frequency) = (mode.growth_per_rad, mode.frequency_per_rev);
                 BladeMotion {
-                    growth_per_rad: mode.growth_per_rad,
-                    frequency_per_rev: mode.frequency_per_rev,
+                    multiplier: mode.multiplier,
+                    modal_frequency_per_rev: nearest_frequency(growth, frequency, natural),
+                    growth_per_rad: growth,
+                    frequency_per_rev: frequency,
                     kind,
                     number,
                 }

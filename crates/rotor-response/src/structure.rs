@@ -34,6 +34,9 @@ pub(crate) struct SpanLoads {
     /// the blade.
     pub(crate) axial: Vec<f64>,
     pub(crate) slope: [Vec<f64>; 2],
+    /// Acceleration of gravity in the axes of the coned blade, `Omega^2 R`: its force `m g` keeps its
+    /// direction whatever the blade does.
+    pub(crate) gravity: [f64; 3],
 }
 
 impl SpanLoads {
@@ -43,8 +46,15 @@ impl SpanLoads {
             + self.axial[station]
     }
 
+    /// Force on the blade at a station in its coned axes: loads and weight.
+    pub(crate) fn force(&self, blade: &ResponseBlade, motion: &Motion, station: usize) -> [f64; 3] {
+        let [x, y, z] = self.gravity.map(|g| blade.mass[station] * g);
+        [self.fx(motion, station) + x, self.fy[station] + y, self.fz[station] + z]
+    }
+
     /// No loads at `n` stations.
     pub(crate) fn clear(&mut self, n: usize) {
+        self.gravity = [0.0; 3];
         let [slope_v, slope_w] = &mut self.slope;
         for v in [&mut self.fz, &mut self.fy, &mut self.moment, &mut self.axial, slope_v, slope_w] {
             v.clear();
@@ -117,7 +127,7 @@ pub(crate) fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out:
 /// ```
 /// Loads stand normal to the deflected blade; their axial part works on the foreshortening.
 pub(crate) fn moderate_residual(
-    modal: &ModalBlade,
+    (blade, modal): (&ResponseBlade, &ModalBlade),
     mass: &DMatrix<f64>,
     state: BladeState<'_>,
     [q, qd, qdd]: [&[f64]; 3],
@@ -126,14 +136,17 @@ pub(crate) fn moderate_residual(
     let BladeState { motion, pitch, loads } = state;
     let root = PitchMotion::from(pitch);
     let coordinates = ModalMotion { value: q, rate: qd, acceleration: qdd };
-    let blade = modal.force(coordinates, root).generalised;
+    let own = modal.force(coordinates, root).generalised;
     let applied: Vec<[f64; 4]> = (0..loads.fz.len())
-        .map(|i| [loads.fx(motion, i), loads.fy[i], loads.fz[i], loads.moment[i]])
+        .map(|i| {
+            let [x, y, z] = loads.force(blade, motion, i);
+            [x, y, z, loads.moment[i]]
+        })
         .collect();
     let work = modal.applied(q, root, &applied);
     for (i, value) in out.iter_mut().enumerate() {
         let constant: f64 = mass.row(i).iter().zip(qdd).map(|(m, a)| m * a).sum();
-        *value = blade[i] - constant - work[i];
+        *value = own[i] - constant - work[i];
     }
 }
 
@@ -171,11 +184,13 @@ pub(crate) fn modal_residual(
         let tension = blade.tension[i] + s.coriolis_tension[i];
         let radii = blade.km2_squared[i] - blade.km1_squared[i];
         let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);
-        s.force[0][i] = m * blade.precone * (x + 2.0 * v.rate[i]) - loads.fz[i];
+        let [_, weight_y, weight_z] = loads.gravity.map(|g| m * g);
+        s.force[0][i] = m * blade.precone * (x + 2.0 * v.rate[i]) - loads.fz[i] - weight_z;
         s.force[1][i] = -m * v.value[i]
             - 2.0 * m * s.foreshortening_rate[i]
             - 2.0 * m * blade.precone * w.rate[i]
-            - loads.fy[i];
+            - loads.fy[i]
+            - weight_y;
         s.slope_force[0][i] = tension * w.slope[i];
         s.slope_force[1][i] = tension * v.slope[i];
         s.slope_force[2][i] = (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]) * phi.slope[i];

@@ -27,6 +27,8 @@ pub(crate) struct PointInput {
     pub(crate) inflow: Vec<f64>,
     /// Angle, rate and acceleration of each flap, rad.
     pub(crate) flap: Vec<FlapAngle>,
+    /// Acceleration of gravity in the axes of the coned blade, `Omega^2 R`.
+    pub(crate) gravity: [f64; 3],
 }
 
 /// One blade in one flight condition.
@@ -121,7 +123,12 @@ impl ResponseSystem<'_> {
             .iter()
             .zip(pasts)
             .enumerate()
-            .map(|(s, (flow, past))| self.air.loads(self.scales, (s, point), flow, past))
+            .map(|(s, (flow, past))| {
+                if self.blade.grid.x()[self.air.first_station() + s] > self.blade.tip_loss {
+                    return self.air.drag_alone(self.scales, (s, point), flow);
+                }
+                self.air.loads(self.scales, (s, point), flow, past)
+            })
             .collect()
     }
 
@@ -165,11 +172,21 @@ impl ResponseSystem<'_> {
         out: &mut SpanLoads,
     ) {
         out.clear(self.blade.grid.len());
+        out.gravity = self.points[point].gravity;
         let first = self.air.first_station();
         for (s, load) in sections.iter().enumerate() {
             out.fz[first + s] = load.fz;
             out.fy[first + s] = load.fy;
             out.moment[first + s] = load.moment;
+        }
+        if self.blade.mass_centre != 0.0 {
+            let [_, y, z] = out.gravity;
+            for i in 0..self.blade.grid.len() {
+                let twist = self.points[point].air.pitch.angle + self.blade.twist[i];
+                let (sin, cos) = (twist + motion.phi.value[i]).sin_cos();
+                let arm = self.blade.mass[i] * self.blade.mass_centre;
+                out.moment[i] += arm * (cos * z - sin * y);
+            }
         }
         for (i, flap) in self.blade.flap_index.iter().enumerate() {
             let Some(k) = *flap else { continue };
@@ -207,7 +224,7 @@ impl ResponseSystem<'_> {
         let pitch = self.points[point].air.pitch;
         let state = BladeState { motion, pitch, loads };
         if let Some(modal) = &self.blade.modal {
-            moderate_residual(modal, self.mass, state, coordinates, out);
+            moderate_residual((self.blade, modal), self.mass, state, coordinates, out);
         } else {
             modal_residual(self.blade, self.couplings, state, structure, out);
             for (o, springs) in out.iter_mut().zip(self.blade.root_spring.row_iter()) {

@@ -1,7 +1,7 @@
 //! What a wake wants to know of a response: circulation over the disk and where the blades are.
 
 use crate::air::SectionLoads;
-use crate::rotor::{RevolutionLoads, unit_weights};
+use crate::revolution::{RevolutionLoads, unit_weights};
 use crate::{ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use rotor_fem::TimeElements;

@@ -52,6 +52,7 @@ fn solve(couplings: Couplings, discretisation: Discretisation) -> RotorSolution 
     let rotor = Rotor::new(model(couplings), &paper_blade(), discretisation).unwrap();
     let mut solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
     let condition = Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 5.0_f64.to_radians() },
         controls: Controls {
             theta0_rad: 8.0_f64.to_radians(),

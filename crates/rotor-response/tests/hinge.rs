@@ -24,6 +24,7 @@ fn stiff() -> BladeProperties {
 
 fn still_air(angle: HarmonicSeries) -> (Condition, LinearInflow) {
     let condition = Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
         controls: Controls::default(),
         flap_angles_rad: vec![HarmonicSeries::zero(1), angle],
@@ -95,6 +96,7 @@ fn steady_aerodynamic_hinge_moment_of_a_stiff_blade() {
 
 fn forward(angles: Vec<HarmonicSeries>) -> Condition {
     Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.09 },
         controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.017, theta1s_rad: -0.08 },
         flap_angles_rad: angles,

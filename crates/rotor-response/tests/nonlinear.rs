@@ -88,6 +88,7 @@ fn solve_blade(
     let mut angle = HarmonicSeries::zero(3);
     angle.set_harmonic(3, Harmonic { cosine: flap_rad, sine: 0.5 * flap_rad });
     let condition = Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: mu, shaft_tilt_rad: tilt },
         controls,
         flap_angles_rad: vec![angle; model.flaps.len()],

@@ -26,6 +26,7 @@ fn balance(
     let mut solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
     let deg = f64::to_radians;
     let condition = Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: deg(5.5) },
         controls: Controls { theta0_rad: deg(8.7), theta1c_rad: deg(1.7), theta1s_rad: deg(-5.3) },
         flap_angles_rad: flap_angles.to_vec(),
@@ -67,6 +68,13 @@ fn power_balances_with_moving_flaps() {
     angle.set_harmonic(3, Harmonic { cosine: 0.05, sine: 0.02 });
     let power = balance(model, 8, &[angle.clone(), angle]);
     assert!(power.imbalance().abs() <= 2e-5, "{power:?}");
+}
+
+/// What gravity gives on the way down it takes on the way up.
+#[test]
+fn weight_does_no_work_over_a_revolution() {
+    let power = balance(RotorModel { gravity: 0.05, ..moderate() }, 8, &[]);
+    assert!(power.imbalance().abs() <= 1e-5, "{power:?}");
 }
 
 /// The second-order couplings leave terms out of the equations that the root loads hold: how much, is

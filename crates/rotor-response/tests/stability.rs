@@ -17,6 +17,7 @@ fn stability(model: RotorModel, blade: &BladeProperties, modes: [usize; 3], mu: 
     let rotor = Rotor::new(model, blade, discretisation).unwrap();
     let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
     let condition = Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: mu, shaft_tilt_rad: 0.1 * mu },
         controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.01, theta1s_rad: -0.2 * mu },
         flap_angles_rad: vec![],
@@ -48,6 +49,11 @@ fn hovering_blade_flaps_with_a_sixteenth_of_the_lock_number() {
     println!("{motion:?}, expected {expected}, {frequency}");
     assert!((motion.growth_per_rad - expected).abs() < 1e-6, "{motion:?}");
     assert!((motion.frequency_per_rev - (1.0 - frequency)).abs() < 1e-6, "{motion:?}");
+    // of 0.054, 0.946 and 1.054 per rev the size of the exponent picks the true one
+    assert!((motion.modal_frequency_per_rev - frequency).abs() < 1e-6, "{motion:?}");
+    let damping = -expected / (1.0_f64 - 5.2 * 0.055 / 12.0).sqrt();
+    assert!((motion.damping_ratio() - damping).abs() < 1e-6, "{motion:?}");
+    assert!((motion.multiplier.norm().ln() / std::f64::consts::TAU - expected).abs() < 1e-6);
 }
 
 /// The blade of the paper is stable in flight, its first lag motion least: little air damps it.
@@ -64,6 +70,15 @@ fn the_paper_blade_is_stable_and_lags_longest() {
     assert_eq!(result.motions.len(), 10);
     let least = result.least_stable().unwrap();
     assert_eq!(least.kind, ModeKind::Lag);
+    let damped = result.least_damped().unwrap();
+    assert!(damped.damping_ratio() > 0.004 && damped.damping_ratio() < 0.02, "{damped:?}");
+    // every motion is found near its mode: frequencies of the uncoupled modes of the paper's blade
+    for (kind, number, natural) in
+        [(ModeKind::Lag, 1, 0.701), (ModeKind::Lag, 2, 4.30), (ModeKind::Torsion, 1, 4.59)]
+    {
+        let found = result.motions.iter().find(|m| (m.kind, m.number) == (kind, number)).unwrap();
+        assert!((found.modal_frequency_per_rev - natural).abs() < 0.15, "{found:?}");
+    }
 }
 
 /// What damps is the air and the modal damping: without both nothing is left.

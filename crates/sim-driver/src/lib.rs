@@ -12,7 +12,7 @@
 //! | case files and the validated case | [`case`], its hand-over to the models in `models` |
 //! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
 //! | one physics alone | [`modes`], [`section`] |
-//! | a whole case | [`run`], stored by [`results`] |
+//! | a whole case | [`run`], stored by [`results`]; [`stability`] of its trimmed blade, blades unlike each other in [`dissimilar`]; over advance ratios in [`sweep`] |
 //! | the HTML report | [`report`] |
 //! | `hhc` | [`cli`] |
 
@@ -22,6 +22,7 @@ pub mod check;
 pub mod cli;
 pub mod curve_identification;
 pub mod diagnose;
+pub mod dissimilar;
 mod error;
 pub mod figures;
 pub mod files;
@@ -39,8 +40,10 @@ pub mod report;
 pub mod results;
 pub mod run;
 pub mod section;
+pub mod stability;
 pub mod stored_actuator;
 pub mod study;
+pub mod sweep;
 pub mod wake;
 
 pub use error::{Family, SimError};

@@ -3,35 +3,115 @@
 use crate::SimError;
 use crate::case::{
     Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, FlapMassChoice,
-    ReverseFlowChoice, SectionModelChoice, TrimValues,
+    GravityChoice, JointChoice, ReverseFlowChoice, SectionModelChoice, TrimValues, UnlikeBladeFile,
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
-use rotor_fem::{BladeProperties, BladeSpec, ModeCount, TorsionTerms, Twist};
+use rotor_fem::{
+    BladeProperties, BladeSpec, Distribution, FemError, Joint, ModeCount, ModeKind, RootSupport,
+    TorsionTerms, Twist, uncoupled_modes,
+};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, DynamicStall, FlapMass,
-    NonlinearSections, ResponseTolerances, ReverseFlow, RotorModel, TrailingEdgeFlap,
-    with_flap_masses,
+    NonlinearSections, ResponseError, ResponseTolerances, ReverseFlow, RotorModel, SectionOffsets,
+    TrailingEdgeFlap, with_flap_masses,
 };
 use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle};
 
+/// Standard gravity, m/s^2.
+const GRAVITY_M_S2: f64 = 9.806_65;
+/// Distance of an undamped frequency from a harmonic below which the response is none, per rev.
+const RESONANCE_PER_REV: f64 = 1e-3;
+
 impl Case {
-    /// The blade's structure, clamped at the rotor centre, at zero pitch.
+    /// The blade's structure at zero pitch.
     ///
     /// # Errors
     /// [`SimError::Blade`]; a validated case gives none.
     pub fn blade_properties(&self) -> Result<BladeProperties, SimError> {
-        let b = &self.blade;
-        let spec = BladeSpec {
-            thickness_gyration_radius: b.km1.into(),
-            chord_gyration_radius: b.km2.into(),
-            area_gyration_radius: b.ka.into(),
-            twist: Twist::Linear { rate_rad: b.twist_rad },
-            precone_rad: b.precone_rad,
-            ..BladeSpec::uniform(b.ei_flap, b.ei_lag, b.gj, b.ea)
-        };
-        BladeProperties::new(spec)
+        BladeProperties::new(self.blade_spec())
             .map_err(|source| SimError::Blade { place: Place::file("case").field("rotor"), source })
+    }
+
+    fn blade_spec(&self) -> BladeSpec {
+        let (b, t) = (&self.blade, &self.blade.tables);
+        BladeSpec {
+            flap_stiffness: distribution(&t.ei_flap, b.ei_flap),
+            lag_stiffness: distribution(&t.ei_lag, b.ei_lag),
+            torsion_stiffness: distribution(&t.gj, b.gj),
+            axial_stiffness: distribution(&t.ea, b.ea),
+            mass: distribution(&t.mass, 1.0),
+            thickness_gyration_radius: distribution(&t.km1_r, b.km1),
+            chord_gyration_radius: distribution(&t.km2_r, b.km2),
+            area_gyration_radius: distribution(&t.ka_r, b.ka),
+            twist: if t.twist_deg.is_empty() {
+                Twist::Linear { rate_rad: b.twist_rad }
+            } else {
+                let rad: Vec<(f64, f64)> =
+                    t.twist_deg.iter().map(|(x, deg)| (*x, deg.to_radians())).collect();
+                Twist::Table(distribution(&rad, 0.0))
+            },
+            pitch_rad: 0.0,
+            precone_rad: b.precone_rad,
+            root_offset: b.root_offset,
+            root: RootSupport {
+                flap: joint(b.root.flap),
+                lag: joint(b.root.lag),
+                feather: joint(b.root.pitch),
+            },
+            rotor_speed: 1.0,
+        }
+    }
+
+    /// The structure of a blade unlike the rest.
+    ///
+    /// # Errors
+    /// As [`Self::blade_properties`].
+    pub fn unlike_blade(&self, unlike: &UnlikeBladeFile) -> Result<BladeProperties, SimError> {
+        let spec = self.blade_spec();
+        let spec = BladeSpec {
+            mass: scaled(spec.mass, unlike.mass),
+            flap_stiffness: scaled(spec.flap_stiffness, unlike.ei_flap),
+            lag_stiffness: scaled(spec.lag_stiffness, unlike.ei_lag),
+            torsion_stiffness: scaled(spec.torsion_stiffness, unlike.gj),
+            ..spec
+        };
+        let place = || Place::file("case").field("rotor.unlike_blades");
+        BladeProperties::new(spec).map_err(|source| SimError::Blade { place: place(), source })
+    }
+
+    /// Refuses a blade whose lag motion, which the air hardly damps, has no damping and the frequency of
+    /// a harmonic: nothing bounds its response.
+    ///
+    /// # Errors
+    /// [`SimError::Response`] with mode and frequency, and as [`Self::blade_with_flaps`].
+    pub fn refuse_resonance(&self) -> Result<(), SimError> {
+        if self.blade.modal_damping > 0.0 {
+            return Ok(());
+        }
+        let blade = self.blade_with_flaps()?;
+        let at = || Place::file("case").field("rotor.modal_damping");
+        let blame = |source: FemError| SimError::Blade { place: at(), source };
+        let found =
+            uncoupled_modes(&blade, self.blade.elements, self.mode_count()).map_err(blame)?;
+        for (i, mode) in found.of(ModeKind::Lag).iter().enumerate() {
+            let frequency_per_rev = mode.frequency();
+            let harmonic = frequency_per_rev.round();
+            if harmonic >= 1.0 && (frequency_per_rev - harmonic).abs() < RESONANCE_PER_REV {
+                let (kind, number) = (ModeKind::Lag, i + 1);
+                let source = ResponseError::Resonance { kind, number, frequency_per_rev };
+                return Err(SimError::Response { place: at(), source });
+            }
+        }
+        Ok(())
+    }
+
+    /// Centres of the sections off the elastic axis.
+    pub fn section_offsets(&self) -> SectionOffsets {
+        SectionOffsets {
+            mass_centre: self.blade.mass_centre,
+            tension_centre: self.blade.tension_centre,
+        }
     }
 
     /// The same with the mass of flaps that it does not contain.
@@ -58,6 +138,15 @@ impl Case {
             lock_number: self.lock_number,
             drag_coefficient: self.section.drag_coefficient,
             root_cutout: self.blade.root_cutout,
+            tip_loss: self.section.tip_loss,
+            gravity: match self.blade.gravity {
+                GravityChoice::Off => 0.0,
+                GravityChoice::On => {
+                    let speed = self.scales.omega_rad_s();
+                    GRAVITY_M_S2 / (speed * speed * self.scales.radius_m())
+                }
+            },
+            offsets: self.section_offsets(),
             modal_damping: self.blade.modal_damping,
             couplings: match self.blade.couplings {
                 CouplingsChoice::Linear => Couplings::Linear,
@@ -188,4 +277,34 @@ impl Case {
 /// The factors of a flap; a case's are within their range.
 fn effectiveness([lift, moment, hinge]: [f64; 3]) -> FlapEffectiveness {
     FlapEffectiveness::new(lift, moment, hinge).unwrap_or_default()
+}
+
+/// A table of a case, or the uniform value in its place.
+fn distribution(table: &[(f64, f64)], uniform: f64) -> Distribution {
+    if table.is_empty() {
+        return uniform.into();
+    }
+    let (stations, values) = table.iter().copied().unzip();
+    Distribution::PiecewiseLinear { stations, values }
+}
+
+fn scaled(distribution: Distribution, factor: f64) -> Distribution {
+    let times = |values: Vec<f64>| values.into_iter().map(|v| factor * v).collect();
+    match distribution {
+        Distribution::Uniform(value) => Distribution::Uniform(factor * value),
+        Distribution::PiecewiseLinear { stations, values } => {
+            Distribution::PiecewiseLinear { stations, values: times(values) }
+        }
+        Distribution::PiecewiseConstant { edges, values } => {
+            Distribution::PiecewiseConstant { edges, values: times(values) }
+        }
+    }
+}
+
+fn joint(choice: JointChoice) -> Joint {
+    match choice {
+        JointChoice::Locked => Joint::Locked,
+        JointChoice::Free => Joint::FREE,
+        JointChoice::Spring { stiffness } => Joint::Spring { stiffness },
+    }
 }

@@ -104,7 +104,11 @@ fn modes_at(
             (modes(&BladeModel::new(blade, elements)?, question.terms, count)?, None)
         }
         AboutState::Deflected => {
-            let spec = ModerateSpec::from(blade.spec().clone());
+            let spec = ModerateSpec {
+                mass_centre: case.blade.mass_centre.into(),
+                tension_centre: case.blade.tension_centre.into(),
+                ..ModerateSpec::from(blade.spec().clone())
+            };
             let model = ModerateModel::new(ModerateBlade::new(spec)?, elements)?;
             let none = DVector::zeros(model.size());
             let state = model.static_state(&none, &StaticSettings::default())?;

@@ -2,7 +2,9 @@
 
 use crate::SimError;
 use crate::case::CaseFile;
+use crate::dissimilar::UnlikeLine;
 use crate::files::{ron_text, write_atomic};
+use crate::stability::StabilityLine;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -16,8 +18,14 @@ pub struct RunResult {
     pub residuals: Residuals,
     /// Loads without control.
     pub baseline: Baseline,
+    /// Stability of the trimmed blade.
+    #[serde(default)]
+    pub stability: StabilityLine,
     /// One entry per set of harmonics and actuator.
     pub control: Vec<ControlLine>,
+    /// Hub loads with blades unlike the rest, flaps at rest and after every control; empty if all are alike.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unlike_blades: Vec<UnlikeLine>,
     /// What a reader should know before using the numbers.
     #[serde(default)]
     pub warnings: Vec<String>,

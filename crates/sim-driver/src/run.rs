@@ -3,9 +3,11 @@
 use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
 use crate::case::LoadedCase;
+use crate::dissimilar::unlike_lines;
 use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
 use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine, flap_name};
+use crate::stability::StabilityLine;
 use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line};
 use std::sync::Arc;
 use trim::TrimSolution;
@@ -42,11 +44,30 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
     progress.doing("trim");
     let trimmed = TrimmedRotor::new(loaded, None)?;
     progress.step();
+    run_trimmed(loaded, actuators, trimmed, progress)
+}
+
+/// The same from the trim on.
+///
+/// # Errors
+/// As [`run_case`].
+pub fn run_trimmed(
+    loaded: &LoadedCase,
+    actuators: CaseActuators,
+    trimmed: TrimmedRotor,
+    progress: &Progress,
+) -> Result<RunOutcome, SimError> {
     progress.doing("control");
     let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
     let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new)).map_err(failed)?;
     let studies =
         control_all(&loaded.case, &trimmed, &drives, &|| progress.step()).map_err(failed)?;
+    let stability = StabilityLine::from(&trimmed.stability().map_err(|source| {
+        let place = loaded.index.place("rotor");
+        SimError::Response { place, source }
+    })?);
+    let mut warnings = actuators.warnings.clone();
+    warnings.extend(stability.warnings());
     let result = RunResult {
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),
@@ -55,8 +76,10 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
                 trimmed.trim().rotor.hub.harmonic(loaded.case.blades),
             ),
         },
+        stability,
+        unlike_blades: unlike_lines(loaded, &trimmed, &studies)?,
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
-        warnings: actuators.warnings.clone(),
+        warnings,
     };
     Ok(RunOutcome { result, actuators, trimmed, drives, studies })
 }
@@ -99,9 +122,13 @@ impl Printable for RunResult {
             t.ct_sigma, t.induced_inflow, t.iterations
         ));
         sheet.line(format_args!(
-            "Residuals  trim {:.1e}, periodicity {:.1e}, inflow {:.1e}\n",
+            "Residuals  trim {:.1e}, periodicity {:.1e}, inflow {:.1e}",
             r.trim, r.periodicity, r.inflow
         ));
+        if let Some(stability) = self.stability.text() {
+            sheet.line(format_args!("Stability  {stability}"));
+        }
+        sheet.line(format_args!(""));
         let baseline = self.baseline.hub_4_per_rev;
         let parts = [baseline.fx, baseline.fy, baseline.fz, baseline.mx, baseline.my, baseline.mz];
         sheet.line(format_args!(
@@ -125,6 +152,13 @@ impl Printable for RunResult {
             sheet.block(&self.control_table());
             sheet.line(format_args!("\nFlaps"));
             sheet.block(&self.flap_table());
+        }
+        for line in &self.unlike_blades {
+            sheet.line(format_args!(
+                "\nHub loads with the unlike blades, amplitudes; flaps: {}",
+                line.flaps
+            ));
+            sheet.block(&line.text());
         }
         sheet.finish()
     }

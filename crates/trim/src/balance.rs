@@ -64,6 +64,8 @@ pub(crate) struct Balance {
     pub(crate) thrust_coefficient: f64,
     /// Number of unknowns, and of equations.
     pub(crate) unknowns: usize,
+    /// Weight of the blades, `m0 Omega^2 R^2`, zero without gravity.
+    blades_weight: f64,
     density_chord: f64,
     chord: f64,
 }
@@ -100,6 +102,7 @@ impl Balance {
             target: *target,
             weight: model.thrust_of_loading(loading),
             thrust_coefficient: model.thrust_coefficient(model.thrust_of_loading(loading)),
+            blades_weight: solver.rotor().blades_weight(),
             density_chord: model.density_chord(),
             chord: model.chord,
             unknowns,
@@ -139,7 +142,13 @@ impl Balance {
 
     /// Trim residuals over the weight of a response at an attitude; empty for prescribed controls.
     pub(crate) fn residual(&self, rotor: &RotorSolution, attitude: &Attitude) -> DVector<f64> {
-        let mean = rotor.hub.mean();
+        // what the hub carries besides its blades' own weight
+        let (sin_a, cos_a) = attitude.shaft_tilt_rad.sin_cos();
+        let (sin_f, cos_f) = attitude.roll_rad.sin_cos();
+        let mut mean = rotor.hub.mean();
+        for (force, up) in mean.iter_mut().zip([sin_a * cos_f, -sin_f, cos_a * cos_f]) {
+            *force += self.blades_weight * up;
+        }
         let residual = match &self.target {
             TrimTarget::Prescribed { .. } => vec![],
             TrimTarget::WindTunnel { .. } => vec![mean[2] - self.weight, mean[3], mean[4]],

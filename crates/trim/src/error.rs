@@ -42,7 +42,7 @@ pub enum TrimError {
     },
     /// No change of the trim variables lowers the residual any more.
     #[error(
-        "trim is out of reach: near theta0 {theta0_deg:.2} deg no change of the controls brings the residual below {residual:.2e} of the weight (iteration {iteration}); residuals so far {}. Remedy: lower the thrust, the drag area or the advance ratio",
+        "trim is out of reach: near theta0 {theta0_deg:.2} deg no change of the controls brings the residual below {residual:.2e} of the weight (iteration {iteration}); residuals so far {}. Remedy: lower the thrust, the drag area or the advance ratio; with aerofoil tables or dynamic stall the sections may have stalled there",
         show(.history)
     )]
     NoDescent {

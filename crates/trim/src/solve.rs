@@ -128,7 +128,8 @@ impl Problem<'_> {
             shaft_tilt_rad: attitude.shaft_tilt_rad,
         };
         let flap_angles_rad = vec![HarmonicSeries::default(); self.flaps];
-        let condition = Condition { flight, controls, flap_angles_rad };
+        let condition =
+            Condition { flight, bank_rad: attitude.roll_rad, controls, flap_angles_rad };
         let rotor = solver.solve(&condition, self.inflow, start)?;
         let residual = self.balance.residual(&rotor, &attitude);
         Ok((rotor, residual))

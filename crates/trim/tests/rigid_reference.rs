@@ -10,7 +10,7 @@ use flap_aero::{AirfoilSpan, AttachedFlowModel, C81Airfoil, C81Table};
 use rotor_fem::{BladeProperties, BladeSpec, Joint, RootSupport, Twist};
 use rotor_response::{
     Compressibility, Couplings, Discretisation, NonlinearSections, ResponseTolerances, ReverseFlow,
-    Rotor, RotorModel, RotorSolver,
+    Rotor, RotorModel, RotorSolver, SectionOffsets,
 };
 use rotor_wake::LinearInflow;
 use std::f64::consts::{PI, TAU};
@@ -56,6 +56,9 @@ fn trimmed(mu: f64, split: usize) -> TrimSolution {
     .unwrap();
     let span = AirfoilSpan::new(vec![(0.0, airfoil())]).unwrap();
     let model = RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: SectionOffsets::default(),
         blades: 4 * split,
         chord: 0.07 * PI / (4.0 * split as f64),
         // the reference's Lock number is with its own lift slope, ours with 2 pi

@@ -6,7 +6,7 @@ use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, NonlinearSections, ResponseTolerances,
-    ReverseFlow, Rotor, RotorModel, RotorSolver,
+    ReverseFlow, Rotor, RotorModel, RotorSolver, SectionOffsets,
 };
 use rotor_wake::LinearInflow;
 use std::sync::Arc;
@@ -19,6 +19,9 @@ fn solver(advance_ratio: f64) -> RotorSolver {
     })
     .unwrap();
     let model = RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,

@@ -38,6 +38,7 @@ fn hinge_moment(
 ) -> Result<(RotorModel, HingeMoment), CheckError> {
     let model = RotorModel { flaps: vec![flap], ..paper_rotor(Couplings::Full, 0.2) };
     let condition = Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
         controls: Controls::default(),
         flap_angles_rad: vec![angle],

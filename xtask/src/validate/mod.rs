@@ -18,11 +18,13 @@ mod inflow;
 mod moderate;
 mod moderate_blades;
 mod rotor;
+mod rotor_details;
 mod section;
 mod section_beyond;
 mod section_compressible;
 mod study;
 mod time_elements;
+mod trim_reference;
 mod trimmed;
 mod wake;
 
@@ -43,6 +45,7 @@ pub const AREAS: &[Area] = &[
     inflow::AREA,
     wake::AREA,
     rotor::AREA,
+    rotor_details::AREA,
     trimmed::AREA,
     actuator::AREA,
     actuator_stages::AREA,

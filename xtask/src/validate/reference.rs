@@ -95,6 +95,16 @@ pub(super) fn crosscheck<const N: usize>(case: &str, field: &str) -> Result<[f64
     numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(missing)
 }
 
+/// Rows of numbers of such a case.
+pub(super) fn crosscheck_rows(case: &str, field: &str) -> Result<Vec<Vec<f64>>, CheckError> {
+    let path = crate::workspace::root().join("fixtures/reference/rotor/crosscheck_S1_S2.json");
+    let missing = || CheckError::NoRow { path: path.clone(), row: format!("{case} {field}") };
+    let text = std::fs::read_to_string(&path).map_err(|_| missing())?;
+    let json: serde_json::Value = serde_json::from_str(&text).map_err(|_| missing())?;
+    let rows = json.get(case).and_then(|case| case.get(field)).cloned().ok_or_else(missing)?;
+    serde_json::from_value(rows).map_err(|_| missing())
+}
+
 /// The largest of at least `needed` values; the error of the first that could not be had.
 pub(super) fn worst(
     what: &'static str,

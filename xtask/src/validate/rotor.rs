@@ -7,8 +7,8 @@ use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, TorsionTerms, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
-    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SixLoads,
-    hub_loads,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SectionOffsets,
+    SixLoads, hub_loads,
 };
 use rotor_wake::{FlightState, InflowModel, LinearInflow};
 
@@ -195,6 +195,9 @@ pub(super) fn paper_blade(mass: f64) -> Result<BladeProperties, CheckError> {
 /// The rotor of Table 1, incompressible and quasi-steady, without flaps.
 pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel {
     RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,
@@ -211,8 +214,9 @@ pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel 
 }
 
 /// Fixed controls of the crosscheck cases at advance ratio 0.30.
-fn fixed_controls() -> Condition {
+pub(super) fn fixed_controls() -> Condition {
     Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 5.0_f64.to_radians() },
         controls: Controls {
             theta0_rad: 8.0_f64.to_radians(),
@@ -245,7 +249,7 @@ fn solve(case: &Crosscheck) -> Result<RotorSolution, CheckError> {
     response(model, &paper_blade(1.0)?, d, &fixed_controls(), &PRESCRIBED)
 }
 
-fn norm(values: impl IntoIterator<Item = f64>) -> f64 {
+pub(super) fn norm(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
@@ -312,6 +316,7 @@ fn hover_thrust_error() -> Result<f64, CheckError> {
     })?;
     let errors = [6.0_f64, 10.0].map(|theta0_deg| {
         let condition = Condition {
+            bank_rad: 0.0,
             flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
             controls: Controls { theta0_rad: theta0_deg.to_radians(), ..Controls::default() },
             flap_angles_rad: vec![],

@@ -10,6 +10,7 @@ use super::CheckError;
 use super::check::{Area, Check, Criterion, Repeatability};
 use super::reference::worst;
 use super::rotor::{paper_blade, paper_rotor};
+use super::trim_reference;
 
 pub(super) const AREA: Area = Area {
     heading: "Trim (`trim`)",
@@ -49,6 +50,16 @@ pub(super) const AREA: Area = Area {
             criterion: Criterion::AtMost(1e-9),
             repeatability: Repeatability::Everywhere,
             measure: wind_tunnel_moment,
+        },
+        Check {
+            id: "V-TRIM-05",
+            quantity: "coupled trim of a rigid flapping blade, mu 0.10 to 0.35: largest error of five \
+                       angles over 2 % or 0.1 deg, whichever is larger",
+            unit: "-",
+            source: "independent program, trim_reference_simple.csv; pitch-rate lift taken out by two chords",
+            criterion: Criterion::AtMost(1.0),
+            repeatability: Repeatability::Everywhere,
+            measure: trim_reference::largest_error,
         },
     ],
 };

@@ -6,7 +6,8 @@ use rotor_base::HarmonicSeries;
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
-    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, TrailingEdgeFlap,
+    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolver, SectionOffsets,
+    TrailingEdgeFlap,
 };
 use rotor_wake::FlightState;
 use std::sync::Arc;
@@ -27,6 +28,9 @@ pub(crate) fn paper_blade() -> BladeProperties {
 /// Incompressible quasi-steady rotor without flaps.
 pub(crate) fn paper_model(couplings: Couplings) -> RotorModel {
     RotorModel {
+        tip_loss: 1.0,
+        gravity: 0.0,
+        offsets: SectionOffsets::default(),
         blades: 4,
         chord: 0.055,
         lock_number: 5.2,
@@ -73,6 +77,7 @@ pub(crate) fn solver() -> RotorSolver {
 /// Near trim in level flight at that advance ratio, flaps at rest.
 pub(crate) fn condition() -> Condition {
     Condition {
+        bank_rad: 0.0,
         flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.1 },
         controls: Controls { theta0_rad: 0.145, theta1c_rad: 0.02, theta1s_rad: -0.08 },
         flap_angles_rad: vec![HarmonicSeries::zero(0); 2],

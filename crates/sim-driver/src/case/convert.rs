@@ -9,7 +9,7 @@ use super::{
     FlapValues, SectionValues, TrimFile, TrimValues,
 };
 use crate::files::{Folder, RonIndex, SHIPPED_BENCH};
-use crate::problem::Problems;
+use crate::problem::{Fault, Problem, Problems};
 use flap_aero::AirfoilSpan;
 use rotor_base::RotorScales;
 use std::f64::consts::TAU;
@@ -36,7 +36,16 @@ pub(super) fn convert(
     };
     let rotor = &file.rotor;
     let scales = RotorScales::new(rotor.omega_rpm * TAU / 60.0, rotor.radius_m, rotor.mass_kg_m);
-    problems.into_result(scales.ok().map(|scales| build(file, folder, scales, airfoils)))
+    let case =
+        problems.into_result(scales.ok().map(|scales| build(file, folder, scales, airfoils)))?;
+    // what only the blade as a whole can say: flaps beside a tapered one, a mode without damping
+    match case.blade_with_flaps().map(|_| ()).and_then(|()| case.refuse_resonance()) {
+        Ok(()) => Ok(case),
+        Err(error) => {
+            let fault = Fault::Refused { message: error.to_string() };
+            Err(Problem::new(index.place("rotor"), fault).into())
+        }
+    }
 }
 
 fn build(
@@ -69,6 +78,13 @@ fn build(
             elements: structure.elements,
             modes: [modes.flap, modes.lag, modes.torsion],
             couplings: structure.couplings,
+            root_offset: rotor.root_offset_r,
+            root: rotor.root,
+            mass_centre: rotor.mass_centre_r,
+            tension_centre: rotor.tension_centre_r,
+            gravity: rotor.gravity,
+            tables: rotor.tables.clone(),
+            unlike: rotor.unlike_blades.clone(),
         },
         flaps: file
             .flaps
@@ -96,6 +112,7 @@ fn build(
             speed_of_sound_m_s: file.aerodynamics.speed_of_sound_m_s,
             airfoils,
             dynamic_stall: file.aerodynamics.dynamic_stall,
+            tip_loss: file.aerodynamics.tip_loss,
         },
         inflow: file.inflow.model,
         trim: trim_values(&file.trim),

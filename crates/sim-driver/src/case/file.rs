@@ -4,7 +4,10 @@
 //! variation of the paper's. Field names carry their unit; a name without unit is a pure number or a
 //! stiffness in the paper's nondimensional form, as its line says.
 
-use super::{ActuatorFile, ControlFile, FreeWakeFile, TrimFile};
+use super::{
+    ActuatorFile, BladeTablesFile, ControlFile, FreeWakeFile, GravityChoice, RootFile, TrimFile,
+    UnlikeBladeFile,
+};
 use serde::{Deserialize, Serialize};
 
 /// A whole case.
@@ -97,6 +100,27 @@ pub struct RotorFile {
     pub root_cutout_r: f64,
     /// Damping of every mode over critical.
     pub modal_damping: f64,
+    /// Radial station of the blade's root, radius R: nothing moves or weighs inboard.
+    #[serde(skip_serializing_if = "is_default")]
+    pub root_offset_r: f64,
+    /// How the root is held.
+    #[serde(skip_serializing_if = "is_default")]
+    pub root: RootFile,
+    /// Mass centre ahead of the elastic axis, radius R; `couplings: Moderate` alone knows it.
+    #[serde(skip_serializing_if = "is_default")]
+    pub mass_centre_r: f64,
+    /// Tension centre ahead of the elastic axis, radius R; `couplings: Moderate` alone knows it.
+    #[serde(skip_serializing_if = "is_default")]
+    pub tension_centre_r: f64,
+    /// Weight of the blades.
+    #[serde(skip_serializing_if = "is_default")]
+    pub gravity: GravityChoice,
+    /// Values along the span in place of uniform ones.
+    #[serde(skip_serializing_if = "is_default")]
+    pub tables: BladeTablesFile,
+    /// Blades unlike the rest.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unlike_blades: Vec<UnlikeBladeFile>,
 }
 
 impl Default for RotorFile {
@@ -119,6 +143,13 @@ impl Default for RotorFile {
             precone_deg: 0.0,
             root_cutout_r: 0.20,
             modal_damping: 0.005,
+            root_offset_r: 0.0,
+            root: RootFile::default(),
+            mass_centre_r: 0.0,
+            tension_centre_r: 0.0,
+            gravity: GravityChoice::Off,
+            tables: BladeTablesFile::default(),
+            unlike_blades: vec![],
         }
     }
 }
@@ -317,6 +348,13 @@ pub enum DynamicStallChoice {
     Naca0012,
 }
 
+/// Whether a factor changes nothing: not written then.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+#[expect(clippy::float_cmp, reason = "one as it is written")]
+fn is_one(factor: &f64) -> bool {
+    *factor == 1.0
+}
+
 /// Whether a choice is the default: not written then.
 fn is_default<T: Default + PartialEq>(choice: &T) -> bool {
     *choice == T::default()
@@ -342,6 +380,9 @@ pub struct AerodynamicsFile {
     /// Dynamic stall.
     #[serde(skip_serializing_if = "is_default")]
     pub dynamic_stall: DynamicStallChoice,
+    /// Tip loss factor B, radius R: outboard of it a section drags but does not lift.
+    #[serde(skip_serializing_if = "is_one")]
+    pub tip_loss: f64,
 }
 
 impl Default for AerodynamicsFile {
@@ -354,6 +395,7 @@ impl Default for AerodynamicsFile {
             speed_of_sound_m_s: 340.3,
             airfoils: vec![],
             dynamic_stall: DynamicStallChoice::Off,
+            tip_loss: 1.0,
         }
     }
 }

@@ -7,9 +7,11 @@ mod airfoils;
 mod checker;
 mod convert;
 mod file;
+mod file_blade;
 mod file_control;
 mod file_wake;
 mod ranges;
+mod ranges_blade;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -21,6 +23,7 @@ pub use file::{
     ModesFile, ResponseFile, ReverseFlowChoice, RotorFile, SectionModelChoice, StructureFile,
     TolerancesFile,
 };
+pub use file_blade::{BladeTablesFile, GravityChoice, JointChoice, RootFile, UnlikeBladeFile};
 pub use file_control::{
     ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, ControllerChoice,
     EffortChoice, HorizontalTailFile, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile,

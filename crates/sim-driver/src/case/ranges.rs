@@ -1,6 +1,7 @@
 //! The ranges of every value of a case, and the rules between values.
 
 use super::checker::{Checker, Number};
+use super::ranges_blade::check_blade;
 use super::{
     ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice, FreeWakeFile,
     HorizontalTailFile, InflowChoice, SectionModelChoice, StrokeChoice, TrimFile,
@@ -20,7 +21,12 @@ pub(super) fn check_case(check: &mut Checker<'_>, file: &CaseFile) {
     check_numerics(check, file);
 }
 
-fn number<'a>(field: &'a str, value: f64, unit: &'static str, remedy: &'static str) -> Number<'a> {
+pub(super) fn number<'a>(
+    field: &'a str,
+    value: f64,
+    unit: &'static str,
+    remedy: &'static str,
+) -> Number<'a> {
     Number { field, value, unit, remedy }
 }
 
@@ -75,6 +81,7 @@ fn check_rotor(check: &mut Checker<'_>, file: &CaseFile) {
         check.positive(number(field, value, unit, remedy));
     }
     check_rotor_ranges(check, file);
+    check_blade(check, file);
     check_structure(check, file);
 }
 
@@ -107,7 +114,7 @@ fn check_structure(check: &mut Checker<'_>, file: &CaseFile) {
 const EFFECTIVE: &str = "1 is thin-aerofoil theory; a real flap makes about 0.8 of its lift";
 
 fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
-    let mut from_r = file.rotor.root_cutout_r;
+    let mut from_r = file.rotor.root_cutout_r.max(file.rotor.root_offset_r);
     for (i, flap) in file.flaps.iter().enumerate() {
         let (start_r, end_r) = (flap.start_r, flap.end_r);
         if start_r >= from_r && end_r > start_r && end_r <= 1.0 {
@@ -154,6 +161,9 @@ fn check_section(check: &mut Checker<'_>, file: &CaseFile) {
     let remedy = "0.01 is usual";
     let drag = number("aerodynamics.drag_coefficient", a.drag_coefficient, "", remedy);
     check.within(drag, 0.0, 1.0);
+    let remedy = "1 is no loss, 0.97 is usual; outboard of the root cut-out";
+    let least = file.rotor.root_cutout_r.max(0.5);
+    check.within(number("aerodynamics.tip_loss", a.tip_loss, "R", remedy), least, 1.0);
     let field = "aerodynamics.speed_of_sound_m_s";
     let remedy = "340.3 m/s is the standard atmosphere at sea level; the tip must stay subsonic";
     let tip_speed = file.rotor.omega_rpm * TAU / 60.0 * file.rotor.radius_m;

@@ -75,7 +75,7 @@ fn every_problem_is_reported_with_its_line() {
         [
             "case.ron:2:3: advance_ratio: is 0.6, expected 0 to 0.5; the attached-flow rotor model ends at 0.5; 0 is hover",
             "case.ron:4:5: rotor.ei_flap: is -0.0108, expected a positive finite number; a stiffness is positive (paper: 0.0108 m0 Omega^2 R^4)",
-            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping",
+            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping, root_offset_r, root, mass_centre_r, tension_centre_r, gravity, tables, unlike_blades",
             "case.ron:6:5: rotor.blades: is 0, expected 1 to 16; the paper's rotor has 4",
             "case.ron:7:5: rotor.gj: is NaN, expected a positive finite number; a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)",
             "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) < start_r < end_r <= 1 R; list the flaps from root to tip without overlap",
@@ -157,8 +157,73 @@ fn single_problems_name_the_remedy() {
         ("(rotor: (blades: 4)", "is not valid RON"),
         ("", "is not valid RON"),
     ] {
-        let message = read(text).expect_err(text);
-        assert!(message.contains(expected), "{text}\n  gave {message}\n  wanted {expected}");
-        assert!(message.starts_with("case.ron"), "{message}");
+        says(text, expected);
+    }
+}
+
+#[track_caller]
+fn says(text: &str, expected: &str) {
+    let message = read(text).expect_err(text);
+    assert!(message.contains(expected), "{text}\n  gave {message}\n  wanted {expected}");
+    assert!(message.starts_with("case.ron"), "{message}");
+}
+
+#[test]
+fn problems_of_the_blade_name_the_remedy() {
+    for (text, expected) in [
+        ("(rotor: (root_offset_r: 0.6))", "rotor.root_offset_r: is 0.6 R, expected 0 to 0.5 R"),
+        (
+            "(rotor: (root: (flap: Spring(stiffness: -0.1))))",
+            "rotor.root.flap.stiffness: is -0.1, expected 0 to 10000; moment per rad",
+        ),
+        (
+            "(rotor: (root: (pitch: Free)))",
+            "rotor.root.pitch: is refused: a blade without pitch link",
+        ),
+        ("(rotor: (root: (flap: Loose)))", "unknown choice `Loose`"),
+        ("(rotor: (mass_centre_r: 0.2))", "rotor.mass_centre_r: is 0.2 R, expected -0.05 to 0.05"),
+        (
+            "(rotor: (mass_centre_r: 0.005))",
+            "rotor.mass_centre_r: is refused: Linear and Full know no offsets: choose structure.couplings: Moderate",
+        ),
+        ("(rotor: (gravity: Moon))", "unknown choice `Moon`"),
+        ("(aerodynamics: (tip_loss: 1.2))", "aerodynamics.tip_loss: is 1.2 R, expected 0.5"),
+        ("(rotor: (ei_flap: 0))", "rotor.ei_flap: is 0, expected a positive finite number"),
+        ("(rotor: (gj: -1))", "rotor.gj: is -1, expected a positive finite number"),
+        (
+            "(rotor: (tables: (mass: [(0, 1), (0.5, 1), (0.4, 1), (1, 1)])))",
+            "rotor.tables.mass[2]: is 0.4 R, expected 0.5 to 1 R; list the stations from root to tip",
+        ),
+        (
+            "(rotor: (tables: (mass: [(0, 1), (0.9, 1)])))",
+            "rotor.tables.mass: is refused: the table reaches from 0 R to 0.9 R, the blade from 0 R to 1 R",
+        ),
+        (
+            "(rotor: (tables: (ei_lag: [(0, 0.03), (0.3, -0.01), (1, 0.02)])))",
+            "rotor.tables.ei_lag[1]: is -0.01, expected a positive finite number",
+        ),
+        (
+            "(rotor: (tables: (mass: [(0, 1), (1, 0.8)])), flaps: [(start_r: 0.7, end_r: 0.8, mass: AddedToBlade)])",
+            "mass varies linearly along the blade",
+        ),
+        (
+            "(flaps: [(start_r: 0.9, end_r: 1.1)])",
+            "flaps[0].start_r: the flap spans 0.9 R to 1.1 R, expected",
+        ),
+        (
+            "(rotor: (unlike_blades: [(blade: 5, mass: 1.01)]))",
+            "rotor.unlike_blades[0].blade: is 5, expected 1 to 4",
+        ),
+        (
+            "(rotor: (unlike_blades: [(blade: 2, mass: 3)]))",
+            "rotor.unlike_blades[0].mass: is 3, expected 0.5 to 2",
+        ),
+        // a rigid blade on a lag spring of exactly once per revolution: nu^2 = 3 k
+        (
+            "(rotor: (modal_damping: 0, ei_flap: 1e3, ei_lag: 1e5, root: (lag: Spring(stiffness: 0.33333333))))",
+            "lag 1 has 1.0000 per rev, a harmonic of the loads, and no damping: nothing bounds its response. Remedy: modal_damping",
+        ),
+    ] {
+        says(text, expected);
     }
 }

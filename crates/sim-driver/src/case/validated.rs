@@ -1,10 +1,10 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    CompressibilityChoice, ControlActuator, ControllerChoice, CouplingsChoice, DynamicStallChoice,
-    EffortChoice, FlapMassChoice, HorizontalTailFile, InflowChoice, LoadScaleChoice,
-    LoadWeightsFile, ResponseFile, ReverseFlowChoice, SectionModelChoice, StrokeChoice,
-    TolerancesFile,
+    BladeTablesFile, CompressibilityChoice, ControlActuator, ControllerChoice, CouplingsChoice,
+    DynamicStallChoice, EffortChoice, FlapMassChoice, GravityChoice, HorizontalTailFile,
+    InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice, RootFile,
+    SectionModelChoice, StrokeChoice, TolerancesFile, UnlikeBladeFile,
 };
 use crate::files::Folder;
 use flap_aero::AirfoilSpan;
@@ -58,8 +58,8 @@ impl Case {
     }
 }
 
-/// A uniform blade. Stiffness in `m0 Omega^2 R^4` (`ea` in `m0 Omega^2 R^2`), lengths in R.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A blade. Stiffness in `m0 Omega^2 R^4` (`ea` in `m0 Omega^2 R^2`), lengths in R.
+#[derive(Debug, Clone, PartialEq)]
 pub struct BladeValues {
     /// Flap bending stiffness.
     pub ei_flap: f64,
@@ -89,6 +89,20 @@ pub struct BladeValues {
     pub modes: [usize; 3],
     /// Terms of the equations.
     pub couplings: CouplingsChoice,
+    /// Radial station of the root.
+    pub root_offset: f64,
+    /// How the root is held.
+    pub root: RootFile,
+    /// Mass centre ahead of the elastic axis.
+    pub mass_centre: f64,
+    /// Tension centre ahead of the elastic axis.
+    pub tension_centre: f64,
+    /// Weight of the blades.
+    pub gravity: GravityChoice,
+    /// Values along the span in place of uniform ones, as in the file.
+    pub tables: BladeTablesFile,
+    /// Blades unlike the rest.
+    pub unlike: Vec<UnlikeBladeFile>,
 }
 
 /// A trailing-edge flap. Lengths in R or chords as named.
@@ -129,6 +143,8 @@ pub struct SectionValues {
     pub airfoils: Option<Arc<AirfoilSpan>>,
     /// Dynamic stall.
     pub dynamic_stall: DynamicStallChoice,
+    /// Tip loss factor, R.
+    pub tip_loss: f64,
 }
 
 /// What the rotor is trimmed to. Lengths in R, angles in rad.

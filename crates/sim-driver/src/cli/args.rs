@@ -108,6 +108,10 @@ pub struct RunArgs {
     /// Inflow model instead of the case's.
     #[arg(long, value_enum, alias = "wake")]
     pub inflow: Option<InflowOverride>,
+    /// Advance ratios instead of the case's, each trim started from the last: a table, sweep.csv, and a
+    /// folder of results for each.
+    #[arg(long, value_name = "MU", value_delimiter = ',')]
+    pub mu: Vec<f64>,
     /// Also change one assumption at a time: sensitivity.csv.
     #[arg(long)]
     pub sensitivity: bool,

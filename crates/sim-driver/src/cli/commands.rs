@@ -5,6 +5,7 @@ use super::args::{
     ReportArgs, ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs, WakeArgs,
 };
 use crate::SimError;
+use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::check::check_file;
 use crate::curve_identification::identify_curves;
@@ -17,27 +18,29 @@ use crate::identification::{BenchIdentification, identify_bench, identify_loops}
 use crate::import::{ColumnOptions, ImportRequest, default_folder};
 use crate::modes::{AboutState, FAN_SPEEDS, ModesQuestion, fan_csv, rotating_modes};
 use crate::output::{Format, Printable, print};
-use crate::problem::{Fault, Place, Problem};
+use crate::problem::{Fault, Place, Problem, Problems};
 use crate::progress::Progress;
 use crate::recompute::recomputed;
 use crate::report::{StudyReport, report_html};
 use crate::results::{RunResult, StoredResult};
-use crate::run::{run_case, steps_of};
+use crate::run::{RunOutcome, run_case, run_trimmed, steps_of};
 use crate::section::{
     LoopQuestion, PolarQuestion, SectionChoice, SectionQuestion, TransientQuestion, loop_history,
     polar, section_response, transient_history,
 };
 use crate::stored_actuator::{StoredActuator, read_actuator};
 use crate::study::{
-    SENSITIVITY_ROWS, histories_csv, robustness_csv, robustness_maps, sensitivities,
-    sensitivity_csv, study_report,
+    RobustnessCell, SENSITIVITY_ROWS, Sensitivity, histories_csv, robustness_csv, robustness_maps,
+    sensitivities, sensitivity_csv, study_report,
 };
+use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
 use crate::wake::wake_of_case;
 use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::Settings;
 use rotor_fem::GyroscopicTerms;
 use std::path::{Path, PathBuf};
+use trim::TrimSolution;
 
 /// Name of the numbers a report is made of.
 const STUDY_FILE: &str = "study.json";
@@ -51,6 +54,8 @@ const SENSITIVITY_FILE: &str = "sensitivity.csv";
 const ROBUSTNESS_FILE: &str = "robustness.csv";
 /// Name of the result of a run.
 const RESULT_FILE: &str = "result.json";
+/// Name of the table over advance ratios.
+const SWEEP_FILE: &str = "sweep.csv";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
@@ -68,12 +73,67 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
         let stem = args.case.file_stem().map(PathBuf::from).unwrap_or_default();
         Path::new("out").join(stem)
     });
-    run_and_store(
-        &loaded,
-        &out,
-        args.format.format,
-        Scope { sensitivity: args.sensitivity, robustness: args.robustness },
-    )
+    let scope = Scope { sensitivity: args.sensitivity, robustness: args.robustness };
+    if args.mu.is_empty() {
+        return run_and_store(&loaded, &out, args.format.format, scope);
+    }
+    run_sweep(&loaded, &args.mu, &out, (args.format.format, scope))
+}
+
+/// Name of the folder of the results at an advance ratio.
+fn sweep_folder(advance_ratio: f64) -> String {
+    format!("mu_{advance_ratio}")
+}
+
+fn run_sweep(
+    loaded: &LoadedCase,
+    advance_ratios: &[f64],
+    out: &Path,
+    (format, scope): (Format, Scope),
+) -> Result<(), SimError> {
+    let mut problems = Problems::default();
+    for (i, &mu) in advance_ratios.iter().enumerate() {
+        let place = || Place::file("--mu");
+        if !(0.0..=0.5).contains(&mu) {
+            let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
+            let fault = Fault::OutOfRange { value: mu, low: 0.0, high: 0.5, unit: "", remedy };
+            problems.push(place(), fault);
+        }
+        if advance_ratios[..i].iter().any(|before| sweep_folder(*before) == sweep_folder(mu)) {
+            let message = format!("{mu} is given twice; give every advance ratio once");
+            problems.push(place(), Fault::Refused { message });
+        }
+    }
+    problems.into_result(Some(()))?;
+    let actuators = case_actuators(loaded)?;
+    let mut start: Option<TrimSolution> = None;
+    let mut rows = Vec::new();
+    for &mu in advance_ratios {
+        let here = at_advance_ratio(loaded, mu);
+        let more = if scope.sensitivity { SENSITIVITY_ROWS } else { 0 };
+        let progress = Progress::new(steps_of(&here) + more);
+        progress.doing(format!("advance ratio {mu}"));
+        let computed = continued_trim(&here, start.as_ref()).and_then(|trimmed| {
+            run_trimmed(&here, actuators.clone(), trimmed, &progress)
+                .and_then(|outcome| with_scope(&here, outcome, scope, &progress))
+        });
+        progress.finish();
+        let computed = computed?;
+        start = Some(computed.outcome.trimmed.trim().clone());
+        let folder = out.join(sweep_folder(mu));
+        store(&here, &folder, scope, &computed)?;
+        rows.push(SweepRow { advance_ratio: mu, result: computed.outcome.result });
+    }
+    let sweep = SweepResult { rows };
+    write_atomic(&out.join(SWEEP_FILE), sweep_csv(&sweep).as_bytes())?;
+    match format {
+        Format::Json => print(&sweep.render(format)?),
+        Format::Text => print(&format!(
+            "{}\nResults in {}, a folder for each advance ratio\n",
+            sweep.render(format)?,
+            out.display()
+        )),
+    }
 }
 
 /// What is computed beside the case.
@@ -81,6 +141,62 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
 struct Scope {
     sensitivity: bool,
     robustness: bool,
+}
+
+/// A run with what was computed beside it.
+struct Computed {
+    outcome: RunOutcome,
+    sensitivity: Vec<Sensitivity>,
+    robustness: Vec<RobustnessCell>,
+}
+
+fn with_scope(
+    loaded: &LoadedCase,
+    outcome: RunOutcome,
+    scope: Scope,
+    progress: &Progress,
+) -> Result<Computed, SimError> {
+    let (mut sensitivity, mut robustness) = (vec![], vec![]);
+    if scope.sensitivity {
+        progress.doing("sensitivity");
+        let done = || progress.step();
+        sensitivity = sensitivities(loaded, &outcome.trimmed, &outcome.drives, &done)?;
+    }
+    if scope.robustness {
+        progress.doing("robustness");
+        robustness = robustness_maps(loaded, &outcome)?;
+    }
+    Ok(Computed { outcome, sensitivity, robustness })
+}
+
+/// Writes everything a run leaves behind; its report.
+fn store(
+    loaded: &LoadedCase,
+    out: &Path,
+    scope: Scope,
+    computed: &Computed,
+) -> Result<StudyReport, SimError> {
+    let Computed { outcome, sensitivity, robustness } = computed;
+    for warning in &outcome.result.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let inputs = outcome.actuators.inputs.clone();
+    let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
+    let report = study_report(loaded, outcome, &stored, (sensitivity, robustness))?;
+    if scope.sensitivity {
+        let text = sensitivity_csv(loaded, sensitivity);
+        write_atomic(&out.join(SENSITIVITY_FILE), text.as_bytes())?;
+    }
+    if scope.robustness {
+        write_atomic(&out.join(ROBUSTNESS_FILE), robustness_csv(robustness).as_bytes())?;
+    }
+    stored.write(&out.join(RESULT_FILE))?;
+    write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
+    let numbers = serde_json::to_string(&report)
+        .map_err(|e| SimError::NotWritten { path: out.join(STUDY_FILE), reason: e.to_string() })?;
+    write_atomic(&out.join(STUDY_FILE), numbers.as_bytes())?;
+    write_atomic(&out.join(REPORT_FILE), report_html(&report).as_bytes())?;
+    Ok(report)
 }
 
 fn run_and_store(
@@ -91,44 +207,16 @@ fn run_and_store(
 ) -> Result<(), SimError> {
     let more = if scope.sensitivity { SENSITIVITY_ROWS } else { 0 };
     let progress = Progress::new(steps_of(loaded) + more);
-    let computed = run_case(loaded, &progress).and_then(|outcome| {
-        let (mut rows, mut cells) = (vec![], vec![]);
-        if scope.sensitivity {
-            progress.doing("sensitivity");
-            let done = || progress.step();
-            rows = sensitivities(loaded, &outcome.trimmed, &outcome.drives, &done)?;
-        }
-        if scope.robustness {
-            progress.doing("robustness");
-            cells = robustness_maps(loaded, &outcome)?;
-        }
-        Ok((outcome, rows, cells))
-    });
+    let computed = run_case(loaded, &progress)
+        .and_then(|outcome| with_scope(loaded, outcome, scope, &progress));
     progress.finish();
-    let (outcome, sensitivity, cells) = computed?;
-    for warning in &outcome.result.warnings {
-        eprintln!("warning: {warning}");
-    }
-    let inputs = outcome.actuators.inputs.clone();
-    let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
-    let report = study_report(loaded, &outcome, &stored, (&sensitivity, &cells))?;
-    if scope.sensitivity {
-        let text = sensitivity_csv(loaded, &sensitivity);
-        write_atomic(&out.join(SENSITIVITY_FILE), text.as_bytes())?;
-    }
-    if scope.robustness {
-        write_atomic(&out.join(ROBUSTNESS_FILE), robustness_csv(&cells).as_bytes())?;
-    }
-    stored.write(&out.join(RESULT_FILE))?;
-    write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
-    let numbers = serde_json::to_string(&report)
-        .map_err(|e| SimError::NotWritten { path: out.join(STUDY_FILE), reason: e.to_string() })?;
-    write_atomic(&out.join(STUDY_FILE), numbers.as_bytes())?;
-    write_atomic(&out.join(REPORT_FILE), report_html(&report).as_bytes())?;
+    let computed = computed?;
+    let report = store(loaded, out, scope, &computed)?;
+    let result = &computed.outcome.result;
     match format {
-        Format::Json => print(&outcome.result.render(format)?),
+        Format::Json => print(&result.render(format)?),
         Format::Text => {
-            let text = outcome.result.render(format)? + &report.text();
+            let text = result.render(format)? + &report.text();
             print(&format!("{text}\nResults, histories and report in {}\n", out.display()))
         }
     }

@@ -3,6 +3,7 @@
 use crate::identification::fit_table;
 use crate::output::table;
 use crate::results::{Residuals, TrimLine};
+use crate::stability::StabilityLine;
 use crate::stored_actuator::StoredFit;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +28,9 @@ pub struct StudyReport {
     pub trim: TrimLine,
     /// The three residuals.
     pub residuals: Residuals,
+    /// Stability of the trimmed blade.
+    #[serde(default)]
+    pub stability: StabilityLine,
     /// Fit of every bench run.
     pub fits: Vec<StoredFit>,
     /// Measured and simulated loops.

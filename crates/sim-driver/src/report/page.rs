@@ -131,6 +131,9 @@ fn state(report: &StudyReport) -> Markup {
                     @for (_, value) in &residuals { td { (format!("{value:.1e}")) } }
                 } }
             } }
+            @if let Some(stability) = report.stability.text() {
+                p { "Trimmed blade " (stability) ". All motions are in result.json." }
+            }
         }
     }
 }

@@ -13,16 +13,18 @@
 //! leaves what is not linear and what the stages behind the load do; Anderson's acceleration takes care of
 //! it. The mean angle does not give way: the bias holds it.
 
-use super::anderson::Anderson;
 use super::drive::scaled;
 use super::{FlapMotion, PlantError};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_fem::Anderson;
 
 /// Largest change of a harmonic of the flap angle by the hinge moment still left, deg.
 pub const COUPLING_TOLERANCE_DEG: f64 = 1e-7;
 /// Iterations allowed.
 const MAX_ITERATIONS: usize = 40;
+/// Steps that the acceleration remembers: more than the slow directions that the preconditioner leaves.
+const STEPS_KEPT: usize = 8;
 
 /// Highest harmonic of the voltage, paper equation (6).
 const CONTROLLED: usize = 5;
@@ -203,7 +205,7 @@ impl HingeCoupling {
             flaps.iter().map(|flap| scaled(&flap.flap_deg, 1.0_f64.to_radians())).collect();
         let predicted = &self.response * self.gather(&motions_rad);
         let mut moments = &rest + self.step(&predicted);
-        let mut anderson = Anderson::default();
+        let mut anderson = Anderson::new(STEPS_KEPT);
         let mut last: Option<R> = None;
         let mut best: Option<(f64, Vec<FlapMotion>)> = None;
         for iterations in 1..=MAX_ITERATIONS {
@@ -220,7 +222,9 @@ impl HingeCoupling {
             if best.as_ref().is_none_or(|(least, _)| residual_deg < *least) {
                 best = Some((residual_deg, flaps));
             }
-            moments = anderson.next(&moments, &self.step(&mismatch));
+            let column = |v: &DVector<f64>| DMatrix::from_column_slice(v.len(), 1, v.as_slice());
+            let next = anderson.propose(&column(&moments), &column(&self.step(&mismatch)));
+            moments = next.column(0).into_owned();
             last = Some(response);
         }
         let (residual_deg, best) = best.unwrap_or((f64::NAN, Vec::new()));

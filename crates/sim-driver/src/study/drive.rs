@@ -26,6 +26,13 @@ pub struct FlapMotion {
     pub flap_deg: HarmonicSeries,
 }
 
+impl FlapMotion {
+    /// Flap angle, rad.
+    pub fn angle_rad(&self) -> HarmonicSeries {
+        scaled(&self.flap_deg, 1.0_f64.to_radians())
+    }
+}
+
 /// What turns a voltage into a flap angle.
 #[derive(Debug, Clone)]
 pub enum FlapDrive {

@@ -1,6 +1,5 @@
 //! Studies: the trimmed rotor, its driven flaps and the controller put together.
 
-mod anderson;
 mod authority;
 mod coupling;
 mod drive;
@@ -20,7 +19,7 @@ pub use drive::{FlapDrive, FlapMotion, MEAN_FLAP_TOLERANCE_DEG};
 pub use error::{PlantError, StudyError};
 pub use hinge_power::HingePower;
 pub use lines::control_line;
-pub use plant::{PlantState, RotorPlant, TrimmedRotor};
+pub use plant::{PlantState, RotorPlant, TrimmedRotor, UnlikeSolver};
 pub use robustness::{Disturbance, RobustnessCell, robustness, robustness_csv, robustness_maps};
 use run::load_weights;
 pub(crate) use run::loads_cost;

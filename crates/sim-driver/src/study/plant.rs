@@ -6,8 +6,9 @@ use super::{
     CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
 };
 use crate::SimError;
-use crate::case::{LoadedCase, TrimValues};
+use crate::case::{Case, LoadedCase, TrimValues};
 use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
+use crate::problem::Place;
 use hhc_control::{
     ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, RunError, TMatrix,
     VoltageRange,
@@ -15,7 +16,10 @@ use hhc_control::{
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_response::{Condition, InflowState, ResponseError, Rotor, RotorSolution, RotorSolver};
+use rotor_response::{
+    Condition, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution, RotorSolver, SixLoads,
+    Stability, dissimilar_hub_loads,
+};
 use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
 
@@ -97,8 +101,12 @@ impl TrimmedRotor {
     /// The errors of the linearised response.
     pub fn linearised(&self, state: InflowState) -> Result<FlapAuthority, ResponseError> {
         let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
-        let condition =
-            Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad };
+        let condition = Condition {
+            bank_rad: self.trim.attitude.roll_rad,
+            flight: self.trim.flight,
+            controls: self.trim.controls,
+            flap_angles_rad,
+        };
         let about = (&condition, &self.trim.rotor);
         FlapAuthority::about(&mut self.solver.clone(), about, &self.inflow, state)
     }
@@ -114,6 +122,71 @@ impl TrimmedRotor {
         response: &RotorSolution,
     ) -> Result<f64, TrimError> {
         imbalance(&self.solver, target, &self.trim, response)
+    }
+
+    /// Stability of the trimmed blade, flaps at rest.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::stability`].
+    pub fn stability(&self) -> Result<Stability, ResponseError> {
+        let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
+        let condition = Condition {
+            bank_rad: self.trim.attitude.roll_rad,
+            flight: self.trim.flight,
+            controls: self.trim.controls,
+            flap_angles_rad,
+        };
+        self.solver.stability(&condition, &self.trim.rotor)
+    }
+
+    /// A solver for every unlike blade of a case, at the advance ratio of this trim.
+    ///
+    /// # Errors
+    /// [`SimError::Blade`] and [`SimError::Response`].
+    pub fn unlike_solvers(&self, case: &Case) -> Result<Vec<UnlikeSolver>, SimError> {
+        let unlike = case.blade.unlike.iter();
+        unlike
+            .map(|unlike| {
+                let place = || Place::file("case").field("rotor.unlike_blades");
+                let failed = |source| SimError::Response { place: place(), source };
+                let blade = case.unlike_blade(unlike)?;
+                let rotor = Rotor::new(case.rotor_model(), &blade, case.discretisation())
+                    .map_err(failed)?;
+                let mu = self.trim.flight.advance_ratio;
+                let solver = RotorSolver::new(Arc::new(rotor), mu, case.response_tolerances())
+                    .map_err(failed)?;
+                let (position, flap_motion) = (unlike.blade - 1, unlike.flap_motion);
+                Ok(UnlikeSolver { position, flap_motion, solver })
+            })
+            .collect()
+    }
+
+    /// Hub loads with unlike blades in the inflow of a response, for given flap motions of the others.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn unlike_hub_loads(
+        &self,
+        unlike: &mut [UnlikeSolver],
+        flap_angles_rad: &[HarmonicSeries],
+        about: &RotorSolution,
+    ) -> Result<SixLoads, ResponseError> {
+        let condition = |factor: f64| Condition {
+            bank_rad: self.trim.attitude.roll_rad,
+            flight: self.trim.flight,
+            controls: self.trim.controls,
+            flap_angles_rad: flap_angles_rad.iter().map(|angle| scaled(angle, factor)).collect(),
+        };
+        let mut others: Vec<OtherBlade> = unlike
+            .iter()
+            .map(|one| OtherBlade {
+                position: one.position,
+                solver: one.solver.clone(),
+                condition: condition(one.flap_motion),
+            })
+            .collect();
+        let mut alike = self.solver.clone();
+        dissimilar_hub_loads(&mut alike, (&condition(1.0), about), &mut others)
     }
 
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
@@ -138,8 +211,12 @@ impl TrimmedRotor {
         flap_angles_rad: Vec<HarmonicSeries>,
         start: &RotorSolution,
     ) -> Result<RotorSolution, ResponseError> {
-        let condition =
-            Condition { flight: self.trim.flight, controls: self.trim.controls, flap_angles_rad };
+        let condition = Condition {
+            bank_rad: self.trim.attitude.roll_rad,
+            flight: self.trim.flight,
+            controls: self.trim.controls,
+            flap_angles_rad,
+        };
         self.solver.clone().solve(&condition, &self.inflow, Some(start))
     }
 
@@ -190,6 +267,14 @@ impl TrimmedRotor {
         let at_rest = self.trim.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect();
         Ok(HingeCoupling::new(give_deg_per_newton_metre, at_rest, self.hinge_response()?))
     }
+}
+
+/// The solver of a blade unlike the rest.
+#[derive(Debug, Clone)]
+pub struct UnlikeSolver {
+    position: usize,
+    flap_motion: f64,
+    solver: RotorSolver,
 }
 
 /// Step of the differences in a harmonic of a flap angle, rad: the response is nearly linear in it.

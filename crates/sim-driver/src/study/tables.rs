@@ -36,6 +36,7 @@ pub fn study_report(
         headline: if at_paper_condition(loaded) { paper::headline(result) } else { vec![] },
         trim: result.trim,
         residuals: result.residuals,
+        stability: result.stability.clone(),
         fits: outcome.actuators.fits.clone(),
         loops,
         azimuth: outcome.studies.iter().map(azimuth_chart).collect(),

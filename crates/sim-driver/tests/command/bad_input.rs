@@ -202,6 +202,27 @@ fn a_negative_stiffness() {
 }
 
 #[test]
+fn a_blade_that_is_none() {
+    bad_case("(rotor: (gj: 0))", &["rotor.gj: is 0, expected a positive finite number"]);
+    bad_case(
+        "(rotor: (tables: (ei_flap: [(0, 0.02), (0.6, 0.01), (0.3, 0.01), (1, 0.01)])))",
+        &["rotor.tables.ei_flap[2]: is 0.3 R, expected 0.6 to 1 R; list the stations from root"],
+    );
+    bad_case(
+        "(rotor: (tables: (mass: [(0.2, 1), (1, 1)])))",
+        &["rotor.tables.mass: is refused: the table reaches from 0.2 R to 1 R", "at both ends"],
+    );
+    bad_case(
+        "(flaps: [(start_r: 0.9, end_r: 1.05)])",
+        &["flaps[0].start_r: the flap spans 0.9 R to 1.05 R", "<= 1 R"],
+    );
+    bad_case(
+        "(rotor: (modal_damping: 0, ei_lag: 1e5, root: (lag: Spring(stiffness: 0.33333333))))",
+        &["lag 1 has 1.0000 per rev, a harmonic of the loads, and no damping", "Remedy"],
+    );
+}
+
+#[test]
 fn an_advance_ratio_outside_the_models() {
     bad_case(
         "(\n  advance_ratio: 0.55,\n)",

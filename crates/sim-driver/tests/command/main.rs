@@ -7,3 +7,4 @@ mod commands;
 mod identify;
 mod import;
 mod place;
+mod rotor;

@@ -1,0 +1,93 @@
+//! Ranges of the blade in detail: root, offsets, tables along the span, blades unlike the rest.
+
+use super::checker::Checker;
+use super::ranges::number;
+use super::{CaseFile, CouplingsChoice, JointChoice};
+use crate::problem::Fault;
+
+/// Checks what the blade has beyond the uniform one on a clamp.
+pub(super) fn check_blade(check: &mut Checker<'_>, file: &CaseFile) {
+    let r = &file.rotor;
+    let remedy = "0 is the rotor centre; nothing moves inboard of it";
+    check.within(number("rotor.root_offset_r", r.root_offset_r, "R", remedy), 0.0, 0.5);
+    for (field, joint) in [
+        ("rotor.root.flap.stiffness", r.root.flap),
+        ("rotor.root.lag.stiffness", r.root.lag),
+        ("rotor.root.pitch.stiffness", r.root.pitch),
+    ] {
+        if let JointChoice::Spring { stiffness } = joint {
+            let remedy =
+                "moment per rad over m0 Omega^2 R^3; Locked is the stiffest, Free has none";
+            check.within(number(field, stiffness, "", remedy), 0.0, 1e4);
+        }
+    }
+    if r.root.pitch == JointChoice::Free {
+        let message =
+            "a blade without pitch link holds no pitch: give Spring(stiffness: ...), or Locked";
+        check.fault("rotor.root.pitch", Fault::Refused { message: message.to_owned() });
+    }
+    for (field, value) in
+        [("rotor.mass_centre_r", r.mass_centre_r), ("rotor.tension_centre_r", r.tension_centre_r)]
+    {
+        let remedy = "ahead of the elastic axis is positive; a tenth of the chord is much";
+        check.within(number(field, value, "R", remedy), -0.05, 0.05);
+        if value != 0.0 && file.structure.couplings != CouplingsChoice::Moderate {
+            let message =
+                "Linear and Full know no offsets: choose structure.couplings: Moderate, or give 0";
+            check.fault(field, Fault::Refused { message: message.to_owned() });
+        }
+    }
+    check_tables(check, file);
+    for (i, unlike) in r.unlike_blades.iter().enumerate() {
+        let at = |key: &str| format!("rotor.unlike_blades[{i}].{key}");
+        check.count(&at("blade"), unlike.blade, (1, r.blades), "blades are counted from 1");
+        if r.unlike_blades[..i].iter().any(|before| before.blade == unlike.blade) {
+            let first_line = check.line(&format!("rotor.unlike_blades[{i}]"));
+            let name = unlike.blade.to_string();
+            check.fault(&at("blade"), Fault::Repeated { name, of: "unlike blade", first_line });
+        }
+        for (key, value) in [
+            ("mass", unlike.mass),
+            ("ei_flap", unlike.ei_flap),
+            ("ei_lag", unlike.ei_lag),
+            ("gj", unlike.gj),
+        ] {
+            let remedy = "a factor on what the other blades have: 1.02 is 2 % more";
+            check.within(number(&at(key), value, "", remedy), 0.5, 2.0);
+        }
+        let remedy = "1 moves its flaps like the others', 0 not at all";
+        check.within(number(&at("flap_motion"), unlike.flap_motion, "", remedy), -2.0, 2.0);
+    }
+}
+
+/// Stations that grow, cover the blade and hold values that a blade can have.
+fn check_tables(check: &mut Checker<'_>, file: &CaseFile) {
+    let root = file.rotor.root_offset_r;
+    for (key, table, positive) in file.rotor.tables.named() {
+        let at = |i: usize| format!("rotor.tables.{key}[{i}]");
+        for (i, &(station, value)) in table.iter().enumerate() {
+            let before = if i == 0 { 0.0 } else { table[i - 1].0 };
+            if !(station >= before && (i == 0 || station > before) && station <= 1.0) {
+                let remedy = "list the stations from root to tip, each once";
+                let (low, high) = (before, 1.0);
+                let fault = Fault::OutOfRange { value: station, low, high, unit: "R", remedy };
+                check.fault(&at(i), fault);
+            }
+            if positive {
+                let remedy = "a mass, a stiffness or a radius of a section is positive";
+                check.positive(number(&at(i), value, "", remedy));
+            } else if !value.is_finite() || (key == "ka_r" && value < 0.0) {
+                let remedy = "give a finite number; a radius is not negative";
+                check.within(number(&at(i), value, "", remedy), 0.0, f64::MAX);
+            }
+        }
+        let (Some(first), Some(last)) = (table.first(), table.last()) else { continue };
+        if first.0 > root + 1e-9 || last.0 < 1.0 - 1e-9 || table.len() < 2 {
+            let message = format!(
+                "the table reaches from {} R to {} R, the blade from {root} R to 1 R; give a value at both ends",
+                first.0, last.0
+            );
+            check.fault(&format!("rotor.tables.{key}"), Fault::Refused { message });
+        }
+    }
+}

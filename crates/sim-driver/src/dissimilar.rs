@@ -1,0 +1,74 @@
+//! Hub loads of a rotor whose blades are not all alike, as a result.
+
+use crate::SimError;
+use crate::case::LoadedCase;
+use crate::output::table;
+use crate::results::HubLoads;
+use crate::study::{ControlStudy, FlapMotion, TrimmedRotor};
+use rotor_base::HarmonicSeries;
+use rotor_response::{ResponseError, SixLoads};
+use serde::{Deserialize, Serialize};
+
+/// Hub loads with the unlike blades of a case: controls, attitude and inflow as with all blades alike.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct UnlikeLine {
+    /// What moves the flaps: `rest`, or set of harmonics and actuator.
+    pub flaps: String,
+    /// Mean loads, order `fx fy fz mx my mz`.
+    pub mean: [f64; 6],
+    /// Loads at 1, 2, 3 ... per rev.
+    pub per_rev: Vec<HubLoads>,
+}
+
+/// The loads with flaps at rest and after every control study; none if all blades are alike.
+///
+/// # Errors
+/// [`SimError::Blade`] and [`SimError::Response`] at the line of the unlike blades.
+pub fn unlike_lines(
+    loaded: &LoadedCase,
+    trimmed: &TrimmedRotor,
+    studies: &[ControlStudy],
+) -> Result<Vec<UnlikeLine>, SimError> {
+    if loaded.case.blade.unlike.is_empty() {
+        return Ok(vec![]);
+    }
+    let still = vec![HarmonicSeries::zero(0); trimmed.rotor().model().flaps.len()];
+    let rest = (String::from("rest"), still, &trimmed.trim().rotor);
+    let controlled = studies.iter().map(|study| {
+        let sets: Vec<String> = study.harmonics.iter().map(usize::to_string).collect();
+        let name = format!("{}/rev, {}", sets.join("+"), study.actuator.name());
+        let angles = study.state.flaps.iter().map(FlapMotion::angle_rad).collect();
+        (name, angles, &study.state.rotor)
+    });
+    let blame = |source: ResponseError| SimError::Response {
+        place: loaded.index.place("rotor.unlike_blades"),
+        source,
+    };
+    let mut solvers = trimmed.unlike_solvers(&loaded.case)?;
+    std::iter::once(rest)
+        .chain(controlled)
+        .map(|(flaps, angles, about)| {
+            let hub = trimmed.unlike_hub_loads(&mut solvers, &angles, about).map_err(blame)?;
+            Ok(UnlikeLine::new(flaps, &hub, 2 * loaded.case.blades))
+        })
+        .collect()
+}
+
+impl UnlikeLine {
+    fn new(flaps: String, hub: &SixLoads, highest: usize) -> Self {
+        let per_rev = (1..=highest).map(|n| HubLoads::from_parts(hub.harmonic(n))).collect();
+        Self { flaps, mean: hub.mean(), per_rev }
+    }
+
+    /// Amplitudes of all loads, a line for every harmonic.
+    pub fn text(&self) -> String {
+        let header = ["per rev", "FX", "FY", "FZ", "MX", "MY", "MZ"];
+        table(
+            &header,
+            self.per_rev.iter().enumerate().map(|(i, loads)| {
+                let amplitudes = loads.amplitudes().map(|a| format!("{a:.3e}"));
+                std::iter::once((i + 1).to_string()).chain(amplitudes).collect()
+            }),
+        )
+    }
+}

@@ -1,0 +1,165 @@
+//! A case at several advance ratios, each trim started from the last.
+
+use crate::SimError;
+use crate::case::LoadedCase;
+use crate::output::{Printable, Sheet, table};
+use crate::results::RunResult;
+use crate::study::TrimmedRotor;
+use serde::Serialize;
+use std::fmt::Write as _;
+use trim::TrimSolution;
+
+/// Halvings of a step in advance ratio that cannot be taken at once.
+const MOST_HALVINGS: i32 = 4;
+
+/// A case at another advance ratio.
+pub fn at_advance_ratio(loaded: &LoadedCase, advance_ratio: f64) -> LoadedCase {
+    let mut moved = loaded.clone();
+    moved.case.advance_ratio = advance_ratio;
+    moved.file.advance_ratio = advance_ratio;
+    moved
+}
+
+/// Trims a case from a nearby trim. Where that does not converge the way in advance ratio is halved, up to
+/// four times: continuation.
+///
+/// # Errors
+/// As [`TrimmedRotor::new`]: what stopped the shortest step, or the case itself without a start.
+pub fn continued_trim(
+    loaded: &LoadedCase,
+    start: Option<&TrimSolution>,
+) -> Result<TrimmedRotor, SimError> {
+    let Some(start) = start else { return TrimmedRotor::new(loaded, None) };
+    let take = |mu: f64, from: &TrimSolution| {
+        let trimmed = TrimmedRotor::new(&at_advance_ratio(loaded, mu), Some(from))?;
+        Ok((trimmed.trim().clone(), trimmed))
+    };
+    let goal = loaded.case.advance_ratio;
+    continuation(start.flight.advance_ratio, goal, start.clone(), take)
+}
+
+/// Follows a solution from one value of a parameter to another: the whole way at once if that goes, else
+/// half of what is left, at most [`MOST_HALVINGS`] times over.
+fn continuation<S, T, E>(
+    from: f64,
+    goal: f64,
+    start: S,
+    take: impl Fn(f64, &S) -> Result<(S, T), E>,
+) -> Result<T, E> {
+    let (mut here, mut state) = (from, start);
+    let mut part = 1.0;
+    let least = 0.5_f64.powi(MOST_HALVINGS);
+    loop {
+        let next = here + part * (goal - from);
+        let last = (goal - next).abs() <= 1e-9 * (goal - from).abs().max(1e-9);
+        match take(if last { goal } else { next }, &state) {
+            Ok((_, done)) if last => return Ok(done),
+            Ok((reached, _)) => (here, state) = (next, reached),
+            Err(error) if part <= least || (goal - from).abs() < 1e-12 => return Err(error),
+            Err(_) => part *= 0.5,
+        }
+    }
+}
+
+/// What is found at one advance ratio.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepRow {
+    /// Advance ratio.
+    pub advance_ratio: f64,
+    /// The whole result, also stored in its own folder.
+    pub result: RunResult,
+}
+
+/// A case over advance ratios.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepResult {
+    /// One row for each, in the order asked for.
+    pub rows: Vec<SweepRow>,
+}
+
+impl SweepRow {
+    fn cells(&self) -> Vec<String> {
+        let (t, r) = (&self.result.trim, &self.result);
+        let mut cells = vec![format!("{:.3}", self.advance_ratio)];
+        let angles = [t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg];
+        cells.extend(angles.map(|a| format!("{a:.3}")));
+        cells.push(format!("{:.5}", t.induced_inflow));
+        cells.extend(r.baseline.hub_4_per_rev.amplitudes().map(|a| format!("{a:.3e}")));
+        let least = r.stability.least_damped.as_ref();
+        cells.push(least.map_or_else(String::new, |m| format!("{:.4}", m.damping_ratio)));
+        let best = r.control.iter().map(|c| c.reduction_percent).fold(f64::NAN, f64::max);
+        cells.push(if best.is_nan() { "-".to_owned() } else { format!("{best:.1}") });
+        cells
+    }
+}
+
+const HEADER: [&str; 15] = [
+    "mu", "theta0", "theta1c", "theta1s", "tilt", "bank", "inflow", "FX", "FY", "FZ", "MX", "MY",
+    "MZ", "damping", "best J %",
+];
+
+impl Printable for SweepResult {
+    fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!(
+            "Trim (deg), hub loads at the blade number per rev without control, least damping ratio, best reduction of J"
+        ));
+        sheet.block(&table(&HEADER, self.rows.iter().map(SweepRow::cells)));
+        sheet.finish()
+    }
+}
+
+/// The same as CSV, every digit kept.
+pub fn sweep_csv(sweep: &SweepResult) -> String {
+    let mut text = String::from(
+        "advance_ratio,theta0_deg,theta1c_deg,theta1s_deg,alpha_s_deg,phi_s_deg,induced_inflow,fx,fy,fz,mx,my,mz,least_damping_ratio,iterations\n",
+    );
+    for row in &sweep.rows {
+        let t = &row.result.trim;
+        let least = row.result.stability.least_damped.as_ref();
+        let numbers = [
+            row.advance_ratio,
+            t.theta0_deg,
+            t.theta1c_deg,
+            t.theta1s_deg,
+            t.alpha_s_deg,
+            t.phi_s_deg,
+            t.induced_inflow,
+        ]
+        .into_iter()
+        .chain(row.result.baseline.hub_4_per_rev.amplitudes())
+        .chain([least.map_or(f64::NAN, |m| m.damping_ratio)]);
+        let cells: Vec<String> = numbers.map(|n| format!("{n:e}")).collect();
+        // writing to a string cannot fail
+        let _ = writeln!(text, "{},{}", cells.join(","), t.iterations);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+
+    /// A method that takes no step longer than 0.06 is carried from 0.1 to 0.3 in steps of an eighth... of
+    /// a quarter of the way, and one that takes none gives up with its error.
+    #[test]
+    fn a_way_too_long_is_halved() {
+        let taken = RefCell::new(Vec::new());
+        let take = |limit: f64| {
+            let taken = &taken;
+            move |mu: f64, from: &f64| {
+                if (mu - from).abs() > limit {
+                    return Err(format!("too far from {from}"));
+                }
+                taken.borrow_mut().push(mu);
+                Ok((mu, mu))
+            }
+        };
+        let reached = continuation(0.1, 0.3, 0.1, take(0.06)).unwrap();
+        assert!((reached - 0.3).abs() < 1e-15);
+        assert_eq!(taken.borrow().len(), 4, "{taken:?}");
+        assert!(continuation(0.1, 0.3, 0.1, take(0.01)).unwrap_err().contains("0.1"));
+        assert!((continuation(0.3, 0.3, 0.3, take(0.01)).unwrap() - 0.3_f64).abs() < 1e-15);
+    }
+}
