@@ -310,14 +310,18 @@ mod tests {
     use super::*;
     use crate::{
         Compressibility, Controls, Couplings, Discretisation, FlapMass, NonlinearSections,
-        ResponseTolerances, ReverseFlow, Rotor, RotorModel, TrailingEdgeFlap,
+        ResponseTolerances, ReverseFlow, Rotor, RotorModel, SectionOffsets, TrailingEdgeFlap,
     };
     use flap_aero::{AirfoilSpan, AttachedFlowModel, C81Airfoil, C81Table, FlapEffectiveness};
     use rotor_base::Harmonic;
     use rotor_fem::{BladeProperties, BladeSpec};
     use rotor_wake::{FlightState, LinearInflow};
 
-    fn model(couplings: Couplings, airfoils: Option<Arc<AirfoilSpan>>) -> RotorModel {
+    fn model(
+        couplings: Couplings,
+        airfoils: Option<Arc<AirfoilSpan>>,
+        tip_loss: f64,
+    ) -> RotorModel {
         RotorModel {
             blades: 4,
             chord: 0.055,
@@ -340,6 +344,9 @@ mod tests {
                 effectiveness: FlapEffectiveness::new(0.78, 1.0, 0.9).unwrap(),
             }],
             nonlinear: NonlinearSections { airfoils, dynamic_stall: None },
+            tip_loss,
+            gravity: 0.0,
+            offsets: SectionOffsets::default(),
         }
     }
 
@@ -362,9 +369,12 @@ mod tests {
     #[test]
     fn slopes_along_the_flaps_are_those_of_differences() {
         let moderate = Couplings::Moderate(rotor_fem::TorsionTerms::default());
-        for (couplings, airfoils) in
-            [(Couplings::Full, None), (moderate, None), (Couplings::Full, Some(stalling_table()))]
-        {
+        for (couplings, airfoils, tip_loss) in [
+            (Couplings::Full, None, 1.0),
+            (Couplings::Full, None, 0.75),
+            (moderate, None, 1.0),
+            (Couplings::Full, Some(stalling_table()), 1.0),
+        ] {
             let blade = BladeProperties::new(BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1000.0));
             let d = Discretisation {
                 blade_elements: 5,
@@ -372,7 +382,7 @@ mod tests {
                 load_harmonics: 8,
                 ..Discretisation::default()
             };
-            let rotor = Rotor::new(model(couplings, airfoils), &blade.unwrap(), d).unwrap();
+            let rotor = Rotor::new(model(couplings, airfoils, tip_loss), &blade.unwrap(), d).unwrap();
             let mut solver =
                 RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
             let mut direction = vec![HarmonicSeries::zero(3)];
@@ -382,6 +392,7 @@ mod tests {
                 flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.08 },
                 controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.02, theta1s_rad: -0.07 },
                 flap_angles_rad: vec![sum(&HarmonicSeries::zero(3), &direction[0], 0.02)],
+                bank_rad: 0.0,
             };
             let inflow = LinearInflow::Prescribed { induced_inflow: 0.01 };
             let about = solver.solve(&condition, &inflow, None).unwrap();

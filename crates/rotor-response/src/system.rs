@@ -124,12 +124,17 @@ impl ResponseSystem<'_> {
             .zip(pasts)
             .enumerate()
             .map(|(s, (flow, past))| {
-                if self.blade.grid.x()[self.air.first_station() + s] > self.blade.tip_loss {
+                if self.is_lost_to_the_tip(s) {
                     return self.air.drag_alone(self.scales, (s, point), flow);
                 }
                 self.air.loads(self.scales, (s, point), flow, past)
             })
             .collect()
+    }
+
+    /// Whether a lifting station lies where the tip takes the lift.
+    fn is_lost_to_the_tip(&self, station: usize) -> bool {
+        self.blade.grid.x()[self.air.first_station() + station] > self.blade.tip_loss
     }
 
     /// Motion of the section at a station that carries flap `k`, and of the flap.
@@ -377,7 +382,12 @@ impl ResponseSystem<'_> {
                 .iter()
                 .zip(&pasts[p])
                 .enumerate()
-                .map(|(s, (flow, past))| self.air.flap_slope(self.scales, (s, p), flow, past.lag))
+                .map(|(s, (flow, past))| {
+                    if self.is_lost_to_the_tip(s) {
+                        return SectionLoads::default();
+                    }
+                    self.air.flap_slope(self.scales, (s, p), flow, past.lag)
+                })
                 .collect();
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);

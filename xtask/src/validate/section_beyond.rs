@@ -163,6 +163,7 @@ fn table_distance(advance_ratio: f64, scale: f64) -> Result<f64, CheckError> {
         flight: FlightState { advance_ratio, shaft_tilt_rad: 0.08 * scale },
         controls: Controls { theta0_rad, theta1c_rad, theta1s_rad },
         flap_angles_rad: vec![angle; 2],
+        bank_rad: 0.0,
     };
     let linear = RotorModel {
         section_model: AttachedFlowModel::Incompressible,
