@@ -175,7 +175,9 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
         if problems.is_empty() {
             for doubt in stored.doubts().into_iter().filter(|d| d.weight == Weight::Impossible) {
                 let place = index.place(&format!("model.{}", doubt.field));
-                problems.push(place, Fault::Refused { message: doubt.to_string() });
+                let message =
+                    format!("{}, expected {}; {}", doubt.found, doubt.expected, doubt.remedy);
+                problems.push(place, Fault::Refused { message });
             }
         }
     }

@@ -180,8 +180,13 @@ fn what_does_not_settle_says_so_with_its_best_state() {
             Ok(((), vec![HarmonicSeries { mean, ..HarmonicSeries::zero(12) }]))
         },
     );
-    let Err(PlantError::Coupling { iterations, residual_deg, best, .. }) = result else {
+    // the linear answer alone has a loop gain above 1, and that is said too
+    let Err(PlantError::TooSoft { loop_gain, source, .. }) = result else {
         panic!("it settled");
+    };
+    assert!(loop_gain > 1.0, "{loop_gain}");
+    let PlantError::Coupling { iterations, residual_deg, best, .. } = *source else {
+        panic!("{source}");
     };
     assert_eq!(iterations, 40);
     assert!(residual_deg > COUPLING_TOLERANCE_DEG && best.len() == 1);
