@@ -3,7 +3,8 @@
 use super::{Drives, FlapDrive, TrimmedRotor, control_set};
 use crate::SimError;
 use crate::case::{
-    ControlActuator, EffortChoice, InflowChoice, LoadedCase, SectionModelChoice, TrimValues,
+    BladeValues, ControlActuator, EffortChoice, InflowChoice, LoadedCase, SectionModelChoice,
+    TrimValues,
 };
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -61,6 +62,20 @@ fn assume(
     Assumption { text, stroke, rotor: RotorOf::TheChange, change }
 }
 
+/// A linear twist in place of whatever the blade has.
+fn twist(blade: &mut BladeValues, deg: f64) {
+    blade.twist_rad = deg.to_radians();
+    blade.tables.twist_deg.clear();
+}
+
+/// A property times a factor, given uniform or as a table.
+fn times(uniform: &mut f64, table: &mut [(f64, f64)], factor: f64) {
+    *uniform *= factor;
+    for (_, value) in table {
+        *value *= factor;
+    }
+}
+
 fn shift_flaps(loaded: &mut LoadedCase, by_r: f64) {
     for flap in &mut loaded.case.flaps {
         flap.start += by_r;
@@ -87,13 +102,20 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
         of_rotor("flaps .05 R further in", |c| shift_flaps(c, -0.05)),
         of_rotor("flaps .05 R further out", |c| shift_flaps(c, 0.05)),
         of_rotor("flaps .02 R further out", |c| shift_flaps(c, 0.02)),
-        of_rotor("twist -4 deg", |c| c.case.blade.twist_rad = (-4.0_f64).to_radians()),
-        of_rotor("twist -12 deg", |c| c.case.blade.twist_rad = (-12.0_f64).to_radians()),
-        of_rotor("GJ -20 % (first torsion -10 %)", |c| c.case.blade.gj *= 0.8),
-        of_rotor("GJ +20 % (first torsion +9 %)", |c| c.case.blade.gj *= 1.2),
+        of_rotor("twist -4 deg", |c| twist(&mut c.case.blade, -4.0)),
+        of_rotor("twist -12 deg", |c| twist(&mut c.case.blade, -12.0)),
+        of_rotor("GJ -20 % (first torsion -10 %)", |c| {
+            let blade = &mut c.case.blade;
+            times(&mut blade.gj, &mut blade.tables.gj, 0.8);
+        }),
+        of_rotor("GJ +20 % (first torsion +9 %)", |c| {
+            let blade = &mut c.case.blade;
+            times(&mut blade.gj, &mut blade.tables.gj, 1.2);
+        }),
         of_rotor("radii of gyration +10 % (first torsion -9 %)", |c| {
-            c.case.blade.km1 *= 1.1;
-            c.case.blade.km2 *= 1.1;
+            let blade = &mut c.case.blade;
+            times(&mut blade.km1, &mut blade.tables.km1_r, 1.1);
+            times(&mut blade.km2, &mut blade.tables.km2_r, 1.1);
         }),
         of_rotor("modal damping .2 % of critical", |c| c.case.blade.modal_damping = 0.002),
         of_rotor("modal damping 1 % of critical", |c| c.case.blade.modal_damping = 0.01),
