@@ -3,8 +3,8 @@
 #![expect(clippy::disallowed_methods, reason = "tests read fixtures")]
 
 use preisach_dyn::identify::{
-    BenchRecord, Candidates, Family, Identification, RecordUse, RefinementOutcome, Settings,
-    compare_models, identify,
+    BenchRecord, Candidates, Family, Finding, Identification, RecordUse, RefinementOutcome,
+    Settings, compare_models, identify,
 };
 use preisach_dyn::{ActuatorLaw, PeriodicSettings, RateForm};
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -184,6 +184,21 @@ fn stroke_zero_and_trained_range_are_those_of_the_bench() {
     assert!((trained.largest_amplitude_volt - 85.0).abs() < 0.01);
     assert!((trained.bench_highest_hz - 20.0).abs() < 0.02);
     assert!(trained.is_beyond_bench(25.5) && !trained.is_beyond_bench(20.0));
+}
+
+/// No record of the set is cut or spoilt: none is called so.
+#[test]
+fn the_records_shipped_raise_no_alarm() {
+    let alarm = IDENTIFIED.summary.findings.iter().find(|finding| {
+        matches!(
+            finding,
+            Finding::ClippedOutput { .. }
+                | Finding::ClippedCommand { .. }
+                | Finding::OutputSpikes { .. }
+                | Finding::CommandSpikes { .. }
+        )
+    });
+    assert_eq!(alarm, None);
 }
 
 #[test]

@@ -466,6 +466,11 @@ fn the_measured_friction_damper_is_a_stop_and_no_play() {
         assert!((found / hz - 1.0).abs() < 0.01, "{id}: {found} Hz");
         assert_eq!(run["use"], if hz < 0.3 { "trained" } else { "held_out" });
     }
+    // a force that rests at the friction until the motion turns is neither cut nor spoilt
+    for line in json["findings"].as_array().unwrap() {
+        let kind = line["finding"].to_string();
+        assert!(!kind.contains("Clipped") && !kind.contains("Spikes"), "{line}");
+    }
     let models = json["models"].as_array().unwrap();
     let held_out = |name: &str| {
         let line = models.iter().find(|m| m["model"] == name).unwrap();
