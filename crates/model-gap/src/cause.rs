@@ -43,6 +43,8 @@ pub struct Parameter {
     /// What must be measured besides before the value means anything; none if these data suffice. Without
     /// it only a product with something unknown is found, and the interval is the whole range.
     pub needs: Option<&'static str>,
+    /// Step of numerical slopes and width of a start, in the coordinate; none: 2 % of the value.
+    pub step: Option<f64>,
 }
 
 impl Parameter {
@@ -65,6 +67,9 @@ impl Parameter {
 
     /// Step of a numerical derivative, in the coordinate.
     pub(crate) fn step(&self, value: f64) -> f64 {
+        if let Some(step) = self.step {
+            return step;
+        }
         match self.scale {
             Scale::Linear => 0.02 * value.abs().max(0.01 * (self.high - self.low)),
             Scale::Log => 0.02,

@@ -62,6 +62,7 @@ fn candidate(id: &'static str) -> Candidate {
             scale,
             is_shape: false,
             needs: None,
+            step: None,
         }],
         fingerprint: "",
         confused_with: &[],

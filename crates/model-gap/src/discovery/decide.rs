@@ -19,7 +19,7 @@ const PROMISE: f64 = 0.3;
 const DRIFTING: f64 = 0.25;
 /// Share of the drop that values of its own for every experiment must add before a drift speaks
 /// against a name, and the share before it makes the name wrong.
-const DRIFT_COSTS: [f64; 2] = [0.03, 0.1];
+const DRIFT_COSTS: [f64; 2] = [0.06, 0.15];
 /// Share of the drop by the causes before that the next one must add: below it, it mends their form.
 const NEXT_SHARE: f64 = 0.04;
 /// Share of a drop within which two causes are not told apart: no model of a cause is better.
@@ -297,9 +297,17 @@ impl<S: Simulator> Search<'_, S> {
                 100.0 * explained, self.generic.threshold
             ));
         }
+        let wrong_name = explained < 0.5 || worst_drift > WRONG_NAME;
+        if wrong_name && !chosen.is_empty() && before <= self.generic.threshold {
+            reasons.push("what is left is within the floor: the name is dropped".into());
+            let base = self.base.clone();
+            let mut finding = self.conclude(&[], &base, singles, single_drops, reasons)?;
+            finding.confidence = Confidence::Tentative;
+            return Ok(finding);
+        }
         let verdict = if chosen.is_empty() {
             self.nothing_named(before, &mut reasons)
-        } else if explained < 0.5 || worst_drift > WRONG_NAME {
+        } else if wrong_name {
             Verdict::Unknown
         } else if ambiguous {
             Verdict::Ambiguous

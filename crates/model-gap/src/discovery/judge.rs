@@ -7,7 +7,7 @@ use super::{Discovery, Signal};
 use nalgebra::{DMatrix, DVector};
 
 /// Factor on the energy that surrogates leave along the directions without a name.
-const GENERIC_MARGIN: f64 = 1.5;
+const GENERIC_MARGIN: f64 = 4.0;
 
 /// The directions without a name, ready to be tested against residuals.
 pub(crate) struct Generic {

@@ -26,6 +26,8 @@ pub struct Screened {
     pub best_start: usize,
 }
 
+/// Of so many starts of an effect that adapts to each experiment, one is tried on every surrogate.
+const ADAPTED_STARTS: usize = 5;
 /// Weight of what surrogates leave against the sign of an effect.
 const OTHER_SIGN: f64 = 0.5;
 
@@ -130,7 +132,7 @@ fn one<S: Simulator>(
             let along = gram[(at, s)] / size.sqrt();
             structural = structural.max(along).max(-OTHER_SIGN * along);
         }
-        if adapts {
+        if adapts && start % ADAPTED_STARTS == 0 {
             let effect = Effect { candidate, values: given.starts[start].clone() };
             for structure in discovery.structures {
                 if let Some(signal) = discovery.simulator.adapted(&effect, structure)? {

@@ -1,7 +1,7 @@
 //! Mains frequency in the reading.
 
 use super::{BenchCause, Design, Part, linear, logarithmic};
-use model_gap::{Cause, Side};
+use model_gap::{Cause, Parameter, Side};
 
 /// Mains frequency in the reading.
 pub(super) struct Hum;
@@ -14,7 +14,8 @@ impl BenchCause for Hum {
             side: Side::Sensor,
             parameters: vec![
                 logarithmic("amplitude", "um", 1e-5 * design.half_stroke, design.half_stroke),
-                linear("frequency", "Hz", 45.0, 65.0),
+                // a phase turns over the length of a run: the slope is that of a small part of a turn
+                Parameter { step: Some(0.02 / design.longest_s), ..linear("frequency", "Hz", 45.0, 65.0) },
             ],
             fingerprint: "a line fixed in Hz, present without input, not locked to the excitation",
             confused_with: &["mechanical-resonance"],
@@ -23,13 +24,20 @@ impl BenchCause for Hum {
     }
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        [
-            48.0, 49.0, 49.5, 49.8, 49.9, 50.0, 50.1, 50.2, 50.5, 51.0, 52.0, 59.5, 59.9, 60.0,
-            60.1, 60.5,
-        ]
-        .iter()
-        .map(|hz| vec![0.01 * design.half_stroke, *hz])
-        .collect()
+        // half a turn over the longest run is what a search finds home from; mains keep within 0.5 Hz
+        let spacing = (0.5 / design.longest_s).clamp(0.02, 0.2);
+        let around = |nominal: f64| {
+            let mut all = vec![nominal];
+            let mut off = spacing;
+            while off <= 0.5 {
+                all.extend([nominal - off, nominal + off]);
+                off += spacing;
+            }
+            all
+        };
+        let mut all = around(50.0);
+        all.extend(around(60.0));
+        all.into_iter().map(|hz| vec![0.01 * design.half_stroke, hz]).collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {

@@ -177,12 +177,12 @@ pub(crate) fn candidates(library: &[Box<dyn BenchCause>], design: &Design) -> Ve
 
 /// A parameter searched on a logarithmic scale.
 fn logarithmic(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Log, is_shape: false, needs: None }
+    Parameter { name, unit, low, high, scale: Scale::Log, is_shape: false, needs: None, step: None }
 }
 
 /// A parameter searched on a straight scale.
 fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Linear, is_shape: false, needs: None }
+    Parameter { name, unit, low, high, scale: Scale::Linear, is_shape: false, needs: None, step: None }
 }
 
 /// A parameter that only shapes the effect.
