@@ -114,7 +114,6 @@ fn hidden_effects_are_named_and_nothing_is_claimed_of_none() {
         ("creep", "rate_per_decade"),
         ("amplifier-current-limit", "slew_rate"),
         ("mechanical-resonance", "frequency"),
-        ("mains-hum", "amplitude"),
     ] {
         let found = findings(hidden, base, 3, cache.path());
         let causes: Vec<&str> =

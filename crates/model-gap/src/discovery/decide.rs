@@ -22,6 +22,8 @@ const DRIFTING: f64 = 0.25;
 const DRIFT_COSTS: [f64; 2] = [0.06, 0.15];
 /// Share of the drop by the causes before that the next one must add: below it, it mends their form.
 const NEXT_SHARE: f64 = 0.04;
+/// Share of a drop that must show where experiments are held out.
+const HELD_OUT_SHARE: f64 = 0.3;
 /// Share of a drop within which two causes are not told apart: no model of a cause is better.
 const FORM_ERROR: f64 = 0.02;
 
@@ -157,7 +159,7 @@ impl<S: Simulator> Search<'_, S> {
             ));
         }
         let held_out = self.held_out_drop(current, next);
-        let needed = 0.3 * drop;
+        let needed = HELD_OUT_SHARE * drop;
         if held_out < needed {
             return Err(format!(
                 "{id} explains {drop:.0} noise units where it is fitted and {held_out:.0} where it is held out, less than the {needed:.0} asked for"
@@ -217,7 +219,10 @@ impl<S: Simulator> Search<'_, S> {
         while chosen.len() > 1 && at < chosen.len() {
             let rest = self.fitter.refine(Self::without(&current.effects, at))?;
             let drop = rest.cost - current.cost - self.penalty(chosen[at]);
-            if drop < self.screened[chosen[at]].threshold {
+            // the same two keys that it entered by, now that the others know of it
+            let others = (self.base.cost - rest.cost).max(0.0);
+            let needed = self.screened[chosen[at]].threshold + NEXT_SHARE * others;
+            if drop < needed || self.held_out_drop(&rest, current) < HELD_OUT_SHARE * drop {
                 chosen.remove(at);
                 *current = rest;
                 at = 0;

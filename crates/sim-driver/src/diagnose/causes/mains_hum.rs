@@ -15,7 +15,10 @@ impl BenchCause for Hum {
             parameters: vec![
                 logarithmic("amplitude", "um", 1e-5 * design.half_stroke, design.half_stroke),
                 // a phase turns over the length of a run: the slope is that of a small part of a turn
-                Parameter { step: Some(0.02 / design.longest_s), ..linear("frequency", "Hz", 45.0, 65.0) },
+                Parameter {
+                    step: Some(0.02 / design.longest_s),
+                    ..linear("frequency", "Hz", 45.0, 65.0)
+                },
             ],
             fingerprint: "a line fixed in Hz, present without input, not locked to the excitation",
             confused_with: &["mechanical-resonance"],

@@ -182,7 +182,16 @@ fn logarithmic(name: &'static str, unit: &'static str, low: f64, high: f64) -> P
 
 /// A parameter searched on a straight scale.
 fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Linear, is_shape: false, needs: None, step: None }
+    Parameter {
+        name,
+        unit,
+        low,
+        high,
+        scale: Scale::Linear,
+        is_shape: false,
+        needs: None,
+        step: None,
+    }
 }
 
 /// A parameter that only shapes the effect.
