@@ -12,7 +12,8 @@ use crate::curve_identification::identify_curves;
 use crate::diagnose::{Findings, Question, Record, Records, Story};
 use crate::figures::figure_files;
 use crate::files::{
-    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_inside, write_atomic, write_new,
+    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside, write_atomic,
+    write_new,
 };
 use crate::identification::{BenchIdentification, identify_bench, identify_loops};
 use crate::import::{ColumnOptions, ImportRequest, default_folder};
@@ -56,6 +57,8 @@ const ROBUSTNESS_FILE: &str = "robustness.csv";
 const RESULT_FILE: &str = "result.json";
 /// Name of the table over advance ratios.
 const SWEEP_FILE: &str = "sweep.csv";
+/// Name of the actuator a diagnosis extended.
+const EXTENDED_FILE: &str = "extended.ron";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
@@ -236,6 +239,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         None => Settings::default(),
     };
     refuse_inside(&args.bench, &args.output)?;
+    refuse_inputs(args.start.as_deref(), Some(&args.output))?;
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     for warning in data.warnings() {
         eprintln!("warning: {warning}");
@@ -268,6 +272,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
 }
 
 pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
+    refuse_input(&args.model, &args.output.join(EXTENDED_FILE))?;
     let model = given_model(&args.model)?;
     let measured = records_of(&args.data)?;
     let reference = reference_runs(args, &measured)?;
@@ -285,7 +290,7 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let findings = serde_json::to_string_pretty(&Findings::from(&found)).map_err(|e| {
         SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
     })?;
-    found.extended()?.write(&args.output.join("extended.ron"))?;
+    found.extended()?.write(&args.output.join(EXTENDED_FILE))?;
     for (name, text) in found.figures() {
         write_atomic(&args.output.join(name), text.as_bytes())?;
     }
@@ -397,7 +402,13 @@ pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
     print(&result.render(args.format.format)?)
 }
 
+/// Refuses to write to a file that is read, where both are given.
+fn refuse_inputs(read: Option<&Path>, written: Option<&PathBuf>) -> Result<(), SimError> {
+    read.zip(written).map_or(Ok(()), |(read, written)| refuse_input(read, written))
+}
+
 pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
+    refuse_inputs(args.case.as_deref(), args.fan.as_ref())?;
     let loaded = match &args.case {
         Some(path) => load_case(path)?,
         None => shipped_case(PAPER_CASE)?,
@@ -466,6 +477,7 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
     check_section_options(args)?;
+    refuse_inputs(args.table.as_deref(), args.output.as_ref())?;
     let section = SectionChoice {
         model: args.model.into(),
         mach: args.mach,

@@ -292,6 +292,9 @@ fn loops_polars_and_tables_of_a_section() {
     ask(&["--table", "shipped:naca0012_synthetic.c81"]).done();
     ask(&["--table", "plate.c81", "--stall", "naca0012"]).rejected(&["--stall: is refused"]);
     ask(&["--table", "gone.c81"]).rejected(&["gone.c81"]);
+    ask(&["--table", "plate.c81", "-o", "./plate.c81"])
+        .rejected(&["./plate.c81 is a file this command reads"]);
+    assert!(place.read("plate.c81").starts_with("PLATE"));
 }
 
 #[test]
