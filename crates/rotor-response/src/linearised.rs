@@ -382,7 +382,8 @@ mod tests {
                 load_harmonics: 8,
                 ..Discretisation::default()
             };
-            let rotor = Rotor::new(model(couplings, airfoils, tip_loss), &blade.unwrap(), d).unwrap();
+            let rotor =
+                Rotor::new(model(couplings, airfoils, tip_loss), &blade.unwrap(), d).unwrap();
             let mut solver =
                 RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
             let mut direction = vec![HarmonicSeries::zero(3)];

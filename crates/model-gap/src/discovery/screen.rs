@@ -150,7 +150,6 @@ fn one<S: Simulator>(
             found = Some(start);
         }
     }
-    best.threshold =
-        (settings.structure_margin * structural).powi(2) + noise.powi(2);
+    best.threshold = (settings.structure_margin * structural).powi(2) + noise.powi(2);
     Ok((best, found.map(|start| signals.swap_remove(start))))
 }

@@ -12,8 +12,8 @@ use crate::curve_identification::identify_curves;
 use crate::diagnose::{Findings, Question, Record, Records, Story};
 use crate::figures::figure_files;
 use crate::files::{
-    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside, write_atomic,
-    write_new,
+    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside,
+    write_atomic, write_new,
 };
 use crate::identification::{BenchIdentification, identify_bench, identify_loops};
 use crate::import::{ColumnOptions, ImportRequest, default_folder};

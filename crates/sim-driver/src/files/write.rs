@@ -204,7 +204,8 @@ mod tests {
         std::os::unix::fs::symlink("deep/file", at("link")).unwrap();
         std::os::unix::fs::symlink("link", at("second")).unwrap();
         std::os::unix::fs::symlink("deep/new", at("dangling")).unwrap();
-        for (name, file) in [("link", "deep/file"), ("second", "deep/file"), ("dangling", "deep/new")]
+        for (name, file) in
+            [("link", "deep/file"), ("second", "deep/file"), ("dangling", "deep/new")]
         {
             write_atomic(&at(name), name.as_bytes()).unwrap();
             assert!(at(name).symlink_metadata().unwrap().is_symlink(), "{name}");

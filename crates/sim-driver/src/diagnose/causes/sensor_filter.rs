@@ -27,7 +27,10 @@ impl BenchCause for SensorFilter {
     }
 
     fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        [2e-4, 1e-3, 4e-3, 0.015].iter().flat_map(|&tau| [vec![tau, 0.02], vec![tau, 0.3]]).collect()
+        [2e-4, 1e-3, 4e-3, 0.015]
+            .iter()
+            .flat_map(|&tau| [vec![tau, 0.02], vec![tau, 0.3]])
+            .collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
