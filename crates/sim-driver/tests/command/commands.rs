@@ -297,7 +297,7 @@ fn loops_polars_and_tables_of_a_section() {
     let few = |more: &[&str]| loop_(&[more, &["--stall", "naca0012", "-o", "loop.csv"]].concat());
     for (row, of) in few(&["--points", "4"]).iter().zip([89, 179, 269, 359]) {
         for (few, many) in row.iter().zip(&stalled[of]) {
-            close(*few, *many, 1e-9);
+            assert!((few - many).abs() < 1e-9, "{few} {many}");
         }
     }
     // a flap that moves slowly makes no thrust; its angle is its own, the mean the incidence's
