@@ -46,6 +46,7 @@ mod error;
 mod free_stream;
 mod hariharan_leishman;
 mod incompressible;
+mod known_error;
 mod layout;
 mod linearise;
 mod march;
@@ -64,6 +65,9 @@ pub use effectiveness::FlapEffectiveness;
 pub use error::AeroError;
 pub use free_stream::{FreeStream, SectionLoads, lag_rates, loads_of_outputs, section_loads};
 pub use hariharan_leishman::{MIN_NONCIRCULATORY_MACH, initial_slopes, piston_start};
+pub use known_error::{
+    KNOWN_ERROR_BANDS, KNOWN_ERROR_FLAP_CHORDS, KNOWN_ERROR_MACHS, known_error_percent,
+};
 pub use layout::{MarchingSection, SectionInputs, StepFactors};
 pub use linearise::{LagRateSlopes, LoadSlopes, lag_rate_slopes, load_slopes};
 pub use march::SectionState;

@@ -177,7 +177,9 @@ impl AttachedFlowModel {
     pub fn title(self) -> &'static str {
         match self {
             Self::QuasiSteady => "quasi-steady",
-            Self::Incompressible => "incompressible, exact wake of a flat plate",
+            Self::Incompressible => {
+                "incompressible: Theodorsen's coefficients, two lags of R. T. Jones for his function"
+            }
             Self::HariharanLeishman => {
                 "form of Hariharan and Leishman, slope-matched reconstruction"
             }

@@ -153,8 +153,10 @@ impl StallParameters {
 /// Cn  = Cn_attached - Cn_alpha alpha_E (1 - K(f'')) + Cn_v
 /// Cm  = Cm_attached + [k0 + k1 (1 - f'') + k2 sin(pi f''^2)] Cn_alpha alpha_E K(f'')
 ///                   - 0.2 (1 - cos(pi tau/Tvl)) Cn_v
-/// Cc  = eta Cn_alpha alpha_E^2 sqrt(f'') f''^x                       toward the leading edge,
+/// Cc  = eta Cn_alpha A0^2 sqrt(f'') f''^x - delta Cn_flap              toward the leading edge,
 ///       x = Df (|Cn'| - Cn1), 0 to 1: the suction goes with the vortex
+///       A0      = alpha_E - (sqrt(1 - e^2)/pi) delta + (T4/4 pi) q_delta
+///       Cn_flap = (2/beta) [ (arccos e - sqrt(1 - e^2)) alpha_E K + ((1 - e^2)/pi) delta ]
 /// alpha_E: two lags on the circulatory downwash alpha + q/2 + (T10/pi) delta + (T11/4 pi) q_delta
 /// Cn' : lag Tp on Cn_attached;      f'' : lag Tf on f(Cn'/Cn_alpha)
 /// d Cn_v/dS = d/dS [Cn_alpha alpha_E (1 - K)] - Cn_v/Tv;   the feed ends when tau reaches Tvl
@@ -163,21 +165,33 @@ impl StallParameters {
 /// Held for ever it is the static curve of Kirchhoff; with `alpha1` out of reach it is the attached
 /// model.
 ///
-/// Differs from source: the time constants are not changed during the vortex's travel; a vortex once
+/// `A0` is the strength of the leading edge (steady: `alpha + delta arccos(e)/pi`), `Cn_flap` the force on the
+/// flap, normal to it and so inclined by its angle: with full suction a steady section has no pressure drag,
+/// whatever the flap angle. With a flap effectiveness the flow sees a flap of that share of the angle.
+///
+/// Differs from source: the source has no flap; the time constants are not changed during the vortex's travel; a vortex once
 /// shed runs its course, also when the force falls below the critical one, and when another is shed
 /// before it is gone keeps its place (the loads are then continuous in time); and the impulsive part of the attached load is not separated from it when
 /// its lag `Tp` is formed (it is in the source too) nor touched by the separation; the separation of
 /// a falling incidence follows the same static curve as that of a rising one, so that the flow
 /// attaches again too early. Assumes the flap
 /// acts on the separation through the lift it makes. Not modelled: the hinge moment of separated
-/// flow (the attached one is kept), reattachment beyond the lags.
+/// flow (the attached one is kept), the inclination of the flap's force due to rates and accelerations, the
+/// pitch rate's `-q/4` in `A0` (the source has none), reattachment beyond the lags.
 ///
-/// Source: Leishman and Beddoes, J. Am. Helicopter Soc. 34(3), 1989.
+/// Source: Leishman and Beddoes, J. Am. Helicopter Soc. 34(3), 1989; the flap's part of `A0` as in Garrick,
+/// NACA Report 567 (1936), its force by integration of thin-aerofoil theory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StallSection {
     parameters: StallParameters,
     slope: f64,
     circulation: [f64; 4],
+    /// What the downwash at the leading edge lacks of the circulatory one, per flap angle and rate.
+    ahead: [f64; 2],
+    /// Normal force of the flap per circulatory downwash, and at once per flap angle.
+    on_flap: [f64; 2],
+    /// Flap angle the flow sees, over the flap angle.
+    turning: f64,
     poles: [f64; 4],
 }
 
@@ -212,6 +226,8 @@ pub struct StallState {
     /// The circulatory downwash and what its two lags lack of it.
     downwash: f64,
     lacking: [f64; 2],
+    /// Flap angle and rate.
+    flap: [f64; 2],
     attached: f64,
     delayed: f64,
     quasi: f64,
@@ -222,6 +238,10 @@ pub struct StallState {
     spent: [f64; 2],
     /// Distance since the vortex left the leading edge, semichords; `None` below the critical force.
     travel: Option<f64>,
+}
+
+fn flap_of(modes: &[f64; 4]) -> [f64; 2] {
+    [modes[Mode::Flap.index()], modes[Mode::FlapRate.index()]]
 }
 
 /// `[1 - e^(-z), (1 - e^(-z))/z]`.
@@ -253,10 +273,17 @@ impl StallSection {
         parameters.check()?;
         let beta = mach.beta();
         let pole = |i: usize| BEDDOES[i].1 * beta * beta;
+        let t = TheodorsenFunctions::new(flap.hinge());
+        // sqrt(1 - e^2) and arccos e of the hinge e = 1 - 2 E
+        let s = 2.0 * (flap.ratio() * (1.0 - flap.ratio())).sqrt();
+        let angle = t.t::<10>() - s;
         Ok(Self {
             parameters,
             slope: TAU / beta,
-            circulation: TheodorsenFunctions::new(flap.hinge()).circulatory_input(),
+            circulation: t.circulatory_input(),
+            ahead: [s / PI, -t.t::<4>() / (4.0 * PI)],
+            on_flap: [2.0 * (angle - s) / beta, 2.0 * s * s / (PI * beta)],
+            turning: 1.0,
             poles: [pole(0), pole(1), 1.0 / parameters.tp, 1.0 / parameters.tf],
         })
     }
@@ -275,6 +302,8 @@ impl StallSection {
         let factor = effectiveness.of(Load::Lift);
         self.circulation[Mode::Flap.index()] *= factor;
         self.circulation[Mode::FlapRate.index()] *= factor;
+        self.ahead = self.ahead.map(|share| share * factor);
+        self.turning *= factor;
         self
     }
 
@@ -292,6 +321,7 @@ impl StallState {
         Self {
             downwash,
             lacking: [0.0; 2],
+            flap: flap_of(modes),
             attached: attached_normal,
             delayed: attached_normal,
             quasi: separation,
@@ -335,6 +365,7 @@ impl StallState {
             *lacking = lagged(*lacking + self.downwash, [self.downwash, downwash], z) - downwash;
         }
         self.downwash = downwash;
+        self.flap = flap_of(modes);
         let before = self.delayed;
         self.delayed = lagged(before, [self.attached, attached[0]], z[2]);
         self.attached = attached[0];
@@ -357,11 +388,10 @@ impl StallState {
     }
 
     /// The loads of attached flow in the form of stalled ones: the chord force is the whole
-    /// leading-edge suction `Cn_alpha alpha_E^2`.
+    /// leading-edge suction `Cn_alpha A0^2` less the inclined force of the flap; held for ever there is no drag.
     pub fn without_stall(&self, section: &StallSection, attached: [f64; 3]) -> StalledLoads {
         let [normal, moment, hinge] = attached;
-        let effective = self.effective(section);
-        let chord = effective * effective / section.slope;
+        let chord = self.suction(section) - self.inclined(section, 1.0);
         StalledLoads { normal, moment, hinge, chord, separation: 1.0, vortex: 0.0 }
     }
 
@@ -369,6 +399,20 @@ impl StallState {
     fn effective(&self, section: &StallSection) -> f64 {
         let lacking: f64 = BEDDOES.iter().zip(self.lacking).map(|((a, _), y)| a * y).sum();
         section.slope * (self.downwash + lacking)
+    }
+
+    /// Suction of the leading edge in attached flow, `Cn_alpha A0^2`.
+    fn suction(&self, section: &StallSection) -> f64 {
+        let lacks: f64 = section.ahead.iter().zip(self.flap).map(|(share, m)| share * m).sum();
+        let leading = self.effective(section) - section.slope * lacks;
+        leading * leading / section.slope
+    }
+
+    /// Rearward force of a flap that is turned, `delta Cn_flap`, with a share of the circulatory loading left.
+    fn inclined(&self, section: &StallSection, left: f64) -> f64 {
+        let turned = section.turning * self.flap[0];
+        let alpha = self.effective(section) / section.slope;
+        turned * (section.on_flap[0] * alpha * left + section.on_flap[1] * turned)
     }
 
     /// The vortex over a step in which its source runs straight to `shed` and the delayed force to
@@ -448,7 +492,8 @@ impl StallState {
             normal: normal - effective * (1.0 - left) + vortex,
             moment: moment + p.moment_arm(f) * effective * left - nose_down,
             hinge,
-            chord: p.eta * effective * effective / section.slope * p.suction(f, self.delayed),
+            chord: p.eta * self.suction(section) * p.suction(f, self.delayed)
+                - self.inclined(section, left),
             separation: f,
             vortex,
         }

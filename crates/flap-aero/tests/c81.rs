@@ -114,7 +114,14 @@ fn what_is_wrong_is_said_with_its_place() {
     assert!(matches!(C81Airfoil::read(&short), Err(AeroError::C81Text { line: 9, .. })));
     let backward = TOUCHING.replace(" 180.00 0.1234", "-190.00 0.1234");
     let error = C81Airfoil::read(&backward).unwrap_err();
-    assert_eq!(error, AeroError::C81Order { what: "incidences of the lift table", index: 2 });
+    let AeroError::C81Text { line, expected, .. } = error else { panic!("{error}") };
+    assert!(expected.contains("above the one before it in the lift table"), "{expected}");
+    assert!(TOUCHING.lines().nth(line - 1).unwrap().starts_with(" 180.00"), "{line}");
+    // cut off inside a row of the last table
+    let whole = TOUCHING.trim_end();
+    let inside = &whole[..whole.rfind('\n').unwrap()];
+    let error = C81Airfoil::read(inside).unwrap_err().to_string();
+    assert!(error.contains("the moment table") && error.contains("the counts"), "{error}");
     // a count too small cuts a table off; a remark after the tables does no harm
     let cut = TOUCHING.replace(" 1 2\n", " 1 1\n");
     assert_ne!(cut, TOUCHING);
@@ -188,6 +195,23 @@ fn aerofoils_are_blended_along_the_span() {
     let unsorted = AirfoilSpan::new(vec![(0.8, constant(1.0)), (0.2, constant(4.0))]);
     assert!(matches!(unsorted, Err(AeroError::C81Order { .. })));
     assert!(AirfoilSpan::new(Vec::new()).is_err());
+}
+
+#[test]
+fn negative_mach_numbers_are_refused_and_negative_drag_is_found() {
+    let plate = |mach: &str, drag: &str| {
+        let table = |value: &str| format!("       {mach:>7}   0.60\n   0.  {value:>7}    0.1\n");
+        let tables = [table("0.1"), table(drag), table("0.0")].concat();
+        C81Airfoil::read(&format!("PLATE                          2 1 2 1 2 1\n{tables}"))
+    };
+    assert_eq!(plate("0.20", "0.01").unwrap().negative_drag(), None);
+    assert_eq!(plate("0.20", "-0.01").unwrap().negative_drag(), Some([0.0, 0.2, -0.01]));
+    let error = plate("-0.20", "0.01").unwrap_err().to_string();
+    assert!(
+        error.contains("line 2") && error.contains("of the lift table of 0 or more"),
+        "{error}"
+    );
+    assert!(C81Table::new(vec![-0.1], vec![0.0], vec![0.0]).is_err());
 }
 
 proptest! {

@@ -371,3 +371,39 @@ fn a_full_rate_moment_would_be_wrong() {
     assert_relative_eq!(-t.t::<16>() / (8.0 * beta), exact, max_relative = 1e-3);
     assert_relative_eq!(t.held_moment()[1], -PI / 8.0, max_relative = 1e-15);
 }
+
+/// Mach number from which the slope of a load due to an input cannot be matched, by bisection.
+fn unmatched_from(load: Load, mode: Mode, ratio: f64) -> f64 {
+    let unmatched = |m: f64| section(m, ratio).remarks.slope_unmatched[load.index()][mode.index()];
+    let (mut low, mut high) = (0.05, 0.94);
+    assert!(!unmatched(low) && unmatched(high));
+    while high - low > 1e-4 {
+        let middle = 0.5 * (low + high);
+        if unmatched(middle) { high = middle } else { low = middle }
+    }
+    high
+}
+
+/// The exceptions of the slope-matched form, as the book lists them: flaps of 0.1, 0.2, 0.3, 0.4 chord.
+#[test]
+fn slopes_are_matched_up_to_known_mach_numbers() {
+    for (load, mode, from) in [
+        (Load::Moment, Mode::FlapRate, [0.306, 0.444, 0.549, 0.633]),
+        (Load::Moment, Mode::Flap, [0.441, 0.617, 0.739, 0.827]),
+        (Load::Hinge, Mode::FlapRate, [0.766, 0.788, 0.810, 0.831]),
+    ] {
+        for (ratio, from) in [0.1, 0.2, 0.3, 0.4].into_iter().zip(from) {
+            assert_abs_diff_eq!(unmatched_from(load, mode, ratio), from, epsilon = 6e-4);
+        }
+    }
+    // no other load, no other input, to Mach 0.9
+    for m in [0.05, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9] {
+        for ratio in [0.1, 0.2, 0.3, 0.4] {
+            let unmatched = section(m, ratio).remarks.slope_unmatched;
+            for (o, j) in (0..3).flat_map(|o| (0..4).map(move |j| (o, j))) {
+                let known = matches!((o, j), (1, 2 | 3) | (2, 3));
+                assert!(known || !unmatched[o][j], "{o} {j} {m} {ratio}");
+            }
+        }
+    }
+}

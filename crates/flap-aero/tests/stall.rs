@@ -91,6 +91,83 @@ fn held_for_ever_it_is_kirchhoffs_static_curve() {
     assert!(loaded.separation < unloaded.separation - 0.1);
 }
 
+/// Leading-edge coefficient `A0` and normal force of the flap, each per rad of incidence and of flap angle,
+/// by quadrature over the chord of the steady loading of a bent plate.
+fn bent_plate(ratio: f64) -> [[f64; 2]; 2] {
+    let hinge = (1.0 - 2.0 * ratio).acos(); // from the trailing edge
+    let turned = |wake: f64| if wake < hinge { 1.0 } else { 0.0 };
+    const N: u32 = 20_000;
+    let mean = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| {
+        let step = (to - from) / f64::from(N);
+        (0..N).map(|i| f(from + step * (f64::from(i) + 0.5))).sum::<f64>() * step
+    };
+    let whole = std::f64::consts::PI;
+    let leading = mean(0.0, whole, &turned) / whole;
+    // Glauert's series of the flap, angle from the trailing edge: A_n = (2/pi) (-1)^(n+1) sin(n hinge)/n;
+    // each part of the loading, 4 A0 tan(angle/2) and 4 A_n sin(n angle), integrated over the flap
+    let flat = mean(0.0, hinge, &|w| 2.0 * (w / 2.0).tan() * w.sin());
+    let bent: f64 = (1..=4000_i32)
+        .map(|n| {
+            let n = f64::from(n);
+            let a = 2.0 / whole * (n * hinge).sin() / n;
+            let over = if n < 1.5 {
+                0.5 * hinge - 0.25 * (2.0 * hinge).sin()
+            } else {
+                0.5 * (((n - 1.0) * hinge).sin() / (n - 1.0)
+                    - ((n + 1.0) * hinge).sin() / (n + 1.0))
+            };
+            2.0 * a * over
+        })
+        .sum();
+    [[1.0, leading], [flat, flat * leading + bent]]
+}
+
+/// Steady attached flow has no drag, whatever incidence and flap angle: what the force normal to the plate
+/// and to its flap has along the stream is the suction of the leading edge.
+#[test]
+fn a_bent_plate_has_no_drag() {
+    for ratio in [0.1, 0.2, 0.4] {
+        let [a0, on_flap] = bent_plate(ratio);
+        for (m, incidence, angle) in [
+            (0.0, 0.1, 0.0),
+            (0.3, 0.0, 0.14),
+            (0.3, 0.05, 0.1),
+            (0.7, -0.08, 0.12),
+            (0.5, 0.2, -0.3),
+        ] {
+            let (mach, flap) = (Mach::new(m).unwrap(), FlapChord::new(ratio).unwrap());
+            let model = AttachedFlowModel::Calibrated.coefficients(mach, flap).unwrap();
+            let section = StallSection::new(mach, flap, naca_0012()).unwrap();
+            let modes = [incidence, 0.0, angle, 0.0];
+            let attached = steady_response(&model, &modes);
+            let state = StallState::settled(&section, attached[0], &modes);
+            let loads = state.without_stall(&section, attached);
+            let beta = mach.beta();
+            let drag = loads.normal * incidence - loads.chord;
+            assert_abs_diff_eq!(drag, 0.0, epsilon = 1e-13);
+            let suction = TAU / beta * (a0[0] * incidence + a0[1] * angle).powi(2);
+            let turned = (on_flap[0] * incidence + on_flap[1] * angle) / beta * angle;
+            assert_abs_diff_eq!(loads.chord, suction - turned, epsilon = 2e-5);
+            // of an angle half as large the pressures leave a drag of fourth order
+            let whole = loads.pressure_drag(incidence).abs();
+            assert!(whole <= 0.6 * loads.normal.abs() * incidence.abs().powi(3) + 1e-13, "{whole}");
+        }
+    }
+}
+
+/// A flap that moves slowly on the aerofoil that stalls, in attached flow: no thrust.
+#[test]
+fn a_flap_makes_no_thrust_in_attached_flow() {
+    let (mach, flap) = (Mach::new(MACH).unwrap(), FlapChord::new(0.2).unwrap());
+    let model = AttachedFlowModel::Calibrated.coefficients(mach, flap).unwrap();
+    for (incidence, angle) in [(0.0, 8.0), (0.0, -8.0), (3.0, 5.0), (4.0, -6.0)] {
+        let modes = [incidence, 0.0, angle, 0.0].map(f64::to_radians);
+        let loads = stalling(naca_0012()).settled(steady_response(&model, &modes), &modes);
+        let drag = loads.pressure_drag(modes[0]);
+        assert!((0.0..0.03).contains(&drag), "{incidence} {angle}: {drag}");
+    }
+}
+
 #[test]
 fn marched_for_long_it_settles_on_the_static_curve() {
     let (attached, stalling) = (attached(), stalling(naca_0012()));

@@ -28,6 +28,12 @@ pub enum SimError {
         /// The file.
         path: PathBuf,
     },
+    /// What is written would replace what is read.
+    #[error("{} is a file this command reads; name another to write", .path.display())]
+    WouldOverwriteInput {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file cannot be written.
     #[error("{} cannot be written ({reason}); check the folder, its permissions and the space left", .path.display())]
     NotWritten {
@@ -143,6 +149,7 @@ impl SimError {
         match self {
             Self::Rejected(_)
             | Self::WouldOverwrite { .. }
+            | Self::WouldOverwriteInput { .. }
             | Self::NotWritten { .. }
             | Self::Section(_)
             | Self::Misfit { .. } => Family::RejectedInput,

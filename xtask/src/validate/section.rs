@@ -1,5 +1,6 @@
 //! Attached-flow loads of a section with a trailing-edge flap.
 
+use exact_section::incompressible_loads;
 use flap_aero::{
     AttachedFlowModel, FlapChord, HingePosition, Load, Mach, MarchingSection, Mode, Motion,
     SectionCoefficients, SectionInputs, SectionState, TheodorsenFunctions, harmonic_response,
@@ -35,12 +36,21 @@ pub(super) const AREA: Area = Area {
         },
         Check {
             id: "V-AERO-03",
-            quantity: "flap hinge moment, the same",
+            quantity: "flap hinge moment, the same, E 0.20 only (V-AERO-46 has the others)",
             unit: "%",
             source: THEODORSEN,
             criterion: Criterion::AtMost(0.6),
             repeatability: Repeatability::Everywhere,
             measure: || flap_error(Load::Hinge, 100.0),
+        },
+        Check {
+            id: "V-AERO-46",
+            quantity: "flap hinge moment, incompressible, E 0.1 to 0.4, k up to 1: largest error of its magnitude, at E 0.4",
+            unit: "%",
+            source: "Theodorsen, pressure series of Küssner and Schwarz",
+            criterion: Criterion::Between(0.8, 0.9),
+            repeatability: Repeatability::Everywhere,
+            measure: hinge_error_of_flaps,
         },
         Check {
             id: "V-AERO-04",
@@ -100,6 +110,22 @@ fn flap_error(load: Load, scale: f64) -> Result<f64, CheckError> {
         errors.push(Ok(scale * (got - exact).norm() / exact.norm()));
     }
     worst("reduced frequencies", 10, errors)
+}
+
+/// Largest error of the hinge moment over flap chords and reduced frequencies, per cent.
+fn hinge_error_of_flaps() -> Result<f64, CheckError> {
+    let mut errors = Vec::new();
+    for ratio in [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4] {
+        let section =
+            AttachedFlowModel::Incompressible.coefficients(Mach::ZERO, FlapChord::new(ratio)?)?;
+        for step in 1..=50 {
+            let k = 0.02 * f64::from(step);
+            let exact = exact_section::Motion::Flap.of(&incompressible_loads(k, ratio)?, k)[2];
+            let got = harmonic_response(&section, k, Motion::Flap)[2];
+            errors.push(Ok(100.0 * (got - exact).norm() / exact.norm()));
+        }
+    }
+    worst("conditions", 350, errors)
 }
 
 fn theodorsen_functions() -> Result<f64, CheckError> {

@@ -135,6 +135,23 @@ pub(super) const AREA: Area = Area {
             slope_matched_error,
         ),
         check(
+            "V-AERO-43",
+            "Hariharan-Leishman form, pitch lift, M 0.1 to 0.8, E 0.2, k to 1: its known error, at M 0.1",
+            "%",
+            (OWN, Criterion::Between(40.0, 50.0)),
+            || slope_matched_rigid(Motion::Pitch),
+        ),
+        check("V-AERO-44", "the same, plunge", "%", (OWN, Criterion::Between(85.0, 95.0)), || {
+            slope_matched_rigid(Motion::Plunge)
+        }),
+        check(
+            "V-AERO-45",
+            "drag of steady attached flow, any incidence and flap angle: largest of the normal force times the angles",
+            "-",
+            ("d'Alembert", Criterion::AtMost(1e-12)),
+            drag_of_attached_flow,
+        ),
+        check(
             "V-AERO-26",
             "oscillating flap in the wind tunnel, M 0.5, k 0.098: phase of the lift, measured less calibrated",
             "deg",
@@ -351,6 +368,34 @@ fn rigid_error() -> Result<f64, CheckError> {
 fn slope_matched_error() -> Result<f64, CheckError> {
     let model = AttachedFlowModel::HariharanLeishman;
     Ok(errors_against_possio(model, (0.5, 0.2), Motion::Flap)?[0][SLOW])
+}
+
+/// Largest error of the lift of a rigid motion over the Mach numbers, per cent.
+fn slope_matched_rigid(motion: Motion) -> Result<f64, CheckError> {
+    let model = AttachedFlowModel::HariharanLeishman;
+    let at = |m: f64| Ok(errors_against_possio(model, (m, 0.2), motion)?[0][FAST]);
+    worst("Mach numbers", 5, [0.1, 0.3, 0.5, 0.7, 0.8].map(at))
+}
+
+/// Largest drag, to second order in the angles, of the attached loads of the stall.
+fn drag_of_attached_flow() -> Result<f64, CheckError> {
+    let mut drags = Vec::new();
+    for ratio in [0.1, 0.2, 0.3, 0.4] {
+        for m in [0.0, 0.3, 0.5, 0.7] {
+            let (mach, flap) = (Mach::new(m)?, FlapChord::new(ratio)?);
+            let model = AttachedFlowModel::Calibrated.coefficients(mach, flap)?;
+            let section = StallSection::new(mach, flap, StallParameters::naca_0012(mach))?;
+            for (incidence, angle) in [(0.1, 0.0), (0.0, 0.14), (0.05, 0.1), (-0.08, 0.12)] {
+                let modes = [incidence, 0.0, angle, 0.0];
+                let attached = steady_response(&model, &modes);
+                let state = StallState::settled(&section, attached[0], &modes);
+                let loads = state.without_stall(&section, attached);
+                let scale = loads.normal.abs() * f64::max(incidence.abs(), angle);
+                drags.push(Ok((loads.normal * incidence - loads.chord).abs() / scale));
+            }
+        }
+    }
+    worst("angles", 64, drags)
 }
 
 /// Phase difference of the lift in degrees, moment and lift of the measurement over the calibrated

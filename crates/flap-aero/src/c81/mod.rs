@@ -63,8 +63,8 @@ impl C81Airfoil {
     /// Reads a file's text.
     ///
     /// # Errors
-    /// [`AeroError::C81Text`] with line and column of the first thing that is not understood;
-    /// [`AeroError::C81Order`] if Mach numbers or incidences do not ascend.
+    /// [`AeroError::C81Text`] with line and column of the first thing that is not understood, of a Mach
+    /// number or incidence that is not above the one before it, of a negative Mach number.
     pub fn read(text: &str) -> Result<Self, AeroError> {
         read::airfoil(text)
     }
@@ -84,6 +84,20 @@ impl C81Airfoil {
     #[must_use]
     pub fn rounded(&self) -> Self {
         write::rounded(self)
+    }
+
+    /// The first negative drag of the table: incidence in degrees, Mach number, drag coefficient.
+    ///
+    /// No section has one in steady flow, but tables do, by interpolation or slips of the pen; such a table
+    /// is read, because where it is wrong may not matter, and whoever uses it is to be told.
+    pub fn negative_drag(&self) -> Option<[f64; 3]> {
+        self.drag.incidences_deg().iter().enumerate().find_map(|(i, incidence)| {
+            let pairs = self.drag.machs().iter().zip(self.drag.row(i));
+            pairs
+                .filter(|(_, drag)| **drag < 0.0)
+                .map(|(mach, drag)| [*incidence, *mach, *drag])
+                .next()
+        })
     }
 
     /// Coefficients and slopes at an incidence (rad, any turn of it) and Mach number, by linear

@@ -40,13 +40,9 @@ pub(super) fn airfoil(text: &str) -> Result<C81Airfoil, AeroError> {
         return Err(lines.fault(NAME + 1, expected));
     };
     let [ml, al, md, ad, mm, am] = counts;
-    let names = |machs, incidences| TableNames { machs, incidences };
-    let lift = names("Mach numbers of the lift table", "incidences of the lift table");
-    let drag = names("Mach numbers of the drag table", "incidences of the drag table");
-    let moment = names("Mach numbers of the moment table", "incidences of the moment table");
-    let lift = table(&mut lines, lift, ml, al)?;
-    let drag = table(&mut lines, drag, md, ad)?;
-    let moment = table(&mut lines, moment, mm, am)?;
+    let lift = table(&mut lines, &LIFT, ml, al)?;
+    let drag = table(&mut lines, &DRAG, md, ad)?;
+    let moment = table(&mut lines, &MOMENT, mm, am)?;
     nothing_follows(&mut lines)?;
     Ok(C81Airfoil { name, lift, drag, moment })
 }
@@ -67,12 +63,43 @@ fn nothing_follows(lines: &mut Lines<'_>) -> Result<(), AeroError> {
     Ok(())
 }
 
-/// What the axes of a table are called in errors.
-#[derive(Clone, Copy)]
-struct TableNames {
+/// What is expected of one of the tables, for errors.
+struct Expected {
+    positive: &'static str,
     machs: &'static str,
-    incidences: &'static str,
+    incidence: &'static str,
+    more: &'static str,
+    numbers: &'static str,
 }
+
+/// The texts of one table.
+macro_rules! expected {
+    ($table:literal) => {
+        Expected {
+            positive: concat!("Mach numbers of the ", $table, " table of 0 or more"),
+            machs: concat!("Mach numbers of the ", $table, " table that ascend; sort its columns"),
+            incidence: concat!(
+                "an incidence above the one before it in the ",
+                $table,
+                " table; sort its rows"
+            ),
+            more: concat!(
+                "more of the ",
+                $table,
+                " table; the file ends inside it: complete it, or correct the counts of the first line"
+            ),
+            numbers: concat!(
+                "numbers of the ",
+                $table,
+                " table in fields of seven columns, or apart by blanks, as many as the first line counts"
+            ),
+        }
+    };
+}
+
+const LIFT: Expected = expected!("lift");
+const DRAG: Expected = expected!("drag");
+const MOMENT: Expected = expected!("moment");
 
 /// Name and counts of the first line: by columns, or else the last six words.
 fn header(line: &str) -> Option<(String, [usize; 6])> {
@@ -101,26 +128,34 @@ fn header(line: &str) -> Option<(String, [usize; 6])> {
 
 fn table(
     lines: &mut Lines<'_>,
-    names: TableNames,
+    expected: &Expected,
     machs: usize,
     incidences: usize,
 ) -> Result<C81Table, AeroError> {
-    let (_, mach_numbers) = row(lines, false, machs)?;
-    let mut angles = Vec::with_capacity(incidences);
+    let (_, mach_numbers) = row(lines, expected, false, machs)?;
+    if mach_numbers[0] < 0.0 {
+        return Err(lines.fault(1, expected.positive));
+    }
+    if ascending("Mach numbers", &mach_numbers).is_err() {
+        return Err(lines.fault(1, expected.machs));
+    }
+    let mut angles: Vec<f64> = Vec::with_capacity(incidences);
     let mut values = Vec::with_capacity(machs * incidences);
     for _ in 0..incidences {
-        let (angle, row) = row(lines, true, machs)?;
+        let (angle, row) = row(lines, expected, true, machs)?;
+        if angles.last().zip(angle).is_some_and(|(before, now)| now <= *before) {
+            return Err(lines.fault(1, expected.incidence));
+        }
         angles.extend(angle);
         values.extend(row);
     }
-    ascending(names.machs, &mach_numbers)?;
-    ascending(names.incidences, &angles)?;
     C81Table::new(mach_numbers, angles, values)
 }
 
 /// One row: its incidence, if it has one, and `count` values, over as many lines as these need.
 fn row(
     lines: &mut Lines<'_>,
+    expected: &Expected,
     has_incidence: bool,
     count: usize,
 ) -> Result<(Option<f64>, Vec<f64>), AeroError> {
@@ -129,14 +164,11 @@ fn row(
     let mut first = has_incidence;
     while values.len() < count {
         let wanted = (count - values.len()).min(PER_LINE);
-        let line = lines.next("a line of numbers; the file ends before its tables do")?;
+        let line = lines.next(expected.more)?;
         let mut numbers = match by_columns(line, first, wanted) {
             Ok(numbers) => numbers,
-            Err(column) => {
-                by_words(line, usize::from(first) + count - values.len()).ok_or_else(|| {
-                    lines.fault(column, "numbers in fields of seven columns, or apart by blanks")
-                })?
-            }
+            Err(column) => by_words(line, usize::from(first) + count - values.len())
+                .ok_or_else(|| lines.fault(column, expected.numbers))?,
         };
         if first {
             incidence = Some(numbers.remove(0));

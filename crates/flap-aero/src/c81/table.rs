@@ -59,7 +59,7 @@ impl C81Table {
     ///
     /// # Errors
     /// [`AeroError::C81Order`] unless both axes ascend strictly; [`AeroError::C81Shape`] unless there
-    /// is a finite value for each pair.
+    /// is a finite value for each pair; [`AeroError::BadInput`] for a negative Mach number.
     pub fn new(
         machs: Vec<f64>,
         incidences_deg: Vec<f64>,
@@ -67,6 +67,10 @@ impl C81Table {
     ) -> Result<Self, AeroError> {
         ascending("Mach numbers", &machs)?;
         ascending("incidences", &incidences_deg)?;
+        if machs[0] < 0.0 {
+            let (quantity, value) = ("first Mach number of a C81 table", machs[0]);
+            return Err(AeroError::BadInput { quantity, value, expected: "0 or more" });
+        }
         let expected = machs.len() * incidences_deg.len();
         let found = values.iter().filter(|v| v.is_finite()).count();
         if values.len() != expected || found != expected {

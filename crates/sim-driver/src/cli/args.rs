@@ -281,7 +281,7 @@ pub struct WakeArgs {
 pub enum SectionModelArg {
     /// Theodorsen's function set to 1, no apparent mass.
     QuasiSteady,
-    /// Theodorsen's theory, Mach 0 only.
+    /// Theodorsen's coefficients with R. T. Jones's two lags for his function; Mach 0 only.
     Incompressible,
     /// Compressible indicial functions of the Hariharan-Leishman form (a reconstruction).
     HariharanLeishman,
@@ -348,21 +348,21 @@ pub enum StallArg {
 /// `hhc section`.
 #[derive(Debug, Clone, Args)]
 pub struct SectionArgs {
-    /// Section model.
-    #[arg(long, value_enum, default_value_t = SectionModelArg::HariharanLeishman)]
-    pub model: SectionModelArg,
-    /// Mach number.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
-    pub mach: f64,
-    /// Flap chord over chord.
-    #[arg(long, value_name = "E", default_value_t = 0.2, allow_negative_numbers = true)]
-    pub flap_chord: f64,
-    /// What moves.
-    #[arg(long, value_enum, default_value_t = MotionArg::Flap)]
-    pub motion: MotionArg,
     /// What is asked for.
     #[arg(long, value_enum, default_value_t = ResponseArg::Harmonic)]
     pub response: ResponseArg,
+    /// Section model; not of a polar of a table [default: calibrated].
+    #[arg(long, value_enum)]
+    pub model: Option<SectionModelArg>,
+    /// Mach number.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub mach: f64,
+    /// Flap chord over chord; not of a polar of a table [default: 0.2].
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    pub flap_chord: Option<f64>,
+    /// What moves, in every response but a polar [default: flap].
+    #[arg(long, value_enum)]
+    pub motion: Option<MotionArg>,
     /// Reduced frequency, omega c / (2 U), of a harmonic response or a loop.
     #[arg(
         long,
@@ -372,28 +372,28 @@ pub struct SectionArgs {
         required_if_eq_any([("response", "harmonic"), ("response", "loop")])
     )]
     pub reduced_frequency: Option<f64>,
-    /// Distance of a step or ramp response, semichords.
-    #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
-    pub distance: f64,
-    /// Length of a ramp, semichords.
-    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
-    pub rise: f64,
-    /// Points of a history, a cycle or a curve.
-    #[arg(long, value_name = "N", default_value_t = 200)]
-    pub points: usize,
-    /// Mean incidence of a loop, middle of a polar, deg.
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub mean_deg: f64,
-    /// Amplitude of a loop, half the range of a polar, deg.
-    #[arg(long, value_name = "DEG", default_value_t = 10.0, allow_negative_numbers = true)]
-    pub amplitude_deg: f64,
-    /// Stall of a loop or a polar.
-    #[arg(long, value_enum, default_value_t = StallArg::Off)]
-    pub stall: StallArg,
+    /// Distance of a step or ramp response, semichords [default: 20].
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub distance: Option<f64>,
+    /// Length of a ramp, semichords [default: 1].
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub rise: Option<f64>,
+    /// Points of a step, ramp, loop or polar; a loop is marched finer and needs 3 [default: 200].
+    #[arg(long, value_name = "N")]
+    pub points: Option<usize>,
+    /// Mean incidence of a loop, whatever moves; middle of a polar; deg [default: 0].
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub mean_deg: Option<f64>,
+    /// Amplitude of what moves in a loop, half the range of a polar, deg [default: 10].
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub amplitude_deg: Option<f64>,
+    /// Stall of a loop or of a polar without a table [default: off].
+    #[arg(long, value_enum)]
+    pub stall: Option<StallArg>,
     /// C81 file whose polar is wanted; `shipped:naca0012_synthetic.c81` is a synthetic one.
     #[arg(long, value_name = "FILE")]
     pub table: Option<PathBuf>,
-    /// Flap effectiveness in lift, moment and hinge moment, such as 0.78,1,1.
+    /// Flap effectiveness in lift, moment and hinge moment, such as 0.78,1,1; not of a polar.
     #[arg(long, value_name = "FACTORS", value_delimiter = ',', num_args = 1)]
     pub effectiveness: Vec<f64>,
     /// CSV file to write.

@@ -2,7 +2,8 @@
 
 use super::args::{
     CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs,
-    ReportArgs, ResponseArg, RunArgs, SectionArgs, StallArg, StudyArgs, WakeArgs,
+    MotionArg, ReportArgs, ResponseArg, RunArgs, SectionArgs, SectionModelArg, StallArg, StudyArgs,
+    WakeArgs,
 };
 use crate::SimError;
 use crate::actuator::case_actuators;
@@ -12,7 +13,8 @@ use crate::curve_identification::identify_curves;
 use crate::diagnose::{Findings, Question, Record, Records, Story};
 use crate::figures::figure_files;
 use crate::files::{
-    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_inside, write_atomic, write_new,
+    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside,
+    write_atomic, write_new,
 };
 use crate::identification::{BenchIdentification, identify_bench, identify_loops};
 use crate::import::{ColumnOptions, ImportRequest, default_folder};
@@ -56,6 +58,8 @@ const ROBUSTNESS_FILE: &str = "robustness.csv";
 const RESULT_FILE: &str = "result.json";
 /// Name of the table over advance ratios.
 const SWEEP_FILE: &str = "sweep.csv";
+/// Name of the actuator a diagnosis extended.
+const EXTENDED_FILE: &str = "extended.ron";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
@@ -236,6 +240,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         None => Settings::default(),
     };
     refuse_inside(&args.bench, &args.output)?;
+    refuse_inputs(args.start.as_deref(), Some(&args.output))?;
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     for warning in data.warnings() {
         eprintln!("warning: {warning}");
@@ -268,6 +273,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
 }
 
 pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
+    refuse_input(&args.model, &args.output.join(EXTENDED_FILE))?;
     let model = given_model(&args.model)?;
     let measured = records_of(&args.data)?;
     let reference = reference_runs(args, &measured)?;
@@ -285,7 +291,7 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let findings = serde_json::to_string_pretty(&Findings::from(&found)).map_err(|e| {
         SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
     })?;
-    found.extended()?.write(&args.output.join("extended.ron"))?;
+    found.extended()?.write(&args.output.join(EXTENDED_FILE))?;
     for (name, text) in found.figures() {
         write_atomic(&args.output.join(name), text.as_bytes())?;
     }
@@ -397,7 +403,13 @@ pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
     print(&result.render(args.format.format)?)
 }
 
+/// Refuses to write to a file that is read, where both are given.
+fn refuse_inputs(read: Option<&Path>, written: Option<&PathBuf>) -> Result<(), SimError> {
+    read.zip(written).map_or(Ok(()), |(read, written)| refuse_input(read, written))
+}
+
 pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
+    refuse_inputs(args.case.as_deref(), args.fan.as_ref())?;
     let loaded = match &args.case {
         Some(path) => load_case(path)?,
         None => shipped_case(PAPER_CASE)?,
@@ -419,24 +431,85 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     print(&text)
 }
 
-/// Refuses options that the response asked for would not heed.
+/// Refuses options that the response asked for would not heed, and numbers that are none.
 fn check_section_options(args: &SectionArgs) -> Result<(), SimError> {
-    let polar = args.response == ResponseArg::Polar;
-    let stalls = args.stall != StallArg::Off;
-    let option = if args.table.is_some() && !polar {
-        Some(("--table", "with --response polar only; a rotor takes tables from its case"))
-    } else if stalls && args.table.is_some() {
-        Some(("--stall", "without --table: a table holds its own stall"))
-    } else if stalls && !polar && args.response != ResponseArg::Loop {
-        Some(("--stall", "with --response loop or polar only"))
-    } else {
-        None
-    };
-    option.map_or(Ok(()), |(name, expected)| {
-        let message = format!("it is used {expected}");
+    use ResponseArg::{Harmonic, Loop, Polar, Ramp, Step};
+    let table = args.table.is_some();
+    let moved = "with a response of the section's own flap, not with --response polar";
+    let modelled = "without --table: a table is a section of its own";
+    let rules = [
+        (
+            "--table",
+            table,
+            &[Polar][..],
+            "with --response polar only; a rotor takes tables from its case",
+        ),
+        ("--stall", args.stall.is_some(), &[Loop, Polar], "with --response loop or polar only"),
+        (
+            "--reduced-frequency",
+            args.reduced_frequency.is_some(),
+            &[Harmonic, Loop],
+            "with --response harmonic or loop only",
+        ),
+        ("--distance", args.distance.is_some(), &[Step, Ramp], "with --response step or ramp only"),
+        ("--rise", args.rise.is_some(), &[Ramp], "with --response ramp only"),
+        (
+            "--points",
+            args.points.is_some(),
+            &[Step, Ramp, Loop, Polar],
+            "with --response step, ramp, loop or polar only",
+        ),
+        (
+            "--mean-deg",
+            args.mean_deg.is_some(),
+            &[Loop, Polar],
+            "with --response loop or polar only",
+        ),
+        (
+            "--amplitude-deg",
+            args.amplitude_deg.is_some(),
+            &[Loop, Polar],
+            "with --response loop or polar only",
+        ),
+        (
+            "--motion",
+            args.motion.is_some(),
+            &[Harmonic, Step, Ramp, Loop],
+            "with --response harmonic, step, ramp or loop only",
+        ),
+        ("--effectiveness", !args.effectiveness.is_empty(), &[Harmonic, Step, Ramp, Loop], moved),
+    ];
+    let unheeded = rules
+        .into_iter()
+        .find(|(_, given, of, _)| *given && !of.contains(&args.response))
+        .map(|(name, .., expected)| (name, expected));
+    let beside = [
+        ("--stall", args.stall.is_some(), "without --table: a table holds its own stall"),
+        ("--model", args.model.is_some(), modelled),
+        ("--flap-chord", args.flap_chord.is_some(), modelled),
+    ];
+    let beside = beside
+        .into_iter()
+        .find(|(_, given, _)| *given && table)
+        .map(|(name, _, expected)| (name, expected));
+    let refused = |name: &str, message: String| {
         let place = Place::file("hhc section").field(name);
         Err(Problem::new(place, Fault::Refused { message }).into())
-    })
+    };
+    if let Some((name, expected)) = unheeded.or(beside) {
+        return refused(name, format!("it is used {expected}"));
+    }
+    for (name, value) in [
+        ("--distance", args.distance),
+        ("--rise", args.rise),
+        ("--mean-deg", args.mean_deg),
+        ("--amplitude-deg", args.amplitude_deg),
+    ] {
+        if let Some(value) = value.filter(|value| !value.is_finite()) {
+            return refused(name, format!("it is {value}, not a number to reckon with"));
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
@@ -466,34 +539,34 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
     check_section_options(args)?;
+    refuse_inputs(args.table.as_deref(), args.output.as_ref())?;
     let section = SectionChoice {
-        model: args.model.into(),
+        model: args.model.unwrap_or(SectionModelArg::Calibrated).into(),
         mach: args.mach,
-        flap_chord: args.flap_chord,
+        flap_chord: args.flap_chord.unwrap_or(0.2),
         effectiveness: effectiveness(&args.effectiveness)?,
     };
-    let motion = args.motion.into();
+    let motion = args.motion.unwrap_or(MotionArg::Flap).into();
     // the arguments make sure of it where it counts
     let reduced_frequency = args.reduced_frequency.unwrap_or(0.0);
-    let (mean, half) = (args.mean_deg.to_radians(), args.amplitude_deg.to_radians());
-    let stall = match args.stall {
+    let mean = args.mean_deg.unwrap_or(0.0).to_radians();
+    let half = args.amplitude_deg.unwrap_or(10.0).to_radians();
+    let stall = match args.stall.unwrap_or(StallArg::Off) {
         StallArg::Off => None,
         StallArg::Naca0012 => Some(StallParameters::naca_0012(Mach::new(args.mach)?)),
     };
-    let (distance, points) = (args.distance, args.points);
+    let (distance, points) = (args.distance.unwrap_or(20.0), args.points.unwrap_or(200));
     let transient = |rise: f64| {
         transient_history(&TransientQuestion { section, motion, rise, distance, points })
     };
     let table = match args.response {
         ResponseArg::Harmonic => {
             let result = section_response(&SectionQuestion { section, reduced_frequency, motion })?;
-            if let Some(path) = &args.output {
-                write_atomic(path, result.csv().as_bytes())?;
-            }
+            write_csv(args, &result.csv(), &result.remarks)?;
             return print(&result.render(args.format.format)?);
         }
         ResponseArg::Step => transient(0.0)?,
-        ResponseArg::Ramp => transient(args.rise)?,
+        ResponseArg::Ramp => transient(args.rise.unwrap_or(1.0))?,
         ResponseArg::Loop => loop_history(&LoopQuestion {
             section,
             motion,
@@ -511,10 +584,17 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
             table: args.table.clone(),
         })?,
     };
-    if let Some(path) = &args.output {
-        write_atomic(path, table.csv().as_bytes())?;
-    }
+    write_csv(args, &table.csv(), &table.remarks)?;
     print(&table.render(args.format.format)?)
+}
+
+/// Writes the CSV file asked for; what its numbers need said goes to standard error.
+fn write_csv(args: &SectionArgs, csv: &str, remarks: &[String]) -> Result<(), SimError> {
+    let Some(path) = &args.output else { return Ok(()) };
+    for remark in remarks {
+        eprintln!("note: {remark}");
+    }
+    write_atomic(path, csv.as_bytes())
 }
 
 /// Factors of a flap: none given is theory's.

@@ -1,17 +1,84 @@
 //! Atomic writing: a file appears whole or not at all.
 
 use crate::SimError;
-use std::io::Write;
-use std::path::Path;
+use std::io::{Error, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Links followed before they are taken for a ring.
+const MOST_LINKS: usize = 40;
 
 /// Writes a file through a temporary one in the same folder, which is created if needed.
 ///
+/// A symbolic link stays: the file it leads to is the one written. What is no regular file (a pipe, a
+/// device, standard output) is written to as it is, never replaced.
+///
 /// # Errors
-/// [`SimError::NotWritten`]; whatever was at `path` before is then still there.
+/// [`SimError::NotWritten`]; a file that was at `path` before is then still there.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), SimError> {
-    prepare(path, bytes)
-        .and_then(|file| file.persist(path).map(|_| ()).map_err(|e| e.error))
-        .map_err(|e| not_written(path, &e))
+    let write = || match Target::of(path)? {
+        Target::Descriptor(1) => through(std::io::stdout().lock(), bytes),
+        Target::Descriptor(2) => through(std::io::stderr().lock(), bytes),
+        Target::Descriptor(_) | Target::Special => {
+            through(std::fs::OpenOptions::new().write(true).open(path)?, bytes)
+        }
+        Target::File(file) => {
+            prepare(&file, bytes)?.persist(&file).map(|_| ()).map_err(|e| e.error)
+        }
+    };
+    write().map_err(|e| not_written(path, &e))
+}
+
+fn through(mut place: impl Write, bytes: &[u8]) -> std::io::Result<()> {
+    place.write_all(bytes)?;
+    place.flush()
+}
+
+/// What a path leads to.
+#[derive(Debug, PartialEq)]
+enum Target {
+    /// A regular file, or none yet: its path with all links followed.
+    File(PathBuf),
+    /// A file this process holds open, by its number: `/dev/stdout` is 1.
+    Descriptor(u32),
+    /// Something else: a pipe, a device, a folder.
+    Special,
+}
+
+impl Target {
+    fn of(path: &Path) -> std::io::Result<Self> {
+        let mut at = path.to_path_buf();
+        for _ in 0..MOST_LINKS {
+            if let Some(number) = own_descriptor(&at) {
+                return Ok(Self::Descriptor(number));
+            }
+            match std::fs::read_link(&at) {
+                Ok(link) => at = parent_of(&at).join(link),
+                Err(_) if at.exists() && !at.is_file() => return Ok(Self::Special),
+                Err(_) => return Ok(Self::File(at)),
+            }
+        }
+        Err(Error::new(ErrorKind::InvalidInput, "a ring of symbolic links"))
+    }
+}
+
+/// The number of an open file of this process, from a path such as `/proc/self/fd/1`.
+fn own_descriptor(path: &Path) -> Option<u32> {
+    let number = path.file_name()?.to_str()?.parse().ok()?;
+    let open = Path::new("/proc/self/fd").canonicalize().ok()?;
+    (parent_of(path).canonicalize().ok()? == open).then_some(number)
+}
+
+/// Refuses to replace a file that a command reads with what it writes.
+///
+/// # Errors
+/// [`SimError::WouldOverwriteInput`] if both paths lead to the same regular file.
+pub fn refuse_input(input: &Path, output: &Path) -> Result<(), SimError> {
+    match (input.canonicalize(), output.canonicalize()) {
+        (Ok(input), Ok(same)) if input == same && same.is_file() => {
+            Err(SimError::WouldOverwriteInput { path: output.to_path_buf() })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Like [`write_atomic`], but refuses to replace a file.
@@ -125,6 +192,75 @@ mod tests {
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
         let left: Vec<_> = std::fs::read_dir(path.parent().unwrap()).unwrap().collect();
         assert_eq!(left.len(), 1, "no temporary file stays behind");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    #[expect(clippy::disallowed_methods, reason = "reads back what was written")]
+    fn links_stay_and_lead_to_the_file() {
+        let place = tempfile::tempdir().unwrap();
+        let at = |name: &str| place.path().join(name);
+        write_atomic(&at("deep/file"), b"old").unwrap();
+        std::os::unix::fs::symlink("deep/file", at("link")).unwrap();
+        std::os::unix::fs::symlink("link", at("second")).unwrap();
+        std::os::unix::fs::symlink("deep/new", at("dangling")).unwrap();
+        for (name, file) in
+            [("link", "deep/file"), ("second", "deep/file"), ("dangling", "deep/new")]
+        {
+            write_atomic(&at(name), name.as_bytes()).unwrap();
+            assert!(at(name).symlink_metadata().unwrap().is_symlink(), "{name}");
+            assert_eq!(std::fs::read_to_string(at(file)).unwrap(), name);
+        }
+        std::os::unix::fs::symlink("ring", at("ring")).unwrap();
+        let error = write_atomic(&at("ring"), b"x").unwrap_err();
+        assert!(matches!(error, SimError::NotWritten { .. }), "{error}");
+        let error = refuse_input(&at("second"), &at("deep/file")).unwrap_err();
+        assert!(matches!(error, SimError::WouldOverwriteInput { .. }));
+        refuse_input(&at("second"), &at("deep/new")).unwrap();
+        refuse_input(&at("gone"), &at("gone")).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    #[expect(clippy::disallowed_methods, reason = "reads back what was written")]
+    fn a_pipe_gets_the_text_and_stays_a_pipe() {
+        use std::os::unix::fs::FileTypeExt;
+        let place = tempfile::tempdir().unwrap();
+        let pipe = place.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || std::fs::read_to_string(pipe).unwrap()
+        });
+        write_atomic(&pipe, b"S,cn\n").unwrap();
+        assert!(pipe.metadata().unwrap().file_type().is_fifo());
+        assert_eq!(reader.join().unwrap(), "S,cn\n");
+    }
+
+    /// On a copy of the device that is always full, where the system lets one be made.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_device_is_an_error_and_stays_a_device() {
+        use std::os::unix::fs::FileTypeExt;
+        let place = tempfile::tempdir().unwrap();
+        let device = place.path().join("full");
+        let made = std::process::Command::new("mknod").arg(&device).args(["c", "1", "7"]).output();
+        if !made.is_ok_and(|made| made.status.success()) {
+            return;
+        }
+        match write_atomic(&device, b"x") {
+            Err(SimError::NotWritten { .. }) => {}
+            other => panic!("{other:?}"),
+        }
+        assert!(device.metadata().unwrap().file_type().is_char_device());
+        assert_eq!(Target::of(&device).unwrap(), Target::Special);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn standard_output_is_written_to_and_never_replaced() {
+        assert_eq!(Target::of(Path::new("/dev/stdout")).unwrap(), Target::Descriptor(1));
+        assert_eq!(Target::of(Path::new("/dev/fd/2")).unwrap(), Target::Descriptor(2));
     }
 
     #[test]

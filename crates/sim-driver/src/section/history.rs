@@ -1,6 +1,6 @@
 //! Histories of a section: after a step, along a ramp, round a cycle.
 
-use super::{FASTEST, SectionChoice, SectionTable, within};
+use super::{Asked, FASTEST, SectionChoice, SectionTable, stall_remark, within};
 use crate::SimError;
 use flap_aero::{
     CycleStep, MarchingSection, Motion, SectionInputs, SectionState, StallParameters, StallSection,
@@ -16,6 +16,9 @@ const LONGEST: f64 = 1e6;
 /// Largest incidence or flap angle of a loop, rad.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
+/// Fewest points of a cycle, and fewest steps a cycle is marched in.
+const FEWEST_POINTS: usize = 3;
+const FEWEST_STEPS: usize = 720;
 /// Most rows of a history.
 const MOST_POINTS: usize = 1_000_000;
 /// Cycles marched for a stalled loop to repeat, and the distance added to them, semichords: some
@@ -53,7 +56,7 @@ pub struct LoopQuestion {
     pub amplitude_rad: f64,
     /// Reduced frequency, above 0.
     pub reduced_frequency: f64,
-    /// Steps per cycle.
+    /// Rows per cycle, 3 or more; the cycle is marched in a multiple of them, 720 steps or more.
     pub points: usize,
     /// How the section stalls; `None` is attached flow.
     pub stall: Option<StallParameters>,
@@ -62,6 +65,50 @@ pub struct LoopQuestion {
 fn check_points(points: usize) -> Result<(), SimError> {
     let fits = (1..=MOST_POINTS).contains(&points);
     within("number of points", points as f64, fits, "1 to 1000000")
+}
+
+/// Columns every loop has.
+const LOOP: [&str; 6] = ["phase_deg", "incidence_deg", "flap_deg", "cn", "cm", "ch"];
+/// Columns a stalled loop has beside them.
+const STALLED: [&str; 4] = ["cc", "cd_pressure", "f", "cn_vortex"];
+
+/// A cycle of a motion, marched finer than it is shown.
+struct Cycle {
+    inputs: Vec<SectionInputs>,
+    /// Length of a step, semichords.
+    ds: f64,
+    /// Steps to a row.
+    every: usize,
+}
+
+impl Cycle {
+    fn new(question: &LoopQuestion) -> Self {
+        let LoopQuestion { motion, mean_rad, amplitude_rad, reduced_frequency: k, points, .. } =
+            *question;
+        let every = FEWEST_STEPS.div_ceil(points);
+        let steps = points * every;
+        let inputs = (1..=steps)
+            .map(|n| {
+                let (sin, cos) = (TAU * n as f64 / steps as f64).sin_cos();
+                let mut inputs = inputs(motion, amplitude_rad * sin, amplitude_rad * k * cos);
+                inputs.modes[0] += mean_rad;
+                inputs
+            })
+            .collect();
+        Self { inputs, ds: TAU / k / steps as f64, every }
+    }
+
+    /// The rows of a march, one load or more per step.
+    fn rows(&self, loads: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let steps = self.inputs.len() as f64;
+        let ends = (self.every..=self.inputs.len()).step_by(self.every);
+        ends.map(|n| {
+            let modes = &self.inputs[n - 1].modes;
+            let place = [360.0 * n as f64 / steps, modes[0].to_degrees(), modes[2].to_degrees()];
+            place.into_iter().chain(loads[n - 1].iter().copied()).collect()
+        })
+        .collect()
+    }
 }
 
 /// Inputs of a motion at a value and a rate per semichord.
@@ -94,7 +141,7 @@ pub fn transient_history(question: &TransientQuestion) -> Result<SectionTable, S
     within("rise, semichords", rise, fits, "0 (a step), or 1e-6 to 1e6")?;
     check_points(points)?;
     let (section, ..) = question.section.coefficients()?;
-    let remarks = question.section.remarks(&section.remarks, motion, None);
+    let remarks = question.section.remarks(&section.remarks, Asked::Transient(motion));
     let section = MarchingSection::new(&section);
     let mut state = SectionState::at_rest(&section);
     // on the way up the rate is there at once, at the top it is gone at once
@@ -127,7 +174,18 @@ pub fn transient_history(question: &TransientQuestion) -> Result<SectionTable, S
     Ok(SectionTable {
         title: format!("unit {what} of {motion:?}, {name}, Mach {}", question.section.mach),
         remarks,
-        columns: vec!["S", "input", "cn", "cm", "ch"],
+        columns: match motion {
+            Motion::Flap | Motion::Pitch => {
+                vec!["s_semichords", "input_rad", "cn_per_rad", "cm_per_rad", "ch_per_rad"]
+            }
+            Motion::Plunge => vec![
+                "s_semichords",
+                "input_hdot_over_u",
+                "cn_per_hdot_over_u",
+                "cm_per_hdot_over_u",
+                "ch_per_hdot_over_u",
+            ],
+        },
         rows,
     })
 }
@@ -144,68 +202,54 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
     for (quantity, angle_rad) in [("mean, deg", mean_rad), ("amplitude, deg", amplitude_rad)] {
         within(quantity, angle_rad.to_degrees(), angle_rad.abs() <= HALF_TURN, "-180 to 180")?;
     }
-    check_points(points)?;
+    let fits = (FEWEST_POINTS..=MOST_POINTS).contains(&points);
+    within("number of points of a cycle", points as f64, fits, "3 to 1000000")?;
     let (coefficients, mach, flap) = question.section.coefficients()?;
-    let remarks = question.section.remarks(&coefficients.remarks, motion, Some(k));
+    let mut remarks = question.section.remarks(&coefficients.remarks, Asked::Harmonic(motion, k));
     let section = MarchingSection::new(&coefficients);
-    let ds = TAU / k / points as f64;
-    let cycle: Vec<CycleStep<'_>> = (1..=points)
-        .map(|n| {
-            let (sin, cos) = (TAU * n as f64 / points as f64).sin_cos();
-            let mut inputs = inputs(motion, amplitude_rad * sin, amplitude_rad * k * cos);
-            inputs.modes[0] += mean_rad;
-            CycleStep { section: &section, inputs, semichords: ds }
-        })
+    let cycle = Cycle::new(question);
+    let steps: Vec<CycleStep<'_>> = cycle
+        .inputs
+        .iter()
+        .map(|inputs| CycleStep { section: &section, inputs: *inputs, semichords: cycle.ds })
         .collect();
-    let moving = if motion == Motion::Flap { 2 } else { 0 };
-    let mut state = periodic_state(&cycle)?;
+    let mut state = periodic_state(&steps)?;
     let Some(parameters) = question.stall else {
-        let mut rows = Vec::with_capacity(points);
-        for step in &cycle {
-            let loads = state.step(step.section, &step.inputs, ds)?;
-            let angle = step.inputs.modes[moving].to_degrees();
-            rows.push([angle].into_iter().chain(loads).collect());
-        }
+        let march = |step: &SectionInputs| Ok(state.step(&section, step, cycle.ds)?.to_vec());
+        let loads: Vec<Vec<f64>> =
+            cycle.inputs.iter().map(march).collect::<Result<_, SimError>>()?;
         return Ok(SectionTable {
             title: title(question, "attached flow"),
             remarks,
-            columns: vec!["angle_deg", "cn", "cm", "ch"],
-            rows,
+            columns: LOOP.to_vec(),
+            rows: cycle.rows(&loads),
         });
     };
-    let stalling = StallSection::new(mach, flap, parameters)?;
-    let last = &cycle[points - 1].inputs;
+    remarks.extend(stall_remark(mach.value()));
+    let stalling = StallSection::new(mach, flap, parameters)?
+        .with_flap_effectiveness(&question.section.effectiveness);
+    let last = &cycle.inputs[cycle.inputs.len() - 1];
     let [cn, ..] = state.loads(&section, last)?;
     let mut stall = StallState::settled(&stalling, cn, &last.modes);
-    let mut rows: Vec<Vec<f64>> = Vec::new();
+    let mut loads: Vec<Vec<f64>> = Vec::new();
     let cycles = MOST_CYCLES + whole(SETTLING_DISTANCE * k / TAU);
     for _ in 0..cycles {
-        let mut next = Vec::with_capacity(points);
-        for step in &cycle {
-            let attached = state.step(step.section, &step.inputs, ds)?;
-            let loads = stall.step(&stalling, attached, &step.inputs.modes, ds)?;
-            let angle = step.inputs.modes[moving].to_degrees();
-            let incidence = step.inputs.modes[0];
-            next.push(vec![
-                angle,
-                loads.normal,
-                loads.moment,
-                loads.hinge,
-                loads.chord,
-                loads.pressure_drag(incidence),
-                loads.separation,
-                loads.vortex,
-            ]);
+        let mut next = Vec::with_capacity(cycle.inputs.len());
+        for inputs in &cycle.inputs {
+            let attached = state.step(&section, inputs, cycle.ds)?;
+            let l = stall.step(&stalling, attached, &inputs.modes, cycle.ds)?;
+            let drag = l.pressure_drag(inputs.modes[0]);
+            next.push(vec![l.normal, l.moment, l.hinge, l.chord, drag, l.separation, l.vortex]);
         }
-        let change = rows.iter().zip(&next).map(|(a, b)| (a[1] - b[1]).abs()).fold(0.0, f64::max);
-        let settled = rows.len() == next.len() && change <= REPEATED;
-        rows = next;
+        let change = loads.iter().zip(&next).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max);
+        let settled = loads.len() == next.len() && change <= REPEATED;
+        loads = next;
         if settled {
             return Ok(SectionTable {
                 title: title(question, &format!("dynamic stall, repeats to {change:.1e}")),
                 remarks,
-                columns: vec!["angle_deg", "cn", "cm", "ch", "cc", "cd_pressure", "f", "cn_vortex"],
-                rows,
+                columns: [&LOOP[..], &STALLED].concat(),
+                rows: cycle.rows(&loads),
             });
         }
     }

@@ -16,15 +16,15 @@ pub use polar::{PolarQuestion, polar};
 use crate::SimError;
 use crate::output::{Printable, table};
 use flap_aero::{
-    AttachedFlowModel, FlapChord, FlapEffectiveness, Mach, ModelRemarks, Motion,
-    SectionCoefficients, harmonic_response,
+    AttachedFlowModel, FlapChord, FlapEffectiveness, KNOWN_ERROR_BANDS, Mach, Mode, ModelRemarks,
+    Motion, SectionCoefficients, harmonic_response, known_error_percent,
 };
 use serde::Serialize;
 
 /// Largest reduced frequency of a question: far beyond what a section can do, and far from overflow.
 const FASTEST: f64 = 1e3;
 /// Largest reduced frequency whose error the calibration bounds.
-const FASTEST_CALIBRATED: f64 = 1.0;
+const FASTEST_MEASURED: f64 = 1.0;
 /// Mach number to which linear theory is good.
 const FASTEST_LINEAR: f64 = 0.7;
 
@@ -55,52 +55,119 @@ impl SectionChoice {
 
     /// What a reader of a response has to know: where the model left its own form, and how far it is
     /// from exact theory where that is far.
-    ///
-    /// `reduced_frequency` is that of a harmonic motion; a step or a ramp has none.
-    fn remarks(
-        &self,
-        remarks: &ModelRemarks,
-        motion: Motion,
-        reduced_frequency: Option<f64>,
-    ) -> Vec<&'static str> {
-        let unmatched = remarks.slope_unmatched.iter().flatten().any(|unmatched| *unmatched);
-        let flap = motion == Motion::Flap;
+    fn remarks(&self, of_model: &ModelRemarks, asked: Asked) -> Vec<String> {
         let of = |model| self.model == model;
-        let reconstructed = of(AttachedFlowModel::HariharanLeishman);
-        let steady = reduced_frequency.is_some_and(|k| k <= 0.0);
-        let fast = reduced_frequency.is_some_and(|k| k > FASTEST_CALIBRATED);
-        [
+        let (flap, k) = match asked {
+            Asked::Harmonic(motion, k) => (motion == Motion::Flap, Some(k)),
+            Asked::Transient(motion) => (motion == Motion::Flap, None),
+            Asked::Static => (false, None),
+        };
+        let fast = k.is_some_and(|k| k > FASTEST_MEASURED);
+        let mut remarks: Vec<String> = [
             (flap && self.flap_chord <= 0.0, "the section has no flap"),
-            (
-                reconstructed && flap && !steady,
-                "this form is about 30 % off exact theory in the lift of a flap; the calibrated \
-                 model is within 3 %",
-            ),
             (
                 of(AttachedFlowModel::Calibrated) && fast,
                 "the bounds of the calibration hold for reduced frequencies to 1",
             ),
             (
-                self.mach > FASTEST_LINEAR && !of(AttachedFlowModel::QuasiSteady),
-                "linear theory is good to about Mach 0.7",
+                self.mach > FASTEST_LINEAR,
+                "linear theory is good to about Mach 0.7: it knows no shocks",
             ),
             (
-                remarks.mach_floored,
+                of_model.mach_floored,
                 "the noncirculatory loads are those of a small Mach number above 0",
             ),
             (
-                remarks.mach_capped,
+                of_model.mach_capped,
                 "the coefficients are those of the highest Mach number calibrated",
-            ),
-            (
-                unmatched,
-                "an initial slope could not be matched: its time constant is the smallest used",
             ),
         ]
         .into_iter()
-        .filter_map(|(applies, text)| applies.then_some(text))
-        .collect()
+        .filter_map(|(applies, text)| applies.then(|| text.to_owned()))
+        .collect();
+        remarks.extend(self.known_error(asked));
+        match asked {
+            Asked::Transient(motion) => remarks.extend(unmatched_slopes(of_model, motion)),
+            Asked::Harmonic(motion, k) if k > 0.0 => {
+                remarks.extend(unmatched_slopes(of_model, motion));
+            }
+            _ => {}
+        }
+        remarks
     }
+
+    /// How far a model that is not fitted to exact theory is from it.
+    fn known_error(&self, asked: Asked) -> Option<String> {
+        let (motion, k) = match asked {
+            Asked::Harmonic(motion, k) if k > 0.0 => (motion, Some(k)),
+            Asked::Transient(motion) => (motion, None),
+            _ => return None,
+        };
+        if motion == Motion::Flap && self.flap_chord <= 0.0 {
+            return None;
+        }
+        let errors = known_error_percent(self.model, motion, self.mach)?;
+        let [slow, fast] = KNOWN_ERROR_BANDS;
+        let (band, to) = if k.is_some_and(|k| k <= slow) { (0, slow) } else { (1, fast) };
+        let [cn, cm, ch] = errors.map(|bands| bands[band]);
+        let beyond = if k.is_some_and(|k| k > fast) { ", not measured beyond" } else { "" };
+        let hinge =
+            if self.flap_chord > 0.0 { format!(" and {ch:.0} % in Ch") } else { String::new() };
+        let motion = format!("{motion:?}").to_lowercase();
+        Some(format!(
+            "this model is off exact theory by up to {cn:.0} % in Cn, {cm:.0} % in Cm{hinge} \
+             ({motion}, k to {to}{beyond}, near this Mach number, flaps of 0.1 to 0.4 chord); the \
+             calibrated model is within 4 % to k = 1 and Mach 0.7"
+        ))
+    }
+}
+
+/// What was asked of a section.
+#[derive(Debug, Clone, Copy)]
+enum Asked {
+    /// A motion at a reduced frequency.
+    Harmonic(Motion, f64),
+    /// A step or a ramp: all frequencies.
+    Transient(Motion),
+    /// Incidences held for ever.
+    Static,
+}
+
+/// Names the loads and inputs of a motion whose initial slope the slope-matched form does not have.
+fn unmatched_slopes(remarks: &ModelRemarks, motion: Motion) -> Option<String> {
+    let moved: &[Mode] = match motion {
+        Motion::Flap => &[Mode::Flap, Mode::FlapRate],
+        Motion::Pitch => &[Mode::Alpha, Mode::PitchRate],
+        Motion::Plunge => &[Mode::Alpha],
+    };
+    let loads = ["Cn", "Cm", "Ch"].iter().zip(&remarks.slope_unmatched);
+    let pairs: Vec<String> = loads
+        .flat_map(|(load, modes)| {
+            let unmatched = moved.iter().filter(|mode| modes[mode.index()]);
+            unmatched.map(move |mode| {
+                let input = ["alpha", "q", "delta", "q_delta"][mode.index()];
+                format!("{load} due to {input}")
+            })
+        })
+        .collect();
+    (!pairs.is_empty()).then(|| {
+        format!(
+            "no positive time constant has the initial slope of {}: the smallest used is taken",
+            pairs.join(", ")
+        )
+    })
+}
+
+/// Mach numbers of the published constants of the stall.
+const STALL_MACHS: [f64; 2] = [0.3, 0.8];
+
+/// What is held where a stall is asked for beyond its constants.
+fn stall_remark(mach: f64) -> Option<String> {
+    let [from, to] = STALL_MACHS;
+    let end = mach.clamp(from, to);
+    (mach < from || mach > to).then(|| {
+        format!("the constants of the stall are those of Mach {end}: published for {from} to {to}")
+    })
 }
 
 /// What is asked of a section.
@@ -118,12 +185,14 @@ pub struct SectionQuestion {
 /// moments on the full chord squared, about the quarter chord and the hinge.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SectionResult {
-    /// The model and where it comes from; not in the JSON, whose form is fixed.
+    /// The model and where it comes from; not in the JSON.
     #[serde(skip)]
     pub model: &'static str,
-    /// Where the model had to leave its own form to give an answer; not in the JSON.
+    /// What moves.
     #[serde(skip)]
-    pub remarks: Vec<&'static str>,
+    pub motion: Motion,
+    /// Where the model had to leave its own form to give an answer, and how far off it is.
+    pub remarks: Vec<String>,
     /// Normal force coefficient.
     pub cn: [f64; 2],
     /// Moment coefficient about the quarter chord, nose-up positive.
@@ -143,8 +212,8 @@ pub fn section_response(question: &SectionQuestion) -> Result<SectionResult, Sim
     let [cn, cm, ch] =
         harmonic_response(&section, k, question.motion).map(|value| [value.re, value.im]);
     let model = question.section.model.title();
-    let remarks = question.section.remarks(&section.remarks, question.motion, Some(k));
-    Ok(SectionResult { model, remarks, cn, cm, ch })
+    let remarks = question.section.remarks(&section.remarks, Asked::Harmonic(question.motion, k));
+    Ok(SectionResult { model, motion: question.motion, remarks, cn, cm, ch })
 }
 
 impl Printable for SectionResult {
@@ -178,17 +247,16 @@ impl Printable for SectionResult {
 pub struct SectionTable {
     /// What the table shows.
     pub title: String,
-    /// Where the model had to leave its own form, and how far off it is; not in the JSON.
-    #[serde(skip)]
-    pub remarks: Vec<&'static str>,
+    /// Where the model or a table had to leave its own form, and how far off it is.
+    pub remarks: Vec<String>,
     /// Names of the columns, with units.
     pub columns: Vec<&'static str>,
     /// The rows.
     pub rows: Vec<Vec<f64>>,
 }
 
-fn notes(remarks: &[&'static str]) -> String {
-    remarks.iter().flat_map(|remark| ["Note: ", remark, "\n"]).collect()
+fn notes(remarks: &[String]) -> String {
+    remarks.iter().flat_map(|remark| ["Note: ", remark.as_str(), "\n"]).collect()
 }
 
 /// Rows a person is shown; a file or JSON has all of them.
@@ -209,7 +277,16 @@ impl SectionResult {
     pub fn csv(&self) -> String {
         let rows = [("cn", self.cn), ("cm", self.cm), ("ch", self.ch)];
         let lines = rows.map(|(name, [re, im])| format!("{name},{re},{im}\n"));
-        format!("load,re,im\n{}", lines.concat())
+        let unit = per_unit(self.motion);
+        format!("load,re_{unit},im_{unit}\n{}", lines.concat())
+    }
+}
+
+/// What a load per unit of a motion is on.
+fn per_unit(motion: Motion) -> &'static str {
+    match motion {
+        Motion::Flap | Motion::Pitch => "per_rad",
+        Motion::Plunge => "per_hdot_over_u",
     }
 }
 

@@ -1,9 +1,9 @@
 //! Static curves of a section.
 
-use super::{SectionChoice, SectionTable, within};
+use super::{Asked, SectionChoice, SectionTable, stall_remark, within};
 use crate::SimError;
 use crate::files::{Folder, Source, airfoil_text, read_airfoil};
-use flap_aero::{StallParameters, StallSection, steady_response};
+use flap_aero::{C81Airfoil, StallParameters, StallSection, steady_response};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -53,10 +53,12 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
             title: format!("{}, Mach {mach}", airfoil.name),
             columns: vec!["incidence_deg", "cl", "cd", "cm"],
             rows: rows.collect(),
-            remarks: Vec::new(),
+            remarks: table_remarks(&airfoil, [from, to].map(f64::to_degrees), mach),
         });
     }
     let (section, mach, flap) = question.section.coefficients()?;
+    let mut remarks = question.section.remarks(&section.remarks, Asked::Static);
+    remarks.extend(question.stall.and_then(|_| stall_remark(mach.value())));
     let stalling = question.stall.map(|p| StallSection::new(mach, flap, p)).transpose()?;
     let rows = incidences.map(|a| {
         let modes = [a, 0.0, 0.0, 0.0];
@@ -77,5 +79,35 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     };
     let flow = if stalling.is_some() { "static stall" } else { "attached flow" };
     let title = format!("{}, Mach {}, {flow}", question.section.model.name(), mach.value());
-    Ok(SectionTable { title, remarks: Vec::new(), columns, rows })
+    Ok(SectionTable { title, remarks, columns, rows })
+}
+
+/// What of a table's answers is held at its ends, and what cannot be true in it.
+fn table_remarks(airfoil: &C81Airfoil, [from, to]: [f64; 2], mach: f64) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let tables = [("lift", &airfoil.lift), ("drag", &airfoil.drag), ("moment", &airfoil.moment)];
+    for (name, table) in tables {
+        let ends = |axis: &[f64]| [axis[0], axis[axis.len() - 1]];
+        let [first, last] = ends(table.machs());
+        if mach < first || mach > last {
+            remarks.push(format!(
+                "the {name} table is for Mach {first} to {last}: beyond, its end values are held"
+            ));
+        }
+        let [first, last] = ends(table.incidences_deg());
+        // a whole turn repeats
+        let round = from < -180.0 || to > 180.0;
+        let [low, high] = if round { [-180.0, 180.0] } else { [from, to] };
+        if low < first || high > last {
+            remarks.push(format!(
+                "the {name} table is for {first} to {last} deg: beyond, its end values are held"
+            ));
+        }
+    }
+    if let Some([incidence, mach, drag]) = airfoil.negative_drag() {
+        remarks.push(format!(
+            "the drag table has a negative drag, {drag} at {incidence} deg and Mach {mach}: no section has"
+        ));
+    }
+    remarks
 }

@@ -344,16 +344,35 @@ fn section_questions_outside_the_models() {
     place.hhc(&["section", "--response", "loop"]).rejected(&["--reduced-frequency"]);
     ask(&["--model", "calibrated", "--flap-chord", "0.05"])
         .rejected(&["flap chord ratio 0.05", "0.1 to 0.4"]);
-    ask(&["--response", "step", "--distance", "0"]).rejected(&["distance, semichords is 0"]);
-    ask(&["--response", "ramp", "--rise", "-1"]).rejected(&["rise, semichords is -1"]);
+    let respond = |response: &str, more: &[&str]| {
+        place.hhc(&[&["section", "--response", response], more].concat())
+    };
+    respond("step", &["--distance", "0"]).rejected(&["distance, semichords is 0"]);
+    respond("ramp", &["--rise", "-1"]).rejected(&["rise, semichords is -1"]);
     // numbers beyond all sense are refused too, not answered with NaN
     place.hhc(&["section", "--reduced-frequency", "1e300"]).rejected(&["expected 0 to 1000"]);
-    ask(&["--response", "step", "--distance", "1e308"]).rejected(&["above 0, to 1e6"]);
-    ask(&["--response", "ramp", "--rise", "1e-300"]).rejected(&["0 (a step), or 1e-6 to 1e6"]);
+    respond("step", &["--distance", "1e308"]).rejected(&["above 0, to 1e6"]);
+    respond("ramp", &["--rise", "1e-300"]).rejected(&["0 (a step), or 1e-6 to 1e6"]);
     ask(&["--response", "loop", "--mean-deg", "1e6"]).rejected(&["mean, deg is", "-180 to 180"]);
-    ask(&["--response", "polar", "--amplitude-deg", "1e9"]).rejected(&["first incidence, deg"]);
-    ask(&["--response", "polar", "--amplitude-deg", "-3"]).rejected(&["range of incidences"]);
-    ask(&["--response", "step", "--points", "0"]).rejected(&["number of points is 0"]);
+    respond("polar", &["--amplitude-deg", "1e9"]).rejected(&["first incidence, deg"]);
+    respond("polar", &["--amplitude-deg", "-3"]).rejected(&["range of incidences"]);
+    respond("polar", &["--amplitude-deg", "NaN"]).rejected(&["--amplitude-deg: is refused", "NaN"]);
+    respond("step", &["--points", "0"]).rejected(&["number of points is 0"]);
+    ask(&["--response", "loop", "--points", "2"]).rejected(&["number of points of a cycle is 2"]);
+    // what a response would not heed
+    for (response, option) in [
+        ("step", ["--reduced-frequency", "0.1"]),
+        ("step", ["--rise", "1"]),
+        ("ramp", ["--mean-deg", "1"]),
+        ("step", ["--amplitude-deg", "1"]),
+        ("polar", ["--motion", "pitch"]),
+        ("polar", ["--distance", "9"]),
+        ("polar", ["--effectiveness", "0.8,1,1"]),
+    ] {
+        let refused = format!("{}: is refused: it is used with", option[0]);
+        respond(response, &option).rejected(&[&refused]);
+    }
+    ask(&["--points", "9"]).rejected(&["--points: is refused"]);
     ask(&["--effectiveness", "0.8,1"]).rejected(&["flap effectiveness factors is 2"]);
     ask(&["--effectiveness", "0.8,1,7"]).rejected(&["flap effectiveness in hinge moment is 7"]);
     ask(&["--stall", "naca0012"]).rejected(&["--stall: is refused", "loop or polar only"]);
