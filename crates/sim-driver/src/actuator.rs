@@ -2,10 +2,10 @@
 
 use crate::SimError;
 use crate::case::{ActuatorSource, LoadedCase};
-use crate::files::{BenchData, read_bench};
+use crate::files::{BenchData, Source, read_bench};
 use crate::identification::{BenchIdentification, identify_bench};
 use crate::problem::{Fault, Place, Problem};
-use crate::stored_actuator::{StoredFit, read_actuator};
+use crate::stored_actuator::{StoredActuator, StoredFit, read_actuator};
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -69,14 +69,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         ActuatorSource::Stored { folder, file } => {
             let source = folder.read(file)?;
             let stored = read_actuator(&source)?;
-            if let Some(channels) = &stored.channels {
-                let message = format!(
-                    "a model from {} to {}: a case needs an actuator, from command_V to displacement_um",
-                    channels.input, channels.output
-                );
-                let place = Place::file(source.name).field("channels");
-                return Err(Problem::new(place, Fault::Refused { message }).into());
-            }
+            fits_case(loaded, &stored, &source)?;
             actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;
@@ -84,7 +77,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         }
     }
     if let Some(model) = &actuators.real {
-        within_model(loaded, range, model.range_volt)?;
+        within_model(loaded, model.range_volt)?;
     }
     let place = loaded.index.place("actuator.bench_rev_hz");
     actuators.warnings.extend(extrapolation_warnings(loaded, actuators.real.as_ref(), &place));
@@ -94,25 +87,41 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     Ok(actuators)
 }
 
+/// Refuses a stored model that is no actuator, or that does not know all voltages of the case.
+///
+/// # Errors
+/// [`Problem`] at the actuator file or at the range of the case.
+pub(crate) fn fits_case(
+    loaded: &LoadedCase,
+    stored: &StoredActuator,
+    source: &Source,
+) -> Result<(), Problem> {
+    if let Some(channels) = &stored.channels {
+        let message = format!(
+            "a model from {} to {}: a case needs an actuator, from command_V to displacement_um",
+            channels.input, channels.output
+        );
+        let place = Place::file(&source.name).field("channels");
+        return Err(Problem::new(place, Fault::Refused { message }));
+    }
+    within_model(loaded, stored.model.range_volt)
+}
+
 /// Refuses a range of voltages wider than the actuator model's: what the records do not cover the model
 /// does not know.
-fn within_model(
-    loaded: &LoadedCase,
-    range: VoltageRange,
-    known: VoltageRange,
-) -> Result<(), SimError> {
+fn within_model(loaded: &LoadedCase, known: VoltageRange) -> Result<(), Problem> {
     let slack = 1e-9 * known.span_volt();
-    let ends = [range.lowest_volt(), range.highest_volt()];
-    if ends.iter().all(|&volt| known.excess_volt(volt) <= slack) {
+    let (low_volt, high_volt) = loaded.case.actuator.range_volt;
+    if [low_volt, high_volt].iter().all(|&volt| known.excess_volt(volt) <= slack) {
         return Ok(());
     }
     let fault = Fault::RangeBeyondRecords {
-        low_volt: ends[0],
-        high_volt: ends[1],
+        low_volt,
+        high_volt,
         known_low_volt: known.lowest_volt(),
         known_high_volt: known.highest_volt(),
     };
-    Err(Problem::new(loaded.index.place("actuator.range_V"), fault).into())
+    Err(Problem::new(loaded.index.place("actuator.range_V"), fault))
 }
 
 /// Difference of the gains beyond which the ideal actuator is not the identified one without its

@@ -1,5 +1,6 @@
 //! `hhc check`: what kind of file it is, and every problem in it.
 
+use crate::actuator::fits_case;
 use crate::case::{ActuatorSource, LoadedCase, read_case};
 use crate::files::{Channel, DATASET, DataSet, Folder, RonIndex, Source, read_bench, read_dataset};
 use crate::output::Printable;
@@ -110,7 +111,10 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
             Err(missing(folder, file))
         }
         ActuatorSource::Stored { folder, file } => {
-            Ok(read_actuator(&folder.read(file)?)?.warnings())
+            let source = folder.read(file)?;
+            let stored = read_actuator(&source)?;
+            fits_case(loaded, &stored, &source)?;
+            Ok(stored.warnings())
         }
     }
 }

@@ -197,7 +197,7 @@ pub fn identify(
 
 /// Share of the spread of the training records beyond which what a model leaves is no misfit of its
 /// numbers but of its kind.
-const MOST_UNEXPLAINED: f64 = 0.5;
+pub const MOST_UNEXPLAINED: f64 = 0.5;
 
 /// Root mean square of the NRMSE of the training records.
 fn unexplained(reports: &[RecordReport]) -> f64 {

@@ -4,8 +4,9 @@ use super::{BenchIdentification, PickReason, RunFit};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, table};
 use crate::stored_actuator::{FitUse, StoredChannels, StoredFit};
+use model_gap::Use;
 use preisach_dyn::identify::{
-    Estimate, Family, Finding, ModelComparison, RecordUse, Refinement, Settings, Severity, Subject,
+    Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings, Severity, Subject,
 };
 use serde::Serialize;
 
@@ -38,10 +39,23 @@ impl BenchIdentification {
                 .comparison
                 .as_ref()
                 .map_or_else(Vec::new, |table| model_lines(table, subject)),
-            findings: found.findings.iter().map(|f| FindingLine::of(f, subject)).collect(),
+            findings: self.findings().iter().map(|f| FindingLine::of(f, subject)).collect(),
             density_determined: found.density_determined,
             written_to,
         }
+    }
+
+    /// What the data cannot tell; whether the model describes them is said of the model picked.
+    fn findings(&self) -> Vec<Finding> {
+        let mut findings = self.identification.summary.findings.clone();
+        findings.retain(|finding| !matches!(finding, Finding::NotDescribed { .. }));
+        let trained = self.fits.iter().filter(|fit| fit.error.used == Use::Train);
+        let squares: Vec<f64> = trained.map(|fit| fit.error.misfit.nrmse.powi(2)).collect();
+        let unexplained = (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt();
+        if unexplained > MOST_UNEXPLAINED {
+            findings.push(Finding::NotDescribed { nrmse_percent: 100.0 * unexplained });
+        }
+        findings
     }
 
     /// How the runs were split, in words.
