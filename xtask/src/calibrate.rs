@@ -5,7 +5,7 @@ use std::path::Path;
 use exact_section::calibration::{Calibration, calibrate};
 use exact_section::{ExactError, Possio, incompressible_loads, short_time, steady_loads};
 use flap_aero::{
-    AttachedFlowModel, FlapChord, Mach, Mode, Motion, harmonic_response, indicial_response,
+    AttachedFlowModel, FlapChord, Load, Mach, Mode, Motion, harmonic_response, indicial_response,
 };
 
 use crate::validate::CheckError;
@@ -182,8 +182,8 @@ pub fn short_time_deviation(
 ) -> Result<Option<f64>, CheckError> {
     let section = model.coefficients(Mach::new(mach)?, FlapChord::new(flap_chord)?)?;
     let reach = match mode {
-        Mode::Alpha | Mode::PitchRate => 1.0,
-        Mode::Flap | Mode::FlapRate => flap_chord,
+        Mode::Alpha | Mode::PitchRate if load != Load::Hinge.index() => 1.0,
+        _ => flap_chord,
     };
     let end = 2.0 * mach * reach / (1.0 + mach);
     let start = short_time(mach, flap_chord, 0.0)?[load][mode.index()];

@@ -94,9 +94,9 @@ fn held_for_ever_it_is_kirchhoffs_static_curve() {
 /// Leading-edge coefficient `A0` and normal force of the flap, each per rad of incidence and of flap angle,
 /// by quadrature over the chord of the steady loading of a bent plate.
 fn bent_plate(ratio: f64) -> [[f64; 2]; 2] {
-    let hinge = (1.0 - 2.0 * ratio).acos(); // from the trailing edge
-    let turned = |wake: f64| if wake < hinge { 1.0 } else { 0.0 };
     const N: u32 = 20_000;
+    let hinge = (1.0 - 2.0 * ratio).acos(); // from the trailing edge
+    let turned = |place: f64| if place < hinge { 1.0 } else { 0.0 };
     let mean = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| {
         let step = (to - from) / f64::from(N);
         (0..N).map(|i| f(from + step * (f64::from(i) + 0.5))).sum::<f64>() * step

@@ -4,7 +4,8 @@
 //! t = S/(2M) = a time / chord,    m = 1 - M
 //! ```
 //! Exact until a pressure wave has crossed what it loads: the chord for `alpha` and `q`,
-//! `t <= 1/(1 + M)`; the flap for `delta` and `q_delta`, `t <= E/(1 + M)`.
+//! `t <= 1/(1 + M)`; the flap for `delta`, `q_delta` and the hinge moment, `t <= E/(1 + M)`, before the
+//! wave of the leading edge has come to it, `t <= (1 - E)/(1 + M)`.
 //!
 //! Source: Lomax, Heaslet, Fuller and Sluder, NACA Report 1077 (1952), for `alpha` and `q`; the flap
 //! by the same rule (Evvard's, in the x-t plane), derived for this project.
@@ -15,7 +16,7 @@ use crate::ExactError;
 pub type ShortTime = [[Option<f64>; 4]; 3];
 
 /// Loads `[Cn, Cm, Ch]` at the distance `semichords` after a unit step of each downwash; `None`
-/// beyond the reach of the closed form, and where there is none (`Ch` of `alpha`, `q`, `q_delta`).
+/// beyond the reach of the closed form.
 ///
 /// # Errors
 /// [`ExactError::OutOfRange`] unless `0 < mach < 1`, `0 < flap_chord < 1` and `semichords >= 0`.
@@ -49,6 +50,12 @@ pub fn short_time(mach: f64, flap_chord: f64, semichords: f64) -> Result<ShortTi
         }
         loads[2][2] = Some(ch);
     }
+    if reach(flap_chord.min(1.0 - flap_chord)) {
+        let [alpha, q, rate] = hinge(mach, m, flap_chord, t);
+        loads[2][0] = Some(alpha);
+        loads[2][1] = Some(q);
+        loads[2][3] = Some(rate);
+    }
     Ok(loads)
 }
 
@@ -60,6 +67,28 @@ fn rigid(mach: f64, m: f64, t: f64) -> [[f64; 2]; 2] {
     [
         [4.0 * p * (1.0 - m * t), p * (1.0 - m * t + wave)],
         [-p * (1.0 - m * t - wave), -p / 12.0 * (7.0 - 15.0 * m * t + 6.0 * m * m * t2 + cubic)],
+    ]
+}
+
+/// `Ch` of `alpha`, `q` and `q_delta`.
+///
+/// The trailing edge takes from a downwash `1` the force `m t/2` with the moment `3 m^2 t^2/16` about the edge,
+/// from a downwash `-s` (`s` ahead of the edge) `m^2 t^2/16` and `m^3 t^3/48`, times `4/M`. The bend at the
+/// hinge gives the flap the moment `t^3 X` about it: the response to a step of the downwash there has the slope
+/// `S' = (1 - M/y)/(pi sqrt(1 - (y - M)^2))` in `y`, the distance aft over `t`, and `X = int y^3 S' dy / 6`.
+fn hinge(mach: f64, m: f64, e: f64, t: f64) -> [f64; 3] {
+    let p = 4.0 / mach;
+    let (mt, e2) = (m * t, e * e);
+    let even = 0.5 * e * mt - 0.1875 * mt * mt;
+    let sloped = e * mt * mt / 16.0 - mt * mt * mt / 48.0;
+    let beta = (1.0 - mach * mach).sqrt();
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let bend = (beta - beta * beta * beta / 3.0 + mach * (quarter + mach.asin()))
+        / (6.0 * std::f64::consts::PI);
+    [
+        -p * (0.5 * e2 - even),
+        -p * (0.375 * e2 - e2 * e / 6.0 - 0.75 * even - sloped),
+        -p * (e2 * e / 3.0 - e * even - sloped + bend * t * t * t),
     ]
 }
 

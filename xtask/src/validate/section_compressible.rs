@@ -270,6 +270,10 @@ fn short_time_tables() -> Result<f64, CheckError> {
             let start = short_time(mach, 0.2, 0.0)?;
             for (o, load) in ["cn", "cm25", "ch"].into_iter().enumerate() {
                 for (mode, name) in modes.into_iter().zip(names) {
+                    // the table of alpha and q knows no hinge
+                    if o == Load::Hinge.index() && mode < Mode::Flap.index() {
+                        continue;
+                    }
                     if let (Some(value), Some(start)) = (exact[o][mode], start[o][mode]) {
                         let cell = row.number(&format!("{load}_{name}"))?;
                         errors.push(Ok((value - cell).abs() / start.abs()));

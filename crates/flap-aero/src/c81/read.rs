@@ -132,19 +132,20 @@ fn table(
     machs: usize,
     incidences: usize,
 ) -> Result<C81Table, AeroError> {
-    let (_, mach_numbers) = row(lines, expected, false, machs)?;
+    let (line, _, mach_numbers) = row(lines, expected, false, machs)?;
+    let fault = |line, expected| AeroError::C81Text { line, column: 1, expected };
     if mach_numbers[0] < 0.0 {
-        return Err(lines.fault(1, expected.positive));
+        return Err(fault(line, expected.positive));
     }
     if ascending("Mach numbers", &mach_numbers).is_err() {
-        return Err(lines.fault(1, expected.machs));
+        return Err(fault(line, expected.machs));
     }
     let mut angles: Vec<f64> = Vec::with_capacity(incidences);
     let mut values = Vec::with_capacity(machs * incidences);
     for _ in 0..incidences {
-        let (angle, row) = row(lines, expected, true, machs)?;
+        let (line, angle, row) = row(lines, expected, true, machs)?;
         if angles.last().zip(angle).is_some_and(|(before, now)| now <= *before) {
-            return Err(lines.fault(1, expected.incidence));
+            return Err(fault(line, expected.incidence));
         }
         angles.extend(angle);
         values.extend(row);
@@ -152,19 +153,21 @@ fn table(
     C81Table::new(mach_numbers, angles, values)
 }
 
-/// One row: its incidence, if it has one, and `count` values, over as many lines as these need.
+/// One row: the line it begins on, its incidence, if it has one, and `count` values, over as many lines as these need.
 fn row(
     lines: &mut Lines<'_>,
     expected: &Expected,
     has_incidence: bool,
     count: usize,
-) -> Result<(Option<f64>, Vec<f64>), AeroError> {
+) -> Result<(usize, Option<f64>, Vec<f64>), AeroError> {
+    let mut begin = None;
     let mut incidence = None;
     let mut values: Vec<f64> = Vec::with_capacity(count);
     let mut first = has_incidence;
     while values.len() < count {
         let wanted = (count - values.len()).min(PER_LINE);
         let line = lines.next(expected.more)?;
+        let _ = begin.get_or_insert(lines.line);
         let mut numbers = match by_columns(line, first, wanted) {
             Ok(numbers) => numbers,
             Err(column) => by_words(line, usize::from(first) + count - values.len())
@@ -176,7 +179,7 @@ fn row(
         }
         values.extend(numbers);
     }
-    Ok((incidence, values))
+    Ok((begin.unwrap_or(lines.line), incidence, values))
 }
 
 /// The numbers of a line cut by columns; the column of the first field that is none.

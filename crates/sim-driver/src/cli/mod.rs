@@ -2,6 +2,7 @@
 
 mod args;
 mod commands;
+mod section;
 
 pub use args::{
     CheckArgs, Cli, Command, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride,
@@ -53,7 +54,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Import(args)) => commands::import(args),
         Some(Command::Modes(args)) => commands::modes(args),
         Some(Command::Wake(args)) => commands::wake(args),
-        Some(Command::Section(args)) => commands::section(args),
+        Some(Command::Section(args)) => section::section(args),
         Some(Command::Check(args)) => commands::check(args),
         Some(Command::Init(args)) => commands::init(args),
         Some(Command::Report(args)) => commands::report(args),

@@ -83,7 +83,8 @@ impl SectionChoice {
             ),
         ]
         .into_iter()
-        .filter_map(|(applies, text)| applies.then(|| text.to_owned()))
+        .filter(|(applies, _)| *applies)
+        .map(|(_, text)| text.to_owned())
         .collect();
         remarks.extend(self.known_error(asked));
         match asked {
