@@ -51,11 +51,10 @@ pub struct PeriodicInverse {
 
 /// Amplitudes closer than this share of the wanted one are not told apart when the reach is sought.
 const REACH_RESOLUTION: f64 = 1.0 / 128.0;
-/// Differences of a voltage coefficient in the Jacobian, as shares of the range: the first for smooth laws,
-/// the others after it has stalled, across the jumps of relays and friction.
-const DIFFERENCES: [f64; 3] = [1e-4, 3e-3, 2e-2];
+/// Difference of a voltage coefficient in the Jacobian, as a share of the range.
+const DIFFERENCE: f64 = 1e-4;
 /// Error of a coefficient, as a share of the wanted half peak to peak, that is accepted where no step makes
-/// it smaller: relays and friction answer a small step of the voltage by a jump or not at all.
+/// it smaller: friction and relays answer a small step of the voltage by a jump or not at all.
 const ACCEPTED: f64 = 2e-3;
 /// Halvings of a Newton step.
 const HALVINGS: usize = 7;
@@ -121,16 +120,6 @@ enum Stop {
     Stalled { iterations: usize, residual_deg: f64 },
     /// The simulation failed.
     Simulation(PreisachError),
-}
-
-impl Stop {
-    /// The same with the count of the steps before it.
-    fn after(self, iterations: usize, residual_deg: f64) -> Self {
-        match self {
-            Self::Stalled { .. } => Self::Stalled { iterations, residual_deg },
-            other => other,
-        }
-    }
 }
 
 impl From<PreisachError> for Stop {
@@ -226,81 +215,61 @@ impl<'a> Search<'a> {
         coefficients(&point.response.flap_deg, self.settings.voltage_harmonics) - target
     }
 
+    fn is_accepted(&self, residual_deg: f64) -> bool {
+        residual_deg <= self.settings.tolerance_deg.max(ACCEPTED * self.amplitude_deg)
+    }
+
     /// Newton's method for a share of the wanted motion.
     fn newton(&self, start: &Point, share: f64) -> Result<(Point, usize), Stop> {
         let target = self.target(share);
         let mut at = self.point(start.x.clone())?;
         let mut residual = self.residual(&at, &target);
-        let mut iterations = 0;
-        let mut first_stop = None;
-        for difference in DIFFERENCES {
-            let stop = loop {
-                let residual_deg = residual.amax();
-                if residual_deg <= self.settings.tolerance_deg {
-                    return Ok((at, iterations));
-                }
-                if iterations >= self.settings.largest_iterations {
-                    break Stop::Stalled { iterations, residual_deg };
-                }
-                match self.step(&at, &residual, &target, difference)? {
-                    Ok(better) => (at, residual) = better,
-                    Err(stop) => break stop.after(iterations, residual_deg),
-                }
-                iterations += 1;
-            };
-            if residual.amax() <= ACCEPTED * self.amplitude_deg {
+        for iterations in 0..self.settings.largest_iterations {
+            if residual.amax() <= self.settings.tolerance_deg {
                 return Ok((at, iterations));
             }
-            // what stopped the fine differences is the reason given
-            first_stop.get_or_insert(stop);
-        }
-        let residual_deg = residual.amax();
-        Err(first_stop.unwrap_or(Stop::Stalled { iterations, residual_deg }))
-    }
-
-    /// One Newton step with halvings: the better point and its residual, or why there is none.
-    #[expect(
-        clippy::type_complexity,
-        reason = "a simulation that fails ends the search, a step that leads nowhere does not"
-    )]
-    fn step(
-        &self,
-        at: &Point,
-        residual: &DVector<f64>,
-        target: &DVector<f64>,
-        difference: f64,
-    ) -> Result<Result<(Point, DVector<f64>), Stop>, PreisachError> {
-        let nowhere = || Stop::Stalled { iterations: 0, residual_deg: residual.amax() };
-        let jacobian = self.jacobian(at, difference)?;
-        let Some(step) = jacobian.lu().solve(residual) else {
-            return Ok(Err(nowhere()));
-        };
-        let mut stop = nowhere();
-        for halving in 0..HALVINGS {
-            let factor = 0.5_f64.powi(i32::try_from(halving).unwrap_or(0));
-            match self.point(&at.x - &step * factor) {
-                Ok(point) => {
-                    let next = self.residual(&point, target);
-                    if next.norm() < residual.norm() * (1.0 - 0.1 * factor) {
-                        return Ok(Ok((point, next)));
+            let jacobian = self.jacobian(&at)?;
+            let stalled = Stop::Stalled { iterations, residual_deg: residual.amax() };
+            let Some(step) = jacobian.lu().solve(&residual) else {
+                return Err(stalled);
+            };
+            let mut tried = Err(stalled);
+            for halving in 0..HALVINGS {
+                let factor = 0.5_f64.powi(i32::try_from(halving).unwrap_or(0));
+                match self.point(&at.x - &step * factor) {
+                    Ok(point) => {
+                        let next = self.residual(&point, &target);
+                        if next.norm() < residual.norm() * (1.0 - 0.1 * factor) {
+                            tried = Ok((point, next));
+                            break;
+                        }
                     }
-                }
-                // the whole step leaves the range: remembered, and a shorter one is tried
-                Err(error) => {
-                    if halving == 0 {
-                        stop = Stop::from(error);
+                    // the whole step leaves the range: remembered, and a shorter one is tried
+                    Err(error) => {
+                        if halving == 0 {
+                            tried = Err(Stop::from(error));
+                        }
                     }
                 }
             }
+            match tried {
+                Ok(better) => (at, residual) = better,
+                Err(_) if self.is_accepted(residual.amax()) => return Ok((at, iterations)),
+                Err(stop) => return Err(stop),
+            }
         }
-        Ok(Err(stop))
+        let residual_deg = residual.amax();
+        if self.is_accepted(residual_deg) {
+            return Ok((at, self.settings.largest_iterations));
+        }
+        Err(Stop::Stalled { iterations: self.settings.largest_iterations, residual_deg })
     }
 
     /// Differences of the flap's harmonics over those of the voltage, taken to the side that lies
     /// inside the range.
-    fn jacobian(&self, at: &Point, difference: f64) -> Result<DMatrix<f64>, PreisachError> {
+    fn jacobian(&self, at: &Point) -> Result<DMatrix<f64>, PreisachError> {
         let here = coefficients(&at.response.flap_deg, self.settings.voltage_harmonics);
-        let size = difference * self.model.range_volt.span_volt();
+        let size = DIFFERENCE * self.model.range_volt.span_volt();
         let columns = (0..at.x.len())
             .into_par_iter()
             .map(|k| {

@@ -6,7 +6,8 @@ use crate::output::{Printable, Sheet, table};
 use crate::stored_actuator::{FitUse, StoredChannels, StoredFit};
 use model_gap::Use;
 use preisach_dyn::identify::{
-    Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings, Severity, Subject,
+    Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings,
+    Severity, Subject,
 };
 use serde::Serialize;
 
