@@ -136,11 +136,25 @@ impl ActuatorModel {
     /// Refuses stages with parameters outside their ranges.
     ///
     /// # Errors
-    /// Names the parameter, its value and what it may be.
+    /// [`PreisachError::Stage`] names the first stage refused, its parameter and what it may be.
     pub fn check_stages(&self) -> Result<(), PreisachError> {
-        self.amplifier.iter().try_for_each(AmplifierStage::check)?;
-        self.linkage.iter().try_for_each(LinkageStage::check)?;
-        self.sensor.iter().try_for_each(SensorStage::check)
+        self.refused_stages().next().map_or(Ok(()), Err)
+    }
+
+    /// Every stage with a parameter outside its range, as [`PreisachError::Stage`], in the order of
+    /// the chain.
+    pub fn refused_stages(&self) -> impl Iterator<Item = PreisachError> {
+        let amplifier = self.amplifier.iter().map(|s| (s.name(), s.check())).enumerate();
+        let linkage = self.linkage.iter().map(|s| (s.name(), s.check())).enumerate();
+        let sensor = self.sensor.iter().map(|s| (s.name(), s.check())).enumerate();
+        let amplifier = amplifier.map(|stage| ("amplifier", stage));
+        let linkage = linkage.map(|stage| ("linkage", stage));
+        let sensor = sensor.map(|stage| ("sensor", stage));
+        let stages = amplifier.chain(linkage).chain(sensor);
+        stages.filter_map(|(list, (index, (stage, checked)))| {
+            let source = Box::new(checked.err()?);
+            Some(PreisachError::Stage { list, index, stage, source })
+        })
     }
 
     /// The chain made ready for one time step.

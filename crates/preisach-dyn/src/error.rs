@@ -35,6 +35,30 @@ pub enum PreisachError {
         /// Largest value allowed.
         most: f64,
     },
+    /// A quantity lies below the one it belongs to, or is not finite.
+    #[error("{quantity} is {value}, expected a finite number {relation} ({bound})")]
+    TooLow {
+        /// Name of the quantity, with its unit.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it has to be, in terms of the other quantity.
+        relation: &'static str,
+        /// The same as a number.
+        bound: f64,
+    },
+    /// A parameter of a stage of an actuator is refused.
+    #[error("{list}[{index}] ({stage}): {source}")]
+    Stage {
+        /// List of the stage: `amplifier`, `linkage` or `sensor`.
+        list: &'static str,
+        /// Place in the list, from 0.
+        index: usize,
+        /// Name of the stage.
+        stage: &'static str,
+        /// The parameter, its value and what it may be.
+        source: Box<PreisachError>,
+    },
     /// A number is NaN or infinite.
     #[error("{quantity} at index {index} is {value}, expected a finite number")]
     NotFinite {

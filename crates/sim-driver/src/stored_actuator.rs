@@ -4,7 +4,7 @@ use crate::SimError;
 use crate::files::{RonFile, Source, read_ron, ron_text, write_atomic};
 use crate::problem::{Fault, Problems};
 use preisach_dyn::identify::Settings;
-use preisach_dyn::{ActuatorLaw, ActuatorModel, Doubt, Weight};
+use preisach_dyn::{ActuatorLaw, ActuatorModel, Doubt, PreisachError, Weight};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -83,6 +83,9 @@ pub struct StoredFit {
     /// without a window that begins later than the record.
     #[serde(default)]
     pub start_up_percent: Option<f64>,
+    /// RMS error before the run's window, about the mean error inside, over the same range, percent.
+    #[serde(default)]
+    pub start_up_rms_percent: Option<f64>,
     /// NRMSE of the static model alone, percent.
     pub static_nrmse_percent: f64,
     /// Amplitude error, percent; none for transients.
@@ -147,6 +150,10 @@ impl StoredActuator {
     }
 }
 
+const CALIBRATION_REMEDY: &str = "give the flap angle per displacement of the actuator, deg/um";
+const GAIN_REMEDY: &str =
+    "give the flap angle per volt, negative if the flap falls with a rising voltage";
+
 /// Reads an actuator file and checks its model.
 ///
 /// # Errors
@@ -155,22 +162,33 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
     let RonFile { value, index, mut problems } = read_ron::<StoredActuator>(source);
     if let Some(stored) = &value {
         let calibration = stored.model.calibration;
+        let finite = "expected a finite number";
+        let not_zero = "expected a finite number other than 0";
         let mut numbers = vec![
-            ("model.calibration.deg_per_um", calibration.deg_per_um, calibration.deg_per_um != 0.0),
-            ("model.calibration.zero_um", calibration.zero_um, true),
+            ("calibration.deg_per_um", calibration.deg_per_um, not_zero, CALIBRATION_REMEDY),
+            ("calibration.zero_um", calibration.zero_um, finite, "correct it"),
         ];
         if let ActuatorLaw::Linear(gain) = &stored.model.law {
-            numbers.push(("model.law", gain.gain_deg_per_volt, gain.gain_deg_per_volt != 0.0));
-            numbers.push(("model.law", gain.bias_volt, true));
+            let (slope, bias) = (gain.gain_deg_per_volt, gain.bias_volt);
+            numbers.push(("law.gain_deg_per_volt", slope, not_zero, GAIN_REMEDY));
+            numbers.push(("law.bias_volt", bias, finite, "correct it"));
         }
-        if let Err(error) = stored.model.check_stages() {
-            problems.push(index.place("model"), Fault::Refused { message: error.to_string() });
-        }
-        for (field, value, ok) in numbers {
-            if !(ok && value.is_finite()) {
-                let message = format!("{value} is no actuator's number");
-                problems.push(index.place(field), Fault::Refused { message });
+        for (field, value, expected, remedy) in numbers {
+            if !value.is_finite() || (value == 0.0 && expected == not_zero) {
+                let name = field.rsplit('.').next().unwrap_or(field);
+                let message = format!("{name} is {value}, {expected}; {remedy}");
+                problems.push(index.place(&format!("model.{field}")), Fault::Refused { message });
             }
+        }
+        for error in stored.model.refused_stages() {
+            let (place, message) = match error {
+                PreisachError::Stage { list, index: i, stage, source } => {
+                    let at = format!("model.{list}[{i}]");
+                    (index.place(&at).field(&format!("{at} ({stage})")), source.to_string())
+                }
+                other => (index.place("model"), other.to_string()),
+            };
+            problems.push(place, Fault::Refused { message });
         }
         if problems.is_empty() {
             for doubt in stored.doubts().into_iter().filter(|d| d.weight == Weight::Impossible) {
@@ -257,6 +275,36 @@ mod tests {
         let stored = with("v_min_volt: -20, v_max_volt: 150", "v_min_volt: -200, v_max_volt: 500");
         let warnings = stored.unwrap().warnings();
         assert!(warnings.len() == 1 && warnings[0].contains("model.amplifier[2]"), "{warnings:?}");
+    }
+
+    #[test]
+    fn every_refused_stage_is_named_with_its_list_index_and_range() {
+        let text = BY_HAND
+            .replace("Lag(tau_s: 0.0005)", "Lag(tau_s: -1)")
+            .replace("rate_per_decade: 0.015", "rate_per_decade: 0.015, from_s: 10, to_s: 1");
+        let all = read_actuator(&source(&text)).unwrap_err().to_string();
+        for part in [
+            "actuator.ron:12:13: model.amplifier[0] (Lag)",
+            "tau_s is -1, expected a finite number that is not negative",
+            "model.linkage[0] (LogCreep)",
+            "to_s is 1, expected a finite number at least ten times from_s (100)",
+        ] {
+            assert!(all.contains(part), "{part}: {all}");
+        }
+    }
+
+    #[test]
+    fn a_gain_of_zero_is_refused_with_what_is_expected() {
+        let text = "(kind: Actuator, title: \"\", model: (
+            law: Linear(gain_deg_per_volt: 0, bias_volt: 65),
+            range_volt: (-20, 150), calibration: (deg_per_um: 0, zero_um: 0)))";
+        let all = read_actuator(&source(text)).unwrap_err().to_string();
+        for part in [
+            "model.law.gain_deg_per_volt: is refused: gain_deg_per_volt is 0, expected a finite number other than 0; give the flap angle per volt",
+            "model.calibration.deg_per_um: is refused: deg_per_um is 0, expected a finite number other than 0; give the flap angle per displacement",
+        ] {
+            assert!(all.contains(part), "{part}: {all}");
+        }
     }
 
     #[test]

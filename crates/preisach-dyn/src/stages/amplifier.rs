@@ -284,8 +284,8 @@ impl Depolarisation {
         }
         match self.repoling_volt {
             Some(above) if !(above.is_finite() && above > value) => {
-                let (quantity, least, most) = ("repoling_volt", value, f64::MAX);
-                Err(PreisachError::OutOfRange { quantity, value: above, least, most })
+                let (quantity, relation) = ("repoling_volt", "above threshold_volt");
+                Err(PreisachError::TooLow { quantity, value: above, relation, bound: value })
             }
             _ => Ok(()),
         }

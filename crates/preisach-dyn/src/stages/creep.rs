@@ -31,7 +31,7 @@ pub struct LogCreep {
     /// Time after a step at which creep is counted zero, s.
     #[serde(default = "usual_start_s")]
     pub from_s: f64,
-    /// Time after a step at which creep ends, s.
+    /// Time after a step at which creep ends, s, at least ten times the first.
     #[serde(default = "usual_end_s")]
     pub to_s: f64,
 }
@@ -58,15 +58,11 @@ impl LogCreep {
             let quantity = "rate_per_decade";
             return Err(PreisachError::OutOfRange { quantity, value: rate, least: 0.0, most: 1.0 });
         }
-        let least = self.from_s * 10.0;
-        if self.to_s < least {
-            let most = f64::MAX;
-            return Err(PreisachError::OutOfRange {
-                quantity: "to_s",
-                value: self.to_s,
-                least,
-                most,
-            });
+        let bound = self.from_s * 10.0;
+        if self.to_s < bound {
+            let (quantity, value) = ("to_s", self.to_s);
+            let relation = "at least ten times from_s";
+            return Err(PreisachError::TooLow { quantity, value, relation, bound });
         }
         Ok(())
     }

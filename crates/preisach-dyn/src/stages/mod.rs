@@ -280,6 +280,18 @@ impl StageStep {
 }
 
 impl AmplifierStage {
+    /// Name of the stage, as in an actuator file.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Lag(_) => "Lag",
+            Self::CurrentLimit(_) => "CurrentLimit",
+            Self::Saturation(_) => "Saturation",
+            Self::Delay(_) => "Delay",
+            Self::DielectricHeating(_) => "DielectricHeating",
+            Self::Depolarisation(_) => "Depolarisation",
+        }
+    }
+
     /// Refuses parameters outside their ranges.
     pub(crate) fn check(&self) -> Result<(), PreisachError> {
         match self {
@@ -305,6 +317,20 @@ impl AmplifierStage {
 }
 
 impl LinkageStage {
+    /// Name of the stage, as in an actuator file.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::LogCreep(_) => "LogCreep",
+            Self::KelvinVoigt(_) => "KelvinVoigt",
+            Self::Relaxation(_) => "Relaxation",
+            Self::Accommodation(_) => "Accommodation",
+            Self::Resonance(_) => "Resonance",
+            Self::Backlash(_) => "Backlash",
+            Self::CoulombFriction(_) => "CoulombFriction",
+            Self::LoadStiffness(_) => "LoadStiffness",
+        }
+    }
+
     /// Refuses parameters outside their ranges.
     pub(crate) fn check(&self) -> Result<(), PreisachError> {
         match self {
@@ -339,6 +365,17 @@ impl LinkageStage {
 }
 
 impl SensorStage {
+    /// Name of the stage, as in an actuator file.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Filter(_) => "Filter",
+            Self::Nonlinearity(_) => "Nonlinearity",
+            Self::Quantisation(_) => "Quantisation",
+            Self::Delay(_) => "Delay",
+            Self::MainsHum(_) => "MainsHum",
+        }
+    }
+
     /// Refuses parameters outside their ranges.
     pub(crate) fn check(&self) -> Result<(), PreisachError> {
         match self {

@@ -81,12 +81,12 @@ fn judge(
                 .iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &y| (l.min(y), h.max(y)));
             let of_range = 100.0 / (high - low);
-            let missed = |i: usize| (measured[i] - simulated[i] - misfit.bias).abs();
-            let before = (0..window.start).map(missed).fold(0.0, f64::max);
+            let start_up = StartUp::of(&measured[..window.start], &simulated, misfit.bias);
             Ok(RunFit {
                 range_percent: (misfit.rms.powi(2) - misfit.bias.powi(2)).max(0.0).sqrt()
                     * of_range,
-                start_up_percent: (window.start > 0).then_some(before * of_range),
+                start_up_percent: start_up.map(|miss| miss.largest * of_range),
+                start_up_rms_percent: start_up.map(|miss| miss.rms * of_range),
                 error: RunError {
                     id: record.id.clone(),
                     used: match report.record_use {
@@ -105,6 +105,28 @@ fn judge(
         .collect()
 }
 
+/// What a model misses before a window, about the mean error inside it, in the unit of the output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct StartUp {
+    largest: f64,
+    rms: f64,
+}
+
+impl StartUp {
+    /// None without samples before the window.
+    fn of(measured: &[f64], simulated: &[f64], mean_error: f64) -> Option<Self> {
+        if measured.is_empty() {
+            return None;
+        }
+        let missed = || measured.iter().zip(simulated).map(|(y, model)| y - model - mean_error);
+        let squares: f64 = missed().map(|e| e * e).sum();
+        Some(Self {
+            largest: missed().map(f64::abs).fold(0.0, f64::max),
+            rms: (squares / measured.len() as f64).sqrt(),
+        })
+    }
+}
+
 /// How a model fits one record, over the window of its run if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunFit {
@@ -115,6 +137,8 @@ pub struct RunFit {
     /// Largest error before the window, less the mean error inside, over the range of the measured
     /// output inside, percent: the miss of the start-up. None without a window that begins later.
     pub start_up_percent: Option<f64>,
+    /// RMS error of the same samples, percent of the same range.
+    pub start_up_rms_percent: Option<f64>,
     /// NRMSE of the static model.
     pub static_nrmse: f64,
     /// Share of the output's energy that is neither explained nor noise; none without repeated cycles.
@@ -141,6 +165,7 @@ impl RunFit {
             range_percent: Some(self.range_percent),
             offset: Some(self.error.misfit.bias),
             start_up_percent: self.start_up_percent,
+            start_up_rms_percent: self.start_up_rms_percent,
             static_nrmse_percent: 100.0 * self.static_nrmse,
             amplitude_error_percent: first.map(|f| 100.0 * (f.amplitude_ratio - 1.0)),
             phase_error_deg: first.map(|f| f.phase_error_deg),

@@ -253,9 +253,9 @@ impl Printable for IdentifyResult {
             "\nNRMSE: rms error / standard deviation of the measured output. Of range: rms error with its mean\nremoved / range of the measured output; offset: that mean, measured less simulated, in the output's\nunit. Amplitude and phase error at the strongest harmonic of the command, steady cycles; positive phase:\nthe model lags too much. Structured: share of the output's energy that is neither explained nor noise of\nrepeated cycles. A run with a window is judged inside it."
         ));
         for run in &self.runs {
-            if let Some(percent) = run.start_up_percent {
+            if let (Some(rms), Some(most)) = (run.start_up_rms_percent, run.start_up_percent) {
                 sheet.line(format_args!(
-                    "Before its window {} is missed by up to {percent:.2} % of range.",
+                    "Before its window {} is missed by rms {rms:.2} %, at most {most:.2} % of range.",
                     run.id
                 ));
             }

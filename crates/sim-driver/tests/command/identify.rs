@@ -28,12 +28,14 @@ fn a_window_bounds_every_figure() {
         let judged: Vec<bool> =
             place.read("f/loop_b.csv").lines().skip(1).map(|l| l.ends_with(",1")).collect();
         let keys = ["range_percent", "offset", "amplitude_error_percent"];
-        (keys.map(|key| number(key).unwrap()), number("start_up_percent"), judged)
+        let start_up = number("start_up_percent").zip(number("start_up_rms_percent"));
+        (keys.map(|key| number(key).unwrap()), start_up, judged)
     };
     let ([range, offset, amplitude], start_up, judged) = fit(", window_s: (6, 9.99)");
     assert!(range < 1.0 && (offset - 0.25).abs() < 0.01, "{range} {offset}");
     assert!(amplitude.abs() < 1.0, "{amplitude}");
-    assert!(start_up.unwrap() > 20.0, "{start_up:?}");
+    let (most, rms) = start_up.unwrap();
+    assert!(most > 20.0 && rms > 5.0 && rms < 0.9 * most, "{most} {rms}");
     assert_eq!(judged.iter().position(|j| *j), Some(600));
     assert!(judged[600..].iter().all(|j| *j));
     let (whole, start_up, judged) = fit("");

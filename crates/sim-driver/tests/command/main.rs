@@ -8,3 +8,4 @@ mod identify;
 mod import;
 mod place;
 mod rotor;
+mod stages_doc;

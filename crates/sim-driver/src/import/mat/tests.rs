@@ -1,7 +1,8 @@
 //! MAT files written byte by byte here, in both byte orders, plain and compressed.
 
+use super::bytes::Bytes;
 use super::select::select;
-use super::value::{MatValue, read_variables};
+use super::value::{MatValue, inflate, read_variables};
 use super::*;
 use flate2::write::ZlibEncoder;
 use proptest::prelude::*;
@@ -290,4 +291,15 @@ proptest! {
         file.extend(bytes);
         let _ = read_variables(&file);
     }
+}
+
+#[test]
+fn a_compressed_variable_is_not_inflated_beyond_the_room_left() {
+    let mut encoder = ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    encoder.write_all(&[0; 100_000]).unwrap();
+    let packed = encoder.finish().unwrap();
+    let bytes = Bytes::new(&packed, 0, true, true);
+    assert_eq!(inflate(&bytes, 100_000).unwrap().len(), 100_000);
+    let refused = inflate(&bytes, 99_999).unwrap_err();
+    assert!(refused.to_string().contains("more than 1 GiB"), "{refused}");
 }

@@ -26,8 +26,8 @@ pub(super) type Variables = Vec<(String, MatValue)>;
 
 /// Deepest nesting of structures and cells.
 const DEEPEST: usize = 32;
-/// Most bytes of one decompressed variable.
-const LARGEST_VARIABLE: u64 = 1 << 30;
+/// Most bytes of the decompressed variables of a file together.
+const MOST_DECOMPRESSED: usize = 1 << 30;
 /// Length of the header.
 const HEADER: usize = 128;
 
@@ -92,12 +92,14 @@ pub(super) fn read_variables(file: &[u8]) -> Result<Variables, RecordFault> {
     let body = file.get(HEADER..).unwrap_or_default();
     let mut bytes = Bytes::new(body, HEADER, little_endian, false);
     let mut variables = Variables::new();
+    let mut room = MOST_DECOMPRESSED;
     while !bytes.is_empty() {
         let element = bytes.element()?;
         match element.kind {
             MATRIX => variables.push(array(element.bytes, 0)?),
             COMPRESSED => {
-                let data = inflate(&element.bytes)?;
+                let data = inflate(&element.bytes, room)?;
+                room -= data.len();
                 let mut inner = Bytes::new(&data, 0, little_endian, true);
                 let element = inner.element()?;
                 if element.kind != MATRIX {
@@ -114,15 +116,16 @@ pub(super) fn read_variables(file: &[u8]) -> Result<Variables, RecordFault> {
     Ok(variables)
 }
 
-fn inflate(bytes: &Bytes<'_>) -> Result<Vec<u8>, RecordFault> {
+/// The bytes of a compressed variable, `room` at most.
+pub(super) fn inflate(bytes: &Bytes<'_>, room: usize) -> Result<Vec<u8>, RecordFault> {
     let mut data = Vec::new();
     let decoder = flate2::read::ZlibDecoder::new(bytes.rest());
     decoder
-        .take(LARGEST_VARIABLE + 1)
+        .take(room as u64 + 1)
         .read_to_end(&mut data)
         .map_err(|_| bytes.fault("a compressed variable cannot be decompressed"))?;
-    if data.len() as u64 > LARGEST_VARIABLE {
-        return Err(bytes.fault("a variable has more than 1 GiB"));
+    if data.len() > room {
+        return Err(bytes.fault("the compressed variables have more than 1 GiB together"));
     }
     Ok(data)
 }
