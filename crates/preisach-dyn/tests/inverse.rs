@@ -6,8 +6,8 @@ mod common;
 use common::Wavy;
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, InverseSettings,
-    LinkageStage, PlayMap, PlayMemory, PreisachError, RateForm, StartState, StaticPreisach,
-    TimeOrder, VoltageRange,
+    PlayMap, PlayMemory, PreisachError, RateForm, StartState, StaticPreisach, TimeOrder,
+    VoltageRange,
 };
 use proptest::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
