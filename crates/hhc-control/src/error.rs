@@ -237,7 +237,10 @@ impl std::fmt::Display for PlantCall {
 #[non_exhaustive]
 pub enum RunError<E: std::error::Error + 'static> {
     /// The plant did not answer.
-    #[error("the plant failed when {call}, after {} recorded control steps: {source}", history.len())]
+    #[error(
+        "the plant failed when {call}, after {} recorded control steps: {source}",
+        history.len()
+    )]
     Plant {
         /// What it was asked.
         call: PlantCall,

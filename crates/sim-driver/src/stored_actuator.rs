@@ -184,7 +184,7 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
             let (place, message) = match error {
                 PreisachError::Stage { list, index: i, stage, source } => {
                     let at = format!("model.{list}[{i}]");
-                    (index.place(&at).field(&format!("{at} ({stage})")), source.to_string())
+                    (index.place(&at).field(format!("{at} ({stage})")), source.to_string())
                 }
                 other => (index.place("model"), other.to_string()),
             };

@@ -296,7 +296,7 @@ proptest! {
 #[test]
 fn a_compressed_variable_is_not_inflated_beyond_the_room_left() {
     let mut encoder = ZlibEncoder::new(Vec::new(), flate2::Compression::best());
-    encoder.write_all(&[0; 100_000]).unwrap();
+    encoder.write_all(&vec![0; 100_000]).unwrap();
     let packed = encoder.finish().unwrap();
     let bytes = Bytes::new(&packed, 0, true, true);
     assert_eq!(inflate(&bytes, 100_000).unwrap().len(), 100_000);
