@@ -322,9 +322,14 @@ impl<S: Simulator> Search<'_, S> {
             Verdict::Named
         };
         let strong = causes.iter().all(|c| c.drop > STRONG * self.screened[c.candidate].threshold);
+        // a cause whose own signal was not measured may stand for any other slow or scaling error
+        let guessed = causes.iter().flat_map(|c| &c.parameters).find_map(|p| p.needs);
+        if let Some(needs) = guessed {
+            reasons.push(format!("without {needs} a name that needs it is tentative"));
+        }
         let sure = match verdict {
             Verdict::NothingMissing => settings.has_reference,
-            Verdict::Named => settings.has_reference && strong,
+            Verdict::Named => settings.has_reference && strong && guessed.is_none(),
             _ => false,
         };
         let confidence = if sure { Confidence::Confident } else { Confidence::Tentative };
