@@ -17,21 +17,12 @@ pub struct PeriodicSettings {
     pub closure_deg: f64,
     /// Revolutions to try.
     pub largest_revolutions: usize,
-    /// Change from one revolution to the next, deg, with which an orbit is taken for closed when all
-    /// revolutions are used up: states that settle like a power of time never reach `closure_deg`.
-    pub creeping_deg: f64,
 }
 
 impl Default for PeriodicSettings {
-    /// 720 steps, 24 harmonics, closed to 1e-9 deg within 100 revolutions, or to 1e-5 deg after them.
+    /// 720 steps, 24 harmonics, closed to 1e-9 deg within 100 revolutions, mean within 0.001 deg.
     fn default() -> Self {
-        Self {
-            steps_per_rev: 720,
-            harmonics: 24,
-            closure_deg: 1e-9,
-            largest_revolutions: 100,
-            creeping_deg: 1e-5,
-        }
+        Self { steps_per_rev: 720, harmonics: 24, closure_deg: 1e-9, largest_revolutions: 100 }
     }
 }
 
@@ -106,18 +97,12 @@ impl ActuatorModel {
             self.start_loaded(voltage_volt.mean, load_newton.mean, StartState::Rest)?;
         let mut orbit = self.continue_drive(&mut memory, &revolution)?;
         let mut closure_deg = f64::INFINITY;
-        let last = settings.largest_revolutions.max(2);
-        for revolutions_used in 2..=last {
+        for revolutions_used in 2..=settings.largest_revolutions.max(2) {
             let before = memory.clone();
             let next = self.continue_drive(&mut memory, &revolution)?;
             closure_deg = orbit.iter().zip(&next).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
             orbit = next;
-            let allowed_deg = if revolutions_used == last {
-                settings.closure_deg.max(settings.creeping_deg)
-            } else {
-                settings.closure_deg
-            };
-            if closure_deg <= allowed_deg {
+            if closure_deg <= settings.closure_deg {
                 let flap_deg = HarmonicSeries::from_uniform_samples(&orbit, settings.harmonics)?;
                 return Ok(PeriodicResponse {
                     voltage_volt: voltage_volt.clone(),
@@ -133,7 +118,7 @@ impl ActuatorModel {
         Err(PreisachError::OrbitNotClosed {
             revolutions: settings.largest_revolutions,
             closure_deg,
-            allowed_deg: settings.closure_deg.max(settings.creeping_deg),
+            allowed_deg: settings.closure_deg,
         })
     }
 

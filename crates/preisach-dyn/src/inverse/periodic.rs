@@ -22,7 +22,7 @@ pub struct InverseSettings {
 }
 
 impl Default for InverseSettings {
-    /// 48 harmonics to 1e-4 deg, within 25 steps, or to 0.2 % of the amplitude where no step gets nearer: the corners that plays make at reversals need many.
+    /// 48 harmonics to 1e-4 deg, within 25 steps: the corners that plays make at reversals need many.
     fn default() -> Self {
         Self {
             periodic: PeriodicSettings::default(),
@@ -53,9 +53,6 @@ pub struct PeriodicInverse {
 const REACH_RESOLUTION: f64 = 1.0 / 128.0;
 /// Difference of a voltage coefficient in the Jacobian, as a share of the range.
 const DIFFERENCE: f64 = 1e-4;
-/// Error of a coefficient, as a share of the wanted half peak to peak, that is accepted where no step makes
-/// it smaller: friction and relays answer a small step of the voltage by a jump or not at all.
-const ACCEPTED: f64 = 2e-3;
 /// Halvings of a Newton step.
 const HALVINGS: usize = 7;
 
@@ -215,10 +212,6 @@ impl<'a> Search<'a> {
         coefficients(&point.response.flap_deg, self.settings.voltage_harmonics) - target
     }
 
-    fn is_accepted(&self, residual_deg: f64) -> bool {
-        residual_deg <= self.settings.tolerance_deg.max(ACCEPTED * self.amplitude_deg)
-    }
-
     /// Newton's method for a share of the wanted motion.
     fn newton(&self, start: &Point, share: f64) -> Result<(Point, usize), Stop> {
         let target = self.target(share);
@@ -252,14 +245,10 @@ impl<'a> Search<'a> {
                     }
                 }
             }
-            match tried {
-                Ok(better) => (at, residual) = better,
-                Err(_) if self.is_accepted(residual.amax()) => return Ok((at, iterations)),
-                Err(stop) => return Err(stop),
-            }
+            (at, residual) = tried?;
         }
         let residual_deg = residual.amax();
-        if self.is_accepted(residual_deg) {
+        if residual_deg <= self.settings.tolerance_deg {
             return Ok((at, self.settings.largest_iterations));
         }
         Err(Stop::Stalled { iterations: self.settings.largest_iterations, residual_deg })
