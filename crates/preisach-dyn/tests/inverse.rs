@@ -5,9 +5,10 @@ mod common;
 
 use common::Wavy;
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, InverseSettings,
-    PlayMap, PlayMemory, PreisachError, RateForm, StartState, StaticPreisach, TimeOrder,
-    VoltageRange,
+    ActuatorLaw, ActuatorModel, Backlash, Calibration, CoulombFriction, DynamicParameters,
+    DynamicPreisach, InverseSettings, LinkageStage, LoadStiffness, PeriodicInverse,
+    PeriodicSettings, PlayMap, PlayMemory, PreisachError, RateForm, RelayGrid, Resonance,
+    StartState, StaticPreisach, TimeOrder, VoltageRange,
 };
 use proptest::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -174,4 +175,131 @@ proptest! {
             prop_assert!((found - u).abs() < 1e-8, "{found} {u}");
         }
     }
+}
+
+/// The joints that stick.
+fn sticking(width_um: f64) -> [(&'static str, LinkageStage); 2] {
+    [
+        ("backlash", LinkageStage::Backlash(Backlash { width_um })),
+        ("Coulomb friction", LinkageStage::CoulombFriction(CoulombFriction { width_um })),
+    ]
+}
+
+fn behind(model: &ActuatorModel, linkage: &[LinkageStage]) -> ActuatorModel {
+    ActuatorModel { linkage: linkage.to_vec(), ..model.clone() }
+}
+
+/// Error of the mean and of 1 to 4/rev, deg.
+fn low_error_deg(found: &PeriodicInverse, wanted: &HarmonicSeries) -> f64 {
+    let flap = &found.response.flap_deg;
+    (1..=4).fold((flap.mean - wanted.mean).abs(), |worst, n| {
+        let (got, asked) = (flap.harmonic(n), wanted.harmonic(n));
+        worst.max((got.cosine - asked.cosine).abs()).max((got.sine - asked.sine).abs())
+    })
+}
+
+/// From rest no small voltage moves the flap behind such a joint: Newton's method alone has a singular
+/// matrix there.
+#[test]
+fn joints_that_stick_are_undone() {
+    let model = actuator(ActuatorLaw::StaticPreisach(static_model(24)));
+    let wanted = target(5.0);
+    let settings = InverseSettings { voltage_harmonics: 96, ..InverseSettings::default() };
+    // 0.16 deg
+    for (name, joint) in sticking(4.0) {
+        let found = behind(&model, &[joint]).periodic_inverse(&wanted, REV_HZ, &settings).unwrap();
+        let percent = 100.0 * found.largest_error_deg / found.amplitude_deg;
+        println!("{name}: largest error {percent:.3} % of amplitude");
+        assert!(percent <= 0.5, "{name}: {percent}");
+        assert!(low_error_deg(&found, &wanted) <= settings.tolerance_deg, "{name}");
+    }
+}
+
+/// At every reversal the flap rests for one period of the highest harmonic, in which the wanted motion
+/// turns with the square of time. A gap narrower than the turn of that period leaves less.
+#[test]
+fn the_error_behind_a_gap_falls_with_the_square_of_the_harmonics() {
+    let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
+    let model = behind(&model, &[LinkageStage::Backlash(Backlash { width_um: 25.0 })]);
+    let periodic = PeriodicSettings { steps_per_rev: 2880, ..PeriodicSettings::default() };
+    let mut wanted = HarmonicSeries::zero(3);
+    wanted.set_harmonic(3, Harmonic::from_amplitude_phase(5.0, 1.9));
+    let percent = [60, 120].map(|voltage_harmonics| {
+        let settings =
+            InverseSettings { voltage_harmonics, periodic, ..InverseSettings::default() };
+        let found = model.periodic_inverse(&wanted, REV_HZ, &settings).unwrap();
+        100.0 * found.largest_error_deg / found.amplitude_deg
+    });
+    let order = (percent[0] / percent[1]).log2();
+    println!("largest error {percent:.3?} % of amplitude, order {order:.2}");
+    assert!(order > 1.7, "{percent:?}");
+}
+
+#[test]
+fn joints_and_modes_in_any_order_give_the_wanted_harmonics() {
+    let width_um = 3.0;
+    let gap = LinkageStage::Backlash(Backlash { width_um });
+    let friction = LinkageStage::CoulombFriction(CoulombFriction { width_um });
+    let mode = LinkageStage::Resonance(Resonance { frequency_hz: 180.0, damping_ratio: 0.02 });
+    let load = LinkageStage::LoadStiffness(LoadStiffness {
+        stiffness_ratio: 0.1,
+        compliance_um_per_newton: 0.0,
+    });
+    let settings = InverseSettings { voltage_harmonics: 16, ..InverseSettings::default() };
+    let wanted = target(2.0);
+    for (name, linkage) in [
+        ("a gap before a mode", vec![gap.clone(), mode.clone()]),
+        ("friction under a load", vec![friction.clone(), load.clone()]),
+        ("two joints", vec![load, gap, mode, friction]),
+    ] {
+        let model = behind(&dynamic(), &linkage);
+        let found = model.periodic_inverse(&wanted, REV_HZ, &settings).unwrap();
+        let error_deg = low_error_deg(&found, &wanted);
+        println!("{name}: {error_deg:e} deg, {} steps", found.iterations);
+        assert!(error_deg <= settings.tolerance_deg, "{name}: {error_deg}");
+    }
+}
+
+#[test]
+fn the_reach_behind_a_gap_is_the_flaps() {
+    let settings = InverseSettings { voltage_harmonics: 12, ..InverseSettings::default() };
+    let model = behind(&dynamic(), &[LinkageStage::Backlash(Backlash { width_um: 40.0 })]);
+    let error = model.periodic_inverse(&target(9.0), REV_HZ, &settings).unwrap_err();
+    let PreisachError::MotionOutOfReach { wanted_deg, reachable_deg, .. } = error else {
+        panic!("{error}");
+    };
+    let free = dynamic().periodic_inverse(&target(9.0), REV_HZ, &settings).unwrap_err();
+    let PreisachError::MotionOutOfReach { wanted_deg: same, reachable_deg: free_deg, .. } = free
+    else {
+        panic!("{free}");
+    };
+    println!("within reach: {reachable_deg} deg, without the gap {free_deg} deg");
+    assert!((wanted_deg - same).abs() < 1e-12);
+    // the gap takes half its width, 0.8 deg, from each side of the motion
+    assert!((free_deg - reachable_deg - 0.8).abs() < 0.3, "{free_deg} {reachable_deg}");
+    let share = |part: f64| target(9.0 * part * reachable_deg / wanted_deg);
+    assert!(model.periodic_inverse(&share(0.999), REV_HZ, &settings).is_ok());
+    assert!(model.periodic_inverse(&share(1.05), REV_HZ, &settings).is_err());
+}
+
+/// A relay output has steps: the voltage of the plays moves it as close as the relays are fine.
+#[test]
+fn relays_are_moved_by_the_voltage_of_their_plays() {
+    let statics = static_model(24);
+    let settings = InverseSettings { voltage_harmonics: 24, ..InverseSettings::default() };
+    let off = |relays_per_cell| {
+        let relays = RelayGrid::new(*statics.grid(), statics.map().clone(), relays_per_cell);
+        let model = actuator(ActuatorLaw::RelayGrid(relays.unwrap()));
+        let found = model.periodic_inverse(&target(5.0), REV_HZ, &settings).unwrap();
+        let again = model.periodic_response(
+            &found.response.voltage_volt,
+            REV_HZ,
+            &PeriodicSettings { harmonics: 24, ..settings.periodic },
+        );
+        assert_eq!(again.unwrap().samples_deg, found.response.samples_deg);
+        low_error_deg(&found, &target(5.0))
+    };
+    let (coarse, fine) = (off(2), off(32));
+    println!("relays: {coarse:e} deg with 2 per cell, {fine:e} with 32");
+    assert!(fine < 0.01 && fine < 0.2 * coarse, "{coarse} {fine}");
 }

@@ -3,9 +3,9 @@
 
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Calibration, CurrentLimit, Delay,
-    DielectricHeating, DynamicParameters, DynamicPreisach, KelvinVoigt, KelvinVoigtElement, Lag,
-    LinkageStage, LoadStiffness, LogCreep, MainsHum, PeriodicSettings, PlayMap, PreisachError,
+    Accommodation, ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Calibration, CurrentLimit,
+    Delay, DielectricHeating, DynamicParameters, DynamicPreisach, KelvinVoigt, KelvinVoigtElement,
+    Lag, LinkageStage, LoadStiffness, LogCreep, MainsHum, PeriodicSettings, PlayMap, PreisachError,
     PreisachGrid, RateForm, Resonance, SensorStage, StartState, StaticPreisach, TimeOrder,
     VoltageRange,
 };
@@ -332,4 +332,50 @@ fn a_hinge_moment_bends_the_orbit() {
     );
     let error = static_model().periodic_response_loaded(&volts, &load, REV_HZ, &settings);
     assert!(matches!(error, Err(PreisachError::NoLoadStage)));
+}
+
+/// A share that settles with a way of many revolutions is taken to where it ends, before and behind a
+/// stage that changes the way.
+#[test]
+fn a_slow_accommodation_closes_where_a_long_march_ends() {
+    let accommodation =
+        LinkageStage::Accommodation(Accommodation { share: 0.08, travel_um: 60_000.0 });
+    let load = LinkageStage::LoadStiffness(LoadStiffness {
+        stiffness_ratio: 0.2,
+        compliance_um_per_newton: 0.0,
+    });
+    let volts = command(65.0, &[(2, 30.0, -10.0), (3, 5.0, 20.0)]);
+    let settings = PeriodicSettings::default();
+    for linkage in [
+        vec![accommodation.clone()],
+        vec![load.clone(), accommodation.clone()],
+        vec![accommodation, load],
+    ] {
+        let model = ActuatorModel { linkage, ..static_model() };
+        let orbit = model.periodic_response(&volts, REV_HZ, &settings).unwrap();
+        assert!(orbit.revolutions_used < 12, "{}", orbit.revolutions_used);
+        // marched without any haste
+        let steps = settings.steps_per_rev;
+        let azimuth = |i: usize| TAU * i as f64 / steps as f64;
+        let revolution: Vec<f64> = (0..steps).map(|i| volts.value(azimuth(i))).collect();
+        let mut memory = model.start(volts.mean, StartState::Rest).unwrap();
+        let stepper = model.stepper(1.0 / (REV_HZ * steps as f64)).unwrap();
+        let mut last = Vec::new();
+        let mut way = 0.0;
+        for _ in 0..2500 {
+            last = revolution.iter().map(|&u| stepper.step(&mut memory, u, 0.0).unwrap()).collect();
+        }
+        for (a, b) in orbit.samples_deg.iter().zip(&last) {
+            way = f64::max(way, (a - b).abs());
+        }
+        assert!(way < 1e-7, "{way}");
+        // and it is slow indeed
+        let mut memory = model.start(volts.mean, StartState::Rest).unwrap();
+        for _ in 0..3 {
+            last = revolution.iter().map(|&u| stepper.step(&mut memory, u, 0.0).unwrap()).collect();
+        }
+        let early =
+            orbit.samples_deg.iter().zip(&last).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(early > 1e-3, "{early}");
+    }
 }

@@ -489,7 +489,7 @@ fn accommodation_settles_with_the_way_and_not_with_time() {
     let cycles = sampled(40, 1.0, |i| if i.rem_euclid(2.0) < 0.5 { 0.0 } else { 80.0 });
     let tops = measured(&model, &cycles, 1.0);
     assert_abs_diff_eq!(tops[37], tops[39], epsilon = 1e-9);
-    for (share, travel_um) in [(-0.1, 60.0), (1.1, 60.0), (0.1, 0.0), (f64::NAN, 60.0)] {
+    for (share, travel_um) in [(-0.1, 60.0), (0.6, 60.0), (0.1, 0.0), (f64::NAN, 60.0)] {
         let stage = LinkageStage::Accommodation(Accommodation { share, travel_um });
         assert!(linkage(stage).start(0.0, preisach_dyn::StartState::Rest).is_err());
     }
@@ -521,12 +521,20 @@ fn backlash_loops_have_their_width_and_friction_approaches_it() {
     let top = 7250;
     let flat = input[top..].iter().position(|x| *x < 40.0 - width).unwrap();
     assert!(exact_play[top..top + flat].windows(2).all(|p| (p[1] - p[0]).abs() < 1e-9));
-    // friction: the closed form of a long monotone move, y = x - r (1 - 2 exp(-(x - x_turn) / r))
+    // friction: the closed form of a move from the turn of a steady loop of travel 80,
+    // y = x - r + (r + e) exp(-(x - x_turn) / 2r), e = r tanh(80 / 4r) the stretch at the turns
     let r = 0.5 * width;
+    let both = r + r * (80.0 / (2.0 * width)).tanh();
     let bottom = 7750;
     for i in bottom..bottom + 240 {
-        let exact = input[i] - r * (1.0 - 2.0 * (-(input[i] - input[bottom]) / r).exp());
+        let exact = input[i] - r + both * (-(input[i] - input[bottom]) / width).exp();
         assert_abs_diff_eq!(friction[i], exact, epsilon = 1e-6);
+    }
+    // it stands still at the reversal and never moves against its input
+    assert!((friction[top + 1] - friction[top]).abs() < 1e-3 * (input[top] - input[top + 1]));
+    for (x, y) in input.windows(2).zip(friction.windows(2)) {
+        let (way, followed) = (x[1] - x[0], y[1] - y[0]);
+        assert!(way * followed >= -1e-18 && followed.abs() <= way.abs() + 1e-12, "{x:?} {y:?}");
     }
     // any sampling of the same path gives the same samples
     let coarse: Vec<f64> = input.iter().step_by(125).copied().collect();

@@ -76,11 +76,15 @@ pub(super) const AREA: Area = Area {
         exact("V-ACT-17", "resonance under a ramp, steps of a third of its period", resonance),
         exact("V-ACT-18", "backlash of 3 um: width of the loop, off by", backlash),
         exact("V-ACT-19", "Coulomb friction: long monotone moves", || {
-            long_moves(LinkageStage::CoulombFriction(CoulombFriction { width_um: 6.0 }), 3.0, 1.0)
+            long_moves(
+                LinkageStage::CoulombFriction(CoulombFriction { width_um: 6.0 }),
+                [3.0, 6.0],
+                1.0,
+            )
         }),
         exact("V-ACT-20", "accommodation of 20 %: long monotone moves", || {
             let stage = Accommodation { share: 0.2, travel_um: 40.0 };
-            long_moves(LinkageStage::Accommodation(stage), 40.0, 0.2)
+            long_moves(LinkageStage::Accommodation(stage), [40.0; 2], 0.2)
         }),
         exact("V-ACT-21", "load spring a quarter as stiff: gain, off 1/1.25 by", load),
         Check {
@@ -250,13 +254,13 @@ fn backlash() -> Result<f64, CheckError> {
 }
 
 /// Up, down and up again by a long way: what stays behind tends to `way` exponentially.
-fn long_moves(stage: LinkageStage, way: f64, share: f64) -> Result<f64, CheckError> {
+fn long_moves(stage: LinkageStage, [limit, way]: [f64; 2], share: f64) -> Result<f64, CheckError> {
     let input = [0.0, 7.0, 90.0, 60.0, -40.0, 55.0];
     let output = behind(stage, &input, 1.0)?;
     let (mut behind, mut last, mut largest) = (0.0, 0.0, 0.0_f64);
     for (u, y) in input.iter().zip(output) {
         let change: f64 = u - last;
-        let goal = way * change.signum();
+        let goal = limit * change.signum();
         behind = goal + (behind - goal) * (-change.abs() / way).exp();
         last = *u;
         largest = largest.max((y - (u - share * behind)).abs());

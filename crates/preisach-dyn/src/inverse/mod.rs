@@ -8,6 +8,8 @@
 //! The bias that keeps a mean of zero under a given control is another question: the mean is then the
 //! only unknown, and the controller answers it.
 
+mod joints;
+mod newton;
 mod periodic;
 mod sample;
 

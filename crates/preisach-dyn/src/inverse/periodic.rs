@@ -1,10 +1,11 @@
-//! Periodic voltage for a wanted periodic flap history, by Newton's method on harmonics.
+//! Periodic voltage for a wanted periodic flap history.
 
-use crate::actuator::check_positive;
-use crate::{ActuatorModel, PeriodicResponse, PeriodicSettings, PreisachError};
-use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
-use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use super::joints::LastJoint;
+use super::newton::Search;
+use crate::{
+    ActuatorLaw, ActuatorModel, PeriodicResponse, PeriodicSettings, PreisachError, StaticPreisach,
+};
+use rotor_base::HarmonicSeries;
 use serde::{Deserialize, Serialize};
 
 /// Settings of a periodic inverse.
@@ -49,13 +50,6 @@ pub struct PeriodicInverse {
     pub iterations: usize,
 }
 
-/// Amplitudes closer than this share of the wanted one are not told apart when the reach is sought.
-const REACH_RESOLUTION: f64 = 1.0 / 128.0;
-/// Difference of a voltage coefficient in the Jacobian, as a share of the range.
-const DIFFERENCE: f64 = 1e-4;
-/// Halvings of a Newton step.
-const HALVINGS: usize = 7;
-
 impl ActuatorModel {
     /// The periodic voltage under which the flap moves as wanted.
     ///
@@ -67,6 +61,16 @@ impl ActuatorModel {
     /// inside [`ActuatorModel::range_volt`] at every step. The orbit starts from rest at its mean
     /// voltage, as in [`ActuatorModel::periodic_response`]. If the wanted motion is not found at once,
     /// it is approached through smaller amplitudes of the same shape.
+    ///
+    /// Behind a joint that sticks ([`crate::Backlash`], [`crate::CoulombFriction`]) no small change of
+    /// the voltage moves the flap from rest, and none moves it while the gap is taken up. There the
+    /// joint is undone exactly, what is asked of its input is found as above, and Newton's method
+    /// ends with the harmonics that `wanted_deg` has. The jumps that a gap asks for at reversals are
+    /// spread over one period of the highest voltage harmonic; what that leaves is in
+    /// [`PeriodicInverse::largest_error_deg`] and falls with its square.
+    ///
+    /// A [`crate::RelayGrid`] moves in steps, which have no inverse: the voltage is that of the plays
+    /// with the same density, the motion and its error those of the relays.
     ///
     /// # Errors
     /// [`PreisachError::MotionOutOfReach`] if the voltage range ends before the motion is reached: it
@@ -80,263 +84,16 @@ impl ActuatorModel {
         settings: &InverseSettings,
     ) -> Result<PeriodicInverse, PreisachError> {
         let search = Search::new(self, wanted_deg, rev_hz, settings)?;
-        let mut at = search.rest()?;
-        let (mut share, mut step, mut iterations) = (0.0, 1.0, 0);
-        loop {
-            let next = f64::min(1.0, share + step);
-            match search.newton(&at, next) {
-                Ok((found, used)) => {
-                    iterations += used;
-                    if next >= 1.0 {
-                        return Ok(search.solution(found, iterations));
-                    }
-                    (at, share) = (found, next);
-                }
-                Err(stop) => {
-                    step *= 0.5;
-                    if step < REACH_RESOLUTION {
-                        return Err(search.failure(&at, share, stop));
-                    }
-                }
-            }
+        if let ActuatorLaw::RelayGrid(relays) = &self.law {
+            let plays = StaticPreisach::new(*relays.grid(), relays.map().clone())?;
+            let law = ActuatorLaw::StaticPreisach(plays);
+            let smooth = Self { law, ..self.clone() };
+            let found = smooth.periodic_inverse(wanted_deg, rev_hz, settings)?;
+            return search.evaluated(&found.response.voltage_volt, found.iterations);
         }
-    }
-}
-
-/// A command with its orbit.
-struct Point {
-    x: DVector<f64>,
-    response: PeriodicResponse,
-}
-
-/// Why Newton's method stopped short.
-enum Stop {
-    /// The voltage range ended, at this azimuth and voltage.
-    Range { azimuth_deg: f64, voltage_volt: f64 },
-    /// It did not converge.
-    Stalled { iterations: usize, residual_deg: f64 },
-    /// The simulation failed.
-    Simulation(PreisachError),
-}
-
-impl From<PreisachError> for Stop {
-    fn from(error: PreisachError) -> Self {
-        match error {
-            PreisachError::CommandOutOfRange { azimuth_deg, voltage_volt, .. } => {
-                Self::Range { azimuth_deg, voltage_volt }
-            }
-            other => Self::Simulation(other),
+        match LastJoint::of(self) {
+            Some(joint) => joint.inverse(self, wanted_deg, rev_hz, settings),
+            None => search.from_rest(),
         }
-    }
-}
-
-struct Search<'a> {
-    model: &'a ActuatorModel,
-    wanted: DVector<f64>,
-    wanted_samples: Vec<f64>,
-    amplitude_deg: f64,
-    rev_hz: f64,
-    settings: InverseSettings,
-}
-
-impl<'a> Search<'a> {
-    fn new(
-        model: &'a ActuatorModel,
-        wanted_deg: &HarmonicSeries,
-        rev_hz: f64,
-        settings: &InverseSettings,
-    ) -> Result<Self, PreisachError> {
-        check_positive("rev_hz", rev_hz)?;
-        check_positive("tolerance_deg", settings.tolerance_deg)?;
-        let (value, least) = (settings.voltage_harmonics, wanted_deg.harmonics.len().max(1));
-        if value < least {
-            return Err(PreisachError::TooFew { quantity: "voltage_harmonics", value, least });
-        }
-        let wanted = coefficients(wanted_deg, value);
-        if let Some((index, &value)) = wanted.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-            return Err(PreisachError::NotFinite { quantity: "wanted flap (deg)", index, value });
-        }
-        let mut settings = *settings;
-        settings.periodic.harmonics = settings.periodic.harmonics.max(value);
-        let azimuths = uniform_azimuths_rad(settings.periodic.steps_per_rev);
-        let wanted_samples: Vec<f64> = azimuths.iter().map(|&psi| wanted_deg.value(psi)).collect();
-        let [low, high] = wanted_samples
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
-        let amplitude_deg = 0.5 * (high - low);
-        Ok(Self { model, wanted, wanted_samples, amplitude_deg, rev_hz, settings })
-    }
-
-    fn point(&self, x: DVector<f64>) -> Result<Point, PreisachError> {
-        let response =
-            self.model.periodic_response(&series(&x), self.rev_hz, &self.settings.periodic)?;
-        Ok(Point { x, response })
-    }
-
-    /// The constant voltage whose output is the wanted mean, by bisection; the nearer end of the
-    /// range if there is none.
-    fn rest(&self) -> Result<Point, PreisachError> {
-        let range = self.model.range_volt;
-        let constant = |volt: f64| {
-            let mut x = DVector::zeros(self.wanted.len());
-            x[0] = volt;
-            self.point(x)
-        };
-        let off = |point: &Point| point.response.flap_deg.mean - self.wanted[0];
-        let (mut low, mut high) = (range.lowest_volt(), range.highest_volt());
-        let rises = off(&constant(high)?) > off(&constant(low)?);
-        let mut middle = constant(0.5 * (low + high))?;
-        for _ in 0..40 {
-            let error = off(&middle);
-            if error.abs() <= self.settings.tolerance_deg {
-                break;
-            }
-            if (error > 0.0) == rises {
-                high = middle.x[0];
-            } else {
-                low = middle.x[0];
-            }
-            middle = constant(0.5 * (low + high))?;
-        }
-        Ok(middle)
-    }
-
-    /// The target at a share of the wanted motion: its mean in full, its harmonics scaled.
-    fn target(&self, share: f64) -> DVector<f64> {
-        let mut target = &self.wanted * share;
-        target[0] = self.wanted[0];
-        target
-    }
-
-    fn residual(&self, point: &Point, target: &DVector<f64>) -> DVector<f64> {
-        coefficients(&point.response.flap_deg, self.settings.voltage_harmonics) - target
-    }
-
-    /// Newton's method for a share of the wanted motion.
-    fn newton(&self, start: &Point, share: f64) -> Result<(Point, usize), Stop> {
-        let target = self.target(share);
-        let mut at = self.point(start.x.clone())?;
-        let mut residual = self.residual(&at, &target);
-        for iterations in 0..self.settings.largest_iterations {
-            if residual.amax() <= self.settings.tolerance_deg {
-                return Ok((at, iterations));
-            }
-            let jacobian = self.jacobian(&at)?;
-            let stalled = Stop::Stalled { iterations, residual_deg: residual.amax() };
-            let Some(step) = jacobian.lu().solve(&residual) else {
-                return Err(stalled);
-            };
-            let mut tried = Err(stalled);
-            for halving in 0..HALVINGS {
-                let factor = 0.5_f64.powi(i32::try_from(halving).unwrap_or(0));
-                match self.point(&at.x - &step * factor) {
-                    Ok(point) => {
-                        let next = self.residual(&point, &target);
-                        if next.norm() < residual.norm() * (1.0 - 0.1 * factor) {
-                            tried = Ok((point, next));
-                            break;
-                        }
-                    }
-                    // the whole step leaves the range: remembered, and a shorter one is tried
-                    Err(error) => {
-                        if halving == 0 {
-                            tried = Err(Stop::from(error));
-                        }
-                    }
-                }
-            }
-            (at, residual) = tried?;
-        }
-        let residual_deg = residual.amax();
-        if residual_deg <= self.settings.tolerance_deg {
-            return Ok((at, self.settings.largest_iterations));
-        }
-        Err(Stop::Stalled { iterations: self.settings.largest_iterations, residual_deg })
-    }
-
-    /// Differences of the flap's harmonics over those of the voltage, taken to the side that lies
-    /// inside the range.
-    fn jacobian(&self, at: &Point) -> Result<DMatrix<f64>, PreisachError> {
-        let here = coefficients(&at.response.flap_deg, self.settings.voltage_harmonics);
-        let size = DIFFERENCE * self.model.range_volt.span_volt();
-        let columns = (0..at.x.len())
-            .into_par_iter()
-            .map(|k| {
-                let shifted = |difference: f64| {
-                    let mut x = at.x.clone();
-                    x[k] += difference;
-                    let flap = self.point(x)?.response.flap_deg;
-                    let there = coefficients(&flap, self.settings.voltage_harmonics);
-                    Ok::<_, PreisachError>((there - &here) / difference)
-                };
-                shifted(size).or_else(|_| shifted(-size)).or_else(|_| {
-                    // both sides leave the range: the command touches both ends there
-                    shifted(1e-6 * size)
-                })
-            })
-            .collect::<Result<Vec<_>, PreisachError>>()?;
-        Ok(DMatrix::from_columns(&columns))
-    }
-
-    fn solution(&self, point: Point, iterations: usize) -> PeriodicInverse {
-        let errors = || {
-            let pairs = point.response.samples_deg.iter().zip(&self.wanted_samples);
-            pairs.map(|(a, b)| a - b)
-        };
-        let squares: f64 = errors().map(|e| e * e).sum();
-        PeriodicInverse {
-            largest_error_deg: errors().fold(0.0, |m, e| e.abs().max(m)),
-            rms_error_deg: (squares / self.wanted_samples.len() as f64).sqrt(),
-            amplitude_deg: self.amplitude_deg,
-            iterations,
-            response: point.response,
-        }
-    }
-
-    /// The error of a search that ended at `share` of the wanted motion.
-    fn failure(&self, at: &Point, share: f64, stop: Stop) -> PreisachError {
-        match stop {
-            Stop::Simulation(error) => error,
-            Stop::Stalled { iterations, residual_deg } => {
-                PreisachError::InverseNotConverged { iterations, residual_deg, share }
-            }
-            Stop::Range { azimuth_deg, voltage_volt } => {
-                let command = series(&at.x);
-                let strongest = (1..=command.harmonics.len()).max_by(|&a, &b| {
-                    let amplitude = |n: usize| command.harmonic(n).amplitude();
-                    amplitude(a).total_cmp(&amplitude(b))
-                });
-                PreisachError::MotionOutOfReach {
-                    wanted_deg: self.amplitude_deg,
-                    reachable_deg: share * self.amplitude_deg,
-                    harmonic: strongest.unwrap_or(1),
-                    rev_hz: self.rev_hz,
-                    azimuth_deg,
-                    voltage_volt,
-                    lowest_volt: self.model.range_volt.lowest_volt(),
-                    highest_volt: self.model.range_volt.highest_volt(),
-                }
-            }
-        }
-    }
-}
-
-/// Mean, then cosine and sine of each harmonic.
-fn coefficients(series: &HarmonicSeries, count: usize) -> DVector<f64> {
-    let mut x = DVector::zeros(2 * count + 1);
-    x[0] = series.mean;
-    for n in 1..=count {
-        let harmonic = series.harmonic(n);
-        x[2 * n - 1] = harmonic.cosine;
-        x[2 * n] = harmonic.sine;
-    }
-    x
-}
-
-fn series(x: &DVector<f64>) -> HarmonicSeries {
-    let harmonics = (1..x.len()).step_by(2);
-    HarmonicSeries {
-        mean: x[0],
-        harmonics: harmonics.map(|i| Harmonic { cosine: x[i], sine: x[i + 1] }).collect(),
     }
 }

@@ -34,7 +34,8 @@ use amplifier::{
 use creep::{CreepMemory, CreepStep};
 use delay::{DelayMemory, DelayStep};
 use lag::{LagMemory, LagStep};
-use linkage::{FrictionStep, LoadStep, PlayStep};
+pub(crate) use linkage::FrictionStep;
+use linkage::{LoadStep, PlayStep};
 use resonance::{ResonanceMemory, ResonanceStep};
 use sensor::{HumStep, NonlinearityStep, QuantisationStep};
 use serde::{Deserialize, Serialize};
@@ -258,11 +259,12 @@ impl StageStep {
         }
     }
 
-    /// Takes slow linear states to where a periodic input will leave them.
+    /// Takes slow states to where a periodic input will leave them.
     ///
     /// ```text
     /// x(T) = e x(0) + b   =>   x* = (x(T) - e x(0)) / (1 - e),   e = exp(-T / tau)
     /// ```
+    /// `e = exp(-way travelled / way)` where a state settles with the way.
     pub(crate) fn settle(&self, before: &StageMemory, now: &mut StageMemory, period_s: f64) {
         match (self, before, now) {
             (Self::Lag(step), StageMemory::Lag(before), StageMemory::Lag(now)) => {
@@ -273,6 +275,9 @@ impl StageStep {
             }
             (Self::Creep(step), StageMemory::Creep(before), StageMemory::Creep(now)) => {
                 step.settle(before, now, period_s);
+            }
+            (Self::Friction(step), StageMemory::Friction(before), StageMemory::Friction(now)) => {
+                step.settle(before, now);
             }
             _ => {}
         }
@@ -352,12 +357,12 @@ impl LinkageStage {
             Self::KelvinVoigt(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Relaxation(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Accommodation(stage) => {
-                StageStep::Friction(FrictionStep::new(stage.travel_um * deg, stage.share))
+                StageStep::Friction(FrictionStep::accommodation(stage.travel_um * deg, stage.share))
             }
             Self::Resonance(stage) => StageStep::Resonance(stage.prepared(step_s)),
             Self::Backlash(stage) => StageStep::Play(PlayStep::new(0.5 * stage.width_um * deg)),
             Self::CoulombFriction(stage) => {
-                StageStep::Friction(FrictionStep::new(0.5 * stage.width_um * deg, 1.0))
+                StageStep::Friction(FrictionStep::dry(0.5 * stage.width_um * deg))
             }
             Self::LoadStiffness(stage) => StageStep::Load(stage.prepared(calibration.deg_per_um)),
         }

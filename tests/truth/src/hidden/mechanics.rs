@@ -16,11 +16,14 @@ pub enum Mechanics {
         /// Mean total width, um.
         width_um: f64,
     },
-    /// Bristles that bend before they slip (Dahl) and slip more easily in motion (Stribeck).
+    /// Bristles on the driven part that bend before they slip (Dahl) and slip more easily in motion
+    /// (Stribeck), behind the spring of the linkage.
     ///
     /// ```text
-    /// y = x - z,   dz/dx = 1 - sgn(dx) z/g,   g = w/2 (1 + 0.15 exp(-(x'/2000 um/s)^2))
+    /// y = x - z,   dz/dy = 8 (1 - sgn(dy) z/g),   g = w/2 (1 + 0.15 exp(-(x'/2000 um/s)^2))
     /// ```
+    /// `z` is the stretch of the spring; the bristles are 8 times as stiff. The target never moves
+    /// against the ceramic.
     Friction {
         /// Total width in fast motion, `w = 2 F_c/k`, um.
         width_um: f64,
@@ -132,15 +135,33 @@ fn loaded(ratio: f64, x: f64) -> f64 {
     y
 }
 
+/// Of one step with `q = sgn z/g` held below 1 and `X = |x1 - x0|/g`, the bristles `c` times as stiff:
+///
+/// ```text
+/// dq/dX = c (1-q)/(1 + c (1-q))   =>   w + ln(w)/c falls by X,   w = 1 - q
+/// ```
 fn friction(width_um: f64, dt_s: f64, signal: &mut [f64]) {
+    const BRISTLES: f64 = 8.0;
     let (mut z, mut from) = (0.0, signal[0]);
     for x in signal {
         let travel = *x - from;
         from = *x;
         let speed = travel / dt_s / 2000.0;
-        let limit = 0.5 * width_um * (1.0 + 0.15 * (-speed * speed).exp()) * travel.signum();
+        let limit = 0.5 * width_um * (1.0 + 0.15 * (-speed * speed).exp());
         if travel.abs() > 0.0 {
-            z = limit + (z - limit) * (-(travel / limit)).exp();
+            let q = (travel.signum() * z / limit).min(1.0 - 1e-12);
+            let start = (1.0 - q).ln();
+            let goal = start.exp() + start / BRISTLES - travel.abs() / limit;
+            // v = ln w: the left side bends one way, so the steps come from one side
+            let mut v = start;
+            for _ in 0..60 {
+                let step = (v.exp() + v / BRISTLES - goal) / (v.exp() + 1.0 / BRISTLES);
+                v -= step;
+                if step.abs() < 1e-14 {
+                    break;
+                }
+            }
+            z = travel.signum() * limit * (1.0 - v.exp());
         }
         *x -= z;
     }

@@ -1,0 +1,313 @@
+//! Newton's method on the harmonics of a voltage.
+
+use super::{InverseSettings, PeriodicInverse};
+use crate::actuator::check_positive;
+use crate::{ActuatorModel, PeriodicResponse, PreisachError};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+
+/// Amplitudes closer than this share of the wanted one are not told apart when the reach is sought.
+pub(super) const REACH_RESOLUTION: f64 = 1.0 / 128.0;
+/// Difference of a voltage coefficient in the Jacobian, as a share of the range.
+const DIFFERENCE: f64 = 1e-4;
+/// Halvings of a Newton step.
+const HALVINGS: usize = 7;
+
+/// A command with its orbit.
+struct Point {
+    x: DVector<f64>,
+    response: PeriodicResponse,
+}
+
+/// Why Newton's method stopped short.
+enum Stop {
+    /// The voltage range ended, at this azimuth and voltage.
+    Range { azimuth_deg: f64, voltage_volt: f64 },
+    /// It did not converge.
+    Stalled { iterations: usize, residual_deg: f64 },
+    /// The simulation failed.
+    Simulation(PreisachError),
+}
+
+impl From<PreisachError> for Stop {
+    fn from(error: PreisachError) -> Self {
+        match error {
+            PreisachError::CommandOutOfRange { azimuth_deg, voltage_volt, .. } => {
+                Self::Range { azimuth_deg, voltage_volt }
+            }
+            other => Self::Simulation(other),
+        }
+    }
+}
+
+/// The search for one periodic voltage.
+pub(super) struct Search<'a> {
+    model: &'a ActuatorModel,
+    wanted: DVector<f64>,
+    wanted_samples: Vec<f64>,
+    amplitude_deg: f64,
+    rev_hz: f64,
+    /// As given, with orbits of as many harmonics as the voltage has.
+    settings: InverseSettings,
+    /// Harmonics of the flap that are made right, by as many of the voltage.
+    solved: usize,
+}
+
+impl<'a> Search<'a> {
+    /// Refuses settings and targets that make no sense.
+    pub(super) fn new(
+        model: &'a ActuatorModel,
+        wanted_deg: &HarmonicSeries,
+        rev_hz: f64,
+        settings: &InverseSettings,
+    ) -> Result<Self, PreisachError> {
+        check_positive("rev_hz", rev_hz)?;
+        check_positive("tolerance_deg", settings.tolerance_deg)?;
+        let (value, least) = (settings.voltage_harmonics, wanted_deg.harmonics.len().max(1));
+        if value < least {
+            return Err(PreisachError::TooFew { quantity: "voltage_harmonics", value, least });
+        }
+        let solved = value;
+        let wanted = coefficients(wanted_deg, value);
+        if let Some((index, &value)) = wanted.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+            return Err(PreisachError::NotFinite { quantity: "wanted flap (deg)", index, value });
+        }
+        let mut settings = *settings;
+        settings.periodic.harmonics = settings.periodic.harmonics.max(value);
+        let azimuths = uniform_azimuths_rad(settings.periodic.steps_per_rev);
+        let wanted_samples: Vec<f64> = azimuths.iter().map(|&psi| wanted_deg.value(psi)).collect();
+        let [low, high] = wanted_samples
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
+        let amplitude_deg = 0.5 * (high - low);
+        Ok(Self { model, wanted, wanted_samples, amplitude_deg, rev_hz, settings, solved })
+    }
+
+    /// The inverse from rest at the wanted mean, through smaller amplitudes where it must be.
+    pub(super) fn from_rest(&self) -> Result<PeriodicInverse, PreisachError> {
+        let mut at = self.rest()?;
+        let (mut share, mut step, mut iterations) = (0.0, 1.0, 0);
+        loop {
+            let next = f64::min(1.0, share + step);
+            match self.newton(&at, next) {
+                Ok((found, used)) => {
+                    iterations += used;
+                    if next >= 1.0 {
+                        return Ok(self.solution(found, iterations));
+                    }
+                    (at, share) = (found, next);
+                }
+                Err(stop) => {
+                    step *= 0.5;
+                    if step < REACH_RESOLUTION {
+                        return Err(self.failure(&at, share, stop));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The inverse from a command close to it, by its first `solved` harmonics; the others stay.
+    pub(super) fn from_command(
+        mut self,
+        command_volt: &HarmonicSeries,
+        solved: usize,
+    ) -> Result<PeriodicInverse, PreisachError> {
+        self.solved = solved.min(self.settings.voltage_harmonics);
+        let start = self.point(coefficients(command_volt, self.settings.voltage_harmonics))?;
+        match self.newton(&start, 1.0) {
+            Ok((found, iterations)) => Ok(self.solution(found, iterations)),
+            Err(stop) => Err(self.failure(&start, 0.0, stop)),
+        }
+    }
+
+    /// What a command does, beside what is wanted.
+    pub(super) fn evaluated(
+        &self,
+        command_volt: &HarmonicSeries,
+        iterations: usize,
+    ) -> Result<PeriodicInverse, PreisachError> {
+        let x = coefficients(command_volt, self.settings.voltage_harmonics);
+        Ok(self.solution(self.point(x)?, iterations))
+    }
+
+    /// Half peak to peak of the wanted motion, deg.
+    pub(super) fn amplitude_deg(&self) -> f64 {
+        self.amplitude_deg
+    }
+
+    fn point(&self, x: DVector<f64>) -> Result<Point, PreisachError> {
+        let response =
+            self.model.periodic_response(&series(&x), self.rev_hz, &self.settings.periodic)?;
+        Ok(Point { x, response })
+    }
+
+    /// The constant voltage whose output is the wanted mean, by bisection; the nearer end of the
+    /// range if there is none.
+    fn rest(&self) -> Result<Point, PreisachError> {
+        let range = self.model.range_volt;
+        let constant = |volt: f64| {
+            let mut x = DVector::zeros(self.wanted.len());
+            x[0] = volt;
+            self.point(x)
+        };
+        let off = |point: &Point| point.response.flap_deg.mean - self.wanted[0];
+        let (mut low, mut high) = (range.lowest_volt(), range.highest_volt());
+        let rises = off(&constant(high)?) > off(&constant(low)?);
+        let mut middle = constant(0.5 * (low + high))?;
+        for _ in 0..40 {
+            let error = off(&middle);
+            if error.abs() <= self.settings.tolerance_deg {
+                break;
+            }
+            if (error > 0.0) == rises {
+                high = middle.x[0];
+            } else {
+                low = middle.x[0];
+            }
+            middle = constant(0.5 * (low + high))?;
+        }
+        Ok(middle)
+    }
+
+    /// The target at a share of the wanted motion: its mean in full, its harmonics scaled.
+    fn target(&self, share: f64) -> DVector<f64> {
+        let mut target = self.wanted.rows(0, 2 * self.solved + 1) * share;
+        target[0] = self.wanted[0];
+        target
+    }
+
+    fn residual(&self, point: &Point, target: &DVector<f64>) -> DVector<f64> {
+        coefficients(&point.response.flap_deg, self.solved) - target
+    }
+
+    /// Newton's method for a share of the wanted motion.
+    fn newton(&self, start: &Point, share: f64) -> Result<(Point, usize), Stop> {
+        let target = self.target(share);
+        let mut at = self.point(start.x.clone())?;
+        let mut residual = self.residual(&at, &target);
+        for iterations in 0..self.settings.largest_iterations {
+            if residual.amax() <= self.settings.tolerance_deg {
+                return Ok((at, iterations));
+            }
+            let jacobian = self.jacobian(&at)?;
+            let stalled = Stop::Stalled { iterations, residual_deg: residual.amax() };
+            let Some(solution) = jacobian.lu().solve(&residual) else {
+                return Err(stalled);
+            };
+            let step = solution.resize_vertically(at.x.len(), 0.0);
+            let mut tried = Err(stalled);
+            for halving in 0..HALVINGS {
+                let factor = 0.5_f64.powi(i32::try_from(halving).unwrap_or(0));
+                match self.point(&at.x - &step * factor) {
+                    Ok(point) => {
+                        let next = self.residual(&point, &target);
+                        if next.norm() < residual.norm() * (1.0 - 0.1 * factor) {
+                            tried = Ok((point, next));
+                            break;
+                        }
+                    }
+                    // the whole step leaves the range: remembered, and a shorter one is tried
+                    Err(error) => {
+                        if halving == 0 {
+                            tried = Err(Stop::from(error));
+                        }
+                    }
+                }
+            }
+            (at, residual) = tried?;
+        }
+        let residual_deg = residual.amax();
+        if residual_deg <= self.settings.tolerance_deg {
+            return Ok((at, self.settings.largest_iterations));
+        }
+        Err(Stop::Stalled { iterations: self.settings.largest_iterations, residual_deg })
+    }
+
+    /// Differences of the flap's harmonics over those of the voltage, taken to the side that lies
+    /// inside the range.
+    fn jacobian(&self, at: &Point) -> Result<DMatrix<f64>, PreisachError> {
+        let here = coefficients(&at.response.flap_deg, self.solved);
+        let size = DIFFERENCE * self.model.range_volt.span_volt();
+        let columns = (0..here.len())
+            .into_par_iter()
+            .map(|k| {
+                let shifted = |difference: f64| {
+                    let mut x = at.x.clone();
+                    x[k] += difference;
+                    let flap = self.point(x)?.response.flap_deg;
+                    let there = coefficients(&flap, self.solved);
+                    Ok::<_, PreisachError>((there - &here) / difference)
+                };
+                shifted(size).or_else(|_| shifted(-size)).or_else(|_| {
+                    // both sides leave the range: the command touches both ends there
+                    shifted(1e-6 * size)
+                })
+            })
+            .collect::<Result<Vec<_>, PreisachError>>()?;
+        Ok(DMatrix::from_columns(&columns))
+    }
+
+    fn solution(&self, point: Point, iterations: usize) -> PeriodicInverse {
+        let errors = || {
+            let pairs = point.response.samples_deg.iter().zip(&self.wanted_samples);
+            pairs.map(|(a, b)| a - b)
+        };
+        let squares: f64 = errors().map(|e| e * e).sum();
+        PeriodicInverse {
+            largest_error_deg: errors().fold(0.0, |m, e| e.abs().max(m)),
+            rms_error_deg: (squares / self.wanted_samples.len() as f64).sqrt(),
+            amplitude_deg: self.amplitude_deg,
+            iterations,
+            response: point.response,
+        }
+    }
+
+    /// The error of a search that ended at `share` of the wanted motion.
+    fn failure(&self, at: &Point, share: f64, stop: Stop) -> PreisachError {
+        match stop {
+            Stop::Simulation(error) => error,
+            Stop::Stalled { iterations, residual_deg } => {
+                PreisachError::InverseNotConverged { iterations, residual_deg, share }
+            }
+            Stop::Range { azimuth_deg, voltage_volt } => {
+                let command = series(&at.x);
+                let strongest = (1..=command.harmonics.len()).max_by(|&a, &b| {
+                    let amplitude = |n: usize| command.harmonic(n).amplitude();
+                    amplitude(a).total_cmp(&amplitude(b))
+                });
+                PreisachError::MotionOutOfReach {
+                    wanted_deg: self.amplitude_deg,
+                    reachable_deg: share * self.amplitude_deg,
+                    harmonic: strongest.unwrap_or(1),
+                    rev_hz: self.rev_hz,
+                    azimuth_deg,
+                    voltage_volt,
+                    lowest_volt: self.model.range_volt.lowest_volt(),
+                    highest_volt: self.model.range_volt.highest_volt(),
+                }
+            }
+        }
+    }
+}
+
+/// Mean, then cosine and sine of each harmonic.
+fn coefficients(series: &HarmonicSeries, count: usize) -> DVector<f64> {
+    let mut x = DVector::zeros(2 * count + 1);
+    x[0] = series.mean;
+    for n in 1..=count {
+        let harmonic = series.harmonic(n);
+        x[2 * n - 1] = harmonic.cosine;
+        x[2 * n] = harmonic.sine;
+    }
+    x
+}
+
+fn series(x: &DVector<f64>) -> HarmonicSeries {
+    let harmonics = (1..x.len()).step_by(2);
+    HarmonicSeries {
+        mean: x[0],
+        harmonics: harmonics.map(|i| Harmonic { cosine: x[i], sine: x[i + 1] }).collect(),
+    }
+}
