@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::case::{ActuatorSource, LoadedCase};
-use crate::files::{BenchData, Source, read_bench};
+use crate::files::{BenchData, RonIndex, Source, read_bench};
 use crate::identification::{BenchIdentification, identify_bench};
 use crate::problem::{Fault, Place, Problem};
 use crate::stored_actuator::{StoredActuator, StoredFit, read_actuator};
@@ -60,6 +60,8 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
             actuators.warnings.extend(data.warnings.iter().map(Problem::to_string));
             let found = identify_bench(&data, &Settings::default())?;
             let stored = found.stored();
+            let place = |_: &str| Place::file(format!("{}/dataset.ron", data.folder));
+            actuators.warnings.extend(stored.warnings(place));
             actuators.inputs.push(data.content_hash.clone());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;
@@ -70,6 +72,8 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
             let source = folder.read(file)?;
             let stored = read_actuator(&source)?;
             fits_case(loaded, &stored, &source)?;
+            let index = RonIndex::new(&source.name, &source.text);
+            actuators.warnings.extend(stored.warnings(|field| index.place(field)));
             actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;

@@ -56,7 +56,7 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         Some(FileKind::Actuator) => {
             let stored = read_actuator(&source)?;
             let summary = format!("{}, {} runs", stored.title, stored.runs.len());
-            let warnings = stored.warnings();
+            let warnings = stored.warnings(|field| index.place(field));
             Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings })
         }
         Some(FileKind::Case) => {
@@ -114,7 +114,8 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
             let source = folder.read(file)?;
             let stored = read_actuator(&source)?;
             fits_case(loaded, &stored, &source)?;
-            Ok(stored.warnings())
+            let index = RonIndex::new(&source.name, &source.text);
+            Ok(stored.warnings(|field| index.place(field)))
         }
     }
 }

@@ -92,6 +92,7 @@ impl CurveIdentification {
                 input: self.input.label(),
                 output: self.output.label(),
             }),
+            gain: None,
             settings: Settings::default(),
             runs: vec![],
             model: ActuatorModel::new(law, range, calibration),

@@ -142,6 +142,13 @@ pub enum Fault {
         message: String,
     },
 
+    /// A value can be, but hardly is.
+    #[error("{message}")]
+    Doubtful {
+        /// What was found, what would be expected, the remedy.
+        message: String,
+    },
+
     // ---- values ----
     /// A number lies outside its range.
     #[error("is {value}{0}, expected {low} to {high}{0}; {remedy}", suffix(.unit))]

@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::files::{RonFile, Source, read_ron, ron_text, write_atomic};
-use crate::problem::{Fault, Problems};
+use crate::problem::{Fault, Place, Problem, Problems};
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Doubt, PreisachError, Weight};
 use serde::{Deserialize, Serialize};
@@ -37,6 +37,9 @@ pub struct StoredActuator {
     /// says volt and deg. None for an actuator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channels: Option<StoredChannels>,
+    /// Where the flap angle per displacement comes from; none if the file was written by hand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<GainRule>,
     /// How it was identified.
     #[serde(default)]
     pub settings: Settings,
@@ -55,6 +58,30 @@ pub struct StoredChannels {
     pub input: String,
     /// The output.
     pub output: String,
+}
+
+/// Where the flap angle per displacement of an identified actuator comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum GainRule {
+    /// `flap_deg_per_um` of the data set.
+    DataSet,
+    /// The widest slow loop was made +-10 deg, as the paper does.
+    WidestSlowLoop,
+    /// There was nothing to tell it: 1 deg/um.
+    Assumed,
+}
+
+impl GainRule {
+    /// The rule in words, for tables.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::DataSet => "flap_deg_per_um of dataset.ron",
+            Self::WidestSlowLoop => "so that the widest slow loop is +-10 deg",
+            Self::Assumed => {
+                "ASSUMED: no slow loop to scale by; give flap_deg_per_um in dataset.ron"
+            }
+        }
+    }
 }
 
 /// How the model fits one run.
@@ -117,10 +144,23 @@ impl StoredActuator {
         if self.channels.is_some() { Vec::new() } else { self.model.doubts() }
     }
 
-    /// The unlikely, in sentences.
-    pub fn warnings(&self) -> Vec<String> {
+    /// The unlikely, each in a sentence at its place; `place` knows where a field such as
+    /// `model.calibration.deg_per_um` stands.
+    pub fn warnings(&self, place: impl Fn(&str) -> Place) -> Vec<String> {
         let unlikely = self.doubts().into_iter().filter(|doubt| doubt.weight == Weight::Unlikely);
-        unlikely.map(|doubt| format!("model.{doubt}")).collect()
+        let mut warnings: Vec<(String, String)> =
+            unlikely.map(|doubt| (format!("model.{}", doubt.field), in_words(&doubt))).collect();
+        if self.gain == Some(GainRule::Assumed) {
+            let message = format!(
+                "{} deg/um was assumed, expected the gain of the linkage; flap angles, hinge moments and loads are off by its error: give flap_deg_per_um in dataset.ron and identify again",
+                self.model.calibration.deg_per_um
+            );
+            warnings.push(("model.calibration.deg_per_um".into(), message));
+        }
+        let said = |(field, message): (String, String)| {
+            Problem::new(place(&field).field(field), Fault::Doubtful { message }).to_string()
+        };
+        warnings.into_iter().map(said).collect()
     }
 
     /// Writes the file atomically.
@@ -153,6 +193,10 @@ impl StoredActuator {
 const CALIBRATION_REMEDY: &str = "give the flap angle per displacement of the actuator, deg/um";
 const GAIN_REMEDY: &str =
     "give the flap angle per volt, negative if the flap falls with a rising voltage";
+
+fn in_words(doubt: &Doubt) -> String {
+    format!("{}, expected {}; {}", doubt.found, doubt.expected, doubt.remedy)
+}
 
 /// Reads an actuator file and checks its model.
 ///
@@ -193,9 +237,7 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
         if problems.is_empty() {
             for doubt in stored.doubts().into_iter().filter(|d| d.weight == Weight::Impossible) {
                 let place = index.place(&format!("model.{}", doubt.field));
-                let message =
-                    format!("{}, expected {}; {}", doubt.found, doubt.expected, doubt.remedy);
-                problems.push(place, Fault::Refused { message });
+                problems.push(place, Fault::Refused { message: in_words(&doubt) });
             }
         }
     }
@@ -263,7 +305,10 @@ mod tests {
 
     #[test]
     fn the_impossible_is_a_problem_and_the_unlikely_a_warning() {
-        assert_eq!(read_actuator(&source(BY_HAND)).unwrap().warnings(), Vec::<String>::new());
+        assert_eq!(
+            read_actuator(&source(BY_HAND)).unwrap().warnings(|_| Place::default()),
+            Vec::<String>::new()
+        );
         let with = |good: &str, bad: &str| {
             let text = BY_HAND.replacen(good, bad, 1);
             assert_ne!(text, BY_HAND);
@@ -273,7 +318,7 @@ mod tests {
         let problems = with(load, &format!("{load}, {load}")).unwrap_err();
         assert!(format!("{problems:?}").contains("2 LoadStiffness stages"), "{problems:?}");
         let stored = with("v_min_volt: -20, v_max_volt: 150", "v_min_volt: -200, v_max_volt: 500");
-        let warnings = stored.unwrap().warnings();
+        let warnings = stored.unwrap().warnings(|_| Place::file("actuator.ron"));
         assert!(warnings.len() == 1 && warnings[0].contains("model.amplifier[2]"), "{warnings:?}");
     }
 

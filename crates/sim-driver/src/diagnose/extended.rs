@@ -4,7 +4,7 @@ use super::Diagnosis;
 use super::causes::Part;
 use crate::SimError;
 use crate::problem::Place;
-use crate::stored_actuator::{StoredActuator, StoredKind};
+use crate::stored_actuator::{GainRule, StoredActuator, StoredKind};
 use model_gap::discovery::Verdict;
 use preisach_dyn::identify::{Settings, StaticAccumulator};
 use preisach_dyn::{
@@ -64,6 +64,10 @@ impl Diagnosis {
             data_hash: self.content_hash.clone(),
             program_version: crate::VERSION.to_owned(),
             channels: self.channels.clone(),
+            gain: self.is_bench.then_some(match self.deg_per_um {
+                Some(_) => GainRule::DataSet,
+                None => GainRule::Assumed,
+            }),
             settings,
             runs: Vec::new(),
             model,

@@ -12,7 +12,7 @@ pub use summary::{FindingLine, IdentifyResult, ModelLine, ParameterLine};
 use crate::SimError;
 use crate::files::{BenchData, LoopData, RunRole, RunUse};
 use crate::problem::Place;
-use crate::stored_actuator::{StoredActuator, StoredChannels, StoredKind};
+use crate::stored_actuator::{GainRule, StoredActuator, StoredChannels, StoredKind};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
     RecordWindows, Settings, Subject, compare_models, identify,
@@ -42,8 +42,8 @@ pub struct DataHeading {
     pub channels: Option<StoredChannels>,
     /// Where the range of the inputs comes from.
     pub range_rule: &'static str,
-    /// Where the gain comes from.
-    pub gain_rule: &'static str,
+    /// Where the gain comes from; none of a generic loop.
+    pub gain_rule: Option<GainRule>,
 }
 
 impl DataHeading {
@@ -105,7 +105,7 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
     let (low, high) = data.command_range_volt;
     let range_volt = VoltageRange::new(low, high).map_err(fail)?;
     let (deg_per_um, gain_rule) = match data.flap_deg_per_um {
-        Some(gain) => (gain, "flap_deg_per_um of dataset.ron"),
+        Some(gain) => (gain, GainRule::DataSet),
         None => quasi_static_gain(data, base),
     };
     let settings = Settings { range_volt, deg_per_um, ..base.clone() };
@@ -130,7 +130,7 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
         split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
         channels: None,
         range_rule: "command_range_V",
-        gain_rule,
+        gain_rule: Some(gain_rule),
     };
     identified(heading, records, settings)
 }
@@ -153,7 +153,7 @@ pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentific
         split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
         channels: Some(StoredChannels { input, output }),
         range_rule: data.input_range.rule(),
-        gain_rule: "",
+        gain_rule: None,
     };
     let (low, high) = data.input_range.limits();
     let range_volt = VoltageRange::new(low, high).map_err(|source| heading.failed(source))?;
@@ -223,8 +223,8 @@ fn identified(
 }
 
 /// Gain that makes the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`], deg/um,
-/// and the rule in words; 1 if there is no slow loop at all.
-fn quasi_static_gain(data: &BenchData, base: &Settings) -> (f64, &'static str) {
+/// and the rule; 1 if there is no slow loop at all.
+fn quasi_static_gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
     let half_stroke = |displacement_um: &[f64]| {
         let (low, high) = displacement_um
             .iter()
@@ -248,9 +248,9 @@ fn quasi_static_gain(data: &BenchData, base: &Settings) -> (f64, &'static str) {
         .map(|run| half_stroke(&run.table.displacement_um[run.window()]))
         .fold(0.0, f64::max);
     if widest_um > 0.0 {
-        (QUASI_STATIC_AMPLITUDE_DEG / widest_um, "so that the widest slow loop is +-10 deg")
+        (QUASI_STATIC_AMPLITUDE_DEG / widest_um, GainRule::WidestSlowLoop)
     } else {
-        (1.0, "ASSUMED: no slow loop to scale by; give flap_deg_per_um in dataset.ron")
+        (1.0, GainRule::Assumed)
     }
 }
 
@@ -274,6 +274,7 @@ impl BenchIdentification {
             data_hash: self.heading.content_hash.clone(),
             program_version: crate::VERSION.to_owned(),
             channels: self.heading.channels.clone(),
+            gain: self.heading.gain_rule,
             settings: self.settings.clone(),
             runs: self.fits.iter().map(RunFit::stored).collect(),
             model: self.model.clone(),

@@ -3,7 +3,7 @@
 use super::{BenchIdentification, PickReason, RunFit};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, table};
-use crate::stored_actuator::{FitUse, StoredChannels, StoredFit};
+use crate::stored_actuator::{FitUse, GainRule, StoredChannels, StoredFit};
 use model_gap::Use;
 use preisach_dyn::identify::{
     Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings,
@@ -28,7 +28,7 @@ impl BenchIdentification {
             range_rule: self.heading.range_rule.to_owned(),
             split: self.split(),
             deg_per_um: self.settings.deg_per_um,
-            gain_rule: self.heading.gain_rule.to_owned(),
+            gain_rule: self.heading.gain_rule.map_or("", GainRule::text).to_owned(),
             zero_deg: self.identification.zero_deg,
             model: self.pick.family.name().to_owned(),
             levels: self.pick.order.levels,
