@@ -47,6 +47,12 @@ const MOST_STROKE_UM: f64 = 5000.0;
 const MOST_TRAVEL_DEG: f64 = 90.0;
 /// Travel of a law that counts as none, deg.
 const LEAST_TRAVEL_DEG: f64 = 1e-9;
+/// Error of a sensor that is doubted, as a share of the stroke.
+const SENSOR_ERROR: f64 = 0.1;
+/// Way of an accommodation that is doubted, in strokes.
+const LONG_TRAVEL: f64 = 50.0;
+/// Mains and their harmonics, Hz.
+const MAINS_HZ: std::ops::RangeInclusive<f64> = 10.0..=2000.0;
 /// Steps of a sweep through the range, and the time each takes, s.
 const SWEEP: u32 = 32;
 const SLOW_S: f64 = 1e6;
@@ -273,7 +279,11 @@ fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts) {
             if late.share == 0.0 {
                 doubts.idle("share", "0".into());
             }
-            doubts.above("share", (late.share, "of the motion"), 0.5);
+            doubts.above("share", (late.share, "of the motion"), 0.3);
+            if late.travel_um > LONG_TRAVEL * stroke_um {
+                let found = format!("{} um of a stroke of {stroke_um:.1} um", late.travel_um);
+                doubts.unlikely("travel_um", found, "0.1 to 1 stroke", "check the unit");
+            }
         }
         LinkageStage::Resonance(mode) => {
             if mode.frequency_hz < 10.0 {
@@ -299,6 +309,14 @@ fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
         SensorStage::Filter(lag) => doubts.above("tau_s", (lag.tau_s, "s"), 0.5),
         SensorStage::Delay(delay) => doubts.above("delay_s", (delay.delay_s, "s"), 0.1),
         SensorStage::Nonlinearity(shape) => {
+            if shape.amplitude_um == 0.0 {
+                doubts.idle("amplitude_um", "0 um".into());
+            }
+            doubts.above(
+                "amplitude_um",
+                (shape.amplitude_um.abs(), "um"),
+                SENSOR_ERROR * stroke_um,
+            );
             if 2.0 * shape.half_range_um < 0.5 * stroke_um {
                 let found = format!("{} um of a stroke of {stroke_um:.1} um", shape.half_range_um);
                 let remedy = "beyond it the polynomial runs away; check the unit";
@@ -313,7 +331,14 @@ fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
             }
         }
         SensorStage::MainsHum(hum) => {
-            doubts.above("amplitude_um", (hum.amplitude_um, "um"), stroke_um);
+            if hum.amplitude_um == 0.0 {
+                doubts.idle("amplitude_um", "0 um".into());
+            }
+            doubts.above("amplitude_um", (hum.amplitude_um, "um"), SENSOR_ERROR * stroke_um);
+            if !MAINS_HZ.contains(&hum.frequency_hz) {
+                let found = format!("{} Hz", hum.frequency_hz);
+                doubts.unlikely("frequency_hz", found, "50, 60 or 400 Hz", "check value and unit");
+            }
         }
     }
 }
@@ -322,8 +347,9 @@ fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
 mod tests {
     use super::*;
     use crate::{
-        Backlash, Calibration, CoulombFriction, Depolarisation, LinearGain, LoadStiffness, PlayMap,
-        PreisachGrid, Quantisation, Saturation, StaticPreisach,
+        Accommodation, Backlash, Calibration, CoulombFriction, Depolarisation, LinearGain,
+        LoadStiffness, MainsHum, Nonlinearity, NonlinearityShape, PlayMap, PreisachGrid,
+        Quantisation, Saturation, StaticPreisach,
     };
 
     fn sound() -> ActuatorModel {
@@ -412,9 +438,33 @@ mod tests {
             let friction = LinkageStage::CoulombFriction(CoulombFriction { width_um });
             assert_eq!(only(&with_linkage(vec![friction])), expected);
         }
+        let late = |share, travel_um| {
+            let stage = LinkageStage::Accommodation(Accommodation { share, travel_um });
+            only(&with_linkage(vec![stage])).0
+        };
+        assert_eq!(late(0.4, 100.0), "linkage[0].share");
+        assert_eq!(late(0.05, 1e5), "linkage[0].travel_um");
         let coarse = SensorStage::Quantisation(Quantisation { step_um: 900.0 });
         let model = ActuatorModel { sensor: vec![coarse], ..sound() };
         assert_eq!(only(&model), ("sensor[0].step_um".into(), Weight::Impossible));
+        let read = |stage| only(&ActuatorModel { sensor: vec![stage], ..sound() });
+        let bent = |amplitude_um| {
+            let shape = NonlinearityShape::Cubic;
+            read(SensorStage::Nonlinearity(Nonlinearity {
+                amplitude_um,
+                half_range_um: 300.0,
+                shape,
+            }))
+        };
+        let hum = |amplitude_um, frequency_hz| {
+            read(SensorStage::MainsHum(MainsHum { amplitude_um, frequency_hz, phase_rad: 0.0 }))
+        };
+        for amplitude_um in [0.0, 80.0] {
+            let expected = ("sensor[0].amplitude_um".into(), Weight::Unlikely);
+            assert_eq!(bent(amplitude_um), expected);
+            assert_eq!(hum(amplitude_um, 50.0), expected);
+        }
+        assert_eq!(hum(1.0, 0.05).0, "sensor[0].frequency_hz");
     }
 
     #[test]

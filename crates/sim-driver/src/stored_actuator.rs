@@ -247,6 +247,7 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::RonIndex;
     use preisach_dyn::{AmplifierStage, LinkageStage, SensorStage};
 
     fn source(text: &str) -> Source {
@@ -320,6 +321,20 @@ mod tests {
         let stored = with("v_min_volt: -20, v_max_volt: 150", "v_min_volt: -200, v_max_volt: 500");
         let warnings = stored.unwrap().warnings(|_| Place::file("actuator.ron"));
         assert!(warnings.len() == 1 && warnings[0].contains("model.amplifier[2]"), "{warnings:?}");
+    }
+
+    #[test]
+    fn an_assumed_gain_is_said_where_it_stands() {
+        let text = BY_HAND.replace("kind: Actuator,", "kind: Actuator,\n    gain: Some(Assumed),");
+        let from = source(&text);
+        let index = RonIndex::new(&from.name, &from.text);
+        let stored = read_actuator(&from).unwrap();
+        let warnings = stored.warnings(|field| index.place(field));
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        let (place, rest) = warnings[0].split_once(": model.calibration.deg_per_um: ").unwrap();
+        let line = text.lines().position(|line| line.contains("deg_per_um")).unwrap() + 1;
+        assert!(place.starts_with(&format!("actuator.ron:{line}:")), "{place}");
+        assert!(rest.contains("was assumed") && rest.contains("flap_deg_per_um"), "{rest}");
     }
 
     #[test]

@@ -48,14 +48,14 @@ pub(super) const AREA: Area = Area {
             "model picked by cross-validation, 0.2 Hz loop and reversal curves: largest NRMSE",
             BENCH,
             1.5,
-            || picked(3, |id| id.contains("0p2hz") || id.starts_with("forc"), nrmse),
+            || picked(3, |id, _| id.contains("0p2hz") || id.starts_with("forc"), nrmse),
         ),
         percent(
             "V-ACT-31",
             "model picked by cross-validation, held out, 15 and 20 Hz: largest NRMSE",
             BENCH,
             8.0,
-            || picked(6, is_fast, nrmse),
+            || picked(6, |id, _| is_fast(id), nrmse),
         ),
         Check {
             unit: "deg",
@@ -64,9 +64,29 @@ pub(super) const AREA: Area = Area {
                 "model picked by cross-validation, held out, 15 and 20 Hz: largest phase error",
                 BENCH,
                 2.0,
-                || picked(6, is_fast, |fit| fit.phase_error_deg.map_or(f64::NAN, f64::abs)),
+                || {
+                    picked(
+                        6,
+                        |id, _| is_fast(id),
+                        |fit| fit.phase_error_deg.map_or(f64::NAN, f64::abs),
+                    )
+                },
             )
         },
+        percent(
+            "V-ACT-37",
+            "model picked by cross-validation, trained runs: largest NRMSE",
+            BENCH,
+            4.0,
+            || picked(3, |_, side| side == RecordUse::Train, nrmse),
+        ),
+        percent(
+            "V-ACT-38",
+            "model picked by cross-validation, held out, middle amplitude and mix of 2, 3 and 4/rev: largest NRMSE",
+            BENCH,
+            10.0,
+            || picked(3, |id, side| side == RecordUse::HeldOut && is_middle(id), nrmse),
+        ),
         percent(
             "V-ACT-33",
             "reversal curves, every fourth held out: worst curve, of the range",
@@ -123,16 +143,20 @@ fn is_fast(id: &str) -> bool {
     id.contains("15hz") || id.contains("20hz")
 }
 
+fn is_middle(id: &str) -> bool {
+    id.ends_with("55v") || id.starts_with("mix")
+}
+
 /// The largest figure of the picked model over some of the records.
 fn picked(
     needed: usize,
-    wanted: fn(&str) -> bool,
+    wanted: fn(&str, RecordUse) -> bool,
     figure: fn(&RecordFit) -> f64,
 ) -> Result<f64, CheckError> {
     let table = table(&SHIPPED)?;
     let missing = CheckError::TooFew { what: "fitted models", found: 0, needed: 1 };
     let fitted = table.best().and_then(|row| row.fitted.as_ref().ok()).ok_or(missing)?;
-    let chosen = table.records.iter().zip(&fitted.fits).filter(|((id, _), _)| wanted(id));
+    let chosen = table.records.iter().zip(&fitted.fits).filter(|((id, side), _)| wanted(id, *side));
     worst("records", needed, chosen.map(|(_, fit)| Ok(figure(fit))))
 }
 
