@@ -93,7 +93,7 @@ impl LastJoint {
         let before = before.periodic_inverse(&input_deg, rev_hz, settings)?;
         let whole = Search::new(model, wanted_deg, rev_hz, settings)?;
         let solved = wanted_deg.harmonics.len();
-        let polished = whole.from_command(&before.response.voltage_volt, solved)?;
+        let polished = whole.start_at(&before.response.voltage_volt, solved)?;
         let iterations = before.iterations + polished.iterations;
         Ok(PeriodicInverse { iterations, ..polished })
     }
@@ -111,7 +111,7 @@ impl LastJoint {
         if linkage.is_empty() {
             return Ok(wanted_deg.clone());
         }
-        let sizes = wanted_deg.harmonics.iter().map(|h| h.amplitude());
+        let sizes = wanted_deg.harmonics.iter().map(Harmonic::amplitude);
         let limit = AMPLE * (wanted_deg.mean.abs() + sizes.sum::<f64>()).max(1.0);
         let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 1.0, bias_volt: 0.0 });
         let range = VoltageRange::new(-limit, limit)?;

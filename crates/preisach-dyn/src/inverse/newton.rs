@@ -85,7 +85,7 @@ impl<'a> Search<'a> {
     }
 
     /// The inverse from rest at the wanted mean, through smaller amplitudes where it must be.
-    pub(super) fn from_rest(&self) -> Result<PeriodicInverse, PreisachError> {
+    pub(super) fn start_at_rest(&self) -> Result<PeriodicInverse, PreisachError> {
         let mut at = self.rest()?;
         let (mut share, mut step, mut iterations) = (0.0, 1.0, 0);
         loop {
@@ -109,7 +109,7 @@ impl<'a> Search<'a> {
     }
 
     /// The inverse from a command close to it, by its first `solved` harmonics; the others stay.
-    pub(super) fn from_command(
+    pub(super) fn start_at(
         mut self,
         command_volt: &HarmonicSeries,
         solved: usize,

@@ -93,7 +93,7 @@ impl ActuatorModel {
         }
         match LastJoint::of(self) {
             Some(joint) => joint.inverse(self, wanted_deg, rev_hz, settings),
-            None => search.from_rest(),
+            None => search.start_at_rest(),
         }
     }
 }
