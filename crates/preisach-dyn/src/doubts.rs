@@ -41,7 +41,8 @@ impl fmt::Display for Doubt {
 const BEYOND: f64 = 0.01;
 /// Share of the stroke that a gap or friction may take before it is doubted.
 const WIDE_GAP: f64 = 0.2;
-/// Stroke of a stack that is doubted, um.
+/// Strokes of a stack that are doubted, um.
+const LEAST_STROKE_UM: f64 = 1.0;
 const MOST_STROKE_UM: f64 = 5000.0;
 /// Travel of a flap that is doubted, deg.
 const MOST_TRAVEL_DEG: f64 = 90.0;
@@ -74,8 +75,9 @@ impl ActuatorModel {
         }
         let stroke_um = (self.law_doubts(&mut doubts) / per_um).abs();
         doubts.place = "calibration.deg_per_um".into();
-        if stroke_um.is_finite() && stroke_um > MOST_STROKE_UM {
-            let found = format!("a stroke of {stroke_um:.0} um");
+        let moves = stroke_um.is_finite() && stroke_um * per_um.abs() >= LEAST_TRAVEL_DEG;
+        if moves && !(LEAST_STROKE_UM..=MOST_STROKE_UM).contains(&stroke_um) {
+            let found = format!("a stroke of {stroke_um:.3} um");
             doubts.unlikely("", found, "50 to 1000 um", "check deg_per_um and the law's unit");
         }
         for (i, stage) in self.amplifier.iter().enumerate() {
@@ -86,6 +88,7 @@ impl ActuatorModel {
             doubts.place = format!("linkage[{i}]");
             linkage(stage, stroke_um, &mut doubts);
         }
+        gaps(&self.linkage, stroke_um, &mut doubts);
         let loads = |stage: &&LinkageStage| matches!(stage, LinkageStage::LoadStiffness(_));
         let count = self.linkage.iter().filter(loads).count();
         if count > 1 {
@@ -240,18 +243,14 @@ fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mut Doubts) {
 }
 
 fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts) {
-    let gap = |field: &str, width_um: f64, doubts: &mut Doubts| {
+    let gap = |width_um: f64, remedy: &'static str, doubts: &mut Doubts| {
+        let field = "width_um";
         let found = format!("{width_um} um of a stroke of {stroke_um:.1} um");
         let expected = "0.1 to 3 % of the stroke";
         if width_um == 0.0 {
             doubts.idle(field, "0 um".into());
         } else if width_um >= stroke_um {
-            doubts.impossible(
-                field,
-                found,
-                expected,
-                "the flap would never move; correct the width",
-            );
+            doubts.impossible(field, found, expected, remedy);
         } else if width_um > WIDE_GAP * stroke_um {
             doubts.unlikely(field, found, expected, "check the unit");
         }
@@ -291,8 +290,12 @@ fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts) {
                 doubts.unlikely("frequency_hz", found, "60 to 400 Hz", "check value and unit");
             }
         }
-        LinkageStage::Backlash(gap_stage) => gap("width_um", gap_stage.width_um, doubts),
-        LinkageStage::CoulombFriction(friction) => gap("width_um", friction.width_um, doubts),
+        LinkageStage::Backlash(joint) => {
+            gap(joint.width_um, "the flap would never move; correct the width", doubts);
+        }
+        LinkageStage::CoulombFriction(joint) => {
+            gap(joint.width_um, "friction would hold the flap; correct the width", doubts);
+        }
         LinkageStage::LoadStiffness(load) => {
             if load.stiffness_ratio == 0.0 && load.compliance_um_per_newton == 0.0 {
                 doubts.idle("", "no stiffness and no compliance".into());
@@ -301,6 +304,24 @@ fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts) {
             let compliance = (load.compliance_um_per_newton, "um/N");
             doubts.above("compliance_um_per_newton", compliance, 20.0);
         }
+    }
+}
+
+/// Gaps that each leave a motion and together leave none.
+fn gaps(linkage: &[LinkageStage], stroke_um: f64, doubts: &mut Doubts) {
+    let widths: Vec<f64> = linkage
+        .iter()
+        .filter_map(|stage| match stage {
+            LinkageStage::Backlash(gap) => Some(gap.width_um),
+            _ => None,
+        })
+        .collect();
+    let sum: f64 = widths.iter().sum();
+    if sum > 0.0 && sum >= stroke_um && widths.iter().all(|&width| width < stroke_um) {
+        doubts.place = "linkage".into();
+        let found = format!("gaps of {sum} um in all, a stroke of {stroke_um:.1} um");
+        let remedy = "the flap would never move; correct the widths";
+        doubts.impossible("", found, "0.1 to 3 % of the stroke", remedy);
     }
 }
 
@@ -392,9 +413,11 @@ mod tests {
         let calibration = Calibration { deg_per_um: 0.0, zero_um: 0.0 };
         let flat = ActuatorModel { calibration, ..sound() };
         assert_eq!(only(&flat), ("calibration.deg_per_um".into(), Weight::Impossible));
-        let calibration = Calibration { deg_per_um: 0.001, zero_um: 0.0 };
-        let long = ActuatorModel { calibration, ..sound() };
-        assert_eq!(only(&long), ("calibration.deg_per_um".into(), Weight::Unlikely));
+        for deg_per_um in [0.001, 40.0] {
+            let calibration = Calibration { deg_per_um, zero_um: 0.0 };
+            let odd = ActuatorModel { calibration, ..sound() };
+            assert_eq!(only(&odd), ("calibration.deg_per_um".into(), Weight::Unlikely));
+        }
     }
 
     #[test]
@@ -444,6 +467,9 @@ mod tests {
         };
         assert_eq!(late(0.4, 100.0), "linkage[0].share");
         assert_eq!(late(0.05, 1e5), "linkage[0].travel_um");
+        let half = LinkageStage::Backlash(Backlash { width_um: 90.0 });
+        let sum = with_linkage(vec![half; 6]);
+        assert_eq!(only(&sum), ("linkage".into(), Weight::Impossible));
         let coarse = SensorStage::Quantisation(Quantisation { step_um: 900.0 });
         let model = ActuatorModel { sensor: vec![coarse], ..sound() };
         assert_eq!(only(&model), ("sensor[0].step_um".into(), Weight::Impossible));

@@ -401,7 +401,7 @@ pub enum PreisachError {
     },
     /// Newton's method for a periodic voltage stopped.
     #[error(
-        "the periodic inverse stopped after {iterations} Newton steps with {residual_deg:e} deg left at {share} of the wanted motion; raise tolerance_deg or lower voltage_harmonics"
+        "the periodic inverse stopped after {iterations} Newton steps with {residual_deg:e} deg left at {share} of the wanted motion; raise tolerance_deg or try other voltage_harmonics: fewer for corners of the law, more behind a joint that sticks"
     )]
     InverseNotConverged {
         /// Newton steps done at the last amplitude.

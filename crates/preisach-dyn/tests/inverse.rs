@@ -5,10 +5,10 @@ mod common;
 
 use common::Wavy;
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, Backlash, Calibration, CoulombFriction, DynamicParameters,
-    DynamicPreisach, InverseSettings, LinkageStage, LoadStiffness, PeriodicInverse,
-    PeriodicSettings, PlayMap, PlayMemory, PreisachError, RateForm, RelayGrid, Resonance,
-    StartState, StaticPreisach, TimeOrder, VoltageRange,
+    ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Calibration, CoulombFriction,
+    DynamicParameters, DynamicPreisach, InverseSettings, LinkageStage, LoadStiffness,
+    PeriodicInverse, PeriodicSettings, PlayMap, PlayMemory, PreisachError, RateForm, RelayGrid,
+    Resonance, Saturation, StartState, StaticPreisach, TimeOrder, VoltageRange,
 };
 use proptest::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -280,6 +280,50 @@ fn the_reach_behind_a_gap_is_the_flaps() {
     let share = |part: f64| target(9.0 * part * reachable_deg / wanted_deg);
     assert!(model.periodic_inverse(&share(0.999), REV_HZ, &settings).is_ok());
     assert!(model.periodic_inverse(&share(1.05), REV_HZ, &settings).is_err());
+}
+
+/// The linkage may turn the motion round; joints are as wide in either sense.
+#[test]
+fn joints_are_undone_under_a_gain_of_either_sign() {
+    let settings = InverseSettings { voltage_harmonics: 48, ..InverseSettings::default() };
+    for (name, joint) in sticking(4.0) {
+        let errors = [0.04, -0.04].map(|deg_per_um| {
+            let mut model = behind(&dynamic(), std::slice::from_ref(&joint));
+            model.calibration.deg_per_um = deg_per_um;
+            model.periodic_inverse(&target(2.5), REV_HZ, &settings).unwrap().largest_error_deg
+        });
+        assert!((errors[0] - errors[1]).abs() < 1e-9, "{name}: {errors:?}");
+    }
+}
+
+/// Motions about as wide as the gap, with no more voltage harmonics than the motion has.
+#[test]
+fn small_motions_come_through_a_gap_with_few_harmonics() {
+    let settings = InverseSettings { voltage_harmonics: 4, ..InverseSettings::default() };
+    let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
+    for (name, joint) in sticking(4.0) {
+        for size in [0.05, 0.1, 0.3] {
+            let model = behind(&model, std::slice::from_ref(&joint));
+            let found = model.periodic_inverse(&target(size), REV_HZ, &settings).unwrap();
+            let error_deg = low_error_deg(&found, &target(size));
+            assert!(error_deg <= settings.tolerance_deg, "{name} {size}: {error_deg}");
+        }
+    }
+}
+
+#[test]
+fn an_amplifier_that_saturates_ends_the_reach() {
+    let mut model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
+    let limits = Saturation { v_min_volt: 0.0, v_max_volt: 130.0 };
+    model.amplifier.push(AmplifierStage::Saturation(limits));
+    let settings = InverseSettings { voltage_harmonics: 8, ..InverseSettings::default() };
+    let error = model.periodic_inverse(&target(8.0), REV_HZ, &settings).unwrap_err();
+    let PreisachError::MotionOutOfReach { lowest_volt, highest_volt, reachable_deg, .. } = error
+    else {
+        panic!("{error}");
+    };
+    assert_eq!((lowest_volt, highest_volt), (0.0, 130.0));
+    assert!(reachable_deg > 3.0, "{reachable_deg}");
 }
 
 /// A relay output has steps: the voltage of the plays moves it as close as the relays are fine.

@@ -521,17 +521,26 @@ fn backlash_loops_have_their_width_and_friction_approaches_it() {
     let top = 7250;
     let flat = input[top..].iter().position(|x| *x < 40.0 - width).unwrap();
     assert!(exact_play[top..top + flat].windows(2).all(|p| (p[1] - p[0]).abs() < 1e-9));
-    // friction: the closed form of a move from the turn of a steady loop of travel 80,
-    // y = x - r + (r + e) exp(-(x - x_turn) / 2r), e = r tanh(80 / 4r) the stretch at the turns
+    // friction: the closed form of a move up from the turn, by the way d of the output,
+    // x - x_turn = d + (r + e)(1 - exp(-10 d / r)), e = y - x at the turn
     let r = 0.5 * width;
-    let both = r + r * (80.0 / (2.0 * width)).tanh();
     let bottom = 7750;
+    let both = r + friction[bottom] - input[bottom];
+    assert!((both / width - 1.0).abs() < 1e-9, "the loop has its width: {both}");
     for i in bottom..bottom + 240 {
-        let exact = input[i] - r + both * (-(input[i] - input[bottom]) / width).exp();
-        assert_abs_diff_eq!(friction[i], exact, epsilon = 1e-6);
+        let d = friction[i] - friction[bottom];
+        let exact = input[bottom] + d + both * (1.0 - (-10.0 * d / r).exp());
+        assert_abs_diff_eq!(input[i], exact, epsilon = 1e-9);
     }
-    // it stands still at the reversal and never moves against its input
-    assert!((friction[top + 1] - friction[top]).abs() < 1e-3 * (input[top] - input[top + 1]));
+    // of a small motion a share of 1/11 comes through
+    let small = sampled(4000, 1e-3, |t| 0.03 * (TAU * t).sin());
+    let stage = LinkageStage::CoulombFriction(CoulombFriction { width_um: width });
+    let passed = measured(&linkage(stage), &small, 1e-3);
+    let largest = passed.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
+    assert_abs_diff_eq!(largest, 0.03 / 11.0, epsilon = 2e-5);
+    // it all but stands still at the reversal and never moves against its input
+    let rests = (friction[top + 1] - friction[top]) / (input[top + 1] - input[top]);
+    assert!((rests - 1.0 / 21.0).abs() < 2e-3, "{rests}");
     for (x, y) in input.windows(2).zip(friction.windows(2)) {
         let (way, followed) = (x[1] - x[0], y[1] - y[0]);
         assert!(way * followed >= -1e-18 && followed.abs() <= way.abs() + 1e-12, "{x:?} {y:?}");

@@ -2,10 +2,14 @@
 
 use crate::actuator::fits_case;
 use crate::case::{ActuatorSource, LoadedCase, read_case};
-use crate::files::{Channel, DATASET, DataSet, Folder, RonIndex, Source, read_bench, read_dataset};
+use crate::files::{
+    BenchData, Channel, DATASET, DataSet, Folder, RonIndex, Source, read_bench, read_dataset,
+};
+use crate::identification::gain;
 use crate::output::Printable;
 use crate::problem::{Fault, Place, Problem, Problems};
-use crate::stored_actuator::read_actuator;
+use crate::stored_actuator::{GainRule, read_actuator};
+use preisach_dyn::identify::Settings;
 use serde::Serialize;
 use std::path::Path;
 
@@ -104,9 +108,7 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
     match &loaded.case.actuator.source {
         ActuatorSource::Ideal => Ok(vec![]),
         ActuatorSource::Bench(folder) if !folder.contains(DATASET) => Err(missing(folder, DATASET)),
-        ActuatorSource::Bench(folder) => {
-            Ok(read_bench(folder)?.warnings.iter().map(Problem::to_string).collect())
-        }
+        ActuatorSource::Bench(folder) => Ok(bench_warnings(&read_bench(folder)?)),
         ActuatorSource::Stored { folder, file } if !folder.contains(file) => {
             Err(missing(folder, file))
         }
@@ -120,9 +122,23 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
     }
 }
 
+/// Warnings of bench data, and that nothing says how far the flap turns.
+fn bench_warnings(data: &BenchData) -> Vec<String> {
+    let mut warnings: Vec<String> = data.warnings.iter().map(Problem::to_string).collect();
+    if gain(data, &Settings::default()).1 == GainRule::Assumed {
+        let place = Place::file(format!("{}/{DATASET}", data.folder)).field("flap_deg_per_um");
+        let message = "is not given and no run is a slow loop to scale by: 1 deg/um will be assumed, expected the gain of the linkage; give it, or a full loop at 0.2 Hz".to_owned();
+        warnings.push(Problem::new(place, Fault::Doubtful { message }).to_string());
+    }
+    warnings
+}
+
 fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
     let data = read_dataset(folder)?;
-    let warnings = data.warnings().iter().map(Problem::to_string).collect();
+    let warnings = match &data {
+        DataSet::Bench(data) => bench_warnings(data),
+        other => other.warnings().iter().map(Problem::to_string).collect(),
+    };
     let runs = data.run_count();
     let (kind, summary) = match &data {
         DataSet::Bench(data) => {

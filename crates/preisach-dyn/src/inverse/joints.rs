@@ -4,8 +4,8 @@ use super::newton::{REACH_RESOLUTION, Search};
 use super::{InverseSettings, PeriodicInverse};
 use crate::stages::FrictionStep;
 use crate::{
-    ActuatorLaw, ActuatorModel, Backlash, CoulombFriction, LinearGain, LinkageStage, PreisachError,
-    VoltageRange,
+    ActuatorLaw, ActuatorModel, Backlash, CoulombFriction, LinearGain, LinkageStage,
+    PeriodicSettings, PreisachError, VoltageRange,
 };
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 
@@ -25,14 +25,14 @@ pub(super) struct LastJoint {
 
 impl LastJoint {
     pub(super) fn of(model: &ActuatorModel) -> Option<Self> {
-        let half_deg = |width_um: f64| 0.5 * width_um * model.calibration.deg_per_um;
+        let half_deg = |width_um: f64| 0.5 * width_um * model.calibration.deg_per_um.abs();
         model.linkage.iter().enumerate().rev().find_map(|(index, stage)| {
             let joint = match *stage {
                 LinkageStage::Backlash(Backlash { width_um }) if width_um > 0.0 => {
                     Joint::Gap { half_width_deg: half_deg(width_um) }
                 }
                 LinkageStage::CoulombFriction(CoulombFriction { width_um }) if width_um > 0.0 => {
-                    Joint::Friction(FrictionStep::dry(half_deg(width_um)))
+                    Joint::Friction(FrictionStep::new(half_deg(width_um)))
                 }
                 _ => return None,
             };
@@ -81,16 +81,22 @@ impl LastJoint {
         settings: &InverseSettings,
     ) -> Result<PeriodicInverse, PreisachError> {
         let behind_deg = self.behind(model, wanted_deg, rev_hz, settings)?;
-        let output_deg: Vec<f64> = uniform_azimuths_rad(settings.periodic.steps_per_rev)
-            .iter()
-            .map(|&psi| behind_deg.value(psi))
-            .collect();
-        let count = settings.voltage_harmonics;
-        let input_deg = self.joint.input_of(&output_deg, output_deg.len() / count.max(1));
+        let steps = settings.periodic.steps_per_rev.max(4 * LEAST_HARMONICS);
+        let output_deg: Vec<f64> =
+            uniform_azimuths_rad(steps).iter().map(|&psi| behind_deg.value(psi)).collect();
+        // the way through the gap is short: few harmonics would spread it beyond the motion
+        let voltage_harmonics = settings.voltage_harmonics.max(LEAST_HARMONICS);
+        let periodic = PeriodicSettings { steps_per_rev: steps, ..settings.periodic };
+        let fine = InverseSettings { periodic, voltage_harmonics, ..*settings };
+        let count = fine.voltage_harmonics;
+        let input_deg = self.joint.input_of(&output_deg, output_deg.len() / count);
         let input_deg = HarmonicSeries::from_uniform_samples(&input_deg, count)?;
         let linkage = model.linkage[..self.index].to_vec();
         let before = ActuatorModel { linkage, ..model.clone() };
-        let before = before.periodic_inverse(&input_deg, rev_hz, settings)?;
+        let before = match Self::of(&before) {
+            Some(joint) => joint.attempt(&before, &input_deg, rev_hz, &fine)?,
+            None => Search::new(&before, &input_deg, rev_hz, &fine)?.start_at_rest()?,
+        };
         let whole = Search::new(model, wanted_deg, rev_hz, settings)?;
         let solved = wanted_deg.harmonics.len();
         let polished = whole.start_at(&before.response.voltage_volt, solved)?;
@@ -120,6 +126,9 @@ impl LastJoint {
     }
 }
 
+/// Harmonics with which what is asked of a joint's input is sought, at least.
+const LEAST_HARMONICS: usize = 48;
+
 /// How much more than the flap's motion the input of the stages behind a joint may be: a mode
 /// driven above its frequency asks for more.
 const AMPLE: f64 = 100.0;
@@ -130,7 +139,7 @@ impl Joint {
     fn input_of(self, output_deg: &[f64], spread: usize) -> Vec<f64> {
         match self {
             Self::Gap { half_width_deg } => gap_input(output_deg, half_width_deg, spread),
-            Self::Friction(step) => friction_input(output_deg, &step),
+            Self::Friction(step) => friction_input(output_deg, step),
         }
     }
 }
@@ -152,13 +161,13 @@ fn gap_input(output_deg: &[f64], half_width_deg: f64, spread: usize) -> Vec<f64>
 }
 
 /// The input sample by sample, each from the stretch that the last one left, until it closes.
-fn friction_input(output_deg: &[f64], step: &FrictionStep) -> Vec<f64> {
+fn friction_input(output_deg: &[f64], step: FrictionStep) -> Vec<f64> {
     let mut input_deg = output_deg.to_vec();
     let (mut stretch, mut last) = (0.0, output_deg.last().copied().unwrap_or(0.0));
     for _ in 0..MOST_ROUNDS {
         let mut change = 0.0_f64;
         for (input, &output) in input_deg.iter_mut().zip(output_deg) {
-            stretch = step.stretched(stretch, step.change_for(stretch, output - last));
+            stretch = step.stretched(stretch, output - last);
             last = output;
             change = change.max((output + stretch - *input).abs());
             *input = output + stretch;

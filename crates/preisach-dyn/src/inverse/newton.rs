@@ -11,6 +11,8 @@ use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 pub(super) const REACH_RESOLUTION: f64 = 1.0 / 128.0;
 /// Difference of a voltage coefficient in the Jacobian, as a share of the range.
 const DIFFERENCE: f64 = 1e-4;
+/// Shares of a command to start from.
+const STARTS: [f64; 4] = [1.0, 0.98, 0.95, 0.9];
 /// Halvings of a Newton step.
 const HALVINGS: usize = 7;
 
@@ -115,10 +117,26 @@ impl<'a> Search<'a> {
         solved: usize,
     ) -> Result<PeriodicInverse, PreisachError> {
         self.solved = solved.min(self.settings.voltage_harmonics);
-        let start = self.point(coefficients(command_volt, self.settings.voltage_harmonics))?;
+        let command = coefficients(command_volt, self.settings.voltage_harmonics);
+        let shrunk = |share: f64| {
+            let mut x = &command * share;
+            x[0] = command[0];
+            self.point(x)
+        };
+        // what is left of a command that had more harmonics may overshoot the range a little
+        let start = STARTS.iter().find_map(|&share| shrunk(share).ok());
+        let start = start.map_or_else(|| shrunk(1.0), Ok);
+        let start = match start.map_err(Stop::from) {
+            Ok(start) => start,
+            Err(Stop::Simulation(error)) => return Err(error),
+            Err(stop) => {
+                let rest = self.rest()?;
+                return Err(self.failure(&rest, 0.0, stop));
+            }
+        };
         match self.newton(&start, 1.0) {
             Ok((found, iterations)) => Ok(self.solution(found, iterations)),
-            Err(stop) => Err(self.failure(&start, 0.0, stop)),
+            Err(stop) => Err(self.failure(&start, 1.0, stop)),
         }
     }
 

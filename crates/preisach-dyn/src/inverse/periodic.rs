@@ -3,7 +3,8 @@
 use super::joints::LastJoint;
 use super::newton::Search;
 use crate::{
-    ActuatorLaw, ActuatorModel, PeriodicResponse, PeriodicSettings, PreisachError, StaticPreisach,
+    ActuatorLaw, ActuatorModel, AmplifierStage, PeriodicResponse, PeriodicSettings, PreisachError,
+    StaticPreisach, VoltageRange,
 };
 use rotor_base::HarmonicSeries;
 use serde::{Deserialize, Serialize};
@@ -64,10 +65,13 @@ impl ActuatorModel {
     ///
     /// Behind a joint that sticks ([`crate::Backlash`], [`crate::CoulombFriction`]) no small change of
     /// the voltage moves the flap from rest, and none moves it while the gap is taken up. There the
-    /// joint is undone exactly, what is asked of its input is found as above, and Newton's method
-    /// ends with the harmonics that `wanted_deg` has. The jumps that a gap asks for at reversals are
-    /// spread over one period of the highest voltage harmonic; what that leaves is in
-    /// [`PeriodicInverse::largest_error_deg`] and falls with its square.
+    /// joint is undone exactly, what is asked of its input is found as above with 48 harmonics or more,
+    /// and Newton's method ends with the harmonics that `wanted_deg` has. The jumps that a gap asks for at
+    /// reversals are spread over one period of the highest voltage harmonic; what that leaves is in
+    /// [`PeriodicInverse::largest_error_deg`]. It falls with the square of that period, and grows with the
+    /// number of joints and with modes behind them.
+    ///
+    /// Commands beyond a saturation at the amplifier's input are not tried.
     ///
     /// A [`crate::RelayGrid`] moves in steps, which have no inverse: the voltage is that of the plays
     /// with the same density, the motion and its error those of the relays.
@@ -91,9 +95,28 @@ impl ActuatorModel {
             let found = smooth.periodic_inverse(wanted_deg, rev_hz, settings)?;
             return search.evaluated(&found.response.voltage_volt, found.iterations);
         }
+        if let Some(limited) = self.limited() {
+            return limited.periodic_inverse(wanted_deg, rev_hz, settings);
+        }
         match LastJoint::of(self) {
             Some(joint) => joint.inverse(self, wanted_deg, rev_hz, settings),
             None => search.start_at_rest(),
         }
+    }
+
+    /// The same actuator commanded only as far as its amplifier goes: a command beyond a saturation at
+    /// the input does nothing more. None where it goes as far as the range.
+    fn limited(&self) -> Option<Self> {
+        let Some(AmplifierStage::Saturation(limits)) = self.amplifier.first() else {
+            return None;
+        };
+        let range = self.range_volt;
+        let low = range.lowest_volt().max(limits.v_min_volt);
+        let high = range.highest_volt().min(limits.v_max_volt);
+        if low <= range.lowest_volt() && high >= range.highest_volt() {
+            return None;
+        }
+        let range_volt = VoltageRange::new(low, high).ok()?;
+        Some(Self { range_volt, ..self.clone() })
     }
 }

@@ -55,22 +55,18 @@ impl Step for PlayStep {
 /// Dry friction of the driven part against the elasticity of the linkage.
 ///
 /// ```text
-/// y = x - e,   de = ( 1 - sgn(dx) e / r ) dx / 2,   r = width / 2 = F_c / k
+/// x = y + e,   de = 10 ( 1 - sgn(dy) e / r ) dy,   r = width / 2 = F_c / k
 /// ```
-/// `k e` is the force in the linkage, which friction holds. After a reversal the output stands still,
-/// then bends smoothly into following at the distance `r`: a backlash with rounded corners. The output
-/// never moves against the input: `dy/dx = (1 + sgn(dx) e / r) / 2` lies between 0 and 1.
-/// Rate-independent; exact for a motion that is monotone between samples. `width_um = 0` is the
-/// identity.
-///
-/// The friction force against the way of the driven part, `dF/dy = k (1 - q) / (1 + q)`,
-/// `q = sgn(dy) F / F_c`, is rigid at the reversal and slips at `q = 1`, with the hysteresis of Dahl's
-/// law in the motion that drives the spring.
+/// `k e` is the force in the linkage, `k` its stiffness, which friction holds: Dahl's law on the driven part, whose
+/// contact gives 10 times less than the linkage before it slips. After a reversal the output all but
+/// stands still (`dy/dx = 1/21`), then bends smoothly into following at the distance `r`: a backlash with
+/// rounded corners. `0 < dy/dx <= 1`; of motions much smaller than the width `1/11` passes, through a
+/// backlash nothing. Rate-independent; exact for a motion that is monotone between samples.
+/// `width_um = 0` is the identity.
 ///
 /// Not modelled: minor loops do not close exactly (Dahl's law has no return-point memory).
 /// Source: P. R. Dahl, *Solid friction damping of mechanical vibrations*, AIAA Journal 14 (1976),
-/// with exponent 1; the factor 1/2, own, is the largest with which the output stands still after a
-/// reversal instead of running on.
+/// with exponent 1; the stiffness of the contact is assumed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CoulombFriction {
@@ -84,108 +80,121 @@ impl CoulombFriction {
     }
 }
 
-/// `de = (1 - sgn(dx) e / limit) limit / way dx`, `y = x - share e`.
+/// Stiffness of a contact before it slips over that of the linkage.
+const CONTACT_STIFFNESS: f64 = 10.0;
+
+/// `de = c (1 - sgn(dy) e / r) dy`, `x = y + e`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FrictionStep {
-    /// Largest stretch.
+    /// Largest stretch, `r`.
     limit: f64,
-    /// Way after which the stretch is within `1/e` of it.
-    way: f64,
-    /// What of the stretch is missing from the output.
-    share: f64,
 }
 
 impl FrictionStep {
-    /// Of dry friction with this half-width.
-    pub(crate) fn dry(half_width: f64) -> Self {
-        Self { limit: half_width, way: 2.0 * half_width, share: 1.0 }
+    pub(crate) fn new(half_width: f64) -> Self {
+        Self { limit: half_width }
     }
 
-    /// Of an accommodation after this way.
-    pub(super) fn accommodation(travel: f64, share: f64) -> Self {
-        Self { limit: travel, way: travel, share }
-    }
-
-    /// The stretch after a monotone change of the input.
+    /// The stretch after a monotone change of the output.
     #[inline]
-    pub(crate) fn stretched(&self, stretch: f64, change: f64) -> f64 {
-        if change == 0.0 || self.limit == 0.0 {
-            return stretch;
-        }
-        let goal = self.limit.copysign(change);
-        goal + (stretch - goal) * (-change.abs() / self.way).exp()
+    pub(crate) fn stretched(self, stretch: f64, output_change: f64) -> f64 {
+        settled_by_way(stretch, self.limit, output_change, self.limit / CONTACT_STIFFNESS)
     }
 
-    /// The change of the input that changes the output by as much; the smallest where several do.
+    /// The change of the output that goes with a monotone change of the input.
     ///
     /// ```text
-    /// g(d) = d - (change of the stretch) = |dy|,   d >= 0
+    /// g(d) = d + sgn (e(d) - e) = |dx|,   d >= 0
     /// ```
-    /// `g` bends upward and rises to a slope of 1: Newton's method from the right stays there.
-    pub(crate) fn change_for(&self, stretch: f64, output_change: f64) -> f64 {
-        let wanted = output_change.abs();
-        let toward = |d: f64| d.copysign(output_change);
-        if wanted == 0.0 {
-            return 0.0;
-        }
-        // no more of the stretch is missing from the output than this
-        let mut d = wanted + 2.0 * self.share * self.limit;
+    /// `g` rises with a slope that falls to 1: Newton's method from zero stays on the left.
+    #[inline]
+    fn followed(self, stretch: f64, input_change: f64) -> f64 {
+        let wanted = input_change.abs();
+        let toward = |d: f64| d.copysign(input_change);
+        let mut d = 0.0;
         for _ in 0..NEWTON_STEPS {
             let after = self.stretched(stretch, toward(d));
-            let taken = self.share * (after - stretch) * output_change.signum();
-            let left = self.limit - after * output_change.signum();
-            let slope = 1.0 - self.share * left / self.way;
-            let step = (d - taken - wanted) / slope;
-            d -= step;
-            if step <= f64::EPSILON * d {
+            let taken = (after - stretch) * input_change.signum();
+            let left = 1.0 - after * input_change.signum() / self.limit;
+            let step = (wanted - d - taken) / (1.0 + CONTACT_STIFFNESS * left);
+            d += step;
+            if step <= 4.0 * f64::EPSILON * wanted {
                 break;
             }
         }
-        toward(d)
-    }
-
-    /// The stretch that a periodic input leads to, from those before and after one period.
-    ///
-    /// The stretch is multiplied by `exp(-way travelled / way)` over the period, whatever the turns.
-    pub(super) fn settle(&self, before: &FrictionMemory, now: &mut FrictionMemory) {
-        let ways = (now.travelled - before.travelled) / self.way;
-        if ways > 0.0 && ways < SHORT_WAY {
-            now.stretch = before.stretch - (now.stretch - before.stretch) / (-ways).exp_m1();
-        }
+        toward(d.clamp(0.0, wanted))
     }
 }
 
-/// Steps of the inverse of one sample: at a reversal, where the output starts with slope zero, they
-/// halve the error at worst.
-const NEWTON_STEPS: usize = 80;
+/// Steps of Newton's method for one sample, at most; some six are needed.
+const NEWTON_STEPS: usize = 60;
 
-/// Periods with a longer way than this many [`FrictionStep::way`] settle by themselves.
+/// The state of `de = (1 - sgn(dx) e / limit) limit / way dx` after a monotone `dx`.
+#[inline]
+fn settled_by_way(state: f64, limit: f64, change: f64, way: f64) -> f64 {
+    if change == 0.0 || limit == 0.0 {
+        return state;
+    }
+    let goal = limit.copysign(change);
+    goal + (state - goal) * (-change.abs() / way).exp()
+}
+
+/// The state that a periodic motion leads to, from those before and after one period: over the period it is
+/// multiplied by `exp(-way travelled / way)`, whatever the turns.
+fn settled_over_period(before: WayMemory, now: WayMemory, way: f64) -> f64 {
+    let ways = (now.travelled - before.travelled) / way;
+    if ways > 0.0 && ways < SHORT_WAY {
+        before.state - (now.state - before.state) / (-ways).exp_m1()
+    } else {
+        now.state
+    }
+}
+
+/// Periods with a longer way than this many of the stage's settle by themselves.
 const SHORT_WAY: f64 = 3.0;
 
+/// The memory of a stage that settles with the way.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct FrictionMemory {
+pub(crate) struct WayMemory {
     input: f64,
-    /// Stretch of the spring.
-    stretch: f64,
-    /// Way of the input since the start.
+    /// Stretch.
+    #[serde(rename = "stretch")]
+    state: f64,
+    /// Way since the start of the motion that counts.
     #[serde(default)]
     travelled: f64,
 }
 
-impl Step for FrictionStep {
-    type Memory = FrictionMemory;
+impl WayMemory {
+    fn at_rest(input: f64) -> Self {
+        Self { input, state: 0.0, travelled: 0.0 }
+    }
+}
 
-    fn start(&self, input: f64) -> (FrictionMemory, f64) {
-        (FrictionMemory { input, stretch: 0.0, travelled: 0.0 }, input)
+impl FrictionStep {
+    pub(super) fn settle(self, before: &WayMemory, now: &mut WayMemory) {
+        now.state = settled_over_period(*before, *now, self.limit / CONTACT_STIFFNESS);
+    }
+}
+
+impl Step for FrictionStep {
+    type Memory = WayMemory;
+
+    fn start(&self, input: f64) -> (WayMemory, f64) {
+        (WayMemory::at_rest(input), input)
     }
 
     #[inline]
-    fn advance(&self, memory: &mut FrictionMemory, input: f64) -> f64 {
+    fn advance(&self, memory: &mut WayMemory, input: f64) -> f64 {
         let change = input - memory.input;
         memory.input = input;
-        memory.travelled += change.abs();
-        memory.stretch = self.stretched(memory.stretch, change);
-        input - self.share * memory.stretch
+        if change != 0.0 && self.limit > 0.0 {
+            let followed = self.followed(memory.state, change);
+            memory.travelled += followed.abs();
+            // what the output does not follow stretches the linkage: nothing is lost to rounding
+            memory.state += change - followed;
+        }
+        input - memory.state
     }
 }
 
@@ -218,6 +227,40 @@ impl Accommodation {
         }
         let (quantity, value) = ("share of the accommodation", self.share);
         Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: LARGEST_SHARE })
+    }
+}
+
+/// `de = (1 - sgn(dx) e / travel) dx`, `y = x - share e`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct AccommodationStep {
+    travel: f64,
+    share: f64,
+}
+
+impl AccommodationStep {
+    pub(super) fn new(travel: f64, share: f64) -> Self {
+        Self { travel, share }
+    }
+
+    pub(super) fn settle(&self, before: &WayMemory, now: &mut WayMemory) {
+        now.state = settled_over_period(*before, *now, self.travel);
+    }
+}
+
+impl Step for AccommodationStep {
+    type Memory = WayMemory;
+
+    fn start(&self, input: f64) -> (WayMemory, f64) {
+        (WayMemory::at_rest(input), input)
+    }
+
+    #[inline]
+    fn advance(&self, memory: &mut WayMemory, input: f64) -> f64 {
+        let change = input - memory.input;
+        memory.input = input;
+        memory.travelled += change.abs();
+        memory.state = settled_by_way(memory.state, self.travel, change, self.travel);
+        input - self.share * memory.state
     }
 }
 

@@ -35,7 +35,7 @@ use creep::{CreepMemory, CreepStep};
 use delay::{DelayMemory, DelayStep};
 use lag::{LagMemory, LagStep};
 pub(crate) use linkage::FrictionStep;
-use linkage::{LoadStep, PlayStep};
+use linkage::{AccommodationStep, LoadStep, PlayStep, WayMemory};
 use resonance::{ResonanceMemory, ResonanceStep};
 use sensor::{HumStep, NonlinearityStep, QuantisationStep};
 use serde::{Deserialize, Serialize};
@@ -134,6 +134,7 @@ pub(crate) enum StageStep {
     Resonance(ResonanceStep),
     Play(PlayStep),
     Friction(FrictionStep),
+    Accommodation(AccommodationStep),
     Load(LoadStep),
     Nonlinearity(NonlinearityStep),
     Quantisation(QuantisationStep),
@@ -152,7 +153,8 @@ pub(crate) enum StageMemory {
     Creep(CreepMemory),
     Resonance(ResonanceMemory),
     Play(f64),
-    Friction(linkage::FrictionMemory),
+    Friction(WayMemory),
+    Accommodation(WayMemory),
     Load(()),
     Nonlinearity(()),
     Quantisation(()),
@@ -173,6 +175,7 @@ macro_rules! paired {
             (StageStep::Resonance($s), StageMemory::Resonance($m)) => $body,
             (StageStep::Play($s), StageMemory::Play($m)) => $body,
             (StageStep::Friction($s), StageMemory::Friction($m)) => $body,
+            (StageStep::Accommodation($s), StageMemory::Accommodation($m)) => $body,
             (StageStep::Load($s), StageMemory::Load($m)) => $body,
             (StageStep::Nonlinearity($s), StageMemory::Nonlinearity($m)) => $body,
             (StageStep::Quantisation($s), StageMemory::Quantisation($m)) => $body,
@@ -206,6 +209,7 @@ impl StageStep {
             Resonance,
             Play,
             Friction,
+            Accommodation,
             Load,
             Nonlinearity,
             Quantisation,
@@ -233,6 +237,7 @@ impl StageStep {
             Self::Resonance(step) => step.pass(signal),
             Self::Play(step) => step.pass(signal),
             Self::Friction(step) => step.pass(signal),
+            Self::Accommodation(step) => step.pass(signal),
             Self::Load(step) => step.pass(signal),
             Self::Nonlinearity(step) => step.pass(signal),
             Self::Quantisation(step) => step.pass(signal),
@@ -279,6 +284,11 @@ impl StageStep {
             (Self::Friction(step), StageMemory::Friction(before), StageMemory::Friction(now)) => {
                 step.settle(before, now);
             }
+            (
+                Self::Accommodation(step),
+                StageMemory::Accommodation(before),
+                StageMemory::Accommodation(now),
+            ) => step.settle(before, now),
             _ => {}
         }
     }
@@ -357,12 +367,12 @@ impl LinkageStage {
             Self::KelvinVoigt(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Relaxation(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Accommodation(stage) => {
-                StageStep::Friction(FrictionStep::accommodation(stage.travel_um * deg, stage.share))
+                StageStep::Accommodation(AccommodationStep::new(stage.travel_um * deg, stage.share))
             }
             Self::Resonance(stage) => StageStep::Resonance(stage.prepared(step_s)),
             Self::Backlash(stage) => StageStep::Play(PlayStep::new(0.5 * stage.width_um * deg)),
             Self::CoulombFriction(stage) => {
-                StageStep::Friction(FrictionStep::dry(0.5 * stage.width_um * deg))
+                StageStep::Friction(FrictionStep::new(0.5 * stage.width_um * deg))
             }
             Self::LoadStiffness(stage) => StageStep::Load(stage.prepared(calibration.deg_per_um)),
         }

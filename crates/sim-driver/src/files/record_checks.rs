@@ -29,6 +29,9 @@ const UNIT_EXCESS: f64 = 20.0;
 /// Lead of the output from which it cannot be an actuator's, deg.
 const LEAST_LEAD_DEG: f64 = 2.0;
 
+/// Half-width of the play that tells the path of an input from its noise, as a share of the range.
+const PATH_GAP: f64 = 0.01;
+
 fn limits(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)))
 }
@@ -140,7 +143,8 @@ pub(crate) fn check_lag(record: &Record<'_>, problems: &mut Problems) {
 /// r = y - (g u + c)                     what a straight line leaves
 /// s = sum r du / (sum |du| std y)       = sqrt(2) pi/4 sin(lead) for a sine
 /// ```
-/// The straight line takes off what an open path would add; a loop's area does not feel it.
+/// The straight line takes off what an open path would add; a loop's area does not feel it. The path is that
+/// of a play of [`PATH_GAP`] of the range: the noise of a finely sampled record would make it long.
 fn lead_deg(input: &[f64], output: &[f64]) -> f64 {
     let n = input.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
@@ -153,11 +157,16 @@ fn lead_deg(input: &[f64], output: &[f64]) -> f64 {
     }
     let gain = uy / uu;
     let rest = |i: usize| output[i] - y0 - gain * (input[i] - u0);
+    let (low, high) = limits(input);
+    let half_gap = PATH_GAP * (high - low);
+    let mut followed = input.first().copied().unwrap_or_default();
     let (mut area, mut path) = (0.0, 0.0);
     for (i, pair) in input.windows(2).enumerate() {
         let step = pair[1] - pair[0];
         area += 0.5 * (rest(i) + rest(i + 1)) * step;
-        path += step.abs();
+        let last = followed;
+        followed = followed.min(pair[1] + half_gap).max(pair[1] - half_gap);
+        path += (followed - last).abs();
     }
     let share = area * gain.signum() / (path * (yy / n).sqrt());
     let sine = share / (std::f64::consts::SQRT_2 * std::f64::consts::FRAC_PI_4);
@@ -181,11 +190,37 @@ mod tests {
     fn the_lead_of_a_sine_is_found() {
         for lag in [-40.0, -5.0, 0.0, 5.0, 40.0] {
             let (u, y) = sine(lag, 12.0);
-            assert!((lead_deg(&u, &y) + lag).abs() < 0.05, "{lag}: {}", lead_deg(&u, &y));
+            assert!(
+                (lead_deg(&u, &y) + lag).abs() < 0.05 * (1.0 + lag.abs()),
+                "{lag}: {}",
+                lead_deg(&u, &y)
+            );
             let turned: Vec<f64> = y.iter().map(|y| -y).collect();
-            assert!((lead_deg(&u, &turned) + lag).abs() < 0.05, "an inverting sensor");
-            assert!((lead_deg(&y, &u) - lag).abs() < 0.05, "swapped");
+            assert!(
+                (lead_deg(&u, &turned) + lag).abs() < 0.05 * (1.0 + lag.abs()),
+                "an inverting sensor"
+            );
+            assert!((lead_deg(&y, &u) - lag).abs() < 0.05 * (1.0 + lag.abs()), "swapped");
         }
+    }
+
+    /// A displacement with its noise in place of the command, sampled finely: as clear as without noise.
+    #[test]
+    fn noise_does_not_hide_swapped_columns() {
+        let (u, y) = sine(8.0, 0.0);
+        let fine = |v: &[f64]| -> Vec<f64> {
+            let pairs = v.windows(2);
+            pairs
+                .flat_map(|p| (0..20).map(move |k| p[0] + 0.05 * f64::from(k) * (p[1] - p[0])))
+                .collect()
+        };
+        let noisy: Vec<f64> = fine(&y)
+            .iter()
+            .enumerate()
+            .map(|(i, y)| y + 0.05 * (7919.0 * i as f64).sin())
+            .collect();
+        let lead = lead_deg(&noisy, &fine(&u));
+        assert!((lead - 8.0).abs() < 0.6, "{lead}");
     }
 
     fn warned(input: &[f64], output: &[f64]) -> usize {

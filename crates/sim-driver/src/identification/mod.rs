@@ -104,10 +104,7 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
     };
     let (low, high) = data.command_range_volt;
     let range_volt = VoltageRange::new(low, high).map_err(fail)?;
-    let (deg_per_um, gain_rule) = match data.flap_deg_per_um {
-        Some(gain) => (gain, GainRule::DataSet),
-        None => quasi_static_gain(data, base),
-    };
+    let (deg_per_um, gain_rule) = gain(data, base);
     let settings = Settings { range_volt, deg_per_um, ..base.clone() };
     let records: Vec<BenchRecord> = data
         .runs
@@ -220,6 +217,14 @@ fn identified(
         fits,
         comparison,
     })
+}
+
+/// Flap angle per displacement of a bench, deg/um, and where it comes from.
+pub(crate) fn gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
+    match data.flap_deg_per_um {
+        Some(gain) => (gain, GainRule::DataSet),
+        None => quasi_static_gain(data, base),
+    }
 }
 
 /// Gain that makes the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`], deg/um,
