@@ -50,7 +50,7 @@ pub use momentum::{VORTEX_RING_TRANSPORT, momentum_inflow, momentum_residual, wa
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
-    BladeLines, CirculationMap, ClosestPassage, CoreSettings, FarTrailers, FreeWake,
+    BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarTrailers, FreeWake,
     FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ShedVorticity,
     StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeRotor, contraction_drift,
 };

@@ -23,6 +23,20 @@ impl CoreModel {
     pub fn cut_off_ratio() -> f64 {
         (-0.75_f64).exp()
     }
+
+    /// Velocity at a distance from an infinite straight line of unit circulation.
+    ///
+    /// ```text
+    /// Vatistas: h / (2 pi sqrt(h^4 + r_c^4)),      Rosenhead-Moore: h / (2 pi (h^2 + delta^2))
+    /// ```
+    pub(crate) fn of_a_straight_line(self, distance: f64, core_radius: f64) -> f64 {
+        let square = distance * distance;
+        let regularised = match self {
+            Self::Vatistas => square.hypot(core_radius * core_radius),
+            Self::RosenheadMoore => square + (core_radius * Self::cut_off_ratio()).powi(2),
+        };
+        distance / (2.0 * PI * regularised)
+    }
 }
 
 /// One segment with what does not depend on the target.

@@ -1,14 +1,14 @@
 //! The wake held still: inflow as a linear function of the circulation.
 
-use super::{CirculationMap, FreeWake, InflowMap, WakeRotor};
+use super::{CirculationMap, ControlPoint, FreeWake, InflowMap, WakeRotor};
 use crate::kernel::{BLOCK, for_each_velocity};
-use crate::vector::{Vec3, add, scale};
+use crate::vector::{Vec3, add, norm, scale, sub};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Induced velocity at the lifting line of all panels and azimuths per unit of circulation at all panels
+/// Induced velocity at the control points of all panels and azimuths per unit of circulation at all panels
 /// and azimuths, for one geometry of the wake.
 ///
 /// ```text
@@ -24,12 +24,17 @@ pub struct LineInduction {
     along: DMatrix<f64>,
 }
 
-/// Middles of panels at one instant: at most a block of the kernel.
+/// Where the control points of Weissinger's method lie between the quarter chord and the trailing edge.
+const HALF_A_CHORD: f64 = 2.0 / 3.0;
+
+/// Points of panels at one instant: at most a block of the kernel.
 struct TargetBlock {
     phase: usize,
     /// Row of the matrices.
     rows: Vec<usize>,
     points: Vec<Vec3>,
+    /// What of the downwash of the panel's own circulation belongs to the section.
+    own: [f64; BLOCK],
     /// Sine and cosine of the azimuth of each.
     sines: [f64; BLOCK],
     cosines: [f64; BLOCK],
@@ -47,12 +52,27 @@ impl FreeWake {
                     phase,
                     rows: chunk.iter().map(|(i, s)| i * panels + s).collect(),
                     points: Vec::with_capacity(BLOCK),
+                    own: [0.0; BLOCK],
                     sines: [0.0; BLOCK],
                     cosines: [0.0; BLOCK],
                 };
                 for (lane, &(i, s)) in chunk.iter().enumerate() {
-                    let line = self.lines.at(i);
-                    block.points.push(scale(add(line[s], line[s + 1]), 0.5));
+                    let middle = |ends: &[Vec3]| scale(add(ends[s], ends[s + 1]), 0.5);
+                    let line = middle(self.lines.at(i));
+                    let behind = sub(middle(self.lines.edge_at(i)), line);
+                    if self.settings.control_point == ControlPoint::ThreeQuarterChord
+                        && norm(behind) > 0.0
+                    {
+                        let behind = scale(behind, HALF_A_CHORD);
+                        block.points.push(add(line, behind));
+                        block.own[lane] = self
+                            .settings
+                            .core
+                            .model
+                            .of_a_straight_line(norm(behind), self.settings.core.near_radius);
+                    } else {
+                        block.points.push(line);
+                    }
                     let azimuth = i as f64 * self.settings.step_rad();
                     (block.sines[lane], block.cosines[lane]) = azimuth.sin_cos();
                 }
@@ -111,6 +131,9 @@ impl FreeWake {
                     out.down[(row, column)] = down[lane];
                     out.along[(row, column)] = along[lane];
                 }
+            }
+            for (&row, own) in block.rows.iter().zip(block.own) {
+                out.down[(row, row)] -= own;
             }
         }
         Ok(out)

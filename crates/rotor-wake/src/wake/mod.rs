@@ -19,7 +19,8 @@ pub use influence::{FrozenWake, LineInduction};
 pub use march::{WakeMarch, contraction_drift};
 pub use rotor::WakeRotor;
 pub use settings::{
-    CoreSettings, FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity, StrainEffect,
+    ControlPoint, CoreSettings, FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity,
+    StrainEffect,
 };
 pub use solve::{ClosestPassage, WakeConvergence};
 pub use sweep::{FreeWake, WakeFilament};

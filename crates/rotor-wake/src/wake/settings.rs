@@ -30,6 +30,23 @@ pub enum ShedVorticity {
     InWake,
 }
 
+/// Where on the chord the sections feel the induced velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ControlPoint {
+    /// On the lifting line, at the quarter chord: Prandtl's line, for slender blades.
+    #[default]
+    LiftingLine,
+    /// Half a chord behind it, less what a straight infinite line of the circulation there would induce,
+    /// which is in the section's own lift-curve slope: Weissinger's L-method. The lift of a blade six chords
+    /// long is some 5 % less than with the line's own point. Needs blades with a trailing edge
+    /// ([`BladeLines::with_trailing_edge`](super::BladeLines::with_trailing_edge)); without one it is the
+    /// lifting line.
+    ///
+    /// Source: J. Weissinger, NACA TM 1120 (1947).
+    ThreeQuarterChord,
+}
+
 /// Which filaments go on after the near wake.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
@@ -111,6 +128,8 @@ pub struct FreeWakeSettings {
     pub shed: ShedVorticity,
     /// Filaments behind the near wake.
     pub far: FarTrailers,
+    /// Where the sections feel the induced velocity.
+    pub control_point: ControlPoint,
     /// Vortex cores.
     pub core: CoreSettings,
     /// Induced velocities are computed at every `velocity_stride`-th age and interpolated between
@@ -134,6 +153,7 @@ impl Default for FreeWakeSettings {
             near_wake_motion: NearWakeMotion::default(),
             shed: ShedVorticity::default(),
             far: FarTrailers::default(),
+            control_point: ControlPoint::default(),
             core: CoreSettings::default(),
             velocity_stride: 1,
             relaxation: 0.5,
