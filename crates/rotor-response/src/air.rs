@@ -36,6 +36,21 @@ pub(crate) struct SectionFlow {
     pub(crate) input_rate: [f64; 4],
 }
 
+impl SectionFlow {
+    /// Adds a share of another flow; the sense is none of the sum's.
+    pub(crate) fn add(&mut self, share: f64, other: &Self) {
+        self.u_t += share * other.u_t;
+        self.u_p += share * other.u_p;
+        self.pitch += share * other.pitch;
+        for (sum, value) in self.input.iter_mut().zip(other.input) {
+            *sum += share * value;
+        }
+        for (sum, value) in self.input_rate.iter_mut().zip(other.input_rate) {
+            *sum += share * value;
+        }
+    }
+}
+
 /// Azimuth, free stream and pitch at one azimuth point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AirPoint {
@@ -69,10 +84,7 @@ pub(crate) fn section_flow(
     SectionFlow {
         u_t,
         u_p,
-        sense: match point.reverse_flow {
-            ReverseFlow::Gradual => u_t / u_t.hypot(u_p).max(f64::MIN_POSITIVE),
-            ReverseFlow::Abrupt => (blade.grid.x()[i] + mu_sin).signum(),
-        },
+        sense: sense(point.reverse_flow, (u_t, u_p), blade.grid.x()[i] + mu_sin),
         pitch: theta,
         input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
         input_rate: [
@@ -81,6 +93,14 @@ pub(crate) fn section_flow(
             u_t_rate * delta[0] + u_t * delta[1],
             chord * delta[2],
         ],
+    }
+}
+
+/// Sense of the circulation in a flow `(U_T, U_P)`, the rigid blade having the tangential speed `rigid`.
+pub(crate) fn sense(reverse_flow: ReverseFlow, (u_t, u_p): (f64, f64), rigid: f64) -> f64 {
+    match reverse_flow {
+        ReverseFlow::Gradual => u_t / u_t.hypot(u_p).max(f64::MIN_POSITIVE),
+        ReverseFlow::Abrupt => rigid.signum(),
     }
 }
 
@@ -93,6 +113,17 @@ pub(crate) struct SectionLoads {
     pub(crate) hinge: f64,
     /// Bound circulation, tip speed times R, positive with lift up in flow from the leading edge.
     pub(crate) circulation: f64,
+}
+
+impl SectionLoads {
+    /// Adds a share of other loads.
+    pub(crate) fn add(&mut self, share: f64, other: &Self) {
+        self.fz += share * other.fz;
+        self.fy += share * other.fy;
+        self.moment += share * other.moment;
+        self.hinge += share * other.hinge;
+        self.circulation += share * other.circulation;
+    }
 }
 
 /// What the past of a section adds to its loads.

@@ -10,6 +10,10 @@ use rotor_fem::{
     ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, uncoupled_modes,
 };
 
+/// Station inboard of which the flow may turn round, radius R: the largest advance ratio the attached
+/// sections are meant for. There the loads vary fast along the span, and the pieces of the grid are halved.
+const REVERSE_FLOW_END: f64 = 0.5;
+
 /// Which nonlinear structural and inertial terms the modal equations carry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Couplings {
@@ -193,7 +197,8 @@ impl ResponseBlade {
             .chain([model.root_cutout, model.tip_loss])
             .chain(model.flaps.iter().flat_map(|f| [f.start, f.end]))
             .collect();
-        let grid = SpanGrid::new(root, &breaks, discretisation.span_points_per_piece)?;
+        let turning = [model.root_cutout, REVERSE_FLOW_END];
+        let grid = SpanGrid::halved(root, &breaks, turning, discretisation.span_points_per_piece)?;
         let family = |kind: ModeKind| -> Result<Shapes, ResponseError> {
             let samples = modes
                 .of(kind)

@@ -17,14 +17,14 @@ use crate::ResponseError;
 use nalgebra::{DMatrix, DVector};
 use rotor_base::{LagrangeBasis, gauss_legendre};
 use rotor_fem::TimeElements;
+use std::f64::consts::PI;
 
-/// Integration matrix of the Gauss points of one element.
+/// Integration matrix of the Gauss points of one element, and the elements it is for.
 #[derive(Debug, Clone)]
 pub(crate) struct Collocation {
     integration: DMatrix<f64>,
     end_weights: DVector<f64>,
-    half_width: f64,
-    elements: usize,
+    half_widths: Vec<f64>,
 }
 
 impl Collocation {
@@ -35,9 +35,13 @@ impl Collocation {
         Self {
             integration: DMatrix::from_fn(points, points, |i, j| rows[i][j]),
             end_weights: DVector::from_vec(rule.weights),
-            half_width: std::f64::consts::PI / time.elements() as f64,
-            elements: time.elements(),
+            half_widths: vec![PI / time.elements() as f64; time.elements()],
         }
+    }
+
+    /// The same for elements of other half lengths, rad, that fill the revolution.
+    pub(crate) fn on(&self, half_widths: &[f64]) -> Self {
+        Self { half_widths: half_widths.to_vec(), ..self.clone() }
     }
 
     fn points(&self) -> usize {
@@ -62,10 +66,9 @@ impl PeriodicLag {
     /// [`ResponseError::LagSingular`] if an element cannot be solved (rates not finite).
     pub(crate) fn new(collocation: &Collocation, rates: &[f64]) -> Result<Self, ResponseError> {
         let g = collocation.points();
-        let half = collocation.half_width;
-        let mut table = Vec::with_capacity(collocation.elements * (g + 1) * (g + 1));
+        let mut table = Vec::with_capacity(collocation.half_widths.len() * (g + 1) * (g + 1));
         let mut passed = 1.0;
-        for chunk in rates.chunks_exact(g) {
+        for (chunk, &half) in rates.chunks_exact(g).zip(&collocation.half_widths) {
             let scaled =
                 DMatrix::from_fn(g, g, |i, j| half * collocation.integration[(i, j)] * chunk[j]);
             let system = (DMatrix::identity(g, g) + &scaled).lu();

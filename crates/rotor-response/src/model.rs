@@ -3,6 +3,9 @@
 use crate::{Couplings, NonlinearSections, ResponseError, TrailingEdgeFlap};
 use flap_aero::AttachedFlowModel;
 
+/// Largest local Mach number handed to the section models, where linear theory ends.
+pub(crate) const MACH_LIMIT: f64 = 0.9;
+
 /// How the local Mach number enters the section aerodynamics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Compressibility {
@@ -161,6 +164,14 @@ impl RotorModel {
     /// Thrust in `m0 Omega^2 R^2` of a thrust coefficient over solidity.
     pub fn thrust_of_loading(&self, ct_sigma: f64) -> f64 {
         ct_sigma * self.blades as f64 * self.density_chord()
+    }
+
+    /// Tangential speeds, tip speed, at which the section coefficients have a kink.
+    pub(crate) fn speeds_with_kinks(&self) -> Vec<f64> {
+        let tip_mach = self.compressible_tip_mach();
+        let within = |mach: &f64| tip_mach > 0.0 && *mach > 0.0;
+        let machs = self.section_model.mach_kinks().iter().copied().chain([MACH_LIMIT]);
+        machs.filter(within).map(|mach| mach / tip_mach).collect()
     }
 
     /// Tip Mach number used for the sections, zero without compressibility.
