@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use rotor_base::{LagrangeBasis, gauss_legendre};
 use rotor_fem::{
     BladeProperties, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
-    ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, uncoupled_modes,
+    ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, modal_basis,
 };
 
 /// Station inboard of which the flow may turn round, radius R: the largest advance ratio the attached
@@ -188,7 +188,7 @@ impl ResponseBlade {
         let [flap, lag, torsion] = discretisation.modes;
         let count = ModeCount { flap, lag, torsion, axial: 0 };
         let elements = discretisation.blade_elements;
-        let modes = uncoupled_modes(properties, elements, count)?;
+        let modes = modal_basis(properties, elements, count, discretisation.basis)?;
         let root = properties.spec().root_offset;
         let length = (1.0 - root) / elements as f64;
         let breaks: Vec<f64> = (1..elements)

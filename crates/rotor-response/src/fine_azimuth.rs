@@ -98,7 +98,8 @@ impl FineAzimuth {
                 fine.points.extend(local.iter().map(|at| from + length * at));
                 fine.half_widths.push(0.5 * length * share);
                 let shapes = || {
-                    let values = |at: &f64| basis.evaluate(2.0 * at - 1.0).into_iter().map(|[n, ..]| n);
+                    let values =
+                        |at: &f64| basis.evaluate(2.0 * at - 1.0).into_iter().map(|[n, ..]| n);
                     local.iter().flat_map(values).collect()
                 };
                 fine.pieces.push(Piece { element, shapes: (!whole).then(shapes), share });

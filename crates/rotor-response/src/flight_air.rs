@@ -5,7 +5,8 @@
 //! operator on the section inputs, solved once per flight condition.
 
 use crate::air::{
-    AirScales, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads, sense,
+    AirScales, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads,
+    sense,
 };
 use crate::blade::ResponseBlade;
 use crate::fine_azimuth::{FineAzimuth, RigidSpeed};

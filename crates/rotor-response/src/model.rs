@@ -2,6 +2,7 @@
 
 use crate::{Couplings, NonlinearSections, ResponseError, TrailingEdgeFlap};
 use flap_aero::AttachedFlowModel;
+use rotor_fem::ModalBasis;
 
 /// Largest local Mach number handed to the section models, where linear theory ends.
 pub(crate) const MACH_LIMIT: f64 = 0.9;
@@ -202,6 +203,8 @@ pub struct Discretisation {
     pub blade_elements: usize,
     /// Flap, lag and torsion modes.
     pub modes: [usize; 3],
+    /// Natural modes, or the last of each family replaced by a static completion.
+    pub basis: ModalBasis,
     /// Gauss points in each spanwise piece.
     pub span_points_per_piece: usize,
     /// Elements of the time discretisation.
@@ -221,6 +224,7 @@ impl Default for Discretisation {
         Self {
             blade_elements: 10,
             modes: [4, 4, 2],
+            basis: ModalBasis::Natural,
             span_points_per_piece: 4,
             time_elements: 8,
             time_order: 5,

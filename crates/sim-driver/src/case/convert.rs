@@ -77,6 +77,7 @@ fn build(
             modal_damping: rotor.modal_damping,
             elements: structure.elements,
             modes: [modes.flap, modes.lag, modes.torsion],
+            basis: structure.basis,
             couplings: structure.couplings,
             root_offset: rotor.root_offset_r,
             root: rotor.root,

@@ -260,6 +260,15 @@ pub enum CouplingsChoice {
     Moderate,
 }
 
+/// The shapes behind the modes of the response.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BasisChoice {
+    /// Natural modes.
+    Natural,
+    /// The last mode of every family gives way to the static answer of all modes left out.
+    Completed,
+}
+
 /// Structural model of the blade.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -268,13 +277,20 @@ pub struct StructureFile {
     pub elements: usize,
     /// Modes kept in the response.
     pub modes: ModesFile,
+    /// The shapes behind the modes.
+    pub basis: BasisChoice,
     /// Terms of the equations.
     pub couplings: CouplingsChoice,
 }
 
 impl Default for StructureFile {
     fn default() -> Self {
-        Self { elements: 10, modes: ModesFile::default(), couplings: CouplingsChoice::Full }
+        Self {
+            elements: 10,
+            modes: ModesFile::default(),
+            basis: BasisChoice::Natural,
+            couplings: CouplingsChoice::Full,
+        }
     }
 }
 

@@ -1,10 +1,10 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    BladeTablesFile, CompressibilityChoice, ControlActuator, ControllerChoice, CouplingsChoice,
-    DynamicStallChoice, EffortChoice, FlapMassChoice, GravityChoice, HorizontalTailFile,
-    InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice, RootFile,
-    SectionModelChoice, StrokeChoice, TolerancesFile, UnlikeBladeFile,
+    BasisChoice, BladeTablesFile, CompressibilityChoice, ControlActuator, ControllerChoice,
+    CouplingsChoice, DynamicStallChoice, EffortChoice, FlapMassChoice, GravityChoice,
+    HorizontalTailFile, InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile,
+    ReverseFlowChoice, RootFile, SectionModelChoice, StrokeChoice, TolerancesFile, UnlikeBladeFile,
 };
 use crate::files::Folder;
 use flap_aero::AirfoilSpan;
@@ -87,6 +87,8 @@ pub struct BladeValues {
     pub elements: usize,
     /// Flap, lag and torsion modes.
     pub modes: [usize; 3],
+    /// The shapes behind them.
+    pub basis: BasisChoice,
     /// Terms of the equations.
     pub couplings: CouplingsChoice,
     /// Radial station of the root.
