@@ -84,14 +84,14 @@ pub(crate) struct FlapInertia {
 }
 
 impl TrailingEdgeFlap {
-    /// Inertia per length for a blade chord `c/R` and an elastic axis at the quarter chord.
+    /// Inertia per length for a blade chord `c/R` and an elastic axis `behind` the quarter chord.
     ///
     /// Source: design values of Viswamurthy and Ganguli, Table 1; the flap's own inertia is that of a
     /// uniform thin rod, `m_f c_f^2 / 12`, unless given (assumption).
-    pub(crate) fn inertia(&self, chord: f64) -> FlapInertia {
+    pub(crate) fn inertia(&self, chord: f64, behind: f64) -> FlapInertia {
         let flap_chord = self.chord_fraction * chord;
         let cg = self.cg_fraction * flap_chord;
-        let hinge = (0.75 - self.chord_fraction) * chord;
+        let hinge = (0.75 - self.chord_fraction) * chord - behind;
         let own_squared = match self.gyration_fraction {
             None => flap_chord * flap_chord / 12.0,
             Some(about_hinge) => ((about_hinge * flap_chord).powi(2) - cg * cg).max(0.0),
@@ -168,8 +168,8 @@ pub struct ResponseBlade {
     pub(crate) cutout: f64,
     /// Outboard of this station sections do not lift, radius R.
     pub(crate) tip_loss: f64,
-    /// Mass centre ahead of the elastic axis, radius R.
-    pub(crate) mass_centre: f64,
+    /// Centres ahead of the elastic axis, and the axis ahead of the rotor centre, radius R.
+    pub(crate) offsets: SectionOffsets,
     pub(crate) root_offset: f64,
     /// The blade's own modal equations, for [`Couplings::Moderate`].
     pub(crate) modal: Option<ModalBlade>,
@@ -257,10 +257,14 @@ impl ResponseBlade {
             tension: along(&|x| properties.tension(x)),
             precone: properties.spec().precone_rad,
             flap_index,
-            flap_inertia: model.flaps.iter().map(|f| f.inertia(model.chord)).collect(),
+            flap_inertia: model
+                .flaps
+                .iter()
+                .map(|f| f.inertia(model.chord, model.offsets.aerodynamic_centre))
+                .collect(),
             cutout: model.root_cutout,
             tip_loss: model.tip_loss,
-            mass_centre: model.offsets.mass_centre,
+            offsets: model.offsets,
             root_offset: root,
             modal: match model.couplings {
                 Couplings::Moderate(torsion) => {

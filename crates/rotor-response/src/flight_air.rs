@@ -337,7 +337,7 @@ impl StationAir {
         (flow, past): (&SectionFlow, &SectionPast),
         StationLaw { scales, kind }: StationLaw,
     ) -> SectionLoads {
-        match kind {
+        let loads = match kind {
             Kind::Whole => self.whole_loads(point, scales, (flow, past)),
             Kind::FlapSlope => {
                 let frictionless = AirScales { drag: 0.0, ..scales };
@@ -351,7 +351,8 @@ impl StationAir {
                 SectionLoads { fy, ..SectionLoads::default() }
             }
             Kind::Nothing => SectionLoads::default(),
-        }
+        };
+        if scales.centre == 0.0 { loads } else { loads.about(scales.centre, flow.pitch) }
     }
 
     fn whole_loads(

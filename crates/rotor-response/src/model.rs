@@ -40,15 +40,24 @@ pub enum ReverseFlow {
     Abrupt,
 }
 
-/// Centres of a section ahead of its elastic axis, radius R; the same all along the blade.
+/// Centres of a section ahead of its elastic axis, and the blade's axis ahead of the hub's centre, radius R;
+/// the same all along the blade.
 ///
-/// Only the equations of [`Couplings::Moderate`] know them.
+/// Mass and tension centre are known to the equations of [`Couplings::Moderate`] alone, the torque offset to
+/// those of `Linear` and `Full`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SectionOffsets {
     /// Mass centre, `e_g`.
     pub mass_centre: f64,
     /// Tension centre, `e_A`.
     pub tension_centre: f64,
+    /// Aerodynamic centre (the quarter chord), `e_d`. Lift there turns the section nose up, and a section
+    /// that pitches about its elastic axis moves it: `U_P` holds `e_d om`.
+    pub aerodynamic_centre: f64,
+    /// Torque offset: how far the axis of the blade at rest passes ahead of the rotor centre, toward the
+    /// leading edge. Centrifugal force then has a part along the lag motion, and the rotation gives the air
+    /// a speed along the blade.
+    pub torque: f64,
 }
 
 /// The rotor apart from the structure of its blades. Rotor units: length R, mass per length `m0`,
@@ -120,6 +129,19 @@ impl RotorModel {
             let known = offset == 0.0 || matches!(self.couplings, Couplings::Moderate(_));
             check(field, offset, known, "0 unless the couplings are Moderate")?;
         }
+        let SectionOffsets { aerodynamic_centre, torque, .. } = self.offsets;
+        let quarter = 0.25 * self.chord;
+        let field = "offsets.aerodynamic_centre";
+        let inside = within(aerodynamic_centre, -3.0 * quarter, quarter);
+        check(
+            field,
+            aerodynamic_centre,
+            inside,
+            "the elastic axis between the edges of the chord",
+        )?;
+        check("offsets.torque", torque, within(torque, -0.1, 0.1), "-0.1 to 0.1 R")?;
+        let known = torque == 0.0 || !matches!(self.couplings, Couplings::Moderate(_));
+        check("offsets.torque", torque, known, "0 if the couplings are Moderate")?;
         let zeta = self.modal_damping;
         check("modal_damping", zeta, within(zeta, 0.0, 0.5), "0 to 0.5 of critical")?;
         if let Compressibility::LocalMach { tip_mach } = self.compressibility {

@@ -118,7 +118,7 @@ impl ResponseSystem<'_> {
         FlapSection {
             x: self.blade.grid.x()[i],
             precone: self.blade.precone,
-            v: [v.value[i], v.rate[i], v.acceleration[i]],
+            v: [v.value[i] + self.blade.offsets.torque, v.rate[i], v.acceleration[i]],
             v_x: [v.slope[i], v.slope_rate[i], v.slope_acceleration[i]],
             w: [w.value[i], w.rate[i], w.acceleration[i]],
             w_x: [w.slope[i], w.slope_rate[i], w.slope_acceleration[i]],
@@ -153,12 +153,12 @@ impl ResponseSystem<'_> {
             out.fy[first + s] = load.fy;
             out.moment[first + s] = load.moment;
         }
-        if self.blade.mass_centre != 0.0 {
+        if self.blade.offsets.mass_centre != 0.0 {
             let [_, y, z] = out.gravity;
             for i in 0..self.blade.grid.len() {
                 let twist = self.points[point].air.pitch.angle + self.blade.twist[i];
                 let (sin, cos) = (twist + motion.phi.value[i]).sin_cos();
-                let arm = self.blade.mass[i] * self.blade.mass_centre;
+                let arm = self.blade.mass[i] * self.blade.offsets.mass_centre;
                 out.moment[i] += arm * (cos * z - sin * y);
             }
         }

@@ -111,6 +111,8 @@ impl Case {
         SectionOffsets {
             mass_centre: self.blade.mass_centre,
             tension_centre: self.blade.tension_centre,
+            aerodynamic_centre: self.blade.aerodynamic_centre,
+            torque: self.blade.torque_offset,
         }
     }
 

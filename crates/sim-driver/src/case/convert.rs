@@ -83,6 +83,8 @@ fn build(
             root: rotor.root,
             mass_centre: rotor.mass_centre_r,
             tension_centre: rotor.tension_centre_r,
+            aerodynamic_centre: rotor.aerodynamic_centre_r,
+            torque_offset: rotor.torque_offset_r,
             gravity: rotor.gravity,
             tables: rotor.tables.clone(),
             unlike: rotor.unlike_blades.clone(),

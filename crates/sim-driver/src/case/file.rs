@@ -112,6 +112,12 @@ pub struct RotorFile {
     /// Tension centre ahead of the elastic axis, radius R; `couplings: Moderate` alone knows it.
     #[serde(skip_serializing_if = "is_default")]
     pub tension_centre_r: f64,
+    /// Aerodynamic centre, the quarter chord, ahead of the elastic axis, radius R.
+    #[serde(skip_serializing_if = "is_default")]
+    pub aerodynamic_centre_r: f64,
+    /// Axis of the blade ahead of the rotor centre, radius R; `couplings: Moderate` does not know it.
+    #[serde(skip_serializing_if = "is_default")]
+    pub torque_offset_r: f64,
     /// Weight of the blades.
     #[serde(skip_serializing_if = "is_default")]
     pub gravity: GravityChoice,
@@ -147,6 +153,8 @@ impl Default for RotorFile {
             root: RootFile::default(),
             mass_centre_r: 0.0,
             tension_centre_r: 0.0,
+            aerodynamic_centre_r: 0.0,
+            torque_offset_r: 0.0,
             gravity: GravityChoice::Off,
             tables: BladeTablesFile::default(),
             unlike_blades: vec![],
@@ -261,9 +269,10 @@ pub enum CouplingsChoice {
 }
 
 /// The shapes behind the modes of the response.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum BasisChoice {
     /// Natural modes.
+    #[default]
     Natural,
     /// The last mode of every family gives way to the static answer of all modes left out.
     Completed,
@@ -278,6 +287,7 @@ pub struct StructureFile {
     /// Modes kept in the response.
     pub modes: ModesFile,
     /// The shapes behind the modes.
+    #[serde(skip_serializing_if = "is_default")]
     pub basis: BasisChoice,
     /// Terms of the equations.
     pub couplings: CouplingsChoice,

@@ -99,6 +99,10 @@ pub struct BladeValues {
     pub mass_centre: f64,
     /// Tension centre ahead of the elastic axis.
     pub tension_centre: f64,
+    /// Aerodynamic centre ahead of the elastic axis.
+    pub aerodynamic_centre: f64,
+    /// Axis of the blade ahead of the rotor centre.
+    pub torque_offset: f64,
     /// Weight of the blades.
     pub gravity: GravityChoice,
     /// Values along the span in place of uniform ones, as in the file.
