@@ -314,7 +314,7 @@ fn the_completion_carries_a_load_up_to_the_root() {
             })
             .sum()
     };
-    for modes in [2, 5, 12] {
+    for modes in [2, 3, 5] {
         let [natural, completed] = [ModalBasis::Natural, ModalBasis::Completed]
             .map(|basis| (root_rate(modes, basis) / exact - 1.0).abs());
         println!("{modes} shapes: {natural:.1e}, {completed:.1e}");
