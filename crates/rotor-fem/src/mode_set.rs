@@ -63,7 +63,7 @@ pub enum ModalBasis {
     /// once. It is orthogonal to the kept modes in mass and stiffness, and counts as the last mode of its
     /// family. A family of one mode keeps it.
     ///
-    /// Source: the residual flexibility of R. H. MacNeal, Comput. Struct. 1 (1971) 581; the load is our
+    /// Source: the residual flexibility of R. H. `MacNeal`, Comput. Struct. 1 (1971) 581; the load is our
     /// choice.
     Completed,
 }

@@ -84,6 +84,22 @@ pub(crate) struct FlapInertia {
 }
 
 impl TrailingEdgeFlap {
+    /// The two flaps of the paper's case: Table 1, their span assumed.
+    ///
+    /// Source: S. R. Viswamurthy, R. Ganguli, Table 1.
+    pub fn paper_case() -> [Self; 2] {
+        [(0.70, 0.75), (0.80, 0.85)].map(|(start, end)| Self {
+            start,
+            end,
+            chord_fraction: 0.2,
+            mass_fraction: 0.1,
+            cg_fraction: 0.2,
+            gyration_fraction: None,
+            mass: FlapMass::PartOfBlade,
+            effectiveness: FlapEffectiveness::IDEAL,
+        })
+    }
+
     /// Inertia per length for a blade chord `c/R` and an elastic axis `behind` the quarter chord.
     ///
     /// Source: design values of Viswamurthy and Ganguli, Table 1; the flap's own inertia is that of a

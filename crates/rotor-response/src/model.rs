@@ -98,6 +98,41 @@ pub struct RotorModel {
 }
 
 impl RotorModel {
+    /// The rotor of Table 1 of the paper: quasi-steady sections, incompressible, no flaps; cut-out, drag and
+    /// damping, which the paper leaves open, as in the shipped case.
+    ///
+    /// Source: S. R. Viswamurthy, R. Ganguli, Table 1.
+    pub fn table_1(couplings: Couplings) -> Self {
+        Self {
+            blades: 4,
+            chord: 0.055,
+            lock_number: 5.2,
+            drag_coefficient: 0.01,
+            root_cutout: 0.2,
+            tip_loss: 1.0,
+            gravity: 0.0,
+            offsets: SectionOffsets::default(),
+            modal_damping: 0.005,
+            couplings,
+            section_model: AttachedFlowModel::QuasiSteady,
+            compressibility: Compressibility::None,
+            reverse_flow: ReverseFlow::default(),
+            flaps: vec![],
+            nonlinear: NonlinearSections::default(),
+        }
+    }
+
+    /// The same with the two flaps of the paper's case and sections of the form of Hariharan and Leishman at
+    /// the local Mach number.
+    pub fn paper_case() -> Self {
+        Self {
+            section_model: AttachedFlowModel::HariharanLeishman,
+            compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
+            flaps: TrailingEdgeFlap::paper_case().to_vec(),
+            ..Self::table_1(Couplings::Full)
+        }
+    }
+
     /// Checks every parameter.
     ///
     /// # Errors
