@@ -170,7 +170,7 @@ mod tests {
         let mut loaded = shipped_case(PAPER_CASE).unwrap();
         loaded.case.blade.elements = 4;
         loaded.case.blade.modes = [1, 1, 1];
-        loaded.case.aerodynamics.model = SectionModelChoice::QuasiSteady;
+        loaded.case.section.model = SectionModelChoice::QuasiSteady;
         loaded.case.response.span_points_per_piece = 2;
         let start = TrimmedRotor::new(&at_advance_ratio(&loaded, 0.05), None).unwrap();
         let mut far = at_advance_ratio(&loaded, 0.40);
