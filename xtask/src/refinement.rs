@@ -16,8 +16,8 @@ const CHANGES: [Change; 11] = [
     ("20 beam elements", |c| c.case.blade.elements = 20),
     ("40 beam elements", |c| c.case.blade.elements = 40),
     ("6 flap, 6 lag, 4 torsion modes", |c| modes(c, [6, 6, 4])),
-    ("8 flap, 8 lag, 6 torsion modes", |c| modes(c, [8, 8, 6])),
-    ("8 stations, 24 time elements", |c| fine(c, 8, 24)),
+    ("8 flap, 8 lag, 6 torsion modes", more_modes),
+    ("8 stations, 24 time elements", finer_mesh),
     ("10 stations, 48 time elements", |c| fine(c, 10, 48)),
 ];
 
@@ -31,35 +31,46 @@ fn fine(loaded: &mut LoadedCase, stations: usize, time_elements: usize) {
     loaded.case.response.time_elements = time_elements;
 }
 
+/// The trimmed paper's case after a change: cosine and sine of every load at 4/rev.
+pub(crate) fn loads_after(change: fn(&mut LoadedCase)) -> Result<[f64; 12], SimError> {
+    let mut refined = shipped_case(PAPER_CASE)?;
+    change(&mut refined);
+    let rotor = TrimmedRotor::new(&refined, None)?;
+    Ok(rotor.trim().rotor.hub.harmonic(refined.case.blades))
+}
+
+/// Distance of each load from a refined one over its amplitude there, and of all over their norm, %.
+pub(crate) fn percent_apart(base: &[f64; 12], refined: &[f64; 12]) -> [f64; 7] {
+    let apart: [f64; 12] = std::array::from_fn(|i| base[i] - refined[i]);
+    let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    std::array::from_fn(|k| {
+        let part = if k < 6 { 2 * k..2 * k + 2 } else { 0..12 };
+        100.0 * norm(&apart[part.clone()]) / norm(&refined[part])
+    })
+}
+
+/// Stations and time elements refined.
+pub(crate) fn finer_mesh(loaded: &mut LoadedCase) {
+    fine(loaded, 8, 24);
+}
+
+/// Modes added.
+pub(crate) fn more_modes(loaded: &mut LoadedCase) {
+    modes(loaded, [8, 8, 6]);
+}
+
 /// The table: change of each load by a refinement, percent of the load, and of all over their norm.
 ///
 /// # Errors
 /// [`SimError`] if the case cannot be read or a refinement cannot be trimmed.
 pub fn table() -> Result<String, SimError> {
-    let paper = shipped_case(PAPER_CASE)?;
-    let loads = |loaded: &LoadedCase| -> Result<[f64; 12], SimError> {
-        let rotor = TrimmedRotor::new(loaded, None)?;
-        Ok(rotor.trim().rotor.hub.harmonic(loaded.case.blades))
-    };
-    let base = loads(&paper)?;
+    let base = loads_after(|_| ())?;
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::ASCII_BORDERS_ONLY_CONDENSED);
     table.set_header(["refined", "FX", "FY", "FZ", "MX", "MY", "MZ", "vector"]);
     for (name, change) in CHANGES {
-        let mut refined = paper.clone();
-        change(&mut refined);
-        let found = loads(&refined)?;
-        let apart: Vec<f64> = found.iter().zip(&base).map(|(a, b)| a - b).collect();
-        let pairs = apart.chunks_exact(2).zip(found.chunks_exact(2));
-        let mut cells = vec![name.to_owned()];
-        cells.extend(pairs.map(|(d, f)| percent(d[0].hypot(d[1]), f[0].hypot(f[1]))));
-        let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        cells.push(percent(norm(&apart), norm(&found)));
-        table.add_row(cells);
+        let apart = percent_apart(&base, &loads_after(change)?);
+        table.add_row(std::iter::once(name.to_owned()).chain(apart.map(|p| format!("{p:.3}"))));
     }
     Ok(format!("Change of the 4/rev hub loads by refinement, percent of each load\n{table}\n"))
-}
-
-fn percent(part: f64, whole: f64) -> String {
-    format!("{:.3}", 100.0 * part / whole)
 }

@@ -187,6 +187,16 @@ impl AttachedFlowModel {
         }
     }
 
+    /// Mach numbers between 0 and 1 at which the coefficients have a kink: the ends of the range the model
+    /// knows, beyond which it holds its values.
+    pub fn mach_kinks(self) -> &'static [f64] {
+        match self {
+            Self::QuasiSteady | Self::Incompressible => &[],
+            Self::HariharanLeishman => &[hariharan_leishman::MIN_NONCIRCULATORY_MACH],
+            Self::Calibrated => &crate::calibrated::MACH_ENDS,
+        }
+    }
+
     /// The model of one flap, from which the coefficients at many Mach numbers are had at less cost.
     ///
     /// # Errors

@@ -62,7 +62,7 @@ pub use floquet::{Floquet, FloquetMode};
 pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
 pub use linear_response::LinearResponse;
 pub use mode_kind::ModeKind;
-pub use mode_set::{ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
+pub use mode_set::{ModalBasis, ModeCount, ModeSet, UncoupledMode, modal_basis, uncoupled_modes};
 pub use moderate::{
     AxialMotion, FreeMotion, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape,
     ModalTangent, ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use crate::assembly::{BladeModel, locate, restrict};
-use crate::eigen::symmetric;
+use crate::eigen::{EigenPair, symmetric};
 use crate::shape::{JOINT_DOF, STRIDE, hermite, quadratic};
 use crate::{BladeProperties, FemError, ModeKind};
 
@@ -44,6 +44,28 @@ impl ModeCount {
     pub fn total(&self) -> usize {
         ModeKind::ALL.iter().map(|kind| self.of(*kind)).sum()
     }
+}
+
+/// Which shapes stand for a family.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ModalBasis {
+    /// The lowest natural modes.
+    #[default]
+    Natural,
+    /// The same but the last, in whose place is the static completion: what all modes left out answer to the
+    /// load of a rigid acceleration, held still.
+    ///
+    /// ```text
+    /// s = K^-1 f - sum over kept modes phi (phi.f) / w^2 = sum over modes left out phi (phi.f) / w^2,   f = M 1
+    /// ```
+    /// A natural mode carries no load at the root but that of its own inertia, so that curvature and rate of
+    /// twist of a blade that is loaded up to the root converge with 1/N. The completion carries the rest at
+    /// once. It is orthogonal to the kept modes in mass and stiffness, and counts as the last mode of its
+    /// family. A family of one mode keeps it.
+    ///
+    /// Source: the residual flexibility of R. H. `MacNeal`, Comput. Struct. 1 (1971) 581; the load is our
+    /// choice.
+    Completed,
 }
 
 /// One uncoupled mode, its shape scaled to 1 at the tip.
@@ -172,6 +194,19 @@ pub fn uncoupled_modes(
     elements: usize,
     count: ModeCount,
 ) -> Result<ModeSet, FemError> {
+    modal_basis(blade, elements, count, ModalBasis::Natural)
+}
+
+/// As [`uncoupled_modes`], with a choice of the shapes.
+///
+/// # Errors
+/// As [`uncoupled_modes`].
+pub fn modal_basis(
+    blade: &BladeProperties,
+    elements: usize,
+    count: ModeCount,
+    basis: ModalBasis,
+) -> Result<ModeSet, FemError> {
     let model = BladeModel::new(blade.straightened(), elements)?;
     let edges: Arc<[f64]> = model.edges().into();
     let mut modes = Vec::new();
@@ -186,7 +221,12 @@ pub fn uncoupled_modes(
         }
         let mass = restrict(model.mass(), &free);
         let stiffness = restrict(model.stiffness(), &free);
-        let pairs = symmetric(&mass, &stiffness, shift(blade))?;
+        let mut pairs = symmetric(&mass, &stiffness, shift(blade))?;
+        if basis == ModalBasis::Completed && wanted > 1 {
+            let load = rigid_acceleration(&model, kind, &free);
+            let completion = completion(&pairs[wanted - 1..], &load);
+            pairs[wanted - 1] = completion;
+        }
         for (index, pair) in pairs.into_iter().take(wanted).enumerate() {
             let mut all = DVector::zeros(model.mass().nrows());
             for (value, place) in pair.vector.iter().zip(&free) {
@@ -207,6 +247,36 @@ pub fn uncoupled_modes(
         }
     }
     Ok(ModeSet { modes })
+}
+
+/// The load `M 1` of a family on its free degrees of freedom.
+fn rigid_acceleration(model: &BladeModel, kind: ModeKind, free: &[usize]) -> DVector<f64> {
+    let mut rigid = DVector::zeros(model.mass().nrows());
+    for e in 0..model.edges().len() - 1 {
+        let places: &[usize] = match kind {
+            ModeKind::Torsion => &crate::shape::place::TWIST,
+            _ => &[kind_offset(kind), STRIDE + kind_offset(kind)],
+        };
+        for place in places {
+            rigid[STRIDE * e + place] = 1.0;
+        }
+    }
+    let load = model.mass() * rigid;
+    DVector::from_iterator(free.len(), free.iter().map(|place| load[*place]))
+}
+
+/// The static answer of some modes of unit mass to a load, as a mode of unit mass with the frequency that
+/// its energies give it.
+fn completion(modes: &[EigenPair<f64>], load: &DVector<f64>) -> EigenPair<f64> {
+    let mut vector = DVector::zeros(load.len());
+    let (mut mass, mut stiffness) = (0.0, 0.0);
+    for mode in modes {
+        let share = mode.vector.dot(load) / mode.squared_frequency;
+        vector.axpy(share, &mode.vector, 1.0);
+        mass += share * share;
+        stiffness += share * share * mode.squared_frequency;
+    }
+    EigenPair { squared_frequency: stiffness / mass, vector: vector / mass.sqrt() }
 }
 
 /// Place of a family's displacement among a joint's degrees of freedom.

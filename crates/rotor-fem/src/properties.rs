@@ -88,6 +88,16 @@ pub struct BladeSpec {
 }
 
 impl BladeSpec {
+    /// The blade of Table 1 of the paper, with an assumed axial stiffness and 8 deg of linear twist, nose
+    /// down toward the tip.
+    ///
+    /// Source: S. R. Viswamurthy, R. Ganguli, stiffnesses of Table 1; the paper gives no axial stiffness and no
+    /// twist.
+    pub fn table_1() -> Self {
+        let twist = Twist::Linear { rate_rad: (-8.0_f64).to_radians() };
+        Self { twist, ..Self::uniform(0.0108, 0.0268, 0.006_15, 1000.0) }
+    }
+
     /// A uniform, untwisted blade of mass m0 per length, clamped at the rotor centre, at zero pitch and
     /// nominal speed.
     ///

@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rotor_base::gauss_legendre;
 use rotor_fem::{
-    BladeModel, BladeProperties, BladeSpec, Distribution, FemError, GyroscopicTerms, ModeCount,
-    ModeKind, RootSupport, Twist, UncoupledMode, modes, uncoupled_modes,
+    BladeModel, BladeProperties, BladeSpec, Distribution, FemError, GyroscopicTerms, ModalBasis,
+    ModeCount, ModeKind, RootSupport, Twist, UncoupledMode, modal_basis, modes, uncoupled_modes,
 };
 
 fn uniform() -> BladeSpec {
@@ -279,6 +279,85 @@ fn a_lag_hinge_on_the_axis_is_neutral() {
             assert!(frequencies[1] < 1e-4, "{frequencies:?}");
             assert!((frequencies[2] - 3.5).abs() < 0.5, "{frequencies:?}");
         }
+    }
+}
+
+/// A blade that does not feel its rotation in torsion, under a uniform moment `q`: the rate of twist at its
+/// root is `q / GJ`. Natural modes miss it by `1/N`; with the completion two shapes are enough.
+#[test]
+fn the_completion_carries_a_load_up_to_the_root() {
+    let spec = BladeSpec {
+        thickness_gyration_radius: 0.02.into(),
+        chord_gyration_radius: 0.02.into(),
+        area_gyration_radius: 0.0.into(),
+        ..uniform()
+    };
+    let blade = BladeProperties::new(spec).unwrap();
+    let exact = blade.torsion_stiffness(0.0).recip();
+    let root_rate = |modes: usize, basis: ModalBasis| -> f64 {
+        let count = ModeCount { flap: 1, lag: 1, torsion: modes, axial: 0 };
+        let set = modal_basis(&blade, 40, count, basis).unwrap();
+        set.of(ModeKind::Torsion)
+            .iter()
+            .map(|mode| {
+                let rule = gauss_legendre(3);
+                let points = (0..40).flat_map(|e| {
+                    let at = move |s: &f64| (f64::from(e) + 0.5 * (s + 1.0)) / 40.0;
+                    rule.nodes.iter().map(at).zip(&rule.weights).collect::<Vec<_>>()
+                });
+                let work: f64 =
+                    points.map(|(x, w)| 0.5 / 40.0 * w * mode.shape(x).unwrap()[0]).sum();
+                // the slope of a quadratic element is best in its middle: extrapolated to the root
+                let slope = |e: f64| mode.shape((e + 0.5) / 40.0).unwrap()[1];
+                let at_root = 1.5 * slope(0.0) - 0.5 * slope(1.0);
+                work * at_root / (mode.frequency().powi(2) * mode.modal_mass())
+            })
+            .sum()
+    };
+    for modes in [2, 3, 5] {
+        let [natural, completed] = [ModalBasis::Natural, ModalBasis::Completed]
+            .map(|basis| (root_rate(modes, basis) / exact - 1.0).abs());
+        println!("{modes} shapes: {natural:.1e}, {completed:.1e}");
+        assert!(completed <= 1e-3 * natural, "{modes} shapes: {natural:e}, {completed:e}");
+        // 2 / (pi^2 N): the rest of the series of 8 / ((2n - 1) pi)^2
+        let rest = 2.0 / (std::f64::consts::PI.powi(2) * modes as f64);
+        assert!((natural / rest - 1.0).abs() < 0.1, "{modes} shapes: {natural:e}, {rest:e}");
+    }
+}
+
+/// The completion is orthogonal to the modes it stands beside, which stay what they are; one mode alone
+/// is kept.
+#[test]
+fn the_completion_leaves_the_modes_alone() {
+    let blade = BladeProperties::new(varied()).unwrap();
+    let count = ModeCount { flap: 4, lag: 3, torsion: 1, axial: 0 };
+    let [natural, completed] = [ModalBasis::Natural, ModalBasis::Completed]
+        .map(|basis| modal_basis(&blade, 10, count, basis).unwrap());
+    for (kind, kept) in [(ModeKind::Flap, 3), (ModeKind::Lag, 2), (ModeKind::Torsion, 1)] {
+        let (natural, completed) = (natural.of(kind), completed.of(kind));
+        assert_eq!(natural[..kept], completed[..kept]);
+        if let (Some(last), Some(rest)) = (natural.get(kept), completed.get(kept)) {
+            assert!(rest.frequency() > last.frequency());
+            assert!((rest.shape(1.0).unwrap()[0] - 1.0).abs() < 1e-12);
+        }
+    }
+    let rule = gauss_legendre(8);
+    let mut ends: Vec<f64> = blade.breaks().to_vec();
+    ends.extend((0..=10).map(|i| 0.06 + 0.94 * f64::from(i) / 10.0));
+    ends.sort_by(f64::total_cmp);
+    let flap = completed.of(ModeKind::Flap);
+    for mode in &flap[..3] {
+        let mut product = 0.0;
+        for pair in ends.windows(2) {
+            let half = 0.5 * (pair[1] - pair[0]);
+            for (s, w) in rule.nodes.iter().zip(&rule.weights) {
+                let x = 0.5 * (pair[0] + pair[1]) + half * s;
+                let shapes = [mode, &flap[3]].map(|m| m.shape(x).unwrap()[0]);
+                product += half * w * blade.mass(x) * shapes[0] * shapes[1];
+            }
+        }
+        let scale = (mode.modal_mass() * flap[3].modal_mass()).sqrt();
+        assert!(product.abs() < 1e-10 * scale, "{product:e}");
     }
 }
 

@@ -4,14 +4,13 @@
 //! of the default), the eight solutions of the differences in parallel as the program makes them.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use flap_aero::{AttachedFlowModel, FlapEffectiveness};
+use flap_aero::AttachedFlowModel;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_fem::{BladeProperties, BladeSpec, Twist};
+use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, FlapDirection, FlapMass,
-    InflowState, NonlinearSections, ResponseError, ResponseTolerances, ReverseFlow, Rotor,
-    RotorModel, RotorSolution, RotorSolver, SectionOffsets, TrailingEdgeFlap,
+    Compressibility, Condition, Controls, Discretisation, FlapDirection, InflowState,
+    ResponseError, ResponseTolerances, Rotor, RotorModel, RotorSolution, RotorSolver,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::hint::black_box;
@@ -21,40 +20,13 @@ use std::time::{Duration, Instant};
 const BUDGET: f64 = 0.2;
 
 fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError> {
-    let blade = BladeProperties::new(BladeSpec {
-        twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
-    })?;
-    let flap = |start, end| TrailingEdgeFlap {
-        start,
-        end,
-        chord_fraction: 0.2,
-        mass_fraction: 0.1,
-        cg_fraction: 0.2,
-        gyration_fraction: None,
-        mass: FlapMass::PartOfBlade,
-        effectiveness: FlapEffectiveness::IDEAL,
+    let blade = BladeProperties::new(BladeSpec::table_1())?;
+    let paper = RotorModel::paper_case();
+    let compressibility = match section_model {
+        AttachedFlowModel::Incompressible => Compressibility::None,
+        _ => paper.compressibility,
     };
-    let model = RotorModel {
-        tip_loss: 1.0,
-        gravity: 0.0,
-        offsets: SectionOffsets::default(),
-        blades: 4,
-        chord: 0.055,
-        lock_number: 5.2,
-        drag_coefficient: 0.01,
-        root_cutout: 0.2,
-        modal_damping: 0.005,
-        couplings: Couplings::Full,
-        section_model,
-        compressibility: match section_model {
-            AttachedFlowModel::Incompressible => Compressibility::None,
-            _ => Compressibility::LocalMach { tip_mach: 0.582 },
-        },
-        reverse_flow: ReverseFlow::default(),
-        nonlinear: NonlinearSections::default(),
-        flaps: vec![flap(0.70, 0.75), flap(0.80, 0.85)],
-    };
+    let model = RotorModel { section_model, compressibility, ..paper };
     let rotor = Rotor::new(model, &blade, Discretisation::default())?;
     RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default())
 }

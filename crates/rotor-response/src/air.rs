@@ -1,9 +1,10 @@
 //! Air velocities and section loads at the stations.
 //!
 //! ```text
-//! U_T = x + mu sin psi + v' + v_x mu cos psi          tangential, from leading to trailing edge
-//! U_P = lambda + w' + (w_x + bp) mu cos psi           down through the blade
+//! U_R = mu cos psi + y_t                              along the blade, y_t the torque offset
+//! U_T = x + mu sin psi + v' + v_x U_R                 tangential, from leading to trailing edge
 //! om  = th' + w_x + bp                                pitch rate of the section
+//! U_P = lambda + w' + (w_x + bp) U_R + e_d om         down through the blade at the aerodynamic centre
 //! ```
 //! and the four section inputs as velocities: `U_T th - U_P`, `c om`, `U_T delta`, `c delta'`.
 //! The lift is normal to the local flow: a lift per tangential speed `L/|U_T|` gives
@@ -36,6 +37,21 @@ pub(crate) struct SectionFlow {
     pub(crate) input_rate: [f64; 4],
 }
 
+impl SectionFlow {
+    /// Adds a share of another flow; the sense is none of the sum's.
+    pub(crate) fn add(&mut self, share: f64, other: &Self) {
+        self.u_t += share * other.u_t;
+        self.u_p += share * other.u_p;
+        self.pitch += share * other.pitch;
+        for (sum, value) in self.input.iter_mut().zip(other.input) {
+            *sum += share * value;
+        }
+        for (sum, value) in self.input_rate.iter_mut().zip(other.input_rate) {
+            *sum += share * value;
+        }
+    }
+}
+
 /// Azimuth, free stream and pitch at one azimuth point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AirPoint {
@@ -59,20 +75,20 @@ pub(crate) fn section_flow(
     let (mu_sin, mu_cos) = (point.advance_ratio * point.sin, point.advance_ratio * point.cos);
     let theta = point.pitch.angle + blade.twist[i] + phi.value[i];
     let theta_rate = point.pitch.rate + phi.rate[i];
-    let u_t = blade.grid.x()[i] + mu_sin + v.rate[i] + v.slope[i] * mu_cos;
-    let u_p = lambda + w.rate[i] + (w.slope[i] + blade.precone) * mu_cos;
+    let along = mu_cos + blade.offsets.torque;
+    let centre = blade.offsets.aerodynamic_centre;
     let om = theta_rate + w.slope[i] + blade.precone;
-    let u_t_rate = mu_cos + v.acceleration[i] + v.slope_rate[i] * mu_cos - v.slope[i] * mu_sin;
-    let u_p_rate =
-        w.acceleration[i] + w.slope_rate[i] * mu_cos - (w.slope[i] + blade.precone) * mu_sin;
     let om_rate = point.pitch.acceleration + phi.acceleration[i] + w.slope_rate[i];
+    let u_t = blade.grid.x()[i] + mu_sin + v.rate[i] + v.slope[i] * along;
+    let u_p = lambda + w.rate[i] + (w.slope[i] + blade.precone) * along + centre * om;
+    let u_t_rate = mu_cos + v.acceleration[i] + v.slope_rate[i] * along - v.slope[i] * mu_sin;
+    let u_p_rate = w.acceleration[i] + w.slope_rate[i] * along
+        - (w.slope[i] + blade.precone) * mu_sin
+        + centre * om_rate;
     SectionFlow {
         u_t,
         u_p,
-        sense: match point.reverse_flow {
-            ReverseFlow::Gradual => u_t / u_t.hypot(u_p).max(f64::MIN_POSITIVE),
-            ReverseFlow::Abrupt => (blade.grid.x()[i] + mu_sin).signum(),
-        },
+        sense: sense(point.reverse_flow, (u_t, u_p), blade.grid.x()[i] + mu_sin),
         pitch: theta,
         input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
         input_rate: [
@@ -81,6 +97,14 @@ pub(crate) fn section_flow(
             u_t_rate * delta[0] + u_t * delta[1],
             chord * delta[2],
         ],
+    }
+}
+
+/// Sense of the circulation in a flow `(U_T, U_P)`, the rigid blade having the tangential speed `rigid`.
+pub(crate) fn sense(reverse_flow: ReverseFlow, (u_t, u_p): (f64, f64), rigid: f64) -> f64 {
+    match reverse_flow {
+        ReverseFlow::Gradual => u_t / u_t.hypot(u_p).max(f64::MIN_POSITIVE),
+        ReverseFlow::Abrupt => rigid.signum(),
     }
 }
 
@@ -95,6 +119,23 @@ pub(crate) struct SectionLoads {
     pub(crate) circulation: f64,
 }
 
+impl SectionLoads {
+    /// The same about an axis that lies `centre` behind the point of attack, the section pitched by `pitch`.
+    pub(crate) fn about(self, centre: f64, pitch: f64) -> Self {
+        let (sin, cos) = pitch.sin_cos();
+        Self { moment: self.moment + centre * (self.fz * cos - self.fy * sin), ..self }
+    }
+
+    /// Adds a share of other loads.
+    pub(crate) fn add(&mut self, share: f64, other: &Self) {
+        self.fz += share * other.fz;
+        self.fy += share * other.fy;
+        self.moment += share * other.moment;
+        self.hinge += share * other.hinge;
+        self.circulation += share * other.circulation;
+    }
+}
+
 /// What the past of a section adds to its loads.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct SectionPast {
@@ -107,12 +148,14 @@ pub(crate) struct SectionPast {
     pub(crate) stall: [f64; 3],
 }
 
-/// What turns coefficients into loads: `rho c R/m0`, chord `c/R`, profile drag coefficient.
+/// What turns coefficients into loads: `rho c R/m0`, chord `c/R`, profile drag coefficient, aerodynamic
+/// centre ahead of the elastic axis over R.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AirScales {
     pub(crate) density_chord: f64,
     pub(crate) chord: f64,
     pub(crate) drag: f64,
+    pub(crate) centre: f64,
 }
 
 /// Section coefficients without their lags: outputs per input, and per rate of an input in

@@ -7,8 +7,12 @@ use nalgebra::DMatrix;
 use rotor_base::{LagrangeBasis, gauss_legendre};
 use rotor_fem::{
     BladeProperties, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
-    ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, uncoupled_modes,
+    ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, modal_basis,
 };
+
+/// Station inboard of which the flow may turn round, radius R: the largest advance ratio the attached
+/// sections are meant for. There the loads vary fast along the span, and the pieces of the grid are halved.
+const REVERSE_FLOW_END: f64 = 0.5;
 
 /// Which nonlinear structural and inertial terms the modal equations carry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,14 +84,30 @@ pub(crate) struct FlapInertia {
 }
 
 impl TrailingEdgeFlap {
-    /// Inertia per length for a blade chord `c/R` and an elastic axis at the quarter chord.
+    /// The two flaps of the paper's case: Table 1, their span assumed.
+    ///
+    /// Source: S. R. Viswamurthy, R. Ganguli, Table 1.
+    pub fn paper_case() -> [Self; 2] {
+        [(0.70, 0.75), (0.80, 0.85)].map(|(start, end)| Self {
+            start,
+            end,
+            chord_fraction: 0.2,
+            mass_fraction: 0.1,
+            cg_fraction: 0.2,
+            gyration_fraction: None,
+            mass: FlapMass::PartOfBlade,
+            effectiveness: FlapEffectiveness::IDEAL,
+        })
+    }
+
+    /// Inertia per length for a blade chord `c/R` and an elastic axis `behind` the quarter chord.
     ///
     /// Source: design values of Viswamurthy and Ganguli, Table 1; the flap's own inertia is that of a
     /// uniform thin rod, `m_f c_f^2 / 12`, unless given (assumption).
-    pub(crate) fn inertia(&self, chord: f64) -> FlapInertia {
+    pub(crate) fn inertia(&self, chord: f64, behind: f64) -> FlapInertia {
         let flap_chord = self.chord_fraction * chord;
         let cg = self.cg_fraction * flap_chord;
-        let hinge = (0.75 - self.chord_fraction) * chord;
+        let hinge = (0.75 - self.chord_fraction) * chord - behind;
         let own_squared = match self.gyration_fraction {
             None => flap_chord * flap_chord / 12.0,
             Some(about_hinge) => ((about_hinge * flap_chord).powi(2) - cg * cg).max(0.0),
@@ -164,8 +184,8 @@ pub struct ResponseBlade {
     pub(crate) cutout: f64,
     /// Outboard of this station sections do not lift, radius R.
     pub(crate) tip_loss: f64,
-    /// Mass centre ahead of the elastic axis, radius R.
-    pub(crate) mass_centre: f64,
+    /// Centres ahead of the elastic axis, and the axis ahead of the rotor centre, radius R.
+    pub(crate) offsets: SectionOffsets,
     pub(crate) root_offset: f64,
     /// The blade's own modal equations, for [`Couplings::Moderate`].
     pub(crate) modal: Option<ModalBlade>,
@@ -184,7 +204,7 @@ impl ResponseBlade {
         let [flap, lag, torsion] = discretisation.modes;
         let count = ModeCount { flap, lag, torsion, axial: 0 };
         let elements = discretisation.blade_elements;
-        let modes = uncoupled_modes(properties, elements, count)?;
+        let modes = modal_basis(properties, elements, count, discretisation.basis)?;
         let root = properties.spec().root_offset;
         let length = (1.0 - root) / elements as f64;
         let breaks: Vec<f64> = (1..elements)
@@ -193,7 +213,8 @@ impl ResponseBlade {
             .chain([model.root_cutout, model.tip_loss])
             .chain(model.flaps.iter().flat_map(|f| [f.start, f.end]))
             .collect();
-        let grid = SpanGrid::new(root, &breaks, discretisation.span_points_per_piece)?;
+        let turning = [model.root_cutout, REVERSE_FLOW_END];
+        let grid = SpanGrid::halved(root, &breaks, turning, discretisation.span_points_per_piece)?;
         let family = |kind: ModeKind| -> Result<Shapes, ResponseError> {
             let samples = modes
                 .of(kind)
@@ -252,10 +273,14 @@ impl ResponseBlade {
             tension: along(&|x| properties.tension(x)),
             precone: properties.spec().precone_rad,
             flap_index,
-            flap_inertia: model.flaps.iter().map(|f| f.inertia(model.chord)).collect(),
+            flap_inertia: model
+                .flaps
+                .iter()
+                .map(|f| f.inertia(model.chord, model.offsets.aerodynamic_centre))
+                .collect(),
             cutout: model.root_cutout,
             tip_loss: model.tip_loss,
-            mass_centre: model.offsets.mass_centre,
+            offsets: model.offsets,
             root_offset: root,
             modal: match model.couplings {
                 Couplings::Moderate(torsion) => {

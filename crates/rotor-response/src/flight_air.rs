@@ -6,18 +6,19 @@
 
 use crate::air::{
     AirScales, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads,
+    sense,
 };
 use crate::blade::ResponseBlade;
+use crate::fine_azimuth::{FineAzimuth, RigidSpeed};
 use crate::lag::{Collocation, PeriodicLag};
+use crate::model::MACH_LIMIT;
 use crate::nonlinear::{TabledStation, add_stall};
 use crate::stall_history::StallHistory;
-use crate::{ResponseError, RotorModel};
+use crate::{ResponseError, ReverseFlow, RotorModel};
 use flap_aero::{FlapChord, Mach, SectionCoefficients, StallSection};
 use rayon::prelude::*;
 use rotor_fem::TimeElements;
 
-/// Largest local Mach number handed to the section models, where linear theory ends.
-const MACH_LIMIT: f64 = 0.9;
 /// Slowest reduced-time rate, in semichords per rad, so that a lag state crossing the reverse-flow
 /// boundary still has an equation.
 const SLOWEST_RATE: f64 = 1e-3;
@@ -33,7 +34,7 @@ struct StationLag {
     lag: PeriodicLag,
 }
 
-/// One station of the lifting part of the blade over the revolution.
+/// The sections of one station at the azimuth points of a revolution.
 #[derive(Debug, Clone)]
 struct StationAir {
     /// Coefficients without delay and of apparent mass, by point.
@@ -45,11 +46,29 @@ struct StationAir {
     stall: Option<StallHistory>,
 }
 
+/// A station at finer azimuth points.
+#[derive(Debug, Clone)]
+struct FineStation {
+    azimuth: FineAzimuth,
+    reverse_flow: ReverseFlow,
+    /// Tangential speed of the rigid blade at the points.
+    rigid_speeds: Vec<f64>,
+    air: StationAir,
+}
+
+/// One station of the lifting part of the blade.
+#[derive(Debug, Clone)]
+struct Station {
+    air: StationAir,
+    /// What takes its place over a whole revolution, where the flow turns round inside a time element.
+    fine: Option<FineStation>,
+}
+
 /// The section aerodynamics of one advance ratio, at every lifting station and azimuth point.
 #[derive(Debug, Clone)]
 pub(crate) struct FlightAir {
     first_station: usize,
-    stations: Vec<StationAir>,
+    stations: Vec<Station>,
 }
 
 impl FlightAir {
@@ -62,13 +81,13 @@ impl FlightAir {
         let x = blade.grid.x();
         let first_station = x.iter().take_while(|x| **x < blade.cutout).count();
         let collocation = Collocation::new(time);
+        let kinks = model.speeds_with_kinks();
         let stations = (first_station..x.len())
             .into_par_iter()
             .map(|i| {
-                let speeds: Vec<f64> =
-                    time.points().iter().map(|p| (x[i] + advance_ratio * p.sin()).abs()).collect();
                 let place = Place { station: x[i], flap: blade.flap_index[i] };
-                StationAir::new(model, place, &collocation, (time.points(), &speeds))
+                let speed = RigidSpeed { station: x[i], advance_ratio, kinks: &kinks };
+                Station::new(model, place, &speed, (time, &collocation))
             })
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Self { first_station, stations })
@@ -79,125 +98,138 @@ impl FlightAir {
         self.first_station
     }
 
-    /// Loads of a lifting station (counted from the first) at an azimuth point.
-    pub(crate) fn loads(
-        &self,
-        scales: AirScales,
-        (station, point): (usize, usize),
-        flow: &SectionFlow,
-        past: &SectionPast,
-    ) -> SectionLoads {
-        let station = &self.stations[station];
-        let prompt = &station.prompt[point];
-        let mut loads = match &station.tables {
-            None => section_loads(scales, flow, prompt, past.lag),
-            Some(tables) => tables.loads(point, scales, flow, (prompt, past)),
-        };
-        if station.stall.is_some() {
-            add_stall(scales, flow, past.stall, &mut loads);
-        }
-        loads
-    }
-
     /// Whether any section stalls dynamically: its loads are then not linear in the flap.
     pub(crate) fn stalls(&self) -> bool {
-        self.stations.iter().any(|station| station.stall.is_some())
+        self.stations.iter().any(|station| station.air.stall.is_some())
     }
 
-    /// What the loads of a lifting station change by with the inputs of its flap, `flow` holding their
-    /// changes and `lag` those of the lags; also of a section with tables, which know no flap.
-    pub(crate) fn flap_slope(
-        &self,
-        scales: AirScales,
-        (station, point): (usize, usize),
-        flow: &SectionFlow,
-        lag: [f64; 3],
-    ) -> SectionLoads {
-        let frictionless = AirScales { drag: 0.0, ..scales };
-        section_loads(frictionless, flow, &self.stations[station].prompt[point], lag)
-    }
-
-    /// Loads of a station that has lost its lift to the tip: its drag at rest in the flow.
-    pub(crate) fn drag_alone(
-        &self,
-        scales: AirScales,
-        at: (usize, usize),
-        flow: &SectionFlow,
-    ) -> SectionLoads {
-        let SectionFlow { u_t, sense, .. } = *flow;
-        let still = SectionFlow { u_t, sense, ..SectionFlow::default() };
-        let SectionLoads { fy, .. } = self.loads(scales, at, &still, &SectionPast::default());
-        SectionLoads { fy, ..SectionLoads::default() }
-    }
-
-    /// What the past adds to the loads at all lifting stations and points, `[point][station]`, for the
-    /// flows `[point][station]`.
+    /// Loads of all lifting stations over a revolution, for the flows, both `[point][station]`.
     ///
     /// # Errors
     /// [`ResponseError::StallNotPeriodic`].
-    pub(crate) fn pasts(
+    pub(crate) fn loads(
         &self,
         flows: &[Vec<SectionFlow>],
-    ) -> Result<Vec<Vec<SectionPast>>, ResponseError> {
-        let points = flows.len();
-        let mut out = vec![vec![SectionPast::default(); self.stations.len()]; points];
-        let mut drive = vec![0.0; points];
-        let mut state = Vec::with_capacity(points);
+        law: LoadLaw,
+    ) -> Result<Vec<Vec<SectionLoads>>, ResponseError> {
+        let mut out = vec![Vec::with_capacity(self.stations.len()); flows.len()];
+        let mut column = Vec::with_capacity(flows.len());
         for (s, station) in self.stations.iter().enumerate() {
-            let mut sums = [(); 3].map(|()| vec![0.0; points]);
-            let mut rigid_lift = vec![0.0; points];
-            for channel in &station.lags {
-                for (d, flow) in drive.iter_mut().zip(flows) {
-                    *d = dot(&channel.input, &flow[s].input);
-                }
-                channel.lag.periodic_state(&drive, &mut state);
-                for (output, gains) in &channel.gains {
-                    for ((sum, gain), x) in sums[*output].iter_mut().zip(gains).zip(&state) {
-                        *sum += gain * x;
-                    }
-                    if channel.rigid && *output == 0 {
-                        for ((sum, gain), x) in rigid_lift.iter_mut().zip(gains).zip(&state) {
-                            *sum += gain * x;
-                        }
-                    }
-                }
-            }
-            let mut pasts: Vec<SectionPast> = (0..points)
-                .map(|p| SectionPast {
-                    lag: [sums[0][p], sums[1][p], sums[2][p]],
-                    rigid_lift: rigid_lift[p],
-                    ..SectionPast::default()
-                })
-                .collect();
-            if let Some(stall) = &station.stall {
-                stall.fill(|p| (&flows[p][s], &station.prompt[p]), &mut pasts)?;
-            }
-            for (row, past) in out.iter_mut().zip(pasts) {
-                row[s] = past;
+            column.clear();
+            column.extend(flows.iter().map(|row| row[s]));
+            for (row, loads) in out.iter_mut().zip(station.loads(&column, law.at(s))?) {
+                row.push(loads);
             }
         }
         Ok(out)
     }
 
-    /// The same with every state settled on its input, for one point: what the Newton matrix uses.
-    pub(crate) fn settled_pasts(&self, point: usize, flows: &[SectionFlow]) -> Vec<SectionPast> {
-        self.stations
-            .iter()
-            .zip(flows)
-            .map(|(station, flow)| {
-                let gains = &station.settled[point];
-                let [normal, rate, ..] = gains[0];
-                let mut past = SectionPast {
-                    lag: gains.each_ref().map(|row| dot(row, &flow.input)),
-                    rigid_lift: normal * flow.input[0] + rate * flow.input[1],
-                    ..SectionPast::default()
-                };
-                if let Some(stall) = &station.stall {
-                    past.stall = stall.settled(point, flow, (&station.prompt[point], &past));
-                }
-                past
+    /// Loads of the lifting stations at one point with every state settled on its input: what the Newton
+    /// matrix uses.
+    pub(crate) fn settled_loads(
+        &self,
+        point: usize,
+        flows: &[SectionFlow],
+        law: LoadLaw,
+    ) -> Vec<SectionLoads> {
+        let at = |(s, (station, flow)): (usize, (&Station, &SectionFlow))| {
+            let past = station.air.settled_past(point, flow);
+            station.air.loads_at(point, (flow, &past), law.at(s))
+        };
+        self.stations.iter().zip(flows).enumerate().map(at).collect()
+    }
+}
+
+/// How loads follow from the flow and its past.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LoadLaw {
+    pub(crate) scales: AirScales,
+    /// Lifting stations, counted from the first, from which on the tip takes the lift.
+    pub(crate) lost_from: usize,
+    /// Whether flows are changes of flows: loads are then what the inputs of the flap change them by.
+    pub(crate) changes: bool,
+}
+
+impl LoadLaw {
+    fn at(self, station: usize) -> StationLaw {
+        let lost = station >= self.lost_from;
+        let kind = match (lost, self.changes) {
+            (false, false) => Kind::Whole,
+            (false, true) => Kind::FlapSlope,
+            (true, false) => Kind::DragAlone,
+            (true, true) => Kind::Nothing,
+        };
+        StationLaw { scales: self.scales, kind }
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    Whole,
+    /// What the loads change by with the inputs of the flap; also of a section with tables, which know
+    /// no flap.
+    FlapSlope,
+    /// A station that has lost its lift to the tip: its drag at rest in the flow.
+    DragAlone,
+    Nothing,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct StationLaw {
+    scales: AirScales,
+    kind: Kind,
+}
+
+impl Station {
+    fn new(
+        model: &RotorModel,
+        place: Place,
+        speed: &RigidSpeed<'_>,
+        (time, collocation): (&TimeElements, &Collocation),
+    ) -> Result<Self, ResponseError> {
+        let speeds = |points: &[f64]| -> Vec<f64> { points.iter().map(|p| speed.at(*p)).collect() };
+        let air = |collocation: &Collocation, points: &[f64]| {
+            let magnitudes: Vec<f64> = speeds(points).iter().map(|u| u.abs()).collect();
+            StationAir::new(model, place, collocation, (points, &magnitudes))
+        };
+        let fine = |azimuth: FineAzimuth| {
+            let collocation = collocation.on(azimuth.half_widths());
+            Ok::<_, ResponseError>(FineStation {
+                reverse_flow: model.reverse_flow,
+                rigid_speeds: speeds(azimuth.points()),
+                air: air(&collocation, azimuth.points())?,
+                azimuth,
             })
-            .collect()
+        };
+        Ok(Self {
+            air: air(collocation, time.points())?,
+            fine: FineAzimuth::new(time, speed).map(fine).transpose()?,
+        })
+    }
+
+    fn loads(
+        &self,
+        flows: &[SectionFlow],
+        law: StationLaw,
+    ) -> Result<Vec<SectionLoads>, ResponseError> {
+        match &self.fine {
+            None => self.air.loads(flows, law),
+            Some(fine) => fine.loads(flows, law),
+        }
+    }
+}
+
+impl FineStation {
+    fn loads(
+        &self,
+        flows: &[SectionFlow],
+        law: StationLaw,
+    ) -> Result<Vec<SectionLoads>, ResponseError> {
+        let mut flows = self.azimuth.flows(flows);
+        for (flow, rigid) in flows.iter_mut().zip(&self.rigid_speeds) {
+            flow.sense = sense(self.reverse_flow, (flow.u_t, flow.u_p), *rigid);
+        }
+        Ok(self.azimuth.loads(&self.air.loads(&flows, law)?))
     }
 }
 
@@ -279,6 +311,111 @@ impl StationAir {
         });
         let (tables, stall) = (tables.transpose()?, stall.transpose()?);
         Ok(Self { prompt, settled, lags, tables, stall })
+    }
+}
+
+impl StationAir {
+    /// Loads over a revolution, at the points of this station.
+    fn loads(
+        &self,
+        flows: &[SectionFlow],
+        law: StationLaw,
+    ) -> Result<Vec<SectionLoads>, ResponseError> {
+        if let Kind::DragAlone | Kind::Nothing = law.kind {
+            let past = SectionPast::default();
+            let at = |(p, flow)| self.loads_at(p, (flow, &past), law);
+            return Ok(flows.iter().enumerate().map(at).collect());
+        }
+        let pasts = self.pasts(flows)?;
+        let at = |(p, (flow, past))| self.loads_at(p, (flow, past), law);
+        Ok(flows.iter().zip(&pasts).enumerate().map(at).collect())
+    }
+
+    fn loads_at(
+        &self,
+        point: usize,
+        (flow, past): (&SectionFlow, &SectionPast),
+        StationLaw { scales, kind }: StationLaw,
+    ) -> SectionLoads {
+        let loads = match kind {
+            Kind::Whole => self.whole_loads(point, scales, (flow, past)),
+            Kind::FlapSlope => {
+                let frictionless = AirScales { drag: 0.0, ..scales };
+                section_loads(frictionless, flow, &self.prompt[point], past.lag)
+            }
+            Kind::DragAlone => {
+                let SectionFlow { u_t, sense, .. } = *flow;
+                let still = SectionFlow { u_t, sense, ..SectionFlow::default() };
+                let past = SectionPast::default();
+                let SectionLoads { fy, .. } = self.whole_loads(point, scales, (&still, &past));
+                SectionLoads { fy, ..SectionLoads::default() }
+            }
+            Kind::Nothing => SectionLoads::default(),
+        };
+        if scales.centre == 0.0 { loads } else { loads.about(scales.centre, flow.pitch) }
+    }
+
+    fn whole_loads(
+        &self,
+        point: usize,
+        scales: AirScales,
+        (flow, past): (&SectionFlow, &SectionPast),
+    ) -> SectionLoads {
+        let prompt = &self.prompt[point];
+        let mut loads = match &self.tables {
+            None => section_loads(scales, flow, prompt, past.lag),
+            Some(tables) => tables.loads(point, scales, flow, (prompt, past)),
+        };
+        if self.stall.is_some() {
+            add_stall(scales, flow, past.stall, &mut loads);
+        }
+        loads
+    }
+
+    /// What the past adds to the loads at all points.
+    ///
+    /// # Errors
+    /// [`ResponseError::StallNotPeriodic`].
+    fn pasts(&self, flows: &[SectionFlow]) -> Result<Vec<SectionPast>, ResponseError> {
+        let points = flows.len();
+        let mut drive = vec![0.0; points];
+        let mut state = Vec::with_capacity(points);
+        let mut pasts = vec![SectionPast::default(); points];
+        for channel in &self.lags {
+            for (d, flow) in drive.iter_mut().zip(flows) {
+                *d = dot(&channel.input, &flow.input);
+            }
+            channel.lag.periodic_state(&drive, &mut state);
+            for (output, gains) in &channel.gains {
+                for ((past, gain), x) in pasts.iter_mut().zip(gains).zip(&state) {
+                    past.lag[*output] += gain * x;
+                }
+                if channel.rigid && *output == 0 {
+                    for ((past, gain), x) in pasts.iter_mut().zip(gains).zip(&state) {
+                        past.rigid_lift += gain * x;
+                    }
+                }
+            }
+        }
+        if let Some(stall) = &self.stall {
+            stall.fill(|p| (&flows[p], &self.prompt[p]), &mut pasts)?;
+        }
+        Ok(pasts)
+    }
+
+    /// The same with every state settled on its input, for one point.
+    fn settled_past(&self, point: usize, flow: &SectionFlow) -> SectionPast {
+        let gains = &self.settled[point];
+        let [normal, rate, ..] = gains[0];
+        let mut past = SectionPast {
+            lag: gains.each_ref().map(|row| dot(row, &flow.input)),
+            rigid_lift: normal * flow.input[0] + rate * flow.input[1],
+            ..SectionPast::default()
+        };
+        if let Some(stall) = &self.stall {
+            past.stall = stall.settled(point, flow, (&self.prompt[point], &past));
+        }
+        past
     }
 }
 

@@ -17,14 +17,14 @@ use crate::ResponseError;
 use nalgebra::{DMatrix, DVector};
 use rotor_base::{LagrangeBasis, gauss_legendre};
 use rotor_fem::TimeElements;
+use std::f64::consts::PI;
 
-/// Integration matrix of the Gauss points of one element.
+/// Integration matrix of the Gauss points of one element, and the elements it is for.
 #[derive(Debug, Clone)]
 pub(crate) struct Collocation {
     integration: DMatrix<f64>,
     end_weights: DVector<f64>,
-    half_width: f64,
-    elements: usize,
+    half_widths: Vec<f64>,
 }
 
 impl Collocation {
@@ -35,9 +35,13 @@ impl Collocation {
         Self {
             integration: DMatrix::from_fn(points, points, |i, j| rows[i][j]),
             end_weights: DVector::from_vec(rule.weights),
-            half_width: std::f64::consts::PI / time.elements() as f64,
-            elements: time.elements(),
+            half_widths: vec![PI / time.elements() as f64; time.elements()],
         }
+    }
+
+    /// The same for elements of other half lengths, rad, that fill the revolution.
+    pub(crate) fn on(&self, half_widths: &[f64]) -> Self {
+        Self { half_widths: half_widths.to_vec(), ..self.clone() }
     }
 
     fn points(&self) -> usize {
@@ -49,8 +53,7 @@ impl Collocation {
 #[derive(Debug, Clone)]
 pub(crate) struct PeriodicLag {
     points_per_element: usize,
-    /// Element by element, one row per point: `alpha`, then the row of `B`; a last row with `e` and
-    /// `f`.
+    /// Element by element the columns `alpha` and `B`, then `e` and `f`.
     table: Vec<f64>,
     closing: f64,
 }
@@ -62,10 +65,9 @@ impl PeriodicLag {
     /// [`ResponseError::LagSingular`] if an element cannot be solved (rates not finite).
     pub(crate) fn new(collocation: &Collocation, rates: &[f64]) -> Result<Self, ResponseError> {
         let g = collocation.points();
-        let half = collocation.half_width;
-        let mut table = Vec::with_capacity(collocation.elements * (g + 1) * (g + 1));
+        let mut table = Vec::with_capacity(collocation.half_widths.len() * (g + 1) * (g + 1));
         let mut passed = 1.0;
-        for chunk in rates.chunks_exact(g) {
+        for (chunk, &half) in rates.chunks_exact(g).zip(&collocation.half_widths) {
             let scaled =
                 DMatrix::from_fn(g, g, |i, j| half * collocation.integration[(i, j)] * chunk[j]);
             let system = (DMatrix::identity(g, g) + &scaled).lu();
@@ -74,10 +76,7 @@ impl PeriodicLag {
             let (Some(start), Some(drive)) = (start, drive) else {
                 return Err(ResponseError::LagSingular { largest_rate: max_abs(chunk) });
             };
-            for i in 0..g {
-                table.push(start[i]);
-                table.extend(drive.row(i).iter());
-            }
+            table.extend(start.iter().chain(&drive));
             let weights = DVector::from_fn(g, |i, _| half * collocation.end_weights[i] * chunk[i]);
             let end_start = 1.0 - weights.dot(&start);
             table.push(end_start);
@@ -94,17 +93,25 @@ impl PeriodicLag {
     /// The periodic state at all points for the drive `r`, written to `out`.
     pub(crate) fn periodic_state(&self, drive: &[f64], out: &mut Vec<f64>) {
         let g = self.points_per_element;
-        let value = |row: &[f64], x0: f64, r: &[f64]| -> f64 {
-            row[0] * x0 + row[1..].iter().zip(r).map(|(a, b)| a * b).sum::<f64>()
-        };
         let elements = || self.table.chunks_exact((g + 1) * (g + 1)).zip(drive.chunks_exact(g));
-        let end = |x0: f64, (rows, r): (&[f64], &[f64])| value(&rows[g * (g + 1)..], x0, r);
+        let end = |x0: f64, (table, r): (&[f64], &[f64])| {
+            let [e, f @ ..] = &table[g * (g + 1)..] else { return x0 };
+            e * x0 + f.iter().zip(r).map(|(f, r)| f * r).sum::<f64>()
+        };
         let mut x0 = elements().fold(0.0, end) / self.closing;
         out.clear();
-        for (rows, r) in elements() {
-            let mut lines = rows.chunks_exact(g + 1);
-            out.extend(lines.by_ref().take(g).map(|row| value(row, x0, r)));
-            x0 = end(x0, (rows, r));
+        out.resize(drive.len(), 0.0);
+        for (state, (table, r)) in out.chunks_exact_mut(g).zip(elements()) {
+            let (alpha, columns) = table[..g * (g + 1)].split_at(g);
+            for (x, alpha) in state.iter_mut().zip(alpha) {
+                *x = alpha * x0;
+            }
+            for (column, r) in columns.chunks_exact(g).zip(r) {
+                for (x, b) in state.iter_mut().zip(column) {
+                    *x += b * r;
+                }
+            }
+            x0 = end(x0, (table, r));
         }
     }
 }

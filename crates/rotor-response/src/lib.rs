@@ -4,6 +4,7 @@ mod air;
 mod blade;
 mod dissimilar;
 mod error;
+mod fine_azimuth;
 mod flap_inertia;
 mod flap_mass;
 mod flight_air;

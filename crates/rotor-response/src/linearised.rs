@@ -321,6 +321,7 @@ mod tests {
         couplings: Couplings,
         airfoils: Option<Arc<AirfoilSpan>>,
         tip_loss: f64,
+        flap_start: f64,
     ) -> RotorModel {
         RotorModel {
             blades: 4,
@@ -334,8 +335,8 @@ mod tests {
             compressibility: Compressibility::LocalMach { tip_mach: 0.58 },
             reverse_flow: ReverseFlow::default(),
             flaps: vec![TrailingEdgeFlap {
-                start: 0.7,
-                end: 0.8,
+                start: flap_start,
+                end: flap_start + 0.1,
                 chord_fraction: 0.25,
                 mass_fraction: 0.1,
                 cg_fraction: 0.2,
@@ -369,11 +370,13 @@ mod tests {
     #[test]
     fn slopes_along_the_flaps_are_those_of_differences() {
         let moderate = Couplings::Moderate(rotor_fem::TorsionTerms::default());
-        for (couplings, airfoils, tip_loss) in [
-            (Couplings::Full, None, 1.0),
-            (Couplings::Full, None, 0.75),
-            (moderate, None, 1.0),
-            (Couplings::Full, Some(stalling_table()), 1.0),
+        for (couplings, airfoils, tip_loss, flap_start) in [
+            (Couplings::Full, None, 1.0, 0.7),
+            (Couplings::Full, None, 0.75, 0.7),
+            (moderate, None, 1.0, 0.7),
+            (Couplings::Full, Some(stalling_table()), 1.0, 0.7),
+            // a flap in reverse flow
+            (Couplings::Full, None, 1.0, 0.22),
         ] {
             let blade = BladeProperties::new(BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1000.0));
             let d = Discretisation {
@@ -382,8 +385,8 @@ mod tests {
                 load_harmonics: 8,
                 ..Discretisation::default()
             };
-            let rotor =
-                Rotor::new(model(couplings, airfoils, tip_loss), &blade.unwrap(), d).unwrap();
+            let model = model(couplings, airfoils, tip_loss, flap_start);
+            let rotor = Rotor::new(model, &blade.unwrap(), d).unwrap();
             let mut solver =
                 RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
             let mut direction = vec![HarmonicSeries::zero(3)];

@@ -42,10 +42,10 @@ impl SixLoads {
 ///
 /// ```text
 /// f_x = m (x + u + 2 v' - u'') + F_x      F_x = -w_x F_z - v_x F_y (aerodynamic)
-/// f_y = m (v - v'' - 2 u' + 2 bp w') + F_y
+/// f_y = m (y - v'' - 2 u' + 2 bp w') + F_y      y = y_t + v
 /// f_z = -m (w'' + bp (x + 2 v')) + F_z
 /// m_x = -m km^2 th'' - m (km2^2 - km1^2) sin th cos th + M
-/// M_x = int v f_z - w f_y + m_x,  M_y = int w f_x - (x + u) f_z,  M_z = int (x + u) f_y - v f_x
+/// M_x = int y f_z - w f_y + m_x,  M_y = int w f_x - (x + u) f_z,  M_z = int (x + u) f_y - y f_x
 /// ```
 /// `M_y` and `M_z` also hold the moments on the slopes of flaps that weigh beside the blade.
 /// The foreshortening `u` and its rates enter in second order whatever the couplings of the modal
@@ -77,11 +77,12 @@ pub(crate) fn root_loads(
         let (m, x) = (blade.mass[i], blade.grid.x()[i]);
         let (u, u_rate, u_acceleration) = (-squares[i], -rates[i], -accelerations[i]);
         let bp = blade.precone;
+        let y = blade.offsets.torque + v.value[i];
         let [weight_x, weight_y, weight_z] = loads.gravity.map(|g| m * g);
         let aero_x = -w.slope[i] * aerodynamic.fz[i] - v.slope[i] * aerodynamic.fy[i];
         let fx =
             m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x + loads.axial[i] + weight_x;
-        let fy = m * (v.value[i] - v.acceleration[i] - 2.0 * u_rate + 2.0 * bp * w.rate[i])
+        let fy = m * (y - v.acceleration[i] - 2.0 * u_rate + 2.0 * bp * w.rate[i])
             + loads.fy[i]
             + weight_y;
         let fz = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
@@ -96,9 +97,9 @@ pub(crate) fn root_loads(
             fx,
             fy,
             fz,
-            v.value[i] * fz - w.value[i] * fy + mx,
+            y * fz - w.value[i] * fy + mx,
             w.value[i] * fx - (x + u) * fz - loads.slope[1][i],
-            (x + u) * fy - v.value[i] * fx + loads.slope[0][i],
+            (x + u) * fy - y * fx + loads.slope[0][i],
         ];
         for (t, part) in total.iter_mut().zip(parts) {
             *t += weight * part;
@@ -189,7 +190,9 @@ pub(crate) fn root_moments(
         let pull = blade.tension[i] + tension[i];
         let up = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
         let forward = m
-            * (v.value[i] - v.acceleration[i] + 2.0 * shortening[i] + 2.0 * bp * w.rate[i])
+            * (blade.offsets.torque + v.value[i] - v.acceleration[i]
+                + 2.0 * shortening[i]
+                + 2.0 * bp * w.rate[i])
             + loads.fy[i]
             + weight_y;
         let theta = pitch.angle + blade.twist[i] + phi.value[i];

@@ -2,6 +2,10 @@
 
 use crate::{Couplings, NonlinearSections, ResponseError, TrailingEdgeFlap};
 use flap_aero::AttachedFlowModel;
+use rotor_fem::ModalBasis;
+
+/// Largest local Mach number handed to the section models, where linear theory ends.
+pub(crate) const MACH_LIMIT: f64 = 0.9;
 
 /// How the local Mach number enters the section aerodynamics.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,15 +40,24 @@ pub enum ReverseFlow {
     Abrupt,
 }
 
-/// Centres of a section ahead of its elastic axis, radius R; the same all along the blade.
+/// Centres of a section ahead of its elastic axis, and the blade's axis ahead of the hub's centre, radius R;
+/// the same all along the blade.
 ///
-/// Only the equations of [`Couplings::Moderate`] know them.
+/// Mass and tension centre are known to the equations of [`Couplings::Moderate`] alone, the torque offset to
+/// those of `Linear` and `Full`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SectionOffsets {
     /// Mass centre, `e_g`.
     pub mass_centre: f64,
     /// Tension centre, `e_A`.
     pub tension_centre: f64,
+    /// Aerodynamic centre (the quarter chord), `e_d`. Lift there turns the section nose up, and a section
+    /// that pitches about its elastic axis moves it: `U_P` holds `e_d om`.
+    pub aerodynamic_centre: f64,
+    /// Torque offset: how far the axis of the blade at rest passes ahead of the rotor centre, toward the
+    /// leading edge. Centrifugal force then has a part along the lag motion, and the rotation gives the air
+    /// a speed along the blade.
+    pub torque: f64,
 }
 
 /// The rotor apart from the structure of its blades. Rotor units: length R, mass per length `m0`,
@@ -85,6 +98,41 @@ pub struct RotorModel {
 }
 
 impl RotorModel {
+    /// The rotor of Table 1 of the paper: quasi-steady sections, incompressible, no flaps; cut-out, drag and
+    /// damping, which the paper leaves open, as in the shipped case.
+    ///
+    /// Source: S. R. Viswamurthy, R. Ganguli, Table 1.
+    pub fn table_1(couplings: Couplings) -> Self {
+        Self {
+            blades: 4,
+            chord: 0.055,
+            lock_number: 5.2,
+            drag_coefficient: 0.01,
+            root_cutout: 0.2,
+            tip_loss: 1.0,
+            gravity: 0.0,
+            offsets: SectionOffsets::default(),
+            modal_damping: 0.005,
+            couplings,
+            section_model: AttachedFlowModel::QuasiSteady,
+            compressibility: Compressibility::None,
+            reverse_flow: ReverseFlow::default(),
+            flaps: vec![],
+            nonlinear: NonlinearSections::default(),
+        }
+    }
+
+    /// The same with the two flaps of the paper's case and sections of the form of Hariharan and Leishman at
+    /// the local Mach number.
+    pub fn paper_case() -> Self {
+        Self {
+            section_model: AttachedFlowModel::HariharanLeishman,
+            compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
+            flaps: TrailingEdgeFlap::paper_case().to_vec(),
+            ..Self::table_1(Couplings::Full)
+        }
+    }
+
     /// Checks every parameter.
     ///
     /// # Errors
@@ -116,6 +164,19 @@ impl RotorModel {
             let known = offset == 0.0 || matches!(self.couplings, Couplings::Moderate(_));
             check(field, offset, known, "0 unless the couplings are Moderate")?;
         }
+        let SectionOffsets { aerodynamic_centre, torque, .. } = self.offsets;
+        let quarter = 0.25 * self.chord;
+        let field = "offsets.aerodynamic_centre";
+        let inside = within(aerodynamic_centre, -3.0 * quarter, quarter);
+        check(
+            field,
+            aerodynamic_centre,
+            inside,
+            "the elastic axis between the edges of the chord",
+        )?;
+        check("offsets.torque", torque, within(torque, -0.1, 0.1), "-0.1 to 0.1 R")?;
+        let known = torque == 0.0 || !matches!(self.couplings, Couplings::Moderate(_));
+        check("offsets.torque", torque, known, "0 if the couplings are Moderate")?;
         let zeta = self.modal_damping;
         check("modal_damping", zeta, within(zeta, 0.0, 0.5), "0 to 0.5 of critical")?;
         if let Compressibility::LocalMach { tip_mach } = self.compressibility {
@@ -163,6 +224,14 @@ impl RotorModel {
         ct_sigma * self.blades as f64 * self.density_chord()
     }
 
+    /// Tangential speeds, tip speed, at which the section coefficients have a kink.
+    pub(crate) fn speeds_with_kinks(&self) -> Vec<f64> {
+        let tip_mach = self.compressible_tip_mach();
+        let within = |mach: &f64| tip_mach > 0.0 && *mach > 0.0;
+        let machs = self.section_model.mach_kinks().iter().copied().chain([MACH_LIMIT]);
+        machs.filter(within).map(|mach| mach / tip_mach).collect()
+    }
+
     /// Tip Mach number used for the sections, zero without compressibility.
     pub(crate) fn compressible_tip_mach(&self) -> f64 {
         match self.compressibility {
@@ -191,6 +260,8 @@ pub struct Discretisation {
     pub blade_elements: usize,
     /// Flap, lag and torsion modes.
     pub modes: [usize; 3],
+    /// Natural modes, or the last of each family replaced by a static completion.
+    pub basis: ModalBasis,
     /// Gauss points in each spanwise piece.
     pub span_points_per_piece: usize,
     /// Elements of the time discretisation.
@@ -210,6 +281,7 @@ impl Default for Discretisation {
         Self {
             blade_elements: 10,
             modes: [4, 4, 2],
+            basis: ModalBasis::Natural,
             span_points_per_piece: 4,
             time_elements: 8,
             time_order: 5,

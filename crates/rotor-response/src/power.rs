@@ -98,10 +98,11 @@ pub(crate) fn power(
     for i in 0..blade.grid.len() {
         let weight = blade.grid.weight()[i];
         let force = loads.force(blade, motion, i);
+        let y = blade.offsets.torque + v.value[i];
         let velocity = [
-            axial.rate[i] - across * v.value[i],
+            axial.rate[i] - across * y,
             v.rate[i] + across * (blade.grid.x()[i] + axial.value[i]) - along * w.value[i],
-            w.rate[i] + along * v.value[i],
+            w.rate[i] + along * y,
         ];
         let turning = pitch.rate + motion.phi.rate[i] + along + across * w.slope[i];
         // a slope v_x turns about z, a slope w_x about -y

@@ -66,10 +66,10 @@ impl RevolutionLoads {
         let weights = unit_weights(time);
         let mut lifting = Vec::with_capacity(revolution.motions.len());
         for (p, motion) in revolution.motions.iter().enumerate() {
-            let sections = system.section_loads(p, &revolution.flows[p], &revolution.pasts[p]);
+            let sections = &revolution.sections[p];
             lifting.push(sections.iter().map(Lifting::of).collect());
-            system.span_loads(p, motion, &sections, &mut loads);
-            let aerodynamic = aerodynamic_loads(blade.grid.len(), first, &sections);
+            system.span_loads(p, motion, sections, &mut loads);
+            let aerodynamic = aerodynamic_loads(blade.grid.len(), first, sections);
             let pitch = system.points[p].air.pitch;
             let state = BladeState { motion, pitch, loads: &loads };
             let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
@@ -96,7 +96,7 @@ impl RevolutionLoads {
                 history[0].push(force);
                 history[1].push(curvature);
             }
-            let moments = system.hinge_moments(p, motion, &sections);
+            let moments = system.hinge_moments(p, motion, sections);
             for (k, history) in hinge.iter_mut().enumerate() {
                 for (part, moment) in history.iter_mut().zip(&moments) {
                     part.push(moment[k]);

@@ -124,6 +124,7 @@ impl Rotor {
             density_chord: self.model.density_chord(),
             chord: self.model.chord,
             drag: self.model.drag_coefficient,
+            centre: self.model.offsets.aerodynamic_centre,
         }
     }
 }

@@ -49,6 +49,26 @@ impl SpanGrid {
         Ok(grid)
     }
 
+    /// The same with the pieces between two stations halved.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn halved(
+        root: f64,
+        breaks: &[f64],
+        [from, to]: [f64; 2],
+        points_per_piece: usize,
+    ) -> Result<Self, ResponseError> {
+        let whole = Self::new(root, breaks, points_per_piece)?;
+        let middle = |pair: &[f64]| {
+            let inside = pair[0] > from - 1e-9 && pair[1] < to + 1e-9;
+            inside.then_some(0.5 * (pair[0] + pair[1]))
+        };
+        let middles = whole.edges.windows(2).filter_map(middle);
+        let breaks: Vec<f64> = breaks.iter().copied().chain(middles).collect();
+        Self::new(root, &breaks, points_per_piece)
+    }
+
     /// Stations, radius R, ascending.
     pub fn x(&self) -> &[f64] {
         &self.x

@@ -2,14 +2,14 @@
 //!
 //! ```text
 //! flap    int [ m bp (x + 2 v') - F_z ] F + N w_x F_x + M_w F_xx
-//! lag     int [ -m v + 2 m u' - 2 m bp w' - F_y ] L + N v_x L_x + M_v L_xx
+//! lag     int [ -m (y_t + v) + 2 m u' - 2 m bp w' - F_y ] L + N v_x L_x + M_v L_xx
 //! torsion int [ m km^2 th'' + m (km2^2 - km1^2) sin th cos th + (EI_z - EI_y) kz ky - M ] P
 //!             + (GJ + kA^2 T) phi_x P_x
 //! kz = v_xx cos th + w_xx sin th      ky = w_xx cos th - v_xx sin th
 //! M_w = EI_z kz sin th + EI_y ky cos th      M_v = EI_z kz cos th - EI_y ky sin th
 //! N = T + int_x^1 2 m v'      T = int_x^1 m x      u' = -int_0^x (v_x v_x' + w_x w_x')
 //! ```
-//! (here `'` is the azimuth derivative and a subscript `x` the spanwise one; the constant mass part is
+//! (here `'` is the azimuth derivative and a subscript `x` the spanwise one; `y_t` is the torque offset; the constant mass part is
 //! left to the time elements; `bp` is the precone). Inextensional blade, elastic axis, centre of
 //! gravity and aerodynamic centre at the quarter chord.
 //!
@@ -186,7 +186,7 @@ pub(crate) fn modal_residual(
         let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);
         let [_, weight_y, weight_z] = loads.gravity.map(|g| m * g);
         s.force[0][i] = m * blade.precone * (x + 2.0 * v.rate[i]) - loads.fz[i] - weight_z;
-        s.force[1][i] = -m * v.value[i]
+        s.force[1][i] = -m * (blade.offsets.torque + v.value[i])
             - 2.0 * m * s.foreshortening_rate[i]
             - 2.0 * m * blade.precone * w.rate[i]
             - loads.fy[i]

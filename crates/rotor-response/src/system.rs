@@ -1,12 +1,10 @@
 //! The aeroelastic blade as a periodic system for the time elements.
 
 use crate::ResponseError;
-use crate::air::{
-    AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, SectionPast, section_flow,
-};
+use crate::air::{AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, section_flow};
 use crate::blade::{Couplings, FlapMass, ResponseBlade};
 use crate::flap_inertia::FlapSection;
-use crate::flight_air::FlightAir;
+use crate::flight_air::{FlightAir, LoadLaw};
 use crate::motion::{Motion, RootPitch};
 use crate::structure::{
     BladeState, SpanLoads, StructureScratch, modal_residual, moderate_residual, subtract_slope_work,
@@ -44,15 +42,13 @@ pub(crate) struct ResponseSystem<'a> {
     pub(crate) mass: &'a DMatrix<f64>,
 }
 
-/// Motion, flow and lag loads at every point of the revolution.
+/// Motion and air loads at every point of the revolution.
 #[derive(Debug)]
 pub(crate) struct Revolution {
     /// By point.
     pub(crate) motions: Vec<Motion>,
-    /// By point and lifting station.
-    pub(crate) flows: Vec<Vec<SectionFlow>>,
-    /// What the past adds to the loads, by point and lifting station.
-    pub(crate) pasts: Vec<Vec<SectionPast>>,
+    /// Aerodynamic section loads, by point and lifting station.
+    pub(crate) sections: Vec<Vec<SectionLoads>>,
 }
 
 /// Reusable arrays of one evaluation.
@@ -81,7 +77,7 @@ impl ResponseSystem<'_> {
             .collect()
     }
 
-    /// Motion, flow and aerodynamic lag loads over the whole revolution.
+    /// Motion and air loads over the whole revolution.
     ///
     /// # Errors
     /// [`ResponseError::StallNotPeriodic`].
@@ -93,8 +89,8 @@ impl ResponseSystem<'_> {
             self.fill(motion, samples, p);
             flows.push(self.flows(p, motion));
         }
-        let pasts = self.air.pasts(&flows)?;
-        Ok(Revolution { motions, flows, pasts })
+        let sections = self.air.loads(&flows, self.load_law(false))?;
+        Ok(Revolution { motions, sections })
     }
 
     /// Motion of the blade at one point.
@@ -103,38 +99,11 @@ impl ResponseSystem<'_> {
         motion.fill(self.blade, &column(&samples.q), &column(&samples.qd), &column(&samples.qdd));
     }
 
-    /// Aerodynamic section loads of one point with everything that remembers settled on its flow.
-    pub(crate) fn settled_sections(
-        &self,
-        point: usize,
-        flows: &[SectionFlow],
-    ) -> Vec<SectionLoads> {
-        self.section_loads(point, flows, &self.air.settled_pasts(point, flows))
-    }
-
-    /// Aerodynamic section loads at the lifting stations of one point.
-    pub(crate) fn section_loads(
-        &self,
-        point: usize,
-        flows: &[SectionFlow],
-        pasts: &[SectionPast],
-    ) -> Vec<SectionLoads> {
-        flows
-            .iter()
-            .zip(pasts)
-            .enumerate()
-            .map(|(s, (flow, past))| {
-                if self.is_lost_to_the_tip(s) {
-                    return self.air.drag_alone(self.scales, (s, point), flow);
-                }
-                self.air.loads(self.scales, (s, point), flow, past)
-            })
-            .collect()
-    }
-
-    /// Whether a lifting station lies where the tip takes the lift.
-    fn is_lost_to_the_tip(&self, station: usize) -> bool {
-        self.blade.grid.x()[self.air.first_station() + station] > self.blade.tip_loss
+    /// How section loads follow from flows, or with `changes` from what a flap changes them by.
+    fn load_law(&self, changes: bool) -> LoadLaw {
+        let lifting = &self.blade.grid.x()[self.air.first_station()..];
+        let lost_from = lifting.partition_point(|x| *x <= self.blade.tip_loss);
+        LoadLaw { scales: self.scales, lost_from, changes }
     }
 
     /// Motion of the section at a station that carries flap `k`, and of the flap.
@@ -149,7 +118,7 @@ impl ResponseSystem<'_> {
         FlapSection {
             x: self.blade.grid.x()[i],
             precone: self.blade.precone,
-            v: [v.value[i], v.rate[i], v.acceleration[i]],
+            v: [v.value[i] + self.blade.offsets.torque, v.rate[i], v.acceleration[i]],
             v_x: [v.slope[i], v.slope_rate[i], v.slope_acceleration[i]],
             w: [w.value[i], w.rate[i], w.acceleration[i]],
             w_x: [w.slope[i], w.slope_rate[i], w.slope_acceleration[i]],
@@ -184,12 +153,12 @@ impl ResponseSystem<'_> {
             out.fy[first + s] = load.fy;
             out.moment[first + s] = load.moment;
         }
-        if self.blade.mass_centre != 0.0 {
+        if self.blade.offsets.mass_centre != 0.0 {
             let [_, y, z] = out.gravity;
             for i in 0..self.blade.grid.len() {
                 let twist = self.points[point].air.pitch.angle + self.blade.twist[i];
                 let (sin, cos) = (twist + motion.phi.value[i]).sin_cos();
-                let arm = self.blade.mass[i] * self.blade.mass_centre;
+                let arm = self.blade.mass[i] * self.blade.offsets.mass_centre;
                 out.moment[i] += arm * (cos * z - sin * y);
             }
         }
@@ -253,7 +222,7 @@ impl ResponseSystem<'_> {
     ) -> Vec<f64> {
         motion.fill(self.blade, q, qd, qdd);
         let flows = self.flows(point, motion);
-        let sections = self.settled_sections(point, &flows);
+        let sections = self.air.settled_loads(point, &flows, self.load_law(false));
         self.span_loads(point, motion, &sections, &mut scratch.loads);
         let mut out = vec![0.0; q.len()];
         self.project(point, (motion, [q, qd, qdd]), scratch, &mut out);
@@ -301,8 +270,7 @@ impl PeriodicSystem for ResponseSystem<'_> {
         let mut scratch = Scratch::default();
         let mut column = vec![0.0; self.dof()];
         for (p, motion) in revolution.motions.iter().enumerate() {
-            let sections = self.section_loads(p, &revolution.flows[p], &revolution.pasts[p]);
-            self.span_loads(p, motion, &sections, &mut scratch.loads);
+            self.span_loads(p, motion, &revolution.sections[p], &mut scratch.loads);
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
             self.project(p, (motion, [&q, &qd, &qdd]), &mut scratch, &mut column);
@@ -372,29 +340,18 @@ impl ResponseSystem<'_> {
             }
             flows.push(changes);
         }
-        let pasts = self.air.pasts(&flows)?;
+        let sections = self.air.loads(&flows, self.load_law(true))?;
         let mut out = DMatrix::zeros(self.dof(), self.points.len());
         let mut scratch = Scratch::default();
         let [mut loaded, mut bare] = [0; 2].map(|_| vec![0.0; self.dof()]);
-        for (p, flows) in flows.iter().enumerate() {
+        for (p, sections) in sections.iter().enumerate() {
             along.fill(&mut motion, samples, p);
-            let sections: Vec<SectionLoads> = flows
-                .iter()
-                .zip(&pasts[p])
-                .enumerate()
-                .map(|(s, (flow, past))| {
-                    if self.is_lost_to_the_tip(s) {
-                        return SectionLoads::default();
-                    }
-                    self.air.flap_slope(self.scales, (s, p), flow, past.lag)
-                })
-                .collect();
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
             let coordinates = [q.as_slice(), &qd, &qdd];
             scratch.loads.clear(self.blade.grid.len());
             self.project(p, (&motion, coordinates), &mut scratch, &mut bare);
-            along.span_loads(p, &motion, &sections, &mut scratch.loads);
+            along.span_loads(p, &motion, sections, &mut scratch.loads);
             self.project(p, (&motion, coordinates), &mut scratch, &mut loaded);
             for (slope, (loaded, bare)) in
                 out.column_mut(p).iter_mut().zip(loaded.iter().zip(&bare))

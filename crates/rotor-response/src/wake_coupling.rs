@@ -130,7 +130,7 @@ impl RotorSolver {
             .collect::<Vec<_>>();
         BladeLines::deflected(wake_rotor, azimuths, |i, n| {
             let q = &motion[i];
-            let mut out = [blade.precone * wake_rotor.nodes()[n], 0.0];
+            let mut out = [blade.precone * wake_rotor.nodes()[n], blade.offsets.torque];
             for (j, shape) in at_nodes.iter().enumerate() {
                 out[usize::from(j >= flaps)] += q[j] * shape[n];
             }

@@ -96,6 +96,71 @@ fn a_blade_droops_under_its_weight() {
     }
 }
 
+/// A stiff blade on a free lag hinge at `(e, y_t)` points away from the rotor centre, `zeta = y_t / e`, and
+/// puts no moment on the shaft; on a spring it stands between that and its rest:
+///
+/// ```text
+/// zeta = y_t S / (k + e S),   S = (1 - e)^2 / 2
+/// ```
+/// A centrifugal force points away from the shaft: it has no moment about it, spring or not.
+#[test]
+fn a_lag_hinge_turns_toward_the_torque_offset() {
+    let (e, torque) = (0.06, 0.004);
+    for (couplings, allowed) in [(Couplings::Linear, 1e-5), (Couplings::Full, 3e-3)] {
+        for stiffness in [0.0, 0.02] {
+            let lag = if stiffness == 0.0 { Joint::FREE } else { spring(stiffness) };
+            let model = RotorModel {
+                lock_number: 1e-9,
+                modal_damping: 0.0,
+                offsets: SectionOffsets { torque, ..SectionOffsets::default() },
+                ..paper_model(couplings)
+            };
+            let blade = BladeSpec {
+                root: RootSupport { lag, ..RootSupport::CLAMPED },
+                root_offset: e,
+                ..BladeSpec::uniform(1e5, 1e5, 1e5, 1e8)
+            };
+            let found = solve(model, blade, &hover(0.0));
+            let first_moment = 0.5 * (1.0 - e) * (1.0 - e);
+            let angle = torque * first_moment / (stiffness + e * first_moment);
+            let tip = found.modal[1].mean;
+            near(tip / (1.0 - e), angle, allowed * angle);
+            // the shaft feels the spring and the force on the hinge: none together, the rest is radial
+            let torque_on_hub = found.root.mean()[5];
+            near(torque_on_hub, 0.0, 2e-3 * torque * first_moment);
+        }
+    }
+}
+
+/// Lift ahead of the elastic axis twists a stiff blade on a pitch spring:
+///
+/// ```text
+/// k phi = e_d L,   L = (1/2) rho c a int x^2 (theta + phi) - x lambda dx
+/// ```
+#[test]
+fn lift_ahead_of_the_elastic_axis_turns_the_blade_nose_up() {
+    let (stiffness, theta, lambda) = (0.01, 0.1, 0.02);
+    for centre in [0.002, -0.004] {
+        let model = RotorModel {
+            offsets: SectionOffsets { aerodynamic_centre: centre, ..SectionOffsets::default() },
+            ..paper_model(Couplings::Linear)
+        };
+        let blade = BladeSpec {
+            root: RootSupport { feather: spring(stiffness), ..RootSupport::CLAMPED },
+            thickness_gyration_radius: 0.02.into(),
+            chord_gyration_radius: 0.02.into(),
+            area_gyration_radius: 0.0.into(),
+            ..BladeSpec::uniform(1e5, 1e5, 1e5, 1e8)
+        };
+        let moment = |n: i32| (1.0 - model.root_cutout.powi(n + 1)) / f64::from(n + 1);
+        let lift = std::f64::consts::PI * model.density_chord();
+        let expected = centre * lift * (theta * moment(2) - lambda * moment(1))
+            / (stiffness - centre * lift * moment(2));
+        let found = solve(model, blade, &hover(theta));
+        near(found.modal[2].mean, expected, 1e-3 * expected.abs());
+    }
+}
+
 /// A clamped elastic blade sags by its weight in every coupling alike: the hub load is the weight, and the
 /// moment at the root is what the closed form of a stiff blade bounds.
 #[test]
@@ -150,7 +215,7 @@ fn mass_ahead_of_the_axis_twists_the_coned_blade() {
     let twist = |mass_centre: f64| {
         let model = RotorModel {
             lock_number: 1e-9,
-            offsets: SectionOffsets { mass_centre, tension_centre: 0.0 },
+            offsets: SectionOffsets { mass_centre, ..SectionOffsets::default() },
             ..paper_model(Couplings::Moderate(TorsionTerms::default()))
         };
         let spec = BladeSpec { root, precone_rad: cone, ..stiff() };
@@ -163,7 +228,7 @@ fn mass_ahead_of_the_axis_twists_the_coned_blade() {
     }
     near(twist(0.0), 0.0, 1e-9);
     let refused = RotorModel {
-        offsets: SectionOffsets { mass_centre: 0.004, tension_centre: 0.0 },
+        offsets: SectionOffsets { mass_centre: 0.004, ..SectionOffsets::default() },
         ..paper_model(Couplings::Full)
     };
     let text = refused.validate().unwrap_err().to_string();

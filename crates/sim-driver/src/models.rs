@@ -2,14 +2,14 @@
 
 use crate::SimError;
 use crate::case::{
-    Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, FlapMassChoice,
+    BasisChoice, Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, FlapMassChoice,
     GravityChoice, JointChoice, ReverseFlowChoice, SectionModelChoice, TrimValues, UnlikeBladeFile,
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{
-    BladeProperties, BladeSpec, Distribution, FemError, Joint, ModeCount, ModeKind, RootSupport,
-    TorsionTerms, Twist, uncoupled_modes,
+    BladeProperties, BladeSpec, Distribution, FemError, Joint, ModalBasis, ModeCount, ModeKind,
+    RootSupport, TorsionTerms, Twist, modal_basis,
 };
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, DynamicStall, FlapMass,
@@ -92,8 +92,8 @@ impl Case {
         let blade = self.blade_with_flaps()?;
         let at = || Place::file("case").field("rotor.modal_damping");
         let blame = |source: FemError| SimError::Blade { place: at(), source };
-        let found =
-            uncoupled_modes(&blade, self.blade.elements, self.mode_count()).map_err(blame)?;
+        let found = modal_basis(&blade, self.blade.elements, self.mode_count(), self.modal_basis())
+            .map_err(blame)?;
         for (i, mode) in found.of(ModeKind::Lag).iter().enumerate() {
             let frequency_per_rev = mode.frequency();
             let harmonic = frequency_per_rev.round();
@@ -111,6 +111,8 @@ impl Case {
         SectionOffsets {
             mass_centre: self.blade.mass_centre,
             tension_centre: self.blade.tension_centre,
+            aerodynamic_centre: self.blade.aerodynamic_centre,
+            torque: self.blade.torque_offset,
         }
     }
 
@@ -201,12 +203,20 @@ impl Case {
         }
     }
 
+    fn modal_basis(&self) -> ModalBasis {
+        match self.blade.basis {
+            BasisChoice::Natural => ModalBasis::Natural,
+            BasisChoice::Completed => ModalBasis::Completed,
+        }
+    }
+
     /// How finely the rotor is resolved.
     pub fn discretisation(&self) -> Discretisation {
         let r = &self.response;
         Discretisation {
             blade_elements: self.blade.elements,
             modes: self.blade.modes,
+            basis: self.modal_basis(),
             span_points_per_piece: r.span_points_per_piece,
             time_elements: r.time_elements,
             time_order: r.time_order,

@@ -139,6 +139,7 @@ pub fn sweep_csv(sweep: &SweepResult) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::{PAPER_CASE, SectionModelChoice, shipped_case};
     use std::cell::RefCell;
 
     /// A method that takes no step longer than 0.06 is carried from 0.1 to 0.3 in steps of an eighth... of
@@ -161,5 +162,26 @@ mod tests {
         assert_eq!(taken.borrow().len(), 4, "{taken:?}");
         assert!(continuation(0.1, 0.3, 0.1, take(0.01)).unwrap_err().contains("0.1"));
         assert!((continuation(0.3, 0.3, 0.3, take(0.01)).unwrap() - 0.3_f64).abs() < 1e-15);
+    }
+    /// The rotor itself: with one trim step less than the whole way takes, the whole way fails, and the
+    /// continuation arrives at the same trim.
+    #[test]
+    fn a_rotor_that_cannot_be_trimmed_at_once_is_continued() {
+        let mut loaded = shipped_case(PAPER_CASE).unwrap();
+        loaded.case.blade.elements = 4;
+        loaded.case.blade.modes = [1, 1, 1];
+        loaded.case.section.model = SectionModelChoice::QuasiSteady;
+        loaded.case.response.span_points_per_piece = 2;
+        let start = TrimmedRotor::new(&at_advance_ratio(&loaded, 0.05), None).unwrap();
+        let mut far = at_advance_ratio(&loaded, 0.40);
+        let at_once = TrimmedRotor::new(&far, Some(start.trim())).unwrap();
+        let steps = at_once.trim().iterations;
+        far.case.tolerances.trim_iterations = steps - 1;
+        assert!(TrimmedRotor::new(&far, Some(start.trim())).is_err(), "{steps} steps");
+        let continued = continued_trim(&far, Some(start.trim())).unwrap();
+        let (got, expected) = (continued.trim(), at_once.trim());
+        let off = (got.controls.theta0_rad - expected.controls.theta0_rad).abs();
+        assert!(off < 1e-6, "{off:e} rad");
+        assert!(got.iterations < steps);
     }
 }

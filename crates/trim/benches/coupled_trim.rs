@@ -4,12 +4,8 @@
 //! Budget: 0.5 s.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use flap_aero::{AttachedFlowModel, FlapEffectiveness};
-use rotor_fem::{BladeProperties, BladeSpec, Twist};
-use rotor_response::{
-    Compressibility, Couplings, Discretisation, FlapMass, NonlinearSections, ResponseTolerances,
-    ReverseFlow, Rotor, RotorModel, RotorSolver, SectionOffsets, TrailingEdgeFlap,
-};
+use rotor_fem::{BladeProperties, BladeSpec};
+use rotor_response::{Discretisation, ResponseTolerances, Rotor, RotorModel, RotorSolver};
 use rotor_wake::LinearInflow;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -20,39 +16,9 @@ const BUDGET_S: f64 = 0.5;
 const MU: f64 = 0.3;
 
 fn rotor() -> Result<Arc<Rotor>, TrimError> {
-    let spec = BladeSpec {
-        twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
-    };
-    let blade = BladeProperties::new(spec).map_err(rotor_response::ResponseError::from)?;
-    let flap = |start, end| TrailingEdgeFlap {
-        start,
-        end,
-        chord_fraction: 0.2,
-        mass_fraction: 0.1,
-        cg_fraction: 0.2,
-        gyration_fraction: None,
-        mass: FlapMass::PartOfBlade,
-        effectiveness: FlapEffectiveness::IDEAL,
-    };
-    let model = RotorModel {
-        blades: 4,
-        chord: 0.055,
-        lock_number: 5.2,
-        drag_coefficient: 0.01,
-        root_cutout: 0.2,
-        tip_loss: 1.0,
-        gravity: 0.0,
-        offsets: SectionOffsets::default(),
-        modal_damping: 0.005,
-        couplings: Couplings::Full,
-        section_model: AttachedFlowModel::HariharanLeishman,
-        compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
-        reverse_flow: ReverseFlow::default(),
-        flaps: vec![flap(0.70, 0.75), flap(0.80, 0.85)],
-        nonlinear: NonlinearSections::default(),
-    };
-    Ok(Arc::new(Rotor::new(model, &blade, Discretisation::default())?))
+    let blade = BladeProperties::new(BladeSpec::table_1());
+    let blade = blade.map_err(rotor_response::ResponseError::from)?;
+    Ok(Arc::new(Rotor::new(RotorModel::paper_case(), &blade, Discretisation::default())?))
 }
 
 /// The section aerodynamics of the flight condition and the trim.

@@ -2,39 +2,17 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
 
-use flap_aero::AttachedFlowModel;
-use rotor_fem::{BladeProperties, BladeSpec, Twist};
+use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, NonlinearSections, ResponseTolerances,
-    ReverseFlow, Rotor, RotorModel, RotorSolver, SectionOffsets,
+    Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel, RotorSolver,
 };
 use rotor_wake::LinearInflow;
 use std::sync::Arc;
 use trim::{HorizontalTail, TrimError, TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
 
 fn solver(advance_ratio: f64) -> RotorSolver {
-    let blade = BladeProperties::new(BladeSpec {
-        twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
-    })
-    .unwrap();
-    let model = RotorModel {
-        tip_loss: 1.0,
-        gravity: 0.0,
-        offsets: SectionOffsets::default(),
-        blades: 4,
-        chord: 0.055,
-        lock_number: 5.2,
-        drag_coefficient: 0.01,
-        root_cutout: 0.2,
-        modal_damping: 0.005,
-        couplings: Couplings::Full,
-        section_model: AttachedFlowModel::QuasiSteady,
-        compressibility: Compressibility::None,
-        reverse_flow: ReverseFlow::default(),
-        flaps: vec![],
-        nonlinear: NonlinearSections::default(),
-    };
+    let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
+    let model = RotorModel::table_1(Couplings::Full);
     let rotor = Rotor::new(model, &blade, Discretisation::default()).unwrap();
     RotorSolver::new(Arc::new(rotor), advance_ratio, ResponseTolerances::default()).unwrap()
 }

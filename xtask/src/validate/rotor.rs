@@ -3,12 +3,10 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use flap_aero::AttachedFlowModel;
 use rotor_fem::{BladeProperties, BladeSpec, TorsionTerms, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
-    ResponseTolerances, ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SectionOffsets,
-    SixLoads, hub_loads,
+    Condition, Controls, Couplings, Discretisation, ResponseTolerances, ReverseFlow, Rotor,
+    RotorModel, RotorSolution, RotorSolver, SixLoads, hub_loads,
 };
 use rotor_wake::{FlightState, InflowModel, LinearInflow};
 
@@ -185,32 +183,12 @@ const S2: Crosscheck = Crosscheck { name: "S2_full_fixed", couplings: || Couplin
 
 /// The blade of Table 1 with the twist of the paper's case; `mass` over m0.
 pub(super) fn paper_blade(mass: f64) -> Result<BladeProperties, CheckError> {
-    Ok(BladeProperties::new(BladeSpec {
-        twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
-        mass: mass.into(),
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1000.0)
-    })?)
+    Ok(BladeProperties::new(BladeSpec { mass: mass.into(), ..BladeSpec::table_1() })?)
 }
 
 /// The rotor of Table 1, incompressible and quasi-steady, without flaps.
 pub(super) fn paper_rotor(couplings: Couplings, root_cutout: f64) -> RotorModel {
-    RotorModel {
-        tip_loss: 1.0,
-        gravity: 0.0,
-        offsets: SectionOffsets::default(),
-        blades: 4,
-        chord: 0.055,
-        lock_number: 5.2,
-        drag_coefficient: 0.01,
-        root_cutout,
-        modal_damping: 0.005,
-        couplings,
-        section_model: AttachedFlowModel::QuasiSteady,
-        compressibility: Compressibility::None,
-        reverse_flow: ReverseFlow::default(),
-        flaps: vec![],
-        nonlinear: NonlinearSections::default(),
-    }
+    RotorModel { root_cutout, ..RotorModel::table_1(couplings) }
 }
 
 /// Fixed controls of the crosscheck cases at advance ratio 0.30.

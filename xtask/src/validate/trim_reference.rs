@@ -7,11 +7,11 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use flap_aero::{AirfoilSpan, AttachedFlowModel, C81Airfoil, C81Table};
+use flap_aero::{AirfoilSpan, C81Airfoil, C81Table};
 use rotor_fem::{BladeProperties, BladeSpec, Joint, RootSupport, Twist};
 use rotor_response::{
-    Compressibility, Couplings, Discretisation, NonlinearSections, ResponseTolerances, ReverseFlow,
-    Rotor, RotorModel, RotorSolver, SectionOffsets,
+    Couplings, Discretisation, NonlinearSections, ResponseTolerances, Rotor, RotorModel,
+    RotorSolver,
 };
 use rotor_wake::LinearInflow;
 use trim::{TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
@@ -57,22 +57,13 @@ fn trimmed(mu: f64, split: usize) -> Result<TrimSolution, CheckError> {
     })?;
     let span = AirfoilSpan::new(vec![(0.0, airfoil()?)])?;
     let model = RotorModel {
-        tip_loss: 1.0,
-        gravity: 0.0,
-        offsets: SectionOffsets::default(),
         blades: 4 * split,
         chord: 0.07 * PI / (4.0 * split as f64),
         // the reference's Lock number is with its own lift slope, ours with 2 pi
         lock_number: 5.2 * TAU / LIFT_SLOPE,
-        drag_coefficient: 0.01,
-        root_cutout: 0.2,
         modal_damping: 0.0,
-        couplings: Couplings::Linear,
-        section_model: AttachedFlowModel::QuasiSteady,
-        compressibility: Compressibility::None,
-        reverse_flow: ReverseFlow::default(),
         nonlinear: NonlinearSections { airfoils: Some(Arc::new(span)), dynamic_stall: None },
-        flaps: vec![],
+        ..RotorModel::table_1(Couplings::Linear)
     };
     let discretisation = Discretisation { modes: [1, 0, 0], ..Discretisation::default() };
     let rotor = Rotor::new(model, &blade, discretisation)?;

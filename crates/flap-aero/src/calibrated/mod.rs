@@ -13,6 +13,9 @@ use table::{
     SMALLEST_RATIO,
 };
 
+/// Mach numbers beyond which the values are held.
+pub(crate) const MACH_ENDS: [f64; 2] = MACH_RANGE;
+
 /// Gains of the table per pair: of all poles but the fastest, whose gain is what the others leave.
 const FITTED: usize = POLES - 1;
 /// Pairs of load and input.

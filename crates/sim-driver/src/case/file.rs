@@ -112,6 +112,12 @@ pub struct RotorFile {
     /// Tension centre ahead of the elastic axis, radius R; `couplings: Moderate` alone knows it.
     #[serde(skip_serializing_if = "is_default")]
     pub tension_centre_r: f64,
+    /// Aerodynamic centre, the quarter chord, ahead of the elastic axis, radius R.
+    #[serde(skip_serializing_if = "is_default")]
+    pub aerodynamic_centre_r: f64,
+    /// Axis of the blade ahead of the rotor centre, radius R; `couplings: Moderate` does not know it.
+    #[serde(skip_serializing_if = "is_default")]
+    pub torque_offset_r: f64,
     /// Weight of the blades.
     #[serde(skip_serializing_if = "is_default")]
     pub gravity: GravityChoice,
@@ -147,6 +153,8 @@ impl Default for RotorFile {
             root: RootFile::default(),
             mass_centre_r: 0.0,
             tension_centre_r: 0.0,
+            aerodynamic_centre_r: 0.0,
+            torque_offset_r: 0.0,
             gravity: GravityChoice::Off,
             tables: BladeTablesFile::default(),
             unlike_blades: vec![],
@@ -260,6 +268,16 @@ pub enum CouplingsChoice {
     Moderate,
 }
 
+/// The shapes behind the modes of the response.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum BasisChoice {
+    /// Natural modes.
+    #[default]
+    Natural,
+    /// The last mode of every family gives way to the static answer of all modes left out.
+    Completed,
+}
+
 /// Structural model of the blade.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -268,13 +286,21 @@ pub struct StructureFile {
     pub elements: usize,
     /// Modes kept in the response.
     pub modes: ModesFile,
+    /// The shapes behind the modes.
+    #[serde(skip_serializing_if = "is_default")]
+    pub basis: BasisChoice,
     /// Terms of the equations.
     pub couplings: CouplingsChoice,
 }
 
 impl Default for StructureFile {
     fn default() -> Self {
-        Self { elements: 10, modes: ModesFile::default(), couplings: CouplingsChoice::Full }
+        Self {
+            elements: 10,
+            modes: ModesFile::default(),
+            basis: BasisChoice::Natural,
+            couplings: CouplingsChoice::Full,
+        }
     }
 }
 

@@ -18,7 +18,7 @@ mod tests;
 mod validated;
 
 pub use file::{
-    AerodynamicsFile, AirfoilFile, CaseFile, CompressibilityChoice, CouplingsChoice,
+    AerodynamicsFile, AirfoilFile, BasisChoice, CaseFile, CompressibilityChoice, CouplingsChoice,
     DynamicStallChoice, EffectivenessFile, FlapFile, FlapMassChoice, InflowChoice, InflowFile,
     ModesFile, ResponseFile, ReverseFlowChoice, RotorFile, SectionModelChoice, StructureFile,
     TolerancesFile,

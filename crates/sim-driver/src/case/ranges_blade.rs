@@ -37,6 +37,19 @@ pub(super) fn check_blade(check: &mut Checker<'_>, file: &CaseFile) {
             check.fault(field, Fault::Refused { message: message.to_owned() });
         }
     }
+    let field = "rotor.aerodynamic_centre_r";
+    let remedy =
+        "quarter chord ahead of the elastic axis is positive; the axis lies inside the chord";
+    let quarter = 0.25 * r.chord_r;
+    check.within(number(field, r.aerodynamic_centre_r, "R", remedy), -3.0 * quarter, quarter);
+    let field = "rotor.torque_offset_r";
+    let remedy = "toward the leading edge is positive; a tenth of the radius is much";
+    check.within(number(field, r.torque_offset_r, "R", remedy), -0.1, 0.1);
+    if r.torque_offset_r != 0.0 && file.structure.couplings == CouplingsChoice::Moderate {
+        let message =
+            "Moderate knows no torque offset: choose structure.couplings: Full, or give 0";
+        check.fault(field, Fault::Refused { message: message.to_owned() });
+    }
     check_tables(check, file);
     for (i, unlike) in r.unlike_blades.iter().enumerate() {
         let at = |key: &str| format!("rotor.unlike_blades[{i}].{key}");

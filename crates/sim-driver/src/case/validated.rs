@@ -1,10 +1,10 @@
 //! The validated case: plain values in radians and rotor units, handed down to the models.
 
 use super::{
-    BladeTablesFile, CompressibilityChoice, ControlActuator, ControllerChoice, CouplingsChoice,
-    DynamicStallChoice, EffortChoice, FlapMassChoice, GravityChoice, HorizontalTailFile,
-    InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile, ReverseFlowChoice, RootFile,
-    SectionModelChoice, StrokeChoice, TolerancesFile, UnlikeBladeFile,
+    BasisChoice, BladeTablesFile, CompressibilityChoice, ControlActuator, ControllerChoice,
+    CouplingsChoice, DynamicStallChoice, EffortChoice, FlapMassChoice, GravityChoice,
+    HorizontalTailFile, InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile,
+    ReverseFlowChoice, RootFile, SectionModelChoice, StrokeChoice, TolerancesFile, UnlikeBladeFile,
 };
 use crate::files::Folder;
 use flap_aero::AirfoilSpan;
@@ -87,6 +87,8 @@ pub struct BladeValues {
     pub elements: usize,
     /// Flap, lag and torsion modes.
     pub modes: [usize; 3],
+    /// The shapes behind them.
+    pub basis: BasisChoice,
     /// Terms of the equations.
     pub couplings: CouplingsChoice,
     /// Radial station of the root.
@@ -97,6 +99,10 @@ pub struct BladeValues {
     pub mass_centre: f64,
     /// Tension centre ahead of the elastic axis.
     pub tension_centre: f64,
+    /// Aerodynamic centre ahead of the elastic axis.
+    pub aerodynamic_centre: f64,
+    /// Axis of the blade ahead of the rotor centre.
+    pub torque_offset: f64,
     /// Weight of the blades.
     pub gravity: GravityChoice,
     /// Values along the span in place of uniform ones, as in the file.
