@@ -127,9 +127,11 @@ impl FeedbackController {
             measurements += search.measurements;
             if let Some(step) = search.taken {
                 let fall = here.cost.total() - step.cost.total();
+                // a part of a step that brings little does not say that the whole would not
+                let whole = step.halvings == 0;
                 steps.push(step.clone());
                 here = step;
-                if strict && fall <= self.settings.cost_tolerance * start_cost {
+                if strict && whole && fall <= self.settings.cost_tolerance * start_cost {
                     break Outcome::Converged;
                 }
                 continue;

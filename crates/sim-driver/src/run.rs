@@ -68,6 +68,7 @@ pub fn run_trimmed(
     })?);
     let mut warnings = actuators.warnings.clone();
     warnings.extend(stability.warnings());
+    warnings.extend(studies.iter().filter_map(ControlStudy::share_warning));
     let result = RunResult {
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),

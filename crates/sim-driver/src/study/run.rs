@@ -35,6 +35,8 @@ pub struct ControlStudy {
     pub motion_error: Option<f64>,
     /// Part of the ideal motion that the inverse makes: below 1 where the range of voltages ends first.
     pub motion_share: Option<f64>,
+    /// Part of the voltages that were taken over: below 1 where they leave no room for the bias.
+    pub voltage_share: Option<f64>,
     /// Stroke limit of each controlled harmonic, deg.
     pub stroke_limit_deg: Vec<f64>,
     /// Weight of each load in `J_Z`, order `FX FY FZ MX MY MZ`.
@@ -71,6 +73,26 @@ impl ControlStudy {
         let recorded = of_steps.flat_map(|step| step.measurement.mean_flap_deg.iter().copied());
         let here = self.state.flaps.iter().map(|flap| flap.flap_deg.mean);
         recorded.chain(here).fold(0.0, |m, mean| mean.abs().max(m))
+    }
+
+    /// What a reader should know of a control that was not taken over as a whole.
+    pub fn share_warning(&self) -> Option<String> {
+        let (share, of, why) = match (self.voltage_share, self.motion_share) {
+            (Some(share), _) => {
+                (share, "voltages", "all of them leave no room for the bias that centres the flap")
+            }
+            (_, Some(share)) => (share, "flap motion", "the range of voltages ends there"),
+            _ => return None,
+        };
+        let all: Vec<String> = self.harmonics.iter().map(usize::to_string).collect();
+        (share < 1.0).then(|| {
+            format!(
+                "{}/rev, {}: {:.1} % of the ideal actuator's {of}; {why}",
+                all.join("+"),
+                self.actuator.name(),
+                100.0 * share
+            )
+        })
     }
 
     /// How the loop ended; converged where voltages were taken over.
@@ -319,6 +341,7 @@ impl ControlSet<'_> {
             controller: None,
             motion_error: None,
             motion_share: None,
+            voltage_share: None,
             stroke_limit_deg: self.limits.iter().map(|l| l.stroke_deg).collect(),
             load_weights,
             j_before: loads_cost(&load_weights, &before),
@@ -386,15 +409,29 @@ impl ControlSet<'_> {
         })
     }
 
-    /// The ideal actuator's voltages applied to the hysteretic one: what ignoring hysteresis costs.
+    /// The ideal actuator's voltages applied to the hysteretic one: what ignoring hysteresis costs. Where
+    /// their swing leaves no room for the bias that centres the flap, the largest part of them that does.
     fn taken_over(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
         let actuator = ControlActuator::Ignored;
         let plant = self.plant(actuator)?;
-        let volts = ideal.control_volt.clone();
+        let part =
+            |share: f64| -> Vec<f64> { ideal.control_volt.iter().map(|u| share * u).collect() };
+        let mut share = 1.0;
+        if !plant.admits(&part(share)) {
+            let (mut low, mut high) = (0.0, 1.0);
+            while high - low > TAKEN_OVER_TOLERANCE {
+                let middle = f64::midpoint(low, high);
+                let end = if plant.admits(&part(middle)) { &mut low } else { &mut high };
+                *end = middle;
+            }
+            share = low;
+        }
+        let volts = part(share);
         let state = self.state(actuator, &plant, &volts)?;
         Ok(ControlStudy {
             t_norm: ideal.t_norm,
             rho: ideal.rho,
+            voltage_share: Some(share),
             ..self.study(actuator, &plant, volts, state)?
         })
     }
@@ -500,6 +537,9 @@ fn within_reach(error: &PlantError) -> Option<f64> {
 const INVERSE_TRIALS: usize = 6;
 /// Part of the reachable motion that is asked for.
 const INVERSE_MARGIN: f64 = 0.98;
+
+/// Accuracy of the part of a voltage that is taken over.
+const TAKEN_OVER_TOLERANCE: f64 = 1e-4;
 
 /// Fall of J, as a part of the uncontrolled J, below which a further step is not worth asking for.
 const COST_TOLERANCE: f64 = 1e-5;
