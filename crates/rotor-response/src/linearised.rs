@@ -52,13 +52,13 @@ pub struct LinearisedRotor {
 }
 
 /// Relative residual of the linear equations.
-const LINEAR_TOLERANCE: f64 = 1e-6;
+const LINEAR_TOLERANCE: f64 = 1e-5;
 /// Size of the flap angle and of the inflow in one-sided differences; the motion of the blade is of the
 /// same size. The loads are close to linear in all of them.
 const FLAP_DIFFERENCE_RAD: f64 = 1e-5;
 const INFLOW_DIFFERENCE: f64 = 1e-6;
 /// Accuracy of the accelerations, as a part of the motion that is differenced.
-const ACCELERATION_PART: f64 = 1e-7;
+const ACCELERATION_PART: f64 = 1e-6;
 /// Relative change of thrust for the slope of the inflow.
 const THRUST_DIFFERENCE: f64 = 1e-5;
 
@@ -217,8 +217,7 @@ impl<'a> Base<'a> {
         let system = solver.rotor.system(&solver.air, points);
         let mut forces = DMatrix::zeros(system.dof(), orbit.q.ncols());
         system.residual(&orbit, &mut forces)?;
-        let mut settled = orbit.clone();
-        settle_accelerations(&solver.rotor, &solver.time, &system, (&mut settled, 1e-14))?;
+        let settled = OrbitSamples { qdd: about.accelerations.clone(), ..orbit.clone() };
         let rest = Answer::default();
         let mut base = Self { solver, orbit, settled, forces, rest, condition, about, followed };
         base.rest = base.answer(&system, &base.settled)?;
