@@ -57,8 +57,9 @@ const LINEAR_TOLERANCE: f64 = 1e-5;
 /// same size. The loads are close to linear in all of them.
 const FLAP_DIFFERENCE_RAD: f64 = 1e-5;
 const INFLOW_DIFFERENCE: f64 = 1e-6;
-/// Accuracy of the accelerations, as a part of the motion that is differenced.
-const ACCELERATION_PART: f64 = 1e-6;
+/// Last move of the accelerations, as a part of those of the motion that is differenced; apparent mass is a
+/// hundredth of the blade's, so what is left is a hundredth of that move.
+const ACCELERATION_PART: f64 = 1e-4;
 /// Relative change of thrust for the slope of the inflow.
 const THRUST_DIFFERENCE: f64 = 1e-5;
 

@@ -124,6 +124,12 @@ pub struct ControlLine {
     pub j_after: f64,
     /// `100 (1 - J_Z / J_Z0)`.
     pub reduction_percent: f64,
+    /// Part of the weighted actuation power in the cost, beside `J_Z`; 0 without such a weight.
+    #[serde(default)]
+    pub j_power: f64,
+    /// Mean power that the actuators of one blade give, none taken back, W.
+    #[serde(rename = "actuation_power_W", default)]
+    pub actuation_power_watt: f64,
     /// Hub loads with control.
     pub hub_4_per_rev: HubLoads,
     /// One entry per flap, from root to tip; of a set of several harmonics, one after another.

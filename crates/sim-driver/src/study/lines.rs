@@ -44,7 +44,15 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
             )
         })
         .collect();
+    let given_watt = study
+        .state
+        .flaps
+        .iter()
+        .zip(&rotor.hinge)
+        .map(|(motion, hinge)| HingePower::new(hinge, &motion.flap_deg, scales).given_watt);
     ControlLine {
+        j_power: study.j_power,
+        actuation_power_watt: given_watt.sum(),
         harmonics: study.harmonics.clone(),
         actuator: study.actuator.name().to_owned(),
         j_before: study.j_before,

@@ -45,6 +45,8 @@ pub struct ControlStudy {
     pub j_before: f64,
     /// `J_Z` with control.
     pub j_after: f64,
+    /// Part of the weighted actuation power in the cost at the end, beside `J_Z`.
+    pub j_power: f64,
     /// Rotor and flaps at the end.
     pub state: PlantState,
     /// Force (moment) the moving flaps leave unbalanced at the trimmed controls, over the weight.
@@ -282,8 +284,15 @@ impl ControlSet<'_> {
                 (drive.ok_or(StudyError::NoActuator { actuator: name })?, self.limits.clone())
             }
         };
-        RotorPlant::new(self.rotor.clone(), drive.clone(), self.harmonics, &full_scale)
-            .map_err(|e| self.failed(actuator, e))
+        let plant = RotorPlant::new(self.rotor.clone(), drive.clone(), self.harmonics, &full_scale)
+            .map_err(|e| self.failed(actuator, e))?;
+        let control = &self.case.control;
+        plant.with_power(control.power_limit_watt, control.power_weight_per_watt).map_err(
+            |source| {
+                let call = hhc_control::PlantCall::Linearise { control_volt: Vec::new() };
+                self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
+            },
+        )
     }
 
     /// Weight of each load: those of the case, over the squared baseline amplitude if it asks for that.
@@ -311,7 +320,10 @@ impl ControlSet<'_> {
             cost_tolerance: if way == Controller::Global { 0.0 } else { COST_TOLERANCE },
             ..FeedbackSettings::default()
         };
-        let weights = self.load_weights().into_iter().flat_map(|w| [w, w]).collect();
+        // the weight of the power is in its loads already
+        let further = t.loads().saturating_sub(2 * self.load_weights().len());
+        let weights = self.load_weights().into_iter().flat_map(|w| [w, w]);
+        let weights = weights.chain(std::iter::repeat_n(1.0, further)).collect();
         Ok(FeedbackController::new(t, &LoadWeights::Diagonal(weights), settings)?
             .with_controller(way)?)
     }
@@ -329,8 +341,9 @@ impl ControlSet<'_> {
         let trim_imbalance = self.rotor.imbalance(&target, &state.rotor)?;
         let load_weights = self.load_weights();
         let after = state.rotor.hub.harmonic(blades);
-        debug_assert_eq!(plant.layout().len(), control_volt.len());
+        let j_power = plant.power_cost(&control_volt);
         Ok(ControlStudy {
+            j_power,
             harmonics: self.harmonics.to_vec(),
             actuator,
             trim_imbalance,
