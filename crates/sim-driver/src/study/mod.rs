@@ -9,6 +9,7 @@ mod lines;
 mod pair_power;
 mod paper;
 mod plant;
+mod recent;
 mod robustness;
 mod run;
 mod sensitivity;

@@ -4,6 +4,7 @@ use super::authority::{HARMONICS, added};
 use super::coupling::{coefficients, series};
 use super::drive::scaled;
 use super::pair_power::watt_per_deg2;
+use super::recent::RecentMotions;
 use super::{
     CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, HingePower,
     PlantError,
@@ -353,6 +354,7 @@ pub struct RotorPlant {
     /// Amplitude at which each pair reaches its limit, V.
     full_scale_volt: Vec<f64>,
     power: Option<PlantPower>,
+    recent: RecentMotions,
 }
 
 /// What the power of the actuators has to do with the control.
@@ -398,6 +400,7 @@ impl RotorPlant {
             drive,
             coupling,
             power: None,
+            recent: RecentMotions::default(),
         })
     }
 
@@ -445,7 +448,7 @@ impl RotorPlant {
     /// Part of the weighted power in the cost for a control vector.
     pub fn power_cost(&self, control_volt: &[f64]) -> f64 {
         let pairs = control_volt.chunks_exact(2).zip(self.power_gains());
-        pairs.map(|(u, gain)| gain * gain * (u[0] * u[0] + u[1] * u[1])).sum()
+        pairs.map(|(u, gain)| gain * gain * (u[0] * u[0] + u[1] * u[1])).fold(0.0, |sum, j| sum + j)
     }
 
     /// Mean power that the actuators of one blade give in the linearised rotor, W.
@@ -527,7 +530,7 @@ impl RotorPlant {
     fn free_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
         self.voltages(control_volt)?
             .into_par_iter()
-            .map(|voltages| self.drive.motion(&voltages))
+            .map(|voltages| self.recent.motion(&self.drive, &voltages))
             .collect()
     }
 
