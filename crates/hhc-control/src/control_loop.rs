@@ -14,6 +14,10 @@ const SMALLEST_CHANGE_VOLT: f64 = 1e-12;
 /// A step no longer than this part of the step before belongs to a loop that settles.
 const SETTLING: f64 = 0.8;
 
+/// Use of the limits above which a state has left them: they move with the control, and a step that kept
+/// them as they stood may not keep them as they are now.
+const USAGE_LEFT: f64 = 1.0 + 1e-3;
+
 /// Part of the starting cost below which a difference is rounding.
 const COST_ROUNDING: f64 = 1e-14;
 
@@ -51,6 +55,8 @@ struct Departure<'a> {
     rho: f64,
     /// Cost without control at this `rho`.
     start_cost: f64,
+    /// Whether the step leads back into limits that the state has left, whatever that costs.
+    back: bool,
 }
 
 impl FeedbackController {
@@ -111,7 +117,12 @@ impl FeedbackController {
             if asked_volt <= (self.settings.step_tolerance * size).max(SMALLEST_CHANGE_VOLT) {
                 break Outcome::Converged;
             }
+            let back = match &limits {
+                Some(limits) => limits.usage(&here.control_volt)? > USAGE_LEFT,
+                None => false,
+            };
             if strict
+                && !back
                 && known.promise(rho, &here, &aim.control_volt)?
                     <= self.settings.cost_tolerance * start_cost
             {
@@ -122,14 +133,16 @@ impl FeedbackController {
             }
             let history =
                 || -> Vec<ControlStep> { std::iter::once(start).chain(&steps).cloned().collect() };
-            let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost };
+            let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost, back };
             let search = self.search(plant, &mut known, &from, (limits.as_ref(), &history))?;
             measurements += search.measurements;
             if let Some(step) = search.taken {
                 let fall = here.cost.total() - step.cost.total();
+                // a part of a step that brings little does not say that the whole would not
+                let whole = step.halvings == 0;
                 steps.push(step.clone());
                 here = step;
-                if strict && fall <= self.settings.cost_tolerance * start_cost {
+                if strict && whole && !back && fall <= self.settings.cost_tolerance * start_cost {
                     break Outcome::Converged;
                 }
                 continue;
@@ -170,7 +183,7 @@ impl FeedbackController {
         from: &Departure<'_>,
         (limits, history): (Option<&ControlLimits>, &dyn Fn() -> Vec<ControlStep>),
     ) -> Result<Search, RunError<P::Error>> {
-        let Departure { here, step, asked_volt, rho, start_cost } = *from;
+        let Departure { here, step, asked_volt, rho, start_cost, back } = *from;
         let strict = self.settings.cost_tolerance > 0.0;
         let mut search = Search::default();
         for halvings in 0..=self.settings.max_halvings {
@@ -192,7 +205,7 @@ impl FeedbackController {
                 Ok(largest_amplitude(&difference(&next, &control_volt)) <= SETTLING * asked_volt)
             };
             let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
-            if rise <= COST_ROUNDING || (allowed && settles()?) {
+            if back || rise <= COST_ROUNDING || (allowed && settles()?) {
                 search.taken = Some(ControlStep {
                     control_volt,
                     measurement,

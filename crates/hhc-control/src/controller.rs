@@ -5,7 +5,7 @@ use crate::{
     AdaptiveSettings, ControlError, ControlStep, FeedbackLaw, Plant, PlantCall, RunError, TMatrix,
     identify_t_about,
 };
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// How a controller knows the sensitivity `T` of the loads to its voltages. Everything else, the aim
 /// of a step, its halving, the test of convergence and the record, is one loop for all:
@@ -20,7 +20,8 @@ pub enum Controller {
     #[default]
     Global,
     /// T identified again about the present control before every step: from the plant's linearised
-    /// solution if it has one, else by differences.
+    /// solution if it has one, else by differences. If no part of a step lowers the cost all the same,
+    /// T is corrected along that step by what was measured there, and the next step asked for.
     Local {
         /// Voltage step of each control for the differences, V.
         step_volt: Vec<f64>,
@@ -53,8 +54,14 @@ pub(crate) struct Knowledge<'a> {
 
 enum How<'a> {
     Global,
-    Local { step_volt: &'a [f64], known_at: Vec<f64> },
+    Local { step_volt: &'a [f64], known_at: Vec<f64>, tried: Vec<Tried>, corrections_left: usize },
     Adaptive { filter: Kalman, probes_left: u32, rejected_volt: Option<Vec<f64>> },
+}
+
+/// A pair measured since T was last identified.
+struct Tried {
+    control_volt: Vec<f64>,
+    hub_loads: Vec<f64>,
 }
 
 impl<'a> Knowledge<'a> {
@@ -63,7 +70,13 @@ impl<'a> Knowledge<'a> {
             Controller::Global => How::Global,
             Controller::Local { step_volt } => {
                 // T0 is what would be found about zero control
-                How::Local { step_volt, known_at: vec![0.0; start.control_volt.len()] }
+                let controls = start.control_volt.len();
+                How::Local {
+                    step_volt,
+                    known_at: vec![0.0; controls],
+                    tried: Vec::new(),
+                    corrections_left: controls,
+                }
             }
             Controller::Adaptive(settings) => How::Adaptive {
                 filter: Kalman::new(settings, law, start),
@@ -82,9 +95,11 @@ impl<'a> Knowledge<'a> {
     ) -> Result<(), RunError<P::Error>> {
         match &mut self.how {
             How::Global => {}
-            How::Local { step_volt, known_at } => {
+            How::Local { step_volt, known_at, tried, corrections_left } => {
                 let control = &here.control_volt;
                 if known_at != control {
+                    tried.clear();
+                    *corrections_left = control.len();
                     let offered =
                         plant.linearised_t(control).map_err(|source| RunError::Plant {
                             call: PlantCall::Linearise { control_volt: control.clone() },
@@ -111,8 +126,11 @@ impl<'a> Knowledge<'a> {
 
     /// Takes note of a measured pair.
     pub(crate) fn observe(&mut self, control_volt: &[f64], hub_loads: &[f64]) {
-        if let How::Adaptive { filter, .. } = &mut self.how {
-            filter.observe(control_volt, hub_loads);
+        match &mut self.how {
+            How::Global => {}
+            How::Local { tried, .. } => tried
+                .push(Tried { control_volt: control_volt.to_vec(), hub_loads: hub_loads.to_vec() }),
+            How::Adaptive { filter, .. } => filter.observe(control_volt, hub_loads),
         }
     }
 
@@ -147,16 +165,32 @@ impl<'a> Knowledge<'a> {
     }
 
     /// After a step that no part of which was taken: whether something was learnt that makes another
-    /// step worth asking for. The rejected measurements may have changed T already; if the step asked
-    /// for is still much the same, each control is probed.
+    /// step worth asking for. A local T is corrected along the step by the rejected measurements. Those
+    /// may have changed an adaptive T already; if the step asked for is still much the same, each control
+    /// is probed.
     pub(crate) fn learn<P: Plant>(
         &mut self,
         plant: &mut P,
         here: &ControlStep,
         aim_volt: &[f64],
     ) -> Result<bool, RunError<P::Error>> {
-        let How::Adaptive { filter, probes_left, rejected_volt } = &mut self.how else {
-            return Ok(false);
+        let (filter, probes_left, rejected_volt) = match &mut self.how {
+            How::Global => return Ok(false),
+            How::Local { tried, corrections_left, .. } => {
+                if *corrections_left == 0 {
+                    return Ok(false);
+                }
+                *corrections_left -= 1;
+                let corrected = corrected(&self.law.matrix(), here, aim_volt, tried);
+                tried.clear();
+                let Some(t) = corrected else { return Ok(false) };
+                self.law = self.law.with_t(&t?)?;
+                self.identifications += 1;
+                return Ok(true);
+            }
+            How::Adaptive { filter, probes_left, rejected_volt } => {
+                (filter, probes_left, rejected_volt)
+            }
         };
         if *probes_left == 0 {
             return Ok(false);
@@ -200,4 +234,49 @@ impl<'a> Knowledge<'a> {
     pub(crate) fn t(&self) -> Result<TMatrix, ControlError> {
         self.law.t()
     }
+}
+
+/// T with the derivative of the loads along a rejected step put right.
+///
+/// ```text
+/// Z(u + a s) - Z(u) = a z_1 + a^2 z_2  by least squares over the parts a that were measured
+/// T += (z_1 - T s) s' / (s' s)
+/// ```
+/// None where nothing was measured along the step.
+///
+/// Source: the rank-one form is Broyden's: *A class of methods for solving nonlinear simultaneous
+/// equations*, Math. Comp. 19 (1965); the parabola instead of a chord is ours.
+fn corrected(
+    t: &DMatrix<f64>,
+    here: &ControlStep,
+    aim_volt: &[f64],
+    tried: &[Tried],
+) -> Option<Result<TMatrix, ControlError>> {
+    let from = DVector::from_column_slice(&here.control_volt);
+    let loads = DVector::from_column_slice(&here.measurement.hub_loads);
+    let step = DVector::from_column_slice(aim_volt) - &from;
+    let square = step.norm_squared();
+    let (mut moments, mut sums) = ([0.0; 3], [loads.clone() * 0.0, loads.clone() * 0.0]);
+    for pair in tried {
+        let part = (DVector::from_column_slice(&pair.control_volt) - &from).dot(&step) / square;
+        let change = DVector::from_column_slice(&pair.hub_loads) - &loads;
+        for (k, moment) in moments.iter_mut().enumerate() {
+            *moment += part.powi(2 + i32::try_from(k).unwrap_or(0));
+        }
+        sums[0].axpy(part, &change, 1.0);
+        sums[1].axpy(part * part, &change, 1.0);
+    }
+    let [m2, m3, m4] = moments;
+    let determinant = m2 * m4 - m3 * m3;
+    let slope = if tried.len() > 1 && determinant > 1e-9 * m2 * m4 {
+        (&sums[0] * m4 - &sums[1] * m3) / determinant
+    } else if m2 > 0.0 {
+        &sums[0] / m2
+    } else {
+        return None;
+    };
+    let corrected = t + (slope - t * &step) * step.transpose() / square;
+    let columns: Vec<Vec<f64>> =
+        corrected.column_iter().map(|c| c.iter().copied().collect()).collect();
+    Some(TMatrix::from_columns(&columns))
 }

@@ -19,7 +19,7 @@ pub enum StrokeStatus {
     BelowJump,
 }
 
-/// One control weight tried, by a whole run from zero control.
+/// One control weight and the run from zero control that ended with it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EffortTrial {
     /// Control weight, 1/V^2.
@@ -34,7 +34,7 @@ pub struct EffortTrial {
 /// A control run whose larger stroke is at its limit, or free.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrokeLimitedRun {
-    /// The recorded run from zero control with the control weight found.
+    /// The recorded run from zero control; each of its steps says with which weight its cost is formed.
     pub run: ControlRun,
     /// The control weight found, `W_u = rho I`, 1/V^2.
     pub rho: f64,
@@ -46,7 +46,7 @@ pub struct StrokeLimitedRun {
     pub stroke_limits_deg: Vec<f64>,
     /// Largest stroke over its limit.
     pub largest_stroke_ratio: f64,
-    /// Every recorded weight tried; one if the prediction was right.
+    /// Every weight that a whole run ended with; one if it settled along with the control.
     pub trials: Vec<EffortTrial>,
     /// Measurements of the plant in all, prediction of `rho` included.
     pub measurements: usize,
@@ -83,11 +83,12 @@ impl FeedbackController {
     /// ```text
     /// find rho:  max_p  stroke_p(u(rho)) / limit_p  =  1 - stroke_tolerance / 2
     /// ```
-    /// The weight is found in two stages. First a loop in which `rho` is adjusted at every step so
-    /// that the step's control has the target stroke; that takes the cheap [`Plant::strokes_deg`]
-    /// alone, so the dear measurements are those of a single run. Then the recorded run from zero
-    /// control with that `rho`. If its stroke is off (hysteresis makes the end depend on the way),
-    /// `ln rho` is searched by a bracketed root find over recorded runs.
+    /// The weight is found along with the control: in a loop in which `rho` is adjusted at every step
+    /// so that the step's control has the target stroke; that takes the cheap [`Plant::strokes_deg`]
+    /// alone, so the dear measurements are those of a single run, and no step leads out of the range.
+    /// Where it converges with the stroke at its limit, control and weight are a fixed point of eq. (10)
+    /// together, and that run is the answer. If not, the weight is predicted by where it ended, and
+    /// `ln rho` is searched by a bracketed root find over whole runs from zero control with a fixed `rho`.
     ///
     /// Never does this clip a control to its limit: a clipped optimum is not the optimum of the
     /// clipped problem, and can be worse than no control. On a linear plant the result is the exact
@@ -111,8 +112,27 @@ impl FeedbackController {
         let start = self.start(plant, &zero)?;
         let mut measurements = 1;
 
-        let tracked = self.iterate(plant, &start, &mut Effort::Tracked(&strokes))?;
+        let mut tracked = self.iterate(plant, &start, &mut Effort::Tracked(&strokes))?;
         measurements += tracked.measurements;
+        if tracked.outcome == Outcome::Converged {
+            let strokes_deg = strokes.ask(plant, &tracked.last().control_volt)?;
+            if let Some(status) = strokes.met(tracked.rho, &strokes_deg) {
+                // the weight has settled along with the control: the fixed point of eq. (10) for it
+                tracked.measurements += 1;
+                let (rho, outcome) = (tracked.rho, tracked.outcome);
+                let stroke_ratio = strokes.ratio(&strokes_deg);
+                return Ok(StrokeLimitedRun {
+                    run: tracked,
+                    rho,
+                    status,
+                    strokes_deg,
+                    stroke_limits_deg: strokes.limits_deg,
+                    largest_stroke_ratio: stroke_ratio,
+                    trials: vec![EffortTrial { rho, stroke_ratio, outcome }],
+                    measurements,
+                });
+            }
+        }
 
         let predicted = (tracked.rho > 0.0).then_some(tracked.rho);
         let otherwise = |_| 1e-3 * self.law.largest_authority();
@@ -218,6 +238,18 @@ impl Strokes {
             Err(ControlError::NotFinite { what, index, value })?;
         }
         Ok(strokes_deg)
+    }
+
+    /// Whether a control of a given weight meets the limit: below it without a weight, at it with one.
+    fn met(&self, rho: f64, strokes_deg: &[f64]) -> Option<StrokeStatus> {
+        let ratio = self.ratio(strokes_deg);
+        if ratio > 1.0 {
+            None
+        } else if rho == 0.0 {
+            Some(StrokeStatus::Free)
+        } else {
+            (ratio >= 1.0 - self.tolerance).then_some(StrokeStatus::AtLimit)
+        }
     }
 
     /// Largest stroke over its limit.

@@ -19,6 +19,7 @@ mod power;
 mod revolution;
 mod rigid;
 mod rotor;
+mod settling;
 mod span;
 mod stability;
 mod stall_history;

@@ -1,23 +1,26 @@
 //! How the hub loads answer to small flap motions about a converged orbit.
 
 use crate::air::FlapAngle;
+use crate::hinge::HingeMoment;
 use crate::loads::SixLoads;
 use crate::revolution::{RevolutionLoads, settle_accelerations};
+use crate::rotor::up;
+use crate::settling::{Answer, INFLOW_ROUNDS, INFLOW_TOLERANCE, Settling};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{Orbit, OrbitSamples, PeriodicSystem};
+use rotor_fem::{Orbit, OrbitSamples, PeriodicSolver, PeriodicSystem};
 use rotor_wake::{InducedInflow, InflowModel, RotorLoading};
-use std::sync::Arc;
 
 /// What the inflow does while the flaps move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InflowState {
     /// It stays as in the orbit: the wake is frozen.
     Frozen,
-    /// It settles anew on the thrust, as in [`RotorSolver::solve`].
+    /// It settles anew on the loading, as in [`RotorSolver::solve`]: on thrust and moments, or, in a free
+    /// wake, on the circulation.
     Settled,
 }
 
@@ -31,6 +34,8 @@ pub struct HubSensitivity {
     pub hub: SixLoads,
     /// Change of the thrust coefficient.
     pub thrust_coefficient: f64,
+    /// Change of the hinge moment of every flap, air and inertia together.
+    pub hinge: Vec<HarmonicSeries>,
 }
 
 /// Derivatives along several directions, and what they cost.
@@ -47,13 +52,14 @@ pub struct LinearisedRotor {
 }
 
 /// Relative residual of the linear equations.
-const LINEAR_TOLERANCE: f64 = 1e-6;
+const LINEAR_TOLERANCE: f64 = 1e-5;
 /// Size of the flap angle and of the inflow in one-sided differences; the motion of the blade is of the
 /// same size. The loads are close to linear in all of them.
 const FLAP_DIFFERENCE_RAD: f64 = 1e-5;
 const INFLOW_DIFFERENCE: f64 = 1e-6;
-/// Accuracy of the accelerations, as a part of the motion that is differenced.
-const ACCELERATION_PART: f64 = 1e-7;
+/// Last move of the accelerations, as a part of those of the motion that is differenced; apparent mass is a
+/// hundredth of the blade's, so what is left is a hundredth of that move.
+const ACCELERATION_PART: f64 = 1e-4;
 /// Relative change of thrust for the slope of the inflow.
 const THRUST_DIFFERENCE: f64 = 1e-5;
 
@@ -73,7 +79,24 @@ struct Base<'a> {
     /// The same with accelerations that satisfy the equations of motion at each azimuth.
     settled: OrbitSamples,
     forces: DMatrix<f64>,
-    hub: SixLoads,
+    rest: Answer,
+    condition: &'a Condition,
+    about: &'a RotorSolution,
+    /// The inflow model, if the inflow follows the loading.
+    followed: Option<&'a dyn InflowModel>,
+}
+
+/// The linear equations and what they cost so far.
+struct Linear {
+    orbits: PeriodicSolver,
+    work: Work,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Work {
+    evaluations: usize,
+    factorisations: usize,
+    relative_residual: f64,
 }
 
 impl RotorSolver {
@@ -83,12 +106,13 @@ impl RotorSolver {
     /// ```text
     /// R(q, delta, lambda) = 0   =>   dq = -(dR/dq)^-1 ( dR/ddelta ddelta + dR/dlambda dlambda )
     /// dZ = dZ/dq dq + dZ/ddelta ddelta + dZ/dlambda dlambda
-    /// settled:  dlambda = g'(C_T) dC_T,   dC_T = dC_T|frozen / (1 - dC_T/dlambda g')
+    /// settled:  (I - G) dlambda = g'(loading) dloading|frozen,    G = g' dloading/dlambda
     /// ```
     /// The implicit function theorem on the time elements: one set of linear equations with the exact
     /// Jacobian, the kept Newton matrix as preconditioner ([`rotor_fem::PeriodicSolver::linear_response`]). A settled
-    /// inflow costs one more right-hand side. Directions may hold any harmonics: the motion of an ideal
-    /// actuator or the one-sided difference of a hysteretic one.
+    /// inflow costs one more right-hand side where it follows the thrust, and a few rounds of generalised
+    /// conjugate residuals over its parameters where it follows the circulation of a free wake. Directions may
+    /// hold any harmonics: the motion of an ideal actuator or the one-sided difference of a hysteretic one.
     ///
     /// | argument | meaning |
     /// |---|---|
@@ -96,12 +120,10 @@ impl RotorSolver {
     /// | `directions` | flap motions, one series per flap |
     /// | `inflow` | frozen or settled |
     ///
-    /// Assumes: the inflow follows the thrust alone, as all models behind [`InflowModel`] that are
-    /// linear over the disk do.
-    ///
     /// # Errors
     /// [`ResponseError::FlapMotions`] for a direction with another number of flaps; the errors of the
-    /// linear equations and of the inflow model.
+    /// linear equations and of the inflow model; [`ResponseError::InflowNotConverged`] if its changes do not
+    /// settle.
     pub fn linearised(
         &mut self,
         (condition, about): (&Condition, &RotorSolution),
@@ -114,54 +136,38 @@ impl RotorSolver {
         if let Some(given) = all.map(Vec::len).find(|given| *given != expected) {
             return Err(ResponseError::FlapMotions { given, expected });
         }
-        let slope = match inflow {
+        // a first guess of how the inflow answers, exact where it follows the thrust
+        let seed = match inflow {
             InflowState::Frozen => None,
             InflowState::Settled => Some(inflow_slope(condition, inflow_model, about)?),
         };
         let mut changes: Vec<Direction> =
             directions.iter().map(|d| self.moved_flaps(condition, &about.inflow, d)).collect();
-        if let Some(slope) = &slope {
+        let seed = seed.filter(|slope| slope.iter().any(|v| *v != 0.0));
+        if let Some(slope) = &seed {
             changes.push(self.moved_inflow(condition, &about.inflow, slope)?);
         }
-        let base = Base::new(self, condition, about)?;
-        let loads = changes
-            .par_iter()
-            .map(|change| base.load_change(change))
-            .collect::<Result<Vec<_>, ResponseError>>()?;
-        let mut evaluations = 1 + loads.len();
-        let (rotor, air) = (Arc::clone(&self.rotor), Arc::clone(&self.air));
-        let system = rotor.system(&air, self.point_inputs(condition, &about.inflow));
-        let mut orbits = self.solver.clone();
-        let response = orbits
-            .linear_response(&system, &about.orbit, &loads, LINEAR_TOLERANCE)
-            .map_err(Self::orbit_error)?;
-        evaluations += response.evaluations;
-        let summed = changes
-            .par_iter()
-            .zip(&response.changes)
-            .map(|(change, motion)| base.hub_change(change, motion))
-            .collect::<Result<Vec<_>, ResponseError>>()?;
-        evaluations += summed.iter().map(|(_, count)| count).sum::<usize>();
-        let mut hubs: Vec<SixLoads> = summed.into_iter().map(|(hub, _)| hub).collect();
-        let thrust = |hub: &SixLoads| rotor.model().thrust_coefficient(hub.components[2].mean);
-        if slope.is_some()
-            && let Some(of_inflow) = hubs.pop()
-        {
-            let feedback = thrust(&of_inflow);
-            for hub in &mut hubs {
-                add_scaled(hub, &of_inflow, thrust(hub) / (1.0 - feedback));
-            }
+        let followed = (inflow == InflowState::Settled).then_some(inflow_model);
+        let base = Base::new(self, (condition, about), followed)?;
+        let mut linear = Linear { orbits: self.solver.clone(), work: Work::default() };
+        linear.work.evaluations = 1;
+        let mut answers = base.answers(&mut linear, &changes)?;
+        if let Some(model) = followed {
+            let seed = seed.and_then(|slope| Some((slope, answers.pop()?)));
+            base.settle(&mut linear, model, seed, &mut answers)?;
         }
-        let sensitivities = hubs
+        let model = self.rotor.model();
+        let thrust = |hub: &SixLoads| model.thrust_coefficient(hub.components[2].mean);
+        let sensitivities = answers
             .into_iter()
-            .map(|hub| HubSensitivity { thrust_coefficient: thrust(&hub), hub })
+            .map(|Answer { hub, hinge, .. }| HubSensitivity {
+                thrust_coefficient: thrust(&hub),
+                hub,
+                hinge,
+            })
             .collect();
-        Ok(LinearisedRotor {
-            sensitivities,
-            relative_residual: response.relative_residual,
-            evaluations,
-            factorisations: response.factorisations,
-        })
+        let Work { evaluations, factorisations, relative_residual } = linear.work;
+        Ok(LinearisedRotor { sensitivities, relative_residual, evaluations, factorisations })
     }
 
     /// The condition with the flaps moved a little along a direction.
@@ -204,19 +210,106 @@ impl RotorSolver {
 impl<'a> Base<'a> {
     fn new(
         solver: &'a RotorSolver,
-        condition: &Condition,
-        about: &RotorSolution,
+        (condition, about): (&'a Condition, &'a RotorSolution),
+        followed: Option<&'a dyn InflowModel>,
     ) -> Result<Self, ResponseError> {
         let orbit = about.orbit.sample(&solver.time);
         let points = solver.point_inputs(condition, &about.inflow);
         let system = solver.rotor.system(&solver.air, points);
         let mut forces = DMatrix::zeros(system.dof(), orbit.q.ncols());
         system.residual(&orbit, &mut forces)?;
-        let mut settled = orbit.clone();
-        settle_accelerations(&solver.rotor, &solver.time, &system, (&mut settled, 1e-14))?;
-        let hub = RevolutionLoads::summed(&solver.rotor, &solver.time, &system, &settled)?
-            .hub(&solver.rotor, &solver.time);
-        Ok(Self { solver, orbit, settled, forces, hub })
+        let settled = OrbitSamples { qdd: about.accelerations.clone(), ..orbit.clone() };
+        let rest = Answer::default();
+        let mut base = Self { solver, orbit, settled, forces, rest, condition, about, followed };
+        base.rest = base.answer(&system, &base.settled)?;
+        Ok(base)
+    }
+
+    /// Loads, hinge moments and the inflow they ask for, of a motion.
+    fn answer(
+        &self,
+        system: &ResponseSystem<'_>,
+        samples: &OrbitSamples,
+    ) -> Result<Answer, ResponseError> {
+        let RotorSolver { rotor, time, .. } = self.solver;
+        let loads = RevolutionLoads::summed(rotor, time, system, samples)?;
+        let hub = loads.hub(rotor, time);
+        let count = rotor.discretisation().load_harmonics;
+        let hinge = loads.hinge(time, count).iter().map(HingeMoment::total).collect();
+        let wanted = match self.followed {
+            None => Vec::new(),
+            Some(model) => {
+                let lift = hub.components[2].mean + rotor.blades_weight() * up(self.condition)[2];
+                let ct = rotor.model().thrust_coefficient(lift);
+                let loading = loads.loading(rotor, time, ct, model.circulation_grid())?;
+                model.induced(&self.condition.flight, &loading)?.parameters()
+            }
+        };
+        Ok(Answer { hub, hinge, wanted })
+    }
+
+    /// Changes along several directions, solved together, the inflow held or moved as they say.
+    fn answers(
+        &self,
+        linear: &mut Linear,
+        changes: &[Direction],
+    ) -> Result<Vec<Answer>, ResponseError> {
+        let loads = changes
+            .par_iter()
+            .map(|change| self.load_change(change))
+            .collect::<Result<Vec<_>, ResponseError>>()?;
+        let points = self.solver.point_inputs(self.condition, &self.about.inflow);
+        let response = linear
+            .orbits
+            .linear_response(&self.system(points), &self.about.orbit, &loads, LINEAR_TOLERANCE)
+            .map_err(RotorSolver::orbit_error)?;
+        let found = changes
+            .par_iter()
+            .zip(&response.changes)
+            .map(|(change, motion)| self.change(change, motion))
+            .collect::<Result<Vec<_>, ResponseError>>()?;
+        let work = &mut linear.work;
+        work.evaluations += loads.len() + response.evaluations;
+        work.evaluations += found.iter().map(|(_, count)| count).sum::<usize>();
+        work.factorisations += response.factorisations;
+        work.relative_residual = work.relative_residual.max(response.relative_residual);
+        Ok(found.into_iter().map(|(answer, _)| answer).collect())
+    }
+
+    /// Lets the inflow follow the changes of the loading, its own included.
+    fn settle(
+        &self,
+        linear: &mut Linear,
+        model: &dyn InflowModel,
+        seed: Option<(Vec<f64>, Answer)>,
+        answers: &mut [Answer],
+    ) -> Result<(), ResponseError> {
+        let mut settling = Settling::new(answers);
+        if let Some((slope, answer)) = seed {
+            settling.follow(slope, answer, answers);
+        }
+        for _ in 0..INFLOW_ROUNDS {
+            let open = settling.open();
+            if open.is_empty() {
+                return Ok(());
+            }
+            let steps: Vec<Vec<f64>> =
+                open.into_iter().map(|left| model.improved_step(&left).unwrap_or(left)).collect();
+            let moved = steps
+                .iter()
+                .map(|step| self.solver.moved_inflow(self.condition, &self.about.inflow, step))
+                .collect::<Result<Vec<_>, ResponseError>>()?;
+            let found = self.answers(linear, &moved)?;
+            for (step, answer) in steps.into_iter().zip(found) {
+                settling.follow(step, answer, answers);
+            }
+        }
+        Err(ResponseError::InflowNotConverged {
+            iterations: INFLOW_ROUNDS,
+            change: settling.worst(),
+            tolerance: INFLOW_TOLERANCE,
+            thrust_coefficient: self.about.thrust_coefficient,
+        })
     }
 
     fn system(&self, points: Vec<PointInput>) -> ResponseSystem<'_> {
@@ -236,12 +329,8 @@ impl<'a> Base<'a> {
         Ok((forces - &self.forces) / change.size)
     }
 
-    /// Change of the hub loads per unit of the direction, and the evaluations it took.
-    fn hub_change(
-        &self,
-        change: &Direction,
-        motion: &Orbit,
-    ) -> Result<(SixLoads, usize), ResponseError> {
+    /// Changes per unit of the direction, and the evaluations they took.
+    fn change(&self, change: &Direction, motion: &Orbit) -> Result<(Answer, usize), ResponseError> {
         let RotorSolver { rotor, time, .. } = self.solver;
         // the points were made for `change.size`; the motion goes with it
         let mut motion = motion.sample(time);
@@ -251,10 +340,10 @@ impl<'a> Base<'a> {
         motion.qdd = &self.settled.qdd + motion.qdd * change.size;
         let system = self.system(change.points.clone());
         let count = settle_accelerations(rotor, time, &system, (&mut motion, allowed))?;
-        let mut hub = RevolutionLoads::summed(rotor, time, &system, &motion)?.hub(rotor, time);
-        add_scaled(&mut hub, &self.hub, -1.0);
-        scale(&mut hub, 1.0 / change.size);
-        Ok((hub, count + 1))
+        let mut answer = self.answer(&system, &motion)?;
+        answer.add(&self.rest, -1.0);
+        answer.scale(1.0 / change.size);
+        Ok((answer, count + 1))
     }
 }
 
@@ -275,7 +364,11 @@ fn inflow_slope(
 }
 
 /// `angle + factor direction`.
-fn sum(angle: &HarmonicSeries, direction: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+pub(crate) fn sum(
+    angle: &HarmonicSeries,
+    direction: &HarmonicSeries,
+    factor: f64,
+) -> HarmonicSeries {
     let mut out = angle.clone();
     out.mean += factor * direction.mean;
     for (k, part) in direction.harmonics.iter().enumerate() {
@@ -292,19 +385,6 @@ fn largest_angle(series: &HarmonicSeries) -> f64 {
     series.mean.abs() + series.harmonics.iter().map(rotor_base::Harmonic::amplitude).sum::<f64>()
 }
 
-/// `hub += factor other`.
-fn add_scaled(hub: &mut SixLoads, other: &SixLoads, factor: f64) {
-    for (component, part) in hub.components.iter_mut().zip(&other.components) {
-        *component = sum(component, part, factor);
-    }
-}
-
-fn scale(hub: &mut SixLoads, factor: f64) {
-    for component in &mut hub.components {
-        *component = sum(&HarmonicSeries::zero(component.harmonics.len()), component, factor);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -316,6 +396,7 @@ mod tests {
     use rotor_base::Harmonic;
     use rotor_fem::{BladeProperties, BladeSpec};
     use rotor_wake::{FlightState, LinearInflow};
+    use std::sync::Arc;
 
     fn model(
         couplings: Couplings,
@@ -400,7 +481,7 @@ mod tests {
             };
             let inflow = LinearInflow::Prescribed { induced_inflow: 0.01 };
             let about = solver.solve(&condition, &inflow, None).unwrap();
-            let base = Base::new(&solver, &condition, &about).unwrap();
+            let base = Base::new(&solver, (&condition, &about), None).unwrap();
             let forces = |by: f64| {
                 let flap_angles_rad = vec![sum(&condition.flap_angles_rad[0], &direction[0], by)];
                 let moved = Condition { flap_angles_rad, ..condition.clone() };

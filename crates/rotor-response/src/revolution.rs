@@ -33,6 +33,8 @@ pub(crate) struct RevolutionLoads {
     /// Moments of flap, lag and torsion at the root, by force summation and by curvature.
     bending: [[Vec<f64>; 2]; 3],
     pub(crate) power: PowerBalance,
+    /// The accelerations that went into the sums.
+    pub(crate) accelerations: DMatrix<f64>,
 }
 
 impl RevolutionLoads {
@@ -103,7 +105,8 @@ impl RevolutionLoads {
                 }
             }
         }
-        Ok(Self { lifting, root, hinge, bending, power: balance })
+        let accelerations = samples.qdd.clone();
+        Ok(Self { lifting, root, hinge, bending, power: balance, accelerations })
     }
 
     fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {

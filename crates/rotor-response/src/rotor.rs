@@ -184,6 +184,8 @@ pub struct RotorSolution {
     pub inflow: InducedInflow,
     /// Lift and circulation at every point and lifting station.
     pub(crate) lifting: Vec<Vec<Lifting>>,
+    /// Modal accelerations that satisfy the equations of motion at every point.
+    pub(crate) accelerations: DMatrix<f64>,
     /// Thrust coefficient `C_T`, of the air alone: the weight of the blades, if there is gravity, is a
     /// load on the hub but no thrust.
     pub thrust_coefficient: f64,
@@ -323,6 +325,7 @@ impl RotorSolver {
                     loads.root_bending(&self.time, rotor.discretisation.load_harmonics);
                 return Ok(RotorSolution {
                     lifting: loads.lifting.clone(),
+                    accelerations: loads.accelerations.clone(),
                     modal: self.modal_harmonics(&solution.samples),
                     orbit: solution.orbit,
                     thrust_coefficient: ct,

@@ -246,6 +246,14 @@ pub enum Fault {
         "Ignored and Hysteretic need an identified actuator; set actuator.model to Bench(...) or File(...)"
     )]
     NeedsIdentifiedActuator,
+    /// A limit that only the cone program keeps.
+    #[error("a limit of the power is kept by the cone program alone; set control.effort to Limits")]
+    NeedsLimits,
+    /// No load is weighted.
+    #[error(
+        "every load weight is 0, so there is nothing to reduce; 1 is the paper's identity weight"
+    )]
+    NoLoadWeighted,
     /// Harmonics are to be controlled, but the blade has no flap.
     #[error("the blade has no flap to control with; give flaps, or write harmonics: []")]
     ControlWithoutFlaps,

@@ -124,6 +124,12 @@ pub struct ControlLine {
     pub j_after: f64,
     /// `100 (1 - J_Z / J_Z0)`.
     pub reduction_percent: f64,
+    /// Part of the weighted actuation power in the cost, beside `J_Z`; 0 without such a weight.
+    #[serde(default)]
+    pub j_power: f64,
+    /// Mean power that the actuators of one blade give, none taken back, W.
+    #[serde(rename = "actuation_power_W", default)]
+    pub actuation_power_watt: f64,
     /// Hub loads with control.
     pub hub_4_per_rev: HubLoads,
     /// One entry per flap, from root to tip; of a set of several harmonics, one after another.
@@ -143,6 +149,10 @@ pub struct ControlLine {
     /// inverse alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion_share: Option<f64>,
+    /// Part of the ideal actuator's voltages that were taken over, 1 where they leave room for the bias; of
+    /// `ignored` alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub voltage_share: Option<f64>,
     /// KKT residual of the last optimum within limits, where there were any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kkt_residual: Option<f64>,
@@ -170,6 +180,31 @@ pub struct ControlLine {
     /// Coupling of flap and hinge moment; none where the actuator does not give way to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coupling: Option<CouplingLine>,
+    /// The start and every control step; empty for voltages taken over or inverted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub history: Vec<HistoryLine>,
+}
+
+/// One recorded state of a control loop.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct HistoryLine {
+    /// `J_Z`, the loads' part of the cost.
+    pub j_loads: f64,
+    /// `J_u`, the control's part, with the weight of this step.
+    pub j_control: f64,
+    /// Control weight of this step, `W_u = rho I`, 1/V^2.
+    #[serde(rename = "rho_per_V2")]
+    pub rho_per_volt2: f64,
+    /// Largest change of a voltage harmonic that was asked for on the way here, V.
+    #[serde(rename = "asked_V")]
+    pub asked_volt: f64,
+    /// How often that change was halved.
+    pub halvings: u32,
+    /// Voltages: flap by flap, harmonic by harmonic, cosine then sine, V.
+    #[serde(rename = "control_V")]
+    pub control_volt: Vec<f64>,
+    /// Mean flap angle of every flap, deg.
+    pub mean_flap_deg: Vec<f64>,
 }
 
 impl ControlLine {

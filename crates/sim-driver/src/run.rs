@@ -68,6 +68,7 @@ pub fn run_trimmed(
     })?);
     let mut warnings = actuators.warnings.clone();
     warnings.extend(stability.warnings());
+    warnings.extend(studies.iter().filter_map(ControlStudy::share_warning));
     let result = RunResult {
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),
@@ -170,7 +171,7 @@ impl RunResult {
         table(
             &[
                 "per rev", "actuator", "T", "J/J0", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %",
-                "MZ %", "steps", "halved", "ended",
+                "MZ %", "power W", "J_P/J0", "steps", "halved", "ended",
             ],
             self.control.iter().map(|line| {
                 let mut cells = vec![
@@ -185,6 +186,8 @@ impl RunResult {
                     after.iter().zip(&before).map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
                 );
                 cells.extend([
+                    format!("{:.2}", line.actuation_power_watt),
+                    format!("{:.4}", line.j_power / line.j_before),
                     line.steps.to_string(),
                     line.halvings.to_string(),
                     line.outcome.clone(),

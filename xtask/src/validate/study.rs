@@ -2,11 +2,12 @@
 
 use std::sync::OnceLock;
 
+use hhc_control::{ControlLayout, ControlLimits, FeedbackLaw, LoadWeights, TMatrix};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::InflowState;
 use sim_driver::SimError;
-use sim_driver::case::{CONTROLLERS_CASE, LoadedCase, shipped_case};
+use sim_driver::case::{CONTROLLERS_CASE, ControlActuator, LoadedCase, PAPER_CASE, shipped_case};
 use sim_driver::progress::Progress;
 use sim_driver::results::ControlLine;
 use sim_driver::run::run_case;
@@ -70,8 +71,175 @@ pub(super) const AREA: Area = Area {
                 worst("lines", lines.len(), lines.iter().map(|l| Ok(l.largest_mean_flap_deg)))
             },
         },
+        Check {
+            id: "V-STUDY-06",
+            quantity: "feedback on the hysteretic actuator from zero, 2, 3, 4, 5/rev and all together with local T and \
+                       limits, 2, 3, 4/rev with constant T and tuned weight: loops that did not converge",
+            unit: "-",
+            source: SELF,
+            criterion: Criterion::AtMost(0.0),
+            repeatability: Repeatability::Everywhere,
+            measure: not_converged,
+        },
+        Check {
+            id: "V-STUDY-07",
+            quantity: "constant T, tuned weight: halved steps at 3/rev",
+            unit: "-",
+            source: SELF,
+            criterion: Criterion::AtMost(0.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let three = fed_back(paper_study()?).find(|l| l.harmonics == [3]);
+                let found = three.map(|l| f64::from(l.halvings));
+                found.ok_or(CheckError::TooFew { what: "lines of the study", found: 0, needed: 1 })
+            },
+        },
+        Check {
+            id: "V-STUDY-08",
+            quantity: "T of the paper's rotor at 4/rev, both strokes binding: J of the cone optimum over the best of \
+                       10000 random controls that keep the limits",
+            unit: "-",
+            source: "enumeration",
+            criterion: Criterion::AtMost(1.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(binding()?.over_random),
+        },
+        Check {
+            id: "V-STUDY-09",
+            quantity: "the same over the optimum of the weight tuned to the limit",
+            unit: "-",
+            source: "bisection on the weight",
+            criterion: Criterion::AtMost(1.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(binding()?.over_weighted),
+        },
+        Check {
+            id: "V-STUDY-10",
+            quantity: "the same over the unconstrained step clipped flap by flap",
+            unit: "-",
+            source: "the trap, shown beside it",
+            criterion: Criterion::AtMost(1.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(binding()?.over_clipped),
+        },
+        Check {
+            id: "V-STUDY-11",
+            quantity: "actuation power limited to 1 W, 2, 3, 4/rev, ideal and hysteretic: power over the limit, largest",
+            unit: "-",
+            source: "mean of the positive part of hinge moment times rate, controlled response",
+            criterion: Criterion::AtMost(1.005),
+            repeatability: Repeatability::Everywhere,
+            measure: power_over_limit,
+        },
     ],
 };
+
+/// The paper's case: constant T, weight tuned to the stroke.
+fn paper_study() -> Result<&'static [ControlLine], CheckError> {
+    static LINES: OnceLock<Vec<ControlLine>> = OnceLock::new();
+    if LINES.get().is_none() {
+        let outcome =
+            run_case(&shipped_case(PAPER_CASE).map_err(SimError::from)?, &Progress::hidden())?;
+        let _ = LINES.set(outcome.result.control);
+    }
+    Ok(LINES.get().map_or(&[], Vec::as_slice))
+}
+
+fn fed_back(lines: &'static [ControlLine]) -> impl Iterator<Item = &'static ControlLine> {
+    lines.iter().filter(|l| l.actuator == "hysteretic")
+}
+
+fn not_converged() -> Result<f64, CheckError> {
+    let all: Vec<&ControlLine> = fed_back(study()?).chain(fed_back(paper_study()?)).collect();
+    if all.len() < 8 {
+        return Err(CheckError::TooFew { what: "feedback loops", found: all.len(), needed: 8 });
+    }
+    Ok(all.iter().filter(|l| l.outcome != "converged").count() as f64)
+}
+
+fn power_over_limit() -> Result<f64, CheckError> {
+    let limit_watt = 1.0;
+    let mut loaded = controllers_case()?;
+    let control = &mut loaded.case.control;
+    control.harmonics = vec![vec![2], vec![3], vec![4]];
+    control.actuators = vec![ControlActuator::Ideal, ControlActuator::Hysteretic];
+    control.power_limit_watt = Some(limit_watt);
+    let lines = run_case(&loaded, &Progress::hidden())?.result.control;
+    worst("lines", 6, lines.iter().map(|l| Ok(l.actuation_power_watt / limit_watt)))
+}
+
+/// Cone optimum against what else can be done, costs as ratios.
+struct Binding {
+    over_random: f64,
+    over_weighted: f64,
+    over_clipped: f64,
+}
+
+/// Both flaps at 4/rev within half of what each would take without limits, linear in the flap angle, deg.
+fn binding() -> Result<Binding, CheckError> {
+    let rotor = TrimmedRotor::new(&controllers_case()?, None)?;
+    let authority = rotor.linearised(InflowState::Settled)?;
+    let columns: Vec<Vec<f64>> = [(0, false), (0, true), (1, false), (1, true)]
+        .into_iter()
+        .map(|(flap, sine)| {
+            let mut unit = HarmonicSeries::zero(4);
+            let (cosine, sine) = if sine { (0.0, 1.0) } else { (1.0, 0.0) };
+            unit.set_harmonic(4, Harmonic { cosine, sine });
+            authority.loads(flap, &unit).to_vec()
+        })
+        .collect();
+    let t = TMatrix::from_columns(&columns)?;
+    let loads = rotor.trim().rotor.hub.harmonic(4);
+    let law = FeedbackLaw::new(&t, &LoadWeights::Identity)?;
+    let cost = |u: &[f64]| -> Result<f64, CheckError> {
+        Ok(t.loads_for(u)?.iter().zip(&loads).map(|(a, b)| (a + b).powi(2)).sum())
+    };
+    let free = law.optimum_volt(0.0, &[0.0; 4], &loads)?;
+    let size = |u: &[f64]| [u[0].hypot(u[1]), u[2].hypot(u[3])];
+    let limit = size(&free).map(|s| 0.5 * s);
+    let layout = ControlLayout::new(2, vec![4])?;
+    let limits = ControlLimits::none(&layout).with_amplitudes_volt(limit.to_vec())?;
+    let cone = law.optimum_within(0.0, &[0.0; 4], &loads, &limits)?;
+    let best = cost(&cone.control_volt)?;
+    let mut random = uniform();
+    let mut enumerated = f64::INFINITY;
+    for k in 0..10_000 {
+        let u: Vec<f64> = (0..4).map(|i| limit[i / 2] * random()).collect();
+        // one half anywhere inside, one half at the limits
+        let usage = limits.usage(&u)?;
+        let part = if k % 2 == 0 { usage.max(1.0) } else { usage };
+        let u: Vec<f64> = u.iter().map(|v| v / part).collect();
+        enumerated = enumerated.min(cost(&u)?);
+    }
+    let authority_scale = law.singular_values().first().map_or(1.0, |s| s * s);
+    let (mut low, mut high) = (-40.0_f64, 40.0_f64);
+    for _ in 0..100 {
+        let middle = f64::midpoint(low, high);
+        let u = law.optimum_volt(authority_scale * middle.exp(), &[0.0; 4], &loads)?;
+        if limits.usage(&u)? > 1.0 { low = middle } else { high = middle }
+    }
+    let weighted = law.optimum_volt(authority_scale * high.exp(), &[0.0; 4], &loads)?;
+    let clipped: Vec<f64> = free
+        .chunks_exact(2)
+        .zip(limit.iter().zip(size(&free)))
+        .flat_map(|(u, (limit, size))| [u[0], u[1]].map(|v| v * (limit / size).min(1.0)))
+        .collect();
+    Ok(Binding {
+        over_random: best / enumerated,
+        over_weighted: best / cost(&weighted)?,
+        over_clipped: best / cost(&clipped)?,
+    })
+}
+
+/// Numbers in -1..1, uniform and always the same.
+fn uniform() -> impl FnMut() -> f64 {
+    let mut state = 7_u64;
+    move || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
 
 fn controllers_case() -> Result<LoadedCase, SimError> {
     Ok(shipped_case(CONTROLLERS_CASE)?)

@@ -2,9 +2,9 @@
 
 use crate::plants::{Problem, as_t};
 use hhc_control::{
-    ControlError, ControlLayout, ControlLimits, Controller, FeedbackController, FeedbackLaw,
-    FeedbackSettings, FlapCircle, LinearPlant, LoadWeights, Measurement, Outcome, Plant,
-    PowerLimit, RunError, VoltageRange,
+    ControlError, ControlLayout, ControlLimits, ControlRun, Controller, FeedbackController,
+    FeedbackLaw, FeedbackSettings, FlapCircle, LinearPlant, LoadWeights, Measurement, Outcome,
+    Plant, PowerLimit, RunError, TMatrix, VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -344,6 +344,86 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
         }
         assert!(cost < run.start.cost.loads);
     }
+}
+
+/// A plant whose linearised solution is wrong by a gain and a phase, wherever it is asked for.
+struct Misjudged {
+    limited: Limited,
+    t: TMatrix,
+}
+
+impl Plant for Misjudged {
+    type Error = Infallible;
+
+    fn layout(&self) -> &ControlLayout {
+        self.limited.layout()
+    }
+
+    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
+        self.limited.measure(control_volt)
+    }
+
+    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Infallible> {
+        self.limited.strokes_deg(control_volt)
+    }
+
+    fn stroke_limits_deg(&self) -> Vec<f64> {
+        self.limited.stroke_limits_deg()
+    }
+
+    fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, Infallible> {
+        self.limited.limits(control_volt)
+    }
+
+    fn linearised_t(&mut self, _: &[f64]) -> Result<Option<TMatrix>, Infallible> {
+        Ok(Some(self.t.clone()))
+    }
+}
+
+/// At the limits the slope of the cost is nearly nothing: a T wrong by a little points uphill there, and
+/// the correction along the rejected step lets the loop go on where the constant T stalls. (Where the loop
+/// ends it is by the promise of the T it knows.)
+#[test]
+fn a_local_t_that_is_wrong_everywhere_learns_from_rejected_steps() {
+    let (problem, layout) = opposed_flaps();
+    let limits = ControlLimits::none(&layout).with_amplitudes_volt(vec![2.0; 2]).unwrap();
+    let z0: Vec<f64> = problem.z0.iter().copied().collect();
+    let exact = law(&problem).optimum_within(0.0, &[0.0; 4], &z0, &limits).unwrap();
+    let best = loads_cost(&problem, &exact.control_volt);
+    let tolerance = 1e-5;
+    let mut stalled = 0;
+    for (gain, phase_deg) in [(1.05, 3.0), (1.1, 8.0), (0.85, -12.0), (1.0, 25.0)] {
+        let t = problem.distorted_t(gain, phase_deg);
+        let limited = Limited { plant: problem.plant.clone(), limits: limits.clone() };
+        let settings =
+            FeedbackSettings { cost_tolerance: tolerance, ..FeedbackSettings::default() };
+        let run = |way: Controller| {
+            FeedbackController::new(&t, &LoadWeights::Identity, settings.clone())
+                .and_then(|c| c.with_controller(way))
+                .unwrap()
+                .run_constrained(&mut Misjudged { limited: limited.clone(), t: t.clone() }, 0.0)
+                .unwrap()
+        };
+        let held = run(Controller::Global);
+        let learnt = run(Controller::Local { step_volt: vec![0.1; 4] });
+        let above = |run: &ControlRun| (run.last().cost.loads - best) / run.start.cost.loads;
+        println!(
+            "gain {gain}, {phase_deg} deg: held {:?} {:.1e} above the optimum; learnt {:?} {:.1e}, {} measurements",
+            held.outcome,
+            above(&held),
+            learnt.outcome,
+            above(&learnt),
+            learnt.measurements
+        );
+        stalled += usize::from(held.outcome == Outcome::Stalled);
+        assert_eq!(learnt.outcome, Outcome::Converged, "gain {gain}, {phase_deg} deg");
+        let (held_above, learnt_above) = (above(&held), above(&learnt));
+        assert!(learnt_above <= held_above * (1.0 + 1e-9), "{learnt_above} {held_above}");
+        if held.outcome == Outcome::Stalled {
+            assert!(learnt_above <= 0.5 * held_above, "{learnt_above} {held_above}");
+        }
+    }
+    assert!(stalled >= 2);
 }
 
 #[test]

@@ -136,6 +136,8 @@ fn build(
             load_scale: control.load_scale,
             effort: control.effort,
             controller: control.controller,
+            power_limit_watt: control.power_limit_watt,
+            power_weight_per_watt: control.power_weight_per_watt,
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
         },

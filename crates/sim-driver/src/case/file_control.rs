@@ -307,10 +307,22 @@ pub struct ControlFile {
     pub effort: EffortChoice,
     /// What the controller of the real actuator knows of T.
     pub controller: ControllerChoice,
+    /// Largest mean power that the actuators of one blade give, none taken back, W; with `effort: Limits`.
+    #[serde(rename = "power_limit_W", skip_serializing_if = "Option::is_none")]
+    pub power_limit_watt: Option<f64>,
+    /// Weight of that power in the cost, per W of one blade, on nondimensional loads squared.
+    #[serde(rename = "power_weight_per_W", skip_serializing_if = "is_zero")]
+    pub power_weight_per_watt: f64,
     /// Control steps allowed.
     pub max_steps: usize,
     /// Relative change of the voltages at which the control has settled.
     pub step_tolerance: f64,
+}
+
+/// Whether a weight is left out of a written case.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde asks for")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Default for ControlFile {
@@ -330,6 +342,8 @@ impl Default for ControlFile {
             load_scale: LoadScaleChoice::default(),
             effort: EffortChoice::MeetStroke,
             controller: ControllerChoice::default(),
+            power_limit_watt: None,
+            power_weight_per_watt: 0.0,
             max_steps: 40,
             step_tolerance: 1e-4,
         }

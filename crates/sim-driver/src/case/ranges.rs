@@ -354,6 +354,19 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
         let field = format!("control.load_weights.{key}");
         check.within(number(&field, value, "", "1 is the paper's identity weight"), 0.0, 1e12);
     }
+    if [w.fx, w.fy, w.fz, w.mx, w.my, w.mz].iter().all(|weight| *weight == 0.0) {
+        check.fault("control.load_weights", Fault::NoLoadWeighted);
+    }
+    if let Some(limit) = c.power_limit_watt {
+        let remedy = "a few W is usual; leave it out for no limit";
+        check.within(number("control.power_limit_W", limit, "W", remedy), 1e-6, 1e6);
+        if c.effort != EffortChoice::Limits {
+            check.fault("control.power_limit_W", Fault::NeedsLimits);
+        }
+    }
+    let remedy = "0 for no weight; 1e-8 is where it shows on nondimensional loads";
+    let field = "control.power_weight_per_W";
+    check.within(number(field, c.power_weight_per_watt, "1/W", remedy), 0.0, 1e6);
     check.count("control.max_steps", c.max_steps, (1, 10_000), "40 is usual");
     let remedy = "1e-4 is usual";
     check.within(number("control.step_tolerance", c.step_tolerance, "", remedy), 1e-12, 0.1);

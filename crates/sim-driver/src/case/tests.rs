@@ -235,3 +235,28 @@ fn problems_of_the_blade_name_the_remedy() {
         says(text, expected);
     }
 }
+
+#[test]
+fn weights_limits_and_harmonics_that_cannot_be_are_named_with_a_remedy() {
+    for (control, field, remedy) in [
+        ("power_limit_W: 2.0", "control.power_limit_W", "set control.effort to Limits"),
+        ("effort: Limits, power_limit_W: -1.0", "control.power_limit_W", "no limit"),
+        ("power_weight_per_W: -1e-8", "control.power_weight_per_W", "0 for no weight"),
+        (
+            "load_weights: (fx: 0.0, fy: 0.0, fz: 0.0, mx: 0.0, my: 0.0, mz: 0.0)",
+            "control.load_weights",
+            "nothing to reduce",
+        ),
+        ("load_weights: (fz: -1.0)", "control.load_weights.fz", "identity weight"),
+        ("harmonics: [[2], [0]]", "control.harmonics[1][0]", "the paper controls"),
+        ("amplitude_V: 90.0", "control.amplitude_V", "V"),
+        ("effort: Given(rho: -1.0)", "control.effort.rho", "MeetStroke"),
+    ] {
+        let text = format!("#![enable(implicit_some)]\n(control: ({control}))");
+        let problem = read(&text).unwrap_err();
+        assert!(problem.contains(field) && problem.contains(remedy), "{control}: {problem}");
+    }
+    let text = "#![enable(implicit_some)]\n(control: (effort: Limits, power_limit_W: 2.0, power_weight_per_W: 1e-8))";
+    let control = read(text).unwrap().case.control;
+    assert_eq!((control.power_limit_watt, control.power_weight_per_watt), (Some(2.0), 1e-8));
+}

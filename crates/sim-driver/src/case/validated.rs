@@ -247,6 +247,10 @@ pub struct ControlValues {
     pub effort: EffortChoice,
     /// What the controller of the real actuator knows of T.
     pub controller: ControllerChoice,
+    /// Largest mean power that the actuators of one blade give, W.
+    pub power_limit_watt: Option<f64>,
+    /// Weight of that power in the cost, per W.
+    pub power_weight_per_watt: f64,
     /// Control steps allowed.
     pub max_steps: usize,
     /// Relative change of the voltages at which the control has settled.

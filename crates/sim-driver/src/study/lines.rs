@@ -2,8 +2,8 @@
 
 use super::{ControlStudy, HingePower};
 use crate::case::LoadedCase;
-use crate::results::{ControlLine, CouplingLine, FlapLine, HubLoads, Residuals};
-use hhc_control::{Outcome, lag_deg};
+use crate::results::{ControlLine, CouplingLine, FlapLine, HistoryLine, HubLoads, Residuals};
+use hhc_control::{ControlRun, ControlStep, Outcome, lag_deg};
 
 /// The line of one control study.
 pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
@@ -44,7 +44,15 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
             )
         })
         .collect();
+    let given_watt = study
+        .state
+        .flaps
+        .iter()
+        .zip(&rotor.hinge)
+        .map(|(motion, hinge)| HingePower::new(hinge, &motion.flap_deg, scales).given_watt);
     ControlLine {
+        j_power: study.j_power,
+        actuation_power_watt: given_watt.sum(),
         harmonics: study.harmonics.clone(),
         actuator: study.actuator.name().to_owned(),
         j_before: study.j_before,
@@ -56,6 +64,7 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
         load_weights: study.load_weights,
         motion_error_percent: study.motion_error.map(|error| 100.0 * error),
         motion_share: study.motion_share,
+        voltage_share: study.voltage_share,
         kkt_residual: study.run.as_ref().and_then(|run| run.kkt).map(|kkt| kkt.largest()),
         largest_mean_flap_deg: study.largest_mean_flap_deg(),
         steps: study.steps(),
@@ -73,6 +82,19 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
             .state
             .coupling
             .map(|c| CouplingLine { iterations: c.iterations, residual_deg: c.residual_deg }),
+        history: study.run.iter().flat_map(ControlRun::history).map(history_line).collect(),
+    }
+}
+
+fn history_line(step: &ControlStep) -> HistoryLine {
+    HistoryLine {
+        j_loads: step.cost.loads,
+        j_control: step.cost.control,
+        rho_per_volt2: step.rho,
+        asked_volt: step.asked_volt,
+        halvings: step.halvings,
+        control_volt: step.control_volt.clone(),
+        mean_flap_deg: step.measurement.mean_flap_deg.clone(),
     }
 }
 

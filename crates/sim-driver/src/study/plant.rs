@@ -1,24 +1,28 @@
 //! The trimmed rotor with its driven flaps as the plant of the controller.
 
+use super::authority::{HARMONICS, added};
 use super::coupling::{coefficients, series};
 use super::drive::scaled;
+use super::pair_power::watt_per_deg2;
+use super::recent::RecentMotions;
 use super::{
-    CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
+    CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, HingePower,
+    PlantError,
 };
 use crate::SimError;
 use crate::case::{Case, LoadedCase, TrimValues};
 use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use crate::problem::Place;
 use hhc_control::{
-    ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, RunError, TMatrix,
-    VoltageRange,
+    ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, PowerLimit, RunError,
+    TMatrix, VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
 use rotor_response::{
-    Condition, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution, RotorSolver, SixLoads,
-    Stability, dissimilar_hub_loads,
+    Condition, HingeMoment, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution,
+    RotorSolver, SixLoads, Stability, dissimilar_hub_loads,
 };
 use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
@@ -29,8 +33,7 @@ pub struct TrimmedRotor {
     solver: RotorSolver,
     inflow: SettledInflow,
     trim: TrimSolution,
-    /// Moment unit `m0 Omega^2 R^3`, N m.
-    moment_newton_metre: f64,
+    scales: RotorScales,
     /// Change of the hinge moments with the flap motions, found when first asked for.
     hinge_response: Arc<OnceLock<DMatrix<f64>>>,
     /// Made when first asked for, the same whoever asks.
@@ -61,11 +64,16 @@ impl TrimmedRotor {
             };
             SimError::Trim { place: loaded.index.place(field), source }
         })?;
-        let moment_newton_metre = case.scales.moment_newton_metre();
+        let scales = case.scales;
         let hinge_response = Arc::default();
         let authority = Arc::default();
         let SettledTrim { trim, inflow, wake } = settled;
-        Ok(Self { solver, inflow, trim, moment_newton_metre, hinge_response, authority, wake })
+        Ok(Self { solver, inflow, trim, scales, hinge_response, authority, wake })
+    }
+
+    /// Moment unit `m0 Omega^2 R^3`, N m.
+    fn moment_newton_metre(&self) -> f64 {
+        self.scales.moment_newton_metre()
     }
 
     /// The trim.
@@ -100,6 +108,14 @@ impl TrimmedRotor {
     /// # Errors
     /// The errors of the linearised response.
     pub fn linearised(&self, state: InflowState) -> Result<FlapAuthority, ResponseError> {
+        self.linearised_to(state, HARMONICS)
+    }
+
+    fn linearised_to(
+        &self,
+        state: InflowState,
+        highest: usize,
+    ) -> Result<FlapAuthority, ResponseError> {
         let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
         let condition = Condition {
             bank_rad: self.trim.attitude.roll_rad,
@@ -108,7 +124,7 @@ impl TrimmedRotor {
             flap_angles_rad,
         };
         let about = (&condition, &self.trim.rotor);
-        FlapAuthority::about(&mut self.solver.clone(), about, &self.inflow, state)
+        FlapAuthority::about(&mut self.solver.clone(), about, &self.inflow, (state, highest))
     }
 
     /// What another response leaves unbalanced at the controls and attitude of this trim, over the
@@ -221,20 +237,48 @@ impl TrimmedRotor {
     }
 
     /// Change of all hinge moments with all flap motions about the trim, N m per rad, in the order of
-    /// [`HingeCoupling::new`]; one-sided differences of responses, made once for a rotor.
+    /// [`HingeCoupling::new`], made once for a rotor: of the linearised rotor, or by differences of
+    /// responses where that one does not answer (a rotor that stalls).
     fn hinge_response(&self) -> Result<DMatrix<f64>, ResponseError> {
         if let Some(known) = self.hinge_response.get() {
             return Ok(known.clone());
         }
         let rest = &self.trim.rotor.hinge;
         let count = rest.iter().map(|h| h.total().harmonics.len()).max().unwrap_or(0);
-        let (flaps, size) = (rest.len(), 2 * count + 1);
-        let gather = |rotor: &RotorSolution| -> DVector<f64> {
-            let all = rotor.hinge.iter().flat_map(|h| coefficients(&h.total(), count));
-            DVector::from_vec(all.map(|c| self.moment_newton_metre * c).collect())
-        };
-        let base = gather(&self.trim.rotor);
-        let columns = (0..flaps * size)
+        let columns = match self.linearised_to(InflowState::Settled, count) {
+            Ok(authority) => self.hinge_columns(count, |angles| {
+                let mut change = vec![HarmonicSeries::zero(0); angles.len()];
+                for (flap, angle) in angles.iter().enumerate() {
+                    let motion_deg = scaled(angle, 180.0 / std::f64::consts::PI);
+                    for (sum, part) in change.iter_mut().zip(authority.hinge(flap, &motion_deg)) {
+                        *sum = added(sum, &part, 1.0);
+                    }
+                }
+                Ok(change)
+            }),
+            Err(_) => self.hinge_columns(count, |angles| {
+                let moved =
+                    self.with_flaps(angles.iter().map(|a| scaled(a, RESPONSE_STEP_RAD)).collect())?;
+                let pairs = moved.hinge.iter().zip(rest);
+                let change = |(moved, rest): (&HingeMoment, &HingeMoment)| {
+                    scaled(&added(&moved.total(), &rest.total(), -1.0), 1.0 / RESPONSE_STEP_RAD)
+                };
+                Ok(pairs.map(change).collect())
+            }),
+        }?;
+        let found = DMatrix::from_columns(&columns);
+        Ok(self.hinge_response.get_or_init(|| found).clone())
+    }
+
+    /// The columns of the response matrix from the change of the hinge moments (rotor units) per rad of
+    /// a motion.
+    fn hinge_columns(
+        &self,
+        count: usize,
+        change: impl Fn(Vec<HarmonicSeries>) -> Result<Vec<HarmonicSeries>, ResponseError> + Sync,
+    ) -> Result<Vec<DVector<f64>>, ResponseError> {
+        let (flaps, size) = (self.trim.rotor.hinge.len(), 2 * count + 1);
+        (0..flaps * size)
             .into_par_iter()
             .map(|j| {
                 if j % size == 0 {
@@ -243,13 +287,13 @@ impl TrimmedRotor {
                 }
                 let mut angles = vec![HarmonicSeries::zero(0); flaps];
                 let mut unit = vec![0.0; size];
-                unit[j % size] = RESPONSE_STEP_RAD;
+                unit[j % size] = 1.0;
                 angles[j / size] = series(&unit);
-                Ok((gather(&self.with_flaps(angles)?) - &base) / RESPONSE_STEP_RAD)
+                let found = change(angles)?;
+                let all = found.iter().flat_map(|h| coefficients(h, count));
+                Ok(DVector::from_vec(all.map(|c| self.moment_newton_metre() * c).collect()))
             })
-            .collect::<Result<Vec<DVector<f64>>, ResponseError>>()?;
-        let found = DMatrix::from_columns(&columns);
-        Ok(self.hinge_response.get_or_init(|| found).clone())
+            .collect()
     }
 
     /// The coupling of flaps that give way by an angle per hinge moment, deg/(N m); none without give.
@@ -263,7 +307,7 @@ impl TrimmedRotor {
         if give_deg_per_newton_metre == 0.0 || self.trim.rotor.hinge.is_empty() {
             return Ok(None);
         }
-        let unit = self.moment_newton_metre;
+        let unit = self.moment_newton_metre();
         let at_rest = self.trim.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect();
         Ok(HingeCoupling::new(give_deg_per_newton_metre, at_rest, self.hinge_response()?))
     }
@@ -309,6 +353,19 @@ pub struct RotorPlant {
     stroke_limits_deg: Vec<f64>,
     /// Amplitude at which each pair reaches its limit, V.
     full_scale_volt: Vec<f64>,
+    power: Option<PlantPower>,
+    recent: RecentMotions,
+}
+
+/// What the power of the actuators has to do with the control.
+#[derive(Debug, Clone)]
+struct PlantPower {
+    /// Power of each pair, W per `deg^2`.
+    watt_per_deg2: Vec<f64>,
+    /// Largest mean power that the actuators of one blade give, W.
+    limit_watt: Option<f64>,
+    /// Weight of the power in the cost, per W.
+    weight_per_watt: f64,
 }
 
 impl RotorPlant {
@@ -342,7 +399,109 @@ impl RotorPlant {
             rotor,
             drive,
             coupling,
+            power: None,
+            recent: RecentMotions::default(),
         })
+    }
+
+    /// The same with the power of the actuators of one blade limited (W), weighted in the cost (per W), or
+    /// both.
+    ///
+    /// The weight is on the quadratic form of the power at full-scale gain: it goes into the measurement as
+    /// further loads, two for each pair, whose squares add up to it. The limit is on the mean power that the
+    /// actuators give, none taken back, of the flap motion in the linearised rotor; the form is scaled to it
+    /// at every step.
+    ///
+    /// # Errors
+    /// The errors of the linearised rotor.
+    pub fn with_power(
+        self,
+        limit_watt: Option<f64>,
+        weight_per_watt: f64,
+    ) -> Result<Self, PlantError> {
+        if limit_watt.is_none() && weight_per_watt == 0.0 {
+            return Ok(self);
+        }
+        let authority = self.rotor.authority()?;
+        let watt_per_deg2 = watt_per_deg2(&self.layout, authority, &self.rotor.scales);
+        Ok(Self { power: Some(PlantPower { watt_per_deg2, limit_watt, weight_per_watt }), ..self })
+    }
+
+    /// Loads that the weight of the power adds to a measurement, and their derivatives by pair.
+    fn power_gains(&self) -> Vec<f64> {
+        let Some(power) = &self.power else { return Vec::new() };
+        if power.weight_per_watt == 0.0 {
+            return Vec::new();
+        }
+        let gains = self.stroke_limits_deg.iter().zip(&self.full_scale_volt);
+        let pairs = power.watt_per_deg2.iter().zip(gains);
+        pairs
+            .map(|(watt, (deg, volt))| (power.weight_per_watt * watt).sqrt() * deg / volt)
+            .collect()
+    }
+
+    /// Loads beyond those of the hub in a measurement.
+    pub fn further_loads(&self) -> usize {
+        2 * self.power_gains().len()
+    }
+
+    /// Part of the weighted power in the cost for a control vector.
+    pub fn power_cost(&self, control_volt: &[f64]) -> f64 {
+        let pairs = control_volt.chunks_exact(2).zip(self.power_gains());
+        pairs.map(|(u, gain)| gain * gain * (u[0] * u[0] + u[1] * u[1])).fold(0.0, |sum, j| sum + j)
+    }
+
+    /// Mean power that the actuators of one blade give in the linearised rotor, W.
+    fn linear_power_watt(&self, flaps: &[FlapMotion]) -> Result<f64, PlantError> {
+        let authority = self.rotor.authority()?;
+        let mut moments: Vec<HarmonicSeries> =
+            self.rotor.trim.rotor.hinge.iter().map(HingeMoment::total).collect();
+        for (flap, motion) in flaps.iter().enumerate() {
+            for (sum, part) in moments.iter_mut().zip(authority.hinge(flap, &motion.flap_deg)) {
+                *sum = added(sum, &part, 1.0);
+            }
+        }
+        let each = moments.into_iter().zip(flaps).map(|(aerodynamic, motion)| {
+            let hinge = HingeMoment { aerodynamic, inertial: HarmonicSeries::zero(0) };
+            HingePower::new(&hinge, &motion.flap_deg, &self.rotor.scales).given_watt
+        });
+        Ok(each.sum())
+    }
+
+    /// The limit of the power as it stands at a control vector and the flap motion it makes.
+    fn power_limit(
+        &self,
+        control_volt: &[f64],
+        flaps: &[FlapMotion],
+    ) -> Result<Option<PowerLimit>, PlantError> {
+        let Some(PlantPower { watt_per_deg2, limit_watt: Some(limit), .. }) = &self.power else {
+            return Ok(None);
+        };
+        let amplitudes = self.layout.amplitudes_volt(control_volt).map_err(PlantError::Bias)?;
+        let motion = self.pair_motion(flaps);
+        let mut form = Vec::with_capacity(amplitudes.len());
+        let (mut model, mut moves) = (0.0, false);
+        for (pair, watt) in watt_per_deg2.iter().enumerate() {
+            let full = self.full_scale_volt[pair];
+            let (amplitude, stroke) = (amplitudes[pair], motion[pair].amplitude());
+            let known = amplitude > LEAST_GAIN_PART * full;
+            let gain = if known { stroke / amplitude } else { self.stroke_limits_deg[pair] / full };
+            form.push(watt * gain * gain);
+            model += watt * stroke * stroke;
+            moves |= known;
+        }
+        // what cross terms, harmonics of the actuator and the moment at rest add, as it is here
+        let scale = if moves && model > 0.0 { self.linear_power_watt(flaps)? / model } else { 1.0 };
+        let diagonal = DVector::from_iterator(
+            control_volt.len(),
+            form.iter().flat_map(|watt| [scale * watt, scale * watt]),
+        );
+        Ok(Some(PowerLimit {
+            quadratic: DMatrix::from_diagonal(&diagonal),
+            linear: vec![0.0; control_volt.len()],
+            constant: 0.0,
+            limit: *limit,
+        }))
     }
 
     /// The rotor in trim.
@@ -371,7 +530,7 @@ impl RotorPlant {
     fn free_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
         self.voltages(control_volt)?
             .into_par_iter()
-            .map(|voltages| self.drive.motion(&voltages))
+            .map(|voltages| self.recent.motion(&self.drive, &voltages))
             .collect()
     }
 
@@ -411,7 +570,7 @@ impl RotorPlant {
             let rotor = self.rotor.with_flaps(angles_rad(&free))?;
             return Ok(PlantState { rotor, flaps: free, coupling: None });
         };
-        let unit = self.rotor.moment_newton_metre;
+        let unit = self.rotor.moment_newton_metre();
         let actuate = |moments: &[HarmonicSeries]| self.loaded(&free, moments);
         let respond = |flaps: &[FlapMotion], last: Option<&RotorSolution>| {
             let start = last.unwrap_or(&self.rotor.trim.rotor);
@@ -431,7 +590,7 @@ impl RotorPlant {
         &self,
         flaps: Vec<FlapMotion>,
     ) -> Result<Vec<HarmonicSeries>, PlantError> {
-        let unit = self.rotor.moment_newton_metre;
+        let unit = self.rotor.moment_newton_metre();
         let state = self.state_of(flaps)?;
         Ok(state.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect())
     }
@@ -456,8 +615,12 @@ impl RotorPlant {
     fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
         let state = self.state(control_volt)?;
         let blades = self.rotor.rotor().model().blades;
+        let mut hub_loads = state.rotor.hub.harmonic(blades).to_vec();
+        for (u, gain) in control_volt.chunks_exact(2).zip(self.power_gains()) {
+            hub_loads.extend([gain * u[0], gain * u[1]]);
+        }
         Ok(Measurement {
-            hub_loads: state.rotor.hub.harmonic(blades).to_vec(),
+            hub_loads,
             flap_motion_deg: self.pair_motion(&state.flaps),
             mean_flap_deg: state.flaps.iter().map(|f| f.flap_deg.mean).collect(),
         })
@@ -557,6 +720,9 @@ impl Plant for RotorPlant {
                 limits = limits.with_flap_circle(pair, circle).map_err(PlantError::Bias)?;
             }
         }
+        if let Some(power) = self.power_limit(control_volt, &flaps)? {
+            limits = limits.with_power(power).map_err(PlantError::Bias)?;
+        }
         Ok(limits)
     }
 
@@ -567,13 +733,17 @@ impl Plant for RotorPlant {
             .par_iter()
             .map(|voltages| self.drive.tangent(voltages, TANGENT_STEP_VOLT))
             .collect::<Result<Vec<_>, PlantError>>()?;
-        let columns: Vec<Vec<f64>> = tangents
+        let mut columns: Vec<Vec<f64>> = tangents
             .iter()
             .enumerate()
             .flat_map(|(flap, tangent)| {
                 tangent.iter().map(move |along| authority.loads(flap, along).to_vec())
             })
             .collect();
+        let gains = self.power_gains();
+        for (j, column) in columns.iter_mut().enumerate() {
+            column.extend((0..2 * gains.len()).map(|k| if k == j { gains[k / 2] } else { 0.0 }));
+        }
         TMatrix::from_columns(&columns).map(Some).map_err(PlantError::Bias)
     }
 }

@@ -35,6 +35,8 @@ pub struct ControlStudy {
     pub motion_error: Option<f64>,
     /// Part of the ideal motion that the inverse makes: below 1 where the range of voltages ends first.
     pub motion_share: Option<f64>,
+    /// Part of the voltages that were taken over: below 1 where they leave no room for the bias.
+    pub voltage_share: Option<f64>,
     /// Stroke limit of each controlled harmonic, deg.
     pub stroke_limit_deg: Vec<f64>,
     /// Weight of each load in `J_Z`, order `FX FY FZ MX MY MZ`.
@@ -43,6 +45,8 @@ pub struct ControlStudy {
     pub j_before: f64,
     /// `J_Z` with control.
     pub j_after: f64,
+    /// Part of the weighted actuation power in the cost at the end, beside `J_Z`.
+    pub j_power: f64,
     /// Rotor and flaps at the end.
     pub state: PlantState,
     /// Force (moment) the moving flaps leave unbalanced at the trimmed controls, over the weight.
@@ -71,6 +75,26 @@ impl ControlStudy {
         let recorded = of_steps.flat_map(|step| step.measurement.mean_flap_deg.iter().copied());
         let here = self.state.flaps.iter().map(|flap| flap.flap_deg.mean);
         recorded.chain(here).fold(0.0, |m, mean| mean.abs().max(m))
+    }
+
+    /// What a reader should know of a control that was not taken over as a whole.
+    pub fn share_warning(&self) -> Option<String> {
+        let (share, of, why) = match (self.voltage_share, self.motion_share) {
+            (Some(share), _) => {
+                (share, "voltages", "all of them leave no room for the bias that centres the flap")
+            }
+            (_, Some(share)) => (share, "flap motion", "the range of voltages ends there"),
+            _ => return None,
+        };
+        let all: Vec<String> = self.harmonics.iter().map(usize::to_string).collect();
+        (share < 1.0).then(|| {
+            format!(
+                "{}/rev, {}: {:.1} % of the ideal actuator's {of}; {why}",
+                all.join("+"),
+                self.actuator.name(),
+                100.0 * share
+            )
+        })
     }
 
     /// How the loop ended; converged where voltages were taken over.
@@ -260,8 +284,15 @@ impl ControlSet<'_> {
                 (drive.ok_or(StudyError::NoActuator { actuator: name })?, self.limits.clone())
             }
         };
-        RotorPlant::new(self.rotor.clone(), drive.clone(), self.harmonics, &full_scale)
-            .map_err(|e| self.failed(actuator, e))
+        let plant = RotorPlant::new(self.rotor.clone(), drive.clone(), self.harmonics, &full_scale)
+            .map_err(|e| self.failed(actuator, e))?;
+        let control = &self.case.control;
+        plant.with_power(control.power_limit_watt, control.power_weight_per_watt).map_err(
+            |source| {
+                let call = hhc_control::PlantCall::Linearise { control_volt: Vec::new() };
+                self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
+            },
+        )
     }
 
     /// Weight of each load: those of the case, over the squared baseline amplitude if it asks for that.
@@ -289,7 +320,10 @@ impl ControlSet<'_> {
             cost_tolerance: if way == Controller::Global { 0.0 } else { COST_TOLERANCE },
             ..FeedbackSettings::default()
         };
-        let weights = self.load_weights().into_iter().flat_map(|w| [w, w]).collect();
+        // the weight of the power is in its loads already
+        let further = t.loads().saturating_sub(2 * self.load_weights().len());
+        let weights = self.load_weights().into_iter().flat_map(|w| [w, w]);
+        let weights = weights.chain(std::iter::repeat_n(1.0, further)).collect();
         Ok(FeedbackController::new(t, &LoadWeights::Diagonal(weights), settings)?
             .with_controller(way)?)
     }
@@ -307,8 +341,9 @@ impl ControlSet<'_> {
         let trim_imbalance = self.rotor.imbalance(&target, &state.rotor)?;
         let load_weights = self.load_weights();
         let after = state.rotor.hub.harmonic(blades);
-        debug_assert_eq!(plant.layout().len(), control_volt.len());
+        let j_power = plant.power_cost(&control_volt);
         Ok(ControlStudy {
+            j_power,
             harmonics: self.harmonics.to_vec(),
             actuator,
             trim_imbalance,
@@ -319,6 +354,7 @@ impl ControlSet<'_> {
             controller: None,
             motion_error: None,
             motion_share: None,
+            voltage_share: None,
             stroke_limit_deg: self.limits.iter().map(|l| l.stroke_deg).collect(),
             load_weights,
             j_before: loads_cost(&load_weights, &before),
@@ -386,15 +422,29 @@ impl ControlSet<'_> {
         })
     }
 
-    /// The ideal actuator's voltages applied to the hysteretic one: what ignoring hysteresis costs.
+    /// The ideal actuator's voltages applied to the hysteretic one: what ignoring hysteresis costs. Where
+    /// their swing leaves no room for the bias that centres the flap, the largest part of them that does.
     fn taken_over(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
         let actuator = ControlActuator::Ignored;
         let plant = self.plant(actuator)?;
-        let volts = ideal.control_volt.clone();
+        let part =
+            |share: f64| -> Vec<f64> { ideal.control_volt.iter().map(|u| share * u).collect() };
+        let mut share = 1.0;
+        if !plant.admits(&part(share)) {
+            let (mut low, mut high) = (0.0, 1.0);
+            while high - low > TAKEN_OVER_TOLERANCE {
+                let middle = f64::midpoint(low, high);
+                let end = if plant.admits(&part(middle)) { &mut low } else { &mut high };
+                *end = middle;
+            }
+            share = low;
+        }
+        let volts = part(share);
         let state = self.state(actuator, &plant, &volts)?;
         Ok(ControlStudy {
             t_norm: ideal.t_norm,
             rho: ideal.rho,
+            voltage_share: Some(share),
             ..self.study(actuator, &plant, volts, state)?
         })
     }
@@ -500,6 +550,9 @@ fn within_reach(error: &PlantError) -> Option<f64> {
 const INVERSE_TRIALS: usize = 6;
 /// Part of the reachable motion that is asked for.
 const INVERSE_MARGIN: f64 = 0.98;
+
+/// Accuracy of the part of a voltage that is taken over.
+const TAKEN_OVER_TOLERANCE: f64 = 1e-4;
 
 /// Fall of J, as a part of the uncontrolled J, below which a further step is not worth asking for.
 const COST_TOLERANCE: f64 = 1e-5;

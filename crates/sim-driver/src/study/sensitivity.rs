@@ -3,8 +3,8 @@
 use super::{Drives, FlapDrive, TrimmedRotor, control_set};
 use crate::SimError;
 use crate::case::{
-    BladeValues, ControlActuator, EffortChoice, InflowChoice, LoadedCase, SectionModelChoice,
-    TrimValues,
+    BladeValues, ControlActuator, EffortChoice, FreeWakeFile, InflowChoice, LoadedCase,
+    NearWakeChoice, SectionModelChoice, TrimValues,
 };
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -83,6 +83,14 @@ fn shift_flaps(loaded: &mut LoadedCase, by_r: f64) {
     }
 }
 
+/// The free wake of a case, the default one for a case without.
+fn free_wake(loaded: &LoadedCase) -> FreeWakeFile {
+    match loaded.case.inflow {
+        InflowChoice::FreeWake(file) => file,
+        _ => FreeWakeFile::default(),
+    }
+}
+
 /// The changes, one at a time.
 fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
     let amplitudes = base.trim().rotor.hub.harmonic(blades);
@@ -128,6 +136,17 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
             }
         }),
         of_rotor("uniform inflow", |c| c.case.inflow = InflowChoice::Uniform),
+        of_rotor("inflow of Pitt and Peters", |c| c.case.inflow = InflowChoice::PittPeters),
+        of_rotor("free wake", |c| c.case.inflow = InflowChoice::FreeWake(free_wake(c))),
+        of_rotor("free wake, near wake convected", |c| {
+            let near_wake = NearWakeChoice::Convected;
+            c.case.inflow = InflowChoice::FreeWake(FreeWakeFile { near_wake, ..free_wake(c) });
+        }),
+        of_rotor("free wake, near wake of 30 deg in the blade plane", |c| {
+            let near_wake = NearWakeChoice::BladePlane;
+            let file = FreeWakeFile { near_wake, near_wake_deg: 30.0, ..free_wake(c) };
+            c.case.inflow = InflowChoice::FreeWake(file);
+        }),
         of_rotor("quasi-steady sections", |c| {
             c.case.section.model = SectionModelChoice::QuasiSteady;
         }),
@@ -242,4 +261,4 @@ pub fn sensitivity_csv(loaded: &LoadedCase, rows: &[Sensitivity]) -> String {
 }
 
 /// Number of rows [`sensitivities`] makes, for a progress bar.
-pub const SENSITIVITY_ROWS: usize = 23;
+pub const SENSITIVITY_ROWS: usize = 27;
