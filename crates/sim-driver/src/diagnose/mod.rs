@@ -6,12 +6,15 @@ mod causes;
 mod extended;
 mod figures;
 mod findings;
+mod memo;
 mod next;
 mod plays;
 mod record;
+mod response;
 mod simulator;
 mod story;
 mod surrogate;
+mod traces;
 
 pub use findings::Findings;
 pub use record::{Record, Records};
@@ -282,7 +285,7 @@ fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
 fn generic(simulator: &BenchSimulator<'_>, spread: f64) -> Vec<Signal> {
     let per_run: Vec<Vec<Vec<f64>>> = (0..simulator.runs.len())
         .map(|number| {
-            let (input, _, plain) = simulator.plain(number);
+            let (input, plain) = simulator.plain(number);
             surrogate::generic(input, plain, spread, simulator.runs[number].step_s)
         })
         .collect();

@@ -19,7 +19,6 @@ mod sensor_nonlinearity;
 mod transport_delay;
 mod voltage_saturation;
 
-pub(crate) use depolarisation::lost_gain;
 pub(crate) use rate_dependence::rate_dependent;
 
 use super::base::variance;
