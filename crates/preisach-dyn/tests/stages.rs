@@ -602,6 +602,22 @@ fn sensor_errors_are_what_they_say() {
         }
         assert!((largest_difference(&input, &output) - 0.4).abs() < 1e-5);
     }
+    let about = |straight| {
+        let shape = NonlinearityShape::CubicAbout { straight };
+        let stage = Nonlinearity { amplitude_um: 0.4, half_range_um: 100.0, shape };
+        measured(&sensor(SensorStage::Nonlinearity(stage)), &input, 1e-3)
+    };
+    let cubic =
+        Nonlinearity { amplitude_um: 0.4, half_range_um: 100.0, shape: NonlinearityShape::Cubic };
+    let best_line = measured(&sensor(SensorStage::Nonlinearity(cubic)), &input, 1e-3);
+    assert!(largest_difference(&about(0.75), &best_line) < 1e-12);
+    for straight in [0.0, 0.3, 0.9, 1.0, 1.5] {
+        // the amplitude is the largest error, whatever line it is taken from
+        let largest = largest_difference(&input, &about(straight));
+        assert!((largest - 0.4).abs() < 1e-4, "{straight}: {largest}");
+    }
+    let through_ends = about(1.0);
+    assert_abs_diff_eq!(through_ends[500], input[500], epsilon = 1e-9);
     let stage = Quantisation { step_um: 0.25 };
     let output = measured(&sensor(SensorStage::Quantisation(stage)), &input, 1e-3);
     for (x, y) in input.iter().zip(&output) {

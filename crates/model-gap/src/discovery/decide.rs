@@ -5,7 +5,7 @@ use super::fit::{Fitted, Fitter};
 use super::gain::gain;
 use super::judge::{Generic, drift, paired, parameters};
 use super::screen::screen;
-use super::{Confidence, Discovery, Finding, Found, Screened, Simulator, Verdict};
+use super::{Confidence, Discovery, Finding, Found, Rival, Screened, Signal, Simulator, Verdict};
 use crate::{Effect, GapError, Scale};
 use rayon::prelude::*;
 
@@ -24,6 +24,10 @@ const DRIFT_COSTS: [f64; 2] = [0.06, 0.15];
 const NEXT_SHARE: f64 = 0.04;
 /// Share of a drop that must show where experiments are held out.
 const HELD_OUT_SHARE: f64 = 0.3;
+/// Share of the misfit above the floor below which something else than the names is missing too.
+const LEAST_SHARE: f64 = 0.6;
+/// Misfit over the floor, in floors, from which that share means anything.
+const STANDS_OUT: f64 = 0.5;
 /// Share of a drop within which two causes are not told apart: no model of a cause is better.
 const FORM_ERROR: f64 = 0.02;
 
@@ -62,8 +66,21 @@ impl<'a, S: Simulator> Search<'a, S> {
         let base = fitter.refine(Vec::new())?;
         let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
         let generic = Generic::new(discovery, evidence);
-        Ok(Self { discovery, evidence, fitter, screened, generic, base })
+        let energy = |s: &Signal| fitter.cost_of(s);
+        let structure_energy = discovery.structures.iter().map(energy).fold(0.0, f64::max);
+        Ok(Self { discovery, evidence, fitter, screened, generic, base, structure_energy })
     }
+}
+
+/// One of the causes found, taken out and looked at again.
+struct Place {
+    /// The fit without it.
+    rest: Fitted,
+    /// The candidates that do about as well in its place, best first.
+    alternatives: Vec<usize>,
+    /// It and those, as fitted.
+    rivals: Vec<Rival>,
+    drop: f64,
 }
 
 struct Search<'a, S> {
@@ -73,6 +90,8 @@ struct Search<'a, S> {
     screened: Vec<Screened>,
     generic: Generic,
     base: Fitted,
+    /// Misfit that the worst surrogate leaves.
+    structure_energy: f64,
 }
 
 impl<S: Simulator> Search<'_, S> {
@@ -150,7 +169,7 @@ impl<S: Simulator> Search<'_, S> {
     /// Both keys: the drop exceeds what surrogates reach, and most of it shows where it is held out.
     fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, String> {
         let drop = current.cost - next.cost - self.penalty(candidate);
-        let before = self.base.cost - current.cost;
+        let before = self.output_drop(&self.base, current);
         let threshold = self.screened[candidate].threshold + NEXT_SHARE * before;
         let id = self.id(candidate);
         if drop < threshold {
@@ -172,6 +191,14 @@ impl<S: Simulator> Search<'_, S> {
             return Err(format!("{id} beside the causes before is refused: {doubt}"));
         }
         Ok(held_out)
+    }
+
+    /// What a fit takes off the misfit of the outputs. A further channel shows a cause directly: it says
+    /// nothing about the form of its effect on the output, which is what a next cause may mend.
+    fn output_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
+        let beside = |f: &Fitted| self.evidence.beside_output(&f.residual);
+        let drop = before.cost - after.cost - (beside(before) - beside(after));
+        drop.max(0.0)
     }
 
     fn held_out_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
@@ -220,7 +247,7 @@ impl<S: Simulator> Search<'_, S> {
             let rest = self.fitter.refine(Self::without(&current.effects, at))?;
             let drop = rest.cost - current.cost - self.penalty(chosen[at]);
             // the same two keys that it entered by, now that the others know of it
-            let others = (self.base.cost - rest.cost).max(0.0);
+            let others = self.output_drop(&self.base, &rest);
             let needed = self.screened[chosen[at]].threshold + NEXT_SHARE * others;
             if drop < needed || self.held_out_drop(&rest, current) < HELD_OUT_SHARE * drop {
                 chosen.remove(at);
@@ -240,27 +267,35 @@ impl<S: Simulator> Search<'_, S> {
         at: usize,
         current: &Fitted,
         singles: &[Option<Fitted>],
-    ) -> Result<(Vec<usize>, f64), GapError> {
-        let (rest_cost, fits) = if chosen.len() == 1 {
-            (self.base.cost, singles.to_vec())
+    ) -> Result<Place, GapError> {
+        let (rest, fits) = if chosen.len() == 1 {
+            (self.base.clone(), singles.to_vec())
         } else {
             let rest = self.fitter.refine(Self::without(&current.effects, at))?;
-            (rest.cost, self.fits_after(&rest, chosen)?)
+            let fits = self.fits_after(&rest, chosen)?;
+            (rest, fits)
         };
-        let drop = rest_cost - current.cost;
-        let margin = self.discovery.settings.separation + FORM_ERROR * drop;
-        let mut close: Vec<(f64, usize)> = Vec::new();
+        let drop = rest.cost - current.cost;
+        let margin =
+            self.discovery.settings.separation + FORM_ERROR * self.output_drop(&rest, current);
+        let mut close: Vec<(f64, &Fitted, usize)> = Vec::new();
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
             let behind = fit.cost - current.cost + penalty;
             let (_, error) = paired(self.evidence, fit, current);
             if behind < margin || (behind < 2.0 * error && behind < 0.2 * drop) {
-                close.push((behind, candidate));
+                close.push((behind, fit, candidate));
             }
         }
         close.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok((close.into_iter().map(|c| c.1).collect(), drop))
+        let own = std::iter::once((current, chosen[at]));
+        let rivals = own
+            .chain(close.iter().map(|c| (c.1, c.2)))
+            .map(|(fit, candidate)| Rival::of(self.evidence, fit, candidate))
+            .collect();
+        let alternatives = close.into_iter().map(|c| c.2).collect();
+        Ok(Place { rest, alternatives, rivals, drop })
     }
 
     fn conclude(
@@ -276,14 +311,14 @@ impl<S: Simulator> Search<'_, S> {
         let after = self.generic.along(self.discovery, self.evidence, &current.residual);
         let mut causes = Vec::new();
         for at in 0..chosen.len() {
-            let (alternatives, drop) = self.alternatives(chosen, at, current, singles)?;
-            let rest = self.fitter.refine(Self::without(&current.effects, at))?;
+            let place = self.alternatives(chosen, at, current, singles)?;
             causes.push(Found {
                 candidate: chosen[at],
-                parameters: parameters(self.discovery, self.evidence, current, at),
-                drop,
-                held_out_drop: self.held_out_drop(&rest, current),
-                alternatives,
+                parameters: parameters(self.discovery, self.evidence, current, at, &place.rest),
+                drop: place.drop,
+                held_out_drop: self.held_out_drop(&place.rest, current),
+                alternatives: place.alternatives,
+                rivals: place.rivals,
             });
         }
         let drop = self.base.cost - current.cost;
@@ -300,6 +335,14 @@ impl<S: Simulator> Search<'_, S> {
             reasons.push(format!(
                 "{:.0} % of the excess is explained; structure is left along directions without a name: {after:.0} noise units, {:.0} at the floor",
                 100.0 * explained, self.generic.threshold
+            ));
+        }
+        let whole = self.share_of_excess(current);
+        if !chosen.is_empty() && whole < LEAST_SHARE {
+            doubts = true;
+            reasons.push(format!(
+                "{:.0} % of what the base model leaves above its floor is explained: most of it is something else",
+                100.0 * whole
             ));
         }
         let wrong_name = explained < 0.5 || worst_drift > WRONG_NAME;
@@ -383,6 +426,16 @@ impl<S: Simulator> Search<'_, S> {
             }
         }
         (doubts, worst)
+    }
+
+    /// Share of the misfit above the floor that a fit takes away; 1 where nothing stands out. The floor
+    /// is what noise and the worst surrogate leave.
+    fn share_of_excess(&self, current: &Fitted) -> f64 {
+        let energy = |f: &Fitted| f.cost - self.evidence.beside_output(&f.residual);
+        let floor = self.evidence.noise_energy() + self.structure_energy;
+        let before = energy(&self.base) - floor;
+        let drop = self.output_drop(&self.base, current);
+        if before > STANDS_OUT * floor { (drop / before).min(1.0) } else { 1.0 }
     }
 
     fn nothing_named(&self, excess: f64, reasons: &mut Vec<String>) -> Verdict {

@@ -17,6 +17,7 @@ mod surrogate;
 mod traces;
 
 pub use findings::Findings;
+pub use next::Proposal;
 pub use record::{Record, Records};
 pub use story::Story;
 
@@ -64,7 +65,7 @@ pub struct Diagnosis {
     /// Unit of the output.
     pub output_unit: String,
     /// What to measure next.
-    pub next_experiment: String,
+    pub next: Proposal,
     /// Error of the base model on reference runs left out of its fit, over the spread of the output.
     pub floor: f64,
     /// Noise of the reading on the reference runs, in the output's unit.
@@ -156,7 +157,15 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         None => discovery.find(),
     }
     .map_err(fail)?;
-    let next_experiment = next::proposal(&finding, &candidates, &design, &runs);
+    let bench = next::Bench {
+        base: &base,
+        library: &library,
+        candidates: &candidates,
+        runs: &runs,
+        design: &design,
+        range,
+    };
+    let next = next::proposal(&bench, &finding).map_err(fail)?;
     let energy = energy(&runs, &base);
     let kinds = simulator.kinds();
     Ok(Diagnosis {
@@ -179,7 +188,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         has_reference,
         given_error_percent: question.given.and_then(|model| given_error(model, &runs)),
         output_unit: measured.output_unit.clone(),
-        next_experiment,
+        next,
         floor: base.floor,
         noise: base.noise,
         library,

@@ -198,6 +198,10 @@ impl<'a> Plant<'a> {
         let mut outputs = Vec::with_capacity(self.runs.len());
         for (run, output) in self.runs.iter().zip(front.outputs.iter()) {
             let sensor: &[SensorStage] = if run.has_ideal_sensor() { &[] } else { &sensor };
+            let mut linkage = linkage.clone();
+            if run.is_preloaded() {
+                linkage.retain(|stage| !matches!(stage, LinkageStage::Backlash(_)));
+            }
             if linkage.is_empty() && sensor.is_empty() {
                 outputs.push(output.clone());
                 continue;

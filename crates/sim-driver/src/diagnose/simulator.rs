@@ -91,6 +91,13 @@ impl<'a> BenchSimulator<'a> {
         (&self.runs[number].input, &self.plant.plain[number])
     }
 
+    /// The temperature rise of an effect on the first run as it is, whatever a thermometer showed, K.
+    pub(crate) fn rise_k(&self, effect: &Effect) -> Result<Vec<f64>, GapError> {
+        let response = self.plant.respond(std::slice::from_ref(effect))?;
+        let rest = || vec![0.0; self.runs.first().map_or(0, |r| r.input.len())];
+        Ok(response.rise_k(0).map_or_else(rest, <[f64]>::to_vec))
+    }
+
     /// A signal per run taken to the traces: zero on every further channel.
     pub(crate) fn on_traces(&self, outputs: &[Vec<f64>]) -> Signal {
         self.channels
