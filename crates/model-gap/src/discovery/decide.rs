@@ -8,6 +8,7 @@ use super::screen::screen;
 use super::{Confidence, Discovery, Finding, Found, Rival, Screened, Signal, Simulator, Verdict};
 use crate::{Effect, GapError, Scale};
 use rayon::prelude::*;
+use std::sync::{Arc, Mutex};
 
 /// Relative spread from which on the name is wrong.
 const WRONG_NAME: f64 = 0.5;
@@ -15,6 +16,8 @@ const WRONG_NAME: f64 = 0.5;
 const STRONG: f64 = 2.0;
 /// Part of its threshold that a candidate must promise before it is fitted.
 const PROMISE: f64 = 0.3;
+/// Part of the drop of a cause that another must promise before it is fitted in its place.
+const RIVAL_PROMISE: f64 = 0.1;
 /// Relative spread of a parameter over the experiments from which on it drifts.
 const DRIFTING: f64 = 0.25;
 /// Share of the drop that values of its own for every experiment must add before a drift speaks
@@ -66,9 +69,10 @@ impl<'a, S: Simulator> Search<'a, S> {
         let base = fitter.refine(Vec::new())?;
         let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
         let generic = Generic::new(discovery, evidence);
+        let kept = Mutex::new(Vec::new());
         let energy = |s: &Signal| fitter.cost_of(s);
         let structure_energy = discovery.structures.iter().map(energy).fold(0.0, f64::max);
-        Ok(Self { discovery, evidence, fitter, screened, generic, base, structure_energy })
+        Ok(Self { discovery, evidence, fitter, screened, generic, base, structure_energy, kept })
     }
 }
 
@@ -83,6 +87,14 @@ struct Place {
     drop: f64,
 }
 
+/// The fit without one of the causes, and every candidate fitted in its place.
+struct TakenOut {
+    rest: Fitted,
+    fits: Vec<Option<Fitted>>,
+}
+
+type Kept = Vec<((Vec<Effect>, usize), Arc<TakenOut>)>;
+
 struct Search<'a, S> {
     discovery: &'a Discovery<'a, S>,
     evidence: &'a Evidence<'a>,
@@ -92,12 +104,13 @@ struct Search<'a, S> {
     base: Fitted,
     /// Misfit that the worst surrogate leaves.
     structure_energy: f64,
+    kept: Mutex<Kept>,
 }
 
 impl<S: Simulator> Search<'_, S> {
     fn run(self) -> Result<Finding, GapError> {
         let mut reasons = Vec::new();
-        let singles = self.fits_after(&self.base, &[])?;
+        let singles = self.fits_after(&self.base, &[], 0.0)?;
         let single_drops: Vec<Option<f64>> =
             singles.iter().map(|f| f.as_ref().map(|f| self.base.cost - f.cost)).collect();
         let mut current = self.base.clone();
@@ -115,7 +128,8 @@ impl<S: Simulator> Search<'_, S> {
                 self.swap(&mut chosen, &mut current)?;
             }
             if chosen.len() < self.discovery.settings.most_causes {
-                fits = self.fits_after(&current, &chosen)?;
+                let asked = NEXT_SHARE * self.output_drop(&self.base, &current);
+                fits = self.fits_after(&current, &chosen, PROMISE * asked)?;
             }
         }
         self.check_backward(&mut chosen, &mut current)?;
@@ -126,11 +140,13 @@ impl<S: Simulator> Search<'_, S> {
         self.discovery.candidates[candidate].blocked.is_none()
     }
 
-    /// Every further candidate fitted after the effects of `current`.
+    /// Every further candidate fitted after the effects of `current`, if it promises a part of its
+    /// threshold and a drop of `least`.
     fn fits_after(
         &self,
         current: &Fitted,
         chosen: &[usize],
+        least: f64,
     ) -> Result<Vec<Option<Fitted>>, GapError> {
         (0..self.discovery.candidates.len())
             .into_par_iter()
@@ -139,7 +155,7 @@ impl<S: Simulator> Search<'_, S> {
                     return Ok(None);
                 }
                 let starts = &self.discovery.candidates[candidate].starts;
-                let least = PROMISE * self.screened[candidate].threshold;
+                let least = least.max(PROMISE * self.screened[candidate].threshold);
                 self.fitter.fit_with(current, candidate, starts, least)
             })
             .collect()
@@ -213,13 +229,35 @@ impl<S: Simulator> Search<'_, S> {
         rest
     }
 
+    /// The fit without one of the causes, and what does for it; kept, because it is asked for again.
+    fn taken_out(
+        &self,
+        chosen: &[usize],
+        at: usize,
+        current: &Fitted,
+    ) -> Result<Arc<TakenOut>, GapError> {
+        let key = (current.effects.clone(), at);
+        let known = |kept: &Kept| kept.iter().find(|k| k.0 == key).map(|k| Arc::clone(&k.1));
+        // a lock is poisoned only by a panic while it was held, and nothing panics there
+        if let Some(found) = self.kept.lock().ok().and_then(|kept| known(&kept)) {
+            return Ok(found);
+        }
+        let rest = self.fitter.refine(Self::without(&current.effects, at))?;
+        let least = RIVAL_PROMISE * (rest.cost - current.cost);
+        let fits = self.fits_after(&rest, chosen, least)?;
+        let made = Arc::new(TakenOut { rest, fits });
+        if let Ok(mut kept) = self.kept.lock() {
+            kept.insert(0, (key, Arc::clone(&made)));
+            kept.truncate(self.discovery.settings.most_causes);
+        }
+        Ok(made)
+    }
+
     /// Replaces a chosen cause where another one does better beside the rest.
     fn swap(&self, chosen: &mut [usize], current: &mut Fitted) -> Result<(), GapError> {
         for at in 0..chosen.len() {
-            let rest = self.fitter.refine(Self::without(&current.effects, at))?;
-            let others: Vec<usize> = chosen.to_vec();
-            let fits = self.fits_after(&rest, &others)?;
-            if let Some((candidate, found)) = self.best_of(&rest, &fits) {
+            let place = self.taken_out(chosen, at, current)?;
+            if let Some((candidate, found)) = self.best_of(&place.rest, &place.fits) {
                 let better = current.cost - found.cost
                     > self.discovery.settings.separation + self.penalty(candidate)
                         - self.penalty(chosen[at]);
@@ -268,16 +306,15 @@ impl<S: Simulator> Search<'_, S> {
         current: &Fitted,
         singles: &[Option<Fitted>],
     ) -> Result<Place, GapError> {
-        let (rest, fits) = if chosen.len() == 1 {
-            (self.base.clone(), singles.to_vec())
+        let out = if chosen.len() == 1 {
+            Arc::new(TakenOut { rest: self.base.clone(), fits: singles.to_vec() })
         } else {
-            let rest = self.fitter.refine(Self::without(&current.effects, at))?;
-            let fits = self.fits_after(&rest, chosen)?;
-            (rest, fits)
+            self.taken_out(chosen, at, current)?
         };
+        let TakenOut { rest, fits } = &*out;
         let drop = rest.cost - current.cost;
         let margin =
-            self.discovery.settings.separation + FORM_ERROR * self.output_drop(&rest, current);
+            self.discovery.settings.separation + FORM_ERROR * self.output_drop(rest, current);
         let mut close: Vec<(f64, &Fitted, usize)> = Vec::new();
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
@@ -295,7 +332,7 @@ impl<S: Simulator> Search<'_, S> {
             .map(|(fit, candidate)| Rival::of(self.evidence, fit, candidate))
             .collect();
         let alternatives = close.into_iter().map(|c| c.2).collect();
-        Ok(Place { rest, alternatives, rivals, drop })
+        Ok(Place { rest: rest.clone(), alternatives, rivals, drop })
     }
 
     fn conclude(

@@ -48,6 +48,11 @@ impl Response {
         }
     }
 
+    /// Output of a run without the hum of its reading.
+    pub(super) fn steady_output(&self, run: usize) -> &[f64] {
+        &self.outputs[run]
+    }
+
     /// Terminal voltage of a run; none where it is the command.
     pub(super) fn terminal(&self, run: usize) -> Option<&[f64]> {
         self.front.terminals[run].as_deref()

@@ -126,9 +126,10 @@ impl<'a> BenchSimulator<'a> {
                 rise.iter().map(|t| t + off).collect()
             }
             ChannelKind::Load => {
-                let output = own.output(number);
-                let per_output = if own.is_loaded { slope(&output, measured) } else { 0.0 };
-                let off = mean(measured) - per_output * mean(&output);
+                // a load cell does not feel what hums in the reading
+                let output = own.steady_output(number);
+                let per_output = if own.is_loaded { slope(output, measured) } else { 0.0 };
+                let off = mean(measured) - per_output * mean(output);
                 output.iter().map(|y| off + per_output * y).collect()
             }
         }

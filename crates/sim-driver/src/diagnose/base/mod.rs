@@ -11,7 +11,7 @@ use super::record::Record;
 use equations::{
     Equations, best_prior, covariance_root, equations, fit_held, fit_of, most_negative, precision,
 };
-use errors::{Seen, StructureLaw, pooled_spread};
+use errors::{correlation_samples, pooled_spread};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -45,8 +45,9 @@ pub(crate) struct BaseModel {
     pub(crate) floor: f64,
     /// Noise of the reading on the reference runs, output's unit.
     pub(crate) noise: f64,
-    /// Structural error of a run.
-    structure: StructureLaw,
+    /// Structural error relative to the spread of the output, and its correlation time, s.
+    structure: f64,
+    correlation_s: f64,
     /// Root of the covariance of offset, coefficients and shares.
     root: DMatrix<f64>,
     /// Spread of the output over all reference runs.
@@ -114,7 +115,8 @@ impl BaseModel {
                 relaxation,
                 floor: 0.0,
                 noise,
-                structure: StructureLaw::fit(&[]),
+                structure: 0.0,
+                correlation_s: 0.0,
                 root: DMatrix::zeros(0, 0),
                 spread,
                 weights: solution,
@@ -140,7 +142,6 @@ impl BaseModel {
         let (mut noise2, mut white_count) = (0.0, 0.0);
         let (mut numerator, mut denominator) = (0.0, 0.0);
         let mut correlation = 0.0;
-        let mut seen = Vec::with_capacity(runs.len());
         for run in runs {
             let residual = self.residual(run);
             let white = white_noise(&residual);
@@ -148,15 +149,12 @@ impl BaseModel {
             noise2 += white * white * n;
             white_count += n;
             let part = (mean_square(&residual) - white * white).max(0.0);
-            let own = Seen::of(run, &residual);
-            correlation += part * n * own.kept_s;
+            correlation += part * n * correlation_samples(&residual, white) * run.step_s;
             numerator += part * n;
             denominator += variance(&run.output) * n;
-            seen.push(own);
         }
         self.noise = (noise2 / white_count).sqrt();
-        self.structure = StructureLaw::fit(&seen);
-        let correlation_s = if numerator > 0.0 { correlation / numerator } else { 0.0 };
+        self.correlation_s = if numerator > 0.0 { correlation / numerator } else { 0.0 };
         let trained = (numerator / denominator).sqrt();
         // each run left out in turn: what the model leaves on runs it has not seen
         let sigma = self.noise.max(1e-3 * self.spread);
@@ -173,9 +171,12 @@ impl BaseModel {
             }
         }
         let held_out = if all > 0.0 { (left / all).sqrt() } else { 2.0 * trained };
+        // a run left out also misses what its weights could not be known from: the measured runs are
+        // granted that by the covariance, so the structure is what the fit itself leaves
+        self.structure = STRUCTURE_MARGIN * trained;
         self.floor = held_out.max(trained);
         let step = runs.iter().map(|r| r.step_s).fold(f64::INFINITY, f64::min);
-        let samples = (correlation_s / step).max(1.0);
+        let samples = (self.correlation_s / step).max(1.0);
         Some((self.noise.powi(2) + samples * (trained * self.spread).powi(2)).sqrt())
     }
 
@@ -205,14 +206,12 @@ impl BaseModel {
         run.output.iter().zip(predicted).map(|(a, b)| a - b).collect()
     }
 
-    /// How the error of a run is made: its noise from the run itself, its structure from what the fit
-    /// leaves of reference runs like it. A run left out of the fit also misses what its weights could not
-    /// be known from: the measured runs are granted that by the covariance.
+    /// How the error of a run is made, its noise estimated from the run itself.
     pub(crate) fn errors(&self, run: &Record) -> ErrorModel {
         let noise = white_noise(&self.residual(run)).max(1e-5 * self.spread);
-        let (left, kept_s) = self.structure.at(run);
-        let correlation = (kept_s / run.step_s).max(1.0);
-        ErrorModel { noise, structure: STRUCTURE_MARGIN * left, correlation }
+        let own = 0.5 * (variance(&run.output).sqrt().min(self.spread) + self.spread);
+        let correlation = (self.correlation_s / run.step_s).max(1.0);
+        ErrorModel { noise, structure: self.structure * own, correlation }
     }
 
     /// What the base model may still move by on given runs: columns of standard deviation 1, the
@@ -279,7 +278,6 @@ fn stride_of(runs: &[&Record]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use errors::correlation_samples;
 
     /// Three plays and a relaxation: in the class of the base model, but with half-widths of its own.
     fn truth(input: &[f64], step_s: f64) -> Vec<f64> {
