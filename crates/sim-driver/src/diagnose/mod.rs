@@ -6,6 +6,7 @@ mod causes;
 mod extended;
 mod figures;
 mod findings;
+mod ladder;
 mod memo;
 mod next;
 mod plays;
@@ -17,6 +18,7 @@ mod surrogate;
 mod traces;
 
 pub use findings::Findings;
+pub use ladder::{Ladder, Rung, climb};
 pub use next::Proposal;
 pub use record::{Record, Records};
 pub use story::Story;

@@ -7,7 +7,7 @@
 //! stage alone. Hum is added to the output of all others.
 
 use super::base::BaseModel;
-use super::causes::{BenchCause, Part, rate_dependent};
+use super::causes::{BenchCause, Part, looped, rate_dependent};
 use super::memo::{Memo, key};
 use super::record::Record;
 use model_gap::{Effect, GapError};
@@ -157,6 +157,11 @@ impl<'a> Plant<'a> {
         law: &mut Vec<f64>,
     ) -> Result<Option<Vec<f64>>, GapError> {
         let (zero, middle) = self.neutral;
+        for part in parts {
+            if let Part::Hysteresis { share, widest } = part {
+                *law = looped(law, *share, *widest);
+            }
+        }
         let mut rise_k = None;
         let scale = |law: &mut [f64], about: f64, gain: &mut dyn Iterator<Item = f64>| {
             let point = zero + about * (middle - zero);
@@ -278,6 +283,7 @@ fn is_in_front(part: &Part) -> bool {
             | Part::Heating(..)
             | Part::Depolarisation(..)
             | Part::RateDependence { .. }
+            | Part::Hysteresis { .. }
     )
 }
 

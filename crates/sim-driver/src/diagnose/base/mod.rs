@@ -132,6 +132,45 @@ impl BaseModel {
         own
     }
 
+    /// A straight line through runs, without memory, taken at its word: no structure is granted to it and
+    /// nothing it may move by.
+    pub(crate) fn straight(runs: &[&Record], range: (f64, f64)) -> Self {
+        let plays = Plays::new(range.0, range.1);
+        let pairs = || runs.iter().flat_map(|r| r.input.iter().zip(&r.output));
+        let count = pairs().count().max(1) as f64;
+        let (mu, my) = pairs().fold((0.0, 0.0), |s, (u, y)| (s.0 + u / count, s.1 + y / count));
+        let (uy, uu) = pairs().fold((0.0, 0.0), |s, (u, y)| {
+            (s.0 + (u - mu) * (y - my), s.1 + (u - mu).powi(2))
+        });
+        let slope = if uu > 0.0 { uy / uu } else { 0.0 };
+        let (rises, offset) = plays.line(slope, my - slope * mu);
+        let coefficients = plays.rises_to_coefficients() * &rises;
+        let map = plays.map(offset, coefficients.as_slice());
+        let width = 1 + rises.len();
+        let mut weights = DVector::zeros(width);
+        weights[0] = offset;
+        weights.rows_mut(1, rises.len()).copy_from(&rises);
+        let mut model = Self {
+            plays,
+            map,
+            relaxation: Vec::new(),
+            floor: 0.0,
+            noise: 0.0,
+            structure: 0.0,
+            correlation_s: 0.0,
+            root: DMatrix::zeros(width, width),
+            spread: pooled_spread(runs),
+            weights,
+            prior: PRIORS[0],
+        };
+        let noise2: f64 = runs
+            .iter()
+            .map(|r| white_noise(&model.residual(r)).powi(2) * r.input.len() as f64)
+            .sum();
+        model.noise = (noise2 / count).sqrt();
+        model
+    }
+
     /// Estimates noise, structure and floor; returns the effective noise of the next round.
     fn measure_errors(
         &mut self,
