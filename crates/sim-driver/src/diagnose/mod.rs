@@ -3,6 +3,7 @@
 mod base;
 mod cache;
 mod causes;
+mod displays;
 mod extended;
 mod figures;
 mod findings;
@@ -46,6 +47,8 @@ pub struct Diagnosis {
     law_inputs: Vec<Vec<f64>>,
     /// Names of the measured runs.
     pub run_ids: Vec<String>,
+    /// Inputs of the measured runs, thinned as the residuals are.
+    run_inputs: Vec<Vec<f64>>,
     /// Run and channel of every trace, and the time between its samples, s.
     traces: Vec<(usize, &'static str, f64)>,
     /// Energy of every measured run.
@@ -175,6 +178,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         candidates: candidates.clone(),
         law_inputs: fitted.iter().map(|r| r.input.clone()).collect(),
         run_ids: runs.iter().map(|r| r.id.clone()).collect(),
+        run_inputs: runs.iter().map(|r| traces::averaged(&r.input, simulator.block)).collect(),
         traces: kinds,
         energy,
         title: measured.title.clone(),

@@ -370,6 +370,34 @@ mod tests {
     }
 
     #[test]
+    fn structure_of_other_runs_is_granted_a_quarter_more_than_the_fit_leaves() {
+        // a bend that no play has: output that depends on the rate of the input
+        let bent = |hz: f64| {
+            let mut run = run(hz, 1.0);
+            for i in 1..run.output.len() {
+                let rate = (run.input[i] - run.input[i - 1]) / run.step_s;
+                run.output[i] += 2e-4 * rate * rate;
+            }
+            run
+        };
+        let runs = [bent(1.3), bent(2.0), bent(3.1), bent(4.2)];
+        let references: Vec<&Record> = runs.iter().collect();
+        let base = BaseModel::fit(&references, (-1.0, 1.0), None).unwrap();
+        let (mut left, mut all) = (0.0, 0.0);
+        for run in &runs {
+            let residual = base.residual(run);
+            left += mean_square(&residual) - white_noise(&residual).powi(2);
+            all += variance(&run.output);
+        }
+        let trained = (left / all).sqrt();
+        for run in &runs {
+            let spread = variance(&run.output).sqrt().min(base.spread);
+            let share = base.errors(run).structure / (0.5 * (spread + base.spread));
+            assert!((share / trained - 1.25).abs() < 0.02, "{share} of {trained}");
+        }
+    }
+
+    #[test]
     fn noise_is_found_under_a_smooth_residual() {
         let mut state = 1_u64;
         let mut random = || {

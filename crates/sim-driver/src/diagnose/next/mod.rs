@@ -238,3 +238,31 @@ fn usual(finding: &Finding, bench: &Bench<'_>) -> &'static str {
         "multisine-5-181Hz"
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SELF: f64 = f64::INFINITY;
+
+    #[test]
+    fn the_fewest_experiments_that_single_out_most_are_chosen() {
+        // three explanations; the first experiment parts one of them, the second another, weakly
+        let first = Parting(vec![vec![SELF, 9.0, 9.0], vec![9.0, SELF, 0.1], vec![9.0, 0.1, SELF]]);
+        let second = Parting(vec![vec![SELF, 0.2, 2.0], vec![0.2, SELF, 2.0], vec![2.0, 2.0, SELF]]);
+        let nothing = Parting(vec![vec![SELF, 0.5, 0.5], vec![0.5, SELF, 0.5], vec![0.5, 0.5, SELF]]);
+        let all = [nothing.clone(), first.clone(), second.clone()];
+        let (parting, places) = choose(&all);
+        assert_eq!(places, [1, 2]);
+        assert_eq!(parting.resolves(), 1.0);
+        // one that does it alone is preferred, of two the one with the larger smallest distance
+        let alone = |least: f64| {
+            Parting(vec![vec![SELF, least, 5.0], vec![least, SELF, 5.0], vec![5.0, 5.0, SELF]])
+        };
+        let (_, places) = choose(&[first, second, alone(1.5), alone(3.0), nothing.clone()]);
+        assert_eq!(places, [3]);
+        // where nothing singles out any, one is proposed and not three
+        let (parting, places) = choose(&[nothing.clone(), nothing]);
+        assert_eq!((parting.resolves(), places.len()), (0.0, 1));
+    }
+}
