@@ -58,6 +58,9 @@ enum Chore {
         /// Sets of each cause at each noise level; ten without effect, four pairs, four unknown effects with each
         #[arg(long, default_value_t = 10)]
         seeds: u64,
+        /// Block of seeds that the suite begins with
+        #[arg(long, default_value_t = 0)]
+        first_block: u64,
         /// Noise levels, dB
         #[arg(long, value_delimiter = ',', default_values_t = [40.0, 30.0, 20.0])]
         snr: Vec<f64>,
@@ -128,8 +131,9 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             say(&mut std::io::stdout(), &report.text());
             Ok(ExitCode::from(report.exit_code()))
         }
-        Chore::HiddenEffects { seeds, snr, only, threads, hhc } => {
-            let selection = hidden_effects::Selection { seeds, snr_db: snr, only };
+        Chore::HiddenEffects { seeds, first_block, snr, only, threads, hhc } => {
+            let selection =
+                hidden_effects::Selection { seeds, first_block, snr_db: snr, only };
             let options = hidden_effects::Options { selection, threads, hhc };
             let progress = |line: &str| say(&mut std::io::stderr(), line);
             let report = hidden_effects::run(root, &options, progress)?;

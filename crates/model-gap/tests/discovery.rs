@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use model_gap::discovery::{
-    Confidence, Discovery, Finding, Settings, Signal, Simulator, Trace, Verdict,
+    Confidence, Discovery, Finding, Settings, Signal, Simulator, Trace, Verdict, separations,
 };
 use model_gap::{Candidate, Cause, Effect, GapError, Parameter, Scale, Side};
 use nalgebra::DMatrix;
@@ -231,4 +231,112 @@ fn a_blocked_candidate_is_never_named() {
     candidates[1].blocked = Some("no".into());
     let finding = find(&traces(|e, i| added(1, 0.06, e, i), 2), &candidates);
     assert!(finding.causes.iter().all(|c| c.candidate != 1));
+}
+
+#[test]
+fn a_weak_parameter_may_differ_from_run_to_run_where_that_costs_little() {
+    // a strong cubic, steady, and a weak lag whose size differs by a third between runs: what values of
+    // its own for every run would gain is a small part of what both explain
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let weak = [0.10, 0.16, 0.10, 0.16];
+    let truth = |e: usize, i| added(0, 1.5, e, i) + added(1, weak[e], e, i);
+    let finding = find(&traces(truth, 8), &candidates);
+    let mut found: Vec<usize> = finding.causes.iter().map(|c| c.candidate).collect();
+    found.sort_unstable();
+    assert_eq!(found, [0, 1], "{:?}", finding.reasons);
+    // the same differences alone speak against the name
+    let alone = find(&traces(|e: usize, i| added(1, 3.0 * (weak[e] - 0.09), e, i), 8), &candidates);
+    assert!(alone.reasons.iter().any(|r| r.contains("drifts")), "{:?}", alone.reasons);
+}
+
+/// A line of one frequency whose phase is fitted in every experiment.
+struct Humming {
+    traces: Vec<Trace>,
+    adapts: bool,
+}
+
+fn line(amplitude: f64, residual: &[f64]) -> Vec<f64> {
+    let angle = |i: usize| TAU * 31.0 * i as f64 / SAMPLES as f64;
+    let sum = |f: fn(f64) -> f64| {
+        residual.iter().enumerate().map(|(i, r)| r * f(angle(i))).sum::<f64>()
+    };
+    let (c, s) = (sum(f64::cos), sum(f64::sin));
+    let size = c.hypot(s).max(1e-300);
+    (0..residual.len())
+        .map(|i| amplitude * (c * angle(i).cos() + s * angle(i).sin()) / size)
+        .collect()
+}
+
+impl Simulator for Humming {
+    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
+        let one = |(e, trace): (usize, &Trace)| {
+            let base: Vec<f64> = (0..SAMPLES).map(|i| input(e, i)).collect();
+            let left: Vec<f64> = trace.measured.iter().zip(&base).map(|(a, b)| a - b).collect();
+            let amplitude: f64 = effects.iter().map(|x| x.values[0]).sum();
+            base.iter().zip(line(amplitude, &left)).map(|(a, b)| a + b).collect()
+        };
+        Ok(self.traces.iter().enumerate().map(one).collect())
+    }
+
+    fn adapted(
+        &self,
+        effect: &Effect,
+        residual: &[Vec<f64>],
+    ) -> Result<Option<Vec<Vec<f64>>>, GapError> {
+        let own = || residual.iter().map(|r| line(effect.values[0], r)).collect();
+        Ok(self.adapts.then(own))
+    }
+}
+
+#[test]
+fn an_effect_that_adapts_may_adapt_to_surrogates_too() {
+    // the surrogate holds the line with another phase than the data in every run
+    let structure: Signal = (0..EXPERIMENTS)
+        .map(|e| {
+            let phase = |i: usize| TAU * 31.0 * i as f64 / SAMPLES as f64 + 1.6 * e as f64;
+            (0..SAMPLES).map(|i| 0.05 * phase(i).sin()).collect()
+        })
+        .collect();
+    let hum = |_: usize, i: usize| 0.05 * (TAU * 31.0 * i as f64 / SAMPLES as f64).cos();
+    let threshold = |adapts: bool| {
+        let traces = traces(hum, 7);
+        let simulator = Humming { traces: traces.clone(), adapts };
+        let discovery = Discovery {
+            traces: &traces,
+            simulator: &simulator,
+            candidates: &[candidate("hum")],
+            generic: &[],
+            structures: std::slice::from_ref(&structure),
+            settings: Settings::default(),
+        };
+        let finding = discovery.find().unwrap();
+        (finding.screen[0].threshold, finding.causes.len())
+    };
+    let (with, named) = threshold(true);
+    let (without, named_without) = threshold(false);
+    // a surrogate of the same size as the data forbids the name only if the line may turn to it
+    assert!(with > 3.0 * without, "{with} {without}");
+    assert_eq!((named, named_without), (0, 1));
+}
+
+#[test]
+fn an_experiment_parts_what_differs_and_not_what_is_the_same() {
+    let candidates = [candidate("cubic"), candidate("lag"), candidate("cubic-twin")];
+    let truth = traces(|e, i| added(0, 0.06, e, i), 5);
+    let finding = find(&truth, &candidates);
+    let rivals = &finding.causes[0].rivals;
+    assert_eq!(rivals.len(), 2);
+    // the same runs once more part the twins by nothing
+    let found = separations(&Toy, &truth, &candidates, rivals).unwrap();
+    assert!(found.distance.iter().all(|d| *d < 1e-6), "{}", found.distance);
+    assert!(found.energy.iter().all(|e| *e > 100.0), "{:?}", found.energy);
+    // a lag in the place of the twin is parted from the cubic, both ways, by less than it adds
+    let other = find(&traces(|e, i| added(1, 0.06, e, i), 5), &candidates);
+    let apart = [rivals[0].clone(), other.causes[0].rivals[0].clone()];
+    let found = separations(&Toy, &truth, &candidates, &apart).unwrap();
+    for (a, b) in [(0, 1), (1, 0)] {
+        let distance = found.distance[(a, b)];
+        assert!(distance > 50.0, "{}", found.distance);
+        assert!(distance < found.energy[0] + found.energy[1] + 2.0 * (found.energy[0] * found.energy[1]).sqrt());
+    }
 }

@@ -228,7 +228,9 @@ fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mut Doubts) {
         }
         AmplifierStage::Depolarisation(loss) => {
             let threshold = loss.threshold_volt;
-            if loss.loss_per_volt == 0.0 || threshold <= low {
+            let loses = loss.loss_per_volt > 0.0 || loss.loss_per_volt_second > 0.0;
+            doubts.above("loss_per_volt_second", (loss.loss_per_volt_second, "1/(V s)"), 1.0);
+            if !loses || threshold <= low {
                 doubts.idle("threshold_volt", format!("{threshold} V, never passed below"));
             } else if loss.loss_per_volt * (threshold - high) >= 1.0 {
                 let found = format!("{threshold} V: nothing is left of the polarisation");

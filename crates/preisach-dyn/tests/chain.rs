@@ -144,6 +144,13 @@ fn bad_parameters_are_refused_with_their_name() {
             })),
             "repoling_volt",
         ),
+        (
+            amplifier(AmplifierStage::Depolarisation(Depolarisation {
+                loss_per_volt_second: -0.1,
+                ..Depolarisation::new(-20.0)
+            })),
+            "loss_per_volt_second",
+        ),
         (linkage(LinkageStage::LogCreep(LogCreep::new(-0.1))), "rate_per_decade"),
         (linkage(LinkageStage::LogCreep(LogCreep { to_s: 0.2, ..LogCreep::new(0.1) })), "to_s"),
         (

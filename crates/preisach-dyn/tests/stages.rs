@@ -94,6 +94,17 @@ fn effects_vanish_in_proportion_to_their_parameter() {
                 amplifier(AmplifierStage::Depolarisation(stage))
             }),
         ),
+        (
+            "depolarisation with time",
+            Box::new(|x| {
+                let stage = Depolarisation {
+                    loss_per_volt: 0.0,
+                    loss_per_volt_second: 1e-4 * x,
+                    ..Depolarisation::new(20.0)
+                };
+                amplifier(AmplifierStage::Depolarisation(stage))
+            }),
+        ),
         ("creep", Box::new(|x| linkage(LinkageStage::LogCreep(LogCreep::new(1e-4 * x))))),
         (
             "resonance",
@@ -446,8 +457,11 @@ fn heating_follows_the_loss_tangent_law() {
 
 #[test]
 fn depolarisation_stays_until_the_voltage_repoles() {
-    let stage =
-        Depolarisation { threshold_volt: -20.0, loss_per_volt: 0.01, repoling_volt: Some(100.0) };
+    let stage = Depolarisation {
+        loss_per_volt: 0.01,
+        repoling_volt: Some(100.0),
+        ..Depolarisation::new(-20.0)
+    };
     let model = amplifier(AmplifierStage::Depolarisation(stage));
     let gain = |past: &[f64]| {
         let input: Vec<f64> = [&[50.0], past, &[50.0]].concat();
@@ -466,6 +480,41 @@ fn depolarisation_stays_until_the_voltage_repoles() {
         amplifier(AmplifierStage::Depolarisation(Depolarisation { repoling_volt: None, ..stage }));
     let output = measured(&lasting, &[50.0, -50.0, 100.0, 50.0], 1e-3);
     assert_abs_diff_eq!(output[3], 35.0, epsilon = 1e-12);
+}
+
+#[test]
+fn depolarisation_grows_with_the_time_below_the_threshold() {
+    let stage = Depolarisation {
+        loss_per_volt: 0.0,
+        loss_per_volt_second: 0.02,
+        ..Depolarisation::new(-20.0)
+    };
+    let model = amplifier(AmplifierStage::Depolarisation(stage));
+    // 50 V down to -50 V within a second, half a second there, and back: in closed form
+    let path = |t: f64| match t {
+        t if t < 1.0 => 50.0 - 100.0 * t,
+        t if t < 1.5 => -50.0,
+        t => (-50.0 + 100.0 * (t - 1.5)).min(50.0),
+    };
+    let overdrive_volt_s = 2.0 * 0.5 * 30.0 * 0.3 + 0.5 * 30.0;
+    // exact at any step that has the corners among its samples, and where it has not the crossings
+    for step_s in [0.5, 0.1, 1e-3] {
+        let input: Vec<f64> =
+            (0..).map(|i| f64::from(i) * step_s).take_while(|t| *t < 3.0).map(path).collect();
+        let last = *measured(&model, &input, step_s).last().unwrap();
+        assert_abs_diff_eq!(last, 50.0 * (1.0 - 0.02 * overdrive_volt_s), epsilon = 1e-9);
+        let gains = stage.gains(&input, step_s);
+        assert_abs_diff_eq!(gains[gains.len() - 1], 1.0 - 0.02 * overdrive_volt_s, epsilon = 1e-9);
+    }
+    // repoling takes it back, the last first
+    let repoled = Depolarisation { repoling_volt: Some(100.0), ..stage };
+    let gains = repoled.gains(&[50.0, -80.0, -80.0, 40.0, 88.0, 100.0], 0.5);
+    let before = 1.0 - gains[3];
+    assert!(before > 0.4, "{gains:?}");
+    assert_abs_diff_eq!(gains[4], 0.9, epsilon = 1e-12);
+    assert_eq!(gains[5], 1.0);
+    // all is lost in the end, never more
+    assert_eq!(stage.gains(&[-200.0; 50], 1.0).last(), Some(&0.0));
 }
 
 #[test]
@@ -570,6 +619,22 @@ fn sensor_errors_are_what_they_say() {
         }
         assert!((largest_difference(&input, &output) - 0.4).abs() < 1e-5);
     }
+    let about = |straight| {
+        let shape = NonlinearityShape::CubicAbout { straight };
+        let stage = Nonlinearity { amplitude_um: 0.4, half_range_um: 100.0, shape };
+        measured(&sensor(SensorStage::Nonlinearity(stage)), &input, 1e-3)
+    };
+    let cubic =
+        Nonlinearity { amplitude_um: 0.4, half_range_um: 100.0, shape: NonlinearityShape::Cubic };
+    let best_line = measured(&sensor(SensorStage::Nonlinearity(cubic)), &input, 1e-3);
+    assert!(largest_difference(&about(0.75), &best_line) < 1e-12);
+    for straight in [0.0, 0.3, 0.9, 1.0, 1.5] {
+        // the amplitude is the largest error, whatever line it is taken from
+        let largest = largest_difference(&input, &about(straight));
+        assert!((largest - 0.4).abs() < 1e-4, "{straight}: {largest}");
+    }
+    let through_ends = about(1.0);
+    assert_abs_diff_eq!(through_ends[500], input[500], epsilon = 1e-9);
     let stage = Quantisation { step_um: 0.25 };
     let output = measured(&sensor(SensorStage::Quantisation(stage)), &input, 1e-3);
     for (x, y) in input.iter().zip(&output) {

@@ -333,7 +333,7 @@ fn experiments_and_pairs(cases: &[Case], floors: &Floors) -> Vec<Metric> {
     let proposals = cases
         .iter()
         .filter(|case| case.findings.verdict == Verdict::Ambiguous)
-        .map(|case| truth::hidden::EXPERIMENTS.contains(&case.findings.next_experiment.as_str()));
+        .map(|case| truth::hidden::is_experiment(&case.findings.next_experiment));
     let pairs = || cases.iter().filter(|case| case.causes().len() == 2);
     let visible = || pairs().filter(|case| floors.shows(case));
     let third = |case: &Case| {

@@ -65,8 +65,8 @@ struct HiddenArguments {
     /// Another strength than the seed's own: rms of the effect over that of the output.
     #[arg(long)]
     share: Option<f64>,
-    /// A further experiment of the catalogue.
-    #[arg(long, value_parser = EXPERIMENTS)]
+    /// A further experiment of the catalogue, or several joined by `+`.
+    #[arg(long, value_parser = known_experiment)]
     experiment: Option<String>,
     /// Another draw of the noise of the measured runs, for the same truth.
     #[arg(long, default_value_t = 0)]
@@ -74,6 +74,15 @@ struct HiddenArguments {
     /// Long records: 20 runs, about 5e5 samples.
     #[arg(long)]
     full: bool,
+}
+
+/// An experiment of the catalogue, or several joined by `+`.
+fn known_experiment(text: &str) -> Result<String, String> {
+    if hidden::is_experiment(text) {
+        Ok(text.to_owned())
+    } else {
+        Err(format!("none of {}, nor several of them joined by `+`", EXPERIMENTS.join(", ")))
+    }
 }
 
 fn main() -> ExitCode {

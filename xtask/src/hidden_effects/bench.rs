@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use score::case::Case;
 use score::findings::{Findings, Gain, Verdict};
-use truth::hidden::{Answer, EXPERIMENTS, File, Request, Size, measured_set, reference_files};
+use truth::hidden::{Answer, File, Request, Size, is_experiment, measured_set, reference_files};
 
 use super::{Failure, Group};
 use crate::{XtaskError, files};
@@ -241,7 +241,7 @@ impl Bench<'_> {
         case: &Case,
     ) -> Result<Option<Findings>, XtaskError> {
         let proposed = &case.findings.next_experiment;
-        let known = EXPERIMENTS.contains(&proposed.as_str());
+        let known = is_experiment(proposed);
         let open = case.findings.verdict == Verdict::Ambiguous && case.single().is_some();
         if !(known && open && self.follow_ups_left > 0) {
             return Ok(None);

@@ -9,6 +9,8 @@ use truth::hidden::{Assignment, BLOCK, Hidden};
 pub struct Selection {
     /// Sets of each cause at each noise level; ten of no effect, four pairs and four of unknown effects come with it.
     pub seeds: u64,
+    /// Block of 33 seeds that it begins with: blocks that bounds were set with are no test of them.
+    pub first_block: u64,
     /// Noise levels, dB.
     pub snr_db: Vec<f64>,
     /// Only some: `null`, `pairs`, `outside`, or the id of what is hidden; all if empty.
@@ -40,7 +42,8 @@ impl Selection {
 /// The groups of a selection, by noise level in the order given and by base.
 pub fn groups(selection: &Selection) -> Vec<Group> {
     let mut by_base: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
-    for seed in 0..selection.seeds * BLOCK {
+    let first = selection.first_block * BLOCK;
+    for seed in first..first + selection.seeds * BLOCK {
         let assignment = Assignment::of_seed(seed);
         if selection.admits(assignment.hidden) {
             by_base.entry(assignment.base).or_default().push(seed);
@@ -60,7 +63,8 @@ mod tests {
     use super::*;
 
     fn selection(only: &str) -> Selection {
-        Selection { seeds: 10, snr_db: vec![40.0, 30.0, 20.0], only: only.to_owned() }
+        let snr_db = vec![40.0, 30.0, 20.0];
+        Selection { seeds: 10, first_block: 0, snr_db, only: only.to_owned() }
     }
 
     fn sets(only: &str) -> usize {
@@ -74,6 +78,14 @@ mod tests {
         assert_eq!(sets("creep"), 30);
         assert_eq!((sets("pairs"), sets("outside")), (120, 120));
         assert_eq!(sets("no such thing"), 0);
+    }
+
+    #[test]
+    fn another_block_has_other_seeds_and_as_many() {
+        let later = Selection { seeds: 2, first_block: 3, ..selection("") };
+        let seeds: Vec<u64> = groups(&later).into_iter().flat_map(|g| g.seeds).collect();
+        assert_eq!(seeds.len(), 198);
+        assert!(seeds.iter().all(|seed| (99..165).contains(seed)), "{seeds:?}");
     }
 
     #[test]

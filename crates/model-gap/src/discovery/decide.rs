@@ -5,9 +5,10 @@ use super::fit::{Fitted, Fitter};
 use super::gain::gain;
 use super::judge::{Generic, drift, paired, parameters};
 use super::screen::screen;
-use super::{Confidence, Discovery, Finding, Found, Screened, Simulator, Verdict};
+use super::{Confidence, Discovery, Finding, Found, Rival, Screened, Signal, Simulator, Verdict};
 use crate::{Effect, GapError, Scale};
 use rayon::prelude::*;
+use std::sync::{Arc, Mutex};
 
 /// Relative spread from which on the name is wrong.
 const WRONG_NAME: f64 = 0.5;
@@ -15,6 +16,8 @@ const WRONG_NAME: f64 = 0.5;
 const STRONG: f64 = 2.0;
 /// Part of its threshold that a candidate must promise before it is fitted.
 const PROMISE: f64 = 0.3;
+/// Part of the drop of a cause that another must promise before it is fitted in its place.
+const RIVAL_PROMISE: f64 = 0.1;
 /// Relative spread of a parameter over the experiments from which on it drifts.
 const DRIFTING: f64 = 0.25;
 /// Share of the drop that values of its own for every experiment must add before a drift speaks
@@ -24,6 +27,10 @@ const DRIFT_COSTS: [f64; 2] = [0.06, 0.15];
 const NEXT_SHARE: f64 = 0.04;
 /// Share of a drop that must show where experiments are held out.
 const HELD_OUT_SHARE: f64 = 0.3;
+/// Share of the misfit above the floor below which something else than the names is missing too.
+const LEAST_SHARE: f64 = 0.6;
+/// Misfit over the floor, in floors, from which that share means anything.
+const STANDS_OUT: f64 = 0.5;
 /// Share of a drop within which two causes are not told apart: no model of a cause is better.
 const FORM_ERROR: f64 = 0.02;
 
@@ -62,9 +69,31 @@ impl<'a, S: Simulator> Search<'a, S> {
         let base = fitter.refine(Vec::new())?;
         let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
         let generic = Generic::new(discovery, evidence);
-        Ok(Self { discovery, evidence, fitter, screened, generic, base })
+        let kept = Mutex::new(Vec::new());
+        let energy = |s: &Signal| fitter.cost_of(s);
+        let structure_energy = discovery.structures.iter().map(energy).fold(0.0, f64::max);
+        Ok(Self { discovery, evidence, fitter, screened, generic, base, structure_energy, kept })
     }
 }
+
+/// One of the causes found, taken out and looked at again.
+struct Place {
+    /// The fit without it.
+    rest: Fitted,
+    /// The candidates that do about as well in its place, best first.
+    alternatives: Vec<usize>,
+    /// It and those, as fitted.
+    rivals: Vec<Rival>,
+    drop: f64,
+}
+
+/// The fit without one of the causes, and every candidate fitted in its place.
+struct TakenOut {
+    rest: Fitted,
+    fits: Vec<Option<Fitted>>,
+}
+
+type Kept = Vec<((Vec<Effect>, usize), Arc<TakenOut>)>;
 
 struct Search<'a, S> {
     discovery: &'a Discovery<'a, S>,
@@ -73,12 +102,15 @@ struct Search<'a, S> {
     screened: Vec<Screened>,
     generic: Generic,
     base: Fitted,
+    /// Misfit that the worst surrogate leaves.
+    structure_energy: f64,
+    kept: Mutex<Kept>,
 }
 
 impl<S: Simulator> Search<'_, S> {
     fn run(self) -> Result<Finding, GapError> {
         let mut reasons = Vec::new();
-        let singles = self.fits_after(&self.base, &[])?;
+        let singles = self.fits_after(&self.base, &[], 0.0)?;
         let single_drops: Vec<Option<f64>> =
             singles.iter().map(|f| f.as_ref().map(|f| self.base.cost - f.cost)).collect();
         let mut current = self.base.clone();
@@ -96,7 +128,8 @@ impl<S: Simulator> Search<'_, S> {
                 self.swap(&mut chosen, &mut current)?;
             }
             if chosen.len() < self.discovery.settings.most_causes {
-                fits = self.fits_after(&current, &chosen)?;
+                let asked = NEXT_SHARE * self.output_drop(&self.base, &current);
+                fits = self.fits_after(&current, &chosen, PROMISE * asked)?;
             }
         }
         self.check_backward(&mut chosen, &mut current)?;
@@ -107,11 +140,13 @@ impl<S: Simulator> Search<'_, S> {
         self.discovery.candidates[candidate].blocked.is_none()
     }
 
-    /// Every further candidate fitted after the effects of `current`.
+    /// Every further candidate fitted after the effects of `current`, if it promises a part of its
+    /// threshold and a drop of `least`.
     fn fits_after(
         &self,
         current: &Fitted,
         chosen: &[usize],
+        least: f64,
     ) -> Result<Vec<Option<Fitted>>, GapError> {
         (0..self.discovery.candidates.len())
             .into_par_iter()
@@ -120,7 +155,7 @@ impl<S: Simulator> Search<'_, S> {
                     return Ok(None);
                 }
                 let starts = &self.discovery.candidates[candidate].starts;
-                let least = PROMISE * self.screened[candidate].threshold;
+                let least = least.max(PROMISE * self.screened[candidate].threshold);
                 self.fitter.fit_with(current, candidate, starts, least)
             })
             .collect()
@@ -150,7 +185,7 @@ impl<S: Simulator> Search<'_, S> {
     /// Both keys: the drop exceeds what surrogates reach, and most of it shows where it is held out.
     fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, String> {
         let drop = current.cost - next.cost - self.penalty(candidate);
-        let before = self.base.cost - current.cost;
+        let before = self.output_drop(&self.base, current);
         let threshold = self.screened[candidate].threshold + NEXT_SHARE * before;
         let id = self.id(candidate);
         if drop < threshold {
@@ -174,6 +209,14 @@ impl<S: Simulator> Search<'_, S> {
         Ok(held_out)
     }
 
+    /// What a fit takes off the misfit of the outputs. A further channel shows a cause directly: it says
+    /// nothing about the form of its effect on the output, which is what a next cause may mend.
+    fn output_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
+        let beside = |f: &Fitted| self.evidence.beside_output(&f.residual);
+        let drop = before.cost - after.cost - (beside(before) - beside(after));
+        drop.max(0.0)
+    }
+
     fn held_out_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
         let sum = |f: &Fitted| f.held_out(self.evidence).iter().sum::<f64>();
         sum(before) - sum(after)
@@ -186,13 +229,35 @@ impl<S: Simulator> Search<'_, S> {
         rest
     }
 
+    /// The fit without one of the causes, and what does for it; kept, because it is asked for again.
+    fn taken_out(
+        &self,
+        chosen: &[usize],
+        at: usize,
+        current: &Fitted,
+    ) -> Result<Arc<TakenOut>, GapError> {
+        let key = (current.effects.clone(), at);
+        let known = |kept: &Kept| kept.iter().find(|k| k.0 == key).map(|k| Arc::clone(&k.1));
+        // a lock is poisoned only by a panic while it was held, and nothing panics there
+        if let Some(found) = self.kept.lock().ok().and_then(|kept| known(&kept)) {
+            return Ok(found);
+        }
+        let rest = self.fitter.refine(Self::without(&current.effects, at))?;
+        let least = RIVAL_PROMISE * (rest.cost - current.cost);
+        let fits = self.fits_after(&rest, chosen, least)?;
+        let made = Arc::new(TakenOut { rest, fits });
+        if let Ok(mut kept) = self.kept.lock() {
+            kept.insert(0, (key, Arc::clone(&made)));
+            kept.truncate(self.discovery.settings.most_causes);
+        }
+        Ok(made)
+    }
+
     /// Replaces a chosen cause where another one does better beside the rest.
     fn swap(&self, chosen: &mut [usize], current: &mut Fitted) -> Result<(), GapError> {
         for at in 0..chosen.len() {
-            let rest = self.fitter.refine(Self::without(&current.effects, at))?;
-            let others: Vec<usize> = chosen.to_vec();
-            let fits = self.fits_after(&rest, &others)?;
-            if let Some((candidate, found)) = self.best_of(&rest, &fits) {
+            let place = self.taken_out(chosen, at, current)?;
+            if let Some((candidate, found)) = self.best_of(&place.rest, &place.fits) {
                 let better = current.cost - found.cost
                     > self.discovery.settings.separation + self.penalty(candidate)
                         - self.penalty(chosen[at]);
@@ -220,7 +285,7 @@ impl<S: Simulator> Search<'_, S> {
             let rest = self.fitter.refine(Self::without(&current.effects, at))?;
             let drop = rest.cost - current.cost - self.penalty(chosen[at]);
             // the same two keys that it entered by, now that the others know of it
-            let others = (self.base.cost - rest.cost).max(0.0);
+            let others = self.output_drop(&self.base, &rest);
             let needed = self.screened[chosen[at]].threshold + NEXT_SHARE * others;
             if drop < needed || self.held_out_drop(&rest, current) < HELD_OUT_SHARE * drop {
                 chosen.remove(at);
@@ -240,27 +305,34 @@ impl<S: Simulator> Search<'_, S> {
         at: usize,
         current: &Fitted,
         singles: &[Option<Fitted>],
-    ) -> Result<(Vec<usize>, f64), GapError> {
-        let (rest_cost, fits) = if chosen.len() == 1 {
-            (self.base.cost, singles.to_vec())
+    ) -> Result<Place, GapError> {
+        let out = if chosen.len() == 1 {
+            Arc::new(TakenOut { rest: self.base.clone(), fits: singles.to_vec() })
         } else {
-            let rest = self.fitter.refine(Self::without(&current.effects, at))?;
-            (rest.cost, self.fits_after(&rest, chosen)?)
+            self.taken_out(chosen, at, current)?
         };
-        let drop = rest_cost - current.cost;
-        let margin = self.discovery.settings.separation + FORM_ERROR * drop;
-        let mut close: Vec<(f64, usize)> = Vec::new();
+        let TakenOut { rest, fits } = &*out;
+        let drop = rest.cost - current.cost;
+        let margin =
+            self.discovery.settings.separation + FORM_ERROR * self.output_drop(rest, current);
+        let mut close: Vec<(f64, &Fitted, usize)> = Vec::new();
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
             let behind = fit.cost - current.cost + penalty;
             let (_, error) = paired(self.evidence, fit, current);
             if behind < margin || (behind < 2.0 * error && behind < 0.2 * drop) {
-                close.push((behind, candidate));
+                close.push((behind, fit, candidate));
             }
         }
         close.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok((close.into_iter().map(|c| c.1).collect(), drop))
+        let own = std::iter::once((current, chosen[at]));
+        let rivals = own
+            .chain(close.iter().map(|c| (c.1, c.2)))
+            .map(|(fit, candidate)| Rival::of(self.evidence, fit, candidate))
+            .collect();
+        let alternatives = close.into_iter().map(|c| c.2).collect();
+        Ok(Place { rest: rest.clone(), alternatives, rivals, drop })
     }
 
     fn conclude(
@@ -276,14 +348,14 @@ impl<S: Simulator> Search<'_, S> {
         let after = self.generic.along(self.discovery, self.evidence, &current.residual);
         let mut causes = Vec::new();
         for at in 0..chosen.len() {
-            let (alternatives, drop) = self.alternatives(chosen, at, current, singles)?;
-            let rest = self.fitter.refine(Self::without(&current.effects, at))?;
+            let place = self.alternatives(chosen, at, current, singles)?;
             causes.push(Found {
                 candidate: chosen[at],
-                parameters: parameters(self.discovery, self.evidence, current, at),
-                drop,
-                held_out_drop: self.held_out_drop(&rest, current),
-                alternatives,
+                parameters: parameters(self.discovery, self.evidence, current, at, &place.rest),
+                drop: place.drop,
+                held_out_drop: self.held_out_drop(&place.rest, current),
+                alternatives: place.alternatives,
+                rivals: place.rivals,
             });
         }
         let drop = self.base.cost - current.cost;
@@ -300,6 +372,14 @@ impl<S: Simulator> Search<'_, S> {
             reasons.push(format!(
                 "{:.0} % of the excess is explained; structure is left along directions without a name: {after:.0} noise units, {:.0} at the floor",
                 100.0 * explained, self.generic.threshold
+            ));
+        }
+        let whole = self.share_of_excess(current);
+        if !chosen.is_empty() && whole < LEAST_SHARE {
+            doubts = true;
+            reasons.push(format!(
+                "{:.0} % of what the base model leaves above its floor is explained: most of it is something else",
+                100.0 * whole
             ));
         }
         let wrong_name = explained < 0.5 || worst_drift > WRONG_NAME;
@@ -383,6 +463,16 @@ impl<S: Simulator> Search<'_, S> {
             }
         }
         (doubts, worst)
+    }
+
+    /// Share of the misfit above the floor that a fit takes away; 1 where nothing stands out. The floor
+    /// is what noise and the worst surrogate leave.
+    fn share_of_excess(&self, current: &Fitted) -> f64 {
+        let energy = |f: &Fitted| f.cost - self.evidence.beside_output(&f.residual);
+        let floor = self.evidence.noise_energy() + self.structure_energy;
+        let before = energy(&self.base) - floor;
+        let drop = self.output_drop(&self.base, current);
+        if before > STANDS_OUT * floor { (drop / before).min(1.0) } else { 1.0 }
     }
 
     fn nothing_named(&self, excess: f64, reasons: &mut Vec<String>) -> Verdict {

@@ -79,6 +79,26 @@ impl<'a> Evidence<'a> {
             .sum()
     }
 
+    /// Sum of squares of a residual over the noise on the channels beside the output, which no nuisance
+    /// touches: part of every cost.
+    pub(crate) fn beside_output(&self, residual: &[Vec<f64>]) -> f64 {
+        self.traces
+            .iter()
+            .zip(residual)
+            .filter(|(t, _)| !t.is_output)
+            .map(|(t, r)| r.iter().map(|x| x * x).sum::<f64>() / (t.sigma * t.sigma))
+            .sum()
+    }
+
+    /// Sum of squares of the outputs that noise alone would leave, over what they weigh with.
+    pub(crate) fn noise_energy(&self) -> f64 {
+        self.traces
+            .iter()
+            .filter(|t| t.is_output)
+            .map(|t| t.measured.len() as f64 * (t.noise / t.sigma).powi(2))
+            .sum()
+    }
+
     /// Products of columns, experiment by experiment.
     pub(crate) fn products(&self, columns: &Columns<'_>) -> Vec<Products> {
         let width = self.nuisance.first().map_or(0, DMatrix::ncols);

@@ -1,13 +1,16 @@
 //! The open set: what is left, whether parameters hold still, how well they are known.
 
 use super::FittedParameter;
-use super::evidence::{Columns, Evidence, Products};
+use super::evidence::{Columns, Evidence, Products, difference};
 use super::fit::Fitted;
 use super::{Discovery, Signal};
 use nalgebra::{DMatrix, DVector};
 
 /// Factor on the energy that surrogates leave along the directions without a name.
 const GENERIC_MARGIN: f64 = 4.0;
+
+/// Part of an effect by which its model is wrong along the effect itself.
+const FORM: f64 = 0.05;
 
 /// The directions without a name, ready to be tested against residuals.
 pub(crate) struct Generic {
@@ -124,13 +127,39 @@ pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize)
     }
 }
 
-/// Values with 95 % intervals of the parameters of effect `effect`.
+/// How far an error of form moves the coordinates of one effect.
+///
+/// ```text
+/// s_k' = s_k - the other slopes and the nuisance projected out,   form_k = FORM <e, s_k'> / |s_k'|^2
+/// ```
+/// `e` is what the effect adds to the rest. No model of a cause is exact: what it lacks is taken to be
+/// along its own effect by a part `FORM` of it, and each parameter moves as it would have to.
+fn form_errors(evidence: &Evidence<'_>, fitted: &Fitted, rest: &Fitted) -> Option<Vec<f64>> {
+    let added = difference(&rest.residual, &fitted.residual);
+    let columns: Vec<&[Vec<f64>]> = std::iter::once(added.as_slice())
+        .chain(fitted.slopes.iter().map(Vec::as_slice))
+        .collect();
+    let gram = evidence.projected(&evidence.products(&columns));
+    let n = fitted.slopes.len();
+    let mut normal = gram.view((1, 1), (n, n)).clone_owned();
+    let ridge = 1e-12 * normal.trace();
+    for i in 0..n {
+        normal[(i, i)] += ridge;
+    }
+    // the shift of all coordinates that would undo the effect: each entry is <e, s'> / |s'|^2
+    let along = gram.view((1, 0), (n, 1)).column(0).clone_owned();
+    Some(normal.cholesky()?.solve(&along).iter().map(|x| FORM * x.abs()).collect())
+}
+
+/// Values with 95 % intervals of the parameters of effect `effect`; `rest` is the fit without it.
 pub(crate) fn parameters<S>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
     fitted: &Fitted,
     effect: usize,
+    rest: &Fitted,
 ) -> Vec<FittedParameter> {
+    let form = form_errors(evidence, fitted, rest);
     let gram = evidence.projected(&fitted.products);
     let n = fitted.free.len();
     let mut normal = gram.view((1, 1), (n, n)).clone_owned();
@@ -150,7 +179,8 @@ pub(crate) fn parameters<S>(
             let std = place.and_then(|k| {
                 let variance = covariance.as_ref()?[(k, k)];
                 let inflation = drift(evidence, fitted, k).chi2_per_degree.max(1.0);
-                Some((variance * inflation).sqrt())
+                let form = form.as_ref().map_or(0.0, |f| f[k]);
+                Some((variance * inflation + form * form).sqrt())
             });
             let known = std.filter(|_| parameter.needs.is_none());
             let ci95 = known.map_or([parameter.low, parameter.high], |std| {

@@ -5,11 +5,13 @@ mod evidence;
 mod fit;
 mod gain;
 mod judge;
+mod rival;
 mod screen;
 mod trace;
 mod verdict;
 
 pub use gain::Gain;
+pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
 pub use trace::{Simulator, Trace};
 pub use verdict::{Confidence, Finding, FittedParameter, Found, Verdict};

@@ -1,6 +1,6 @@
 //! What can be said at the end.
 
-use super::{Gain, Screened};
+use super::{Gain, Rival, Screened};
 use crate::Effect;
 use serde::{Deserialize, Serialize};
 
@@ -62,6 +62,8 @@ pub struct Found {
     pub held_out_drop: f64,
     /// The candidates that explain the same data about as well, best first, itself left out.
     pub alternatives: Vec<usize>,
+    /// It and its alternatives, as fitted: what a further experiment has to tell apart.
+    pub rivals: Vec<Rival>,
 }
 
 /// Everything found.

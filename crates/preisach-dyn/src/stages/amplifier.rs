@@ -236,28 +236,36 @@ impl Step for HeatStep {
 ///
 /// ```text
 /// q <- max( loss (threshold - V), min( loss (repoling - V), q ) ),   each term held inside 0 .. 1
-/// gain = 1 - q
+/// p' = rate (threshold - V) below the threshold,   p <= (repoling - V) / (repoling - threshold)
+/// gain = 1 - min(1, q + p)
 /// ```
 /// Below the threshold domains turn against the poling direction, more of them the deeper the
-/// voltage goes; they stay turned until a voltage above the threshold turns them back, those that
-/// turned last coming back first, all of them by `repoling_volt`. The small-signal coefficient is
-/// proportional to the polarisation left (`d33 = 2 Q33 eps33 P3`), so the law's output shrinks by
-/// the share lost, about that at 0 V. The voltage passes unchanged. Rate-independent.
+/// voltage goes (`q`, at once) and the longer it stays there (`p`, nothing at the start); they stay
+/// turned until a voltage above the threshold turns them back, those that turned last coming back
+/// first, all of them by `repoling_volt`. The small-signal coefficient is proportional to the
+/// polarisation left (`d33 = 2 Q33 eps33 P3`), so the law's output shrinks by the share lost, about
+/// that at 0 V. The voltage passes unchanged; `p` is exact for a voltage straight between samples.
 ///
-/// `loss_per_volt = 0`, or a threshold never reached, is the identity.
-/// Assumes: a uniform strip of switching voltages. Not modelled: the butterfly loop beyond the
-/// coercive field, the strain of the turning domains themselves, slow ageing.
+/// `loss_per_volt = loss_per_volt_second = 0`, or a threshold never reached, is the identity.
+/// A periodic orbit is that of the loss `p` it began with: ageing is slow against a period.
+/// Assumes: a uniform strip of switching voltages, a rate of switching proportional to the overdrive.
+/// Not modelled: the butterfly loop beyond the coercive field, the strain of the turning domains
+/// themselves, ageing without voltage.
 /// Source: D. Damjanovic, *Ferroelectric, dielectric and piezoelectric properties of ferroelectric
 /// thin films and ceramics*, Reports on Progress in Physics 61 (1998), sections 2 and 6: `d33`
-/// from the polarisation, domain switching under reverse field. The play form is this project's.
+/// from the polarisation, domain switching under reverse field. The play form is this project's, and
+/// the rate its first term in the overdrive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Depolarisation {
     /// Voltage below which polarisation is lost, V; some -0.2 to -0.3 of the highest voltage.
     pub threshold_volt: f64,
-    /// Share of the polarisation lost per volt below the threshold, 1/V, 0 to 1.
+    /// Share of the polarisation lost at once per volt below the threshold, 1/V, 0 to 1.
     #[serde(default = "usual_loss")]
     pub loss_per_volt: f64,
+    /// Share lost per volt below the threshold and second spent there, 1/(V s), `>= 0`.
+    #[serde(default)]
+    pub loss_per_volt_second: f64,
     /// Voltage at which all of it has come back, V, above the threshold; none: it never does.
     #[serde(default)]
     pub repoling_volt: Option<f64>,
@@ -268,9 +276,10 @@ fn usual_loss() -> f64 {
 }
 
 impl Depolarisation {
-    /// Depolarisation below a threshold with the usual loss and no repoling.
+    /// Depolarisation below a threshold with the usual loss at once, none with time, no repoling.
     pub fn new(threshold_volt: f64) -> Self {
-        Self { threshold_volt, loss_per_volt: usual_loss(), repoling_volt: None }
+        let loss_per_volt = usual_loss();
+        Self { threshold_volt, loss_per_volt, loss_per_volt_second: 0.0, repoling_volt: None }
     }
 
     pub(super) fn check(&self) -> Result<(), PreisachError> {
@@ -282,6 +291,7 @@ impl Depolarisation {
             let (quantity, value) = ("loss_per_volt", self.loss_per_volt);
             return Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 1.0 });
         }
+        check_not_negative("loss_per_volt_second", self.loss_per_volt_second)?;
         match self.repoling_volt {
             Some(above) if !(above.is_finite() && above > value) => {
                 let (quantity, relation) = ("repoling_volt", "above threshold_volt");
@@ -291,32 +301,95 @@ impl Depolarisation {
         }
     }
 
-    pub(super) fn prepared(&self) -> DepolarisationStep {
-        DepolarisationStep { stage: *self }
+    /// Gain of the law's output at every sample of a terminal voltage, settled at the first.
+    pub fn gains(&self, terminal_volt: &[f64], step_s: f64) -> Vec<f64> {
+        let step = self.prepared(step_s);
+        let Some(&first) = terminal_volt.first() else { return Vec::new() };
+        let (mut memory, _) = step.start(first);
+        let mut gains = Vec::with_capacity(terminal_volt.len());
+        gains.push(DepolarisationStep::gain(&memory));
+        for &volt in &terminal_volt[1..] {
+            step.advance(&mut memory, volt);
+            gains.push(DepolarisationStep::gain(&memory));
+        }
+        gains
+    }
+
+    pub(super) fn prepared(&self, step_s: f64) -> DepolarisationStep {
+        DepolarisationStep { stage: *self, step_s }
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DepolarisationStep {
     stage: Depolarisation,
+    step_s: f64,
 }
 
-impl Step for DepolarisationStep {
-    /// Share of the polarisation lost.
-    type Memory = f64;
+/// Shares of the polarisation lost, and the last voltage.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LossMemory {
+    at_once: f64,
+    with_time: f64,
+    voltage: f64,
+}
 
-    fn start(&self, input: f64) -> (f64, f64) {
-        let mut lost = 0.0;
-        self.advance(&mut lost, input);
-        (lost, input)
+impl LossMemory {
+    /// A closed orbit is that of the loss it began with.
+    pub(super) fn settle(&mut self, before: &Self) {
+        self.with_time = before.with_time;
+    }
+}
+
+impl DepolarisationStep {
+    #[inline]
+    pub(super) fn gain(memory: &LossMemory) -> f64 {
+        1.0 - (memory.at_once + memory.with_time).min(1.0)
+    }
+
+    /// Volt below the threshold times seconds spent there, over a step straight in the voltage.
+    fn overdrive_volt_s(&self, from_volt: f64, to_volt: f64) -> f64 {
+        let threshold = self.stage.threshold_volt;
+        let (a, b) = (threshold - from_volt, threshold - to_volt);
+        let mean = match (a > 0.0, b > 0.0) {
+            (true, true) => 0.5 * (a + b),
+            (false, false) => 0.0,
+            // a triangle over the part of the step spent below
+            _ => 0.5 * a.max(b).powi(2) / (a - b).abs(),
+        };
+        mean * self.step_s
     }
 
     #[inline]
-    fn advance(&self, lost: &mut f64, input: f64) -> f64 {
-        let Depolarisation { threshold_volt, loss_per_volt, repoling_volt } = self.stage;
+    fn at_once(&self, lost: f64, input: f64) -> f64 {
+        let Depolarisation { threshold_volt, loss_per_volt, repoling_volt, .. } = self.stage;
         let share = |depth_volt: f64| (loss_per_volt * depth_volt).clamp(0.0, 1.0);
         let most = repoling_volt.map_or(1.0, |volt| share(volt - input));
-        *lost = lost.min(most).max(share(threshold_volt - input));
+        lost.min(most).max(share(threshold_volt - input))
+    }
+}
+
+impl Step for DepolarisationStep {
+    type Memory = LossMemory;
+
+    fn start(&self, input: f64) -> (LossMemory, f64) {
+        let mut memory = LossMemory { at_once: 0.0, with_time: 0.0, voltage: input };
+        memory.at_once = self.at_once(0.0, input);
+        (memory, input)
+    }
+
+    #[inline]
+    fn advance(&self, memory: &mut LossMemory, input: f64) -> f64 {
+        let Depolarisation { threshold_volt, loss_per_volt_second, repoling_volt, .. } = self.stage;
+        memory.at_once = self.at_once(memory.at_once, input);
+        if loss_per_volt_second > 0.0 {
+            let added = loss_per_volt_second * self.overdrive_volt_s(memory.voltage, input);
+            let most = repoling_volt.map_or(1.0, |volt| {
+                ((volt - input) / (volt - threshold_volt)).clamp(0.0, 1.0)
+            });
+            memory.with_time = (memory.with_time + added).min(most);
+        }
+        memory.voltage = input;
         input
     }
 }

@@ -29,7 +29,7 @@ pub use sensor::{MainsHum, Nonlinearity, NonlinearityShape, Quantisation};
 
 use crate::{Calibration, PreisachError};
 use amplifier::{
-    CurrentStep, DepolarisationStep, HeatMemory, HeatStep, LimitMemory, SaturationStep,
+    CurrentStep, DepolarisationStep, HeatMemory, HeatStep, LimitMemory, LossMemory, SaturationStep,
 };
 use creep::{CreepMemory, CreepStep};
 use delay::{DelayMemory, DelayStep};
@@ -149,7 +149,7 @@ pub(crate) enum StageMemory {
     Saturation(()),
     Delay(DelayMemory),
     Heating(HeatMemory),
-    Depolarisation(f64),
+    Depolarisation(LossMemory),
     Creep(CreepMemory),
     Resonance(ResonanceMemory),
     Play(f64),
@@ -259,7 +259,9 @@ impl StageStep {
     pub(crate) fn gain(&self, memory: &StageMemory) -> f64 {
         match (self, memory) {
             (Self::Heating(step), StageMemory::Heating(memory)) => step.gain(memory),
-            (Self::Depolarisation(_), StageMemory::Depolarisation(lost)) => 1.0 - lost,
+            (Self::Depolarisation(_), StageMemory::Depolarisation(memory)) => {
+                DepolarisationStep::gain(memory)
+            }
             _ => 1.0,
         }
     }
@@ -278,6 +280,11 @@ impl StageStep {
             (Self::Heating(step), StageMemory::Heating(before), StageMemory::Heating(now)) => {
                 now.settle(before, step, period_s);
             }
+            (
+                Self::Depolarisation(_),
+                StageMemory::Depolarisation(before),
+                StageMemory::Depolarisation(now),
+            ) => now.settle(before),
             (Self::Creep(step), StageMemory::Creep(before), StageMemory::Creep(now)) => {
                 step.settle(before, now, period_s);
             }
@@ -326,7 +333,7 @@ impl AmplifierStage {
             Self::Saturation(stage) => StageStep::Saturation(stage.prepared()),
             Self::Delay(stage) => StageStep::Delay(stage.prepared(step_s)),
             Self::DielectricHeating(stage) => StageStep::Heating(stage.prepared(step_s)),
-            Self::Depolarisation(stage) => StageStep::Depolarisation(stage.prepared()),
+            Self::Depolarisation(stage) => StageStep::Depolarisation(stage.prepared(step_s)),
         }
     }
 }

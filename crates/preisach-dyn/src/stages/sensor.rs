@@ -7,19 +7,41 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Shape of a characteristic's error over its range, `|x| <= 1`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum NonlinearityShape {
     /// `2 x^2 - 1`: one side reads more than the other.
     Quadratic,
     /// `4 x^3 - 3 x`: both ends bend, as those of an LVDT do.
     #[default]
     Cubic,
+    /// `(x^3 - straight x) / max |x^3 - straight x|`: a cubic about another line than the best one, which
+    /// is `straight = 3/4` and gives [`Self::Cubic`]; 0 the tangent in the middle, 1 through the ends.
+    CubicAbout {
+        /// Slope of the line that the error is taken from, 0 to 1.5.
+        straight: f64,
+    },
+}
+
+impl NonlinearityShape {
+    /// Coefficients of `x`, `x^2`, `x^3`, and the constant before them, of largest size 1 over the range.
+    fn coefficients(self) -> [f64; 4] {
+        match self {
+            Self::Quadratic => [-1.0, 0.0, 2.0, 0.0],
+            Self::Cubic => [0.0, -3.0, 0.0, 4.0],
+            Self::CubicAbout { straight } => {
+                // the extremum inside lies at root(straight / 3)
+                let inside = 2.0 / 3.0 * straight * (straight / 3.0).sqrt();
+                let largest = inside.max((1.0 - straight).abs());
+                [0.0, -straight / largest, 0.0, 1.0 / largest]
+            }
+        }
+    }
 }
 
 /// Error of a sensor's characteristic.
 ///
 /// ```text
-/// y = x + amplitude T_n( x / half_range )     T_n: Chebyshev polynomial, n = 2 or 3
+/// y = x + amplitude T_n( x / half_range )     T_n: Chebyshev polynomial, n = 2 or 3, or a cubic about another line
 /// ```
 /// with `x` the displacement from zero flap angle. The Chebyshev polynomial makes `amplitude` the
 /// largest error inside the range. `amplitude_um = 0` is the identity.
@@ -39,6 +61,16 @@ pub struct Nonlinearity {
 impl Nonlinearity {
     pub(super) fn check(&self) -> Result<(), PreisachError> {
         check_positive("half_range_um", self.half_range_um)?;
+        if let NonlinearityShape::CubicAbout { straight: value } = self.shape
+            && !(0.0..=1.5).contains(&value)
+        {
+            return Err(PreisachError::OutOfRange {
+                quantity: "straight",
+                value,
+                least: 0.0,
+                most: 1.5,
+            });
+        }
         let value = self.amplitude_um;
         if value.is_finite() {
             Ok(())
@@ -51,7 +83,7 @@ impl Nonlinearity {
         NonlinearityStep {
             amplitude_deg: self.amplitude_um * calibration.deg_per_um,
             per_deg: 1.0 / (self.half_range_um * calibration.deg_per_um),
-            shape: self.shape,
+            coefficients: self.shape.coefficients(),
         }
     }
 }
@@ -60,7 +92,7 @@ impl Nonlinearity {
 pub(crate) struct NonlinearityStep {
     amplitude_deg: f64,
     per_deg: f64,
-    shape: NonlinearityShape,
+    coefficients: [f64; 4],
 }
 
 impl Step for NonlinearityStep {
@@ -73,11 +105,8 @@ impl Step for NonlinearityStep {
     #[inline]
     fn advance(&self, (): &mut (), input: f64) -> f64 {
         let x = input * self.per_deg;
-        let error = match self.shape {
-            NonlinearityShape::Quadratic => 2.0 * x * x - 1.0,
-            NonlinearityShape::Cubic => x * (4.0 * x * x - 3.0),
-        };
-        input + self.amplitude_deg * error
+        let [a, b, c, d] = self.coefficients;
+        input + self.amplitude_deg * (a + x * (b + x * (c + x * d)))
     }
 }
 

@@ -237,6 +237,11 @@ pub(crate) fn effects() -> Vec<ActuatorModel> {
             repoling_volt: Some(60.0),
             ..Depolarisation::new(20.0)
         })),
+        amplifier(AmplifierStage::Depolarisation(Depolarisation {
+            loss_per_volt: 0.0,
+            loss_per_volt_second: 0.01,
+            ..Depolarisation::new(20.0)
+        })),
         linkage(LinkageStage::LogCreep(LogCreep::new(0.02))),
         linkage(LinkageStage::KelvinVoigt(KelvinVoigt { elements: vec![element] })),
         linkage(LinkageStage::Relaxation(Relaxation {

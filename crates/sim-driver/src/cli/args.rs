@@ -34,6 +34,8 @@ pub enum Command {
     Identify(IdentifyArgs),
     /// Find what a simulation of measured data lacks: cause, extended model, gain.
     Diagnose(DiagnoseArgs),
+    /// From a linear actuator upwards by data alone: what each step lacks, gains, and is worth to a rotor.
+    Ladder(LadderArgs),
     /// Import measured data (CSV, MAT, FORC, JSON) into a data folder.
     Import(ImportArgs),
     /// Rotating frequencies of a blade, and the data of a fan plot.
@@ -226,6 +228,29 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "CAUSES", value_delimiter = ',')]
     pub only: Vec<String>,
     /// Folder to keep what surrogates of a base model leave; computed once for a base and a design.
+    #[arg(long, value_name = "DIR", default_value = "out/cache")]
+    pub cache: PathBuf,
+    /// Form of the output.
+    #[command(flatten)]
+    pub format: FormatArgs,
+}
+
+/// `hhc ladder`.
+#[derive(Debug, Clone, Args)]
+pub struct LadderArgs {
+    /// Folder with dataset.ron and the measured records.
+    #[arg(long, value_name = "DIR")]
+    pub data: PathBuf,
+    /// Folder to write ladder.json and the extended actuator to.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Folder with reference records; beside those of the data, or `../reference`, if left out.
+    #[arg(long, value_name = "DIR")]
+    pub reference: Option<PathBuf>,
+    /// Case that says what a step is worth; the paper's if left out.
+    #[arg(long, value_name = "CASE.ron")]
+    pub case: Option<PathBuf>,
+    /// Folder to keep what surrogates of a base model leave.
     #[arg(long, value_name = "DIR", default_value = "out/cache")]
     pub cache: PathBuf,
     /// Form of the output.

@@ -1,7 +1,7 @@
 //! What each command does.
 
 use super::args::{
-    CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, ModesArgs,
+    CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, LadderArgs, ModesArgs,
     ReportArgs, RunArgs, StudyArgs, WakeArgs,
 };
 use crate::SimError;
@@ -9,7 +9,7 @@ use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::check::check_file;
 use crate::curve_identification::identify_curves;
-use crate::diagnose::{Findings, Question, Record, Records, Story};
+use crate::diagnose::{Findings, Question, Record, Records, Story, climb};
 use crate::figures::figure_files;
 use crate::files::{
     DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside,
@@ -270,7 +270,7 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     refuse_input(&args.model, &args.output.join(EXTENDED_FILE))?;
     let model = given_model(&args.model)?;
     let measured = records_of(&args.data)?;
-    let reference = reference_runs(args, &measured)?;
+    let reference = reference_runs(args.reference.as_deref(), &args.data, &measured)?;
     let progress = Progress::new(1);
     progress.doing(format!("diagnosing {} runs", measured.runs.len()));
     let question = Question {
@@ -291,6 +291,27 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     }
     write_atomic(&args.output.join("findings.json"), (findings + "\n").as_bytes())?;
     print(&Story::of(&found).render(args.format.format)?)
+}
+
+pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
+    let measured = records_of(&args.data)?;
+    let reference = reference_runs(args.reference.as_deref(), &args.data, &measured)?;
+    let loaded = match &args.case {
+        Some(path) => load_case(path)?,
+        None => shipped_case(PAPER_CASE)?,
+    };
+    let progress = Progress::new(1);
+    progress.doing(format!("climbing on {} runs", measured.runs.len()));
+    let climbed = climb(&measured, &reference, &loaded, Some(&args.cache));
+    progress.finish();
+    let (ladder, found) = climbed?;
+    let text = serde_json::to_string_pretty(&ladder).map_err(|e| SimError::NotWritten {
+        path: "ladder.json".into(),
+        reason: e.to_string(),
+    })?;
+    found.extended()?.write(&args.output.join(EXTENDED_FILE))?;
+    write_atomic(&args.output.join("ladder.json"), (text + "\n").as_bytes())?;
+    print(&ladder.render(args.format.format)?)
 }
 
 /// The model of an actuator file, or of the actuator file a case names.
@@ -326,13 +347,17 @@ fn records_of(folder: &Path) -> Result<Records, SimError> {
 }
 
 /// Reference runs: of the folder given, else those of the data, else of `../reference`.
-fn reference_runs(args: &DiagnoseArgs, measured: &Records) -> Result<Vec<Record>, SimError> {
-    let folder = match &args.reference {
-        Some(folder) => folder.clone(),
+fn reference_runs(
+    given: Option<&Path>,
+    data: &Path,
+    measured: &Records,
+) -> Result<Vec<Record>, SimError> {
+    let folder = match given {
+        Some(folder) => folder.to_path_buf(),
         None if measured.runs.iter().any(|run| run.is_reference) => return Ok(Vec::new()),
-        None => args.data.join("../reference"),
+        None => data.join("../reference"),
     };
-    if args.reference.is_none() && !folder.join("dataset.ron").is_file() {
+    if given.is_none() && !folder.join("dataset.ron").is_file() {
         return Ok(Vec::new());
     }
     let mut runs = records_of(&folder)?.runs;

@@ -51,6 +51,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Run(args)) => commands::run(args),
         Some(Command::Identify(args)) => commands::identify(args),
         Some(Command::Diagnose(args)) => commands::diagnose(args),
+        Some(Command::Ladder(args)) => commands::ladder(args),
         Some(Command::Import(args)) => commands::import(args),
         Some(Command::Modes(args)) => commands::modes(args),
         Some(Command::Wake(args)) => commands::wake(args),

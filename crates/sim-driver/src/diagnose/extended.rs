@@ -1,6 +1,7 @@
 //! The extended model as an ordinary actuator file.
 
 use super::Diagnosis;
+use super::base::BaseModel;
 use super::causes::Part;
 use crate::SimError;
 use crate::problem::Place;
@@ -8,12 +9,12 @@ use crate::stored_actuator::{GainRule, StoredActuator, StoredKind};
 use model_gap::discovery::Verdict;
 use preisach_dyn::identify::{Settings, StaticAccumulator};
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, LinkageStage, MainsHum, Relaxation,
-    RelaxationElement, SensorStage, VoltageRange,
+    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, LinkageStage, MainsHum, PreisachError,
+    Relaxation, RelaxationElement, SensorStage, VoltageRange,
 };
 
 /// Flap angle per output of a bench that does not say it, deg/um.
-const USUAL_DEG_PER_UM: f64 = 0.04;
+pub(super) const USUAL_DEG_PER_UM: f64 = 0.04;
 /// Levels of the law of the file.
 const LEVELS: usize = 24;
 
@@ -31,25 +32,16 @@ impl Diagnosis {
             place: Place::file(format!("{}/dataset.ron", self.folder)),
             source,
         };
-        let (low, high) = self.range;
-        let range_volt = VoltageRange::new(low, high).map_err(fail)?;
-        let deg_per_um =
-            self.deg_per_um.unwrap_or(if self.is_bench { USUAL_DEG_PER_UM } else { 1.0 });
-        let zero_um = if self.is_bench {
-            self.base.hysteresis(&[range_volt.middle_volt()]).first().copied().unwrap_or_default()
-        } else {
-            0.0
+        let bench = LawOfFile {
+            range: self.range,
+            deg_per_um: self.deg_per_um.unwrap_or(if self.is_bench {
+                USUAL_DEG_PER_UM
+            } else {
+                1.0
+            }),
+            is_bench: self.is_bench,
         };
-        let settings = Settings { range_volt, deg_per_um, levels: LEVELS, ..Settings::default() };
-        let mut law = StaticAccumulator::new(&settings, self.stride()).map_err(fail)?;
-        for inputs in &self.law_inputs {
-            let outputs: Vec<f64> =
-                self.base.hysteresis(inputs).iter().map(|h| deg_per_um * (h - zero_um)).collect();
-            law.begin_record();
-            law.push(inputs, &outputs).map_err(fail)?;
-        }
-        let law = ActuatorLaw::StaticPreisach(law.fit().map_err(fail)?);
-        let mut model = ActuatorModel::new(law, range_volt, Calibration { deg_per_um, zero_um });
+        let (mut model, settings) = bench.of(&self.base, &self.law_inputs).map_err(fail)?;
         model.linkage.push(LinkageStage::Relaxation(Relaxation { elements: self.relaxation() }));
         if !matches!(self.finding.verdict, Verdict::Unknown) {
             for effect in &self.finding.effects {
@@ -74,11 +66,6 @@ impl Diagnosis {
         })
     }
 
-    fn stride(&self) -> usize {
-        let samples: usize = self.law_inputs.iter().map(Vec::len).sum();
-        samples.div_ceil(20_000).max(1)
-    }
-
     /// Ordinary creep and relaxation; shares of more than all are scaled down to it.
     fn relaxation(&self) -> Vec<RelaxationElement> {
         let shares: f64 = self.base.relaxation.iter().map(|r| r.1).sum();
@@ -95,6 +82,39 @@ impl Diagnosis {
     }
 }
 
+/// What the law of an actuator file needs besides its base model.
+pub(super) struct LawOfFile {
+    pub(super) range: (f64, f64),
+    pub(super) deg_per_um: f64,
+    pub(super) is_bench: bool,
+}
+
+impl LawOfFile {
+    /// The static part of a base model, fitted anew as a Preisach density on the inputs it was fitted to.
+    pub(super) fn of(
+        &self,
+        base: &BaseModel,
+        inputs: &[Vec<f64>],
+    ) -> Result<(ActuatorModel, Settings), PreisachError> {
+        let range_volt = VoltageRange::new(self.range.0, self.range.1)?;
+        let deg_per_um = self.deg_per_um;
+        let at_middle = || base.hysteresis(&[range_volt.middle_volt()]).first().copied();
+        let zero_um = if self.is_bench { at_middle().unwrap_or_default() } else { 0.0 };
+        let settings = Settings { range_volt, deg_per_um, levels: LEVELS, ..Settings::default() };
+        let samples: usize = inputs.iter().map(Vec::len).sum();
+        let mut law = StaticAccumulator::new(&settings, samples.div_ceil(20_000).max(1))?;
+        for run in inputs {
+            let outputs: Vec<f64> =
+                base.hysteresis(run).iter().map(|h| deg_per_um * (h - zero_um)).collect();
+            law.begin_record();
+            law.push(run, &outputs)?;
+        }
+        let law = ActuatorLaw::StaticPreisach(law.fit()?);
+        let model = ActuatorModel::new(law, range_volt, Calibration { deg_per_um, zero_um });
+        Ok((model, settings))
+    }
+}
+
 fn add(model: &mut ActuatorModel, part: Part) {
     match part {
         Part::Amplifier(stage) => model.amplifier.push(stage),
@@ -108,6 +128,8 @@ fn add(model: &mut ActuatorModel, part: Part) {
             let elements = vec![RelaxationElement { share: 1.0, time_constant_s: tau_s }];
             model.linkage.insert(0, LinkageStage::Relaxation(Relaxation { elements }));
         }
+        // the law of the file has its own loops
+        Part::Hysteresis { .. } => {}
         Part::Hum { amplitude, frequency_hz } => {
             let hum = MainsHum { amplitude_um: amplitude, frequency_hz, phase_rad: 0.0 };
             model.sensor.push(SensorStage::MainsHum(hum));

@@ -1,12 +1,15 @@
-//! Data of the figures: residuals before and after.
+//! Data of the figures: residuals before and after, and what they look like.
 
 use super::Diagnosis;
+use super::displays::{Shown, displays};
 use std::fmt::Write;
 
 impl Diagnosis {
-    /// Names and texts of the tables: the residual of every measured run before and after.
+    /// Names and texts of the tables: the residual of every measured run before and after, their
+    /// harmonics, and maps over input, rate, time since a reversal and dose of drive.
     pub fn figures(&self) -> Vec<(String, String)> {
         let mut tables = Vec::new();
+        let mut shown = Vec::new();
         for (t, &(run, channel, step_s)) in self.traces.iter().enumerate() {
             if channel != "output" {
                 continue;
@@ -20,7 +23,10 @@ impl Diagnosis {
                 let _ = writeln!(text, "{:.6},{a:.6e},{b:.6e}", i as f64 * step_s);
             }
             tables.push((format!("residual_{}.csv", self.run_ids[run]), text));
+            let (id, input) = (self.run_ids[run].as_str(), self.run_inputs[run].as_slice());
+            shown.push(Shown { id, step_s, input, before, after });
         }
+        tables.extend(displays(&shown, &self.output_unit));
         tables
     }
 }

@@ -121,7 +121,7 @@ impl From<&Diagnosis> for Findings {
                 ci95: gain.drop_ci95,
                 unit: d.output_unit.clone(),
             },
-            next_experiment: d.next_experiment.clone(),
+            next_experiment: d.next.id.clone(),
             not_observable: d.not_observable(),
             screen,
         }

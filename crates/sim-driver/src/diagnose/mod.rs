@@ -3,17 +3,24 @@
 mod base;
 mod cache;
 mod causes;
+mod displays;
 mod extended;
 mod figures;
 mod findings;
+mod ladder;
+mod memo;
 mod next;
 mod plays;
 mod record;
+mod response;
 mod simulator;
 mod story;
 mod surrogate;
+mod traces;
 
 pub use findings::Findings;
+pub use ladder::{Ladder, Rung, climb};
+pub use next::Proposal;
 pub use record::{Record, Records};
 pub use story::Story;
 
@@ -40,6 +47,8 @@ pub struct Diagnosis {
     law_inputs: Vec<Vec<f64>>,
     /// Names of the measured runs.
     pub run_ids: Vec<String>,
+    /// Inputs of the measured runs, thinned as the residuals are.
+    run_inputs: Vec<Vec<f64>>,
     /// Run and channel of every trace, and the time between its samples, s.
     traces: Vec<(usize, &'static str, f64)>,
     /// Energy of every measured run.
@@ -61,7 +70,7 @@ pub struct Diagnosis {
     /// Unit of the output.
     pub output_unit: String,
     /// What to measure next.
-    pub next_experiment: String,
+    pub next: Proposal,
     /// Error of the base model on reference runs left out of its fit, over the spread of the output.
     pub floor: f64,
     /// Noise of the reading on the reference runs, in the output's unit.
@@ -153,7 +162,15 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         None => discovery.find(),
     }
     .map_err(fail)?;
-    let next_experiment = next::proposal(&finding, &candidates, &design, &runs);
+    let bench = next::Bench {
+        base: &base,
+        library: &library,
+        candidates: &candidates,
+        runs: &runs,
+        design: &design,
+        range,
+    };
+    let next = next::proposal(&bench, &finding).map_err(fail)?;
     let energy = energy(&runs, &base);
     let kinds = simulator.kinds();
     Ok(Diagnosis {
@@ -161,6 +178,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         candidates: candidates.clone(),
         law_inputs: fitted.iter().map(|r| r.input.clone()).collect(),
         run_ids: runs.iter().map(|r| r.id.clone()).collect(),
+        run_inputs: runs.iter().map(|r| traces::averaged(&r.input, simulator.block)).collect(),
         traces: kinds,
         energy,
         title: measured.title.clone(),
@@ -176,7 +194,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         has_reference,
         given_error_percent: question.given.and_then(|model| given_error(model, &runs)),
         output_unit: measured.output_unit.clone(),
-        next_experiment,
+        next,
         floor: base.floor,
         noise: base.noise,
         library,
@@ -282,7 +300,7 @@ fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
 fn generic(simulator: &BenchSimulator<'_>, spread: f64) -> Vec<Signal> {
     let per_run: Vec<Vec<Vec<f64>>> = (0..simulator.runs.len())
         .map(|number| {
-            let (input, _, plain) = simulator.plain(number);
+            let (input, plain) = simulator.plain(number);
             surrogate::generic(input, plain, spread, simulator.runs[number].step_s)
         })
         .collect();

@@ -157,6 +157,15 @@ impl Plays {
         matrix
     }
 
+    /// Rises and offset of a straight line, `output = at_zero + slope input`.
+    pub(crate) fn line(&self, slope: f64, at_zero: f64) -> (DVector<f64>, f64) {
+        let rises: usize = self.all.iter().map(|p| p.cells + 1).sum();
+        let cells = self.all.first().map_or(1, |narrowest| narrowest.cells);
+        let mut line = DVector::zeros(rises);
+        line.rows_mut(0, cells + 1).fill(2.0 * slope * self.half / cells as f64);
+        (line, at_zero + slope * self.middle)
+    }
+
     /// Covariance of the rises: a density that is smooth over half-width and place, of a size
     /// `amplitude` (output per half range squared), over the length `length`, and a smooth
     /// reversible part of slope size `reversible`.
@@ -247,6 +256,18 @@ mod tests {
             let sum: f64 = row.iter().map(|&(k, v)| v * coefficients[k]).sum();
             assert_abs_diff_eq!(0.3 + sum, direct[i], epsilon = 1e-12);
         });
+    }
+
+    #[test]
+    fn a_line_is_straight_over_any_range() {
+        let plays = Plays::new(-20.0, 150.0);
+        let (rises, offset) = plays.line(2.5, 7.0);
+        let coefficients = plays.rises_to_coefficients() * rises;
+        let inputs = [65.0, -13.0, 149.0, 20.0];
+        let outputs = plays.outputs(&plays.map(offset, coefficients.as_slice()), &inputs);
+        for (y, u) in outputs.iter().zip(inputs) {
+            assert_abs_diff_eq!(*y, 7.0 + 2.5 * u, epsilon = 1e-10);
+        }
     }
 
     #[test]

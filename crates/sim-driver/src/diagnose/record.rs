@@ -29,6 +29,11 @@ impl Record {
         self.id.starts_with("laser_")
     }
 
+    /// Whether the lever was preloaded, so that no joint has play: its name begins with `preload_`.
+    pub fn is_preloaded(&self) -> bool {
+        self.id.starts_with("preload_")
+    }
+
     /// Length, s.
     pub fn duration_s(&self) -> f64 {
         self.step_s * self.input.len() as f64

@@ -125,7 +125,13 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
             findings.not_observable.join(", ")
         ));
     }
-    sheet.line(format_args!("Measure next: {}", findings.next_experiment));
+    sheet.line(format_args!("Measure next: {} ({})", d.next.id, d.next.what));
+    if let Some(share) = d.next.resolves {
+        sheet.line(format_args!(
+            "  as the explanations left are fitted, it would single out {:.0} % of them",
+            100.0 * share
+        ));
+    }
     sheet.finish()
 }
 

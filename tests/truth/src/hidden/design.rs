@@ -281,11 +281,30 @@ pub struct Experiment {
     pub range_volt: (f64, f64),
 }
 
-/// The experiment of an id for a base that records `monitors` anyway.
+/// Whether an id names an experiment of the catalogue, or several joined by `+`.
+pub fn is_experiment(id: &str) -> bool {
+    id.split('+').all(|part| EXPERIMENTS.contains(&part))
+}
+
+/// The experiment of an id for a base that records `monitors` anyway; of ids joined by `+`, all of them.
 ///
 /// # Errors
 /// [`TruthError::UnknownName`] with all that are known.
 pub fn experiment(id: &str, base: u64, monitors: Monitors) -> Result<Experiment, TruthError> {
+    let mut joined = Experiment { runs: Vec::new(), monitors, range_volt: RANGE_VOLT };
+    for part in id.split('+') {
+        let own = one_experiment(part, base, joined.monitors)?;
+        let again = |plan: &&Plan| joined.runs.iter().any(|other| other.id == plan.id);
+        let runs: Vec<Plan> = own.runs.iter().filter(|plan| !again(plan)).cloned().collect();
+        joined.runs.extend(runs);
+        joined.monitors = own.monitors;
+        let (low, high) = joined.range_volt;
+        joined.range_volt = (low.min(own.range_volt.0), high.max(own.range_volt.1));
+    }
+    Ok(joined)
+}
+
+fn one_experiment(id: &str, base: u64, monitors: Monitors) -> Result<Experiment, TruthError> {
     let mut done = Experiment { runs: Vec::new(), monitors, range_volt: RANGE_VOLT };
     let wide = |id: &str, number: u64, peak_volt: f64| {
         plan(id, 2000, multisine(base, number, WIDE_BAND_HZ, peak_volt, 2.0))

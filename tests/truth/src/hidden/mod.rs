@@ -36,7 +36,7 @@ pub use bouc_wen::{BoucWen, BoucWenParameters};
 pub use catalogue::{Cause, Hidden, Outside, PAIRS};
 pub use ceramic::Ceramic;
 pub use design::{
-    BASES, BIAS_VOLT, Design, EXPERIMENTS, Experiment, Fitting, Monitor, Monitors, Plan,
+    BASES, BIAS_VOLT, Design, EXPERIMENTS, Experiment, Fitting, Monitor, Monitors, Plan, is_experiment,
     RANGE_VOLT, Size, experiment, measured, reference,
 };
 pub use effect::{Character, Element, Parameter, Physics};

@@ -259,7 +259,9 @@ pub fn measured_set(request: &Request) -> Result<MeasuredSet, TruthError> {
     let noise_um = noise_um(base, request.snr_db)?;
     let monitors = truth.experiment.monitors;
     let stage = request.experiment.as_ref().map_or(0, |id| {
-        1 + design::EXPERIMENTS.iter().position(|known| known == id).unwrap_or(0) as u64
+        let place = |part: &str| design::EXPERIMENTS.iter().position(|known| *known == part);
+        // A digit to the base of twenty for each of those joined.
+        id.split('+').fold(0, |sum, part| 20 * sum + 1 + place(part).unwrap_or(0) as u64)
     });
     let mut files = Vec::new();
     for (number, (plan, run)) in (0_u64..).zip(truth.plans.iter().zip(&truth.with)) {

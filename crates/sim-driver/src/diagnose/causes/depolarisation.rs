@@ -11,7 +11,7 @@ impl BenchCause for ReverseVoltage {
     fn cause(&self, design: &Design) -> Cause {
         Cause {
             id: "depolarisation",
-            physics: "Below a threshold the polarisation is lost and the gain with it, until a higher voltage brings it back.",
+            physics: "Below a threshold polarisation is lost for as long as the voltage stays there, p' = rate (threshold - V), and the gain with it.",
             side: Side::State,
             parameters: vec![
                 linear(
@@ -20,10 +20,10 @@ impl BenchCause for ReverseVoltage {
                     design.input.0 - 0.01,
                     design.input.0 + 0.25 * (design.input.1 - design.input.0),
                 ),
-                shape(logarithmic("loss_per_volt", "1/V", 1e-5, 0.1)),
+                shape(logarithmic("loss_per_volt_second", "1/(V s)", 1e-6, 1.0)),
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
-            fingerprint: "even harmonics on the negative half, and a change that stays",
+            fingerprint: "a gain that falls with the time below the threshold and stays lost",
             confused_with: &["voltage-saturation", "sensor-nonlinearity", "load-stiffness"],
             separating: &["bias-sweep", "overdrive-two-biases"],
         }
@@ -31,10 +31,10 @@ impl BenchCause for ReverseVoltage {
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
         let (low, high) = design.input;
-        [0.04, 0.08, 0.14]
+        [0.04, 0.1, 0.18]
             .iter()
             .map(|part| low + part * (high - low))
-            .flat_map(|volt| [vec![volt, 0.001, 1.0], vec![volt, 0.005, 1.0]])
+            .flat_map(|volt| [1e-3, 1e-2].map(|rate| vec![volt, rate, 0.0]))
             .collect()
     }
 
@@ -48,25 +48,10 @@ impl BenchCause for ReverseVoltage {
     fn part(&self, values: &[f64]) -> Part {
         let stage = Depolarisation {
             threshold_volt: values[0],
-            loss_per_volt: values[1],
+            loss_per_volt: 0.0,
+            loss_per_volt_second: values[1],
             repoling_volt: None,
         };
         Part::Depolarisation(stage, values[2])
     }
-}
-
-/// Gain of the law under a loss of polarisation, sample by sample.
-///
-/// Source: [`preisach_dyn::Depolarisation`], the same equations.
-pub(crate) fn lost_gain(stage: &Depolarisation, terminal: &[f64]) -> Vec<f64> {
-    let share = |depth: f64| (stage.loss_per_volt * depth).clamp(0.0, 1.0);
-    let mut lost = 0.0_f64;
-    terminal
-        .iter()
-        .map(|&v| {
-            let most = stage.repoling_volt.map_or(1.0, |repoling| share(repoling - v));
-            lost = lost.min(most).max(share(stage.threshold_volt - v));
-            1.0 - lost
-        })
-        .collect()
 }

@@ -10,6 +10,7 @@ mod creep;
 mod depolarisation;
 mod dielectric_heating;
 mod electrical_lag;
+mod hysteresis;
 mod load_stiffness;
 mod mains_hum;
 mod mechanical_resonance;
@@ -19,7 +20,7 @@ mod sensor_nonlinearity;
 mod transport_delay;
 mod voltage_saturation;
 
-pub(crate) use depolarisation::lost_gain;
+pub(crate) use hysteresis::{StaticHysteresis, looped};
 pub(crate) use rate_dependence::rate_dependent;
 
 use super::base::variance;
@@ -47,6 +48,13 @@ pub(crate) enum Part {
         tau_s: f64,
         /// Its relative growth per spread of the output.
         position: f64,
+    },
+    /// Loops, where the base model has none.
+    Hysteresis {
+        /// Share of the output that follows through plays.
+        share: f64,
+        /// Half-width of the widest, output's unit.
+        widest: f64,
     },
     /// A line whose phase is that of each record.
     Hum {

@@ -44,3 +44,30 @@ impl BenchCause for SensorFilter {
         Part::Sensor(if second > 0.0 { vec![first, pole(second)] } else { vec![first] })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_poles_share_the_delay_and_two_fall_off_faster() {
+        let poles = |second: f64| {
+            let Part::Sensor(stages) = SensorFilter.part(&[2e-3, second]) else { return Vec::new() };
+            stages
+                .iter()
+                .filter_map(|s| if let SensorStage::Filter(lag) = s { Some(lag.tau_s) } else { None })
+                .collect()
+        };
+        for second in [0.0, 0.02, 0.3, 0.5] {
+            let taus = poles(second);
+            assert_eq!(taus.len(), if second > 0.0 { 2 } else { 1 });
+            assert!((taus.iter().sum::<f64>() - 2e-3).abs() < 1e-15, "{taus:?}");
+        }
+        let gain = |second: f64, hz: f64| {
+            let w = std::f64::consts::TAU * hz;
+            poles(second).iter().map(|tau| 1.0 / (1.0 + (w * tau).powi(2)).sqrt()).product::<f64>()
+        };
+        assert!((gain(0.5, 1.0) / gain(0.0, 1.0) - 1.0).abs() < 1e-3);
+        assert!(gain(0.5, 1000.0) < 0.5 * gain(0.0, 1000.0));
+    }
+}

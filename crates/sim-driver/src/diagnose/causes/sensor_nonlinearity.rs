@@ -1,6 +1,6 @@
 //! Characteristic of the sensor.
 
-use super::{BenchCause, Design, Part, linear, singles};
+use super::{BenchCause, Design, Part, linear, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::{Nonlinearity, NonlinearityShape, SensorStage};
 
@@ -8,15 +8,21 @@ use preisach_dyn::{Nonlinearity, NonlinearityShape, SensorStage};
 const HALF_RANGE_UM: f64 = 250.0;
 
 /// Characteristic of the sensor.
+///
+/// A cubic bend about a line that is fitted with it: sheets state linearity from the line through the ends,
+/// from the best line or from the tangent, and each calls another gain the sensor's own.
 pub(super) struct SensorNonlinearity;
 
 impl BenchCause for SensorNonlinearity {
     fn cause(&self, _: &Design) -> Cause {
         Cause {
             id: "sensor-nonlinearity",
-            physics: "Error of the sensor's characteristic, y = x + amplitude (4 x^3 - 3 x) over its range of +-250 um.",
+            physics: "Error of the sensor's characteristic, y = x + amplitude (x^3 - c x) over the largest of that, within +-250 um.",
             side: Side::Sensor,
-            parameters: vec![linear("amplitude", "um", -0.2 * HALF_RANGE_UM, 0.2 * HALF_RANGE_UM)],
+            parameters: vec![
+                linear("amplitude", "um", -0.2 * HALF_RANGE_UM, 0.2 * HALF_RANGE_UM),
+                shape(linear("straight", "1", 0.0, 1.0)),
+            ],
             fingerprint: "a static function of the reading, the same at every rate",
             confused_with: &["voltage-saturation", "depolarisation", "load-stiffness"],
             separating: &["laser-cross-check", "bias-sweep"],
@@ -24,7 +30,8 @@ impl BenchCause for SensorNonlinearity {
     }
 
     fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        singles(&[0.004 * HALF_RANGE_UM, -0.004 * HALF_RANGE_UM])
+        let amplitude = 0.004 * HALF_RANGE_UM;
+        [0.75, 0.95, 0.2].iter().flat_map(|&s| [vec![amplitude, s], vec![-amplitude, s]]).collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
@@ -35,7 +42,7 @@ impl BenchCause for SensorNonlinearity {
         Part::Sensor(vec![SensorStage::Nonlinearity(Nonlinearity {
             amplitude_um: values[0],
             half_range_um: HALF_RANGE_UM,
-            shape: NonlinearityShape::Cubic,
+            shape: NonlinearityShape::CubicAbout { straight: values[1] },
         })])
     }
 }

@@ -1,8 +1,17 @@
 //! The base model of a diagnosis: static hysteresis with its ordinary creep and relaxation, linear in
 //! its weights, with the covariance that the reference runs leave them.
 
-use super::plays::{OutputMap, Plays, lagged, solve};
+mod equations;
+mod errors;
+
+pub(crate) use errors::{ErrorModel, mean_square, variance, white_noise};
+
+use super::plays::{OutputMap, Plays, lagged};
 use super::record::Record;
+use equations::{
+    Equations, best_prior, covariance_root, equations, fit_held, fit_of, most_negative, precision,
+};
+use errors::{correlation_samples, pooled_spread};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -24,24 +33,6 @@ const REVERSIBLE: f64 = 1.0;
 const STRUCTURE_MARGIN: f64 = 1.25;
 /// Rounds of static part and relaxation after one another.
 const ROUNDS: usize = 3;
-
-/// What the base model leaves on one run, and how that error is made.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct ErrorModel {
-    /// White noise of the reading, output's unit.
-    pub(crate) noise: f64,
-    /// Structural error of the model, output's unit, rms.
-    pub(crate) structure: f64,
-    /// Samples over which the structural error keeps its sign.
-    pub(crate) correlation: f64,
-}
-
-impl ErrorModel {
-    /// Standard deviation that an independent sample would need to weigh as little.
-    pub(crate) fn effective(&self) -> f64 {
-        (self.noise.powi(2) + self.correlation * self.structure.powi(2)).sqrt()
-    }
-}
 
 /// The base model with what is known about its weights.
 #[derive(Debug, Clone)]
@@ -65,14 +56,6 @@ pub(crate) struct BaseModel {
     weights: DVector<f64>,
     /// Prior chosen by leaving out each reference run in turn.
     pub(crate) prior: (f64, f64),
-}
-
-/// Normal equations of one run.
-struct Equations {
-    gram: DMatrix<f64>,
-    right: DVector<f64>,
-    square: f64,
-    count: f64,
 }
 
 impl BaseModel {
@@ -149,6 +132,45 @@ impl BaseModel {
         own
     }
 
+    /// A straight line through runs, without memory, taken at its word: no structure is granted to it and
+    /// nothing it may move by.
+    pub(crate) fn straight(runs: &[&Record], range: (f64, f64)) -> Self {
+        let plays = Plays::new(range.0, range.1);
+        let pairs = || runs.iter().flat_map(|r| r.input.iter().zip(&r.output));
+        let count = pairs().count().max(1) as f64;
+        let (mu, my) = pairs().fold((0.0, 0.0), |s, (u, y)| (s.0 + u / count, s.1 + y / count));
+        let (uy, uu) = pairs().fold((0.0, 0.0), |s, (u, y)| {
+            (s.0 + (u - mu) * (y - my), s.1 + (u - mu).powi(2))
+        });
+        let slope = if uu > 0.0 { uy / uu } else { 0.0 };
+        let (rises, offset) = plays.line(slope, my - slope * mu);
+        let coefficients = plays.rises_to_coefficients() * &rises;
+        let map = plays.map(offset, coefficients.as_slice());
+        let width = 1 + rises.len();
+        let mut weights = DVector::zeros(width);
+        weights[0] = offset;
+        weights.rows_mut(1, rises.len()).copy_from(&rises);
+        let mut model = Self {
+            plays,
+            map,
+            relaxation: Vec::new(),
+            floor: 0.0,
+            noise: 0.0,
+            structure: 0.0,
+            correlation_s: 0.0,
+            root: DMatrix::zeros(width, width),
+            spread: pooled_spread(runs),
+            weights,
+            prior: PRIORS[0],
+        };
+        let noise2: f64 = runs
+            .iter()
+            .map(|r| white_noise(&model.residual(r)).powi(2) * r.input.len() as f64)
+            .sum();
+        model.noise = (noise2 / count).sqrt();
+        model
+    }
+
     /// Estimates noise, structure and floor; returns the effective noise of the next round.
     fn measure_errors(
         &mut self,
@@ -165,10 +187,8 @@ impl BaseModel {
             let n = residual.len() as f64;
             noise2 += white * white * n;
             white_count += n;
-            let total = mean_square(&residual);
-            let part = (total - white * white).max(0.0);
-            let length = correlation_samples(&residual, white) * run.step_s;
-            correlation += part * n * length;
+            let part = (mean_square(&residual) - white * white).max(0.0);
+            correlation += part * n * correlation_samples(&residual, white) * run.step_s;
             numerator += part * n;
             denominator += variance(&run.output) * n;
         }
@@ -294,229 +314,6 @@ fn stride_of(runs: &[&Record]) -> usize {
     all.div_ceil(MOST_ROWS).max(1)
 }
 
-/// Products of offset, rises and shares with themselves and the output; every `stride`-th sample.
-fn equations(
-    plays: &Plays,
-    rises: &DMatrix<f64>,
-    run: &Record,
-    law: &[f64],
-    taus: &[f64],
-    stride: usize,
-) -> Equations {
-    let relaxing: Vec<Vec<f64>> = if law.is_empty() {
-        Vec::new()
-    } else {
-        taus.iter()
-            .map(|&tau| lagged(law, tau, run.step_s).iter().zip(law).map(|(x, u)| x - u).collect())
-            .collect()
-    };
-    let count = plays.count();
-    let width = 1 + count + taus.len();
-    let mut gram = DMatrix::zeros(width, width);
-    let mut right = DVector::zeros(width);
-    let (mut square, mut used) = (0.0, 0.0);
-    let mut entries: Vec<(usize, f64)> = Vec::new();
-    plays.rows(&run.input, |i, row| {
-        if i % stride != 0 {
-            return;
-        }
-        entries.clear();
-        entries.push((0, 1.0));
-        entries.extend(row.iter().map(|&(k, v)| (k + 1, v)));
-        entries.extend(relaxing.iter().enumerate().map(|(t, x)| (1 + count + t, x[i])));
-        let y = run.output[i];
-        for (a, &(ka, va)) in entries.iter().enumerate() {
-            right[ka] += va * y;
-            for &(kb, vb) in &entries[..=a] {
-                gram[(ka, kb)] += va * vb;
-            }
-        }
-        square += y * y;
-        used += 1.0;
-    });
-    gram.fill_upper_triangle_with_lower_triangle();
-    // from spline coefficients to rises
-    let mut change = DMatrix::zeros(width, 1 + rises.ncols() + taus.len());
-    change[(0, 0)] = 1.0;
-    change.view_mut((1, 1), rises.shape()).copy_from(rises);
-    for t in 0..taus.len() {
-        change[(1 + count + t, 1 + rises.ncols() + t)] = 1.0;
-    }
-    Equations {
-        gram: change.tr_mul(&gram) * &change,
-        right: change.tr_mul(&right),
-        square,
-        count: used,
-    }
-}
-
-/// Precision of the prior of offset, rises and shares.
-fn precision(plays: &Plays, prior: (f64, f64), spread: f64, shares: usize) -> Option<DMatrix<f64>> {
-    let covariance = plays.prior(prior.0 * spread, REVERSIBLE * 2.0 * spread, prior.1);
-    let n = covariance.nrows();
-    let inverse = covariance.cholesky()?.inverse();
-    let mut precision = DMatrix::zeros(1 + n + shares, 1 + n + shares);
-    precision[(0, 0)] = 1.0 / (4.0 * spread).powi(2);
-    precision.view_mut((1, 1), (n, n)).copy_from(&inverse);
-    for t in 0..shares {
-        precision[(1 + n + t, 1 + n + t)] = 1.0 / (SHARE * SHARE);
-    }
-    Some(precision)
-}
-
-fn fit_of(
-    equations: &[Equations],
-    skip: Option<usize>,
-    precision: &DMatrix<f64>,
-    noise: f64,
-) -> Option<DVector<f64>> {
-    let weight = 1.0 / (noise * noise);
-    let mut gram = precision.clone();
-    let mut right = DVector::zeros(precision.nrows());
-    for (r, own) in equations.iter().enumerate() {
-        if Some(r) != skip {
-            gram += &own.gram * weight;
-            right += &own.right * weight;
-        }
-    }
-    solve(&gram, &right)
-}
-
-/// As [`fit_of`], with some weights held at zero.
-fn fit_held(
-    equations: &[Equations],
-    precision: &DMatrix<f64>,
-    noise: f64,
-    held: &[usize],
-) -> Option<DVector<f64>> {
-    let mut stiff = precision.clone();
-    for &k in held {
-        stiff[(k, k)] += 1e14;
-    }
-    let mut solution = fit_of(equations, None, &stiff, noise)?;
-    for &k in held {
-        solution[k] = 0.0;
-    }
-    Some(solution)
-}
-
-fn most_negative(solution: &DVector<f64>, first: usize) -> Option<usize> {
-    (first..solution.len())
-        .filter(|&k| solution[k] < 0.0)
-        .min_by(|&a, &b| solution[a].total_cmp(&solution[b]))
-}
-
-/// The prior whose fits predict left-out runs best; mean logarithm of the relative error.
-fn best_prior(
-    plays: &Plays,
-    equations: &[Equations],
-    noise: f64,
-    spread: f64,
-) -> Option<(f64, f64)> {
-    let mut best: Option<(f64, (f64, f64))> = None;
-    let taus = time_constants_s().len();
-    let folds = equations.len().min(6);
-    for prior in PRIORS {
-        let precision = precision(plays, prior, spread, taus)?;
-        let mut score = 0.0;
-        if equations.len() > 1 {
-            for fold in 0..folds {
-                let weight = 1.0 / (noise * noise);
-                let mut gram = precision.clone();
-                let mut right = DVector::zeros(precision.nrows());
-                for (r, own) in equations.iter().enumerate() {
-                    if r % folds != fold {
-                        gram += &own.gram * weight;
-                        right += &own.right * weight;
-                    }
-                }
-                let solution = solve(&gram, &right)?;
-                for own in equations.iter().enumerate().filter(|(r, _)| r % folds == fold) {
-                    let own = own.1;
-                    let square = own.square - 2.0 * own.right.dot(&solution)
-                        + (solution.transpose() * &own.gram * &solution)[0];
-                    score += (square.max(0.0) / own.count + 1e-8 * spread * spread).ln();
-                }
-            }
-        }
-        if best.is_none_or(|b| score < b.0) {
-            best = Some((score, prior));
-        }
-    }
-    best.map(|b| b.1)
-}
-
-fn covariance_root(
-    equations: &[Equations],
-    precision: &DMatrix<f64>,
-    noise: f64,
-) -> Option<DMatrix<f64>> {
-    let mut gram = precision.clone();
-    for own in equations {
-        gram += &own.gram / (noise * noise);
-    }
-    // inverse of the transposed factor: root root' = inverse of the information
-    let factor = gram.cholesky()?.l();
-    factor.transpose().solve_upper_triangular(&DMatrix::identity(factor.nrows(), factor.nrows()))
-}
-
-fn pooled_spread(runs: &[&Record]) -> f64 {
-    let count: usize = runs.iter().map(|r| r.output.len()).sum();
-    let sum: f64 = runs.iter().map(|r| variance(&r.output) * r.output.len() as f64).sum();
-    (sum / count.max(1) as f64).sqrt()
-}
-
-pub(crate) fn mean_square(values: &[f64]) -> f64 {
-    values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64
-}
-
-pub(crate) fn variance(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len().max(1) as f64
-}
-
-/// White noise under a smooth residual: rms of its second differences over the root of 6, robustly
-/// from the median, so that a few jumps do not count.
-pub(crate) fn white_noise(residual: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> =
-        residual.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
-    if sizes.is_empty() {
-        return 0.0;
-    }
-    let middle = sizes.len() / 2;
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    // median of |N(0,1)| is 0.6745
-    *median / 0.6745 / 6.0_f64.sqrt()
-}
-
-/// Integrated correlation of a residual without its noise, samples: one and twice the sum of the
-/// correlations up to the first that is not positive.
-fn correlation_samples(residual: &[f64], noise: f64) -> f64 {
-    let n = residual.len();
-    let total = mean_square(residual);
-    let smooth = total - noise * noise;
-    if smooth <= 0.05 * total {
-        return 1.0;
-    }
-    let mut sum = 1.0;
-    let mut lag = 1;
-    let mut step = 1;
-    while lag < n / 4 {
-        let products: f64 = residual.iter().zip(&residual[lag..]).map(|(a, b)| a * b).sum::<f64>()
-            / (n - lag) as f64;
-        let rho = products / smooth;
-        if rho <= 0.05 {
-            break;
-        }
-        sum += 2.0 * rho.min(1.0) * step as f64;
-        if lag >= 16 {
-            step = lag / 8;
-        }
-        lag += step;
-    }
-    sum
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -570,6 +367,34 @@ mod tests {
         let nuisance = base.nuisance(&[&unseen], &[0.01], 30);
         assert_eq!(nuisance[0].nrows(), unseen.input.len());
         assert!(nuisance[0].ncols() > 0 && nuisance[0].iter().all(|v| v.is_finite()));
+    }
+
+    #[test]
+    fn structure_of_other_runs_is_granted_a_quarter_more_than_the_fit_leaves() {
+        // a bend that no play has: output that depends on the rate of the input
+        let bent = |hz: f64| {
+            let mut run = run(hz, 1.0);
+            for i in 1..run.output.len() {
+                let rate = (run.input[i] - run.input[i - 1]) / run.step_s;
+                run.output[i] += 2e-4 * rate * rate;
+            }
+            run
+        };
+        let runs = [bent(1.3), bent(2.0), bent(3.1), bent(4.2)];
+        let references: Vec<&Record> = runs.iter().collect();
+        let base = BaseModel::fit(&references, (-1.0, 1.0), None).unwrap();
+        let (mut left, mut all) = (0.0, 0.0);
+        for run in &runs {
+            let residual = base.residual(run);
+            left += mean_square(&residual) - white_noise(&residual).powi(2);
+            all += variance(&run.output);
+        }
+        let trained = (left / all).sqrt();
+        for run in &runs {
+            let spread = variance(&run.output).sqrt().min(base.spread);
+            let share = base.errors(run).structure / (0.5 * (spread + base.spread));
+            assert!((share / trained - 1.25).abs() < 0.02, "{share} of {trained}");
+        }
     }
 
     #[test]

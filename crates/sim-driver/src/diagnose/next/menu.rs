@@ -1,0 +1,159 @@
+//! The experiments a bench can do, as runs that the base model can be asked about.
+
+use super::super::record::Record;
+use super::excitation::Span;
+
+/// A run: name, time between samples, input.
+pub(super) struct Planned {
+    pub(super) id: String,
+    pub(super) step_s: f64,
+    pub(super) input: Vec<f64>,
+}
+
+/// What an experiment measures.
+pub(super) enum Measured {
+    /// The output on further runs.
+    Runs(Vec<Planned>),
+    /// The terminal voltage on the runs there are.
+    Amplifier,
+    /// The temperature on the runs there are.
+    Temperature,
+    /// The output on further runs, and the temperature.
+    Warm(Vec<Planned>),
+}
+
+/// One experiment.
+pub(super) struct Experiment {
+    /// Name in `findings.json`.
+    pub(super) id: &'static str,
+    /// What to do, for a reader.
+    pub(super) what: &'static str,
+    pub(super) measured: Measured,
+}
+
+const BAND: (f64, f64) = (1.0, 35.0);
+const WIDE: (f64, f64) = (5.0, 181.0);
+
+/// Every experiment that can be worked out, for the measured runs at hand.
+pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experiment> {
+    let run = |id: &str, step_s: f64, input: Vec<f64>| Planned { id: id.to_owned(), step_s, input };
+    let one = |id: &'static str, what, step_s, input| Experiment {
+        id,
+        what,
+        measured: Measured::Runs(vec![run(id, step_s, input)]),
+    };
+    let wide = |peak| span.multisine(WIDE, 2.0, peak, 2.0, 5e-4);
+    let mut menu = vec![
+        Experiment {
+            id: "multisine-5-181Hz",
+            what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each",
+            measured: Measured::Runs(vec![
+                run("wide_small", 5e-4, wide(0.14)),
+                run("wide_large", 5e-4, wide(0.35)),
+            ]),
+        },
+        one(
+            "amplitude-sweep",
+            "10 Hz at 0.1 to 0.95 of the half range",
+            1e-3,
+            span.bursts(10.0, 0.0, &[0.12, 0.24, 0.47, 0.7, 0.94].map(|a| (a, 6.0)), 1e-3),
+        ),
+        Experiment {
+            id: "frequency-sweep",
+            what: "half the half range, sines from 0.5 to 40 Hz",
+            measured: Measured::Runs(
+                [(0.5, 2.0), (1.0, 2.0), (2.0, 4.0), (5.0, 8.0), (10.0, 12.0), (20.0, 20.0), (40.0, 40.0)]
+                    .iter()
+                    .map(|&(hz, cycles)| {
+                        run("sine", 1e-3, span.bursts(hz, 0.0, &[(0.47, cycles)], 1e-3))
+                    })
+                    .collect(),
+            ),
+        },
+        Experiment {
+            id: "ring-down",
+            what: "small steps read at 2 kHz",
+            measured: Measured::Runs(vec![run(
+                "steps",
+                5e-4,
+                span.steps(&[0.24, 0.0, -0.24, 0.0, 0.24, 0.0, -0.24, 0.0], 0.25, 5e-4),
+            )]),
+        },
+        one(
+            "hold-steps-100s",
+            "three steps held for 33 s each",
+            0.02,
+            span.steps(&[0.65, -0.53, 0.0], 33.0, 0.02),
+        ),
+        one(
+            "small-motion",
+            "triangles of 1 to 12 % of the half range",
+            2e-3,
+            span.triangles(2.0, &[0.012, 0.012, 0.024, 0.024, 0.06, 0.06, 0.12, 0.12], 2e-3),
+        ),
+        one(
+            "bias-sweep",
+            "small triangles about seven places of the range",
+            2e-3,
+            span.path(&sweep(), 2e-3),
+        ),
+        Experiment {
+            id: "preload",
+            what: "a triangle and a multisine with the lever preloaded: play goes, friction stays",
+            measured: Measured::Runs(vec![
+                run("preload_triangle", 2e-3, span.triangles(1.0, &[1.0, 0.7, 0.35], 2e-3)),
+                run("preload_band", 1e-3, span.multisine(BAND, 0.5, 0.7, 3.0, 1e-3)),
+            ]),
+        },
+        Experiment {
+            id: "laser-cross-check",
+            what: "the same runs read by a second, ideal displacement sensor",
+            measured: Measured::Runs(
+                runs.iter()
+                    .map(|r| run(&format!("laser_{}", r.id), r.step_s, r.input.clone()))
+                    .collect(),
+            ),
+        },
+        one("zero-input-record", "8 s without input", 1e-3, span.path(&[(0.0, 0.0), (8.0, 0.0)], 1e-3)),
+    ];
+    if is_bench {
+        menu.push(Experiment {
+            id: "cold-hot-cold",
+            what: "a small sine, a minute of full drive, the small sine again; temperature recorded",
+            measured: Measured::Warm(vec![run(
+                "hot",
+                5e-3,
+                span.bursts(20.0, 0.0, &[(0.35, 40.0), (0.94, 1200.0), (0.35, 800.0)], 5e-3),
+            )]),
+        });
+        if runs.iter().all(|r| r.amplifier.is_none()) {
+            menu.push(Experiment {
+                id: "amplifier-monitor",
+                what: "the terminal voltage beside every run",
+                measured: Measured::Amplifier,
+            });
+        }
+        if runs.iter().all(|r| r.temperature.is_none()) {
+            menu.push(Experiment {
+                id: "temperature-monitor",
+                what: "the temperature beside every run",
+                measured: Measured::Temperature,
+            });
+        }
+    }
+    menu
+}
+
+/// Ramps through places of the range with a small triangle at each, at 1.2 half ranges per second.
+fn sweep() -> Vec<(f64, f64)> {
+    let mut points = vec![(0.0, 0.0), (0.1, 0.0)];
+    let (mut time, mut from) = (0.1, 0.0_f64);
+    for bias in [0.0, -0.8, -0.4, 0.0, 0.4, 0.8, -0.88, 0.0] {
+        for place in [bias, bias + 0.12, bias - 0.12, bias + 0.12, bias] {
+            time += ((place - from).abs() / 1.2).max(1e-3);
+            points.push((time, place));
+            from = place;
+        }
+    }
+    points
+}

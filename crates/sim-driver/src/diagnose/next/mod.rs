@@ -1,0 +1,268 @@
+//! What to measure next: of the experiments a bench can do, the one that parts the explanations which
+//! the data leave open.
+//!
+//! Every experiment is simulated with every explanation as fitted. It resolves a truth if every other
+//! explanation, refitted within what the data at hand allow, would miss it by more than the search asks
+//! of two causes to be told apart. The experiment that resolves the largest share of the truths is
+//! proposed, among equals the one whose smallest distance is largest (T-optimality); where none
+//! resolves all, two or three together that do better.
+
+mod excitation;
+mod menu;
+
+use super::base::BaseModel;
+use super::causes::{BenchCause, Design, Part};
+use super::record::Record;
+use super::simulator::{BenchSimulator, ChannelKind};
+use super::surrogate::Noise;
+use excitation::Span;
+use menu::{Experiment, Measured, Planned, menu};
+use model_gap::discovery::{
+    Finding, Found, Rival, Separation, Simulator, Trace, Verdict, separations,
+};
+use model_gap::{Candidate, Effect, GapError};
+use rayon::prelude::*;
+
+/// Drop of the misfit that tells two causes apart, and the share of an effect's energy that no model of
+/// it is better than: as the search has them, with a margin for what is straight only here.
+const APART: f64 = 2.0 * 12.0;
+const FORM_ERROR: f64 = 2.0 * 0.02;
+
+/// A proposal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proposal {
+    /// Name of the experiment; of several to be done together, joined by `+`.
+    pub id: String,
+    /// What to do.
+    pub what: String,
+    /// Share of the open explanations that it would single out if true; none where nothing is open.
+    pub resolves: Option<f64>,
+}
+
+/// What a proposal is worked out from.
+pub(super) struct Bench<'a> {
+    pub(super) base: &'a BaseModel,
+    pub(super) library: &'a [Box<dyn BenchCause>],
+    pub(super) candidates: &'a [Candidate],
+    pub(super) runs: &'a [&'a Record],
+    pub(super) design: &'a Design,
+    pub(super) range: (f64, f64),
+}
+
+/// The experiment that tells the remaining explanations apart best.
+pub(super) fn proposal(bench: &Bench<'_>, finding: &Finding) -> Result<Proposal, GapError> {
+    let (low, high) = bench.design.input;
+    let span = Span { middle: f64::midpoint(low, high), half: 0.5 * (high - low) };
+    let menu = menu(span, bench.runs, bench.design.is_bench);
+    let open = finding.causes.iter().max_by_key(|found| found.alternatives.len());
+    let Some(open) = open.filter(|found| !found.alternatives.is_empty()) else {
+        let id = usual(finding, bench);
+        let what = menu.iter().find(|e| e.id == id).map_or("", |e| e.what).to_owned();
+        return Ok(Proposal { id: id.to_owned(), what, resolves: None });
+    };
+    let parted: Vec<Parting> = menu
+        .par_iter()
+        .map(|experiment| parting(bench, experiment, open))
+        .collect::<Result<_, _>>()?;
+    let (parting, places) = choose(&parted);
+    let join = |of: fn(&Experiment) -> &str, between: &str| {
+        places.iter().map(|&i| of(&menu[i])).collect::<Vec<_>>().join(between)
+    };
+    Ok(Proposal {
+        id: join(|e| e.id, "+"),
+        what: join(|e| e.what, "; and "),
+        resolves: Some(parting.resolves()),
+    })
+}
+
+/// Most experiments proposed together.
+const MOST_TOGETHER: usize = 3;
+
+/// The experiment, or the few together, that resolve the largest share of truths: as few as do, among
+/// equals the one whose smallest distance is largest.
+fn choose(parted: &[Parting]) -> (Parting, Vec<usize>) {
+    let mut best: Option<(Parting, Vec<usize>)> = None;
+    let mut sets: Vec<(Parting, Vec<usize>)> =
+        parted.iter().enumerate().map(|(i, own)| (own.clone(), vec![i])).collect();
+    for _ in 0..MOST_TOGETHER {
+        let score = |own: &Parting| (own.resolves(), own.least());
+        let first = sets.iter().max_by(|a, b| {
+            let (a, b) = (score(&a.0), score(&b.0));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        if let Some(first) = first
+            && best.as_ref().is_none_or(|b| first.0.resolves() > b.0.resolves() + 1e-9)
+        {
+            best = Some(first.clone());
+        }
+        if best.as_ref().is_some_and(|b| b.0.resolves() >= 1.0) {
+            break;
+        }
+        sets = sets
+            .iter()
+            .flat_map(|(own, places)| {
+                let next = places.last().map_or(0, |last| last + 1);
+                (next..parted.len()).map(move |i| {
+                    (own.with(&parted[i]), places.iter().copied().chain([i]).collect())
+                })
+            })
+            .collect();
+    }
+    best.unwrap_or((Parting(Vec::new()), Vec::new()))
+}
+
+/// Distances over what is asked, `[truth][other]`; above 1 the other is ruled out.
+#[derive(Debug, Clone, PartialEq)]
+struct Parting(Vec<Vec<f64>>);
+
+impl Parting {
+    fn of(found: &Separation, drop: f64) -> Self {
+        let count = found.energy.len();
+        let ratio = |a: usize, b: usize| {
+            let asked = APART + FORM_ERROR * (drop + found.energy[a]);
+            if a == b { f64::INFINITY } else { found.distance[(a, b)] / asked }
+        };
+        Self((0..count).map(|a| (0..count).map(|b| ratio(a, b)).collect()).collect())
+    }
+
+    /// Both experiments: either of them rules out what it rules out.
+    fn with(&self, other: &Self) -> Self {
+        let sum = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(x, y)| x.max(*y)).collect();
+        Self(self.0.iter().zip(&other.0).map(sum).collect())
+    }
+
+    fn resolves(&self) -> f64 {
+        let singled_out = self.0.iter().filter(|row| row.iter().all(|r| *r > 1.0)).count();
+        singled_out as f64 / self.0.len().max(1) as f64
+    }
+
+    fn least(&self) -> f64 {
+        self.0.iter().flatten().copied().fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn parting(
+    bench: &Bench<'_>,
+    experiment: &Experiment,
+    open: &Found,
+) -> Result<Parting, GapError> {
+    let mut records: Vec<Record> = match &experiment.measured {
+        Measured::Runs(runs) | Measured::Warm(runs) => {
+            runs.iter().map(|planned| undisturbed(bench, planned)).collect()
+        }
+        Measured::Amplifier | Measured::Temperature => {
+            bench.runs.iter().map(|&r| Record { load: None, ..r.clone() }).collect()
+        }
+    };
+    let shown = match experiment.measured {
+        Measured::Runs(_) => &[ChannelKind::Output][..],
+        Measured::Warm(_) => &[ChannelKind::Output, ChannelKind::Temperature],
+        Measured::Amplifier => &[ChannelKind::Amplifier],
+        Measured::Temperature => &[ChannelKind::Temperature],
+    };
+    for record in &mut records {
+        if shown.contains(&ChannelKind::Amplifier) {
+            record.amplifier = Some(record.input.clone());
+        }
+        if shown.contains(&ChannelKind::Temperature) {
+            record.temperature = Some(warmth(bench, &open.rivals, record)?);
+        }
+    }
+    let runs: Vec<&Record> = records.iter().collect();
+    let whole = BenchSimulator::new(bench.base, runs, bench.library, bench.range)?;
+    let places: Vec<usize> =
+        (0..whole.channels.len()).filter(|&t| shown.contains(&whole.channels[t].1)).collect();
+    let traces = whole.traces();
+    let traces: Vec<Trace> = places.iter().map(|&t| traces[t].clone()).collect();
+    let simulator = Shown { whole: &whole, places };
+    let found = separations(&simulator, &traces, bench.candidates, &open.rivals)?;
+    Ok(Parting::of(&found, open.drop))
+}
+
+/// Some of the channels of a bench.
+struct Shown<'a> {
+    whole: &'a BenchSimulator<'a>,
+    places: Vec<usize>,
+}
+
+impl Simulator for Shown<'_> {
+    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
+        let all = self.whole.predict(effects)?;
+        Ok(self.places.iter().map(|&t| all[t].clone()).collect())
+    }
+}
+
+/// A planned run of the base model, with its noise: that noise is what a distance is measured by.
+fn undisturbed(bench: &Bench<'_>, planned: &Planned) -> Record {
+    let mut noise = Noise(0x0F1E_2D3C);
+    let mut output = bench.base.predict(&planned.input, planned.step_s);
+    for y in &mut output {
+        *y += bench.base.noise * noise.normal();
+    }
+    Record {
+        id: planned.id.clone(),
+        is_reference: false,
+        step_s: planned.step_s,
+        input: planned.input.clone(),
+        output,
+        amplifier: None,
+        temperature: None,
+        load: None,
+    }
+}
+
+/// The temperature that a rival expects: a thermometer shows the heat of the one that has any.
+fn warmth(bench: &Bench<'_>, rivals: &[Rival], record: &Record) -> Result<Vec<f64>, GapError> {
+    let is_heat = |effect: &&Effect| {
+        matches!(bench.library[effect.candidate].part(&effect.values), Part::Heating(..))
+    };
+    let Some(heat) = rivals.iter().flat_map(|r| &r.effects).find(is_heat) else {
+        return Ok(vec![0.0; record.input.len()]);
+    };
+    let bare = Record { temperature: None, ..record.clone() };
+    let simulator = BenchSimulator::new(bench.base, vec![&bare], bench.library, bench.range)?;
+    simulator.rise_k(heat)
+}
+
+/// What is usual where no explanations are to be told apart.
+fn usual(finding: &Finding, bench: &Bench<'_>) -> &'static str {
+    let named = finding.causes.first().map(|found| &bench.candidates[found.candidate].cause);
+    if let Some(first) = named.and_then(|cause| cause.separating.first()) {
+        return first;
+    }
+    if finding.verdict == Verdict::NothingMissing {
+        "small-motion"
+    } else if bench.design.only_hz.is_some() {
+        "frequency-sweep"
+    } else {
+        "multisine-5-181Hz"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SELF: f64 = f64::INFINITY;
+
+    #[test]
+    fn the_fewest_experiments_that_single_out_most_are_chosen() {
+        // three explanations; the first experiment parts one of them, the second another, weakly
+        let first = Parting(vec![vec![SELF, 9.0, 9.0], vec![9.0, SELF, 0.1], vec![9.0, 0.1, SELF]]);
+        let second = Parting(vec![vec![SELF, 0.2, 2.0], vec![0.2, SELF, 2.0], vec![2.0, 2.0, SELF]]);
+        let nothing = Parting(vec![vec![SELF, 0.5, 0.5], vec![0.5, SELF, 0.5], vec![0.5, 0.5, SELF]]);
+        let all = [nothing.clone(), first.clone(), second.clone()];
+        let (parting, places) = choose(&all);
+        assert_eq!(places, [1, 2]);
+        assert_eq!(parting.resolves(), 1.0);
+        // one that does it alone is preferred, of two the one with the larger smallest distance
+        let alone = |least: f64| {
+            Parting(vec![vec![SELF, least, 5.0], vec![least, SELF, 5.0], vec![5.0, 5.0, SELF]])
+        };
+        let (_, places) = choose(&[first, second, alone(1.5), alone(3.0), nothing.clone()]);
+        assert_eq!(places, [3]);
+        // where nothing singles out any, one is proposed and not three
+        let (parting, places) = choose(&[nothing.clone(), nothing]);
+        assert_eq!((parting.resolves(), places.len()), (0.0, 1));
+    }
+}

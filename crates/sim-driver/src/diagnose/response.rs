@@ -1,0 +1,317 @@
+//! The runs under effects, stage by stage.
+//!
+//! ```text
+//! command -> amplifier -> law, gain, rate -> ordinary relaxation | linkage -> sensor | hum
+//! ```
+//! What stands before a bar is kept for a while: a search that moves a stage behind it simulates that
+//! stage alone. Hum is added to the output of all others.
+
+use super::base::BaseModel;
+use super::causes::{BenchCause, Part, looped, rate_dependent};
+use super::memo::{Memo, key};
+use super::record::Record;
+use model_gap::{Effect, GapError};
+use preisach_dyn::{
+    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, DielectricHeating, Drive, LinearGain,
+    LinkageStage, SensorStage, VoltageRange,
+};
+use std::sync::Arc;
+
+/// Fronts and responses kept; each holds two or three signals of all samples.
+const KEPT: usize = 6;
+
+/// What has passed the law, on every run.
+#[derive(Debug)]
+struct Front {
+    /// Terminal voltage; none where it is the command.
+    terminals: Vec<Option<Vec<f64>>>,
+    rises_k: Vec<Option<Vec<f64>>>,
+    outputs: Arc<Vec<Vec<f64>>>,
+}
+
+/// Signals of all runs under effects.
+pub(super) struct Response {
+    front: Arc<Front>,
+    outputs: Arc<Vec<Vec<f64>>>,
+    hum: Vec<Option<Vec<f64>>>,
+    /// Whether a load spring is among the effects.
+    pub(super) is_loaded: bool,
+}
+
+impl Response {
+    /// Output of a run.
+    pub(super) fn output(&self, run: usize) -> Vec<f64> {
+        let own = &self.outputs[run];
+        match &self.hum[run] {
+            Some(hum) => own.iter().zip(hum).map(|(y, h)| y + h).collect(),
+            None => own.clone(),
+        }
+    }
+
+    /// Output of a run without the hum of its reading.
+    pub(super) fn steady_output(&self, run: usize) -> &[f64] {
+        &self.outputs[run]
+    }
+
+    /// Terminal voltage of a run; none where it is the command.
+    pub(super) fn terminal(&self, run: usize) -> Option<&[f64]> {
+        self.front.terminals[run].as_deref()
+    }
+
+    /// Temperature rise of a run; none where nothing warms.
+    pub(super) fn rise_k(&self, run: usize) -> Option<&[f64]> {
+        self.front.rises_k[run].as_deref()
+    }
+}
+
+/// The base model on runs, with the stages of causes.
+pub(super) struct Plant<'a> {
+    base: &'a BaseModel,
+    runs: Vec<&'a Record>,
+    causes: &'a [Box<dyn BenchCause>],
+    /// Output of the base's static part, and behind its relaxation, on the plain command.
+    pub(super) laws: Vec<Vec<f64>>,
+    pub(super) plain: Arc<Vec<Vec<f64>>>,
+    /// The law at rest at 0 V, and in the middle of the range.
+    neutral: (f64, f64),
+    /// Stages that only see signals: any value may pass.
+    wide: VoltageRange,
+    fronts: Memo<Front>,
+    behind: Memo<Arc<Vec<Vec<f64>>>>,
+}
+
+impl<'a> Plant<'a> {
+    pub(super) fn new(
+        base: &'a BaseModel,
+        runs: Vec<&'a Record>,
+        causes: &'a [Box<dyn BenchCause>],
+        range: (f64, f64),
+    ) -> Result<Self, GapError> {
+        let laws: Vec<Vec<f64>> = runs.iter().map(|r| base.hysteresis(&r.input)).collect();
+        let plain = runs.iter().zip(&laws).map(|(r, law)| base.relaxed(law, r.step_s)).collect();
+        let at = |volt: f64| base.hysteresis(&[volt]).first().copied().unwrap_or_default();
+        let neutral = (at(0.0), at(f64::midpoint(range.0, range.1)));
+        let wide = VoltageRange::new(-1e9, 1e9).map_err(|e| failed("the range of signals", &e))?;
+        let (fronts, behind) = (Memo::new(KEPT), Memo::new(KEPT));
+        let plain = Arc::new(plain);
+        Ok(Self { base, runs, causes, laws, plain, neutral, wide, fronts, behind })
+    }
+
+    /// All runs under effects. The phase of a hum is what the measured output asks for beside the other
+    /// effects.
+    pub(super) fn respond(&self, effects: &[Effect]) -> Result<Response, GapError> {
+        let part = |effect: &Effect| self.causes[effect.candidate].part(&effect.values);
+        let parts: Vec<Part> = effects.iter().map(part).collect();
+        let of = |choose: fn(&Part) -> bool| {
+            key(effects.iter().zip(&parts).filter(|(_, p)| choose(p)).map(|(e, _)| e))
+        };
+        let front = self.fronts.get(of(is_in_front), || self.front(&parts))?;
+        let key = of(|part| !matches!(part, Part::Hum { .. }));
+        let outputs = self.behind.get(key, || self.behind(&front, &parts))?;
+        let hum = (0..self.runs.len()).map(|run| self.hum_of(run, &outputs[run], &parts)).collect();
+        let is_loaded =
+            parts.iter().any(|p| matches!(p, Part::Linkage(LinkageStage::LoadStiffness(_))));
+        Ok(Response { front, outputs: Arc::clone(&outputs), hum, is_loaded })
+    }
+
+    fn front(&self, parts: &[Part]) -> Result<Front, GapError> {
+        let stages: Vec<AmplifierStage> = parts
+            .iter()
+            .filter_map(|p| if let Part::Amplifier(stage) = p { Some(*stage) } else { None })
+            .collect();
+        let special = parts.iter().any(|p| is_in_front(p) && !matches!(p, Part::Amplifier(_)));
+        let count = self.runs.len();
+        if stages.is_empty() && !special {
+            let none = || vec![None; count];
+            let outputs = Arc::clone(&self.plain);
+            return Ok(Front { terminals: none(), rises_k: none(), outputs });
+        }
+        let (mut terminals, mut rises_k, mut outputs) = (Vec::new(), Vec::new(), Vec::new());
+        for number in 0..count {
+            let run = self.runs[number];
+            let terminal = if stages.is_empty() {
+                None
+            } else {
+                let drive = Drive::new(&run.input, run.step_s);
+                let model = self.through(&stages, &[], &[]);
+                Some(model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?.terminal_volt)
+            };
+            let mut law = match &terminal {
+                Some(volt) => self.base.hysteresis(volt),
+                None => self.laws[number].clone(),
+            };
+            let volt = terminal.as_deref().unwrap_or(&run.input);
+            rises_k.push(self.ceramic(number, parts, volt, &mut law)?);
+            outputs.push(self.base.relaxed(&law, run.step_s));
+            terminals.push(terminal);
+        }
+        Ok(Front { terminals, rises_k, outputs: Arc::new(outputs) })
+    }
+
+    /// What gain and rate make of the law's output; returns the temperature rise if anything warms.
+    fn ceramic(
+        &self,
+        number: usize,
+        parts: &[Part],
+        volt: &[f64],
+        law: &mut Vec<f64>,
+    ) -> Result<Option<Vec<f64>>, GapError> {
+        let (zero, middle) = self.neutral;
+        for part in parts {
+            if let Part::Hysteresis { share, widest } = part {
+                *law = looped(law, *share, *widest);
+            }
+        }
+        let mut rise_k = None;
+        let scale = |law: &mut [f64], about: f64, gain: &mut dyn Iterator<Item = f64>| {
+            let point = zero + about * (middle - zero);
+            for (y, g) in law.iter_mut().zip(gain) {
+                *y = point + g * (*y - point);
+            }
+        };
+        for part in parts {
+            match part {
+                Part::Heating(stage, about) => {
+                    let (rise, factor) = self.heated(number, *stage, volt)?;
+                    let gain = |t: &f64| 1.0 + stage.coefficient_per_k * t * factor;
+                    scale(law, *about, &mut rise.iter().map(gain));
+                    rise_k = Some(rise.iter().map(|t| t * factor).collect());
+                }
+                Part::Depolarisation(stage, about) => {
+                    let gain = stage.gains(volt, self.runs[number].step_s);
+                    scale(law, *about, &mut gain.into_iter());
+                }
+                _ => {}
+            }
+        }
+        for part in parts {
+            if let Part::RateDependence { tau_s, position } = part {
+                let place = (middle, self.base.spread);
+                *law = rate_dependent(law, *tau_s, *position, place, self.runs[number].step_s);
+            }
+        }
+        Ok(rise_k)
+    }
+
+    fn behind(&self, front: &Front, parts: &[Part]) -> Result<Arc<Vec<Vec<f64>>>, GapError> {
+        let linkage: Vec<LinkageStage> = parts
+            .iter()
+            .filter_map(|p| if let Part::Linkage(stage) = p { Some(stage.clone()) } else { None })
+            .collect();
+        let sensor: Vec<SensorStage> = parts
+            .iter()
+            .flat_map(|p| if let Part::Sensor(stages) = p { stages.clone() } else { Vec::new() })
+            .collect();
+        if linkage.is_empty() && sensor.is_empty() {
+            return Ok(Arc::clone(&front.outputs));
+        }
+        let mut outputs = Vec::with_capacity(self.runs.len());
+        for (run, output) in self.runs.iter().zip(front.outputs.iter()) {
+            let sensor: &[SensorStage] = if run.has_ideal_sensor() { &[] } else { &sensor };
+            let mut linkage = linkage.clone();
+            if run.is_preloaded() {
+                linkage.retain(|stage| !matches!(stage, LinkageStage::Backlash(_)));
+            }
+            if linkage.is_empty() && sensor.is_empty() {
+                outputs.push(output.clone());
+                continue;
+            }
+            let model = self.through(&[], &linkage, sensor);
+            let drive = Drive::new(output, run.step_s);
+            let simulated = model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?;
+            outputs.push(simulated.measured_deg);
+        }
+        Ok(Arc::new(outputs))
+    }
+
+    fn hum_of(&self, number: usize, output: &[f64], parts: &[Part]) -> Option<Vec<f64>> {
+        let run = self.runs[number];
+        let mut hum: Option<Vec<f64>> = None;
+        for part in parts {
+            let Part::Hum { amplitude, frequency_hz } = part else { continue };
+            if run.has_ideal_sensor() {
+                continue;
+            }
+            let residual: Vec<f64> =
+                run.output.iter().zip(output).map(|(measured, y)| measured - y).collect();
+            let line = line(*amplitude, frequency_hz * run.step_s, &residual);
+            match &mut hum {
+                Some(sum) => sum.iter_mut().zip(line).for_each(|(h, l)| *h += l),
+                None => hum = Some(line),
+            }
+        }
+        hum
+    }
+
+    /// Stages alone: a law of gain 1 between them, degrees standing for the output's unit.
+    fn through(
+        &self,
+        amplifier: &[AmplifierStage],
+        linkage: &[LinkageStage],
+        sensor: &[SensorStage],
+    ) -> ActuatorModel {
+        let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 1.0, bias_volt: 0.0 });
+        let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+        let mut model = ActuatorModel::new(law, self.wide, calibration);
+        model.amplifier = amplifier.to_vec();
+        model.linkage = linkage.to_vec();
+        model.sensor = sensor.to_vec();
+        model
+    }
+
+    /// The temperature rise of a heating stage, K, and the factor that a thermometer sets it right by.
+    fn heated(
+        &self,
+        number: usize,
+        stage: DielectricHeating,
+        volt: &[f64],
+    ) -> Result<(Vec<f64>, f64), GapError> {
+        let run = self.runs[number];
+        let model = self.through(&[AmplifierStage::DielectricHeating(stage)], &[], &[]);
+        let drive = Drive::new(volt, run.step_s);
+        let rise = model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?.temperature_k;
+        let factor = run.temperature.as_ref().map_or(1.0, |measured| slope(&rise, measured));
+        Ok((rise, factor.max(0.0)))
+    }
+}
+
+/// Whether a part acts before or in the law.
+fn is_in_front(part: &Part) -> bool {
+    matches!(
+        part,
+        Part::Amplifier(_)
+            | Part::Heating(..)
+            | Part::Depolarisation(..)
+            | Part::RateDependence { .. }
+            | Part::Hysteresis { .. }
+    )
+}
+
+/// A line of an amplitude and a number of turns per sample, with the phase that a residual asks for.
+pub(super) fn line(amplitude: f64, turns_per_sample: f64, residual: &[f64]) -> Vec<f64> {
+    let angle = |i: usize| std::f64::consts::TAU * (turns_per_sample * i as f64).fract();
+    let waves: Vec<(f64, f64)> = (0..residual.len()).map(|i| angle(i).sin_cos()).collect();
+    let (mut s, mut c) = (0.0, 0.0);
+    for (r, (sin, cos)) in residual.iter().zip(&waves) {
+        s += r * sin;
+        c += r * cos;
+    }
+    let size = c.hypot(s).max(1e-300);
+    waves.iter().map(|(sin, cos)| amplitude * (c * cos + s * sin) / size).collect()
+}
+
+/// Slope of `y` against `x` by least squares, both about their means; 0 where `x` is constant.
+pub(super) fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let n = x.len().max(1) as f64;
+    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let (mut xy, mut xx) = (0.0, 0.0);
+    for (a, b) in x.iter().zip(y) {
+        xy += (a - mx) * (b - my);
+        xx += (a - mx).powi(2);
+    }
+    if xx > 0.0 { xy / xx } else { 0.0 }
+}
+
+fn failed(what: &str, error: &preisach_dyn::PreisachError) -> GapError {
+    GapError::Simulation { what: what.to_owned(), message: error.to_string() }
+}
