@@ -7,7 +7,7 @@ use sim_driver::SimError;
 use sim_driver::case::{PAPER_CASE, shipped_case};
 use sim_driver::progress::Progress;
 use sim_driver::run::run_case;
-use sim_driver::study::sensitivities;
+use sim_driver::study::{Assumptions, sensitivities};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -16,7 +16,8 @@ const BUDGET_S: f64 = 20.0;
 fn whole_study() -> Result<f64, SimError> {
     let loaded = shipped_case(PAPER_CASE)?;
     let outcome = run_case(&loaded, &Progress::hidden())?;
-    let rows = sensitivities(&loaded, &outcome.trimmed, &outcome.drives, &|| ())?;
+    let rotor = (&outcome.trimmed, &outcome.drives);
+    let rows = sensitivities(&loaded, rotor, Assumptions::WithoutWake, &|| ())?;
     Ok(rows.iter().flat_map(|row| &row.reduction_percent).sum())
 }
 

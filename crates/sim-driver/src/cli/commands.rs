@@ -27,7 +27,7 @@ use crate::results::{RunResult, StoredResult};
 use crate::run::{RunOutcome, run_case, run_trimmed, steps_of};
 use crate::stored_actuator::{StoredActuator, read_actuator};
 use crate::study::{
-    RobustnessCell, SENSITIVITY_ROWS, Sensitivity, histories_csv, robustness_csv, robustness_maps,
+    Assumptions, RobustnessCell, Sensitivity, histories_csv, robustness_csv, robustness_maps,
     sensitivities, sensitivity_csv, study_report,
 };
 use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
@@ -61,7 +61,7 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
         &loaded,
         &args.out,
         args.format.format,
-        Scope { sensitivity: true, robustness: false },
+        Scope { sensitivity: Some(Assumptions::WithoutWake), robustness: false },
     )
 }
 
@@ -71,7 +71,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
         let stem = args.case.file_stem().map(PathBuf::from).unwrap_or_default();
         Path::new("out").join(stem)
     });
-    let scope = Scope { sensitivity: args.sensitivity, robustness: args.robustness };
+    let sensitivity = args.sensitivity.then_some(Assumptions::WithWake);
+    let scope = Scope { sensitivity, robustness: args.robustness };
     if args.mu.is_empty() {
         return run_and_store(&loaded, &out, args.format.format, scope);
     }
@@ -108,7 +109,7 @@ fn run_sweep(
     let mut rows = Vec::new();
     for &mu in advance_ratios {
         let here = at_advance_ratio(loaded, mu);
-        let more = if scope.sensitivity { SENSITIVITY_ROWS } else { 0 };
+        let more = scope.sensitivity.map_or(0, Assumptions::rows);
         let progress = Progress::new(steps_of(&here) + more);
         progress.doing(format!("advance ratio {mu}"));
         let computed = continued_trim(&here, start.as_ref()).and_then(|trimmed| {
@@ -137,7 +138,7 @@ fn run_sweep(
 /// What is computed beside the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Scope {
-    sensitivity: bool,
+    sensitivity: Option<Assumptions>,
     robustness: bool,
 }
 
@@ -155,10 +156,10 @@ fn with_scope(
     progress: &Progress,
 ) -> Result<Computed, SimError> {
     let (mut sensitivity, mut robustness) = (vec![], vec![]);
-    if scope.sensitivity {
+    if let Some(which) = scope.sensitivity {
         progress.doing("sensitivity");
         let done = || progress.step();
-        sensitivity = sensitivities(loaded, &outcome.trimmed, &outcome.drives, &done)?;
+        sensitivity = sensitivities(loaded, (&outcome.trimmed, &outcome.drives), which, &done)?;
     }
     if scope.robustness {
         progress.doing("robustness");
@@ -181,7 +182,7 @@ fn store(
     let inputs = outcome.actuators.inputs.clone();
     let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
     let report = study_report(loaded, outcome, &stored, (sensitivity, robustness))?;
-    if scope.sensitivity {
+    if scope.sensitivity.is_some() {
         let text = sensitivity_csv(loaded, sensitivity);
         write_atomic(&out.join(SENSITIVITY_FILE), text.as_bytes())?;
     }
@@ -203,7 +204,7 @@ fn run_and_store(
     format: Format,
     scope: Scope,
 ) -> Result<(), SimError> {
-    let more = if scope.sensitivity { SENSITIVITY_ROWS } else { 0 };
+    let more = scope.sensitivity.map_or(0, Assumptions::rows);
     let progress = Progress::new(steps_of(loaded) + more);
     let computed = run_case(loaded, &progress)
         .and_then(|outcome| with_scope(loaded, outcome, scope, &progress));

@@ -27,5 +27,5 @@ pub use robustness::{Disturbance, RobustnessCell, robustness, robustness_csv, ro
 use run::load_weights;
 pub(crate) use run::loads_cost;
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
-pub use sensitivity::{SENSITIVITY_ROWS, Sensitivity, sensitivities, sensitivity_csv};
+pub use sensitivity::{Assumptions, Sensitivity, sensitivities, sensitivity_csv};
 pub use tables::{histories_csv, study_report};

@@ -4,7 +4,7 @@ use super::authority::{HARMONICS, added};
 use super::coupling::{coefficients, series};
 use super::drive::scaled;
 use super::pair_power::watt_per_deg2;
-use super::recent::RecentMotions;
+use super::recent::Recent;
 use super::{
     CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, HingePower,
     PlantError,
@@ -354,7 +354,9 @@ pub struct RotorPlant {
     /// Amplitude at which each pair reaches its limit, V.
     full_scale_volt: Vec<f64>,
     power: Option<PlantPower>,
-    recent: RecentMotions,
+    /// Motions of one flap without hinge moment, and of all flaps under it.
+    free: Recent<FlapMotion>,
+    coupled: Recent<Vec<FlapMotion>>,
 }
 
 /// What the power of the actuators has to do with the control.
@@ -400,7 +402,8 @@ impl RotorPlant {
             drive,
             coupling,
             power: None,
-            recent: RecentMotions::default(),
+            free: Recent::default(),
+            coupled: Recent::default(),
         })
     }
 
@@ -530,7 +533,10 @@ impl RotorPlant {
     fn free_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
         self.voltages(control_volt)?
             .into_par_iter()
-            .map(|voltages| self.recent.motion(&self.drive, &voltages))
+            .map(|voltages| {
+                let bits = voltages.iter().flat_map(|&(n, h)| [(n, h.cosine), (n, h.sine)]);
+                self.free.answer(bits, || self.drive.motion(&voltages))
+            })
             .collect()
     }
 
@@ -555,7 +561,11 @@ impl RotorPlant {
         let free = self.free_motion(control_volt)?;
         match &self.coupling {
             None => Ok(free),
-            Some(coupling) => coupling.predict(|moments| self.loaded(&free, moments)),
+            Some(coupling) => {
+                let bits = control_volt.iter().copied().enumerate();
+                self.coupled
+                    .answer(bits, || coupling.predict(|moments| self.loaded(&free, moments)))
+            }
         }
     }
 

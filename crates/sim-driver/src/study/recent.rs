@@ -1,34 +1,48 @@
 //! Flap motions asked for lately: the controller asks several times about the same voltages.
 
-use super::{FlapDrive, FlapMotion, PlantError};
-use rotor_base::Harmonic;
+use super::PlantError;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-/// Motions kept.
+/// Answers kept.
 const KEPT: usize = 64;
 
-type Key = Vec<(usize, u64, u64)>;
-type Answer = Result<FlapMotion, PlantError>;
+/// The bits of voltages, with the harmonic they belong to where that is not plain from their place.
+type Key = Vec<(usize, u64)>;
 
-/// The latest answers of one drive, shared by the clones of a plant. A motion depends on its voltages alone,
-/// so what is remembered is what would be found again, to the bit.
-#[derive(Debug, Clone, Default)]
-pub(super) struct RecentMotions {
-    kept: Arc<Mutex<VecDeque<(Key, Answer)>>>,
+/// The latest answers to voltages, shared by the clones of a plant. An answer depends on its voltages alone, so
+/// what is remembered is what would be found again, to the bit.
+#[derive(Debug)]
+pub(super) struct Recent<A> {
+    kept: Arc<Mutex<VecDeque<(Key, Result<A, PlantError>)>>>,
 }
 
-impl RecentMotions {
-    /// [`FlapDrive::motion`], asked for once while it is remembered.
-    pub(super) fn motion(&self, drive: &FlapDrive, voltages: &[(usize, Harmonic)]) -> Answer {
-        let key: Key =
-            voltages.iter().map(|(n, h)| (*n, h.cosine.to_bits(), h.sine.to_bits())).collect();
+impl<A> Default for Recent<A> {
+    fn default() -> Self {
+        Self { kept: Arc::default() }
+    }
+}
+
+impl<A> Clone for Recent<A> {
+    fn clone(&self) -> Self {
+        Self { kept: Arc::clone(&self.kept) }
+    }
+}
+
+impl<A: Clone> Recent<A> {
+    /// The answer remembered, or else found and remembered.
+    pub(super) fn answer(
+        &self,
+        voltages: impl IntoIterator<Item = (usize, f64)>,
+        find: impl FnOnce() -> Result<A, PlantError>,
+    ) -> Result<A, PlantError> {
+        let key: Key = voltages.into_iter().map(|(n, volt)| (n, volt.to_bits())).collect();
         if let Ok(kept) = self.kept.lock()
             && let Some((_, answer)) = kept.iter().find(|(known, _)| *known == key)
         {
             return answer.clone();
         }
-        let answer = drive.motion(voltages);
+        let answer = find();
         if let Ok(mut kept) = self.kept.lock() {
             if kept.len() >= KEPT {
                 kept.pop_front();
@@ -42,25 +56,23 @@ impl RecentMotions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use preisach_dyn::VoltageRange;
 
     #[test]
-    fn what_is_remembered_is_what_would_be_found() {
-        let drive = |gain_deg_per_volt| FlapDrive::Ideal {
-            gain_deg_per_volt,
-            bias_volt: 65.0,
-            range_volt: VoltageRange::new(-20.0, 150.0).unwrap(),
+    fn an_answer_is_found_once_while_it_is_remembered() {
+        let recent = Recent::default();
+        let ask = |volt: f64, answer: f64| {
+            recent.clone().answer([(3, volt), (3, 1.0)], || Ok(answer)).unwrap()
         };
-        let recent = RecentMotions::default();
-        let at = |volt: f64| vec![(3, Harmonic { cosine: volt, sine: 1.0 })];
-        for volt in [10.0, 20.0, 1000.0, 10.0] {
-            assert_eq!(recent.motion(&drive(0.1), &at(volt)), drive(0.1).motion(&at(volt)));
-        }
-        // it was remembered: another drive is not asked
-        assert_eq!(recent.motion(&drive(0.2), &at(20.0)), drive(0.1).motion(&at(20.0)));
+        assert_eq!(ask(10.0, 1.0).to_bits(), 1.0_f64.to_bits());
+        assert_eq!(ask(20.0, 2.0).to_bits(), 2.0_f64.to_bits());
+        assert_eq!(ask(10.0, 3.0).to_bits(), 1.0_f64.to_bits());
+        assert_eq!(ask(-0.0, 4.0).to_bits(), 4.0_f64.to_bits());
         for k in 0..KEPT {
-            let _ = recent.motion(&drive(0.1), &at(30.0 + k as f64));
+            ask(30.0 + k as f64, 0.0);
         }
-        assert_eq!(recent.motion(&drive(0.2), &at(20.0)), drive(0.2).motion(&at(20.0)));
+        assert_eq!(ask(20.0, 5.0).to_bits(), 5.0_f64.to_bits());
+        let failed: Result<f64, _> = recent.answer([(2, 1.0)], || Err(PlantError::BiasSearch));
+        assert_eq!(failed, Err(PlantError::BiasSearch));
+        assert_eq!(recent.answer([(2, 1.0)], || Ok(1.0)), Err(PlantError::BiasSearch));
     }
 }

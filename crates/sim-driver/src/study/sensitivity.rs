@@ -91,6 +91,23 @@ fn free_wake(loaded: &LoadedCase) -> FreeWakeFile {
     }
 }
 
+/// The free wake instead of the case's inflow, and its near part in other ways.
+fn of_the_wake() -> Vec<Assumption> {
+    let of_rotor = |text, change: fn(&mut LoadedCase)| assume(text, change);
+    vec![
+        of_rotor("free wake", |c| c.case.inflow = InflowChoice::FreeWake(free_wake(c))),
+        of_rotor("free wake, near wake convected", |c| {
+            let near_wake = NearWakeChoice::Convected;
+            c.case.inflow = InflowChoice::FreeWake(FreeWakeFile { near_wake, ..free_wake(c) });
+        }),
+        of_rotor("free wake, near wake of 30 deg in the blade plane", |c| {
+            let near_wake = NearWakeChoice::BladePlane;
+            let file = FreeWakeFile { near_wake, near_wake_deg: 30.0, ..free_wake(c) };
+            c.case.inflow = InflowChoice::FreeWake(file);
+        }),
+    ]
+}
+
 /// The changes, one at a time.
 fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
     let amplitudes = base.trim().rotor.hub.harmonic(blades);
@@ -137,16 +154,6 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
         }),
         of_rotor("uniform inflow", |c| c.case.inflow = InflowChoice::Uniform),
         of_rotor("inflow of Pitt and Peters", |c| c.case.inflow = InflowChoice::PittPeters),
-        of_rotor("free wake", |c| c.case.inflow = InflowChoice::FreeWake(free_wake(c))),
-        of_rotor("free wake, near wake convected", |c| {
-            let near_wake = NearWakeChoice::Convected;
-            c.case.inflow = InflowChoice::FreeWake(FreeWakeFile { near_wake, ..free_wake(c) });
-        }),
-        of_rotor("free wake, near wake of 30 deg in the blade plane", |c| {
-            let near_wake = NearWakeChoice::BladePlane;
-            let file = FreeWakeFile { near_wake, near_wake_deg: 30.0, ..free_wake(c) };
-            c.case.inflow = InflowChoice::FreeWake(file);
-        }),
         of_rotor("quasi-steady sections", |c| {
             c.case.section.model = SectionModelChoice::QuasiSteady;
         }),
@@ -192,8 +199,8 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
 /// The first failure of a trim or a control study.
 pub fn sensitivities(
     loaded: &LoadedCase,
-    base: &TrimmedRotor,
-    drives: &Drives,
+    (base, drives): (&TrimmedRotor, &Drives),
+    which: Assumptions,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Sensitivity>, SimError> {
     let sets: Vec<Vec<usize>> =
@@ -203,7 +210,11 @@ pub fn sensitivities(
         _ => None,
     };
     let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
-    let mut rows = assumptions(base, loaded.case.blades)
+    let mut changes = assumptions(base, loaded.case.blades);
+    if which == Assumptions::WithWake {
+        changes.extend(of_the_wake());
+    }
+    let mut rows = changes
         .into_par_iter()
         .map(|assumption| {
             let mut varied = loaded.clone();
@@ -260,5 +271,21 @@ pub fn sensitivity_csv(loaded: &LoadedCase, rows: &[Sensitivity]) -> String {
     text
 }
 
-/// Number of rows [`sensitivities`] makes, for a progress bar.
-pub const SENSITIVITY_ROWS: usize = 27;
+/// Which assumptions are changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Assumptions {
+    /// All but those that take a free wake: seconds.
+    WithoutWake,
+    /// Those of the free wake and its near part too: minutes.
+    WithWake,
+}
+
+impl Assumptions {
+    /// Number of rows [`sensitivities`] makes, for a progress bar.
+    pub fn rows(self) -> usize {
+        match self {
+            Self::WithoutWake => 24,
+            Self::WithWake => 27,
+        }
+    }
+}
