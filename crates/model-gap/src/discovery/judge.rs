@@ -136,9 +136,8 @@ pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize)
 /// along its own effect by a part `FORM` of it, and each parameter moves as it would have to.
 fn form_errors(evidence: &Evidence<'_>, fitted: &Fitted, rest: &Fitted) -> Option<Vec<f64>> {
     let added = difference(&rest.residual, &fitted.residual);
-    let columns: Vec<&[Vec<f64>]> = std::iter::once(added.as_slice())
-        .chain(fitted.slopes.iter().map(Vec::as_slice))
-        .collect();
+    let columns: Vec<&[Vec<f64>]> =
+        std::iter::once(added.as_slice()).chain(fitted.slopes.iter().map(Vec::as_slice)).collect();
     let gram = evidence.projected(&evidence.products(&columns));
     let n = fitted.slopes.len();
     let mut normal = gram.view((1, 1), (n, n)).clone_owned();
