@@ -54,10 +54,10 @@ fn every_step_is_taken_because_data_ask_for_it() {
         // faster runs show what else is missing
         assert_eq!(loops.lacks, [hidden], "{hidden}: {loops:?}");
         assert!(extended.lacks.is_empty() && extended.verdict.is_none());
-        // each step is a gain where it was asked for
+        // each step is a gain where it was asked for; the noise of 1 % stays
         for rung in [line, loops] {
             let [before, after] = rung.heldout_rms.unwrap();
-            assert!(after < 0.75 * before, "{hidden}: {rung:?}");
+            assert!(after < 0.9 * before, "{hidden}: {rung:?}");
         }
         assert!(loops.error_percent[0] < 0.5 * line.error_percent[0], "{hidden}: {ladder:?}");
         assert!(extended.error_percent[1] < loops.error_percent[1], "{hidden}: {ladder:?}");
