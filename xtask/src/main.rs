@@ -132,8 +132,7 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(ExitCode::from(report.exit_code()))
         }
         Chore::HiddenEffects { seeds, first_block, snr, only, threads, hhc } => {
-            let selection =
-                hidden_effects::Selection { seeds, first_block, snr_db: snr, only };
+            let selection = hidden_effects::Selection { seeds, first_block, snr_db: snr, only };
             let options = hidden_effects::Options { selection, threads, hhc };
             let progress = |line: &str| say(&mut std::io::stderr(), line);
             let report = hidden_effects::run(root, &options, progress)?;

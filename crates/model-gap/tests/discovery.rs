@@ -257,9 +257,8 @@ struct Humming {
 
 fn line(amplitude: f64, residual: &[f64]) -> Vec<f64> {
     let angle = |i: usize| TAU * 31.0 * i as f64 / SAMPLES as f64;
-    let sum = |f: fn(f64) -> f64| {
-        residual.iter().enumerate().map(|(i, r)| r * f(angle(i))).sum::<f64>()
-    };
+    let sum =
+        |f: fn(f64) -> f64| residual.iter().enumerate().map(|(i, r)| r * f(angle(i))).sum::<f64>();
     let (c, s) = (sum(f64::cos), sum(f64::sin));
     let size = c.hypot(s).max(1e-300);
     (0..residual.len())
@@ -337,6 +336,11 @@ fn an_experiment_parts_what_differs_and_not_what_is_the_same() {
     for (a, b) in [(0, 1), (1, 0)] {
         let distance = found.distance[(a, b)];
         assert!(distance > 50.0, "{}", found.distance);
-        assert!(distance < found.energy[0] + found.energy[1] + 2.0 * (found.energy[0] * found.energy[1]).sqrt());
+        assert!(
+            distance
+                < found.energy[0]
+                    + found.energy[1]
+                    + 2.0 * (found.energy[0] * found.energy[1]).sqrt()
+        );
     }
 }

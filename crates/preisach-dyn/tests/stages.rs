@@ -94,17 +94,6 @@ fn effects_vanish_in_proportion_to_their_parameter() {
                 amplifier(AmplifierStage::Depolarisation(stage))
             }),
         ),
-        (
-            "depolarisation with time",
-            Box::new(|x| {
-                let stage = Depolarisation {
-                    loss_per_volt: 0.0,
-                    loss_per_volt_second: 1e-4 * x,
-                    ..Depolarisation::new(20.0)
-                };
-                amplifier(AmplifierStage::Depolarisation(stage))
-            }),
-        ),
         ("creep", Box::new(|x| linkage(LinkageStage::LogCreep(LogCreep::new(1e-4 * x))))),
         (
             "resonance",
@@ -483,6 +472,22 @@ fn depolarisation_stays_until_the_voltage_repoles() {
 }
 
 #[test]
+fn depolarisation_with_time_vanishes_in_proportion_to_its_rate() {
+    let input = sampled(1500, 1e-3, |t| 65.0 + 80.0 * (TAU * 3.0 * t).sin());
+    let effect = |loss_per_volt_second: f64| {
+        let stage = Depolarisation {
+            loss_per_volt: 0.0,
+            loss_per_volt_second,
+            ..Depolarisation::new(20.0)
+        };
+        let model = amplifier(AmplifierStage::Depolarisation(stage));
+        largest_difference(&input, &measured(&model, &input, 1e-3))
+    };
+    assert!(effect(1e-4) > 0.0 && effect(0.0) == 0.0);
+    assert!((effect(2e-4) / effect(1e-4) - 2.0).abs() < 1e-9);
+}
+
+#[test]
 fn depolarisation_grows_with_the_time_below_the_threshold() {
     let stage = Depolarisation {
         loss_per_volt: 0.0,
@@ -498,9 +503,8 @@ fn depolarisation_grows_with_the_time_below_the_threshold() {
     };
     let overdrive_volt_s = 2.0 * 0.5 * 30.0 * 0.3 + 0.5 * 30.0;
     // exact at any step that has the corners among its samples, and where it has not the crossings
-    for step_s in [0.5, 0.1, 1e-3] {
-        let input: Vec<f64> =
-            (0..).map(|i| f64::from(i) * step_s).take_while(|t| *t < 3.0).map(path).collect();
+    for (count, step_s) in [(6, 0.5), (30, 0.1), (3000, 1e-3)] {
+        let input = sampled(count, step_s, path);
         let last = *measured(&model, &input, step_s).last().unwrap();
         assert_abs_diff_eq!(last, 50.0 * (1.0 - 0.02 * overdrive_volt_s), epsilon = 1e-9);
         let gains = stage.gains(&input, step_s);

@@ -17,13 +17,15 @@ fn records(files: &[File], folder: &Path) -> Records {
     Records::from(&read_bench(&Folder::Disk(folder.to_path_buf())).unwrap())
 }
 
-/// The ladder on an actuator whose faster runs hide an effect of 7 % of the output.
-fn ladder(hidden: &str, cache: &Path) -> Ladder {
-    let base = 0;
+/// The ladder on an actuator whose faster runs hide an effect of 7 % of the output; with further
+/// experiments, if any.
+fn ladder(hidden: &str, experiment: Option<&str>, cache: &Path) -> Ladder {
+    let base = 8;
     let request = Request {
         hidden: Some(Hidden::parse(hidden).unwrap()),
         base: Some(base),
         share: Some(0.07),
+        experiment: experiment.map(str::to_owned),
         ..Request::new(4, 40.0)
     };
     let folder = tempfile::tempdir().unwrap();
@@ -38,8 +40,12 @@ fn ladder(hidden: &str, cache: &Path) -> Ladder {
 #[test]
 fn every_step_is_taken_because_data_ask_for_it() {
     let cache = tempfile::tempdir().unwrap();
-    for hidden in ["rate-dependence", "amplifier-current-limit"] {
-        let ladder = ladder(hidden, cache.path());
+    // a lag of the domains is told from one of the amplifier or of the sensor by a monitor and a second sensor
+    let second_sensor = Some("laser-cross-check+amplifier-monitor");
+    for (hidden, experiment) in
+        [("rate-dependence", second_sensor), ("amplifier-current-limit", None)]
+    {
+        let ladder = ladder(hidden, experiment, cache.path());
         let [line, loops, extended] = ladder.rungs.as_slice() else {
             panic!("{hidden}: {ladder:?}");
         };
@@ -48,16 +54,17 @@ fn every_step_is_taken_because_data_ask_for_it() {
         // faster runs show what else is missing
         assert_eq!(loops.lacks, [hidden], "{hidden}: {loops:?}");
         assert!(extended.lacks.is_empty() && extended.verdict.is_none());
-        // each step is a gain where it was asked for
+        // each step is a gain where it was asked for; the noise of 1 % stays
         for rung in [line, loops] {
             let [before, after] = rung.heldout_rms.unwrap();
-            assert!(after < 0.75 * before, "{hidden}: {rung:?}");
+            assert!(after < 0.9 * before, "{hidden}: {rung:?}");
         }
         assert!(loops.error_percent[0] < 0.5 * line.error_percent[0], "{hidden}: {ladder:?}");
         assert!(extended.error_percent[1] < loops.error_percent[1], "{hidden}: {ladder:?}");
-        // and each makes the flap later: none, that of the loops, that of the loops and the rate
+        // loops make the flap later, and a rate makes it later still
         let lag = |i: usize| ladder.rungs[i].flap_3_per_rev[1];
-        assert!(lag(0).abs() < 0.5 && lag(1) > lag(0) + 3.0 && lag(2) > lag(1) + 1.0, "{ladder:?}");
+        assert!(lag(0).abs() < 0.5 && lag(1) > lag(0) + 3.0, "{hidden}: {ladder:?}");
+        assert!(hidden != "rate-dependence" || lag(2) > lag(1) + 1.0, "{hidden}: {ladder:?}");
         for rung in &ladder.rungs {
             assert!(rung.cost[1] < rung.cost[0], "{hidden}: {rung:?}");
         }

@@ -127,28 +127,42 @@ pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize)
     }
 }
 
-/// How far an error of form moves the coordinates of one effect.
+/// Squares of what moves the coordinates of a fit besides noise: an error of form of the effect, and
+/// structure of the base model.
 ///
 /// ```text
-/// s_k' = s_k - the other slopes and the nuisance projected out,   form_k = FORM <e, s_k'> / |s_k'|^2
+/// s_k' = s_k - the other slopes and the nuisance projected out
+/// form_k = FORM <e, s_k'> / |s_k'|^2,   structure_k = rms over surrogates z of <z, s_k'> / |s_k'|^2
 /// ```
 /// `e` is what the effect adds to the rest. No model of a cause is exact: what it lacks is taken to be
-/// along its own effect by a part `FORM` of it, and each parameter moves as it would have to.
-fn form_errors(evidence: &Evidence<'_>, fitted: &Fitted, rest: &Fitted) -> Option<Vec<f64>> {
+/// along its own effect by a part `FORM` of it, and each parameter moves as it would have to. What the
+/// base model leaves of a surrogate with nothing missing moves a parameter likewise.
+fn shifts<S>(
+    discovery: &Discovery<'_, S>,
+    evidence: &Evidence<'_>,
+    fitted: &Fitted,
+    rest: &Fitted,
+) -> Option<DVector<f64>> {
     let added = difference(&rest.residual, &fitted.residual);
+    let others = 1 + discovery.structures.len();
     let columns: Vec<&[Vec<f64>]> = std::iter::once(added.as_slice())
+        .chain(discovery.structures.iter().map(Vec::as_slice))
         .chain(fitted.slopes.iter().map(Vec::as_slice))
         .collect();
     let gram = evidence.projected(&evidence.products(&columns));
     let n = fitted.slopes.len();
-    let mut normal = gram.view((1, 1), (n, n)).clone_owned();
+    let mut normal = gram.view((others, others), (n, n)).clone_owned();
     let ridge = 1e-12 * normal.trace();
     for i in 0..n {
         normal[(i, i)] += ridge;
     }
-    // the shift of all coordinates that would undo the effect: each entry is <e, s'> / |s'|^2
-    let along = gram.view((1, 0), (n, 1)).column(0).clone_owned();
-    Some(normal.cholesky()?.solve(&along).iter().map(|x| FORM * x.abs()).collect())
+    // regression on all slopes at once: each coefficient is <., s'> / |s'|^2
+    let moved = normal.cholesky()?.solve(&gram.view((others, 0), (n, others)).clone_owned());
+    let surrogates = (others - 1).max(1) as f64;
+    Some(DVector::from_fn(n, |k, _| {
+        let structure: f64 = (1..others).map(|c| moved[(k, c)].powi(2)).sum::<f64>() / surrogates;
+        (FORM * moved[(k, 0)]).powi(2) + structure
+    }))
 }
 
 /// Values with 95 % intervals of the parameters of effect `effect`; `rest` is the fit without it.
@@ -159,7 +173,7 @@ pub(crate) fn parameters<S>(
     effect: usize,
     rest: &Fitted,
 ) -> Vec<FittedParameter> {
-    let form = form_errors(evidence, fitted, rest);
+    let shifts = shifts(discovery, evidence, fitted, rest);
     let gram = evidence.projected(&fitted.products);
     let n = fitted.free.len();
     let mut normal = gram.view((1, 1), (n, n)).clone_owned();
@@ -179,8 +193,8 @@ pub(crate) fn parameters<S>(
             let std = place.and_then(|k| {
                 let variance = covariance.as_ref()?[(k, k)];
                 let inflation = drift(evidence, fitted, k).chi2_per_degree.max(1.0);
-                let form = form.as_ref().map_or(0.0, |f| f[k]);
-                Some((variance * inflation + form * form).sqrt())
+                let shift = shifts.as_ref().map_or(0.0, |s| s[k]);
+                Some((variance * inflation + shift).sqrt())
             });
             let known = std.filter(|_| parameter.needs.is_none());
             let ci95 = known.map_or([parameter.low, parameter.high], |std| {

@@ -77,9 +77,8 @@ pub fn separations<S: Simulator>(
                 continue;
             }
             let apart = difference(residual, &truth.0);
-            let columns: Vec<&[Vec<f64>]> = std::iter::once(apart.as_slice())
-                .chain(slopes.iter().map(Vec::as_slice))
-                .collect();
+            let columns: Vec<&[Vec<f64>]> =
+                std::iter::once(apart.as_slice()).chain(slopes.iter().map(Vec::as_slice)).collect();
             let gram = evidence.projected(&evidence.products(&columns));
             let n = slopes.len();
             let mut normal = gram.view((1, 1), (n, n)) + &rivals[b].information;

@@ -384,9 +384,8 @@ impl Step for DepolarisationStep {
         memory.at_once = self.at_once(memory.at_once, input);
         if loss_per_volt_second > 0.0 {
             let added = loss_per_volt_second * self.overdrive_volt_s(memory.voltage, input);
-            let most = repoling_volt.map_or(1.0, |volt| {
-                ((volt - input) / (volt - threshold_volt)).clamp(0.0, 1.0)
-            });
+            let most = repoling_volt
+                .map_or(1.0, |volt| ((volt - input) / (volt - threshold_volt)).clamp(0.0, 1.0));
             memory.with_time = (memory.with_time + added).min(most);
         }
         memory.voltage = input;

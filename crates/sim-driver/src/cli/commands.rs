@@ -1,8 +1,8 @@
 //! What each command does.
 
 use super::args::{
-    CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, LadderArgs, ModesArgs,
-    ReportArgs, RunArgs, StudyArgs, WakeArgs,
+    CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, LadderArgs,
+    ModesArgs, ReportArgs, RunArgs, StudyArgs, WakeArgs,
 };
 use crate::SimError;
 use crate::actuator::case_actuators;
@@ -306,10 +306,8 @@ pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
     let climbed = climb(&measured, &reference, &loaded, Some(&args.cache));
     progress.finish();
     let (ladder, found) = climbed?;
-    let text = serde_json::to_string_pretty(&ladder).map_err(|e| SimError::NotWritten {
-        path: "ladder.json".into(),
-        reason: e.to_string(),
-    })?;
+    let text = serde_json::to_string_pretty(&ladder)
+        .map_err(|e| SimError::NotWritten { path: "ladder.json".into(), reason: e.to_string() })?;
     found.extended()?.write(&args.output.join(EXTENDED_FILE))?;
     write_atomic(&args.output.join("ladder.json"), (text + "\n").as_bytes())?;
     print(&ladder.render(args.format.format)?)

@@ -234,17 +234,16 @@ mod tests {
             })
             .collect();
         let after = vec![0.0; 4000];
-        let run =
-            Shown { id: "a", step_s, input: &input, before: &before, after: &after };
+        let run = Shown { id: "a", step_s, input: &input, before: &before, after: &after };
         let tables = displays(&[run], "um");
         let harmonics = &tables[0].1;
         let third = column(harmonics, "before_um")[2];
         assert!((third - 0.2).abs() < 1e-3, "{third}");
         assert!(column(harmonics, "after_um").iter().all(|a| *a < 1e-12));
         let samples: f64 = column(&tables[1].1, "samples").iter().sum();
-        assert_eq!(samples, 3999.0);
+        assert!((samples - 3999.0).abs() < 0.5);
         let since: f64 = column(&tables[2].1, "samples").iter().sum();
-        assert_eq!(since, 3999.0);
+        assert!((since - 3999.0).abs() < 0.5);
         let gain = column(&tables[3].1, "gain_before");
         assert!(gain.windows(2).all(|w| w[1] > w[0]), "{gain:?}");
         assert!((gain[11] - 4e-3).abs() < 4e-4, "{gain:?}");

@@ -97,8 +97,9 @@ pub fn climb(
     let targets: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
     let range = range_of(measured.range, &all, &targets);
     let line = BaseModel::straight(&slow, range);
-    let loops = BaseModel::fit(&slow, range, None)
-        .ok_or_else(|| misfit(GapError::TooShort { what: "slow runs".into(), samples: 0, needed: 1 }))?;
+    let loops = BaseModel::fit(&slow, range, None).ok_or_else(|| {
+        misfit(GapError::TooShort { what: "slow runs".into(), samples: 0, needed: 1 })
+    })?;
     let first = asked_of_line(&line, &slow, measured, range).map_err(misfit)?;
     let question = Question { reference: reference.to_vec(), cache, ..Question::default() };
     let found = diagnose(measured, &question)?;
@@ -273,7 +274,11 @@ impl Printable for Ladder {
                 sheet.line(format_args!(
                     "A {} lacks: {} ({}); held-out error {before:.3} -> {after:.3} {}",
                     rung.model,
-                    if rung.lacks.is_empty() { "nothing".to_owned() } else { rung.lacks.join(", ") },
+                    if rung.lacks.is_empty() {
+                        "nothing".to_owned()
+                    } else {
+                        rung.lacks.join(", ")
+                    },
                     words(verdict),
                     rung.unit
                 ));

@@ -125,6 +125,12 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
             findings.not_observable.join(", ")
         ));
     }
+    next(d, &mut sheet);
+    sheet.finish()
+}
+
+/// What to measure next, and what that would settle.
+fn next(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line(format_args!("Measure next: {} ({})", d.next.id, d.next.what));
     if let Some(share) = d.next.resolves {
         sheet.line(format_args!(
@@ -132,7 +138,6 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
             100.0 * share
         ));
     }
-    sheet.finish()
 }
 
 fn verdict_line(findings: &Findings) -> String {

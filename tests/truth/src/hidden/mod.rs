@@ -36,8 +36,8 @@ pub use bouc_wen::{BoucWen, BoucWenParameters};
 pub use catalogue::{Cause, Hidden, Outside, PAIRS};
 pub use ceramic::Ceramic;
 pub use design::{
-    BASES, BIAS_VOLT, Design, EXPERIMENTS, Experiment, Fitting, Monitor, Monitors, Plan, is_experiment,
-    RANGE_VOLT, Size, experiment, measured, reference,
+    BASES, BIAS_VOLT, Design, EXPERIMENTS, Experiment, Fitting, Monitor, Monitors, Plan,
+    RANGE_VOLT, Size, experiment, is_experiment, measured, reference,
 };
 pub use effect::{Character, Element, Parameter, Physics};
 pub use mechanics::Mechanics;

@@ -70,7 +70,12 @@ pub(super) fn equations(
 }
 
 /// Precision of the prior of offset, rises and shares.
-pub(super) fn precision(plays: &Plays, prior: (f64, f64), spread: f64, shares: usize) -> Option<DMatrix<f64>> {
+pub(super) fn precision(
+    plays: &Plays,
+    prior: (f64, f64),
+    spread: f64,
+    shares: usize,
+) -> Option<DMatrix<f64>> {
     let covariance = plays.prior(prior.0 * spread, REVERSIBLE * 2.0 * spread, prior.1);
     let n = covariance.nrows();
     let inverse = covariance.cholesky()?.inverse();

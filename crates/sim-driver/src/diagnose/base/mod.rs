@@ -139,9 +139,8 @@ impl BaseModel {
         let pairs = || runs.iter().flat_map(|r| r.input.iter().zip(&r.output));
         let count = pairs().count().max(1) as f64;
         let (mu, my) = pairs().fold((0.0, 0.0), |s, (u, y)| (s.0 + u / count, s.1 + y / count));
-        let (uy, uu) = pairs().fold((0.0, 0.0), |s, (u, y)| {
-            (s.0 + (u - mu) * (y - my), s.1 + (u - mu).powi(2))
-        });
+        let (uy, uu) = pairs()
+            .fold((0.0, 0.0), |s, (u, y)| (s.0 + (u - mu) * (y - my), s.1 + (u - mu).powi(2)));
         let slope = if uu > 0.0 { uy / uu } else { 0.0 };
         let (rises, offset) = plays.line(slope, my - slope * mu);
         let coefficients = plays.rises_to_coefficients() * &rises;

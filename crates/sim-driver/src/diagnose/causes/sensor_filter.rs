@@ -52,10 +52,14 @@ mod tests {
     #[test]
     fn both_poles_share_the_delay_and_two_fall_off_faster() {
         let poles = |second: f64| {
-            let Part::Sensor(stages) = SensorFilter.part(&[2e-3, second]) else { return Vec::new() };
+            let Part::Sensor(stages) = SensorFilter.part(&[2e-3, second]) else {
+                return Vec::new();
+            };
             stages
                 .iter()
-                .filter_map(|s| if let SensorStage::Filter(lag) = s { Some(lag.tau_s) } else { None })
+                .filter_map(
+                    |s| if let SensorStage::Filter(lag) = s { Some(lag.tau_s) } else { None },
+                )
                 .collect()
         };
         for second in [0.0, 0.02, 0.3, 0.5] {

@@ -13,7 +13,13 @@ pub(super) struct Span {
 const REST_S: f64 = 0.1;
 
 fn sampled(seconds: f64, step_s: f64, value: impl Fn(f64) -> f64) -> Vec<f64> {
-    (0..).map(|i| f64::from(i) * step_s).take_while(|t| *t < seconds).map(value).collect()
+    let mut values = Vec::new();
+    let mut time_s = 0.0;
+    while time_s < seconds {
+        values.push(value(time_s));
+        time_s = values.len() as f64 * step_s;
+    }
+    values
 }
 
 impl Span {

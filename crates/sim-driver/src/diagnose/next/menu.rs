@@ -34,16 +34,32 @@ pub(super) struct Experiment {
 const BAND: (f64, f64) = (1.0, 35.0);
 const WIDE: (f64, f64) = (5.0, 181.0);
 
+fn run(id: &str, step_s: f64, input: Vec<f64>) -> Planned {
+    Planned { id: id.to_owned(), step_s, input }
+}
+
+/// An experiment of one further run.
+fn one(id: &'static str, what: &'static str, step_s: f64, input: Vec<f64>) -> Experiment {
+    Experiment { id, what, measured: Measured::Runs(vec![run(id, step_s, input)]) }
+}
+
 /// Every experiment that can be worked out, for the measured runs at hand.
 pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experiment> {
-    let run = |id: &str, step_s: f64, input: Vec<f64>| Planned { id: id.to_owned(), step_s, input };
-    let one = |id: &'static str, what, step_s, input| Experiment {
-        id,
-        what,
-        measured: Measured::Runs(vec![run(id, step_s, input)]),
-    };
+    let mut menu = fast(span);
+    menu.extend(slow_and_small(span));
+    menu.extend(other_fittings(span, runs));
+    if is_bench {
+        menu.extend(monitors(span, runs));
+    }
+    menu
+}
+
+/// Experiments that carry high frequencies, or many.
+fn fast(span: Span) -> Vec<Experiment> {
     let wide = |peak| span.multisine(WIDE, 2.0, peak, 2.0, 5e-4);
-    let mut menu = vec![
+    let sines =
+        [(0.5, 2.0), (1.0, 2.0), (2.0, 4.0), (5.0, 8.0), (10.0, 12.0), (20.0, 20.0), (40.0, 40.0)];
+    vec![
         Experiment {
             id: "multisine-5-181Hz",
             what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each",
@@ -62,7 +78,7 @@ pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experime
             id: "frequency-sweep",
             what: "half the half range, sines from 0.5 to 40 Hz",
             measured: Measured::Runs(
-                [(0.5, 2.0), (1.0, 2.0), (2.0, 4.0), (5.0, 8.0), (10.0, 12.0), (20.0, 20.0), (40.0, 40.0)]
+                sines
                     .iter()
                     .map(|&(hz, cycles)| {
                         run("sine", 1e-3, span.bursts(hz, 0.0, &[(0.47, cycles)], 1e-3))
@@ -70,15 +86,19 @@ pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experime
                     .collect(),
             ),
         },
-        Experiment {
-            id: "ring-down",
-            what: "small steps read at 2 kHz",
-            measured: Measured::Runs(vec![run(
-                "steps",
-                5e-4,
-                span.steps(&[0.24, 0.0, -0.24, 0.0, 0.24, 0.0, -0.24, 0.0], 0.25, 5e-4),
-            )]),
-        },
+        one(
+            "ring-down",
+            "small steps read at 2 kHz",
+            5e-4,
+            span.steps(&[0.24, 0.0, -0.24, 0.0, 0.24, 0.0, -0.24, 0.0], 0.25, 5e-4),
+        ),
+    ]
+}
+
+/// Experiments that last, rest, or move little.
+fn slow_and_small(span: Span) -> Vec<Experiment> {
+    let small = [0.012, 0.012, 0.024, 0.024, 0.06, 0.06, 0.12, 0.12];
+    vec![
         one(
             "hold-steps-100s",
             "three steps held for 33 s each",
@@ -89,7 +109,7 @@ pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experime
             "small-motion",
             "triangles of 1 to 12 % of the half range",
             2e-3,
-            span.triangles(2.0, &[0.012, 0.012, 0.024, 0.024, 0.06, 0.06, 0.12, 0.12], 2e-3),
+            span.triangles(2.0, &small, 2e-3),
         ),
         one(
             "bias-sweep",
@@ -97,6 +117,19 @@ pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experime
             2e-3,
             span.path(&sweep(), 2e-3),
         ),
+        one(
+            "zero-input-record",
+            "8 s without input",
+            1e-3,
+            span.path(&[(0.0, 0.0), (8.0, 0.0)], 1e-3),
+        ),
+    ]
+}
+
+/// Experiments with something else on the bench.
+fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
+    let again = |r: &&Record| run(&format!("laser_{}", r.id), r.step_s, r.input.clone());
+    vec![
         Experiment {
             id: "preload",
             what: "a triangle and a multisine with the lever preloaded: play goes, friction stays",
@@ -108,38 +141,35 @@ pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experime
         Experiment {
             id: "laser-cross-check",
             what: "the same runs read by a second, ideal displacement sensor",
-            measured: Measured::Runs(
-                runs.iter()
-                    .map(|r| run(&format!("laser_{}", r.id), r.step_s, r.input.clone()))
-                    .collect(),
-            ),
+            measured: Measured::Runs(runs.iter().map(again).collect()),
         },
-        one("zero-input-record", "8 s without input", 1e-3, span.path(&[(0.0, 0.0), (8.0, 0.0)], 1e-3)),
-    ];
-    if is_bench {
+    ]
+}
+
+/// Further columns, and what needs them.
+fn monitors(span: Span, runs: &[&Record]) -> Vec<Experiment> {
+    let mut menu = vec![Experiment {
+        id: "cold-hot-cold",
+        what: "a small sine, a minute of full drive, the small sine again; temperature recorded",
+        measured: Measured::Warm(vec![run(
+            "hot",
+            5e-3,
+            span.bursts(20.0, 0.0, &[(0.35, 40.0), (0.94, 1200.0), (0.35, 800.0)], 5e-3),
+        )]),
+    }];
+    if runs.iter().all(|r| r.amplifier.is_none()) {
         menu.push(Experiment {
-            id: "cold-hot-cold",
-            what: "a small sine, a minute of full drive, the small sine again; temperature recorded",
-            measured: Measured::Warm(vec![run(
-                "hot",
-                5e-3,
-                span.bursts(20.0, 0.0, &[(0.35, 40.0), (0.94, 1200.0), (0.35, 800.0)], 5e-3),
-            )]),
+            id: "amplifier-monitor",
+            what: "the terminal voltage beside every run",
+            measured: Measured::Amplifier,
         });
-        if runs.iter().all(|r| r.amplifier.is_none()) {
-            menu.push(Experiment {
-                id: "amplifier-monitor",
-                what: "the terminal voltage beside every run",
-                measured: Measured::Amplifier,
-            });
-        }
-        if runs.iter().all(|r| r.temperature.is_none()) {
-            menu.push(Experiment {
-                id: "temperature-monitor",
-                what: "the temperature beside every run",
-                measured: Measured::Temperature,
-            });
-        }
+    }
+    if runs.iter().all(|r| r.temperature.is_none()) {
+        menu.push(Experiment {
+            id: "temperature-monitor",
+            what: "the temperature beside every run",
+            measured: Measured::Temperature,
+        });
     }
     menu
 }

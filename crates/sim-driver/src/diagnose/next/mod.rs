@@ -127,7 +127,8 @@ impl Parting {
 
     /// Both experiments: either of them rules out what it rules out.
     fn with(&self, other: &Self) -> Self {
-        let sum = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(x, y)| x.max(*y)).collect();
+        let sum =
+            |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(x, y)| x.max(*y)).collect();
         Self(self.0.iter().zip(&other.0).map(sum).collect())
     }
 
@@ -141,11 +142,7 @@ impl Parting {
     }
 }
 
-fn parting(
-    bench: &Bench<'_>,
-    experiment: &Experiment,
-    open: &Found,
-) -> Result<Parting, GapError> {
+fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<Parting, GapError> {
     let mut records: Vec<Record> = match &experiment.measured {
         Measured::Runs(runs) | Measured::Warm(runs) => {
             runs.iter().map(|planned| undisturbed(bench, planned)).collect()
@@ -249,12 +246,14 @@ mod tests {
     fn the_fewest_experiments_that_single_out_most_are_chosen() {
         // three explanations; the first experiment parts one of them, the second another, weakly
         let first = Parting(vec![vec![SELF, 9.0, 9.0], vec![9.0, SELF, 0.1], vec![9.0, 0.1, SELF]]);
-        let second = Parting(vec![vec![SELF, 0.2, 2.0], vec![0.2, SELF, 2.0], vec![2.0, 2.0, SELF]]);
-        let nothing = Parting(vec![vec![SELF, 0.5, 0.5], vec![0.5, SELF, 0.5], vec![0.5, 0.5, SELF]]);
+        let second =
+            Parting(vec![vec![SELF, 0.2, 2.0], vec![0.2, SELF, 2.0], vec![2.0, 2.0, SELF]]);
+        let nothing =
+            Parting(vec![vec![SELF, 0.5, 0.5], vec![0.5, SELF, 0.5], vec![0.5, 0.5, SELF]]);
         let all = [nothing.clone(), first.clone(), second.clone()];
         let (parting, places) = choose(&all);
         assert_eq!(places, [1, 2]);
-        assert_eq!(parting.resolves(), 1.0);
+        assert!(parting.resolves() >= 1.0);
         // one that does it alone is preferred, of two the one with the larger smallest distance
         let alone = |least: f64| {
             Parting(vec![vec![SELF, least, 5.0], vec![least, SELF, 5.0], vec![5.0, 5.0, SELF]])
@@ -263,6 +262,6 @@ mod tests {
         assert_eq!(places, [3]);
         // where nothing singles out any, one is proposed and not three
         let (parting, places) = choose(&[nothing.clone(), nothing]);
-        assert_eq!((parting.resolves(), places.len()), (0.0, 1));
+        assert!(parting.resolves() <= 0.0 && places.len() == 1, "{places:?}");
     }
 }
