@@ -9,12 +9,14 @@ const KEPT: usize = 64;
 
 /// The bits of voltages, with the harmonic they belong to where that is not plain from their place.
 type Key = Vec<(usize, u64)>;
+/// Oldest first.
+type Kept<A> = VecDeque<(Key, Result<A, PlantError>)>;
 
 /// The latest answers to voltages, shared by the clones of a plant. An answer depends on its voltages alone, so
 /// what is remembered is what would be found again, to the bit.
 #[derive(Debug)]
 pub(super) struct Recent<A> {
-    kept: Arc<Mutex<VecDeque<(Key, Result<A, PlantError>)>>>,
+    kept: Arc<Mutex<Kept<A>>>,
 }
 
 impl<A> Default for Recent<A> {
