@@ -102,7 +102,7 @@ pub(super) const AREA: Area = Area {
             source: "enumeration",
             criterion: Criterion::AtMost(1.0),
             repeatability: Repeatability::Everywhere,
-            measure: || Ok(binding()?.over_random),
+            measure: || Ok(binding()?.random),
         },
         Check {
             id: "V-STUDY-09",
@@ -111,7 +111,7 @@ pub(super) const AREA: Area = Area {
             source: "bisection on the weight",
             criterion: Criterion::AtMost(1.0),
             repeatability: Repeatability::Everywhere,
-            measure: || Ok(binding()?.over_weighted),
+            measure: || Ok(binding()?.weighted),
         },
         Check {
             id: "V-STUDY-10",
@@ -120,7 +120,7 @@ pub(super) const AREA: Area = Area {
             source: "the trap, shown beside it",
             criterion: Criterion::AtMost(1.0),
             repeatability: Repeatability::Everywhere,
-            measure: || Ok(binding()?.over_clipped),
+            measure: || Ok(binding()?.clipped),
         },
         Check {
             id: "V-STUDY-11",
@@ -168,11 +168,11 @@ fn power_over_limit() -> Result<f64, CheckError> {
     worst("lines", 6, lines.iter().map(|l| Ok(l.actuation_power_watt / limit_watt)))
 }
 
-/// Cone optimum against what else can be done, costs as ratios.
+/// Cost of the cone optimum over that of what else can be done.
 struct Binding {
-    over_random: f64,
-    over_weighted: f64,
-    over_clipped: f64,
+    random: f64,
+    weighted: f64,
+    clipped: f64,
 }
 
 /// Both flaps at 4/rev within half of what each would take without limits, linear in the flap angle, deg.
@@ -225,9 +225,9 @@ fn binding() -> Result<Binding, CheckError> {
         .flat_map(|(u, (limit, size))| [u[0], u[1]].map(|v| v * (limit / size).min(1.0)))
         .collect();
     Ok(Binding {
-        over_random: best / enumerated,
-        over_weighted: best / cost(&weighted)?,
-        over_clipped: best / cost(&clipped)?,
+        random: best / enumerated,
+        weighted: best / cost(&weighted)?,
+        clipped: best / cost(&clipped)?,
     })
 }
 

@@ -1,21 +1,22 @@
 //! The trimmed rotor with its driven flaps as the plant of the controller.
 
+mod power;
+
+use self::power::PlantPower;
 use super::authority::{HARMONICS, added};
 use super::coupling::{coefficients, series};
 use super::drive::scaled;
-use super::pair_power::watt_per_deg2;
 use super::recent::Recent;
 use super::{
-    CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, HingePower,
-    PlantError,
+    CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
 };
 use crate::SimError;
 use crate::case::{Case, LoadedCase, TrimValues};
 use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use crate::problem::Place;
 use hhc_control::{
-    ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, PowerLimit, RunError,
-    TMatrix, VoltageRange,
+    ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, RunError, TMatrix,
+    VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -359,17 +360,6 @@ pub struct RotorPlant {
     coupled: Recent<Vec<FlapMotion>>,
 }
 
-/// What the power of the actuators has to do with the control.
-#[derive(Debug, Clone)]
-struct PlantPower {
-    /// Power of each pair, W per `deg^2`.
-    watt_per_deg2: Vec<f64>,
-    /// Largest mean power that the actuators of one blade give, W.
-    limit_watt: Option<f64>,
-    /// Weight of the power in the cost, per W.
-    weight_per_watt: f64,
-}
-
 impl RotorPlant {
     /// A plant with the same drive at every flap.
     ///
@@ -405,106 +395,6 @@ impl RotorPlant {
             free: Recent::default(),
             coupled: Recent::default(),
         })
-    }
-
-    /// The same with the power of the actuators of one blade limited (W), weighted in the cost (per W), or
-    /// both.
-    ///
-    /// The weight is on the quadratic form of the power at full-scale gain: it goes into the measurement as
-    /// further loads, two for each pair, whose squares add up to it. The limit is on the mean power that the
-    /// actuators give, none taken back, of the flap motion in the linearised rotor; the form is scaled to it
-    /// at every step.
-    ///
-    /// # Errors
-    /// The errors of the linearised rotor.
-    pub fn with_power(
-        self,
-        limit_watt: Option<f64>,
-        weight_per_watt: f64,
-    ) -> Result<Self, PlantError> {
-        if limit_watt.is_none() && weight_per_watt == 0.0 {
-            return Ok(self);
-        }
-        let authority = self.rotor.authority()?;
-        let watt_per_deg2 = watt_per_deg2(&self.layout, authority, &self.rotor.scales);
-        Ok(Self { power: Some(PlantPower { watt_per_deg2, limit_watt, weight_per_watt }), ..self })
-    }
-
-    /// Loads that the weight of the power adds to a measurement, and their derivatives by pair.
-    fn power_gains(&self) -> Vec<f64> {
-        let Some(power) = &self.power else { return Vec::new() };
-        if power.weight_per_watt == 0.0 {
-            return Vec::new();
-        }
-        let gains = self.stroke_limits_deg.iter().zip(&self.full_scale_volt);
-        let pairs = power.watt_per_deg2.iter().zip(gains);
-        pairs
-            .map(|(watt, (deg, volt))| (power.weight_per_watt * watt).sqrt() * deg / volt)
-            .collect()
-    }
-
-    /// Loads beyond those of the hub in a measurement.
-    pub fn further_loads(&self) -> usize {
-        2 * self.power_gains().len()
-    }
-
-    /// Part of the weighted power in the cost for a control vector.
-    pub fn power_cost(&self, control_volt: &[f64]) -> f64 {
-        let pairs = control_volt.chunks_exact(2).zip(self.power_gains());
-        pairs.map(|(u, gain)| gain * gain * (u[0] * u[0] + u[1] * u[1])).fold(0.0, |sum, j| sum + j)
-    }
-
-    /// Mean power that the actuators of one blade give in the linearised rotor, W.
-    fn linear_power_watt(&self, flaps: &[FlapMotion]) -> Result<f64, PlantError> {
-        let authority = self.rotor.authority()?;
-        let mut moments: Vec<HarmonicSeries> =
-            self.rotor.trim.rotor.hinge.iter().map(HingeMoment::total).collect();
-        for (flap, motion) in flaps.iter().enumerate() {
-            for (sum, part) in moments.iter_mut().zip(authority.hinge(flap, &motion.flap_deg)) {
-                *sum = added(sum, &part, 1.0);
-            }
-        }
-        let each = moments.into_iter().zip(flaps).map(|(aerodynamic, motion)| {
-            let hinge = HingeMoment { aerodynamic, inertial: HarmonicSeries::zero(0) };
-            HingePower::new(&hinge, &motion.flap_deg, &self.rotor.scales).given_watt
-        });
-        Ok(each.sum())
-    }
-
-    /// The limit of the power as it stands at a control vector and the flap motion it makes.
-    fn power_limit(
-        &self,
-        control_volt: &[f64],
-        flaps: &[FlapMotion],
-    ) -> Result<Option<PowerLimit>, PlantError> {
-        let Some(PlantPower { watt_per_deg2, limit_watt: Some(limit), .. }) = &self.power else {
-            return Ok(None);
-        };
-        let amplitudes = self.layout.amplitudes_volt(control_volt).map_err(PlantError::Bias)?;
-        let motion = self.pair_motion(flaps);
-        let mut form = Vec::with_capacity(amplitudes.len());
-        let (mut model, mut moves) = (0.0, false);
-        for (pair, watt) in watt_per_deg2.iter().enumerate() {
-            let full = self.full_scale_volt[pair];
-            let (amplitude, stroke) = (amplitudes[pair], motion[pair].amplitude());
-            let known = amplitude > LEAST_GAIN_PART * full;
-            let gain = if known { stroke / amplitude } else { self.stroke_limits_deg[pair] / full };
-            form.push(watt * gain * gain);
-            model += watt * stroke * stroke;
-            moves |= known;
-        }
-        // what cross terms, harmonics of the actuator and the moment at rest add, as it is here
-        let scale = if moves && model > 0.0 { self.linear_power_watt(flaps)? / model } else { 1.0 };
-        let diagonal = DVector::from_iterator(
-            control_volt.len(),
-            form.iter().flat_map(|watt| [scale * watt, scale * watt]),
-        );
-        Ok(Some(PowerLimit {
-            quadratic: DMatrix::from_diagonal(&diagonal),
-            linear: vec![0.0; control_volt.len()],
-            constant: 0.0,
-            limit: *limit,
-        }))
     }
 
     /// The rotor in trim.
