@@ -226,13 +226,9 @@ mod tests {
         let step_s = 1e-3;
         let input: Vec<f64> =
             (0..4000).map(|i| 10.0 * (TAU * 5.0 * step_s * f64::from(i)).sin()).collect();
-        // a third harmonic of 0.2, a gain that grows with the dose, nothing left afterwards
-        let before: Vec<f64> = (0..4000)
-            .map(|i| {
-                let angle = TAU * 5.0 * step_s * f64::from(i);
-                0.2 * (3.0 * angle).sin() + 1e-6 * f64::from(i) * 10.0 * angle.sin()
-            })
-            .collect();
+        // a third harmonic of 0.2, nothing left afterwards
+        let third = |i: u32| 0.2 * (TAU * 15.0 * step_s * f64::from(i)).sin();
+        let before: Vec<f64> = (0..4000).map(third).collect();
         let after = vec![0.0; 4000];
         let run = Shown { id: "a", step_s, input: &input, before: &before, after: &after };
         let tables = displays(&[run], "um");
@@ -244,7 +240,10 @@ mod tests {
         assert!((samples - 3999.0).abs() < 0.5);
         let since: f64 = column(&tables[2].1, "samples").iter().sum();
         assert!((since - 3999.0).abs() < 0.5);
-        let gain = column(&tables[3].1, "gain_before");
+        // a gain that grows with the dose
+        let growing: Vec<f64> = (0..).zip(&input).map(|(i, u)| 1e-6 * f64::from(i) * u).collect();
+        let run = Shown { id: "b", step_s, input: &input, before: &growing, after: &after };
+        let gain = column(&displays(&[run], "um")[3].1, "gain_before");
         assert!(gain.windows(2).all(|w| w[1] > w[0]), "{gain:?}");
         assert!((gain[11] - 4e-3).abs() < 4e-4, "{gain:?}");
     }
