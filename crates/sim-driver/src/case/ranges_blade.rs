@@ -5,21 +5,31 @@ use super::ranges::number;
 use super::{CaseFile, CouplingsChoice, JointChoice};
 use crate::problem::Fault;
 
+/// Softest springs of flap and lag hinges and of the pitch link, over `m0 Omega^2 R^3`.
+const LEAST_SPRING: f64 = 1e-6;
+const LEAST_PITCH_SPRING: f64 = 1e-3;
+
 /// Checks what the blade has beyond the uniform one on a clamp.
 pub(super) fn check_blade(check: &mut Checker<'_>, file: &CaseFile) {
     let r = &file.rotor;
     let remedy = "0 is the rotor centre; nothing moves inboard of it";
     check.within(number("rotor.root_offset_r", r.root_offset_r, "R", remedy), 0.0, 0.5);
-    for (field, joint) in [
-        ("rotor.root.flap.stiffness", r.root.flap),
-        ("rotor.root.lag.stiffness", r.root.lag),
-        ("rotor.root.pitch.stiffness", r.root.pitch),
+    let remedy = "moment per rad over m0 Omega^2 R^3; Locked is the stiffest, Free has none";
+    // below a sixth of the paper's blade in torsion a pitch link holds no pitch any more
+    let pitch_remedy =
+        "moment per rad over m0 Omega^2 R^3; a pitch link is stiffer, Locked is stiffest";
+    for (field, joint, least, remedy) in [
+        ("rotor.root.flap.stiffness", r.root.flap, LEAST_SPRING, remedy),
+        ("rotor.root.lag.stiffness", r.root.lag, LEAST_SPRING, remedy),
+        ("rotor.root.pitch.stiffness", r.root.pitch, LEAST_PITCH_SPRING, pitch_remedy),
     ] {
         if let JointChoice::Spring { stiffness } = joint {
-            let remedy =
-                "moment per rad over m0 Omega^2 R^3; Locked is the stiffest, Free has none";
-            check.within(number(field, stiffness, "", remedy), 0.0, 1e4);
+            check.within(number(field, stiffness, "", remedy), least, 1e4);
         }
+    }
+    if r.root.lag == JointChoice::Free && r.root_offset_r == 0.0 {
+        let message = "a lag hinge at the rotor centre has no stiffness, the blade turns about the shaft on its own: give rotor.root_offset_r, or Spring(stiffness: ...)";
+        check.fault("rotor.root.lag", Fault::Refused { message: message.to_owned() });
     }
     if r.root.pitch == JointChoice::Free {
         let message =

@@ -174,8 +174,17 @@ fn problems_of_the_blade_name_the_remedy() {
         ("(rotor: (root_offset_r: 0.6))", "rotor.root_offset_r: is 0.6 R, expected 0 to 0.5 R"),
         (
             "(rotor: (root: (flap: Spring(stiffness: -0.1))))",
-            "rotor.root.flap.stiffness: is -0.1, expected 0 to 10000; moment per rad",
+            "rotor.root.flap.stiffness: is -0.1, expected 0.000001 to 10000; moment per rad",
         ),
+        (
+            "(rotor: (root: (pitch: Spring(stiffness: 1e-4))))",
+            "rotor.root.pitch.stiffness: is 0.0001, expected 0.001 to 10000; moment per rad",
+        ),
+        (
+            "(rotor: (root: (lag: Free)))",
+            "rotor.root.lag: is refused: a lag hinge at the rotor centre has no stiffness",
+        ),
+        ("(response: (time_elements: 2))", "response.time_elements: is 2, expected 4 to 200"),
         (
             "(rotor: (root: (pitch: Free)))",
             "rotor.root.pitch: is refused: a blade without pitch link",
