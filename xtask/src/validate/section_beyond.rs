@@ -11,8 +11,8 @@ use flap_aero::{
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Condition, Controls, Couplings, Discretisation, FlapMass, NonlinearSections, RotorModel,
-    RotorSolution, TrailingEdgeFlap,
+    Condition, Controls, Couplings, Discretisation, NonlinearSections, RotorModel, RotorSolution,
+    TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 
@@ -116,22 +116,6 @@ pub(super) const AREA: Area = Area {
     ],
 };
 
-/// Flaps of the paper's case.
-fn flaps() -> Vec<TrailingEdgeFlap> {
-    [(0.70, 0.75), (0.80, 0.85)]
-        .map(|(start, end)| TrailingEdgeFlap {
-            start,
-            end,
-            chord_fraction: 0.2,
-            mass_fraction: 0.1,
-            cg_fraction: 0.2,
-            gyration_fraction: None,
-            mass: FlapMass::PartOfBlade,
-            effectiveness: flap_aero::FlapEffectiveness::IDEAL,
-        })
-        .to_vec()
-}
-
 /// `2 pi alpha` in flow from ahead, `2 pi (alpha -+ pi)` from behind; no drag and no moment.
 fn linear_law() -> Result<NonlinearSections, CheckError> {
     let angles = vec![-180.0_f64, -90.5, -90.0, 90.0, 90.5, 180.0];
@@ -168,7 +152,7 @@ fn table_distance(advance_ratio: f64, scale: f64) -> Result<f64, CheckError> {
     let linear = RotorModel {
         section_model: AttachedFlowModel::Incompressible,
         drag_coefficient: 0.0,
-        flaps: flaps(),
+        flaps: TrailingEdgeFlap::paper_case().to_vec(),
         ..paper_rotor(Couplings::Full, 0.2)
     };
     let tabled = RotorModel { nonlinear: linear_law()?, ..linear.clone() };

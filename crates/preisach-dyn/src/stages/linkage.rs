@@ -124,6 +124,10 @@ impl FrictionStep {
         }
         toward(d.clamp(0.0, wanted))
     }
+
+    pub(super) fn settle(self, before: &WayMemory, now: &mut WayMemory) {
+        now.state = settled_over_period(*before, *now, self.limit / CONTACT_STIFFNESS);
+    }
 }
 
 /// Steps of Newton's method for one sample, at most; some six are needed.
@@ -168,12 +172,6 @@ pub(crate) struct WayMemory {
 impl WayMemory {
     fn at_rest(input: f64) -> Self {
         Self { input, state: 0.0, travelled: 0.0 }
-    }
-}
-
-impl FrictionStep {
-    pub(super) fn settle(self, before: &WayMemory, now: &mut WayMemory) {
-        now.state = settled_over_period(*before, *now, self.limit / CONTACT_STIFFNESS);
     }
 }
 
