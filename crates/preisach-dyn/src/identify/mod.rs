@@ -12,6 +12,7 @@
 
 mod compare;
 mod comparison;
+mod drive;
 mod families;
 mod findings;
 mod flat_top;
@@ -26,9 +27,11 @@ pub(crate) mod program;
 mod rate_fit;
 mod record;
 mod refine;
+mod repetition;
 mod roles;
 mod settings;
 mod spikes;
+mod split_rule;
 pub(crate) mod static_fit;
 mod stop_fit;
 mod stream;
@@ -37,14 +40,16 @@ mod validate;
 
 pub use compare::RecordFit;
 pub use comparison::{Candidates, FittedModel, ModelComparison, ModelRow, Order, compare_models};
+pub use drive::{Drive, Waveform};
 pub use families::Family;
 pub use findings::{Finding, Identifiability, Severity};
 pub use noise::CycleNoise;
 pub use output_error::{Covariance, Estimate};
 pub use program::QpStatus;
-pub use record::{BenchRecord, Drive, RecordUse, RecordWindows, SplitRule, Waveform};
+pub use record::{BenchRecord, RecordUse, RecordWindows};
 pub use refine::{Refinement, RefinementOutcome};
 pub use settings::{FlapZero, RateSmoothness, Settings};
+pub use split_rule::SplitRule;
 pub use stream::StaticAccumulator;
 pub use subject::Subject;
 pub use validate::Validation;
