@@ -386,7 +386,7 @@ fn gap_ratio(couplings: Couplings, basis: ModalBasis) -> Result<f64, CheckError>
 fn case_s2(couplings: Couplings) -> Result<RotorSolution, CheckError> {
     let model = RotorModel { reverse_flow: ReverseFlow::Abrupt, ..paper_rotor(couplings, 0.35) };
     let inflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
-    let d = Discretisation::default();
+    let d = Discretisation::paper();
     response(model, &paper_blade(1.0)?, d, &fixed_controls(), &inflow)
 }
 
