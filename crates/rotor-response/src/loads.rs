@@ -91,7 +91,8 @@ pub(crate) fn root_loads(
             + weight_x;
         let turning = 2.0 * (along * w.rate[i] - across * u_rate);
         let fy = m * (y - v.acceleration[i] + turning) + loads.fy[i] + weight_y;
-        let fz = -m * (w.acceleration[i] + along * (out + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
+        let fz =
+            -m * (w.acceleration[i] + along * (out + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
         let theta = pitch.angle + blade.twist[i] + motion.phi.value[i];
         let theta_acceleration = pitch.acceleration + motion.phi.acceleration[i];
         let (sin, cos) = theta.sin_cos();

@@ -102,12 +102,8 @@ fn power_of_the_second_order_couplings_balances_whatever_the_rotor() {
     let mut angle = HarmonicSeries::zero(3);
     angle.set_harmonic(3, Harmonic { cosine: 0.05, sine: 0.02 });
     let offsets = SectionOffsets { torque: 0.01, ..SectionOffsets::default() };
-    let model = RotorModel {
-        flaps: paper_flaps(),
-        gravity: 0.01,
-        offsets,
-        ..paper_model(Couplings::Full)
-    };
+    let model =
+        RotorModel { flaps: paper_flaps(), gravity: 0.01, offsets, ..paper_model(Couplings::Full) };
     let blade = BladeProperties::new(BladeSpec { precone_rad: 0.06, ..paper_spec() }).unwrap();
     let power = blade_balance((model, &blade), 8, &[angle.clone(), angle]);
     assert!(power.imbalance().abs() <= 1e-5, "{power:?}");

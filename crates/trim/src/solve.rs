@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_response::{Condition, Controls, RotorSolution, RotorSolver};
 use rotor_wake::{FlightState, InflowModel, momentum_inflow};
+use std::sync::Arc;
 
 /// Tolerances of the trim.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +52,8 @@ const JACOBIAN_STEP: f64 = 1e-4;
 const PITCH_LIMIT: f64 = 0.6;
 /// Shaft tilt at which a trim starts at most, rad: a larger one is approached by the steps.
 const LARGEST_FIRST_TILT: f64 = 0.4;
+/// Damping over critical that leads an undamped rotor to its collective.
+const HELPING_DAMPING: f64 = 0.02;
 /// Halvings of a step that does not lower the residuals.
 const LARGEST_HALVINGS: i32 = 6;
 /// A step of which no larger part stays within the limits leads out of reach.
@@ -81,7 +84,9 @@ pub fn trim(
 ) -> Result<TrimSolution, TrimError> {
     let balance = Balance::new(solver, advance_ratio, target)?;
     let flaps = solver.rotor().model().flaps.len();
-    Problem { inflow, balance, flaps }.solve(solver, settings, start)
+    let problem = Problem { inflow, balance, flaps };
+    let damped = if start.is_none() { problem.damped(solver, settings)? } else { None };
+    problem.solve(solver, settings, start.or(damped.as_ref()))
 }
 
 /// The search for balance at one advance ratio.
@@ -130,7 +135,9 @@ impl Problem<'_> {
         let flap_angles_rad = vec![HarmonicSeries::default(); self.flaps];
         let condition =
             Condition { flight, bank_rad: attitude.roll_rad, controls, flap_angles_rad };
-        let rotor = solver.solve(&condition, self.inflow, start)?;
+        let found = solver.solve(&condition, self.inflow, start);
+        let rotor =
+            found.map_err(|error| solver.rotor().blame_resonance(controls.theta0_rad, error))?;
         let residual = self.balance.residual(&rotor, &attitude);
         Ok((rotor, residual))
     }
@@ -164,6 +171,29 @@ impl Problem<'_> {
         ratios.fold((1.0, 0), |least, ratio| if ratio.0 < least.0 { ratio } else { least })
     }
 
+    /// A rough trim of the rotor with damped modes, where an undamped one may be at a harmonic: only the
+    /// collective in flight says whether it is.
+    fn damped(
+        &self,
+        solver: &RotorSolver,
+        settings: &TrimSettings,
+    ) -> Result<Option<TrimSolution>, TrimError> {
+        let rotor = solver.rotor();
+        let theta0 = self.balance.state(&self.first_guess(solver)).0.theta0_rad;
+        if self.balance.unknowns == 0 {
+            rotor.refuse_resonance(theta0)?;
+        }
+        if !rotor.nearly_resonates(theta0) {
+            return Ok(None);
+        }
+        let damped = Arc::new(rotor.with_modal_damping(HELPING_DAMPING));
+        let mut helper = RotorSolver::new(damped, self.balance.advance_ratio, solver.tolerances())?;
+        let settings = TrimSettings { tolerance: settings.tolerance.max(1e-4), ..*settings };
+        let Ok(found) = self.solve(&mut helper, &settings, None) else { return Ok(None) };
+        rotor.refuse_resonance_in_flight(found.controls.theta0_rad, &found.rotor)?;
+        Ok(Some(found))
+    }
+
     fn solve(
         &self,
         solver: &mut RotorSolver,
@@ -178,6 +208,8 @@ impl Problem<'_> {
         for iteration in 0..=settings.max_iterations {
             let residual = current.1.amax();
             if self.balance.unknowns == 0 || residual <= settings.tolerance {
+                let theta0 = self.balance.state(&x).0.theta0_rad;
+                solver.rotor().refuse_resonance_in_flight(theta0, &current.0)?;
                 return Ok(self.finish(&x, current, (history, iteration), jacobian));
             }
             let (matrix, fresh) = match jacobian.take() {
