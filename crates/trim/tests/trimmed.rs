@@ -96,6 +96,18 @@ fn a_thrust_out_of_reach_is_an_error_with_its_history() {
     assert!(matches!(solve(0.2, &propulsive(-1.0)), Err(TrimError::Parameter { .. })));
 }
 
+/// Attached sections give any lift: what no aerofoil gives is no trim.
+#[test]
+fn a_thrust_beyond_the_lift_of_any_aerofoil_is_an_error_with_its_history() {
+    let target = TrimTarget::WindTunnel { ct_sigma: 0.27, shaft_tilt_rad: 0.0 };
+    let error = solve(0.0, &target).unwrap_err();
+    assert!(
+        matches!(&error, TrimError::BeyondStall { lift_coefficient, history, .. }
+            if (lift_coefficient - 1.62).abs() < 1e-12 && history.len() > 1),
+        "{error}"
+    );
+}
+
 /// Every advance ratio trims from the first guess, and in few iterations: a guess far from trim once
 /// sent some of them wandering.
 #[test]
