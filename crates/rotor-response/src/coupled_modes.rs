@@ -234,14 +234,21 @@ impl Rotor {
     /// Why a response was not found: an undamped mode near a harmonic in place of a failure to converge.
     #[must_use]
     pub fn blame_resonance(&self, pitch_rad: f64, error: ResponseError) -> ResponseError {
-        if !matches!(error, ResponseError::Periodic(_) | ResponseError::InflowNotConverged { .. }) {
-            return error;
+        if matches!(error, ResponseError::Periodic(_) | ResponseError::InflowNotConverged { .. }) {
+            self.likely_resonance(pitch_rad).unwrap_or(error)
+        } else {
+            error
         }
+    }
+
+    /// An undamped mode near enough to a harmonic to be the reason of a search that failed, within 0.05 per
+    /// rev: [`ResponseError::Resonance`].
+    pub fn likely_resonance(&self, pitch_rad: f64) -> Option<ResponseError> {
         if !self.may_resonate() {
-            return error;
+            return None;
         }
-        let modes = self.coupled_modes(pitch_rad).unwrap_or_default();
-        self.undamped_near(pitch_rad, modes, NEAR_RESONANCE_PER_REV).unwrap_or(error)
+        let modes = self.coupled_modes(pitch_rad).ok()?;
+        self.undamped_near(pitch_rad, modes, NEAR_RESONANCE_PER_REV)
     }
 }
 

@@ -6,7 +6,7 @@ use rotor_fem::{FemError, ModeKind, PeriodicError};
 fn harmonic(frequency_per_rev: f64) -> String {
     match frequency_per_rev.round() {
         0.0 => "nothing that brings it back,".to_owned(),
-        n => format!("the harmonic {n} of the loads,"),
+        n => format!("near the harmonic {n} of the loads,"),
     }
 }
 

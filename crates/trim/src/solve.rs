@@ -81,6 +81,8 @@ struct Progress {
     /// Largest thrust of an iterate, as `C_T / sigma`, and its collective.
     reached: f64,
     theta0_deg: f64,
+    /// Collective of the last iterate.
+    last_theta0_rad: f64,
 }
 
 impl Progress {
@@ -91,6 +93,7 @@ impl Progress {
         controls: Controls,
     ) {
         self.history.push(if residual.is_empty() { 0.0 } else { residual.amax() });
+        self.last_theta0_rad = controls.theta0_rad;
         let ct_sigma = rotor.thrust_coefficient / solidity;
         if ct_sigma > self.reached {
             (self.reached, self.theta0_deg) = (ct_sigma, controls.theta0_rad.to_degrees());
@@ -277,6 +280,14 @@ impl Problem<'_> {
                     cause: Box::new(cause),
                 })
             }
+            Err(
+                cause @ (TrimError::OutOfReach { .. }
+                | TrimError::NoDescent { .. }
+                | TrimError::NotConverged { .. }),
+            ) => Err(solver
+                .rotor()
+                .likely_resonance(progress.last_theta0_rad)
+                .map_or(cause, TrimError::Response)),
             found => found,
         }
     }

@@ -255,7 +255,7 @@ fn an_undamped_mode_at_a_harmonic_is_refused_at_its_field() {
         let loaded = read(&text).unwrap();
         let message = loaded.refuse_resonance().unwrap_err().to_string();
         let place = format!(
-            "{field}: lag 1 at 0.00 deg has 1.0000 per rev, the harmonic 1 of the loads, and no damping: nothing bounds its response. Remedy: modal_damping above 0"
+            "{field}: lag 1 at 0.00 deg has 1.0000 per rev, near the harmonic 1 of the loads, and no damping: nothing bounds its response. Remedy: modal_damping above 0"
         );
         assert!(message.contains(&place), "{message}");
     }
