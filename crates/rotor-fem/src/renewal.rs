@@ -41,7 +41,7 @@ impl Renewal {
     /// Notes that a new matrix was made.
     pub(crate) fn renewed(&mut self) {
         if self.factorisations > 0 {
-            self.patience *= 2;
+            self.patience = self.patience.saturating_mul(2);
         }
         self.age = Some(0);
         self.factorisations += 1;
@@ -79,5 +79,21 @@ impl Renewal {
         }
         self.age = self.age.map(|age| age + 1);
         Verdict::Accept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A search that never gets anywhere makes more matrices than a number has bits.
+    #[test]
+    fn patience_does_not_overflow() {
+        let mut renewal = Renewal::new(0.5);
+        for _ in 0..200 {
+            renewal.renewed();
+            assert!(matches!(renewal.judge(2.0), Verdict::Shorten));
+        }
+        assert_eq!(renewal.factorisations, 200);
     }
 }

@@ -27,7 +27,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
         _ => paper.compressibility,
     };
     let model = RotorModel { section_model, compressibility, ..paper };
-    let rotor = Rotor::new(model, &blade, Discretisation::default())?;
+    let rotor = Rotor::new(model, &blade, Discretisation::paper())?;
     RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default())
 }
 

@@ -1,6 +1,6 @@
 //! One periodic response of the paper rotor with moving flaps.
 //!
-//! Budget: 50 ms from a nearby orbit at the default discretisation on one core, so that a T matrix of
+//! Budget: 50 ms from a nearby orbit at the paper's discretisation on one core, so that a T matrix of
 //! twelve columns costs less than a second.
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -26,7 +26,7 @@ fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError
         _ => paper.compressibility,
     };
     let model = RotorModel { section_model, compressibility, ..paper };
-    let rotor = Rotor::new(model, &blade, Discretisation::default())?;
+    let rotor = Rotor::new(model, &blade, Discretisation::paper())?;
     RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default())
 }
 

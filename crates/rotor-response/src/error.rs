@@ -2,6 +2,23 @@
 
 use rotor_fem::{FemError, ModeKind, PeriodicError};
 
+/// What a frequency is near to, for a message.
+fn harmonic(frequency_per_rev: f64) -> String {
+    match frequency_per_rev.round() {
+        0.0 => "nothing that brings it back,".to_owned(),
+        n => format!("near the harmonic {n} of the loads,"),
+    }
+}
+
+/// What helps against a resonance, for a message.
+fn remedy(frequency_per_rev: f64) -> &'static str {
+    if frequency_per_rev.round() == 0.0 {
+        "a spring at the root, or a hinge farther from the centre"
+    } else {
+        "modal_damping above 0, or another stiffness"
+    }
+}
+
 /// What can go wrong between a blade, its air and its loads.
 ///
 /// Three families: rejected input (the first variants), numerical failure (with iteration, residual
@@ -63,9 +80,11 @@ pub enum ResponseError {
         /// Number of modes.
         modes: usize,
     },
-    /// A mode without damping has the frequency of a harmonic.
+    /// A coupled mode without damping has the frequency of a harmonic.
     #[error(
-        "{kind} {number} has {frequency_per_rev:.4} per rev, a harmonic of the loads, and no damping: nothing bounds its response. Remedy: modal_damping above 0, or another stiffness"
+        "{kind} {number} at {pitch_deg:.2} deg has {frequency_per_rev:.4} per rev, {} and no damping: nothing bounds its response. Remedy: {}",
+        harmonic(*.frequency_per_rev),
+        remedy(*.frequency_per_rev)
     )]
     Resonance {
         /// Family of the mode.
@@ -74,6 +93,8 @@ pub enum ResponseError {
         number: usize,
         /// Its frequency.
         frequency_per_rev: f64,
+        /// Pitch at 0.75 R at which it is.
+        pitch_deg: f64,
     },
     /// A lag channel of the section aerodynamics cannot be made periodic.
     #[error(

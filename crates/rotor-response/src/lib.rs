@@ -2,6 +2,7 @@
 
 mod air;
 mod blade;
+mod coupled_modes;
 mod dissimilar;
 mod error;
 mod fine_azimuth;
@@ -28,6 +29,7 @@ mod system;
 mod wake_coupling;
 
 pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
+pub use coupled_modes::{CoupledBladeMode, RESONANCE_PER_REV};
 pub use dissimilar::{OtherBlade, dissimilar_hub_loads};
 pub use error::ResponseError;
 pub use flap_mass::with_flap_masses;

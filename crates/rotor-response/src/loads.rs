@@ -41,12 +41,15 @@ impl SixLoads {
 /// Summed in coned blade axes, then turned by [`coned_to_shaft`]:
 ///
 /// ```text
-/// f_x = m (x + u + 2 v' - u'') + F_x      F_x = -w_x F_z - v_x F_y (aerodynamic)
-/// f_y = m (y - v'' - 2 u' + 2 bp w') + F_y      y = y_t + v
-/// f_z = -m (w'' + bp (x + 2 v')) + F_z
-/// m_x = -m km^2 th'' - m (km2^2 - km1^2) sin th cos th + M
-/// M_x = int y f_z - w f_y + m_x,  M_y = int w f_x - (x + u) f_z,  M_z = int (x + u) f_y - y f_x
+/// f_x = m (c (c X - s w) + 2 c v' - u'') + F_x      F_x = -w_x F_z - v_x F_y (aerodynamic)
+/// f_y = m (y - v'' - 2 c u' + 2 s w') + F_y      X = x + u,  y = y_t + v,  c = cos bp,  s = sin bp
+/// f_z = -m (w'' + s (c X - s w) + 2 s v') + F_z
+/// m_x = -m km^2 th'' - m (km2^2 - km1^2) sin th cos th + M,  m_z = m (km2^2 - km1^2) sin th cos th s / c
+/// M_x = int y f_z - w f_y + m_x,  M_y = int w f_x - X f_z,  M_z = int X f_y - y f_x + m_z
 /// ```
+/// The inertial forces are those of a point in axes that turn about the shaft, exact in the precone, so that
+/// their mean torque is zero and the mean power of the shaft is that of the air and of the damping.
+///
 /// `M_y` and `M_z` also hold the moments on the slopes of flaps that weigh beside the blade.
 /// The foreshortening `u` and its rates enter in second order whatever the couplings of the modal
 /// equations: without them the vibratory in-plane loads are wrong by most of their size.
@@ -72,26 +75,30 @@ pub(crate) fn root_loads(
             + v.slope[i] * v.slope_acceleration[i]
             + w.slope[i] * w.slope_acceleration[i]
     });
+    let (along, across) = blade.precone.sin_cos();
     let mut total = [0.0; 6];
     for i in 0..n {
         let (m, x) = (blade.mass[i], blade.grid.x()[i]);
         let (u, u_rate, u_acceleration) = (-squares[i], -rates[i], -accelerations[i]);
-        let bp = blade.precone;
         let y = blade.offsets.torque + v.value[i];
+        // distance from the shaft of the coned blade
+        let out = across * (x + u) - along * w.value[i];
         let [weight_x, weight_y, weight_z] = loads.gravity.map(|g| m * g);
         let aero_x = -w.slope[i] * aerodynamic.fz[i] - v.slope[i] * aerodynamic.fy[i];
-        let fx =
-            m * (x + u + 2.0 * v.rate[i] - u_acceleration) + aero_x + loads.axial[i] + weight_x;
-        let fy = m * (y - v.acceleration[i] - 2.0 * u_rate + 2.0 * bp * w.rate[i])
-            + loads.fy[i]
-            + weight_y;
-        let fz = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
+        let fx = m * (across * (out + 2.0 * v.rate[i]) - u_acceleration)
+            + aero_x
+            + loads.axial[i]
+            + weight_x;
+        let turning = 2.0 * (along * w.rate[i] - across * u_rate);
+        let fy = m * (y - v.acceleration[i] + turning) + loads.fy[i] + weight_y;
+        let fz =
+            -m * (w.acceleration[i] + along * (out + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
         let theta = pitch.angle + blade.twist[i] + motion.phi.value[i];
         let theta_acceleration = pitch.acceleration + motion.phi.acceleration[i];
         let (sin, cos) = theta.sin_cos();
         let (km1, km2) = (blade.km1_squared[i], blade.km2_squared[i]);
-        let mx =
-            -m * (km1 + km2) * theta_acceleration - m * (km2 - km1) * sin * cos + loads.moment[i];
+        let propeller = m * (km2 - km1) * sin * cos;
+        let mx = -m * (km1 + km2) * theta_acceleration - propeller + loads.moment[i];
         let weight = blade.grid.weight()[i];
         let parts = [
             fx,
@@ -99,7 +106,7 @@ pub(crate) fn root_loads(
             fz,
             y * fz - w.value[i] * fy + mx,
             w.value[i] * fx - (x + u) * fz - loads.slope[1][i],
-            (x + u) * fy - y * fx + loads.slope[0][i],
+            (x + u) * fy - y * fx + propeller * along / across + loads.slope[0][i],
         ];
         for (t, part) in total.iter_mut().zip(parts) {
             *t += weight * part;

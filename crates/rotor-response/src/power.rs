@@ -1,17 +1,22 @@
 //! Power of one blade over a revolution: what the air, the shaft, the pitch control and damping give.
 
-use crate::blade::ResponseBlade;
-use crate::motion::{Motion, RootPitch};
-use crate::structure::BladeState;
+use crate::blade::{Couplings, ResponseBlade};
+use crate::structure::{BladeState, SpanLoads};
+use rotor_fem::ModalLoads;
 
 /// Mean power of one blade over a revolution, `m0 Omega^3 R^3`; each is what is given to the blade.
 ///
 /// ```text
-/// sum( f . V + M (theta' + phi' + om . e) ) - sum( c q'^2 ) - Omega M_z - M_pitch theta' = 0
+/// sum( f . V + M om_M ) - sum( c q'^2 ) - Omega M_z - M_pitch theta' = 0
 /// ```
-/// `V` and `om` are velocity and angular velocity over ground of the section, `M_z` and `M_pitch` the
-/// moments of the blade on shaft and pitch control. The motion repeats, so the mean is zero when loads,
-/// equations of motion and root loads belong together.
+/// `V` is the velocity of the section over ground, `om_M` its angular velocity about the axis of the
+/// twisting couple `M`, `M_z` and `M_pitch` are the moments of the blade on shaft and pitch control. The
+/// motion repeats, so the mean is zero when loads, equations of motion and root loads belong together.
+///
+/// With the couplings `Moderate` the couple stands along the deflected blade, `om_M = theta' + phi' + Omega w_x`,
+/// and the axial force works on the foreshortening. With `Linear` and `Full` it stands along the straight
+/// blade, `om_M = theta' + phi'`, in root loads as in the power, and the axial force works on no
+/// foreshortening, in the equations as in the power.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PowerBalance {
     /// From the air (and from the flaps, where they move), negative in powered flight.
@@ -25,8 +30,7 @@ pub struct PowerBalance {
 }
 
 impl PowerBalance {
-    /// Sum over the shaft's power: zero but for the discretisation, and for terms that the couplings
-    /// `Linear` and `Full` leave out of the equations.
+    /// Sum over the shaft's power: zero but for the discretisation.
     pub fn imbalance(&self) -> f64 {
         (self.aerodynamic + self.damping + self.shaft + self.pitch) / self.shaft.abs()
     }
@@ -39,45 +43,78 @@ impl PowerBalance {
     }
 }
 
-/// Axial displacement and its rate at the stations, and the moment that inertia and elasticity put on the
-/// pitch of the root, nose up.
+/// What the loads of one blade work on besides its deflections at one azimuth, station by station.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AxialMotion {
+    /// Axial displacement, which carries the section round.
     pub(crate) value: Vec<f64>,
+    /// Its rate, as far as the equations let the axial force work on it.
     pub(crate) rate: Vec<f64>,
+    /// Force along the blade, weight included.
+    pub(crate) force: Vec<f64>,
+    /// Slope `w_x` of the axis about which the section is twisted.
+    pub(crate) tilt: Vec<f64>,
+    /// Moment that inertia and elasticity put on the pitch of the root, nose up.
     pub(crate) pitch_moment: f64,
 }
 
 impl AxialMotion {
-    /// Of the inextensional blade of the couplings `Linear` and `Full`.
+    /// Of the moderately deflected blade.
+    pub(crate) fn condensed(blade: &ResponseBlade, state: BladeState<'_>, of: ModalLoads) -> Self {
+        let BladeState { motion, loads, .. } = state;
+        Self {
+            force: (0..blade.grid.len()).map(|i| loads.force(blade, motion, i)[0]).collect(),
+            tilt: motion.w.slope.clone(),
+            value: of.axial,
+            rate: of.axial_rate,
+            pitch_moment: of.pitch_moment,
+        }
+    }
+
+    /// Of the inextensional blade of the couplings `Linear` and `Full`; `aerodynamic` loads alone are
+    /// tilted with the blade.
     ///
     /// ```text
     /// u = -int_0^x (v_x^2 + w_x^2) / 2
-    /// M = int m km^2 th'' + m (km2^2 - km1^2) sin th cos th + (EI_z - EI_y) kz ky
+    /// M = int m km^2 th'' + m (km2^2 - km1^2) sin th cos th + (EI_z - EI_y) kz ky      Full
+    /// M = int m km^2 th'' + m (km2^2 - km1^2) th                                       Linear
     /// ```
-    pub(crate) fn inextensional(blade: &ResponseBlade, motion: &Motion, pitch: RootPitch) -> Self {
+    pub(crate) fn inextensional(
+        blade: &ResponseBlade,
+        couplings: Couplings,
+        state: BladeState<'_>,
+        aerodynamic: &SpanLoads,
+    ) -> Self {
+        let BladeState { motion, pitch, loads } = state;
         let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
         let n = blade.grid.len();
-        let running = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let integrand: Vec<f64> = (0..n).map(f).collect();
-            let mut out = vec![0.0; n];
-            blade.grid.integral_from_root(&integrand, &mut out);
-            out
-        };
+        let squares: Vec<f64> =
+            (0..n).map(|i| -0.5 * (v.slope[i].powi(2) + w.slope[i].powi(2))).collect();
+        let mut value = vec![0.0; n];
+        blade.grid.integral_from_root(&squares, &mut value);
         let moment: Vec<f64> = (0..n)
             .map(|i| {
-                let (sin, cos) = (pitch.angle + blade.twist[i] + phi.value[i]).sin_cos();
+                let theta = pitch.angle + blade.twist[i] + phi.value[i];
                 let [km1, km2] = [blade.km1_squared[i], blade.km2_squared[i]];
+                let turning = (km1 + km2) * (pitch.acceleration + phi.acceleration[i]);
+                if couplings == Couplings::Linear {
+                    return blade.mass[i] * (turning + (km2 - km1) * theta);
+                }
+                let (sin, cos) = theta.sin_cos();
                 let kz = v.curvature[i] * cos + w.curvature[i] * sin;
                 let ky = w.curvature[i] * cos - v.curvature[i] * sin;
-                let turning = (km1 + km2) * (pitch.acceleration + phi.acceleration[i]);
                 blade.mass[i] * (turning + (km2 - km1) * sin * cos)
                     + (blade.ei_lag[i] - blade.ei_flap[i]) * kz * ky
             })
             .collect();
+        let weight = loads.gravity[0];
         Self {
-            value: running(&|i| -0.5 * (v.slope[i].powi(2) + w.slope[i].powi(2))),
-            rate: running(&|i| -(v.slope[i] * v.slope_rate[i] + w.slope[i] * w.slope_rate[i])),
+            force: (0..n)
+                .map(|i| aerodynamic.fx(motion, i) + loads.axial[i] + blade.mass[i] * weight)
+                .collect(),
+            value,
+            rate: vec![0.0; n],
+            tilt: vec![0.0; n],
             pitch_moment: blade.grid.integral(&moment),
         }
     }
@@ -97,14 +134,15 @@ pub(crate) fn power(
     let (mut air, mut twisting) = (0.0, 0.0);
     for i in 0..blade.grid.len() {
         let weight = blade.grid.weight()[i];
-        let force = loads.force(blade, motion, i);
+        let [_, fy, fz] = loads.force(blade, motion, i);
+        let force = [axial.force[i], fy, fz];
         let y = blade.offsets.torque + v.value[i];
         let velocity = [
             axial.rate[i] - across * y,
             v.rate[i] + across * (blade.grid.x()[i] + axial.value[i]) - along * w.value[i],
             w.rate[i] + along * y,
         ];
-        let turning = pitch.rate + motion.phi.rate[i] + along + across * w.slope[i];
+        let turning = pitch.rate + motion.phi.rate[i] + along + across * axial.tilt[i];
         // a slope v_x turns about z, a slope w_x about -y
         let slopes =
             loads.slope[0][i] * (v.slope_rate[i] + across) + loads.slope[1][i] * w.slope_rate[i];

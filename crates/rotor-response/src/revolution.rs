@@ -12,7 +12,7 @@ use crate::wake_coupling::Lifting;
 use crate::{ResponseError, RootBending, Rotor};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{ModalLoads, ModalMotion, OrbitSamples, PeriodicSystem, TimeElements};
+use rotor_fem::{ModalMotion, OrbitSamples, PeriodicSystem, TimeElements};
 use std::f64::consts::TAU;
 
 /// Iterations of the accelerations.
@@ -58,7 +58,7 @@ impl RevolutionLoads {
         samples: &OrbitSamples,
     ) -> Result<Self, ResponseError> {
         let revolution = system.revolution(samples)?;
-        let blade = rotor.blade();
+        let (blade, couplings) = (rotor.blade(), rotor.model().couplings);
         let first = system.air.first_station();
         let mut root = Vec::with_capacity(revolution.motions.len());
         let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model().flaps.len()];
@@ -80,16 +80,14 @@ impl RevolutionLoads {
                 let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
                 let found = modal.loads(coordinates, pitch.into());
                 let at_root = moderate_root_loads(blade, state, &found);
-                let ModalLoads { axial: value, axial_rate: rate, pitch_moment, .. } = found;
-                (at_root, AxialMotion { value, rate, pitch_moment })
+                (at_root, AxialMotion::condensed(blade, state, found))
             } else {
-                let axial = AxialMotion::inextensional(blade, motion, pitch);
+                let axial = AxialMotion::inextensional(blade, couplings, state, &aerodynamic);
                 (root_loads(blade, state, &aerodynamic), axial)
             };
             root.push(at_root);
             let damped = qd.iter().zip(rotor.damping()).map(|(rate, c)| c * rate * rate).sum();
             balance.add(weights[p], &power(blade, state, &axial, damped, at_root[5]));
-            let couplings = rotor.model().couplings;
             let summed = root_moments(blade, couplings, state);
             let curved = root_curvature_moments(blade, couplings, &q, pitch.angle);
             for (history, (force, curvature)) in

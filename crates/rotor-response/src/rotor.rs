@@ -75,6 +75,10 @@ impl Rotor {
         Ok(Self { model, discretisation, blade, mass, damping })
     }
 
+    pub(crate) fn with_damping(&self, model: RotorModel, damping: Vec<f64>) -> Self {
+        Self { model, damping, ..self.clone() }
+    }
+
     /// The parameters.
     pub fn model(&self) -> &RotorModel {
         &self.model

@@ -108,7 +108,7 @@ fn project(out: &mut [f64], weight: &[f64], parts: &[(&[Vec<f64>], &[f64])]) {
 }
 
 /// Takes the work of moments on the slopes of lag and flap off a residual.
-pub(crate) fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]) {
+fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]) {
     let weight = blade.grid.weight();
     let (nf, nl) = (blade.flap.count(), blade.lag.count());
     let mut work = vec![0.0; nf + nl];
@@ -126,7 +126,7 @@ pub(crate) fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out:
 /// Q(q, q', q'') - M q'' - virtual work of (F_x, F_y, F_z, M),   F_x = -w_x F_z - v_x F_y
 /// ```
 /// Loads stand normal to the deflected blade; their axial part works on the foreshortening.
-pub(crate) fn moderate_residual(
+fn moderate_residual(
     (blade, modal): (&ResponseBlade, &ModalBlade),
     mass: &DMatrix<f64>,
     state: BladeState<'_>,
@@ -150,8 +150,29 @@ pub(crate) fn moderate_residual(
     }
 }
 
+/// Generalised residual of any couplings without the constant mass part and without damping.
+pub(crate) fn structural_residual(
+    blade: &ResponseBlade,
+    (couplings, mass): (Couplings, &DMatrix<f64>),
+    (state, coordinates): (BladeState<'_>, [&[f64]; 3]),
+    scratch: &mut StructureScratch,
+    out: &mut [f64],
+) {
+    if let Some(modal) = &blade.modal {
+        moderate_residual((blade, modal), mass, state, coordinates, out);
+    } else {
+        modal_residual(blade, couplings, state, scratch, out);
+        for (o, springs) in out.iter_mut().zip(blade.root_spring.row_iter()) {
+            *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
+        }
+    }
+    if blade.flaps_beside_blade() {
+        subtract_slope_work(blade, state.loads, out);
+    }
+}
+
 /// Generalised residual without the constant mass part, modal order flap, lag, torsion.
-pub(crate) fn modal_residual(
+fn modal_residual(
     blade: &ResponseBlade,
     couplings: Couplings,
     state: BladeState<'_>,

@@ -6,9 +6,7 @@ use crate::blade::{Couplings, FlapMass, ResponseBlade};
 use crate::flap_inertia::FlapSection;
 use crate::flight_air::{FlightAir, LoadLaw};
 use crate::motion::{Motion, RootPitch};
-use crate::structure::{
-    BladeState, SpanLoads, StructureScratch, modal_residual, moderate_residual, subtract_slope_work,
-};
+use crate::structure::{BladeState, SpanLoads, StructureScratch, structural_residual};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_fem::{LocalTangent, OrbitSamples, PeriodicSystem};
@@ -197,17 +195,8 @@ impl ResponseSystem<'_> {
         let Scratch { structure, loads } = scratch;
         let pitch = self.points[point].air.pitch;
         let state = BladeState { motion, pitch, loads };
-        if let Some(modal) = &self.blade.modal {
-            moderate_residual((self.blade, modal), self.mass, state, coordinates, out);
-        } else {
-            modal_residual(self.blade, self.couplings, state, structure, out);
-            for (o, springs) in out.iter_mut().zip(self.blade.root_spring.row_iter()) {
-                *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
-            }
-        }
-        if self.blade.flaps_beside_blade() {
-            subtract_slope_work(self.blade, loads, out);
-        }
+        let equations = (self.couplings, self.mass);
+        structural_residual(self.blade, equations, (state, coordinates), structure, out);
         for ((o, d), rate) in out.iter_mut().zip(self.damping).zip(coordinates[1]) {
             *o += d * rate;
         }

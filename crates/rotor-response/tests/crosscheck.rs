@@ -100,7 +100,7 @@ fn compare(case: &str, couplings: Couplings, discretisation: Discretisation, bou
 
 #[test]
 fn linear_quasi_steady_rotor_with_fixed_controls() {
-    compare("S1_linear_fixed", Couplings::Linear, Discretisation::default(), 1e-3);
+    compare("S1_linear_fixed", Couplings::Linear, Discretisation::paper(), 1e-3);
 }
 
 /// Mode shapes of more beam elements bring the chain closer: what is left is discretisation.
@@ -110,19 +110,19 @@ fn linear_case_converges_with_the_beam_elements() {
         blade_elements: 20,
         span_points_per_piece: 5,
         time_elements: 10,
-        ..Discretisation::default()
+        ..Discretisation::paper()
     };
     compare("S1_linear_fixed", Couplings::Linear, fine, 6e-5);
 }
 
 #[test]
 fn full_couplings_with_fixed_controls() {
-    compare("S2_full_fixed", Couplings::Full, Discretisation::default(), 1e-2);
+    compare("S2_full_fixed", Couplings::Full, Discretisation::paper(), 1e-2);
     let fine = Discretisation {
         blade_elements: 40,
         span_points_per_piece: 4,
         time_elements: 10,
-        ..Discretisation::default()
+        ..Discretisation::paper()
     };
     compare("S2_full_fixed", Couplings::Full, fine, 1e-3);
 }
@@ -131,7 +131,7 @@ fn full_couplings_with_fixed_controls() {
 #[test]
 fn the_couplings_are_seen_by_the_bound() {
     let reference = reference("S2_full_fixed");
-    let linear = solve(Couplings::Linear, Discretisation::default());
+    let linear = solve(Couplings::Linear, Discretisation::paper());
     let z4 = distance(&linear.hub.harmonic(4), &reference.z4) / norm(&reference.z4);
     assert!(z4 > 0.5, "linear couplings differ by {z4:e} only");
 }
@@ -140,7 +140,7 @@ fn the_couplings_are_seen_by_the_bound() {
 #[expect(clippy::print_stdout, reason = "the comparison, mode by mode, is what a reader wants")]
 fn moderate_distance(torsion: TorsionTerms) -> [f64; 3] {
     let reference = reference("S2_full_fixed");
-    let solution = solve(Couplings::Moderate(torsion), Discretisation::default());
+    let solution = solve(Couplings::Moderate(torsion), Discretisation::paper());
     let z4 = solution.hub.harmonic(4);
     println!("{torsion:?}");
     for (name, k) in ["FX", "FY", "FZ", "MX", "MY", "MZ"].iter().zip((0..).step_by(2)) {

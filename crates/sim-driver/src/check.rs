@@ -1,5 +1,6 @@
 //! `hhc check`: what kind of file it is, and every problem in it.
 
+use crate::SimError;
 use crate::actuator::fits_case;
 use crate::case::{ActuatorSource, LoadedCase, read_case};
 use crate::files::{
@@ -66,6 +67,14 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         Some(FileKind::Case) => {
             let loaded = read_case(&source, &Folder::of_file(path))?;
             let warnings = check_actuator_source(&loaded)?;
+            loaded.refuse_resonance().map_err(|error| {
+                let (place, message) = match error {
+                    SimError::Response { place, source } => (place, source.to_string()),
+                    SimError::Blade { place, source } => (place, source.to_string()),
+                    error => (loaded.index.place("rotor"), error.to_string()),
+                };
+                Problem::new(place, Fault::Refused { message })
+            })?;
             let summary = loaded.case.title;
             Ok(CheckResult { file: name, kind: FileKind::Case, summary, warnings })
         }

@@ -207,6 +207,8 @@ fn study_family(error: &StudyError) -> Family {
 fn trim_family(error: &TrimError) -> Family {
     match error {
         TrimError::Parameter { .. }
+        | TrimError::Stalled { .. }
+        | TrimError::BeyondStall { .. }
         | TrimError::OutOfReach { .. }
         | TrimError::NoDescent { .. } => Family::RejectedInput,
         TrimError::Response(source) => response_family(source),

@@ -37,6 +37,7 @@ pub mod progress;
 pub mod recompute;
 mod record_fault;
 pub mod report;
+mod resonance;
 pub mod results;
 pub mod run;
 pub mod section;

@@ -8,20 +8,18 @@ use crate::case::{
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{
-    BladeProperties, BladeSpec, Distribution, FemError, Joint, ModalBasis, ModeCount, ModeKind,
-    RootSupport, TorsionTerms, Twist, modal_basis,
+    BladeProperties, BladeSpec, Distribution, Joint, ModalBasis, ModeCount, RootSupport,
+    TorsionTerms, Twist,
 };
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, DynamicStall, FlapMass,
-    NonlinearSections, ResponseError, ResponseTolerances, ReverseFlow, RotorModel, SectionOffsets,
+    NonlinearSections, ResponseTolerances, ReverseFlow, RotorModel, SectionOffsets,
     TrailingEdgeFlap, with_flap_masses,
 };
 use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle};
 
 /// Standard gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.806_65;
-/// Distance of an undamped frequency from a harmonic below which the response is none, per rev.
-const RESONANCE_PER_REV: f64 = 1e-3;
 
 impl Case {
     /// The blade's structure at zero pitch.
@@ -78,32 +76,6 @@ impl Case {
         };
         let place = || Place::file("case").field("rotor.unlike_blades");
         BladeProperties::new(spec).map_err(|source| SimError::Blade { place: place(), source })
-    }
-
-    /// Refuses a blade whose lag motion, which the air hardly damps, has no damping and the frequency of
-    /// a harmonic: nothing bounds its response.
-    ///
-    /// # Errors
-    /// [`SimError::Response`] with mode and frequency, and as [`Self::blade_with_flaps`].
-    pub fn refuse_resonance(&self) -> Result<(), SimError> {
-        if self.blade.modal_damping > 0.0 {
-            return Ok(());
-        }
-        let blade = self.blade_with_flaps()?;
-        let at = || Place::file("case").field("rotor.modal_damping");
-        let blame = |source: FemError| SimError::Blade { place: at(), source };
-        let found = modal_basis(&blade, self.blade.elements, self.mode_count(), self.modal_basis())
-            .map_err(blame)?;
-        for (i, mode) in found.of(ModeKind::Lag).iter().enumerate() {
-            let frequency_per_rev = mode.frequency();
-            let harmonic = frequency_per_rev.round();
-            if harmonic >= 1.0 && (frequency_per_rev - harmonic).abs() < RESONANCE_PER_REV {
-                let (kind, number) = (ModeKind::Lag, i + 1);
-                let source = ResponseError::Resonance { kind, number, frequency_per_rev };
-                return Err(SimError::Response { place: at(), source });
-            }
-        }
-        Ok(())
     }
 
     /// Centres of the sections off the elastic axis.

@@ -7,9 +7,10 @@ use crate::problem::Place;
 use nalgebra::DVector;
 use rotor_fem::{
     AxialMotion, BladeModel, BladeProperties, CoupledMode, EnergyShares, FemError, GyroscopicTerms,
-    ModerateBlade, ModerateModel, ModerateSpec, SectionMotion, StaticSettings, deflected_modes,
-    modes,
+    ModeKind, ModerateBlade, ModerateModel, ModerateSpec, SectionMotion, StaticSettings,
+    deflected_modes, modes,
 };
+use rotor_response::RESONANCE_PER_REV;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -73,6 +74,9 @@ pub struct ModesResult {
     pub steady_tip: Option<SteadyTip>,
     /// Flap, lag and torsion modes, each kind from its lowest.
     pub modes: Vec<ModeLine>,
+    /// What a user should know about them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// The same at further rotor speeds: the data of a fan plot.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub fan: Vec<ModesResult>,
@@ -87,7 +91,28 @@ pub fn rotating_modes(case: &Case, question: &ModesQuestion) -> Result<ModesResu
     let blade = case.blade_with_flaps()?.with_pitch_rad(question.pitch_rad).map_err(fail)?;
     let at = |ratio: f64| modes_at(case, question, &blade, ratio).map_err(fail);
     let fan = question.speed_ratios.iter().map(|ratio| at(*ratio)).collect::<Result<_, _>>()?;
-    Ok(ModesResult { fan, ..at(1.0)? })
+    let nominal = at(1.0)?;
+    let warnings = undamped_at_a_harmonic(case, &nominal.modes);
+    Ok(ModesResult { fan, warnings, ..nominal })
+}
+
+/// Lag modes at a harmonic of the rotor speed that nothing damps.
+fn undamped_at_a_harmonic(case: &Case, modes: &[ModeLine]) -> Vec<String> {
+    if case.blade.modal_damping > 0.0 {
+        return vec![];
+    }
+    let lag = ModeKind::Lag.to_string();
+    let near = |per_rev: f64| (per_rev - per_rev.round()).abs() < RESONANCE_PER_REV;
+    numbered(modes)
+        .zip(modes)
+        .filter(|(_, mode)| mode.kind == lag && mode.per_rev.is_some_and(near))
+        .map(|(name, mode)| {
+            let harmonic = mode.per_rev.unwrap_or_default().round();
+            format!(
+                "{name} is at the harmonic {harmonic} of the loads and rotor.modal_damping is 0: no rotor is trimmed with it"
+            )
+        })
+        .collect()
 }
 
 fn modes_at(
@@ -121,6 +146,7 @@ fn modes_at(
         rotor_speed_rad_s: ratio * nominal_rad_s,
         steady_tip,
         modes: found.iter().map(|mode| ModeLine::new(mode, nominal_rad_s)).collect(),
+        warnings: vec![],
         fan: vec![],
     })
 }
@@ -181,6 +207,9 @@ impl Printable for ModesResult {
                 [name, per_rev, format!("{:.4}", mode.hz)].into_iter().chain(shares).collect()
             }),
         ));
+        for warning in &self.warnings {
+            sheet.line(format_args!("warning: {warning}"));
+        }
         if !self.fan.is_empty() {
             sheet.line(format_args!("\nFrequencies in Hz over rotor speed"));
             let names: Vec<String> = numbered(&self.modes).collect();

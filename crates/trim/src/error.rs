@@ -7,6 +7,15 @@ fn show(history: &[f64]) -> String {
     shown.join(" ")
 }
 
+/// The most thrust of a search, for a message.
+fn most(reached: f64, theta0_deg: f64) -> String {
+    if reached > 0.0 {
+        format!("the most that was reached is {reached:.4} at theta0 {theta0_deg:.2} deg")
+    } else {
+        "and not one periodic response was found on the way".to_owned()
+    }
+}
+
 /// Why a rotor could not be trimmed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -38,6 +47,40 @@ pub enum TrimError {
         /// Residual before the step, relative to the weight.
         residual: f64,
         /// Residuals of all iterations.
+        history: Vec<f64>,
+    },
+    /// The sections stall before they give the thrust asked for.
+    #[error(
+        "the sections stall: C_T/sigma {wanted:.4} is asked for, {}; residuals so far {}. Remedy: lower the thrust, the drag area or the advance ratio",
+        most(*.reached, *.theta0_deg),
+        show(.history)
+    )]
+    Stalled {
+        /// Thrust asked for, `C_T / sigma`.
+        wanted: f64,
+        /// Largest thrust of the search; 0 if not one response was found.
+        reached: f64,
+        /// Collective there, degrees.
+        theta0_deg: f64,
+        /// Residuals of all iterations, relative to the weight.
+        history: Vec<f64>,
+        /// How the search ended.
+        #[source]
+        cause: Box<Self>,
+    },
+    /// Sections that never stall give a thrust that no aerofoil gives.
+    #[error(
+        "C_T/sigma {wanted:.4} asks a mean lift coefficient of {lift_coefficient:.2} of the sections, which stall near {largest}: the trim found with attached flow (residuals {}) is none. Remedy: lower the thrust, or give aerofoil tables, which stall",
+        show(.history)
+    )]
+    BeyondStall {
+        /// Thrust asked for, `C_T / sigma`.
+        wanted: f64,
+        /// Mean lift coefficient it takes.
+        lift_coefficient: f64,
+        /// The largest of an aerofoil.
+        largest: f64,
+        /// Residuals of all iterations, relative to the weight.
         history: Vec<f64>,
     },
     /// No change of the trim variables lowers the residual any more.

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_response::{Condition, Controls, RotorSolution, RotorSolver};
 use rotor_wake::{FlightState, InflowModel, momentum_inflow};
+use std::sync::Arc;
 
 /// Tolerances of the trim.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,10 +52,60 @@ const JACOBIAN_STEP: f64 = 1e-4;
 const PITCH_LIMIT: f64 = 0.6;
 /// Shaft tilt at which a trim starts at most, rad: a larger one is approached by the steps.
 const LARGEST_FIRST_TILT: f64 = 0.4;
+/// Damping over critical that leads an undamped rotor to its collective.
+const HELPING_DAMPING: f64 = 0.02;
 /// Halvings of a step that does not lower the residuals.
 const LARGEST_HALVINGS: i32 = 6;
 /// A step of which no larger part stays within the limits leads out of reach.
 const LEAST_PART: f64 = 1e-3;
+
+/// Mean lift coefficient that no aerofoil gives: attached sections that are asked for more are past stall.
+const LARGEST_LIFT_COEFFICIENT: f64 = 1.5;
+/// Share of the thrust asked for below which sections that were to give it have stalled.
+const STALLED_SHARE: f64 = 0.98;
+/// Iterations over which a search that gains next to nothing stands still, and what it gains.
+const STANDSTILL: (usize, f64) = (6, 0.02);
+
+/// Mean lift coefficient of the blades at a thrust, `6 (C_T / sigma) / (1 + 3 mu^2 / 2)`.
+///
+/// Source: W. Johnson, Helicopter Theory (1980), section 5-3, mean of the square of the tangential speed.
+fn mean_lift_coefficient(ct_sigma: f64, advance_ratio: f64) -> f64 {
+    6.0 * ct_sigma / (1.0 + 1.5 * advance_ratio * advance_ratio)
+}
+
+/// What a search has seen.
+#[derive(Debug, Default)]
+struct Progress {
+    /// Largest residual of every iterate.
+    history: Vec<f64>,
+    /// Largest thrust of an iterate, as `C_T / sigma`, and its collective.
+    reached: f64,
+    theta0_deg: f64,
+    /// Collective of the last iterate.
+    last_theta0_rad: f64,
+}
+
+impl Progress {
+    fn note(
+        &mut self,
+        (rotor, residual): &(RotorSolution, DVector<f64>),
+        solidity: f64,
+        controls: Controls,
+    ) {
+        self.history.push(if residual.is_empty() { 0.0 } else { residual.amax() });
+        self.last_theta0_rad = controls.theta0_rad;
+        let ct_sigma = rotor.thrust_coefficient / solidity;
+        if ct_sigma > self.reached {
+            (self.reached, self.theta0_deg) = (ct_sigma, controls.theta0_rad.to_degrees());
+        }
+    }
+
+    fn stands_still(&self) -> bool {
+        let (span, gain) = STANDSTILL;
+        let Some(earlier) = self.history.len().checked_sub(span + 1) else { return false };
+        self.history.last().is_some_and(|now| *now > (1.0 - gain) * self.history[earlier])
+    }
+}
 
 /// A step that lowers the residuals, with the response and the residuals after it.
 type Descent = (DVector<f64>, (RotorSolution, DVector<f64>));
@@ -68,8 +119,8 @@ const VARIABLES: [&str; 6] = ["theta0", "theta1c", "theta1s", "shaft tilt", "ban
 /// control stops at its limit, and out of reach is what still points beyond it from there.
 ///
 /// # Errors
-/// [`TrimError::Parameter`] for a bad target, [`TrimError::OutOfReach`],
-/// [`TrimError::NotConverged`] and [`TrimError::Singular`] with the residual history, and the
+/// [`TrimError::Parameter`] for a bad target, [`TrimError::Stalled`] and [`TrimError::BeyondStall`] for a
+/// thrust that the sections do not give, [`TrimError::OutOfReach`], [`TrimError::NotConverged`] and [`TrimError::Singular`] with the residual history, and the
 /// errors of the response.
 pub fn trim(
     solver: &mut RotorSolver,
@@ -81,7 +132,9 @@ pub fn trim(
 ) -> Result<TrimSolution, TrimError> {
     let balance = Balance::new(solver, advance_ratio, target)?;
     let flaps = solver.rotor().model().flaps.len();
-    Problem { inflow, balance, flaps }.solve(solver, settings, start)
+    let problem = Problem { inflow, balance, flaps };
+    let damped = if start.is_none() { problem.damped(solver, settings)? } else { None };
+    problem.solve(solver, settings, start.or(damped.as_ref()))
 }
 
 /// The search for balance at one advance ratio.
@@ -130,7 +183,9 @@ impl Problem<'_> {
         let flap_angles_rad = vec![HarmonicSeries::default(); self.flaps];
         let condition =
             Condition { flight, bank_rad: attitude.roll_rad, controls, flap_angles_rad };
-        let rotor = solver.solve(&condition, self.inflow, start)?;
+        let found = solver.solve(&condition, self.inflow, start);
+        let rotor =
+            found.map_err(|error| solver.rotor().blame_resonance(controls.theta0_rad, error))?;
         let residual = self.balance.residual(&rotor, &attitude);
         Ok((rotor, residual))
     }
@@ -164,20 +219,100 @@ impl Problem<'_> {
         ratios.fold((1.0, 0), |least, ratio| if ratio.0 < least.0 { ratio } else { least })
     }
 
+    /// A rough trim of the rotor with damped modes, where an undamped one may be at a harmonic: only the
+    /// collective in flight says whether it is.
+    fn damped(
+        &self,
+        solver: &RotorSolver,
+        settings: &TrimSettings,
+    ) -> Result<Option<TrimSolution>, TrimError> {
+        let rotor = solver.rotor();
+        let theta0 = self.balance.state(&self.first_guess(solver)).0.theta0_rad;
+        if self.balance.unknowns == 0 {
+            rotor.refuse_resonance(theta0)?;
+        }
+        if !rotor.nearly_resonates(theta0) {
+            return Ok(None);
+        }
+        let damped = Arc::new(rotor.with_modal_damping(HELPING_DAMPING));
+        let mut helper = RotorSolver::new(damped, self.balance.advance_ratio, solver.tolerances())?;
+        let settings = TrimSettings { tolerance: settings.tolerance.max(1e-4), ..*settings };
+        let Ok(found) = self.solve(&mut helper, &settings, None) else { return Ok(None) };
+        rotor.refuse_resonance_in_flight(found.controls.theta0_rad, &found.rotor)?;
+        Ok(Some(found))
+    }
+
+    /// The search for balance; a failure of sections that gave less than the thrust asked for is their stall.
     fn solve(
         &self,
         solver: &mut RotorSolver,
         settings: &TrimSettings,
         start: Option<&TrimSolution>,
     ) -> Result<TrimSolution, TrimError> {
+        let mut progress = Progress::default();
+        let found = self.search(solver, settings, start, &mut progress);
+        let model = solver.rotor().model();
+        if self.balance.unknowns == 0 {
+            return found;
+        }
+        let wanted = self.balance.thrust_coefficient / model.solidity();
+        match found {
+            Ok(trimmed) if model.nonlinear.is_linear() => {
+                let lift_coefficient = mean_lift_coefficient(wanted, self.balance.advance_ratio);
+                if lift_coefficient > LARGEST_LIFT_COEFFICIENT {
+                    return Err(TrimError::BeyondStall {
+                        wanted,
+                        lift_coefficient,
+                        largest: LARGEST_LIFT_COEFFICIENT,
+                        history: trimmed.residual_history,
+                    });
+                }
+                Ok(trimmed)
+            }
+            Err(cause)
+                if !model.nonlinear.is_linear() && progress.reached < STALLED_SHARE * wanted =>
+            {
+                Err(TrimError::Stalled {
+                    wanted,
+                    reached: progress.reached,
+                    theta0_deg: progress.theta0_deg,
+                    history: progress.history,
+                    cause: Box::new(cause),
+                })
+            }
+            Err(
+                cause @ (TrimError::OutOfReach { .. }
+                | TrimError::NoDescent { .. }
+                | TrimError::NotConverged { .. }),
+            ) => Err(solver
+                .rotor()
+                .likely_resonance(progress.last_theta0_rad)
+                .map_or(cause, TrimError::Response)),
+            found => found,
+        }
+    }
+
+    /// Newton's method.
+    fn search(
+        &self,
+        solver: &mut RotorSolver,
+        settings: &TrimSettings,
+        start: Option<&TrimSolution>,
+        progress: &mut Progress,
+    ) -> Result<TrimSolution, TrimError> {
         let mut x = start.map_or_else(|| self.first_guess(solver), |s| self.unknowns_of(s));
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
-        let mut history = vec![current.1.amax()];
+        let solidity = solver.rotor().model().solidity();
+        let stalls = !solver.rotor().model().nonlinear.is_linear();
+        progress.note(&current, solidity, self.balance.state(&x).0);
         let mut jacobian: Option<DMatrix<f64>> =
             start.and_then(|s| s.jacobian.clone()).filter(|j| j.nrows() == self.balance.unknowns);
         for iteration in 0..=settings.max_iterations {
             let residual = current.1.amax();
             if self.balance.unknowns == 0 || residual <= settings.tolerance {
+                let theta0 = self.balance.state(&x).0.theta0_rad;
+                solver.rotor().refuse_resonance_in_flight(theta0, &current.0)?;
+                let history = progress.history.clone();
                 return Ok(self.finish(&x, current, (history, iteration), jacobian));
             }
             let (matrix, fresh) = match jacobian.take() {
@@ -194,14 +329,23 @@ impl Problem<'_> {
                 if !fresh {
                     continue;
                 }
+                let history = progress.history.clone();
                 return Err(Self::out_of_reach(limited, x[limited], iteration, history));
+            }
+            let no_descent = || TrimError::NoDescent {
+                iteration,
+                residual,
+                history: progress.history.clone(),
+                theta0_deg: self.balance.state(&x).0.theta0_rad.to_degrees(),
+            };
+            if stalls && progress.stands_still() {
+                return Err(no_descent());
             }
             let Some((step, new)) = self.descend(solver, &x, &(step * part), &current)? else {
                 if !fresh {
                     continue;
                 }
-                let theta0_deg = self.balance.state(&x).0.theta0_rad.to_degrees();
-                return Err(TrimError::NoDescent { iteration, residual, history, theta0_deg });
+                return Err(no_descent());
             };
             let gained = new.1.amax() <= 0.3 * residual;
             // Broyden's rank-one update; a matrix that stopped paying is computed anew
@@ -210,13 +354,13 @@ impl Problem<'_> {
             jacobian = (gained || fresh).then_some(updated);
             x += &step;
             current = new;
-            history.push(current.1.amax());
+            progress.note(&current, solidity, self.balance.state(&x).0);
         }
         Err(TrimError::NotConverged {
             iterations: settings.max_iterations,
             residual: current.1.amax(),
             tolerance: settings.tolerance,
-            history,
+            history: progress.history.clone(),
             theta0_deg: self.balance.state(&x).0.theta0_rad.to_degrees(),
         })
     }

@@ -96,6 +96,43 @@ fn a_thrust_out_of_reach_is_an_error_with_its_history() {
     assert!(matches!(solve(0.2, &propulsive(-1.0)), Err(TrimError::Parameter { .. })));
 }
 
+/// Attached sections give any lift: what no aerofoil gives is no trim.
+#[test]
+fn a_thrust_beyond_the_lift_of_any_aerofoil_is_an_error_with_its_history() {
+    let target = TrimTarget::WindTunnel { ct_sigma: 0.27, shaft_tilt_rad: 0.0 };
+    let error = solve(0.0, &target).unwrap_err();
+    assert!(
+        matches!(&error, TrimError::BeyondStall { lift_coefficient, history, .. }
+            if (lift_coefficient - 1.62).abs() < 1e-12 && history.len() > 1),
+        "{error}"
+    );
+}
+
+/// A lag mode that comes to one per rev at the collective of the trim alone.
+#[test]
+fn an_undamped_mode_at_a_harmonic_in_flight_is_named() {
+    let lag_1 = |ei_lag: f64, modal_damping: f64| {
+        let spec = BladeSpec { lag_stiffness: ei_lag.into(), ..BladeSpec::table_1() };
+        let blade = BladeProperties::new(spec).unwrap();
+        let model = RotorModel { modal_damping, ..RotorModel::table_1(Couplings::Full) };
+        let few = Discretisation { modes: [2, 1, 1], ..Discretisation::default() };
+        Arc::new(Rotor::new(model, &blade, few).unwrap())
+    };
+    let level = |rotor: Arc<Rotor>| {
+        let mut solver = RotorSolver::new(rotor, 0.2, ResponseTolerances::default()).unwrap();
+        let settings = TrimSettings::default();
+        trim(&mut solver, &LinearInflow::Drees, 0.2, &propulsive(0.07), &settings, None)
+    };
+    // in flight: 1.000 per rev; at no collective 1.05
+    let ei_lag = 0.078;
+    let error = level(lag_1(ei_lag, 0.0)).unwrap_err().to_string();
+    assert!(error.contains("lag 1 at 6.31 deg has 1.0003 per rev, near the harmonic 1"), "{error}");
+    lag_1(ei_lag, 0.0).refuse_resonance(0.0).unwrap();
+    level(lag_1(ei_lag, 0.005)).unwrap();
+    // off the harmonic it is trimmed, led there by damping
+    level(lag_1(0.084, 0.0)).unwrap();
+}
+
 /// Every advance ratio trims from the first guess, and in few iterations: a guess far from trim once
 /// sent some of them wandering.
 #[test]

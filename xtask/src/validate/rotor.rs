@@ -223,7 +223,7 @@ pub(super) fn response(
 fn solve(case: &Crosscheck) -> Result<RotorSolution, CheckError> {
     let reverse_flow = ReverseFlow::Abrupt; // the small-angle form, as the crosscheck has it
     let model = RotorModel { reverse_flow, ..paper_rotor((case.couplings)(), 0.35) };
-    let d = Discretisation::default();
+    let d = Discretisation::paper();
     response(model, &paper_blade(1.0)?, d, &fixed_controls(), &PRESCRIBED)
 }
 

@@ -103,3 +103,14 @@ pub(super) fn largest_error() -> Result<f64, CheckError> {
     }
     worst("trimmed angles", 30, errors)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn propulsive_trim_meets_the_rigid_blade_reference() {
+        let error = largest_error().unwrap();
+        assert!(error <= 1.0, "{error}");
+    }
+}

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use rotor_response::{Couplings, Discretisation, ResponseTolerances, Rotor, RotorSolver};
+use rotor_fem::TorsionTerms;
+use rotor_response::{
+    Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+};
 use rotor_wake::LinearInflow;
 use trim::{TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
 
@@ -52,6 +55,26 @@ pub(super) const AREA: Area = Area {
             measure: wind_tunnel_moment,
         },
         Check {
+            id: "V-TRIM-06",
+            quantity: "power of air, damping, shaft and pitch control on the trimmed orbit, mu 0.30, \
+                       default discretisation, unsteady sections, couplings Full and Moderate: larger \
+                       sum over the shaft's",
+            unit: "-",
+            source: "conservation of energy",
+            criterion: Criterion::AtMost(1e-5),
+            repeatability: Repeatability::Everywhere,
+            measure: trimmed_power,
+        },
+        Check {
+            id: "V-TRIM-07",
+            quantity: "that sum with 6 over 4 and with 8 over 6 time elements, quasi-steady sections: larger",
+            unit: "-",
+            source: "the sum is a discretisation error",
+            criterion: Criterion::AtMost(0.5),
+            repeatability: Repeatability::Everywhere,
+            measure: trimmed_power_falls,
+        },
+        Check {
             id: "V-TRIM-05",
             quantity: "coupled trim of a rigid flapping blade, mu 0.10 to 0.35: largest error of five \
                        angles over 2 % or 0.1 deg, whichever is larger",
@@ -68,7 +91,16 @@ const CT_SIGMA: f64 = 0.07;
 
 fn trimmed(advance_ratio: f64, target: &TrimTarget) -> Result<TrimSolution, CheckError> {
     let model = paper_rotor(Couplings::Full, 0.2);
-    let rotor = Rotor::new(model, &paper_blade(1.0)?, Discretisation::default())?;
+    trimmed_rotor(model, Discretisation::default(), advance_ratio, target)
+}
+
+fn trimmed_rotor(
+    model: RotorModel,
+    discretisation: Discretisation,
+    advance_ratio: f64,
+    target: &TrimTarget,
+) -> Result<TrimSolution, CheckError> {
+    let rotor = Rotor::new(model, &paper_blade(1.0)?, discretisation)?;
     let mut solver =
         RotorSolver::new(Arc::new(rotor), advance_ratio, ResponseTolerances::default())?;
     let settings = TrimSettings::default();
@@ -77,9 +109,32 @@ fn trimmed(advance_ratio: f64, target: &TrimTarget) -> Result<TrimSolution, Chec
 }
 
 fn propulsive_residual(residual: fn(&TrimSolution) -> f64) -> Result<f64, CheckError> {
-    let target = TrimTarget::Propulsive { weight_ct_sigma: CT_SIGMA, vehicle: Vehicle::default() };
-    let residuals = [0.10, 0.20, 0.30].map(|mu| Ok(residual(&trimmed(mu, &target)?)));
+    let residuals = [0.10, 0.20, 0.30].map(|mu| Ok(residual(&trimmed(mu, &LEVEL())?)));
     worst("advance ratios", 3, residuals)
+}
+
+const LEVEL: fn() -> TrimTarget =
+    || TrimTarget::Propulsive { weight_ct_sigma: CT_SIGMA, vehicle: Vehicle::default() };
+
+fn trimmed_power() -> Result<f64, CheckError> {
+    let couplings = [Couplings::Full, Couplings::Moderate(TorsionTerms::default())];
+    let imbalances = couplings.map(|couplings| {
+        let model = RotorModel { couplings, ..RotorModel::paper_case() };
+        let solution = trimmed_rotor(model, Discretisation::default(), 0.3, &LEVEL())?;
+        Ok(solution.rotor.power.imbalance().abs())
+    });
+    worst("couplings", 2, imbalances)
+}
+
+fn trimmed_power_falls() -> Result<f64, CheckError> {
+    let imbalance = |time_elements| {
+        let discretisation = Discretisation { time_elements, ..Discretisation::default() };
+        let model = paper_rotor(Couplings::Full, 0.2);
+        let solution = trimmed_rotor(model, discretisation, 0.3, &LEVEL())?;
+        Ok::<f64, CheckError>(solution.rotor.power.imbalance().abs())
+    };
+    let (few, some, many) = (imbalance(4)?, imbalance(6)?, imbalance(8)?);
+    Ok((some / few).max(many / some))
 }
 
 fn wind_tunnel() -> Result<TrimSolution, CheckError> {

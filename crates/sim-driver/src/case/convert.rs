@@ -38,9 +38,9 @@ pub(super) fn convert(
     let scales = RotorScales::new(rotor.omega_rpm * TAU / 60.0, rotor.radius_m, rotor.mass_kg_m);
     let case =
         problems.into_result(scales.ok().map(|scales| build(file, folder, scales, airfoils)))?;
-    // what only the blade as a whole can say: flaps beside a tapered one, a mode without damping
-    match case.blade_with_flaps().map(|_| ()).and_then(|()| case.refuse_resonance()) {
-        Ok(()) => Ok(case),
+    // what only the blade as a whole can say: flaps beside a tapered one
+    match case.blade_with_flaps() {
+        Ok(_) => Ok(case),
         Err(error) => {
             let fault = Fault::Refused { message: error.to_string() };
             Err(Problem::new(index.place("rotor"), fault).into())

@@ -1,8 +1,8 @@
 //! What is accepted and what is reported, by the text of a case.
 
 use super::{
-    ActuatorSource, CompressibilityChoice, CouplingsChoice, InflowChoice, LoadedCase, PAPER_CASE,
-    SectionModelChoice, TrimValues, read_case, shipped_case,
+    ActuatorSource, BladeValues, CompressibilityChoice, CouplingsChoice, InflowChoice, LoadedCase,
+    PAPER_CASE, SectionModelChoice, TrimValues, read_case, shipped_case,
 };
 use crate::files::{Folder, Source, ron_text};
 use approx::assert_relative_eq;
@@ -17,7 +17,9 @@ fn shipped_cases_are_valid_and_complete() {
     let paper = shipped_case(PAPER_CASE).unwrap();
     // the shipped text leaves nothing to a default, and the defaults are the paper's
     let short = read("()").unwrap();
-    assert_eq!(short.case.blade, paper.case.blade);
+    assert_eq!(short.case.blade.modes, [5, 4, 2]);
+    let modes = paper.case.blade.modes;
+    assert_eq!(BladeValues { modes, ..short.case.blade.clone() }, paper.case.blade);
     assert_eq!(short.case.trim, paper.case.trim);
     assert_eq!(short.case.control, paper.case.control);
     assert_eq!(short.case.flaps, paper.case.flaps);
@@ -235,14 +237,33 @@ fn problems_of_the_blade_name_the_remedy() {
             "(rotor: (unlike_blades: [(blade: 2, mass: 3)]))",
             "rotor.unlike_blades[0].mass: is 3, expected 0.5 to 2",
         ),
-        // a rigid blade on a lag spring of exactly once per revolution: nu^2 = 3 k
-        (
-            "(rotor: (modal_damping: 0, ei_flap: 1e3, ei_lag: 1e5, root: (lag: Spring(stiffness: 0.33333333))))",
-            "lag 1 has 1.0000 per rev, a harmonic of the loads, and no damping: nothing bounds its response. Remedy: modal_damping",
-        ),
     ] {
         says(text, expected);
     }
+}
+
+/// Blades with a coupled mode at a harmonic are read, for their modes, and refused before they are trimmed.
+#[test]
+fn an_undamped_mode_at_a_harmonic_is_refused_at_its_field() {
+    // a rigid blade on a lag spring of exactly once per revolution: nu^2 = 3 k
+    let rigid = "modal_damping: 0, ei_flap: 1e3, ei_lag: 1e5";
+    let spring = |k: f64| format!("root: (lag: Spring(stiffness: {k}))");
+    let alike = format!("(rotor: ({rigid}, {}))", spring(1.0 / 3.0));
+    let unlike =
+        format!("(rotor: ({rigid}, {}, unlike_blades: [(blade: 2, mass: 1.2)]))", spring(0.4));
+    for (text, field) in [(alike, "rotor.modal_damping"), (unlike, "rotor.unlike_blades[0]")] {
+        let loaded = read(&text).unwrap();
+        let message = loaded.refuse_resonance().unwrap_err().to_string();
+        let place = format!(
+            "{field}: lag 1 at 0.00 deg has 1.0000 per rev, near the harmonic 1 of the loads, and no damping: nothing bounds its response. Remedy: modal_damping above 0"
+        );
+        assert!(message.contains(&place), "{message}");
+    }
+    let damped = format!("(rotor: ({}, {}))", rigid.replace(": 0,", ": 0.005,"), spring(1.0 / 3.0));
+    read(&damped).unwrap().refuse_resonance().unwrap();
+    // the uncoupled mode of the twisted blade is at 5 per rev, the coupled one beside it
+    let twisted = "(rotor: (modal_damping: 0, ei_lag: EI), structure: (couplings: Full))";
+    read(&twisted.replace("EI", "0.0376")).unwrap().refuse_resonance().unwrap();
 }
 
 #[test]

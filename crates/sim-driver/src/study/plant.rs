@@ -11,7 +11,7 @@ use super::{
     CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
 };
 use crate::SimError;
-use crate::case::{Case, LoadedCase, TrimValues};
+use crate::case::{Case, LoadedCase};
 use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use crate::problem::Place;
 use hhc_control::{
@@ -55,16 +55,12 @@ impl TrimmedRotor {
         let blade = case.blade_properties()?;
         let rotor =
             Rotor::new(case.rotor_model(), &blade, case.discretisation()).map_err(at_rotor)?;
+        loaded.refuse_resonance_of(&rotor)?;
         let mu = case.advance_ratio;
         let tolerances = case.response_tolerances();
         let mut solver = RotorSolver::new(Arc::new(rotor), mu, tolerances).map_err(at_rotor)?;
-        let settled = settled_trim(loaded, &mut solver, start).map_err(|source| {
-            let field = match case.trim {
-                TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => "trim.ct_sigma",
-                TrimValues::Prescribed { .. } => "trim",
-            };
-            SimError::Trim { place: loaded.index.place(field), source }
-        })?;
+        let settled = settled_trim(loaded, &mut solver, start);
+        let settled = settled.map_err(|source| loaded.trim_error(source))?;
         let scales = case.scales;
         let hinge_response = Arc::default();
         let authority = Arc::default();
@@ -161,14 +157,16 @@ impl TrimmedRotor {
     /// # Errors
     /// [`SimError::Blade`] and [`SimError::Response`].
     pub fn unlike_solvers(&self, case: &Case) -> Result<Vec<UnlikeSolver>, SimError> {
-        let unlike = case.blade.unlike.iter();
+        let unlike = case.blade.unlike.iter().enumerate();
         unlike
-            .map(|unlike| {
-                let place = || Place::file("case").field("rotor.unlike_blades");
+            .map(|(i, unlike)| {
+                let field = format!("rotor.unlike_blades[{i}]");
+                let place = || Place::file("case").field(&field);
                 let failed = |source| SimError::Response { place: place(), source };
                 let blade = case.unlike_blade(unlike)?;
                 let rotor = Rotor::new(case.rotor_model(), &blade, case.discretisation())
                     .map_err(failed)?;
+                rotor.refuse_resonance(self.trim.controls.theta0_rad).map_err(failed)?;
                 let mu = self.trim.flight.advance_ratio;
                 let solver = RotorSolver::new(Arc::new(rotor), mu, case.response_tolerances())
                     .map_err(failed)?;
