@@ -45,6 +45,7 @@ mod mode_set;
 mod moderate;
 mod modes;
 mod newton_matrix;
+mod orbit_memory;
 mod periodic;
 mod periodic_error;
 mod periodic_system;
@@ -70,6 +71,7 @@ pub use moderate::{
     TwistAngle, Untwist, deflected_fan, deflected_modes,
 };
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
+pub use orbit_memory::OrbitMemory;
 pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
 pub use periodic_error::PeriodicError;
 pub use periodic_system::{LocalTangent, PeriodicSystem};
