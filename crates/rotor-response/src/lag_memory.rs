@@ -52,7 +52,7 @@ struct LoadSlopes {
 impl ResponseSystem<'_> {
     /// The part of the linearised residual that the settled lags leave out.
     ///
-    /// `None` where sections are not linear, or have no lags.
+    /// `None` over tables, and where no section has lags.
     pub(crate) fn lag_memory(&self, samples: &OrbitSamples) -> Option<OrbitMemory> {
         let mut stations = self.air.memories()?;
         let lost_from = self.load_law(false).lost_from;

@@ -230,7 +230,7 @@ impl RunResult {
                     format!("{:.4}", line.free),
                     format!("{:.4}", line.cone),
                     format!("{:.4}", line.clipped),
-                    format!("{:.1}", line.gain_at_step_percent),
+                    format!("{:.3}", line.gain_at_step_percent),
                     format!("{:.1}", line.gain_at_stroke_percent),
                 ]
             }),

@@ -20,10 +20,10 @@ impl FlightAir {
     /// The memory of every lifting station; none of those with finer azimuth points, which lie where the
     /// flow is slow, and of those without lags.
     ///
-    /// `None` where sections are not linear: their settled lags are all the Newton matrix knows.
+    /// `None` over tables: their settled lags are all the Newton matrix knows. What stall remembers beyond the
+    /// attached flow is not in it either.
     pub(crate) fn memories(&self) -> Option<Vec<Option<StationMemory>>> {
-        let linear = |air: &StationAir| air.tables.is_none() && air.stall.is_none();
-        if !self.stations.iter().all(|station| linear(&station.air)) {
+        if self.stations.iter().any(|station| station.air.tables.is_some()) {
             return None;
         }
         let of = |station: &super::Station| match &station.fine {
