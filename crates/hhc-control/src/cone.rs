@@ -1,5 +1,6 @@
 //! The optimum within limits, as a second-order cone program.
 
+use crate::law::Anchor;
 use crate::limits::ControlLimits;
 use crate::{ControlError, FeedbackLaw, error};
 use clarabel::algebra::CscMatrix;
@@ -101,23 +102,24 @@ impl FeedbackLaw {
     ) -> Result<ConstrainedOptimum, ControlError> {
         error::check_not_negative("control weight rho (1/V^2)", rho)?;
         let target = self.modal_target(control_volt, hub_loads)?;
-        self.optimum_of_target_within(rho, &target, limits)
+        let anchor = Anchor { weight: 0.0, control_volt };
+        self.optimum_of_target_within(rho, (&target, anchor), limits)
     }
 
-    /// The same for a modal target.
+    /// The same for a modal target, held near an anchor.
     pub(crate) fn optimum_of_target_within(
         &self,
         rho: f64,
-        target: &DVector<f64>,
+        (target, anchor): (&DVector<f64>, Anchor<'_>),
         limits: &ControlLimits,
     ) -> Result<ConstrainedOptimum, ControlError> {
         let (found, expected) = (limits.layout().len(), self.shape().1);
         if found != expected {
             return Err(ControlError::Length { what: "controls of the limits", found, expected });
         }
-        let free = self.optimum_of(rho, target);
+        let free = self.optimum_near(rho, target, anchor);
         let volt = limits.typical_volt().unwrap_or_else(|| largest(&free).max(f64::MIN_POSITIVE));
-        let (hessian, linear) = self.quadratic(rho, target);
+        let (hessian, linear) = anchor.added(self.quadratic(rho, target));
         let size = (hessian.amax() * volt * volt).max(linear.amax() * volt);
         let size = if size > 0.0 { size } else { 1.0 };
         let mut program = Program {

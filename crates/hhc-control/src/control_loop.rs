@@ -1,6 +1,7 @@
 //! The loop all controllers share.
 
 use crate::controller::Knowledge;
+use crate::law::Anchor;
 use crate::stroke::{Strokes, track_effort};
 use crate::{
     ControlError, ControlLayout, ControlLimits, ControlRun, ControlStep, Cost, FeedbackController,
@@ -29,6 +30,47 @@ pub(crate) enum Effort<'a> {
     Tracked(&'a Strokes),
     /// A given `rho`, and the plant's limits.
     Cone(f64),
+}
+
+/// How far a step is trusted: what holds it near where it sets out from.
+///
+/// ```text
+/// kappa |u - u_here|^2 beside the predicted cost
+/// ```
+/// Where the loads bend and do not vanish, the quadratic that T predicts is too flat, its optimum too far
+/// away, and every step would be halved anew. A step that had to be halved `h` times has measured the bend
+/// along it: `kappa` grows by `2^h - 1` times the curvature predicted there, so that the next step is of the
+/// length that was taken. A step that keeps its promise makes it smaller again.
+///
+/// Source: the method of Levenberg and Marquardt; the end of it as in J. More, *The Levenberg-Marquardt
+/// algorithm*, Lecture Notes in Mathematics 630 (1978): prediction and measurement both small.
+#[derive(Debug, Clone, Copy, Default)]
+struct Trust {
+    /// `kappa`, 1/V^2.
+    weight: f64,
+}
+
+/// Part of a promise that a step must keep for the next one to be trusted farther.
+const PROMISE_KEPT: f64 = 0.75;
+/// Factor by which it is then trusted farther.
+const TRUST_GAINED: f64 = 4.0;
+/// Weight, over the largest singular value squared, below which nothing holds a step any more.
+const FREE: f64 = 1e-8;
+
+impl Trust {
+    /// Learns from a step: `parts` of it that were halved away, and what it kept of its promise.
+    fn learn(&mut self, (halvings, kept): (u32, f64), curvature: f64, authority: f64) {
+        if halvings > 0 {
+            self.weight += (2.0_f64.powi(halvings.cast_signed()) - 1.0) * curvature;
+        } else if kept < 1.0 - PROMISE_KEPT {
+            self.weight += curvature;
+        } else if kept > PROMISE_KEPT {
+            self.weight /= TRUST_GAINED;
+            if self.weight < FREE * authority {
+                self.weight = 0.0;
+            }
+        }
+    }
 }
 
 /// Where a step leads.
@@ -95,6 +137,7 @@ impl FeedbackController {
         let mut kkt = None;
         let mut known = Knowledge::new(&self.controller, &self.law, start);
         let strict = self.settings.cost_tolerance > 0.0;
+        let (mut trust, mut last_fall) = (Trust::default(), f64::INFINITY);
         let outcome = loop {
             known.refresh(plant, &here)?;
             let rho = match effort {
@@ -108,7 +151,8 @@ impl FeedbackController {
                 _ => None,
             };
             let loads = &here.measurement.hub_loads;
-            let aim = aim_of(&known, rho, (&here.control_volt, loads), limits.as_ref())?;
+            let there = (here.control_volt.as_slice(), loads.as_slice());
+            let aim = aim_of(&known, (rho, trust), there, limits.as_ref())?;
             kkt = aim.kkt.or(kkt);
             let step = difference(&aim.control_volt, &here.control_volt);
             let asked_volt = largest_amplitude(&step);
@@ -121,10 +165,9 @@ impl FeedbackController {
                 Some(limits) => limits.usage(&here.control_volt)? > USAGE_LEFT,
                 None => false,
             };
-            if strict
-                && !back
-                && known.promise(rho, &here, &aim.control_volt)?
-                    <= self.settings.cost_tolerance * start_cost
+            let little = self.settings.cost_tolerance * start_cost;
+            let promise = if strict { known.promise(rho, &here, &aim.control_volt)? } else { 0.0 };
+            if strict && !back && promise <= little && (trust.weight == 0.0 || last_fall <= little)
             {
                 break Outcome::Converged;
             }
@@ -139,12 +182,26 @@ impl FeedbackController {
             if let Some(step) = search.taken {
                 let fall = here.cost.total() - step.cost.total();
                 // a part of a step that brings little does not say that the whole would not
-                let whole = step.halvings == 0;
+                let (whole, halved) = (step.halvings == 0, step.halvings);
+                let moved = difference(&step.control_volt, &here.control_volt);
                 steps.push(step.clone());
                 here = step;
-                if strict && whole && !back && fall <= self.settings.cost_tolerance * start_cost {
+                if strict
+                    && whole
+                    && !back
+                    && fall <= little
+                    && (trust.weight == 0.0 || promise <= little)
+                {
                     break Outcome::Converged;
                 }
+                // a part that was taken because the whole leaves the plant's range says nothing of T
+                let measured = whole || search.measurements > 1;
+                if strict && measured && !matches!(effort, Effort::Tracked(_)) {
+                    let curvature = known.law.curvature(rho, &moved) + trust.weight;
+                    let kept = if promise > 0.0 { fall / promise } else { 1.0 };
+                    trust.learn((halved, kept), curvature, known.law.largest_authority());
+                }
+                last_fall = fall;
                 continue;
             }
             if known.learn(plant, &here, &aim.control_volt)? {
@@ -201,7 +258,7 @@ impl FeedbackController {
             let rise = (cost.total() - here.cost.total()) / start_cost;
             let settles = || -> Result<bool, ControlError> {
                 let there = (control_volt.as_slice(), measurement.hub_loads.as_slice());
-                let next = aim_of(known, rho, there, limits)?.control_volt;
+                let next = aim_of(known, (rho, Trust::default()), there, limits)?.control_volt;
                 Ok(largest_amplitude(&difference(&next, &control_volt)) <= SETTLING * asked_volt)
             };
             let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
@@ -270,15 +327,16 @@ fn difference(to: &[f64], from: &[f64]) -> Vec<f64> {
 /// The control the law aims at from a measured state `(u, Z)`.
 fn aim_of(
     known: &Knowledge<'_>,
-    rho: f64,
+    (rho, trust): (f64, Trust),
     (control_volt, hub_loads): (&[f64], &[f64]),
     limits: Option<&ControlLimits>,
 ) -> Result<Aim, ControlError> {
     let target = known.target(control_volt, hub_loads)?;
+    let anchor = Anchor { weight: trust.weight, control_volt };
     Ok(match limits {
-        None => Aim { control_volt: known.law.optimum_of(rho, &target), kkt: None },
+        None => Aim { control_volt: known.law.optimum_near(rho, &target, anchor), kkt: None },
         Some(limits) => {
-            let found = known.law.optimum_of_target_within(rho, &target, limits)?;
+            let found = known.law.optimum_of_target_within(rho, (&target, anchor), limits)?;
             Aim { control_volt: found.control_volt, kkt: Some(found.kkt) }
         }
     })

@@ -26,6 +26,31 @@ pub struct FeedbackLaw {
 
 const SVD_ITERATIONS: usize = 10_000;
 
+/// A control that a step is held near: `weight |u - u_here|^2` beside the cost.
+///
+/// Source: K. Levenberg, Quart. Appl. Math. 2 (1944) 164; D. Marquardt, SIAM J. Appl. Math. 11 (1963) 431.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Anchor<'a> {
+    /// 1/V^2.
+    pub(crate) weight: f64,
+    /// Volt.
+    pub(crate) control_volt: &'a [f64],
+}
+
+impl Anchor<'_> {
+    /// The halved cost `u' P u / 2 + q' u` with the anchor in it.
+    pub(crate) fn added(
+        self,
+        (mut hessian, mut linear): (DMatrix<f64>, DVector<f64>),
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        for (k, here) in self.control_volt.iter().enumerate() {
+            hessian[(k, k)] += self.weight;
+            linear[k] -= self.weight * here;
+        }
+        (hessian, linear)
+    }
+}
+
 impl FeedbackLaw {
     /// The law of one T matrix (1/V) and load weights.
     ///
@@ -161,6 +186,34 @@ impl FeedbackLaw {
         let n = scaled.ncols();
         let hessian = scaled.tr_mul(&scaled) + DMatrix::identity(n, n) * rho;
         (hessian, -scaled.tr_mul(target))
+    }
+
+    /// The optimum for a modal target with an anchor, volt.
+    pub(crate) fn optimum_near(
+        &self,
+        rho: f64,
+        target: &DVector<f64>,
+        anchor: Anchor<'_>,
+    ) -> Vec<f64> {
+        if anchor.weight == 0.0 {
+            return self.optimum_of(rho, target);
+        }
+        let (hessian, linear) = anchor.added(self.quadratic(rho, target));
+        // positive definite: the anchor alone is
+        let found = hessian.cholesky().map(|factors| factors.solve(&-linear));
+        found.map_or_else(|| self.optimum_of(rho, target), |u| u.iter().copied().collect())
+    }
+
+    /// Second derivative of the predicted cost along a step, halved, 1/V^2; 0 along no step.
+    pub(crate) fn curvature(&self, rho: f64, step_volt: &[f64]) -> f64 {
+        let step = DVector::from_column_slice(step_volt);
+        let square = step.norm_squared();
+        if square == 0.0 {
+            return 0.0;
+        }
+        let image = &self.t * &step;
+        let loads = image.iter().zip(&self.load_weights).map(|(z, w)| w * z * z);
+        loads.sum::<f64>() / square + rho
     }
 
     /// Euclidean norm of the optimum, volt; never grows with `rho`.

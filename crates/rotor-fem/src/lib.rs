@@ -45,6 +45,7 @@ mod mode_set;
 mod moderate;
 mod modes;
 mod newton_matrix;
+mod orbit_memory;
 mod oscillations;
 mod periodic;
 mod periodic_error;
@@ -71,6 +72,7 @@ pub use moderate::{
     TwistAngle, Untwist, deflected_fan, deflected_modes,
 };
 pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
+pub use orbit_memory::OrbitMemory;
 pub use oscillations::{Oscillation, oscillations};
 pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
 pub use periodic_error::PeriodicError;

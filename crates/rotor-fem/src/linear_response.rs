@@ -8,14 +8,45 @@ use crate::{Orbit, PeriodicError, PeriodicSolver, PeriodicSystem};
 /// Size of a displacement in the differences that apply the exact Jacobian: far above rounding, far
 /// below where the second derivatives show.
 const DIFFERENCE: f64 = 3e-7;
-/// A direction whose image is this small against the new ones holds nothing new.
-const DEPENDENT: f64 = 1e-10;
+/// A direction of whose image only this part is new holds nothing new: far above the noise of the
+/// differences, which would be taken for an image otherwise. Right-hand sides that depend on each other bring such
+/// directions.
+const DEPENDENT: f64 = 1e-3;
+
+/// `sum += factor part`.
+fn add(sum: &mut DMatrix<f64>, factor: f64, part: &DMatrix<f64>) {
+    sum.zip_apply(part, |value, part| *value += factor * part);
+}
+
+/// A direction of the orbit and what it brings: change of `f`, and weak residual as accelerations.
+struct Known {
+    direction: DMatrix<f64>,
+    force: DMatrix<f64>,
+    image: DMatrix<f64>,
+}
+
+impl Known {
+    /// `self += factor other`.
+    fn add(&mut self, factor: f64, other: &Self) {
+        add(&mut self.direction, factor, &other.direction);
+        add(&mut self.force, factor, &other.force);
+        add(&mut self.image, factor, &other.image);
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.direction *= factor;
+        self.force *= factor;
+        self.image *= factor;
+    }
+}
 
 /// Changes of an orbit, one for each change of load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearResponse {
     /// Change of the orbit per unit of each load.
     pub changes: Vec<Orbit>,
+    /// Change of `f` at all points that goes with it, the change of load included; shape `dof x points`.
+    pub force_changes: Vec<DMatrix<f64>>,
     /// Largest residual left by a linear equation, over its right-hand side.
     pub relative_residual: f64,
     /// Residuals of the system evaluated.
@@ -72,20 +103,27 @@ impl PeriodicSolver {
             None => self.factorise(system, &base, 0)?,
         };
         // residuals are measured as accelerations: a light mode counts as much as a heavy one
-        let mass: Vec<f64> = (0..dof).map(|i| system.mass()[(i, i)]).collect();
-        let product = |a: &DMatrix<f64>, b: &DMatrix<f64>| -> f64 {
-            a.iter().zip(b).enumerate().map(|(k, (x, y))| x * y / mass[k % dof].powi(2)).sum()
+        let mass = system.mass().diagonal();
+        let as_accelerations = |mut residual: DMatrix<f64>| {
+            residual.column_iter_mut().for_each(|mut column| column.component_div_assign(&mass));
+            residual
+        };
+        let as_residual = |mut accelerations: DMatrix<f64>| {
+            let columns = accelerations.column_iter_mut();
+            columns.for_each(|mut column| column.component_mul_assign(&mass));
+            accelerations
         };
         let still = DMatrix::zeros(dof, points);
         let mut left: Vec<DMatrix<f64>> =
-            load_changes.iter().map(|load| -self.weak(&still, load)).collect();
-        let sizes: Vec<f64> = left.iter().map(|r| product(r, r).sqrt()).collect();
+            load_changes.iter().map(|load| as_accelerations(-self.weak(&still, load))).collect();
+        let sizes: Vec<f64> = left.iter().map(DMatrix::norm).collect();
         let share = |left: &[DMatrix<f64>]| -> Vec<f64> {
             let pairs = left.iter().zip(&sizes);
-            pairs.map(|(r, s)| if *s > 0.0 { product(r, r).sqrt() / s } else { 0.0 }).collect()
+            pairs.map(|(r, s)| if *s > 0.0 { r.norm() / s } else { 0.0 }).collect()
         };
         let mut changes = vec![DMatrix::zeros(dof, self.time().unknowns_per_dof()); left.len()];
-        let mut basis: Vec<(DMatrix<f64>, DMatrix<f64>)> = Vec::new();
+        let mut force_changes = load_changes.to_vec();
+        let mut basis: Vec<Known> = Vec::new();
         let (mut evaluations, mut history) = (1, Vec::new());
         loop {
             let shares = share(&left);
@@ -95,6 +133,7 @@ impl PeriodicSolver {
                 self.factorisation = Some(matrix);
                 return Ok(LinearResponse {
                     changes: changes.into_iter().map(|nodal| Orbit { nodal }).collect(),
+                    force_changes,
                     relative_residual: worst,
                     evaluations,
                     factorisations,
@@ -109,46 +148,52 @@ impl PeriodicSolver {
                     best: Box::new(orbit.clone()),
                 });
             }
-            let open = || left.iter().zip(&shares).filter(|(_, share)| **share > tolerance);
-            let directions: Vec<DMatrix<f64>> = open()
-                .map(|(r, _)| {
-                    let step = -matrix.solve(r);
+            let open = left.iter().zip(&shares).filter(|(_, share)| **share > tolerance);
+            let open: Vec<DMatrix<f64>> = open.map(|(r, _)| as_residual(r.clone())).collect();
+            let directions: Vec<DMatrix<f64>> = matrix
+                .solve_all(&open)
+                .into_iter()
+                .map(|step| {
                     let size = step.amax();
-                    if size > 0.0 { step / size } else { step }
+                    if size > 0.0 { -step / size } else { -step }
                 })
                 .collect();
             let this = &*self;
-            let images = directions
-                .par_iter()
+            let found = directions
+                .into_par_iter()
                 .map(|direction| {
-                    let nodal = &orbit.nodal + direction * DIFFERENCE;
+                    let nodal = &orbit.nodal + &direction * DIFFERENCE;
                     let moved = this.evaluate(system, Orbit { nodal }, 0, orbit)?;
-                    Ok((moved.residual - &base.residual) / DIFFERENCE)
+                    Ok(Known {
+                        direction,
+                        force: (moved.force - &base.force) / DIFFERENCE,
+                        image: as_accelerations((moved.residual - &base.residual) / DIFFERENCE),
+                    })
                 })
                 .collect::<Result<Vec<_>, PeriodicError<S::Error>>>()?;
-            evaluations += images.len();
-            for (mut direction, mut image) in directions.into_iter().zip(images) {
-                let whole = product(&image, &image).sqrt();
+            evaluations += found.len();
+            for mut new in found {
+                let whole = new.image.norm();
                 // twice is enough to be orthogonal to rounding
                 for _ in 0..2 {
-                    for (d, w) in &basis {
-                        let along = product(&image, w);
-                        image -= w * along;
-                        direction -= d * along;
+                    for known in &basis {
+                        let along = new.image.dot(&known.image);
+                        new.add(-along, known);
                     }
                 }
-                let size = product(&image, &image).sqrt();
+                let size = new.image.norm();
                 if size <= DEPENDENT * whole {
                     continue;
                 }
-                image /= size;
-                direction /= size;
-                for (r, change) in left.iter_mut().zip(&mut changes) {
-                    let along = product(r, &image);
-                    *r -= &image * along;
-                    *change += &direction * along;
+                new.scale(1.0 / size);
+                let changed = changes.iter_mut().zip(&mut force_changes);
+                for (r, (change, force)) in left.iter_mut().zip(changed) {
+                    let along = r.dot(&new.image);
+                    add(r, -along, &new.image);
+                    add(change, along, &new.direction);
+                    add(force, along, &new.force);
                 }
-                basis.push((direction, image));
+                basis.push(new);
             }
         }
     }

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rotor_base::HarmonicSeries;
 
-use crate::{LocalTangent, Orbit, TimeElements};
+use crate::{LocalTangent, Orbit, OrbitMemory, TimeElements};
 
 /// Inverse iterations on the smallest singular value.
 const INVERSE_ITERATIONS: usize = 6;
@@ -34,6 +34,8 @@ pub(crate) enum NewtonMatrixError {
 pub(crate) struct Factorisation {
     lu: PartialPivLu<f64>,
     root_mass: Vec<f64>,
+    /// Factors of the mass with what the loads add to it, by point.
+    inertia: Vec<LU<f64, Dyn, Dyn>>,
 }
 
 impl std::fmt::Debug for Factorisation {
@@ -43,16 +45,25 @@ impl std::fmt::Debug for Factorisation {
 }
 
 impl Factorisation {
-    /// Factors of the matrix belonging to the tangents at all points.
+    /// Factors of the matrix belonging to the tangents at all points, and to the memory if there is one.
     pub(crate) fn new(
         time: &TimeElements,
         mass: &DMatrix<f64>,
-        tangents: &[LocalTangent],
+        (tangents, memory): (&[LocalTangent], Option<&OrbitMemory>),
     ) -> Result<Self, NewtonMatrixError> {
         let dof = mass.nrows();
         check(time, dof, tangents)?;
         let root_mass: Vec<f64> = (0..dof).map(|i| mass[(i, i)].sqrt()).collect();
         let mut matrix = assemble(time, mass, tangents);
+        if let Some(memory) = memory {
+            check_memory(time, dof, memory)?;
+            let weak = memory.weak(time);
+            for column in 0..matrix.ncols() {
+                for row in 0..matrix.nrows() {
+                    matrix[(row, column)] += weak[(row, column)];
+                }
+            }
+        }
         let weights = time.node_weights();
         for column in 0..matrix.ncols() {
             for row in 0..matrix.nrows() {
@@ -60,7 +71,8 @@ impl Factorisation {
                     weights[row / dof] * root_mass[row % dof] * root_mass[column % dof];
             }
         }
-        let this = Self { lu: matrix.partial_piv_lu(), root_mass };
+        let inertia = tangents.iter().map(|tangent| (mass + &tangent.dqdd).lu()).collect();
+        let this = Self { lu: matrix.partial_piv_lu(), root_mass, inertia };
         this.refuse_resonance(time)?;
         Ok(this)
     }
@@ -72,12 +84,31 @@ impl Factorisation {
 
     /// The Newton step for a residual already divided by the node weights; both `dof x nodes`.
     pub(crate) fn solve(&self, residual: &DMatrix<f64>) -> DMatrix<f64> {
+        self.solve_all(std::slice::from_ref(residual)).pop().unwrap_or_else(|| residual.clone())
+    }
+
+    /// The same for several residuals at once: the factors are read once.
+    pub(crate) fn solve_all(&self, residuals: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
         let dof = self.dof();
-        let mut x = Mat::from_fn(residual.len(), 1, |k, _| {
-            -residual[(k % dof, k / dof)] / self.root_mass[k % dof]
+        let Some(first) = residuals.first() else { return Vec::new() };
+        let mut x = Mat::from_fn(first.len(), residuals.len(), |k, r| {
+            -residuals[r][(k % dof, k / dof)] / self.root_mass[k % dof]
         });
         self.lu.solve_in_place(x.as_mut());
-        DMatrix::from_fn(dof, residual.ncols(), |i, a| x[(a * dof + i, 0)] / self.root_mass[i])
+        let step = |r: usize| {
+            let entry = |i: usize, a: usize| x[(a * dof + i, r)] / self.root_mass[i];
+            DMatrix::from_fn(dof, first.ncols(), entry)
+        };
+        (0..residuals.len()).map(step).collect()
+    }
+
+    /// The accelerations that loads left over at a point call for, `-(M + df/dq'')^-1 r`, or none where
+    /// that matrix is singular.
+    pub(crate) fn acceleration(&self, point: usize, residual: &mut DVector<f64>) -> bool {
+        self.inertia.get(point).is_some_and(|inertia| {
+            *residual *= -1.0;
+            inertia.solve_mut(residual)
+        })
     }
 
     /// Finds the motion with the least dynamic stiffness and refuses a resonance without damping.
@@ -145,6 +176,27 @@ fn check(
             if let Some(entry) = matrix.iter().position(|v| !v.is_finite()) {
                 return Err(NewtonMatrixError::NotFinite { dof: entry % dof, point });
             }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a memory of the wrong shape or value.
+fn check_memory(
+    time: &TimeElements,
+    dof: usize,
+    memory: &OrbitMemory,
+) -> Result<(), NewtonMatrixError> {
+    let size = dof * time.points().len();
+    for matrix in [&memory.dq, &memory.dqd] {
+        if matrix.shape() != (size, size) {
+            let what = "entries of the memory of an orbit";
+            let (found, expected) = (matrix.len(), size * size);
+            return Err(NewtonMatrixError::Shape { what, found, expected });
+        }
+        if let Some(entry) = matrix.iter().position(|v| !v.is_finite()) {
+            let (dof, point) = (entry % size % dof, entry % size / dof);
+            return Err(NewtonMatrixError::NotFinite { dof, point });
         }
     }
     Ok(())

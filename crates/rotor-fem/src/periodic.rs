@@ -68,6 +68,8 @@ pub struct PeriodicSolution {
 pub(crate) struct Iterate {
     pub(crate) orbit: Orbit,
     samples: OrbitSamples,
+    /// `f` at all points, shape `dof x points`.
+    pub(crate) force: DMatrix<f64>,
     /// Weak residual over the nodes' integral weights, shape `dof x nodes`.
     pub(crate) residual: DMatrix<f64>,
     norm: f64,
@@ -216,6 +218,28 @@ impl PeriodicSolver {
         })
     }
 
+    /// What the accelerations lack for the equations of motion to hold at each azimuth, seen from the
+    /// Newton matrix that is kept.
+    ///
+    /// ```text
+    /// dq'' = -(M + df/dq'')^-1 (M q'' + f)
+    /// ```
+    /// `unbalanced` is `M q'' + f`, shape `dof x points`. None without a kept matrix of that size. `f`
+    /// depends on the accelerations weakly; adding the answer and asking again converges the faster the
+    /// nearer the orbit is to that of the matrix.
+    pub fn lacking_accelerations(&self, unbalanced: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let kept = self.factorisation.as_ref().filter(|f| f.dof() == unbalanced.nrows())?;
+        let mut lacking = unbalanced.clone();
+        for point in 0..unbalanced.ncols() {
+            let mut column = unbalanced.column(point).into_owned();
+            if !kept.acceleration(point, &mut column) {
+                return None;
+            }
+            lacking.set_column(point, &column);
+        }
+        Some(lacking)
+    }
+
     /// Refuses a system or start that does not fit.
     pub(crate) fn check<S: PeriodicSystem>(
         &self,
@@ -282,7 +306,7 @@ impl PeriodicSolver {
             return Err(not_finite(entry, time.node_azimuths_rad()[entry / system.dof()]));
         }
         let norm = residual.amax();
-        Ok(Iterate { orbit, samples, residual, norm })
+        Ok(Iterate { orbit, samples, force, residual, norm })
     }
 
     /// `integral( -N_a' p + N_a f ) dpsi` over the integral of `N_a`, for momenta `p` and forces `f` at
@@ -317,7 +341,11 @@ impl PeriodicSolver {
         let tangents = system
             .tangents(&state.samples)
             .map_err(|source| PeriodicError::System { iteration, source })?;
-        Factorisation::new(&self.time, system.mass(), &tangents).map_err(|error| match error {
+        let memory = system
+            .memory(&state.samples)
+            .map_err(|source| PeriodicError::System { iteration, source })?;
+        let linearised = (tangents.as_slice(), memory.as_ref());
+        Factorisation::new(&self.time, system.mass(), linearised).map_err(|error| match error {
             NewtonMatrixError::Shape { what, found, expected } => {
                 PeriodicError::Shape { what, found, expected }
             }

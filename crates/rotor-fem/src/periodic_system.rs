@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::OrbitSamples;
+use crate::{OrbitMemory, OrbitSamples};
 
 /// Linearisation of `f` at one azimuth, all matrices of shape `dof x dof`.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,4 +53,14 @@ pub trait PeriodicSystem: Sync {
     /// # Errors
     /// Whatever the system's physics refuses.
     fn tangents(&self, orbit: &OrbitSamples) -> Result<Vec<LocalTangent>, Self::Error>;
+
+    /// What the tangents leave out of the Newton matrix because it sees the whole revolution. A system
+    /// whose memory is missing here still converges to the same orbit, as long as that memory is weak.
+    ///
+    /// # Errors
+    /// Whatever the system's physics refuses.
+    fn memory(&self, orbit: &OrbitSamples) -> Result<Option<OrbitMemory>, Self::Error> {
+        let _ = orbit;
+        Ok(None)
+    }
 }

@@ -33,7 +33,7 @@ impl RotorSolver {
         let (rotor, air) = (self.rotor.clone(), self.air.clone());
         let system = rotor.system(&air, self.point_inputs(condition, &about.inflow));
         let solution = self.solver.solve(&system, &about.orbit).map_err(Self::orbit_error)?;
-        let loads = RevolutionLoads::new(&rotor, &self.time, &system, &solution.samples)?;
+        let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
         Ok(loads.root(&self.time, rotor.discretisation().load_harmonics + 1))
     }
 }

@@ -4,6 +4,10 @@
 //! elastic part of the speed changes them in second order only. That makes the lag states a linear
 //! operator on the section inputs, solved once per flight condition.
 
+mod memory;
+
+pub(crate) use self::memory::StationMemory;
+
 use crate::air::{
     AirScales, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads,
     sense,
@@ -14,6 +18,7 @@ use crate::lag::{Collocation, PeriodicLag};
 use crate::model::MACH_LIMIT;
 use crate::nonlinear::{TabledStation, add_stall};
 use crate::stall_history::StallHistory;
+use crate::system::POINTS_TOGETHER;
 use crate::{ResponseError, ReverseFlow, RotorModel};
 use flap_aero::{FlapChord, Mach, SectionCoefficients, StallSection};
 use rayon::prelude::*;
@@ -112,12 +117,15 @@ impl FlightAir {
         flows: &[Vec<SectionFlow>],
         law: LoadLaw,
     ) -> Result<Vec<Vec<SectionLoads>>, ResponseError> {
+        let of_station = |(s, station): (usize, &Station)| {
+            let column: Vec<SectionFlow> = flows.iter().map(|row| row[s]).collect();
+            station.loads(&column, law.at(s))
+        };
+        let stations = self.stations.par_iter().with_min_len(POINTS_TOGETHER).enumerate();
+        let by_station = stations.map(of_station).collect::<Result<Vec<_>, _>>()?;
         let mut out = vec![Vec::with_capacity(self.stations.len()); flows.len()];
-        let mut column = Vec::with_capacity(flows.len());
-        for (s, station) in self.stations.iter().enumerate() {
-            column.clear();
-            column.extend(flows.iter().map(|row| row[s]));
-            for (row, loads) in out.iter_mut().zip(station.loads(&column, law.at(s))?) {
+        for column in by_station {
+            for (row, loads) in out.iter_mut().zip(column) {
                 row.push(loads);
             }
         }
@@ -321,6 +329,13 @@ impl StationAir {
         flows: &[SectionFlow],
         law: StationLaw,
     ) -> Result<Vec<SectionLoads>, ResponseError> {
+        let still =
+            |flow: &SectionFlow| flow.input[2..] == [0.0; 2] && flow.input_rate[2..] == [0.0; 2];
+        if let Kind::FlapSlope = law.kind
+            && flows.iter().all(still)
+        {
+            return Ok(vec![SectionLoads::default(); flows.len()]);
+        }
         if let Kind::DragAlone | Kind::Nothing = law.kind {
             let past = SectionPast::default();
             let at = |(p, flow)| self.loads_at(p, (flow, &past), law);

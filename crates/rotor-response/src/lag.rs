@@ -114,6 +114,39 @@ impl PeriodicLag {
             x0 = end(x0, (table, r));
         }
     }
+
+    /// The periodic state as a linear operator on the drive, `x_p = sum_p' P[p, p'] r_p'`.
+    ///
+    /// ```text
+    /// P = B within an element  +  alpha_e (e_(e-1) ... e_(e'+1)) f_e' / (1 - e_1 ... e_n)  for every e'
+    /// ```
+    /// the last term the way round from the end of element `e'` to the start of `e`.
+    pub(crate) fn operator(&self) -> DMatrix<f64> {
+        let g = self.points_per_element;
+        let tables: Vec<&[f64]> = self.table.chunks_exact((g + 1) * (g + 1)).collect();
+        let elements = tables.len();
+        let mut operator = DMatrix::zeros(g * elements, g * elements);
+        for (element, table) in tables.iter().enumerate() {
+            let (alpha, columns) = table[..g * (g + 1)].split_at(g);
+            for (j, column) in columns.chunks_exact(g).enumerate() {
+                for (i, b) in column.iter().enumerate() {
+                    operator[(element * g + i, element * g + j)] = *b;
+                }
+            }
+            let mut passed = 1.0 / self.closing;
+            for back in 1..=elements {
+                let from = (element + elements - back) % elements;
+                let [e, f @ ..] = &tables[from][g * (g + 1)..] else { continue };
+                for (j, f) in f.iter().enumerate() {
+                    for (i, alpha) in alpha.iter().enumerate() {
+                        operator[(element * g + i, from * g + j)] += alpha * passed * f;
+                    }
+                }
+                passed *= e;
+            }
+        }
+        operator
+    }
 }
 
 fn max_abs(values: &[f64]) -> f64 {
@@ -169,6 +202,21 @@ mod tests {
         let (coarse, fine) = (error(4), error(8));
         assert!(fine < 5e-6, "{fine:e}");
         assert!(coarse / fine > 40.0, "order too low: {coarse:e} to {fine:e}");
+    }
+
+    #[test]
+    fn the_operator_gives_the_states_that_marching_round_gives() {
+        let time = TimeElements::new(5, 5, 6).unwrap();
+        let rates: Vec<f64> = time.points().iter().map(|p| 0.6 + 0.5 * p.cos()).collect();
+        let lag = PeriodicLag::new(&Collocation::new(&time), &rates).unwrap();
+        let drive: Vec<f64> =
+            time.points().iter().map(|p| (3.0 * p).cos() + 0.3 * p.sin() + 0.2).collect();
+        let mut state = Vec::new();
+        lag.periodic_state(&drive, &mut state);
+        let product = lag.operator() * DVector::from_vec(drive);
+        for (a, b) in state.iter().zip(&product) {
+            assert_abs_diff_eq!(*a, *b, epsilon = 1e-14);
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod flap_mass;
 mod flight_air;
 mod hinge;
 mod lag;
+mod lag_memory;
 mod linearised;
 mod loads;
 mod model;

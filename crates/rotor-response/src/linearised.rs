@@ -3,9 +3,9 @@
 use crate::air::FlapAngle;
 use crate::hinge::HingeMoment;
 use crate::loads::SixLoads;
-use crate::revolution::{RevolutionLoads, settle_accelerations};
+use crate::revolution::RevolutionLoads;
 use crate::rotor::up;
-use crate::settling::{Answer, INFLOW_ROUNDS, INFLOW_TOLERANCE, Settling};
+use crate::settling::{Answer, INFLOW_ROUNDS, INFLOW_TOLERANCE, Settling, independent};
 use crate::system::{PointInput, ResponseSystem};
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;
@@ -57,9 +57,6 @@ const LINEAR_TOLERANCE: f64 = 1e-5;
 /// same size. The loads are close to linear in all of them.
 const FLAP_DIFFERENCE_RAD: f64 = 1e-5;
 const INFLOW_DIFFERENCE: f64 = 1e-6;
-/// Last move of the accelerations, as a part of those of the motion that is differenced; apparent mass is a
-/// hundredth of the blade's, so what is left is a hundredth of that move.
-const ACCELERATION_PART: f64 = 1e-4;
 /// Relative change of thrust for the slope of the inflow.
 const THRUST_DIFFERENCE: f64 = 1e-5;
 
@@ -263,17 +260,19 @@ impl<'a> Base<'a> {
             .orbits
             .linear_response(&self.system(points), &self.about.orbit, &loads, LINEAR_TOLERANCE)
             .map_err(RotorSolver::orbit_error)?;
+        let motions = response.changes.iter().zip(&response.force_changes);
         let found = changes
-            .par_iter()
-            .zip(&response.changes)
-            .map(|(change, motion)| self.change(change, motion))
+            .iter()
+            .zip(motions)
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(|(change, motion)| self.change(&linear.orbits, change, motion))
             .collect::<Result<Vec<_>, ResponseError>>()?;
         let work = &mut linear.work;
-        work.evaluations += loads.len() + response.evaluations;
-        work.evaluations += found.iter().map(|(_, count)| count).sum::<usize>();
+        work.evaluations += loads.len() + response.evaluations + found.len();
         work.factorisations += response.factorisations;
         work.relative_residual = work.relative_residual.max(response.relative_residual);
-        Ok(found.into_iter().map(|(answer, _)| answer).collect())
+        Ok(found)
     }
 
     /// Lets the inflow follow the changes of the loading, its own included.
@@ -295,6 +294,7 @@ impl<'a> Base<'a> {
             }
             let steps: Vec<Vec<f64>> =
                 open.into_iter().map(|left| model.improved_step(&left).unwrap_or(left)).collect();
+            let steps = independent(steps);
             let moved = steps
                 .iter()
                 .map(|step| self.solver.moved_inflow(self.condition, &self.about.inflow, step))
@@ -329,21 +329,33 @@ impl<'a> Base<'a> {
         Ok((forces - &self.forces) / change.size)
     }
 
-    /// Changes per unit of the direction, and the evaluations they took.
-    fn change(&self, change: &Direction, motion: &Orbit) -> Result<(Answer, usize), ResponseError> {
-        let RotorSolver { rotor, time, .. } = self.solver;
+    /// Changes per unit of the direction, for a motion and the change of `f` at all points that goes with it.
+    ///
+    /// ```text
+    /// dq'' += -(M + df/dq'')^-1 (M dq'' + df)
+    /// ```
+    /// turns the accelerations of the time elements into those that satisfy the equations of motion at each
+    /// azimuth; apparent mass is a hundredth of the blade's, and that of the Newton matrix a hundredth off.
+    fn change(
+        &self,
+        orbits: &PeriodicSolver,
+        change: &Direction,
+        (motion, force): (&Orbit, &DMatrix<f64>),
+    ) -> Result<Answer, ResponseError> {
+        let mut motion = motion.sample(&self.solver.time);
+        let mass = self.solver.rotor.mass();
+        if let Some(lacking) = orbits.lacking_accelerations(&(mass * &motion.qdd + force)) {
+            motion.qdd += lacking;
+        }
         // the points were made for `change.size`; the motion goes with it
-        let mut motion = motion.sample(time);
-        let allowed = ACCELERATION_PART * change.size * motion.qdd.amax();
         motion.q = &self.settled.q + motion.q * change.size;
         motion.qd = &self.settled.qd + motion.qd * change.size;
         motion.qdd = &self.settled.qdd + motion.qdd * change.size;
         let system = self.system(change.points.clone());
-        let count = settle_accelerations(rotor, time, &system, (&mut motion, allowed))?;
         let mut answer = self.answer(&system, &motion)?;
         answer.add(&self.rest, -1.0);
         answer.scale(1.0 / change.size);
-        Ok((answer, count + 1))
+        Ok(answer)
     }
 }
 

@@ -7,12 +7,13 @@ use crate::loads::{
 };
 use crate::power::{AxialMotion, PowerBalance, power};
 use crate::structure::{BladeState, SpanLoads};
-use crate::system::ResponseSystem;
+use crate::system::{POINTS_TOGETHER, ResponseSystem, Revolution};
 use crate::wake_coupling::Lifting;
 use crate::{ResponseError, RootBending, Rotor};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{ModalMotion, OrbitSamples, PeriodicSystem, TimeElements};
+use rotor_fem::{ModalMotion, OrbitSamples, PeriodicSolver, PeriodicSystem, TimeElements};
 use std::f64::consts::TAU;
 
 /// Iterations of the accelerations.
@@ -37,17 +38,66 @@ pub(crate) struct RevolutionLoads {
     pub(crate) accelerations: DMatrix<f64>,
 }
 
+/// The loads at one azimuth point.
+struct PointLoads {
+    lifting: Vec<Lifting>,
+    root: [f64; 6],
+    /// Aerodynamic and inertial, by flap.
+    hinge: [Vec<f64>; 2],
+    /// By force summation and by curvature.
+    bending: [[f64; 2]; 3],
+    power: PowerBalance,
+}
+
+impl PointLoads {
+    fn new(
+        rotor: &Rotor,
+        system: &ResponseSystem<'_>,
+        (samples, revolution): (&OrbitSamples, &Revolution),
+        (p, loads): (usize, &mut SpanLoads),
+    ) -> Self {
+        let (blade, couplings) = (rotor.blade(), rotor.model().couplings);
+        let first = system.air.first_station();
+        let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
+        system.span_loads(p, motion, sections, loads);
+        let aerodynamic = aerodynamic_loads(blade.grid.len(), first, sections);
+        let pitch = system.points[p].air.pitch;
+        let state = BladeState { motion, pitch, loads };
+        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
+        let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
+        let (root, axial) = if let Some(modal) = &blade.modal {
+            let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
+            let found = modal.loads(coordinates, pitch.into());
+            let root = moderate_root_loads(blade, state, &found);
+            (root, AxialMotion::condensed(blade, state, found))
+        } else {
+            let axial = AxialMotion::inextensional(blade, couplings, state, &aerodynamic);
+            (root_loads(blade, state, &aerodynamic), axial)
+        };
+        let damped = qd.iter().zip(rotor.damping()).map(|(rate, c)| c * rate * rate).sum();
+        let summed = root_moments(blade, couplings, state);
+        let curved = root_curvature_moments(blade, couplings, &q, pitch.angle);
+        Self {
+            lifting: sections.iter().map(Lifting::of).collect(),
+            root,
+            hinge: system.hinge_moments(p, motion, sections),
+            bending: std::array::from_fn(|k| [summed[k], curved[k]]),
+            power: power(blade, state, &axial, damped, root[5]),
+        }
+    }
+}
+
 impl RevolutionLoads {
     /// Force summation with accelerations that satisfy the equations of motion at each azimuth.
     pub(crate) fn new(
         rotor: &Rotor,
-        time: &TimeElements,
+        orbits: &PeriodicSolver,
         system: &ResponseSystem<'_>,
         samples: &OrbitSamples,
     ) -> Result<Self, ResponseError> {
         let mut samples = samples.clone();
-        settle_accelerations(rotor, time, system, (&mut samples, 1e-14))?;
-        Self::summed(rotor, time, system, &samples)
+        settle_accelerations(rotor, orbits, system, (&mut samples, 1e-14))?;
+        Self::summed(rotor, orbits.time(), system, &samples)
     }
 
     /// Force summation of a motion as it is.
@@ -58,52 +108,31 @@ impl RevolutionLoads {
         samples: &OrbitSamples,
     ) -> Result<Self, ResponseError> {
         let revolution = system.revolution(samples)?;
-        let (blade, couplings) = (rotor.blade(), rotor.model().couplings);
-        let first = system.air.first_station();
-        let mut root = Vec::with_capacity(revolution.motions.len());
+        let points: Vec<PointLoads> = (0..revolution.motions.len())
+            .into_par_iter()
+            .with_min_len(POINTS_TOGETHER)
+            .map_init(SpanLoads::default, |loads, p| {
+                PointLoads::new(rotor, system, (samples, &revolution), (p, loads))
+            })
+            .collect();
         let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model().flaps.len()];
         let mut bending = [(); 3].map(|()| [Vec::new(), Vec::new()]);
-        let mut loads = SpanLoads::default();
         let mut balance = PowerBalance::default();
-        let weights = unit_weights(time);
-        let mut lifting = Vec::with_capacity(revolution.motions.len());
-        for (p, motion) in revolution.motions.iter().enumerate() {
-            let sections = &revolution.sections[p];
-            lifting.push(sections.iter().map(Lifting::of).collect());
-            system.span_loads(p, motion, sections, &mut loads);
-            let aerodynamic = aerodynamic_loads(blade.grid.len(), first, sections);
-            let pitch = system.points[p].air.pitch;
-            let state = BladeState { motion, pitch, loads: &loads };
-            let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
-            let (at_root, axial) = if let Some(modal) = &blade.modal {
-                let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
-                let found = modal.loads(coordinates, pitch.into());
-                let at_root = moderate_root_loads(blade, state, &found);
-                (at_root, AxialMotion::condensed(blade, state, found))
-            } else {
-                let axial = AxialMotion::inextensional(blade, couplings, state, &aerodynamic);
-                (root_loads(blade, state, &aerodynamic), axial)
-            };
-            root.push(at_root);
-            let damped = qd.iter().zip(rotor.damping()).map(|(rate, c)| c * rate * rate).sum();
-            balance.add(weights[p], &power(blade, state, &axial, damped, at_root[5]));
-            let summed = root_moments(blade, couplings, state);
-            let curved = root_curvature_moments(blade, couplings, &q, pitch.angle);
-            for (history, (force, curvature)) in
-                bending.iter_mut().zip(summed.into_iter().zip(curved))
-            {
-                history[0].push(force);
-                history[1].push(curvature);
+        for (weight, at) in unit_weights(time).into_iter().zip(&points) {
+            balance.add(weight, &at.power);
+            for (history, values) in bending.iter_mut().zip(at.bending) {
+                history[0].push(values[0]);
+                history[1].push(values[1]);
             }
-            let moments = system.hinge_moments(p, motion, sections);
             for (k, history) in hinge.iter_mut().enumerate() {
-                for (part, moment) in history.iter_mut().zip(&moments) {
+                for (part, moment) in history.iter_mut().zip(&at.hinge) {
                     part.push(moment[k]);
                 }
             }
         }
         let accelerations = samples.qdd.clone();
+        let root = points.iter().map(|at| at.root).collect();
+        let lifting = points.into_iter().map(|at| at.lifting).collect();
         Ok(Self { lifting, root, hinge, bending, power: balance, accelerations })
     }
 
@@ -157,26 +186,27 @@ impl RevolutionLoads {
 /// Accelerations that satisfy the equations of motion at each azimuth, and the evaluations they took.
 ///
 /// The orbit gives positions and rates; the accelerations follow from
-/// `q'' = -M^-1 f(q, q', q'', psi)`, iterated because apparent mass makes `f` depend weakly on
-/// them, until they move by no more than `absolute` and 1e-13 of the largest.
-pub(crate) fn settle_accelerations(
+/// `M q'' + f(q, q', q'', psi) = 0`, iterated because apparent mass makes `f` depend weakly on them: with
+/// the apparent mass of the Newton matrix that is kept, or with none, until they move by no more than
+/// `absolute` and 1e-13 of the largest.
+fn settle_accelerations(
     rotor: &Rotor,
-    time: &TimeElements,
+    orbits: &PeriodicSolver,
     system: &ResponseSystem<'_>,
     (samples, absolute): (&mut OrbitSamples, f64),
 ) -> Result<usize, ResponseError> {
-    let inverse = rotor
-        .mass()
-        .clone()
-        .cholesky()
-        .ok_or(ResponseError::MassMatrix { modes: rotor.mass().nrows() })?;
-    let mut forces = DMatrix::zeros(system.dof(), time.points().len());
+    let mass = rotor.mass();
+    let inverse =
+        mass.clone().cholesky().ok_or(ResponseError::MassMatrix { modes: mass.nrows() })?;
+    let mut forces = DMatrix::zeros(system.dof(), orbits.time().points().len());
     for evaluation in 1..=ACCELERATION_ITERATIONS {
         system.residual(samples, &mut forces)?;
-        let accelerations = -inverse.solve(&forces);
-        let moved = (&accelerations - &samples.qdd).amax();
-        samples.qdd = accelerations;
-        if moved <= absolute + 1e-13 * samples.qdd.amax() {
+        let unbalanced = &forces + mass * &samples.qdd;
+        let moves = orbits
+            .lacking_accelerations(&unbalanced)
+            .unwrap_or_else(|| -inverse.solve(&unbalanced));
+        samples.qdd += &moves;
+        if moves.amax() <= absolute + 1e-13 * samples.qdd.amax() {
             return Ok(evaluation);
         }
     }

@@ -311,7 +311,7 @@ impl RotorSolver {
             let solution = self.solver.solve(&system, &orbit).map_err(Self::orbit_error)?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;
-            let loads = RevolutionLoads::new(&rotor, &self.time, &system, &solution.samples)?;
+            let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
             let hub = loads.hub(&rotor, &self.time);
             let ct = rotor.model.thrust_coefficient(
                 hub.components[2].mean + rotor.blades_weight() * up(condition)[2],

@@ -15,8 +15,13 @@ use rotor_base::HarmonicSeries;
 pub(crate) const INFLOW_TOLERANCE: f64 = 1e-4;
 /// Rounds of inflow directions allowed.
 pub(crate) const INFLOW_ROUNDS: usize = 40;
-/// A direction whose image is this small against the new one holds nothing new.
-const DEPENDENT: f64 = 1e-8;
+/// A direction of which only this part is new holds nothing new: far above what the linear equations of the
+/// blade leave.
+const DEPENDENT: f64 = 1e-3;
+
+/// Part of a direction that must be new for it to be asked for beside the others of a round; the next round
+/// takes up what is left.
+const INDEPENDENT: f64 = 0.03;
 
 /// Hub loads, hinge moments, and the parameters of the inflow that goes with them; or changes of these.
 #[derive(Debug, Clone)]
@@ -80,6 +85,30 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
+}
+
+/// The vectors that are not near a combination of those before them.
+pub(crate) fn independent(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut units: Vec<Vec<f64>> = Vec::new();
+    let mut kept = Vec::new();
+    for vector in vectors {
+        let whole = norm(&vector);
+        let mut rest = vector.clone();
+        for _ in 0..2 {
+            for unit in &units {
+                let along = dot(&rest, unit);
+                for (value, part) in rest.iter_mut().zip(unit) {
+                    *value -= along * part;
+                }
+            }
+        }
+        let size = norm(&rest);
+        if size > INDEPENDENT * whole {
+            units.push(rest.into_iter().map(|value| value / size).collect());
+            kept.push(vector);
+        }
+    }
+    kept
 }
 
 impl Settling {

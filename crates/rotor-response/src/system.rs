@@ -9,11 +9,14 @@ use crate::motion::{Motion, RootPitch};
 use crate::structure::{BladeState, SpanLoads, StructureScratch, structural_residual};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rotor_fem::{LocalTangent, OrbitSamples, PeriodicSystem};
+use rotor_fem::{LocalTangent, OrbitMemory, OrbitSamples, PeriodicSystem};
 
 /// Step of the one-sided differences of the Newton matrix. Only the speed of convergence depends on
 /// it, never the solution.
 const TANGENT_STEP: f64 = 1e-6;
+
+/// Azimuth points, and stations, that one thread takes together at least: less would cost more to hand out.
+pub(crate) const POINTS_TOGETHER: usize = 4;
 
 /// What the air and the pilot do at one azimuth point.
 #[derive(Debug, Clone)]
@@ -58,7 +61,7 @@ struct Scratch {
 
 impl ResponseSystem<'_> {
     /// Flow at every lifting station for the motion held in `motion`.
-    fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
+    pub(crate) fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
         let input = &self.points[point];
         let first = self.air.first_station();
         input
@@ -80,25 +83,26 @@ impl ResponseSystem<'_> {
     /// # Errors
     /// [`ResponseError::StallNotPeriodic`].
     pub(crate) fn revolution(&self, samples: &OrbitSamples) -> Result<Revolution, ResponseError> {
-        let points = self.points.len();
-        let mut motions = vec![Motion::default(); points];
-        let mut flows = Vec::with_capacity(points);
-        for (p, motion) in motions.iter_mut().enumerate() {
-            self.fill(motion, samples, p);
-            flows.push(self.flows(p, motion));
-        }
+        let at = |p: usize| {
+            let mut motion = Motion::default();
+            self.fill(&mut motion, samples, p);
+            let flows = self.flows(p, &motion);
+            (motion, flows)
+        };
+        let points = (0..self.points.len()).into_par_iter().with_min_len(POINTS_TOGETHER);
+        let (motions, flows): (Vec<Motion>, Vec<Vec<SectionFlow>>) = points.map(at).unzip();
         let sections = self.air.loads(&flows, self.load_law(false))?;
         Ok(Revolution { motions, sections })
     }
 
     /// Motion of the blade at one point.
-    fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
+    pub(crate) fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
         let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
         motion.fill(self.blade, &column(&samples.q), &column(&samples.qd), &column(&samples.qdd));
     }
 
     /// How section loads follow from flows, or with `changes` from what a flap changes them by.
-    fn load_law(&self, changes: bool) -> LoadLaw {
+    pub(crate) fn load_law(&self, changes: bool) -> LoadLaw {
         let lifting = &self.blade.grid.x()[self.air.first_station()..];
         let lost_from = lifting.partition_point(|x| *x <= self.blade.tip_loss);
         LoadLaw { scales: self.scales, lost_from, changes }
@@ -256,20 +260,23 @@ impl PeriodicSystem for ResponseSystem<'_> {
 
     fn residual(&self, samples: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Self::Error> {
         let revolution = self.revolution(samples)?;
-        let mut scratch = Scratch::default();
-        let mut column = vec![0.0; self.dof()];
-        for (p, motion) in revolution.motions.iter().enumerate() {
-            self.span_loads(p, motion, &revolution.sections[p], &mut scratch.loads);
+        let columns = out.as_mut_slice().par_chunks_mut(self.dof()).with_min_len(POINTS_TOGETHER);
+        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, column)| {
+            let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
+            self.span_loads(p, motion, sections, &mut scratch.loads);
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
-            self.project(p, (motion, [&q, &qd, &qdd]), &mut scratch, &mut column);
-            out.column_mut(p).copy_from_slice(&column);
-        }
+            self.project(p, (motion, [&q, &qd, &qdd]), scratch, column);
+        });
         Ok(())
     }
 
     fn tangents(&self, samples: &OrbitSamples) -> Result<Vec<LocalTangent>, Self::Error> {
         Ok((0..self.points.len()).into_par_iter().map(|p| self.tangent(samples, p)).collect())
+    }
+
+    fn memory(&self, samples: &OrbitSamples) -> Result<Option<OrbitMemory>, Self::Error> {
+        Ok(self.lag_memory(samples))
     }
 }
 
@@ -317,9 +324,8 @@ impl ResponseSystem<'_> {
         };
         let along =
             ResponseSystem { points: self.points.iter().zip(flaps).map(along).collect(), ..*self };
-        let mut motion = Motion::default();
-        let mut flows = Vec::with_capacity(self.points.len());
-        for p in 0..self.points.len() {
+        let changed = |p: usize| {
+            let mut motion = Motion::default();
             along.fill(&mut motion, samples, p);
             // the inputs of the flap are linear in its motion: along the direction they are their changes
             let mut changes = along.flows(p, &motion);
@@ -327,27 +333,28 @@ impl ResponseSystem<'_> {
                 flow.input[..2].fill(0.0);
                 flow.input_rate[..2].fill(0.0);
             }
-            flows.push(changes);
-        }
+            (motion, changes)
+        };
+        let points = (0..self.points.len()).into_par_iter().with_min_len(POINTS_TOGETHER);
+        let (motions, flows): (Vec<Motion>, Vec<Vec<SectionFlow>>) = points.map(changed).unzip();
         let sections = self.air.loads(&flows, self.load_law(true))?;
-        let mut out = DMatrix::zeros(self.dof(), self.points.len());
-        let mut scratch = Scratch::default();
-        let [mut loaded, mut bare] = [0; 2].map(|_| vec![0.0; self.dof()]);
-        for (p, sections) in sections.iter().enumerate() {
-            along.fill(&mut motion, samples, p);
+        let dof = self.dof();
+        let mut out = DMatrix::zeros(dof, self.points.len());
+        let columns = out.as_mut_slice().par_chunks_mut(dof).with_min_len(POINTS_TOGETHER);
+        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, slope)| {
+            let motion = &motions[p];
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
             let coordinates = [q.as_slice(), &qd, &qdd];
+            let mut bare = vec![0.0; dof];
             scratch.loads.clear(self.blade.grid.len());
-            self.project(p, (&motion, coordinates), &mut scratch, &mut bare);
-            along.span_loads(p, &motion, sections, &mut scratch.loads);
-            self.project(p, (&motion, coordinates), &mut scratch, &mut loaded);
-            for (slope, (loaded, bare)) in
-                out.column_mut(p).iter_mut().zip(loaded.iter().zip(&bare))
-            {
-                *slope = loaded - bare;
+            self.project(p, (motion, coordinates), scratch, &mut bare);
+            along.span_loads(p, motion, &sections[p], &mut scratch.loads);
+            self.project(p, (motion, coordinates), scratch, slope);
+            for (slope, bare) in slope.iter_mut().zip(bare) {
+                *slope -= bare;
             }
-        }
+        });
         Ok(Some(out))
     }
 }

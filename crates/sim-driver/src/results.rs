@@ -23,6 +23,9 @@ pub struct RunResult {
     pub stability: StabilityLine,
     /// One entry per set of harmonics and actuator.
     pub control: Vec<ControlLine>,
+    /// What the linearised rotor says beforehand, one entry per set; empty without an identified actuator.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub forecasts: Vec<Forecast>,
     /// Hub loads with blades unlike the rest, flaps at rest and after every control; empty if all are alike.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlike_blades: Vec<UnlikeLine>,
@@ -183,6 +186,32 @@ pub struct ControlLine {
     /// The start and every control step; empty for voltages taken over or inverted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub history: Vec<HistoryLine>,
+}
+
+/// What the linearised rotor says of one set of harmonics before any control: what a lag that is ignored
+/// costs, what clipping to the stroke costs, and what a harmonic gain in place of the actuator misses.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Forecast {
+    /// Harmonics per rev.
+    pub harmonics: Vec<usize>,
+    /// Lag of the actuator at the stroke limit of each harmonic, deg.
+    pub lag_deg: Vec<f64>,
+    /// Part of the attainable fall of `J` that is lost where these lags are ignored, limits lifted, percent:
+    /// `|T (R - I) u*|^2 / |T u*|^2`.
+    pub lag_loss_percent: f64,
+    /// `4 sin^2(lag/2)` of the largest lag, percent: the same if T acts alike on all controls.
+    pub isotropic_loss_percent: f64,
+    /// `J/J0` of the cone program's optimum within the limits, ideal actuator.
+    pub cone: f64,
+    /// `J/J0` of the free optimum with every harmonic clipped to its stroke circle.
+    pub clipped: f64,
+    /// `J/J0` of the free optimum, no limits.
+    pub free: f64,
+    /// Distance of T with the actuator as a harmonic gain from T with the full dynamic model, both at the step
+    /// of T, over the latter, percent: what the harmonics that the actuator adds do to the hub.
+    pub gain_at_step_percent: f64,
+    /// The same with the gain at the stroke limit: what amplitude does to gain and lag.
+    pub gain_at_stroke_percent: f64,
 }
 
 /// One recorded state of a control loop.

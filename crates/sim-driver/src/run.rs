@@ -8,7 +8,7 @@ use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
 use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine, flap_name};
 use crate::stability::StabilityLine;
-use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line};
+use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line, forecasts};
 use std::sync::Arc;
 use trim::TrimSolution;
 
@@ -80,6 +80,7 @@ pub fn run_trimmed(
         stability,
         unlike_blades: unlike_lines(loaded, &trimmed, &studies)?,
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
+        forecasts: forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?,
         warnings,
     };
     Ok(RunOutcome { result, actuators, trimmed, drives, studies })
@@ -154,6 +155,10 @@ impl Printable for RunResult {
             sheet.line(format_args!("\nFlaps"));
             sheet.block(&self.flap_table());
         }
+        if !self.forecasts.is_empty() {
+            sheet.line(format_args!("\nWhat the linearised rotor says beforehand, ideal actuator"));
+            sheet.block(&self.forecast_table());
+        }
         for line in &self.unlike_blades {
             sheet.line(format_args!(
                 "\nHub loads with the unlike blades, amplitudes; flaps: {}",
@@ -193,6 +198,41 @@ impl RunResult {
                     line.outcome.clone(),
                 ]);
                 cells
+            }),
+        )
+    }
+
+    /// One row per set of harmonics.
+    fn forecast_table(&self) -> String {
+        let join = |values: &[f64]| {
+            let all: Vec<String> = values.iter().map(|v| format!("{v:.1}")).collect();
+            all.join(" ")
+        };
+        table(
+            &[
+                "per rev",
+                "lag deg",
+                "lost by lag %",
+                "4 sin^2(lag/2) %",
+                "J/J0 free",
+                "cone program",
+                "clipped",
+                "T by gain %",
+                "by gain at stroke %",
+            ],
+            self.forecasts.iter().map(|line| {
+                let set: Vec<String> = line.harmonics.iter().map(usize::to_string).collect();
+                vec![
+                    set.join("+"),
+                    join(&line.lag_deg),
+                    format!("{:.1}", line.lag_loss_percent),
+                    format!("{:.1}", line.isotropic_loss_percent),
+                    format!("{:.4}", line.free),
+                    format!("{:.4}", line.cone),
+                    format!("{:.4}", line.clipped),
+                    format!("{:.3}", line.gain_at_step_percent),
+                    format!("{:.1}", line.gain_at_stroke_percent),
+                ]
             }),
         )
     }

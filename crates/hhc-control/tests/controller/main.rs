@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, clippy::float_cmp, reason = "a test that cannot unwrap has failed")]
 
+mod bending;
 mod constrained;
 mod failures;
 mod hysteresis;

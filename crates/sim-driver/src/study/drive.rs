@@ -424,7 +424,7 @@ const FULL_SCALE_MARGIN_VOLT: f64 = 0.1;
 const FULL_SCALE_PASSES: usize = 12;
 
 /// `factor (a - b)`.
-fn weighted(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+pub(super) fn weighted(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> HarmonicSeries {
     let count = a.harmonics.len().max(b.harmonics.len());
     let mut out = HarmonicSeries::zero(count);
     out.mean = factor * (a.mean - b.mean);

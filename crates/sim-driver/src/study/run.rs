@@ -200,11 +200,7 @@ pub fn control_set(
     harmonics: &[usize],
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<ControlStudy>, StudyError> {
-    let limits = harmonics
-        .iter()
-        .map(|&n| drives.limit(n).map_or_else(|| drives.full_scale(case, n), Ok))
-        .collect::<Result<Vec<FullScale>, _>>()?;
-    let set = ControlSet { case, rotor, drives, harmonics, limits };
+    let set = ControlSet::new(case, rotor, drives, harmonics)?;
     // the ideal actuator's run serves two actuators and is made only for them
     let mut ideal: Option<ControlStudy> = None;
     let mut studies = Vec::with_capacity(case.control.actuators.len());
@@ -248,17 +244,36 @@ pub fn control_all(
     Ok(sets.into_iter().flatten().collect())
 }
 
-struct ControlSet<'a> {
-    case: &'a Case,
-    rotor: &'a TrimmedRotor,
-    drives: &'a Drives,
-    harmonics: &'a [usize],
+pub(super) struct ControlSet<'a> {
+    pub(super) case: &'a Case,
+    pub(super) rotor: &'a TrimmedRotor,
+    pub(super) drives: &'a Drives,
+    pub(super) harmonics: &'a [usize],
     /// Full-scale voltage and stroke limit of every harmonic.
-    limits: Vec<FullScale>,
+    pub(super) limits: Vec<FullScale>,
+}
+
+impl<'a> ControlSet<'a> {
+    pub(super) fn new(
+        case: &'a Case,
+        rotor: &'a TrimmedRotor,
+        drives: &'a Drives,
+        harmonics: &'a [usize],
+    ) -> Result<Self, StudyError> {
+        let limits = harmonics
+            .iter()
+            .map(|&n| drives.limit(n).map_or_else(|| drives.full_scale(case, n), Ok))
+            .collect::<Result<Vec<FullScale>, _>>()?;
+        Ok(Self { case, rotor, drives, harmonics, limits })
+    }
 }
 
 impl ControlSet<'_> {
-    fn failed(&self, actuator: ControlActuator, source: RunError<PlantError>) -> StudyError {
+    pub(super) fn failed(
+        &self,
+        actuator: ControlActuator,
+        source: RunError<PlantError>,
+    ) -> StudyError {
         StudyError::Control {
             harmonics: self.harmonics.to_vec(),
             actuator: actuator.name(),
@@ -266,7 +281,7 @@ impl ControlSet<'_> {
         }
     }
 
-    fn plant(&self, actuator: ControlActuator) -> Result<RotorPlant, StudyError> {
+    pub(super) fn plant(&self, actuator: ControlActuator) -> Result<RotorPlant, StudyError> {
         let (drive, full_scale) = match actuator {
             ControlActuator::Ideal => {
                 let amplitude = self.case.control.amplitude_volt;
@@ -296,12 +311,12 @@ impl ControlSet<'_> {
     }
 
     /// Weight of each load: those of the case, over the squared baseline amplitude if it asks for that.
-    fn load_weights(&self) -> [f64; 6] {
+    pub(super) fn load_weights(&self) -> [f64; 6] {
         load_weights(self.case, &self.rotor.trim().rotor.hub.harmonic(self.case.blades))
     }
 
     /// The step of the T matrix, V.
-    fn step_volt(&self) -> f64 {
+    pub(super) fn step_volt(&self) -> f64 {
         let control = &self.case.control;
         control.t_step_deg * control.amplitude_volt / self.case.actuator.ideal_amplitude_deg
     }
@@ -558,7 +573,7 @@ const TAKEN_OVER_TOLERANCE: f64 = 1e-4;
 const COST_TOLERANCE: f64 = 1e-5;
 /// Weight of the control, over the largest singular value of T squared, that picks the least voltage
 /// where the optimum is not unique.
-const LEAST_EFFORT: f64 = 1e-8;
+pub(super) const LEAST_EFFORT: f64 = 1e-8;
 
 /// Weight of each load of a case, for the hub loads without control.
 pub(super) fn load_weights(case: &Case, baseline: &[f64; 12]) -> [f64; 6] {
