@@ -1,7 +1,7 @@
 //! Reading and atomic writing of text files.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::XtaskError;
 
@@ -20,6 +20,23 @@ pub fn read(path: &Path) -> Result<String, XtaskError> {
 /// [`XtaskError::Read`] if there is no such file.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>, XtaskError> {
     std::fs::read(path).map_err(|source| XtaskError::Read { path: path.to_path_buf(), source })
+}
+
+/// The files and folders of a folder, by name; none where there is no such folder.
+///
+/// # Errors
+/// [`XtaskError::Read`] if it cannot be read.
+pub fn in_folder(folder: &Path) -> Result<Vec<PathBuf>, XtaskError> {
+    let failed = |source| XtaskError::Read { path: folder.to_path_buf(), source };
+    if !folder.exists() {
+        return Ok(Vec::new());
+    }
+    let mut paths = std::fs::read_dir(folder)
+        .map_err(failed)?
+        .map(|entry| entry.map(|entry| entry.path()).map_err(failed))
+        .collect::<Result<Vec<_>, _>>()?;
+    paths.sort();
+    Ok(paths)
 }
 
 /// Removes a folder with all it holds; one that is not there is removed already.

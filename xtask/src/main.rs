@@ -73,6 +73,9 @@ enum Chore {
         /// The program that diagnoses; left out, it is built
         #[arg(long, value_name = "PROGRAM")]
         hhc: Option<PathBuf>,
+        /// Folder of the results: sets that are there are not run again, the report is on all of them
+        #[arg(short, long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
     /// Run .ci/run: everything a change must pass
     Ci,
@@ -131,9 +134,9 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             say(&mut std::io::stdout(), &report.text());
             Ok(ExitCode::from(report.exit_code()))
         }
-        Chore::HiddenEffects { seeds, first_block, snr, only, threads, hhc } => {
+        Chore::HiddenEffects { seeds, first_block, snr, only, threads, hhc, out } => {
             let selection = hidden_effects::Selection { seeds, first_block, snr_db: snr, only };
-            let options = hidden_effects::Options { selection, threads, hhc };
+            let options = hidden_effects::Options { selection, threads, hhc, out };
             let progress = |line: &str| say(&mut std::io::stderr(), line);
             let report = hidden_effects::run(root, &options, progress)?;
             say(&mut std::io::stdout(), &report.text());

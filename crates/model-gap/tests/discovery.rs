@@ -153,6 +153,26 @@ fn a_single_cause_is_named_with_its_parameter_and_gain() {
 }
 
 #[test]
+fn the_interval_of_the_gain_holds_what_other_noise_gives_and_hardly_more() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let gains: Vec<_> = (1..61)
+        .map(|seed| find(&traces(|e, i| added(1, 0.06, e, i), seed), &candidates).gain)
+        .collect();
+    let drop = |gain: &model_gap::discovery::Gain| gain.rms_before - gain.rms_after;
+    let count = gains.len() as f64;
+    let mean = gains.iter().map(drop).sum::<f64>() / count;
+    let spread = (gains.iter().map(|g| (drop(g) - mean).powi(2)).sum::<f64>() / count).sqrt();
+    let holds = |interval: [f64; 2]| (interval[0]..=interval[1]).contains(&mean);
+    let covered = gains.iter().filter(|gain| holds(gain.drop_ci95)).count();
+    assert!((52..=60).contains(&covered), "{covered} of 60");
+    let half = gains.iter().map(|g| 0.5 * (g.drop_ci95[1] - g.drop_ci95[0])).sum::<f64>() / count;
+    assert!((0.75..1.35).contains(&(half / (1.96 * spread))), "{half} for {spread}");
+    // other experiments differ more than the noise does
+    let wide = |g: &model_gap::discovery::Gain| g.drop_elsewhere_ci95[1] - g.drop_elsewhere_ci95[0];
+    assert!(gains.iter().all(|g| wide(g) > 2.0 * half));
+}
+
+#[test]
 fn two_names_for_one_effect_are_ambiguous() {
     let candidates = [candidate("cubic"), candidate("lag"), candidate("cubic-twin")];
     let finding = find(&traces(|e, i| added(0, 0.06, e, i), 5), &candidates);

@@ -62,6 +62,16 @@ pub enum SimError {
         /// The same as the model says it.
         source: PreisachError,
     },
+    /// A diagnosis of data in which nothing is to be explained.
+    #[error(
+        "{place}: no run has the role Measured: all {runs} are references; write `role: Measured` for those to be explained"
+    )]
+    NothingMeasured {
+        /// The data.
+        place: Place,
+        /// Runs there.
+        runs: usize,
+    },
     /// The misfit of a record.
     #[error("{place}: {source}")]
     Misfit {
@@ -152,6 +162,7 @@ impl SimError {
             | Self::WouldOverwriteInput { .. }
             | Self::NotWritten { .. }
             | Self::Section(_)
+            | Self::NothingMeasured { .. }
             | Self::Misfit { .. } => Family::RejectedInput,
             Self::NotReproduced { .. } => Family::DataMismatch,
             Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),

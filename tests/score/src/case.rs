@@ -23,6 +23,9 @@ pub struct Case {
     pub follow_up: Option<Findings>,
     /// Gains of further draws of the noise for the same truth.
     pub replicates: Vec<Gain>,
+    /// The programs that made it: sets kept from several runs may be by several.
+    #[serde(default)]
+    pub made_by: String,
 }
 
 impl Case {

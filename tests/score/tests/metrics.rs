@@ -52,7 +52,8 @@ fn case(hidden: &str, verdict: Verdict, names: &[&str], confidence: Confidence) 
         not_observable: Vec::new(),
     };
     let (oracle, follow_up, replicates) = (None, None, Vec::new());
-    Case { answer, findings, seconds: 1.0, first_seconds: None, oracle, follow_up, replicates }
+    let (first_seconds, made_by) = (None, String::new());
+    Case { answer, findings, seconds: 1.0, first_seconds, oracle, follow_up, replicates, made_by }
 }
 
 fn sure(hidden: &str, names: &[&str]) -> Case {

@@ -25,6 +25,8 @@ pub enum Oracle {
 pub struct Hhc {
     program: PathBuf,
     oracle: Oracle,
+    /// What stands beside every result: which programs made it.
+    made_by: String,
 }
 
 /// Builds the program as a user would.
@@ -47,7 +49,7 @@ impl Hhc {
     /// # Errors
     /// [`XtaskError::Start`] where it does not start, [`XtaskError::Program`] where it cannot diagnose.
     pub fn new(program: PathBuf) -> Result<Self, XtaskError> {
-        let mut hhc = Self { program, oracle: Oracle::Absent };
+        let mut hhc = Self { program, oracle: Oracle::Absent, made_by: String::new() };
         let help = hhc.call(&["diagnose", "--help"], Path::new("."))?;
         if !help.status.success() {
             return Err(hhc.failed(&help));
@@ -56,6 +58,12 @@ impl Hhc {
             hhc.oracle = Oracle::Present;
         }
         Ok(hhc)
+    }
+
+    /// Marks every result with what made it.
+    #[must_use]
+    pub fn marked(self, made_by: &str) -> Self {
+        Self { made_by: made_by.to_owned(), ..self }
     }
 
     /// Whether it refits causes that are given.
@@ -107,13 +115,19 @@ impl Hhc {
     }
 }
 
-/// Runs the sets of a group; those done before are read back.
+/// A result kept.
+pub(super) fn read_case(path: &Path) -> Result<Case, XtaskError> {
+    serde_json::from_str(&files::read(path)?)
+        .map_err(|source| XtaskError::Findings { path: path.to_path_buf(), source })
+}
+
+/// Runs the sets of a group that were not done before and keeps their results; those without findings.
 pub(super) fn run_group(
     hhc: &Hhc,
     folder: &Path,
     group: &Group,
     tell: &(impl Fn(&str) + Sync),
-) -> Result<(Vec<Case>, Vec<Failure>), XtaskError> {
+) -> Result<Vec<Failure>, XtaskError> {
     let name = format!("base{}_{}db", group.base, group.snr_db);
     let mut bench = Bench {
         hhc,
@@ -121,19 +135,18 @@ pub(super) fn run_group(
         prepared: false,
         follow_ups_left: FOLLOW_UPS,
     };
-    let (mut cases, mut failures) = (Vec::new(), Vec::new());
+    let mut failures = Vec::new();
     for seed in &group.seeds {
         let set = format!("seed {seed}, {} dB, base {}", group.snr_db, group.base);
         let kept = folder.join(format!("{name}_seed{seed}.json"));
         let request = Request::new(*seed, group.snr_db);
-        let case = if kept.exists() {
-            let text = files::read(&kept)?;
-            serde_json::from_str(&text)
-                .map_err(|source| XtaskError::Findings { path: kept.clone(), source })
-        } else {
-            bench.case(&request, group)
-        };
-        match case {
+        if kept.exists() {
+            let case = read_case(&kept)?;
+            bench.follow_ups_left -= u32::from(case.follow_up.is_some()).min(bench.follow_ups_left);
+            tell(&format!("{set}: done before"));
+            continue;
+        }
+        match bench.case(&request, group) {
             Ok(case) => {
                 let text = serde_json::to_string(&case)
                     .map_err(|source| XtaskError::Findings { path: kept.clone(), source })?;
@@ -142,7 +155,6 @@ pub(super) fn run_group(
                 let answer = case.findings.causes.join(", ");
                 let verdict = case.findings.verdict;
                 tell(&format!("{set}: {hidden} -> {verdict:?} {answer} ({:.1} s)", case.seconds));
-                cases.push(case);
             }
             Err(XtaskError::Refused { said, .. }) => {
                 tell(&format!("{set}: {said}"));
@@ -152,7 +164,7 @@ pub(super) fn run_group(
         }
     }
     files::remove_folder(&bench.folder)?;
-    Ok((cases, failures))
+    Ok(failures)
 }
 
 /// The folder in which a group is diagnosed.
@@ -204,8 +216,17 @@ impl Bench<'_> {
         let answer = self.measure(request)?;
         let (findings, seconds) = self.hhc.diagnose(&self.folder, &[])?;
         let (oracle, follow_up, replicates) = (None, None, Vec::new());
-        let mut case =
-            Case { answer, findings, seconds, first_seconds, oracle, follow_up, replicates };
+        let made_by = self.hhc.made_by.clone();
+        let mut case = Case {
+            answer,
+            findings,
+            seconds,
+            first_seconds,
+            oracle,
+            follow_up,
+            replicates,
+            made_by,
+        };
         case.oracle = self.oracle_gain(&case)?;
         case.replicates = self.replicate_gains(request, &case)?;
         case.follow_up = self.follow_up(request, &case)?;

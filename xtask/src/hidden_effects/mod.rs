@@ -8,7 +8,9 @@
 
 mod bench;
 mod plan;
+mod programs;
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -32,6 +34,8 @@ pub struct Options {
     pub threads: usize,
     /// The program that diagnoses; none: it is built.
     pub hhc: Option<PathBuf>,
+    /// Folder of the results; none: one of the programs' own.
+    pub out: Option<PathBuf>,
 }
 
 /// A set that could not be diagnosed.
@@ -66,7 +70,16 @@ impl SuiteReport {
 
     /// Tables for the terminal.
     pub fn text(&self) -> String {
-        let mut text = report::confusion_table(&self.cases);
+        let mut made: BTreeMap<&str, usize> = BTreeMap::new();
+        for case in &self.cases {
+            *made.entry(&case.made_by).or_default() += 1;
+        }
+        let mut text = String::new();
+        for (programs, sets) in made {
+            let _ = writeln!(text, "{sets} sets by {programs}");
+        }
+        text.push('\n');
+        text += &report::confusion_table(&self.cases);
         text.push('\n');
         text += &report::metric_table(&self.metrics);
         for failure in &self.failures {
@@ -102,15 +115,12 @@ pub fn run(
     let program = program
         .canonicalize()
         .map_err(|source| XtaskError::Read { path: program.clone(), source })?;
-    let own = std::env::current_exe()
-        .map_err(|source| XtaskError::Start { program: "xtask".to_owned(), source })?;
-    let mut hasher = blake3::Hasher::new();
-    for path in [&program, &own] {
-        hasher.update(&files::read_bytes(path)?);
-    }
-    let key = hasher.finalize().to_hex();
-    let folder = root.join("target/hidden-effects").join(&key.as_str()[..16]);
-    let hhc = Hhc::new(program)?;
+    let programs = programs::Programs::of(root, &program)?;
+    let folder = match &options.out {
+        Some(folder) => folder.clone(),
+        None => root.join("target/hidden-effects").join(&programs.key),
+    };
+    let hhc = Hhc::new(program)?.marked(&programs.text);
     if hhc.oracle() == Oracle::Absent {
         progress(
             "hhc diagnose knows no --only: what a refit of the true cause gives stays unknown\n",
@@ -142,10 +152,59 @@ pub fn run(
             .map(|group| bench::run_group(&hhc, &folder, group, &tell))
             .collect::<Result<Vec<_>, _>>()
     })?;
-    let (mut cases, mut failures) = (Vec::new(), Vec::new());
-    for (scored, failed) in results {
-        cases.extend(scored);
-        failures.extend(failed);
+    let cases = stored(&folder, &options.selection)?;
+    Ok(SuiteReport::of(cases, results.into_iter().flatten().collect()))
+}
+
+/// The results of a folder, of all blocks, that a selection admits by kind and noise level.
+///
+/// # Errors
+/// [`XtaskError`] for results that cannot be read.
+pub fn stored(folder: &Path, selection: &Selection) -> Result<Vec<Case>, XtaskError> {
+    let mut cases = Vec::new();
+    for path in files::in_folder(folder)? {
+        if path.extension().is_some_and(|ending| ending == "json") {
+            let case = bench::read_case(&path)?;
+            if selection.admits_case(&case.answer.hidden, case.answer.snr_db) {
+                cases.push(case);
+            }
+        }
     }
-    Ok(SuiteReport::of(cases, failures))
+    Ok(cases)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn result(seed: u64, hidden: &str, made_by: &str) -> String {
+        let findings = r#"{"verdict": "nothing-missing", "causes": [], "confidence": "confident", "parameters": {},
+            "gain": {"heldout_rms_before": 1.0, "heldout_rms_after": 1.0, "ci95": [0.0, 0.0], "unit": "um"},
+            "next_experiment": "small-motion", "not_observable": []}"#;
+        format!(
+            r#"{{"answer": {{"seed": {seed}, "snr_db": 40.0, "base": 1, "design": "mixed", "monitored": false,
+            "hidden": "{hidden}", "effects": [], "noise_um": 1.0, "effect_um": 0.0, "effect_share": 0.0, "runs": [],
+            "experiment": null}}, "findings": {findings}, "seconds": 1.0, "first_seconds": null, "oracle": null,
+            "follow_up": null, "replicates": [], "made_by": "{made_by}"}}"#
+        )
+    }
+
+    #[test]
+    fn a_folder_of_results_grows_from_run_to_run_and_says_by_which_programs() {
+        let folder = tempfile::tempdir().unwrap();
+        let selection =
+            Selection { seeds: 1, first_block: 0, snr_db: vec![40.0], only: String::new() };
+        assert_eq!(stored(&folder.path().join("none"), &selection).unwrap(), []);
+        for (seed, hidden, made_by) in
+            [(1, "null", "hhc 1"), (40, "creep", "hhc 1"), (2, "null", "hhc 2")]
+        {
+            let path = folder.path().join(format!("base1_40db_seed{seed}.json"));
+            files::write_atomically(&path, &result(seed, hidden, made_by)).unwrap();
+        }
+        let report = SuiteReport::of(stored(folder.path(), &selection).unwrap(), Vec::new());
+        let text = report.text();
+        assert!(text.contains("2 sets by hhc 1") && text.contains("1 sets by hhc 2"), "{text}");
+        let nulls = Selection { only: "null".to_owned(), ..selection };
+        assert_eq!(stored(folder.path(), &nulls).unwrap().len(), 2);
+    }
 }

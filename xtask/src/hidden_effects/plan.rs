@@ -37,6 +37,12 @@ impl Selection {
             only => hidden.id() == only,
         }
     }
+
+    /// Whether a set with this hidden, at this noise level, belongs to it, whatever its block.
+    pub fn admits_case(&self, hidden: &str, snr_db: f64) -> bool {
+        let known = Hidden::parse(hidden).is_ok_and(|hidden| self.admits(hidden));
+        known && self.snr_db.iter().any(|level| (level - snr_db).abs() < 1e-9)
+    }
 }
 
 /// The groups of a selection, by noise level in the order given and by base.
@@ -78,6 +84,15 @@ mod tests {
         assert_eq!(sets("creep"), 30);
         assert_eq!((sets("pairs"), sets("outside")), (120, 120));
         assert_eq!(sets("no such thing"), 0);
+    }
+
+    #[test]
+    fn a_stored_set_is_admitted_by_kind_and_noise_and_not_by_block() {
+        let pairs = selection("pairs");
+        assert!(pairs.admits_case("creep+transport-delay", 30.0));
+        assert!(!pairs.admits_case("creep+transport-delay", 25.0));
+        assert!(!pairs.admits_case("creep", 30.0) && !pairs.admits_case("no such thing", 30.0));
+        assert!(selection("").admits_case("null", 20.0));
     }
 
     #[test]

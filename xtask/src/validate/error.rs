@@ -12,6 +12,7 @@ use rotor_response::ResponseError;
 use rotor_wake::WakeError;
 use sim_driver::SimError;
 use trim::TrimError;
+use truth::error::TruthError;
 
 /// Why a check could not be computed.
 #[derive(Debug, thiserror::Error)]
@@ -82,6 +83,12 @@ pub enum CheckError {
     /// The controller on its plant.
     #[error(transparent)]
     ControlRun(#[from] RunError<Infallible>),
+    /// Generated data.
+    #[error(transparent)]
+    Truth(#[from] TruthError),
+    /// What several checks rest on could not be made.
+    #[error("{0}")]
+    Shared(String),
     /// The actuator.
     #[error(transparent)]
     Actuator(#[from] PreisachError),

@@ -13,6 +13,7 @@ mod actuator_data;
 mod actuator_stages;
 mod blade;
 mod control;
+mod discovery;
 mod hinge;
 mod inflow;
 mod moderate;
@@ -51,6 +52,7 @@ pub const AREAS: &[Area] = &[
     actuator_stages::AREA,
     actuator_data::AREA,
     control::AREA,
+    discovery::AREA,
     study::AREA,
 ];
 

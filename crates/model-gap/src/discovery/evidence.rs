@@ -2,7 +2,7 @@
 
 use super::Trace;
 use crate::GapError;
-use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Products of a set of columns, weighted by the noise, over one experiment.
 #[derive(Debug, Clone)]
@@ -30,6 +30,18 @@ impl Products {
 /// Columns over all traces: `columns[c][t]` is column `c` on trace `t`.
 pub(crate) type Columns<'a> = [&'a [Vec<f64>]];
 
+/// A signal as all experiments together see it: with its products with the nuisance.
+#[derive(Debug, Clone)]
+pub(crate) struct Seen<'s> {
+    signal: &'s [Vec<f64>],
+    /// Products with the nuisance, and those solved for what the nuisance takes.
+    cross: DVector<f64>,
+    solved: DVector<f64>,
+}
+
+/// Rows that are multiplied together: with the nuisance they stay in a second-level cache.
+const ROWS: usize = 512;
+
 /// The traces with their nuisance factorised, for all experiments and with each fold left out.
 #[derive(Debug, Clone)]
 pub(crate) struct Evidence<'a> {
@@ -39,6 +51,8 @@ pub(crate) struct Evidence<'a> {
     pub(crate) folds: Vec<usize>,
     pub(crate) fold_count: usize,
     nuisance: Vec<DMatrix<f64>>,
+    /// The columns of the nuisance that move each trace.
+    moving: Vec<Vec<usize>>,
     all: Cholesky<f64, Dyn>,
     without: Vec<Cholesky<f64, Dyn>>,
 }
@@ -64,7 +78,89 @@ impl<'a> Evidence<'a> {
         };
         let all = factor(None)?;
         let without = (0..fold_count).map(|f| factor(Some(f))).collect::<Result<_, _>>()?;
-        Ok(Self { traces, experiments, folds, fold_count, nuisance, all, without })
+        let moving = traces
+            .iter()
+            .map(|t| {
+                let moves = |k: &usize| t.nuisance.column(*k).iter().any(|v| *v != 0.0);
+                (0..t.nuisance.ncols()).filter(moves).collect()
+            })
+            .collect();
+        Ok(Self { traces, experiments, folds, fold_count, nuisance, moving, all, without })
+    }
+
+    fn width(&self) -> usize {
+        self.nuisance.first().map_or(0, DMatrix::ncols)
+    }
+
+    /// Products over the noise of two signals, all experiments together.
+    pub(crate) fn dot(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+        let pairs = self.traces.iter().zip(a.iter().zip(b));
+        pairs.map(|(t, (a, b))| product(a, b) / (t.sigma * t.sigma)).sum()
+    }
+
+    /// Signals with their products with the nuisance.
+    pub(crate) fn seen<'s>(&self, signals: &[&'s [Vec<f64>]]) -> Vec<Seen<'s>> {
+        let mut crosses = DMatrix::zeros(self.width(), signals.len());
+        for number in 0..self.traces.len() {
+            self.add_crosses(&mut crosses, signals, number);
+        }
+        let solved = self.all.solve(&crosses);
+        signals
+            .iter()
+            .enumerate()
+            .map(|(c, signal)| Seen {
+                signal,
+                cross: crosses.column(c).clone_owned(),
+                solved: solved.column(c).clone_owned(),
+            })
+            .collect()
+    }
+
+    /// One signal with its products with the nuisance.
+    pub(crate) fn see<'s>(&self, signal: &'s [Vec<f64>]) -> Seen<'s> {
+        let mut crosses = DMatrix::zeros(self.width(), 1);
+        for number in 0..self.traces.len() {
+            self.add_crosses(&mut crosses, &[signal], number);
+        }
+        let cross = crosses.column(0).clone_owned();
+        let solved = self.all.solve(&cross);
+        Seen { signal, cross, solved }
+    }
+
+    /// Product of two signals with the nuisance projected out.
+    pub(crate) fn inner(&self, a: &Seen<'_>, b: &Seen<'_>) -> f64 {
+        self.dot(a.signal, b.signal) - a.cross.dot(&b.solved)
+    }
+
+    /// Products of signals with each other, the nuisance projected out.
+    pub(crate) fn inners(&self, signals: &[&Seen<'_>]) -> DMatrix<f64> {
+        let n = signals.len();
+        let mut gram = DMatrix::zeros(n, n);
+        for a in 0..n {
+            for b in 0..=a {
+                gram[(a, b)] = self.inner(signals[a], signals[b]);
+                gram[(b, a)] = gram[(a, b)];
+            }
+        }
+        gram
+    }
+
+    /// Adds the products of signals with the nuisance on one trace.
+    fn add_crosses(&self, into: &mut DMatrix<f64>, signals: &Columns<'_>, number: usize) {
+        let trace = &self.traces[number];
+        let weight = 1.0 / (trace.sigma * trace.sigma);
+        let (rows, all) = (trace.nuisance.nrows(), trace.nuisance.as_slice());
+        let mut first = 0;
+        while first < rows {
+            let last = (first + ROWS).min(rows);
+            for &k in &self.moving[number] {
+                let column = &all[k * rows + first..k * rows + last];
+                for (c, signal) in signals.iter().enumerate() {
+                    into[(k, c)] += weight * product(column, &signal[number][first..last]);
+                }
+            }
+            first = last;
+        }
     }
 
     /// Energy of the outputs about their means, in units of the noise variance.
@@ -101,31 +197,49 @@ impl<'a> Evidence<'a> {
 
     /// Products of columns, experiment by experiment.
     pub(crate) fn products(&self, columns: &Columns<'_>) -> Vec<Products> {
-        let width = self.nuisance.first().map_or(0, DMatrix::ncols);
-        let mut all = vec![Products::zero(columns.len(), width); self.experiments];
+        let mut all = vec![Products::zero(columns.len(), self.width()); self.experiments];
         for (number, trace) in self.traces.iter().enumerate() {
-            self.add(&mut all[trace.experiment], columns, number);
+            let into = &mut all[trace.experiment];
+            let weight = 1.0 / (trace.sigma * trace.sigma);
+            for a in 0..columns.len() {
+                for b in 0..=a {
+                    let own = weight * product(&columns[a][number], &columns[b][number]);
+                    into.own[(a, b)] += own;
+                    if a != b {
+                        into.own[(b, a)] += own;
+                    }
+                }
+            }
+            self.add_crosses(&mut into.with_nuisance, columns, number);
         }
         all
     }
 
-    fn add(&self, into: &mut Products, columns: &Columns<'_>, number: usize) {
-        let trace = &self.traces[number];
-        let weight = 1.0 / (trace.sigma * trace.sigma);
-        let view =
-            |c: usize| DVectorView::from_slice(&columns[c][number], columns[c][number].len());
-        for a in 0..columns.len() {
-            for b in 0..=a {
-                let product = weight * view(a).dot(&view(b));
-                into.own[(a, b)] += product;
-                if a != b {
-                    into.own[(b, a)] += product;
-                }
-            }
-            if trace.nuisance.ncols() > 0 {
-                into.with_nuisance.column_mut(a).gemv_tr(weight, &trace.nuisance, &view(a), 1.0);
-            }
+    /// Products of columns whose first is another, the products of the others being known.
+    pub(crate) fn products_after(
+        &self,
+        first: &[Vec<f64>],
+        others: &Columns<'_>,
+        known: &[Products],
+    ) -> Vec<Products> {
+        let mut all = known.to_vec();
+        for own in &mut all {
+            own.own.row_mut(0).fill(0.0);
+            own.own.column_mut(0).fill(0.0);
+            own.with_nuisance.column_mut(0).fill(0.0);
         }
+        for (number, trace) in self.traces.iter().enumerate() {
+            let into = &mut all[trace.experiment];
+            let weight = 1.0 / (trace.sigma * trace.sigma);
+            into.own[(0, 0)] += weight * product(&first[number], &first[number]);
+            for (c, other) in others.iter().enumerate() {
+                let own = weight * product(&first[number], &other[number]);
+                into.own[(0, c + 1)] += own;
+                into.own[(c + 1, 0)] += own;
+            }
+            self.add_crosses(&mut into.with_nuisance, &[first], number);
+        }
+        all
     }
 
     /// The products with the nuisance projected out, over all experiments.
@@ -203,6 +317,19 @@ impl<'a> Evidence<'a> {
             })
             .collect()
     }
+}
+
+/// Sum of products, in eight parts that a processor adds side by side.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let (mut eights_a, mut eights_b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let mut sums = [0.0; 8];
+    for (x, y) in eights_a.by_ref().zip(eights_b.by_ref()) {
+        for ((sum, x), y) in sums.iter_mut().zip(x).zip(y) {
+            *sum += x * y;
+        }
+    }
+    let rest: f64 = eights_a.remainder().iter().zip(eights_b.remainder()).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Measured less predicted, trace by trace.

@@ -1,7 +1,7 @@
 //! Fits of the parameters of one or several causes, the nuisance projected out.
 
 use super::Simulator;
-use super::evidence::{Columns, Evidence, Products, residual};
+use super::evidence::{Evidence, Products, residual};
 use crate::{Candidate, Effect, GapError, Parameter};
 use nalgebra::{DMatrix, DVector};
 
@@ -51,8 +51,8 @@ impl<S: Simulator> Fitter<'_, S> {
     }
 
     pub(crate) fn cost_of(&self, residual: &[Vec<f64>]) -> f64 {
-        let products = self.evidence.products(&[residual]);
-        self.evidence.projected(&products)[(0, 0)]
+        let seen = self.evidence.see(residual);
+        self.evidence.inner(&seen, &seen)
     }
 
     /// The best fit of the effects of `before` (refitted too) and a further candidate, from every
@@ -66,18 +66,20 @@ impl<S: Simulator> Fitter<'_, S> {
     ) -> Result<Option<Fitted>, GapError> {
         let mut tried = Vec::new();
         let mut promise = 0.0_f64;
+        let own = self.evidence.see(&before.residual);
         for values in starts {
             let mut effects = before.effects.clone();
             effects.push(Effect { candidate, values: values.clone() });
             let residual = self.residual(&effects)?;
-            let products = self.evidence.products(&[&before.residual, &residual]);
-            let gram = self.evidence.projected(&products);
-            let along = gram[(0, 0)] - gram[(0, 1)];
-            let size = gram[(0, 0)] - 2.0 * gram[(0, 1)] + gram[(1, 1)];
+            let with = self.evidence.see(&residual);
+            let (both, cost) =
+                (self.evidence.inner(&own, &with), self.evidence.inner(&with, &with));
+            let along = before.cost - both;
+            let size = before.cost - 2.0 * both + cost;
             if along > 0.0 && size > 0.0 {
                 promise = promise.max(along * along / size);
             }
-            tried.push((gram[(1, 1)], effects));
+            tried.push((cost, effects));
         }
         if promise < least {
             return Ok(None);
@@ -106,7 +108,11 @@ impl<S: Simulator> Fitter<'_, S> {
         let mut damping = 1e-3;
         for _ in 0..ITERATIONS {
             let slopes = self.slopes(&effects, &residual, &free)?;
-            let (matrix, _) = self.gram(&residual, &slopes);
+            let columns: Vec<&[Vec<f64>]> = std::iter::once(residual.as_slice())
+                .chain(slopes.iter().map(Vec::as_slice))
+                .collect();
+            let seen = self.evidence.seen(&columns);
+            let matrix = self.evidence.inners(&seen.iter().collect::<Vec<_>>());
             let n = free.len();
             let normal = matrix.view((1, 1), (n, n)).clone_owned();
             let right: DVector<f64> = -matrix.view((1, 0), (n, 1)).column(0).clone_owned();
@@ -138,20 +144,10 @@ impl<S: Simulator> Fitter<'_, S> {
             }
         }
         let slopes = self.slopes(&effects, &residual, &free)?;
-        let (_, products) = self.gram(&residual, &slopes);
-        Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
-    }
-
-    fn gram(
-        &self,
-        residual: &[Vec<f64>],
-        slopes: &[Vec<Vec<f64>>],
-    ) -> (DMatrix<f64>, Vec<Products>) {
         let columns: Vec<&[Vec<f64>]> =
-            std::iter::once(residual).chain(slopes.iter().map(Vec::as_slice)).collect();
-        let columns: &Columns<'_> = &columns;
-        let products = self.evidence.products(columns);
-        (self.evidence.projected(&products), products)
+            std::iter::once(residual.as_slice()).chain(slopes.iter().map(Vec::as_slice)).collect();
+        let products = self.evidence.products(&columns);
+        Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
     }
 
     /// Slopes of the residual by one-sided differences, turned inward at the upper bound.

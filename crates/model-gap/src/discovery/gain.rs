@@ -1,25 +1,35 @@
 //! What the extension is worth on data not used for it.
 
-use super::evidence::Evidence;
+use super::Signal;
+use super::evidence::{Evidence, Products, difference};
 use super::fit::Fitted;
-use nalgebra::DVector;
+use crate::resampling::{SplitMix, drawn_again, noise_of};
+use rayon::prelude::*;
 
-/// Held-out error before and after, in the output's unit, with the block bootstrap of the error
-/// after.
+/// Held-out error before and after, in the output's unit, with two intervals of the drop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Gain {
     /// RMS of the base model on held-out experiments.
     pub rms_before: f64,
     /// RMS of the extended model on held-out experiments.
     pub rms_after: f64,
-    /// 95 % interval of the drop of the RMS.
+    /// 95 % interval of the drop on these experiments, were they measured again: the noise of the
+    /// residuals drawn anew in blocks, both models fitted to it anew.
     pub drop_ci95: [f64; 2],
+    /// 95 % interval of the drop on other experiments of these kinds: experiments drawn anew, blocks of
+    /// a period and more within them.
+    pub drop_elsewhere_ci95: [f64; 2],
 }
 
 /// Squares of held-out residuals, block by block: of the base model, of the extended one, samples.
 type Block = (f64, f64, f64);
 
-/// Resamples experiments first, then blocks inside them.
+/// Draws of the noise; the interval takes the quantile of Student's distribution for as many.
+const DRAWS: u64 = 40;
+/// Quantile 0.975 of Student's distribution with 39 degrees of freedom.
+const STUDENT: f64 = 2.023;
+
+/// The gain of an extended model with both intervals.
 pub(crate) fn gain(
     evidence: &Evidence<'_>,
     base: &Fitted,
@@ -46,6 +56,11 @@ pub(crate) fn gain(
     if total.2 == 0.0 {
         return Gain::default();
     }
+    if extended.effects.is_empty() {
+        let (rms, _) = rms(total);
+        return Gain { rms_before: rms, rms_after: rms, ..Gain::default() };
+    }
+    let drop_ci95 = repeated(evidence, base, extended, (&before, &after));
     let (rms_before, rms_after) = rms(total);
     let mut random = SplitMix(0x9E37_79B9_7F4A_7C15);
     let mut drops: Vec<f64> = (0..resamplings)
@@ -63,7 +78,59 @@ pub(crate) fn gain(
         .collect();
     drops.sort_by(f64::total_cmp);
     let at = |share: f64| quantile(&drops, share).unwrap_or(rms_before - rms_after);
-    Gain { rms_before, rms_after, drop_ci95: [at(0.025), at(0.975)] }
+    Gain { rms_before, rms_after, drop_ci95, drop_elsewhere_ci95: [at(0.025), at(0.975)] }
+}
+
+/// Interval of the drop under other noise: a residual bootstrap, the residual less its noise held, the fits
+/// straight in their parameters.
+fn repeated(
+    evidence: &Evidence<'_>,
+    base: &Fitted,
+    extended: &Fitted,
+    held_out: (&Signal, &Signal),
+) -> [f64; 2] {
+    let noise: Signal =
+        extended.cleaned(evidence).iter().map(|residual| noise_of(residual)).collect();
+    let still = |fitted: &Fitted, all: &Signal| difference(all, &under(evidence, fitted, &noise));
+    let (before, after) = (still(base, held_out.0), still(extended, held_out.1));
+    let drops: Vec<f64> = (0..DRAWS)
+        .into_par_iter()
+        .map(|draw| {
+            let other: Signal = (0_u64..)
+                .zip(&noise)
+                .map(|(trace, own)| drawn_again(own, (draw << 32) + trace))
+                .collect();
+            let size = |still: &Signal, fitted: &Fitted| {
+                output_rms(evidence, still, &under(evidence, fitted, &other))
+            };
+            size(&before, base) - size(&after, extended)
+        })
+        .collect();
+    let mean = drops.iter().sum::<f64>() / drops.len() as f64;
+    let square: f64 = drops.iter().map(|d| (d - mean).powi(2)).sum();
+    let spread = STUDENT * (square / (drops.len() as f64 - 1.0)).sqrt();
+    let drop = output_rms(evidence, held_out.0, &[]) - output_rms(evidence, held_out.1, &[]);
+    [drop - spread, drop + spread]
+}
+
+/// RMS of the sum of two signals on the outputs; the second may be missing.
+fn output_rms(evidence: &Evidence<'_>, a: &Signal, b: &[Vec<f64>]) -> f64 {
+    let (mut square, mut count) = (0.0, 0.0);
+    for (number, _) in evidence.traces.iter().enumerate().filter(|(_, t)| t.is_output) {
+        square += match b.get(number) {
+            Some(b) => a[number].iter().zip(b).map(|(a, b)| (a + b).powi(2)).sum::<f64>(),
+            None => a[number].iter().map(|a| a * a).sum(),
+        };
+        count += a[number].len() as f64;
+    }
+    (square / f64::max(count, 1.0)).sqrt()
+}
+
+/// What held-out residuals change by when the measured signals change by `noise`.
+fn under(evidence: &Evidence<'_>, fitted: &Fitted, noise: &Signal) -> Signal {
+    let slopes: Vec<&[Vec<f64>]> = fitted.slopes.iter().map(Vec::as_slice).collect();
+    let products = evidence.products_after(noise, &slopes, &fitted.products);
+    held_out_of(evidence, fitted, noise, &products)
 }
 
 /// Quantile of sorted values by linear interpolation.
@@ -83,13 +150,23 @@ fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
 
 /// Residuals of every experiment predicted by a fit that has not seen its fold; one experiment alone
 /// is its own judge.
-pub(crate) fn held_out_residual(evidence: &Evidence<'_>, fitted: &Fitted) -> Vec<Vec<f64>> {
-    let whole = evidence.projected(&fitted.products);
+pub(crate) fn held_out_residual(evidence: &Evidence<'_>, fitted: &Fitted) -> Signal {
+    held_out_of(evidence, fitted, &fitted.residual, &fitted.products)
+}
+
+/// The same for another residual in the place of the first column of the products.
+fn held_out_of(
+    evidence: &Evidence<'_>,
+    fitted: &Fitted,
+    residual: &Signal,
+    products: &[Products],
+) -> Signal {
+    let whole = evidence.projected(products);
     let folds: Vec<_> = (0..evidence.fold_count)
         .map(|fold| {
             let left_out = (evidence.fold_count > 1).then_some(fold);
-            let shift = fitted.shift(&evidence.project(&fitted.products, left_out), &whole);
-            let nuisance = evidence.nuisance_of(&fitted.products, &shift, left_out);
+            let shift = fitted.shift(&evidence.project(products, left_out), &whole);
+            let nuisance = evidence.nuisance_of(products, &shift, left_out);
             (shift, nuisance)
         })
         .collect();
@@ -99,44 +176,15 @@ pub(crate) fn held_out_residual(evidence: &Evidence<'_>, fitted: &Fitted) -> Vec
         .enumerate()
         .map(|(number, trace)| {
             let (shift, nuisance) = &folds[evidence.folds[trace.experiment]];
-            let moved = if trace.nuisance.ncols() == 0 {
-                DVector::zeros(trace.measured.len())
-            } else {
-                &trace.nuisance * nuisance
-            };
-            (0..trace.measured.len())
-                .map(|i| {
-                    let straight: f64 = fitted
-                        .slopes
-                        .iter()
-                        .zip(shift.iter().skip(1))
-                        .map(|(slope, s)| slope[number][i] * s)
-                        .sum();
-                    fitted.residual[number][i] + straight - moved[i]
-                })
-                .collect()
+            let mut left = residual[number].clone();
+            for (slope, s) in fitted.slopes.iter().zip(shift.iter().skip(1)) {
+                left.iter_mut().zip(&slope[number]).for_each(|(y, slope)| *y += slope * s);
+            }
+            if trace.nuisance.ncols() > 0 {
+                let moved = &trace.nuisance * nuisance;
+                left.iter_mut().zip(moved.iter()).for_each(|(y, m)| *y -= m);
+            }
+            left
         })
         .collect()
-}
-
-/// A small generator of random numbers with a fixed seed: resampling is part of the result.
-///
-/// Source: G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*,
-/// OOPSLA (2014).
-pub(crate) struct SplitMix(pub(crate) u64);
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// A whole number below `count`.
-    #[expect(clippy::cast_possible_truncation, reason = "the remainder is below a usize")]
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
-    }
 }

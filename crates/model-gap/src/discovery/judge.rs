@@ -1,7 +1,7 @@
 //! The open set: what is left, whether parameters hold still, how well they are known.
 
 use super::FittedParameter;
-use super::evidence::{Columns, Evidence, Products, difference};
+use super::evidence::{Evidence, Products, Seen, difference};
 use super::fit::Fitted;
 use super::{Discovery, Signal};
 use nalgebra::{DMatrix, DVector};
@@ -13,43 +13,36 @@ const GENERIC_MARGIN: f64 = 4.0;
 const FORM: f64 = 0.05;
 
 /// The directions without a name, ready to be tested against residuals.
-pub(crate) struct Generic {
-    /// Projected products of residual-free directions, inverted on their range.
+pub(crate) struct Generic<'a> {
+    directions: Vec<Seen<'a>>,
+    /// Projected products of the directions, inverted on their range.
     inverse: DMatrix<f64>,
     /// Excess that surrogates with nothing missing reach, with a margin.
     pub(crate) threshold: f64,
 }
 
-impl Generic {
-    pub(crate) fn new<S>(discovery: &Discovery<'_, S>, evidence: &Evidence<'_>) -> Self {
+impl<'a> Generic<'a> {
+    pub(crate) fn new<S>(discovery: &Discovery<'a, S>, evidence: &Evidence<'_>) -> Self {
         let columns: Vec<&[Vec<f64>]> = discovery.generic.iter().map(Vec::as_slice).collect();
-        let gram = evidence.projected(&evidence.products(&columns));
+        let directions = evidence.seen(&columns);
+        let gram = evidence.inners(&directions.iter().collect::<Vec<_>>());
         let (inverse, rank) = pseudo_inverse(&gram);
-        let mut own = Self { inverse, threshold: 0.0 };
+        let mut own = Self { directions, inverse, threshold: 0.0 };
         let settings = discovery.settings;
-        let structural = discovery
-            .structures
-            .iter()
-            .map(|s| own.along(discovery, evidence, s))
-            .fold(0.0, f64::max);
+        let structural =
+            discovery.structures.iter().map(|s| own.along(evidence, s)).fold(0.0, f64::max);
         let noise = (rank.sqrt() + settings.noise_deviations).powi(2);
         own.threshold = GENERIC_MARGIN * structural + noise;
         own
     }
 
     /// Energy of a residual along the directions, in units of the noise variance.
-    pub(crate) fn along<S>(
-        &self,
-        discovery: &Discovery<'_, S>,
-        evidence: &Evidence<'_>,
-        residual: &Signal,
-    ) -> f64 {
-        let columns: Vec<&[Vec<f64>]> =
-            std::iter::once(residual).chain(discovery.generic.iter()).map(Vec::as_slice).collect();
-        let columns: &Columns<'_> = &columns;
-        let gram = evidence.projected(&evidence.products(columns));
-        let n = columns.len() - 1;
-        let along = gram.view((1, 0), (n, 1)).column(0).clone_owned();
+    pub(crate) fn along(&self, evidence: &Evidence<'_>, residual: &Signal) -> f64 {
+        let seen = evidence.see(residual);
+        let along = DVector::from_iterator(
+            self.directions.len(),
+            self.directions.iter().map(|own| evidence.inner(own, &seen)),
+        );
         (along.transpose() * &self.inverse * along)[0].max(0.0)
     }
 }
@@ -149,7 +142,8 @@ fn shifts<S>(
         .chain(discovery.structures.iter().map(Vec::as_slice))
         .chain(fitted.slopes.iter().map(Vec::as_slice))
         .collect();
-    let gram = evidence.projected(&evidence.products(&columns));
+    let seen = evidence.seen(&columns);
+    let gram = evidence.inners(&seen.iter().collect::<Vec<_>>());
     let n = fitted.slopes.len();
     let mut normal = gram.view((others, others), (n, n)).clone_owned();
     let ridge = 1e-12 * normal.trace();

@@ -1,5 +1,6 @@
 //! From a misfit to its cause: screening, fits, selection, refusal.
 
+mod conclude;
 mod decide;
 mod evidence;
 mod fit;

@@ -79,7 +79,8 @@ pub fn separations<S: Simulator>(
             let apart = difference(residual, &truth.0);
             let columns: Vec<&[Vec<f64>]> =
                 std::iter::once(apart.as_slice()).chain(slopes.iter().map(Vec::as_slice)).collect();
-            let gram = evidence.projected(&evidence.products(&columns));
+            let seen = evidence.seen(&columns);
+            let gram = evidence.inners(&seen.iter().collect::<Vec<_>>());
             let n = slopes.len();
             let mut normal = gram.view((1, 1), (n, n)) + &rivals[b].information;
             let ridge = 1e-9 * normal.trace() + 1e-12;

@@ -55,7 +55,8 @@ pub(crate) fn screen<S: Simulator>(
     }
     let present: Vec<usize> = (0..effects.len()).filter(|&c| effects[c].is_some()).collect();
     let columns: Vec<&[Vec<f64>]> = effects.iter().flatten().map(Vec::as_slice).collect();
-    let gram = evidence.projected(&evidence.products(&columns));
+    let seen = evidence.seen(&columns);
+    let gram = evidence.inners(&seen.iter().collect::<Vec<_>>());
     let mut cosines = DMatrix::identity(effects.len(), effects.len());
     for (i, &a) in present.iter().enumerate() {
         for (j, &b) in present.iter().enumerate() {
@@ -98,15 +99,11 @@ fn one<S: Simulator>(
         let effect = Effect { candidate, values: values.clone() };
         signals.push(difference(&discovery.simulator.predict(&[effect])?, base));
     }
-    let known = 1 + discovery.structures.len();
-    let columns: Vec<&[Vec<f64>]> = std::iter::once(misfit)
-        .chain(discovery.structures.iter().map(Vec::as_slice))
-        .chain(signals.iter().map(Vec::as_slice))
-        .collect();
-    let products = evidence.products(&columns);
-    let gram = evidence.projected(&products);
-    let whole: Vec<f64> =
-        (0..columns.len()).map(|c| products.iter().map(|p| p.own[(c, c)]).sum()).collect();
+    let known: Vec<&[Vec<f64>]> =
+        std::iter::once(misfit).chain(discovery.structures.iter().map(Vec::as_slice)).collect();
+    let known = evidence.seen(&known);
+    let columns: Vec<&[Vec<f64>]> = signals.iter().map(Vec::as_slice).collect();
+    let seen = evidence.seen(&columns);
     let weak = settings.weak_effect.powi(2) * evidence.output_energy();
     let mut best = nothing;
     let mut found = None;
@@ -122,32 +119,32 @@ fn one<S: Simulator>(
     };
     let noise = settings.noise_deviations
         + if adapts { RAYLEIGH_MEAN * (evidence.experiments as f64).sqrt() } else { 0.0 };
-    for start in 0..signals.len() {
-        let at = known + start;
-        let size = gram[(at, at)];
-        if size <= 1e-9 * whole[at].max(1e-300) {
+    for (start, signal) in seen.iter().enumerate() {
+        let size = evidence.inner(signal, signal);
+        let whole = evidence.dot(&signals[start], &signals[start]);
+        if size <= 1e-9 * whole.max(1e-300) {
             continue;
         }
-        for s in 1..known {
-            let along = gram[(at, s)] / size.sqrt();
+        for structure in &known[1..] {
+            let along = evidence.inner(signal, structure) / size.sqrt();
             structural = structural.max(along).max(-OTHER_SIGN * along);
         }
         if adapts && start % ADAPTED_STARTS == 0 {
             let effect = Effect { candidate, values: given.starts[start].clone() };
-            for structure in discovery.structures {
+            for (structure, own) in discovery.structures.iter().zip(&known[1..]) {
                 if let Some(signal) = discovery.simulator.adapted(&effect, structure)? {
-                    let columns: [&[Vec<f64>]; 2] = [&signal, structure];
-                    let gram = evidence.projected(&evidence.products(&columns));
-                    structural = structural.max(gram[(0, 1)] / gram[(0, 0)].max(1e-300).sqrt());
+                    let signal = evidence.see(&signal);
+                    let size = evidence.inner(&signal, &signal).max(1e-300).sqrt();
+                    structural = structural.max(evidence.inner(&signal, own) / size);
                 }
             }
         }
-        best.weak_signal = best.weak_signal.max(weak * size / whole[at]);
-        let along = gram[(0, at)];
+        best.weak_signal = best.weak_signal.max(weak * size / whole);
+        let along = evidence.inner(signal, &known[0]);
         let score = if along > 0.0 { along * along / size } else { 0.0 };
         if score > best.score || found.is_none() {
             best.score = score;
-            best.absorbed = 1.0 - size / whole[at];
+            best.absorbed = 1.0 - size / whole;
             best.best_start = start;
             found = Some(start);
         }

@@ -215,18 +215,26 @@ pub struct DiagnoseArgs {
     /// Actuator file, or a case with its actuator: the simulation that is asked about.
     #[arg(value_name = "ACTUATOR_OR_CASE.ron")]
     pub model: PathBuf,
+    /// Take these causes for true and fit them, nothing refused.
+    #[arg(long, value_name = "CAUSES", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// Records, and where the findings go.
+    #[command(flatten)]
+    pub records: RecordsArgs,
+}
+
+/// Records to be explained, and where what is found goes.
+#[derive(Debug, Clone, Args)]
+pub struct RecordsArgs {
     /// Folder with dataset.ron and the measured records.
     #[arg(long, value_name = "DIR")]
     pub data: PathBuf,
-    /// Folder to write findings.json, extended.ron and the residuals to.
+    /// Folder to write to: findings, extended actuator, residuals.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     /// Folder with reference records; beside those of the data, or `../reference`, if left out.
     #[arg(long, value_name = "DIR")]
     pub reference: Option<PathBuf>,
-    /// Take these causes for true and fit them, nothing refused.
-    #[arg(long, value_name = "CAUSES", value_delimiter = ',')]
-    pub only: Vec<String>,
     /// Folder to keep what surrogates of a base model leave; computed once for a base and a design.
     #[arg(long, value_name = "DIR", default_value = "out/cache")]
     pub cache: PathBuf,
@@ -238,24 +246,12 @@ pub struct DiagnoseArgs {
 /// `hhc ladder`.
 #[derive(Debug, Clone, Args)]
 pub struct LadderArgs {
-    /// Folder with dataset.ron and the measured records.
-    #[arg(long, value_name = "DIR")]
-    pub data: PathBuf,
-    /// Folder to write ladder.json and the extended actuator to.
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
-    /// Folder with reference records; beside those of the data, or `../reference`, if left out.
-    #[arg(long, value_name = "DIR")]
-    pub reference: Option<PathBuf>,
     /// Case that says what a step is worth; the paper's if left out.
     #[arg(long, value_name = "CASE.ron")]
     pub case: Option<PathBuf>,
-    /// Folder to keep what surrogates of a base model leave.
-    #[arg(long, value_name = "DIR", default_value = "out/cache")]
-    pub cache: PathBuf,
-    /// Form of the output.
+    /// Records, and where the ladder goes.
     #[command(flatten)]
-    pub format: FormatArgs,
+    pub records: RecordsArgs,
 }
 
 /// `hhc modes`.

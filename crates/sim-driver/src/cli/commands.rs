@@ -2,7 +2,7 @@
 
 use super::args::{
     CheckArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, InitArgs, LadderArgs,
-    ModesArgs, ReportArgs, RunArgs, StudyArgs, WakeArgs,
+    ModesArgs, RecordsArgs, ReportArgs, RunArgs, StudyArgs, WakeArgs,
 };
 use crate::SimError;
 use crate::actuator::case_actuators;
@@ -268,49 +268,52 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
 }
 
 pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
-    refuse_input(&args.model, &args.output.join(EXTENDED_FILE))?;
+    let RecordsArgs { output, cache, format, .. } = &args.records;
+    refuse_input(&args.model, &output.join(EXTENDED_FILE))?;
     let model = given_model(&args.model)?;
-    let measured = records_of(&args.data)?;
-    let reference = reference_runs(args.reference.as_deref(), &args.data, &measured)?;
+    let (measured, reference) = both_records(&args.records)?;
     let progress = Progress::new(1);
     progress.doing(format!("diagnosing {} runs", measured.runs.len()));
-    let question = Question {
-        reference,
-        only: args.only.clone(),
-        cache: Some(&args.cache),
-        given: model.as_ref(),
-    };
+    let question =
+        Question { reference, only: args.only.clone(), cache: Some(cache), given: model.as_ref() };
     let found = crate::diagnose::diagnose(&measured, &question);
     progress.finish();
     let found = found?;
     let findings = serde_json::to_string_pretty(&Findings::from(&found)).map_err(|e| {
         SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
     })?;
-    found.extended()?.write(&args.output.join(EXTENDED_FILE))?;
+    found.extended()?.write(&output.join(EXTENDED_FILE))?;
     for (name, text) in found.figures() {
-        write_atomic(&args.output.join(name), text.as_bytes())?;
+        write_atomic(&output.join(name), text.as_bytes())?;
     }
-    write_atomic(&args.output.join("findings.json"), (findings + "\n").as_bytes())?;
-    print(&Story::of(&found).render(args.format.format)?)
+    write_atomic(&output.join("findings.json"), (findings + "\n").as_bytes())?;
+    print(&Story::of(&found).render(format.format)?)
 }
 
 pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
-    let measured = records_of(&args.data)?;
-    let reference = reference_runs(args.reference.as_deref(), &args.data, &measured)?;
+    let RecordsArgs { output, cache, format, .. } = &args.records;
+    let (measured, reference) = both_records(&args.records)?;
     let loaded = match &args.case {
         Some(path) => load_case(path)?,
         None => shipped_case(PAPER_CASE)?,
     };
     let progress = Progress::new(1);
     progress.doing(format!("climbing on {} runs", measured.runs.len()));
-    let climbed = climb(&measured, &reference, &loaded, Some(&args.cache));
+    let climbed = climb(&measured, &reference, &loaded, Some(cache));
     progress.finish();
     let (ladder, found) = climbed?;
     let text = serde_json::to_string_pretty(&ladder)
         .map_err(|e| SimError::NotWritten { path: "ladder.json".into(), reason: e.to_string() })?;
-    found.extended()?.write(&args.output.join(EXTENDED_FILE))?;
-    write_atomic(&args.output.join("ladder.json"), (text + "\n").as_bytes())?;
-    print(&ladder.render(args.format.format)?)
+    found.extended()?.write(&output.join(EXTENDED_FILE))?;
+    write_atomic(&output.join("ladder.json"), (text + "\n").as_bytes())?;
+    print(&ladder.render(format.format)?)
+}
+
+/// The runs to be explained and those that show the system as it is.
+fn both_records(args: &RecordsArgs) -> Result<(Records, Vec<Record>), SimError> {
+    let measured = records_of(&args.data)?;
+    let reference = reference_runs(args.reference.as_deref(), &args.data, &measured)?;
+    Ok((measured, reference))
 }
 
 /// The model of an actuator file, or of the actuator file a case names.

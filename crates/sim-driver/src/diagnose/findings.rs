@@ -44,8 +44,10 @@ pub struct GainValue {
     pub heldout_rms_before: f64,
     /// RMS of the extended model.
     pub heldout_rms_after: f64,
-    /// 95 % interval of the difference of both.
+    /// 95 % interval of the difference of both on these experiments, were they measured again.
     pub ci95: [f64; 2],
+    /// 95 % interval of the difference on other experiments of these kinds.
+    pub ci95_other_experiments: [f64; 2],
     /// Unit.
     pub unit: String,
 }
@@ -119,6 +121,7 @@ impl From<&Diagnosis> for Findings {
                 heldout_rms_before: gain.rms_before,
                 heldout_rms_after: gain.rms_after,
                 ci95: gain.drop_ci95,
+                ci95_other_experiments: gain.drop_elsewhere_ci95,
                 unit: d.output_unit.clone(),
             },
             next_experiment: d.next.id.clone(),

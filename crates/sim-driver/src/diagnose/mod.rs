@@ -14,6 +14,7 @@ mod plays;
 mod record;
 mod response;
 mod simulator;
+mod smooth;
 mod story;
 mod surrogate;
 mod traces;
@@ -129,7 +130,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     let library: Vec<Box<dyn BenchCause>> = causes::library();
     let runs: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
     if runs.is_empty() {
-        return Err(fail(too_few("measured runs")));
+        return Err(SimError::NothingMeasured { place: place(), runs: measured.runs.len() });
     }
     let mut references: Vec<&Record> = question.reference.iter().collect();
     references.extend(measured.runs.iter().filter(|r| r.is_reference));

@@ -30,6 +30,8 @@ struct Play {
     /// Part of the half-widths that this play stands for.
     share: f64,
     cells: usize,
+    /// Cells per unit of the state.
+    per_unit: f64,
     /// Place of the first coefficient; `cells + 2` belong to the play.
     first: usize,
 }
@@ -57,7 +59,8 @@ impl Plays {
                 let cells = cells_of(1.0 - half_width);
                 let first = count;
                 count += cells + 2;
-                Play { half_width, share, cells, first }
+                let per_unit = cells as f64 / (2.0 * (1.0 - half_width));
+                Play { half_width, share, cells, per_unit, first }
             })
             .collect();
         Self { middle: 0.5 * (low + high), half: 0.5 * (high - low), all: plays, count }
@@ -203,8 +206,7 @@ impl Play {
     )]
     #[inline]
     fn place(&self, state: f64) -> (usize, f64) {
-        let x =
-            (state + 1.0 - self.half_width) * self.cells as f64 / (2.0 * (1.0 - self.half_width));
+        let x = (state + 1.0 - self.half_width) * self.per_unit;
         let cell = (x.max(0.0) as u32 as usize).min(self.cells - 1);
         (cell, x - cell as f64)
     }

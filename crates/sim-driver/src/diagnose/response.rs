@@ -10,15 +10,19 @@ use super::base::BaseModel;
 use super::causes::{BenchCause, Part, looped, rate_dependent};
 use super::memo::{Memo, key};
 use super::record::Record;
+use super::smooth::Smooth;
 use model_gap::{Effect, GapError};
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, DielectricHeating, Drive, LinearGain,
-    LinkageStage, SensorStage, VoltageRange,
+    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, DielectricHeating, Drive, Lag,
+    LinearGain, LinkageStage, SensorStage, VoltageRange,
 };
 use std::sync::Arc;
 
 /// Fronts and responses kept; each holds two or three signals of all samples.
 const KEPT: usize = 6;
+
+/// Chords for each step of a relaxation.
+const FINER: u32 = 4;
 
 /// What has passed the law, on every run.
 #[derive(Debug)]
@@ -129,13 +133,20 @@ impl<'a> Plant<'a> {
         let (mut terminals, mut rises_k, mut outputs) = (Vec::new(), Vec::new(), Vec::new());
         for number in 0..count {
             let run = self.runs[number];
-            let terminal = if stages.is_empty() {
-                None
-            } else {
-                let drive = Drive::new(&run.input, run.step_s);
-                let model = self.through(&stages, &[], &[]);
-                Some(model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?.terminal_volt)
-            };
+            let mut terminal: Option<Vec<f64>> = None;
+            for stage in &stages {
+                let input = terminal.as_deref().unwrap_or(&run.input);
+                terminal = Some(match stage {
+                    AmplifierStage::Lag(lag) => behind_lag(input, *lag, run.step_s),
+                    other => {
+                        let model = self.through(std::slice::from_ref(other), &[], &[]);
+                        let drive = Drive::new(input, run.step_s);
+                        let simulated =
+                            model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?;
+                        simulated.terminal_volt
+                    }
+                });
+            }
             let mut law = match &terminal {
                 Some(volt) => self.base.hysteresis(volt),
                 None => self.laws[number].clone(),
@@ -187,7 +198,11 @@ impl<'a> Plant<'a> {
         for part in parts {
             if let Part::RateDependence { tau_s, position } = part {
                 let place = (middle, self.base.spread);
-                *law = rate_dependent(law, *tau_s, *position, place, self.runs[number].step_s);
+                // the relaxation time follows the state: no closed form for a curved input, so short chords
+                let fine = Smooth::new(law).refined(FINER);
+                let step_s = self.runs[number].step_s / f64::from(FINER);
+                let late = rate_dependent(&fine, *tau_s, *position, place, step_s);
+                *law = late.into_iter().step_by(FINER as usize).collect();
             }
         }
         Ok(rise_k)
@@ -216,10 +231,26 @@ impl<'a> Plant<'a> {
                 outputs.push(output.clone());
                 continue;
             }
-            let model = self.through(&[], &linkage, sensor);
-            let drive = Drive::new(output, run.step_s);
-            let simulated = model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?;
-            outputs.push(simulated.measured_deg);
+            let mut signal = output.clone();
+            for stage in &linkage {
+                signal = match stage {
+                    LinkageStage::Resonance(mode) if mode.damping_ratio < 1.0 => Smooth::new(
+                        &signal,
+                    )
+                    .through_mode(mode.frequency_hz, mode.damping_ratio, run.step_s),
+                    other => self.pass(run, &signal, std::slice::from_ref(other), &[])?,
+                };
+            }
+            for stage in sensor {
+                signal = match stage {
+                    SensorStage::Filter(lag) => behind_lag(&signal, *lag, run.step_s),
+                    SensorStage::Delay(delay) => {
+                        Smooth::new(&signal).late_by(delay.delay_s / run.step_s)
+                    }
+                    other => self.pass(run, &signal, &[], std::slice::from_ref(other))?,
+                };
+            }
+            outputs.push(signal);
         }
         Ok(Arc::new(outputs))
     }
@@ -241,6 +272,20 @@ impl<'a> Plant<'a> {
             }
         }
         hum
+    }
+
+    /// A signal through stages behind the law.
+    fn pass(
+        &self,
+        run: &Record,
+        signal: &[f64],
+        linkage: &[LinkageStage],
+        sensor: &[SensorStage],
+    ) -> Result<Vec<f64>, GapError> {
+        let model = self.through(&[], linkage, sensor);
+        let drive = Drive::new(signal, run.step_s);
+        let simulated = model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))?;
+        Ok(simulated.measured_deg)
     }
 
     /// Stages alone: a law of gain 1 between them, degrees standing for the output's unit.
@@ -275,6 +320,11 @@ impl<'a> Plant<'a> {
     }
 }
 
+/// A signal behind a lag; one of no time constant changes nothing.
+fn behind_lag(signal: &[f64], lag: Lag, step_s: f64) -> Vec<f64> {
+    if lag.tau_s > 0.0 { Smooth::new(signal).lagged(lag.tau_s, step_s) } else { signal.to_vec() }
+}
+
 /// Whether a part acts before or in the law.
 fn is_in_front(part: &Part) -> bool {
     matches!(
@@ -287,17 +337,35 @@ fn is_in_front(part: &Part) -> bool {
     )
 }
 
+/// Samples after which the turning of a line begins anew, so that its rounding does not grow.
+const TURNED: usize = 64;
+
+/// Cosine and sine at every sample of a line of a number of turns per sample.
+fn waves(turns_per_sample: f64, samples: usize) -> Vec<(f64, f64)> {
+    let step = std::f64::consts::TAU * turns_per_sample.fract();
+    let (sin, cos) = step.sin_cos();
+    let mut all = Vec::with_capacity(samples);
+    let (mut s, mut c) = (0.0, 1.0);
+    for i in 0..samples {
+        if i % TURNED == 0 {
+            (s, c) = (std::f64::consts::TAU * (turns_per_sample * i as f64).fract()).sin_cos();
+        }
+        all.push((c, s));
+        (c, s) = (c * cos - s * sin, s * cos + c * sin);
+    }
+    all
+}
+
 /// A line of an amplitude and a number of turns per sample, with the phase that a residual asks for.
 pub(super) fn line(amplitude: f64, turns_per_sample: f64, residual: &[f64]) -> Vec<f64> {
-    let angle = |i: usize| std::f64::consts::TAU * (turns_per_sample * i as f64).fract();
-    let waves: Vec<(f64, f64)> = (0..residual.len()).map(|i| angle(i).sin_cos()).collect();
+    let waves = waves(turns_per_sample, residual.len());
     let (mut s, mut c) = (0.0, 0.0);
-    for (r, (sin, cos)) in residual.iter().zip(&waves) {
+    for (r, (cos, sin)) in residual.iter().zip(&waves) {
         s += r * sin;
         c += r * cos;
     }
-    let size = c.hypot(s).max(1e-300);
-    waves.iter().map(|(sin, cos)| amplitude * (c * cos + s * sin) / size).collect()
+    let size = amplitude / c.hypot(s).max(1e-300);
+    waves.iter().map(|(cos, sin)| size * (c * cos + s * sin)).collect()
 }
 
 /// Slope of `y` against `x` by least squares, both about their means; 0 where `x` is constant.
@@ -314,4 +382,30 @@ pub(super) fn slope(x: &[f64], y: &[f64]) -> f64 {
 
 fn failed(what: &str, error: &preisach_dyn::PreisachError) -> GapError {
     GapError::Simulation { what: what.to_owned(), message: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    #[test]
+    fn a_line_turned_on_sample_by_sample_is_that_of_its_angles() {
+        let waves = waves(0.050_013_7, 20_000);
+        for (i, (cos, sin)) in waves.iter().enumerate() {
+            let angle = std::f64::consts::TAU * (0.050_013_7 * i as f64).fract();
+            assert_abs_diff_eq!(*cos, angle.cos(), epsilon = 1e-12);
+            assert_abs_diff_eq!(*sin, angle.sin(), epsilon = 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_line_has_the_phase_that_the_residual_asks_for() {
+        let wave = |i: u32| (0.31 * f64::from(i) + 0.8).sin();
+        let residual: Vec<f64> = (0..5000).map(|i| 3.0 * wave(i)).collect();
+        let found = line(0.7, 0.31 / std::f64::consts::TAU, &residual);
+        for (i, y) in (0..).zip(&found) {
+            assert_abs_diff_eq!(*y, 0.7 * wave(i), epsilon = 1e-3);
+        }
+    }
 }

@@ -7,6 +7,9 @@ use crate::output::{Printable, Sheet, table};
 use model_gap::discovery::{Confidence, Verdict};
 use serde::Serialize;
 
+/// Error of the base model, over the output, from which on the story says that little can be seen beside it.
+const POOR_BASE: f64 = 0.1;
+
 /// The story of a diagnosis, printable.
 #[derive(Debug, Clone, Serialize)]
 #[serde(transparent)]
@@ -45,6 +48,16 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
     if !d.has_reference {
         sheet.line(format_args!(
             "  Without reference runs the floor cannot be calibrated: what these runs share is taken for ordinary, and nothing is said with confidence."
+        ));
+    }
+    if d.floor > POOR_BASE {
+        let known = if d.law_inputs.len() == 1 {
+            "one run alone says little about others"
+        } else {
+            "it is of another kind, or its runs move where the others never did"
+        };
+        sheet.line(format_args!(
+            "  The base model hardly predicts a run that it has not seen: {known}. What is not much larger cannot be seen beside that."
         ));
     }
     if let Some(percent) = d.given_error_percent {
@@ -112,11 +125,13 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
     let gain = &findings.gain;
     if !findings.causes.is_empty() {
         sheet.line(format_args!(
-            "\nGain on held-out experiments: {} -> {} {unit} rms, less by {} to {} (95 %)",
+            "\nGain on held-out experiments: {} -> {} {unit} rms, less by {} to {} if they were measured again (95 %), by {} to {} on other experiments of these kinds",
             significant(gain.heldout_rms_before, 4),
             significant(gain.heldout_rms_after, 4),
             significant(gain.ci95[0], 3),
-            significant(gain.ci95[1], 3)
+            significant(gain.ci95[1], 3),
+            significant(gain.ci95_other_experiments[0], 3),
+            significant(gain.ci95_other_experiments[1], 3)
         ));
     }
     if !findings.not_observable.is_empty() {

@@ -9,6 +9,7 @@
 use super::base::{BaseModel, mean_square};
 use super::plays::lagged;
 use super::record::Record;
+use model_gap::{drawn_again, noise_of};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -80,7 +81,7 @@ fn one(
         .enumerate()
         .map(|(r, run)| {
             let mut output = simulate(run);
-            let noise = bootstrapped(&base.residual(run), Noise(0x1234_5678 + r as u64));
+            let noise = drawn_again(&noise_of(&base.residual(run)), 0x1234_5678 + r as u64);
             output.iter_mut().zip(noise).for_each(|(y, e)| *y += e);
             Record { output, ..(*run).clone() }
         })
@@ -97,33 +98,6 @@ fn one(
             })
             .collect(),
     )
-}
-
-/// Samples of noise that are drawn together: a colour of a few samples is kept.
-const TOGETHER: usize = 16;
-/// Half the window of the mean that noise is taken about.
-const HALF_WINDOW: usize = 4;
-
-/// Noise like that of a residual: what its running mean leaves of it, drawn again in blocks (moving-block
-/// bootstrap: H. R. Kuensch, Annals of Statistics 17 (1989)).
-fn bootstrapped(residual: &[f64], mut random: Noise) -> Vec<f64> {
-    let n = residual.len();
-    let noise: Vec<f64> = (0..n)
-        .map(|i| {
-            let about = &residual[i.saturating_sub(HALF_WINDOW)..(i + HALF_WINDOW + 1).min(n)];
-            let count = about.len() as f64;
-            let off = residual[i] - about.iter().sum::<f64>() / count;
-            // the mean holds a share of the sample itself
-            off * (count / (count - 1.0).max(1.0)).sqrt()
-        })
-        .collect();
-    let mut drawn = Vec::with_capacity(n + TOGETHER);
-    while drawn.len() < n {
-        let first = random.below(n.saturating_sub(TOGETHER).max(1));
-        drawn.extend(noise[first..].iter().take(TOGETHER));
-    }
-    drawn.truncate(n);
-    drawn
 }
 
 /// A surrogate: features of the input with weights.
@@ -298,16 +272,6 @@ impl Noise {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A whole number below `count`.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a part of a count is a place in it"
-    )]
-    fn below(&mut self, count: usize) -> usize {
-        ((self.uniform() * count as f64) as usize).min(count.saturating_sub(1))
-    }
-
     /// A number of the standard normal distribution (Box and Muller).
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
@@ -348,28 +312,4 @@ pub(crate) fn generic(inputs: &[f64], law: &[f64], spread: f64, step_s: f64) -> 
         lagged(&x.iter().map(|v| v * v).collect::<Vec<_>>(), 0.3 * duration, step_s);
     all.push(dose.iter().zip(&x).map(|(d, v)| d * v).collect());
     all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bootstrapped_noise_has_the_size_and_colour_of_the_residual_and_not_its_structure() {
-        let mut random = Noise(5);
-        let mut before = 0.0;
-        let residual: Vec<f64> = (0..20_000)
-            .map(|i| {
-                // noise with a correlation of 0.6 from sample to sample, on a slow structure
-                before = 0.6 * before + 0.8 * random.normal();
-                0.1 * before + 3.0 * (1e-3 * f64::from(i)).sin()
-            })
-            .collect();
-        let drawn = bootstrapped(&residual, Noise(7));
-        assert_eq!(drawn.len(), residual.len());
-        let size = mean_square(&drawn).sqrt();
-        assert!((0.07..0.11).contains(&size), "{size}");
-        let next: f64 = drawn.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / drawn.len() as f64;
-        assert!(next > 0.15 * size * size, "{next}");
-    }
 }

@@ -279,7 +279,9 @@ impl BaseModel {
         let directions =
             DMatrix::from_fn(width, kept.len(), |i, k| eigen.eigenvectors[(i, kept[k])]);
         let basis = &self.root * directions;
-        let splines = &rises * basis.rows(1, rises.ncols());
+        // a column per spline: those that a sample touches lie together in memory
+        let splines = (&rises * basis.rows(1, rises.ncols())).transpose();
+        let offset = basis.row(0).transpose();
         let first_share = 1 + rises.ncols();
         runs.iter()
             .map(|run| {
@@ -288,11 +290,11 @@ impl BaseModel {
                 // row by row of the transpose: its columns lie together in memory
                 let mut transposed = DMatrix::zeros(kept.len(), run.input.len());
                 self.plays.rows(&run.input, |i, row| {
-                    let mut sum = basis.row(0).transpose();
+                    let mut sum = transposed.column_mut(i);
+                    sum.copy_from(&offset);
                     for &(k, value) in row {
-                        sum.axpy(value, &splines.row(k).transpose(), 1.0);
+                        sum.axpy(value, &splines.column(k), 1.0);
                     }
-                    transposed.set_column(i, &sum);
                 });
                 for (t, &tau) in taus.iter().enumerate() {
                     let weights = basis.row(first_share + t).transpose();

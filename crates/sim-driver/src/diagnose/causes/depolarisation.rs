@@ -25,7 +25,7 @@ impl BenchCause for ReverseVoltage {
             ],
             fingerprint: "a gain that falls with the time below the threshold and stays lost",
             confused_with: &["voltage-saturation", "sensor-nonlinearity", "load-stiffness"],
-            separating: &["bias-sweep", "overdrive-two-biases"],
+            separating: &["bias-sweep"],
         }
     }
 

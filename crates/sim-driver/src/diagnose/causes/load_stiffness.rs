@@ -16,7 +16,7 @@ impl BenchCause for Load {
             parameters: vec![linear("stiffness_ratio", "1", 0.0, 2.0)],
             fingerprint: "pure gain, no harmonics",
             confused_with: &["dielectric-heating", "creep", "sensor-nonlinearity"],
-            separating: &["two-springs"],
+            separating: &["laser-cross-check", "bias-sweep"],
         }
     }
 

@@ -29,7 +29,7 @@ impl BenchCause for VoltageSaturation {
             ],
             fingerprint: "depends on amplitude only, flat tops; one-sided gives even harmonics",
             confused_with: &["depolarisation", "sensor-nonlinearity"],
-            separating: &["overdrive-two-biases", "amplifier-monitor"],
+            separating: &["amplifier-monitor", "amplitude-sweep"],
         }
     }
 

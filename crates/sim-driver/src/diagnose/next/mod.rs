@@ -56,9 +56,9 @@ pub(super) fn proposal(bench: &Bench<'_>, finding: &Finding) -> Result<Proposal,
     let menu = menu(span, bench.runs, bench.design.is_bench);
     let open = finding.causes.iter().max_by_key(|found| found.alternatives.len());
     let Some(open) = open.filter(|found| !found.alternatives.is_empty()) else {
-        let id = usual(finding, bench);
-        let what = menu.iter().find(|e| e.id == id).map_or("", |e| e.what).to_owned();
-        return Ok(Proposal { id: id.to_owned(), what, resolves: None });
+        let usual = usual(finding, bench, &menu);
+        let (id, what) = usual.map_or(("", ""), |e| (e.id, e.what));
+        return Ok(Proposal { id: id.to_owned(), what: what.to_owned(), resolves: None });
     };
     let parted: Vec<Parting> = menu
         .par_iter()
@@ -222,18 +222,27 @@ fn warmth(bench: &Bench<'_>, rivals: &[Rival], record: &Record) -> Result<Vec<f6
 }
 
 /// What is usual where no explanations are to be told apart.
-fn usual(finding: &Finding, bench: &Bench<'_>) -> &'static str {
+fn usual<'m>(
+    finding: &Finding,
+    bench: &Bench<'_>,
+    menu: &'m [Experiment],
+) -> Option<&'m Experiment> {
+    let of = |id: &str| menu.iter().find(|experiment| experiment.id == id);
     let named = finding.causes.first().map(|found| &bench.candidates[found.candidate].cause);
-    if let Some(first) = named.and_then(|cause| cause.separating.first()) {
-        return first;
-    }
-    if finding.verdict == Verdict::NothingMissing {
-        "small-motion"
-    } else if bench.design.only_hz.is_some() {
-        "frequency-sweep"
-    } else {
-        "multisine-5-181Hz"
-    }
+    // what was measured already is no longer on the menu
+    let separating = named.and_then(|cause| cause.separating.iter().find_map(|id| of(id)));
+    separating.or_else(|| {
+        of(if finding.verdict == Verdict::NothingMissing {
+            "small-motion"
+        } else if !bench.design.is_bench {
+            // the catalogue's frequencies are those of a piezo bench; amplitudes are the system's own
+            "amplitude-sweep"
+        } else if bench.design.only_hz.is_some() {
+            "frequency-sweep"
+        } else {
+            "multisine-5-181Hz"
+        })
+    })
 }
 
 #[cfg(test)]
@@ -241,6 +250,30 @@ mod tests {
     use super::*;
 
     const SELF: f64 = f64::INFINITY;
+
+    #[test]
+    fn every_experiment_that_a_cause_names_can_be_simulated() {
+        let input: Vec<f64> = (0..400).map(|i| 80.0 * (0.1 * f64::from(i)).sin()).collect();
+        let run = Record {
+            id: "a".into(),
+            is_reference: false,
+            step_s: 1e-3,
+            output: input.clone(),
+            input,
+            amplifier: None,
+            temperature: None,
+            load: None,
+        };
+        let design = Design::of(&[&run], true, true);
+        let menu = menu(Span { middle: 0.0, half: 80.0 }, &[&run], true);
+        for cause in super::super::causes::library() {
+            let cause = cause.cause(&design);
+            assert!(!cause.separating.is_empty(), "{}", cause.id);
+            for id in cause.separating {
+                assert!(menu.iter().any(|e| e.id == *id), "{}: {id}", cause.id);
+            }
+        }
+    }
 
     #[test]
     fn the_fewest_experiments_that_single_out_most_are_chosen() {

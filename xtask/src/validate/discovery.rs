@@ -1,0 +1,169 @@
+//! What a diagnosis says of synthetic benches: silence where nothing is hidden, names and parameters where
+//! something is. The whole suite is `cargo xtask hidden-effects`; these sets are a few that take seconds.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use sim_driver::SimError;
+use sim_driver::diagnose::{Diagnosis, Findings, Question, Record, Records, diagnose};
+use sim_driver::files::{Folder, read_bench};
+use truth::hidden::{File, Hidden, Request, Size, measured_set, reference_files};
+
+use super::CheckError;
+use super::check::{Area, Check, Criterion, Repeatability};
+use crate::{XtaskError, files};
+
+const SOURCE: &str = "tests/truth, base 4, 40 dB: shares no code with the product";
+
+pub(super) const AREA: Area = Area {
+    heading: "Discovery (`model-gap`, `sim-driver`)",
+    checks: &[
+        Check {
+            id: "V-GAP-01",
+            quantity: "nothing hidden, two draws of the noise: causes named",
+            unit: "-",
+            source: SOURCE,
+            criterion: Criterion::AtMost(0.0),
+            repeatability: Repeatability::Everywhere,
+            measure: names_of_nothing,
+        },
+        Check {
+            id: "V-GAP-02",
+            quantity: "creep of 6 % of the output, the only confident name: error of its rate",
+            unit: "%",
+            source: SOURCE,
+            criterion: Criterion::AtMost(5.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || parameter_error("creep", "rate_per_decade"),
+        },
+        Check {
+            id: "V-GAP-03",
+            quantity: "current limit of 6 %, the only confident name: error of its slew rate",
+            unit: "%",
+            source: SOURCE,
+            criterion: Criterion::AtMost(5.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || parameter_error("amplifier-current-limit", "slew_rate"),
+        },
+        Check {
+            id: "V-GAP-04",
+            quantity: "transport delay of 4 %, the first of the names: error of the delay",
+            unit: "%",
+            source: SOURCE,
+            criterion: Criterion::AtMost(5.0),
+            repeatability: Repeatability::Everywhere,
+            measure: delay_error,
+        },
+        Check {
+            id: "V-GAP-05",
+            quantity: "quadratic viscous force of 6 %, outside the library: confident names",
+            unit: "-",
+            source: SOURCE,
+            criterion: Criterion::AtMost(0.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let found = found("outside-quadratic-viscous", 0.06, 3)?;
+                Ok(if is_confident(&found) { found.causes.len() as f64 } else { 0.0 })
+            },
+        },
+    ],
+};
+
+const BASE: u64 = 4;
+
+/// The reference runs, and a folder for what surrogates leave.
+static BENCH: LazyLock<Result<(Vec<Record>, tempfile::TempDir), CheckError>> =
+    LazyLock::new(|| {
+        let files = reference_files(BASE, 40.0, Size::Small)?;
+        Ok((records(&files)?.runs, scratch()?))
+    });
+
+fn scratch() -> Result<tempfile::TempDir, CheckError> {
+    tempfile::tempdir().map_err(|source| {
+        let (path, reason) = (std::env::temp_dir(), source.to_string());
+        CheckError::Driver(SimError::NotWritten { path, reason })
+    })
+}
+
+fn records(content: &[File]) -> Result<Records, CheckError> {
+    let folder = scratch()?;
+    for (name, text) in content {
+        write(&folder.path().join(name), text)?;
+    }
+    let read = read_bench(&Folder::Disk(folder.path().to_path_buf()));
+    Ok(Records::from(&read.map_err(|problems| CheckError::Shared(problems.to_string()))?))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), CheckError> {
+    files::write_atomically(path, text).map_err(|error: XtaskError| {
+        let (path, reason) = (path.to_path_buf(), error.to_string());
+        CheckError::Driver(SimError::NotWritten { path, reason })
+    })
+}
+
+/// The diagnosis of a hidden effect, its answer's parameter of a name, if it has one.
+fn diagnosed(
+    hidden: &str,
+    share: f64,
+    seed: u64,
+) -> Result<(Diagnosis, truth::hidden::Answer), CheckError> {
+    let (reference, cache) = match &*BENCH {
+        Ok(bench) => bench,
+        Err(error) => return Err(CheckError::Shared(error.to_string())),
+    };
+    let request = Request {
+        hidden: Some(Hidden::parse(hidden)?),
+        base: Some(BASE),
+        share: Some(share),
+        ..Request::new(seed, 40.0)
+    };
+    let set = measured_set(&request)?;
+    let question =
+        Question { reference: reference.clone(), cache: Some(cache.path()), ..Question::default() };
+    Ok((diagnose(&records(&set.files)?, &question)?, set.answer))
+}
+
+fn found(hidden: &str, share: f64, seed: u64) -> Result<Findings, CheckError> {
+    Ok(Findings::from(&diagnosed(hidden, share, seed)?.0))
+}
+
+fn is_confident(found: &Findings) -> bool {
+    found.confidence == model_gap::discovery::Confidence::Confident && !found.causes.is_empty()
+}
+
+fn names_of_nothing() -> Result<f64, CheckError> {
+    let mut names = 0;
+    for seed in [1, 2] {
+        names += found("null", 0.0, seed)?.causes.len();
+    }
+    Ok(names as f64)
+}
+
+/// Error of a parameter, percent; NaN unless its cause is the only name and a confident one.
+fn parameter_error(hidden: &str, name: &str) -> Result<f64, CheckError> {
+    let (diagnosis, answer) = diagnosed(hidden, 0.06, 3)?;
+    let found = Findings::from(&diagnosis);
+    if found.causes != [hidden] || !is_confident(&found) {
+        return Ok(f64::NAN);
+    }
+    Ok(error_percent(&found, &answer, name))
+}
+
+fn delay_error() -> Result<f64, CheckError> {
+    let (diagnosis, answer) = diagnosed("transport-delay", 0.04, 3)?;
+    let found = Findings::from(&diagnosis);
+    if found.causes.first().is_none_or(|first| first != "transport-delay") {
+        return Ok(f64::NAN);
+    }
+    Ok(error_percent(&found, &answer, "delay"))
+}
+
+fn error_percent(found: &Findings, answer: &truth::hidden::Answer, name: &str) -> f64 {
+    let effect = answer.effects.first();
+    let truth = effect.and_then(|effect| effect.parameters.get(name)).map(|q| q.value);
+    let estimate = effect.and_then(|effect| found.parameters.get(&effect.id)?.get(name));
+    match (truth, estimate) {
+        (Some(truth), Some(estimate)) => 100.0 * (estimate.value / truth - 1.0).abs(),
+        _ => f64::NAN,
+    }
+}
