@@ -3,17 +3,21 @@
 mod blades;
 mod circulation;
 mod filament;
+mod free_wake;
 mod inflow_map;
 mod influence;
 mod march;
+mod placement;
 mod rotor;
 mod settings;
 mod solve;
 mod sources;
 mod sweep;
+mod velocity;
 
 pub use blades::BladeLines;
 pub use circulation::CirculationMap;
+pub use free_wake::{FreeWake, WakeFilament};
 pub use inflow_map::InflowMap;
 pub use influence::{FrozenWake, LineInduction};
 pub use march::{WakeMarch, contraction_drift};
@@ -23,4 +27,3 @@ pub use settings::{
     StrainEffect,
 };
 pub use solve::{ClosestPassage, WakeConvergence};
-pub use sweep::{FreeWake, WakeFilament};
