@@ -1,7 +1,7 @@
 //! The free wake: what it is made of, and where its blades are.
 
 use super::filament::Filament;
-use super::settings::{FreeWakeSettings, NearWakeMotion};
+use super::settings::{FreeWakeSettings, NearWakeMotion, WakeSymmetry};
 use super::sources::RollUp;
 use super::{BladeLines, CirculationMap, WakeRotor};
 use crate::vector::Vec3;
@@ -29,6 +29,10 @@ pub struct FreeWake {
     /// One per rolled-up vortex.
     pub(crate) far: Vec<Filament>,
 }
+
+/// Largest difference between azimuths of an axial wake: blades in their own axes, unit `R`; circulation,
+/// `Omega R^2`.
+const ALIKE: f64 = 1e-9;
 
 /// A filament of the wake as others see it.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,6 +68,7 @@ impl FreeWake {
             });
         }
         same_azimuths(&settings, lines.azimuths())?;
+        axial_if_asked(&settings, &flight, &lines)?;
         let azimuths = settings.azimuths;
         let filament = |node, steps| Filament::new(node, steps, azimuths);
         let near = (0..=rotor.panels()).map(|n| filament(n, settings.near_steps())).collect();
@@ -136,6 +141,7 @@ impl FreeWake {
         lines: BladeLines,
     ) -> Result<(), WakeError> {
         same_azimuths(&self.settings, lines.azimuths())?;
+        axial_if_asked(&self.settings, &flight, &lines)?;
         self.flight = flight.validated()?;
         self.carrying_inflow = carrying_inflow;
         self.lines = lines;
@@ -165,6 +171,22 @@ impl FreeWake {
         (0..blades).map(move |b| phase + b * spacing)
     }
 
+    /// Instants whose induced velocities have to be computed.
+    pub(crate) fn phases_that_differ(&self) -> usize {
+        match self.settings.symmetry {
+            WakeSymmetry::Periodic => self.phases(),
+            WakeSymmetry::Axial => 1,
+        }
+    }
+
+    /// Blades at whose wakes they have to be computed.
+    pub(crate) fn blades_that_differ(&self) -> usize {
+        match self.settings.symmetry {
+            WakeSymmetry::Periodic => self.rotor.blades(),
+            WakeSymmetry::Axial => 1,
+        }
+    }
+
     /// Checks a circulation against the grid.
     pub(crate) fn check(&self, circulation: &CirculationMap) -> Result<(), WakeError> {
         same_azimuths(&self.settings, circulation.azimuths())?;
@@ -174,6 +196,18 @@ impl FreeWake {
                 value: circulation.panels() as f64,
                 expected: "the panels of the wake",
             });
+        }
+        if self.settings.symmetry == WakeSymmetry::Axial {
+            let first = circulation.row(0);
+            let differs = |(k, value): (usize, &f64)| (value - first[k % first.len()]).abs();
+            let change = circulation.values().iter().enumerate().map(differs).fold(0.0, f64::max);
+            if change > ALIKE {
+                return Err(WakeError::BadInput {
+                    quantity: "change of the circulation over the azimuth",
+                    value: change,
+                    expected: "none: the wake is axial",
+                });
+            }
         }
         Ok(())
     }
@@ -194,4 +228,25 @@ fn same_azimuths(settings: &FreeWakeSettings, given: usize) -> Result<(), WakeEr
         value: given as f64,
         expected: "the azimuth steps of the wake",
     })
+}
+
+/// Refuses axial symmetry where the rotor flies or its blades move.
+fn axial_if_asked(
+    settings: &FreeWakeSettings,
+    flight: &FlightState,
+    lines: &BladeLines,
+) -> Result<(), WakeError> {
+    if settings.symmetry != WakeSymmetry::Axial {
+        return Ok(());
+    }
+    let bad = |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
+    if flight.advance_ratio != 0.0 {
+        let expected = "0: a wake turns with its blades in axial flight only";
+        return bad("advance_ratio of an axial wake", flight.advance_ratio, expected);
+    }
+    let motion = lines.departure_from_turning();
+    if motion.is_nan() || motion > ALIKE {
+        return bad("motion of the blades of an axial wake, R", motion, "none over a revolution");
+    }
+    Ok(())
 }

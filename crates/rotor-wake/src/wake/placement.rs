@@ -41,8 +41,13 @@ impl FreeWake {
     pub(crate) fn carried(&self, node: usize, i: usize, k: usize) -> Vec3 {
         let azimuths = self.settings.azimuths;
         let release = self.lines.edge_at((i + azimuths - k % azimuths) % azimuths)[node];
+        add(release, self.wind_over(k))
+    }
+
+    /// How far the free stream and the mean inflow carry within `k` steps.
+    fn wind_over(&self, k: usize) -> Vec3 {
         let wind = sub(self.free_stream(), [0.0, 0.0, self.carrying_inflow]);
-        add(release, scale(wind, k as f64 * self.settings.step_rad()))
+        scale(wind, k as f64 * self.settings.step_rad())
     }
 
     /// Puts the near wake where its motion is prescribed.
@@ -73,7 +78,9 @@ impl FreeWake {
         let carried = self.carried(node, i, k);
         match self.far.last() {
             Some(tip) if k <= tip.steps => {
-                let moved = sub(tip.at(i)[k], self.carried(tip.node, i, k));
+                let azimuths = self.settings.azimuths;
+                let released = tip.at((i + azimuths - k % azimuths) % azimuths)[0];
+                let moved = sub(tip.at(i)[k], add(released, self.wind_over(k)));
                 add(carried, scale(moved, self.rotor.nodes()[node]))
             }
             _ => carried,

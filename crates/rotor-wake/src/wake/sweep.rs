@@ -1,25 +1,26 @@
 //! One sweep of pseudo-implicit relaxation.
 
 use super::settings::NearWakeMotion;
+use super::sources::RollUp;
 use super::velocity::Velocities;
 use super::{CirculationMap, FreeWake};
 use crate::WakeError;
-use crate::vector::{add, is_finite, norm, scale, sub};
+use crate::vector::{Vec3, add, is_finite, norm, scale, sub};
 
 impl FreeWake {
     /// The geometry that the velocities carry the wake to.
-    fn moved(&self, velocities: &Velocities) -> Self {
+    fn moved(&self, velocities: &Velocities, releases: &[Vec<Vec3>]) -> Self {
         let mut out = self.clone();
         let azimuths = self.settings.azimuths;
         let step = self.settings.step_rad();
         let stream = self.free_stream();
         let near_is_free = self.settings.near_wake_motion == NearWakeMotion::Free;
-        let Self { near, far, lines, .. } = &mut out;
+        let Self { near, far, .. } = &mut out;
         let free = near.iter_mut().filter(|_| near_is_free).chain(far);
-        for (f, v) in free.zip(velocities) {
-            for i in 0..azimuths {
+        for ((f, v), releases) in free.zip(velocities).zip(releases) {
+            for (i, release) in releases.iter().enumerate() {
                 let at = f.index(i, 0);
-                f.points[at] = lines.edge_at(i)[f.node];
+                f.points[at] = *release;
             }
             for k in 1..=f.steps {
                 for i in 0..azimuths {
@@ -38,6 +39,24 @@ impl FreeWake {
         out
     }
 
+    /// Where the free filaments are released, `[filament][azimuth]`.
+    pub(super) fn releases(&self, circulation: &CirculationMap) -> Vec<Vec<Vec3>> {
+        let azimuths = 0..self.settings.azimuths;
+        let roll_up = RollUp::new(&self.settings.far, &self.rotor, circulation);
+        let stations = roll_up.release_stations(self.settings.release, &self.rotor, circulation);
+        let near_is_free = self.settings.near_wake_motion == NearWakeMotion::Free;
+        let near = self
+            .near
+            .iter()
+            .filter(|_| near_is_free)
+            .map(|f| azimuths.clone().map(|i| self.lines.edge_at(i)[f.node]).collect());
+        let far = stations.iter().map(|stations| {
+            let places = stations.iter().enumerate();
+            places.map(|(i, r)| self.lines.edge_between(i, &self.rotor, *r)).collect()
+        });
+        near.chain(far).collect()
+    }
+
     /// One predictor-corrector sweep; returns the RMS displacement of the free nodes, unit `R`.
     ///
     /// The predictor carries every node with the velocities of the geometry before, the corrector with a
@@ -53,13 +72,14 @@ impl FreeWake {
     pub fn sweep(&mut self, circulation: &CirculationMap) -> Result<f64, WakeError> {
         self.check(circulation)?;
         let first = self.velocities(circulation);
-        let predicted = self.moved(&first);
+        let releases = self.releases(circulation);
+        let predicted = self.moved(&first, &releases);
         let mut second = predicted.velocities(circulation);
         let weight = self.settings.relaxation;
         for (new, old) in second.iter_mut().flatten().zip(first.iter().flatten()) {
             *new = add(scale(*new, weight), scale(*old, 1.0 - weight));
         }
-        let mut corrected = self.moved(&second);
+        let mut corrected = self.moved(&second, &releases);
         corrected.place_near_wake();
         let (mut sum, mut count) = (0.0, 0);
         for (new, old) in corrected.free().zip(self.free()) {

@@ -1,10 +1,11 @@
 //! What the wake induces: at its own nodes and anywhere.
 
 use super::filament::Filament;
+use super::settings::WakeSymmetry;
 use super::sources::{BladeView, RollUp, SourceContext, Sources};
 use super::{CirculationMap, FreeWake};
 use crate::kernel::{CoreModel, arc_velocity, induced_velocities};
-use crate::vector::{Vec3, add, norm, scale, sub};
+use crate::vector::{Vec3, about_the_shaft, add, norm, scale, sub};
 use crate::{SegmentSet, WakeError};
 
 /// Velocities at all nodes of the free filaments.
@@ -81,7 +82,7 @@ impl FreeWake {
         sources: fn(&[BladeView<'_>], &SourceContext<'_>) -> Sources,
     ) -> Vec<SegmentSet> {
         self.with_context(circulation, |context| {
-            (0..self.phases())
+            (0..self.phases_that_differ())
                 .map(|p| sources(&self.views(p), context).segments(context, circulation.values()))
                 .collect()
         })
@@ -118,7 +119,7 @@ impl FreeWake {
             let mut places = Vec::new();
             let mut targets = Vec::new();
             for (j, f) in free.iter().enumerate() {
-                for i in self.blade_azimuths(phase) {
+                for i in self.blade_azimuths(phase).take(self.blades_that_differ()) {
                     for k in (0..=f.steps).filter(|&k| computed(f, k)) {
                         places.push((j, f.index(i, k)));
                         targets.push(f.at(i)[k]);
@@ -127,6 +128,11 @@ impl FreeWake {
             }
             for ((j, index), v) in places.into_iter().zip(induced_velocities(&targets, set)) {
                 out[j][index] = v;
+            }
+        }
+        if self.settings.symmetry == WakeSymmetry::Axial {
+            for (f, v) in free.iter().zip(&mut out) {
+                self.turn_with_the_blades(f, v);
             }
         }
         if self.settings.core.model == CoreModel::RosenheadMoore {
@@ -140,24 +146,44 @@ impl FreeWake {
         out
     }
 
-    /// What the curvature between adjacent segments adds to the rolled-up vortices.
+    /// Gives every azimuth the velocities of the first one, turned.
+    fn turn_with_the_blades(&self, f: &Filament, v: &mut [Vec3]) {
+        for i in 1..self.settings.azimuths {
+            let angle = i as f64 * self.settings.step_rad();
+            for k in 0..=f.steps {
+                v[f.index(i, k)] = about_the_shaft(v[f.index(0, k)], angle);
+            }
+        }
+    }
+
+    /// What the curvature between adjacent segments adds to the tip vortices.
     fn add_arcs(&self, circulation: &CirculationMap, free: &[&Filament], out: &mut Velocities) {
         let peaks = circulation.outboard_peaks();
-        let azimuths = self.settings.azimuths;
         for (f, v) in free.iter().zip(out) {
             if f.steps != self.settings.far_steps() || f.node != self.rotor.panels() {
                 continue;
             }
-            for i in 0..azimuths {
-                let points = f.at(i);
-                for k in 1..f.steps {
-                    let release = (i + azimuths - k % azimuths) % azimuths;
-                    let strength = circulation.row(release)[peaks[release]];
-                    let arc = [points[k - 1], points[k], points[k + 1]];
-                    let at = f.index(i, k);
-                    v[at] = add(v[at], arc_velocity(arc, strength, self.settings.core.radius));
-                }
+            for i in 0..self.settings.azimuths {
+                let at = f.index(i, 0)..=f.index(i, f.steps);
+                self.add_arcs_of(f.at(i), i, (circulation, &peaks), &mut v[at]);
             }
+        }
+    }
+
+    /// The same for the tip vortex of one blade at an azimuth.
+    pub(super) fn add_arcs_of(
+        &self,
+        points: &[Vec3],
+        azimuth: usize,
+        (circulation, peaks): (&CirculationMap, &[usize]),
+        v: &mut [Vec3],
+    ) {
+        let azimuths = self.settings.azimuths;
+        for (k, arc) in points.windows(3).enumerate() {
+            let release = (azimuth + azimuths - (k + 1) % azimuths) % azimuths;
+            let strength = circulation.row(release)[peaks[release]];
+            let arc = [arc[0], arc[1], arc[2]];
+            v[k + 1] = add(v[k + 1], arc_velocity(arc, strength, self.settings.core.radius));
         }
     }
 }
