@@ -3,7 +3,7 @@
 use crate::vector::Vec3;
 use crate::wake::{
     BladeLines, CirculationMap, FreeWake, FreeWakeSettings, InflowMap, LineInduction, WakeMarch,
-    WakeRotor,
+    WakeRotor, WakeSymmetry,
 };
 use crate::{FlightState, WakeError, momentum_inflow};
 use nalgebra::DVector;
@@ -133,7 +133,7 @@ impl Default for CouplingSettings {
 }
 
 /// Newton steps for the circulation in a still wake.
-const NEWTON_STEPS: usize = 40;
+const NEWTON_STEPS: usize = 100;
 /// Change of the inflow at which they end, tip speed.
 const NEWTON_TOLERANCE: f64 = 1e-10;
 /// Step of the angle of attack for slopes, tip speed of inflow.
@@ -232,6 +232,28 @@ impl BladeElementRotor<'_> {
         })
     }
 
+    /// The same at all azimuths of a wake; in an axial one, one azimuth is solved for all.
+    fn circulation_of(
+        &self,
+        wake: &FreeWake,
+        induction: &LineInduction,
+        start: &[f64],
+    ) -> Result<StillWake, WakeError> {
+        if wake.settings().symmetry == WakeSymmetry::Periodic {
+            return self.circulation_in(wake.flight(), induction, start);
+        }
+        let (azimuths, panels) = (induction.azimuths(), self.rotor.panels());
+        let one = induction.of_one_azimuth();
+        let still = self.circulation_in(wake.flight(), &one, &start[..panels])?;
+        Ok(StillWake {
+            circulation: CirculationMap::from_fn(azimuths, panels, |_, s| {
+                still.circulation.row(0)[s]
+            })?,
+            inflow: still.inflow.at_every_azimuth(azimuths),
+            in_plane: still.in_plane.at_every_azimuth(azimuths),
+        })
+    }
+
     /// Undistorted wake of a thrust coefficient to start from.
     ///
     /// # Errors
@@ -243,6 +265,16 @@ impl BladeElementRotor<'_> {
         thrust_coefficient: f64,
     ) -> Result<FreeWake, WakeError> {
         let inflow = momentum_inflow(&flight, thrust_coefficient)?;
+        let [_, cosine, sine] = self.motion.pitch_rad;
+        let cyclic = cosine.hypot(sine);
+        if settings.symmetry == WakeSymmetry::Axial && cyclic != 0.0 {
+            let expected = "0: an axial wake has none";
+            return Err(WakeError::BadInput {
+                quantity: "cyclic pitch, rad",
+                value: cyclic,
+                expected,
+            });
+        }
         let lines = self.lines(settings.azimuths);
         FreeWake::undistorted(self.rotor.clone(), settings.clone(), flight, inflow, lines)
     }
@@ -269,7 +301,7 @@ impl BladeElementRotor<'_> {
         let mut history = Vec::new();
         let mut change = f64::INFINITY;
         for update in 1..=coupling.updates {
-            let still = self.circulation_in(wake.flight(), &induction, &inflow)?;
+            let still = self.circulation_of(wake, &induction, &inflow)?;
             let pairs = still.inflow.values().iter().zip(&inflow);
             change = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
             inflow = still.inflow.values().to_vec();
@@ -312,7 +344,7 @@ impl BladeElementRotor<'_> {
         let mut change = f64::INFINITY;
         for update in 1..=coupling.updates {
             let induction = march.wake().line_induction(&circulation)?;
-            let mut still = self.circulation_in(march.wake().flight(), &induction, &inflow)?;
+            let mut still = self.circulation_of(march.wake(), &induction, &inflow)?;
             let pairs = still.inflow.values().iter().zip(&inflow);
             change = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
             inflow = still.inflow.values().to_vec();

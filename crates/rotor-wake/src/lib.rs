@@ -51,8 +51,9 @@ pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
     BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarTrailers, FreeWake,
-    FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ShedVorticity,
-    StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeRotor, contraction_drift,
+    FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ReleasePoint,
+    ShedVorticity, StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeRotor, WakeSymmetry,
+    contraction_drift,
 };
 
 /// The example of the crate's README, run as a documentation test.

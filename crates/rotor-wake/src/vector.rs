@@ -38,3 +38,9 @@ pub(crate) fn norm(a: Vec3) -> f64 {
 pub(crate) fn is_finite(a: Vec3) -> bool {
     a.iter().all(|x| x.is_finite())
 }
+
+/// A vector turned about the Z axis in the sense of rotation, rad.
+pub(crate) fn about_the_shaft([x, y, z]: Vec3, angle: f64) -> Vec3 {
+    let (sin, cos) = angle.sin_cos();
+    [x * cos - y * sin, x * sin + y * cos, z]
+}

@@ -1,7 +1,7 @@
 //! Where the lifting line of a blade is at every azimuth.
 
 use super::WakeRotor;
-use crate::vector::Vec3;
+use crate::vector::{Vec3, about_the_shaft, add, norm, scale, sub};
 use std::f64::consts::TAU;
 
 /// Ends of the panels in hub axes (unit `R`) at uniform azimuths, `[azimuth][node]`.
@@ -54,6 +54,21 @@ impl BladeLines {
         Self { edges, ..self }
     }
 
+    /// Largest distance of a node from where the blade at azimuth 0 would be when turned there, unit `R`.
+    pub(crate) fn departure_from_turning(&self) -> f64 {
+        let azimuths = self.azimuths();
+        let mut worst = 0.0_f64;
+        for i in 0..azimuths {
+            let angle = TAU * i as f64 / azimuths as f64;
+            for (first, here) in [(self.at(0), self.at(i)), (self.edge_at(0), self.edge_at(i))] {
+                for (start, p) in first.iter().zip(here) {
+                    worst = worst.max(norm(sub(about_the_shaft(*start, angle), *p)));
+                }
+            }
+        }
+        worst
+    }
+
     /// Number of azimuths.
     pub fn azimuths(&self) -> usize {
         self.points.len() / self.nodes
@@ -62,6 +77,15 @@ impl BladeLines {
     /// Where the trailers leave the blade at one azimuth.
     pub fn edge_at(&self, azimuth: usize) -> &[Vec3] {
         &self.edges[azimuth * self.nodes..(azimuth + 1) * self.nodes]
+    }
+
+    /// The trailing edge of one azimuth at a station between the nodes (unit `R`) of the rotor.
+    pub(crate) fn edge_between(&self, azimuth: usize, rotor: &WakeRotor, station: f64) -> Vec3 {
+        let nodes = rotor.nodes();
+        let above = nodes.partition_point(|r| *r < station).clamp(1, nodes.len() - 1);
+        let t = (station - nodes[above - 1]) / (nodes[above] - nodes[above - 1]);
+        let edge = self.edge_at(azimuth);
+        add(scale(edge[above - 1], 1.0 - t), scale(edge[above], t))
     }
 
     /// All nodes of the lifting line at one azimuth.

@@ -52,6 +52,13 @@ impl InflowMap {
         Ok(Self { values: values.to_vec(), series, ..self.clone() })
     }
 
+    /// A table of one azimuth repeated at all of them.
+    pub(crate) fn at_every_azimuth(&self, azimuths: usize) -> Self {
+        let values = self.row(0).repeat(azimuths);
+        let series = series(&values, self.stations.len());
+        Self { values, series, ..self.clone() }
+    }
+
     /// Number of azimuths.
     pub fn azimuths(&self) -> usize {
         self.values.len() / self.stations.len()

@@ -1,6 +1,6 @@
 //! The wake held still: inflow as a linear function of the circulation.
 
-use super::{CirculationMap, ControlPoint, FreeWake, InflowMap, WakeRotor};
+use super::{CirculationMap, ControlPoint, FreeWake, InflowMap, WakeRotor, WakeSymmetry};
 use crate::kernel::{BLOCK, for_each_velocity};
 use crate::vector::{Vec3, add, norm, scale, sub};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
@@ -44,9 +44,12 @@ impl FreeWake {
     fn line_targets(&self) -> Vec<TargetBlock> {
         let panels = self.rotor.panels();
         let mut blocks = Vec::new();
-        for phase in 0..self.phases() {
-            let targets: Vec<(usize, usize)> =
-                self.blade_azimuths(phase).flat_map(|i| (0..panels).map(move |s| (i, s))).collect();
+        for phase in 0..self.phases_that_differ() {
+            let targets: Vec<(usize, usize)> = self
+                .blade_azimuths(phase)
+                .take(self.blades_that_differ())
+                .flat_map(|i| (0..panels).map(move |s| (i, s)))
+                .collect();
             for chunk in targets.chunks(BLOCK) {
                 let mut block = TargetBlock {
                     phase,
@@ -92,7 +95,7 @@ impl FreeWake {
         let (azimuths, panels) = (self.settings.azimuths, self.rotor.panels());
         let size = azimuths * panels;
         let sources: Vec<_> = self.with_context(circulation, |context| {
-            (0..self.phases())
+            (0..self.phases_that_differ())
                 .map(|phase| {
                     let sources = self.load_sources(phase, context);
                     let segments = sources.unit_segments(context);
@@ -136,7 +139,23 @@ impl FreeWake {
                 out.down[(row, row)] -= own;
             }
         }
+        if self.settings.symmetry == WakeSymmetry::Axial {
+            for matrix in [&mut out.down, &mut out.along] {
+                turn_rows(matrix, panels);
+            }
+        }
         Ok(out)
+    }
+}
+
+/// Gives every azimuth the rows of the first one, with what is as far behind it.
+fn turn_rows(matrix: &mut DMatrix<f64>, panels: usize) {
+    let size = matrix.ncols();
+    for row in panels..size {
+        let shift = row - row % panels;
+        for column in 0..size {
+            matrix[(row, column)] = matrix[(row % panels, (column + size - shift) % size)];
+        }
     }
 }
 
@@ -149,6 +168,22 @@ impl LineInduction {
     /// Number of azimuths.
     pub fn azimuths(&self) -> usize {
         self.azimuths
+    }
+
+    /// The map of circulations that are the same at every azimuth, at one azimuth.
+    pub(crate) fn of_one_azimuth(&self) -> Self {
+        let panels = self.rotor.panels();
+        let summed = |matrix: &DMatrix<f64>| {
+            DMatrix::from_fn(panels, panels, |row, column| {
+                (0..self.azimuths).map(|i| matrix[(row, i * panels + column)]).sum()
+            })
+        };
+        Self {
+            rotor: self.rotor.clone(),
+            azimuths: 1,
+            down: summed(&self.down),
+            along: summed(&self.along),
+        }
     }
 
     /// Inflow of a circulation.

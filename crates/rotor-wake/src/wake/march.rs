@@ -5,8 +5,10 @@ use super::settings::NearWakeMotion;
 use super::sources::{BladeView, RollUp, SourceContext, Sources};
 use super::{CirculationMap, FreeWake};
 use crate::WakeError;
-use crate::kernel::induced_velocities;
-use crate::vector::{Vec3, add, is_finite, norm, scale, sub};
+use crate::kernel::{CoreModel, induced_velocities};
+use crate::vector::{Vec3, about_the_shaft, add, is_finite, norm, scale, sub};
+
+use std::f64::consts::TAU;
 
 /// Free filaments of one blade: `[filament][age]`.
 type Shape = Vec<Vec<Vec3>>;
@@ -34,7 +36,6 @@ struct BladeState {
 pub struct WakeMarch {
     wake: FreeWake,
     blades: Vec<BladeState>,
-    free: Vec<usize>,
     near_is_free: bool,
 }
 
@@ -44,7 +45,6 @@ impl WakeMarch {
         let near_is_free = wake.settings.near_wake_motion == NearWakeMotion::Free;
         let filaments: Vec<&Filament> =
             wake.near.iter().filter(|_| near_is_free).chain(&wake.far).collect();
-        let free = filaments.iter().map(|f| f.node).collect();
         let azimuths = wake.settings.azimuths;
         let shape = |i: usize| -> Shape { filaments.iter().map(|f| f.at(i).to_vec()).collect() };
         let blades = wake
@@ -55,7 +55,7 @@ impl WakeMarch {
                 velocity: Vec::new(),
             })
             .collect();
-        Self { wake, blades, free, near_is_free }
+        Self { wake, blades, near_is_free }
     }
 
     /// The wake of blade 0 over the last revolution.
@@ -127,22 +127,23 @@ impl WakeMarch {
             state.levels = [a.clone(), a, b1, c];
         }
         // predictor: the velocities at the new azimuth are those of the last one
-        self.carry(&old, &old);
+        let releases = self.wake.releases(circulation);
+        self.carry(&old, &old, &releases);
         self.refresh_velocities(circulation);
         let new: Vec<Shape> = self.blades.iter().map(|b| b.velocity.clone()).collect();
-        self.carry(&old, &new);
+        self.carry(&old, &new, &releases);
         self.refresh_velocities(circulation);
         self.record()
     }
 
     /// Fills the newest level of every blade.
-    fn carry(&mut self, old: &[Shape], new: &[Shape]) {
+    fn carry(&mut self, old: &[Shape], new: &[Shape], releases: &[Vec<Vec3>]) {
         let wake = &self.wake;
         let (step, stream) = (wake.settings.step_rad(), wake.free_stream());
         for ((state, old), new) in self.blades.iter_mut().zip(old).zip(new) {
             let [now, a, b, c] = &mut state.levels;
             for (j, points) in now.iter_mut().enumerate() {
-                points[0] = wake.lines.edge_at(state.azimuth)[self.free[j]];
+                points[0] = releases[j][state.azimuth];
                 for z in 1..points.len() {
                     let mut sum = [0.0; 3];
                     for v in [new[j][z], new[j][z - 1], old[j][z], old[j][z - 1]] {
@@ -176,14 +177,35 @@ impl WakeMarch {
         };
         let views: Vec<BladeView<'_>> = self.blades.iter().map(|b| self.view(b)).collect();
         let set = Sources::of_geometry(&views, &context).segments(&context, circulation.values());
+        let blades = wake.blades_that_differ();
+        let differing = &self.blades[..blades];
         let targets: Vec<Vec3> =
-            self.blades.iter().flat_map(|b| b.levels[0].iter().flatten().copied()).collect();
+            differing.iter().flat_map(|b| b.levels[0].iter().flatten().copied()).collect();
         let mut values = induced_velocities(&targets, &set).into_iter();
-        for state in &mut self.blades {
-            state.velocity = state.levels[0]
+        let corrected = wake.settings.core.model == CoreModel::RosenheadMoore;
+        let peaks = circulation.outboard_peaks();
+        let mut velocities: Vec<Shape> = Vec::with_capacity(self.blades.len());
+        for state in differing {
+            let mut of_blade: Shape = state.levels[0]
                 .iter()
                 .map(|points| values.by_ref().take(points.len()).collect())
                 .collect();
+            if let (true, Some(tip), Some(v)) =
+                (corrected, state.levels[0].last(), of_blade.last_mut())
+            {
+                wake.add_arcs_of(tip, state.azimuth, (circulation, &peaks), v);
+            }
+            velocities.push(of_blade);
+        }
+        let first = velocities.first().cloned().unwrap_or_default();
+        let spacing = TAU / self.blades.len() as f64;
+        // in an axial wake the other blades have what the first one has, turned
+        for b in blades..self.blades.len() {
+            let turned = |v: &Vec3| about_the_shaft(*v, b as f64 * spacing);
+            velocities.push(first.iter().map(|v| v.iter().map(turned).collect()).collect());
+        }
+        for (state, velocity) in self.blades.iter_mut().zip(velocities) {
+            state.velocity = velocity;
         }
     }
 

@@ -3,24 +3,27 @@
 mod blades;
 mod circulation;
 mod filament;
+mod free_wake;
 mod inflow_map;
 mod influence;
 mod march;
+mod placement;
 mod rotor;
 mod settings;
 mod solve;
 mod sources;
 mod sweep;
+mod velocity;
 
 pub use blades::BladeLines;
 pub use circulation::CirculationMap;
+pub use free_wake::{FreeWake, WakeFilament};
 pub use inflow_map::InflowMap;
 pub use influence::{FrozenWake, LineInduction};
 pub use march::{WakeMarch, contraction_drift};
 pub use rotor::WakeRotor;
 pub use settings::{
-    ControlPoint, CoreSettings, FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity,
-    StrainEffect,
+    ControlPoint, CoreSettings, FarTrailers, FreeWakeSettings, NearWakeMotion, ReleasePoint,
+    ShedVorticity, StrainEffect, WakeSymmetry,
 };
 pub use solve::{ClosestPassage, WakeConvergence};
-pub use sweep::{FreeWake, WakeFilament};

@@ -61,6 +61,32 @@ pub enum FarTrailers {
     Stations(Vec<f64>),
 }
 
+/// Where on the trailing edge a rolled-up vortex is released.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ReleasePoint {
+    /// At its station: the tip vortex at the tip.
+    #[default]
+    Station,
+    /// At the centroid of the vorticity it collects, which rolling up conserves. A tip vortex leaves some
+    /// 4 % of the radius inboard of the tip.
+    ///
+    /// Source: A. Betz, Z. angew. Math. Mech. 12 (1932) 164, NACA TM 713.
+    Centroid,
+}
+
+/// What the wakes at different azimuths have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum WakeSymmetry {
+    /// Each azimuth has its own, the same every revolution.
+    #[default]
+    Periodic,
+    /// The wake turns with the blades as it is: a rotor in axial flight without cyclic pitch. The pairing of
+    /// neighbouring turns, which grows from differences between azimuths, is left out.
+    Axial,
+}
+
 /// Whether stretching makes a vortex thinner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -128,10 +154,14 @@ pub struct FreeWakeSettings {
     pub shed: ShedVorticity,
     /// Filaments behind the near wake.
     pub far: FarTrailers,
+    /// Where on the trailing edge these are released.
+    pub release: ReleasePoint,
     /// Where the sections feel the induced velocity.
     pub control_point: ControlPoint,
     /// Vortex cores.
     pub core: CoreSettings,
+    /// What the wakes at different azimuths have in common.
+    pub symmetry: WakeSymmetry,
     /// Induced velocities are computed at every `velocity_stride`-th age and interpolated between
     /// along the path of the air; 1 computes all.
     pub velocity_stride: usize,
@@ -153,8 +183,10 @@ impl Default for FreeWakeSettings {
             near_wake_motion: NearWakeMotion::default(),
             shed: ShedVorticity::default(),
             far: FarTrailers::default(),
+            release: ReleasePoint::default(),
             control_point: ControlPoint::default(),
             core: CoreSettings::default(),
+            symmetry: WakeSymmetry::default(),
             velocity_stride: 1,
             relaxation: 0.5,
             tolerance: 1e-4,

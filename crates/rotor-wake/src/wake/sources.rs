@@ -1,6 +1,8 @@
 //! The vortex segments of all blades at one instant, and how each depends on the circulation.
 
-use super::settings::{FarTrailers, FreeWakeSettings, NearWakeMotion, ShedVorticity, StrainEffect};
+use super::settings::{
+    FarTrailers, FreeWakeSettings, NearWakeMotion, ReleasePoint, ShedVorticity, StrainEffect,
+};
 use super::{CirculationMap, WakeRotor};
 use crate::SegmentSet;
 use crate::vector::{Vec3, add, norm, scale, sub};
@@ -85,6 +87,53 @@ impl RollUp {
         Self { nodes, panels }
     }
 
+    /// Where each filament is released at every azimuth, `[filament][azimuth]`, unit `R`.
+    pub(crate) fn release_stations(
+        &self,
+        point: ReleasePoint,
+        rotor: &WakeRotor,
+        circulation: &CirculationMap,
+    ) -> Vec<Vec<f64>> {
+        let of = |f: usize, azimuth: usize| {
+            let own = rotor.nodes()[self.nodes[f]];
+            match point {
+                ReleasePoint::Station => own,
+                ReleasePoint::Centroid => {
+                    self.centroid(f, azimuth, rotor, circulation).unwrap_or(own)
+                }
+            }
+        };
+        (0..self.nodes.len())
+            .map(|f| (0..circulation.azimuths()).map(|i| of(f, i)).collect())
+            .collect()
+    }
+
+    /// Centroid of what filament `f` collects at an azimuth, within the nodes that trail it; none if they trail
+    /// nothing.
+    fn centroid(
+        &self,
+        f: usize,
+        azimuth: usize,
+        rotor: &WakeRotor,
+        circulation: &CirculationMap,
+    ) -> Option<f64> {
+        let [from, to] = self.panels[f][azimuth];
+        let to = if self.nodes[f] == rotor.panels() { rotor.panels() + 1 } else { to };
+        let gamma = circulation.row(azimuth);
+        let inboard = |n: usize| n.checked_sub(1).map_or(0.0, |s| gamma[s]);
+        let outboard = |n: usize| gamma.get(n).copied().unwrap_or(0.0);
+        let (mut strength, mut size, mut moment) = (0.0, 0.0, 0.0);
+        for n in from..to {
+            let trailed: f64 = inboard(n) - outboard(n);
+            strength += trailed;
+            size += trailed.abs();
+            moment += trailed * rotor.nodes()[n];
+        }
+        // where both senses are trailed, their sum may have its centroid far off
+        (strength.abs() > 0.1 * size)
+            .then(|| (moment / strength).clamp(rotor.nodes()[from], rotor.nodes()[to - 1]))
+    }
+
     /// Terms of filament `f` between two release azimuths.
     fn terms(&self, f: usize, releases: [usize; 2], panels: usize) -> Terms {
         let mut terms = [(0, 0.0); 4];
@@ -143,6 +192,7 @@ impl Sources {
         let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
         for view in views {
             out.bound(view, context);
+            out.chords(view, context, |n| young_radius(context, n));
             out.near(view, context);
             out.far(view, context, context.settings.near_steps());
         }
@@ -158,6 +208,8 @@ impl Sources {
         let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
         for view in views {
             out.bound(view, context);
+            // about to roll up: as thick as what comes of them
+            out.chords(view, context, |_| context.settings.core.radius);
             out.far(view, context, 0);
         }
         out
@@ -199,13 +251,22 @@ impl Sources {
             let terms = Terms::pair((view.azimuth * panels + s, 1.0), (0, 0.0));
             self.push([ends[0], ends[1]], context.settings.core.near_radius, terms);
         }
-        // along the chord to where the trailers leave
+    }
+
+    /// Along the chord to where the trailers leave, with a core radius by node.
+    fn chords(
+        &mut self,
+        view: &BladeView<'_>,
+        context: &SourceContext<'_>,
+        radius: impl Fn(usize) -> f64,
+    ) {
+        let panels = context.rotor.panels();
         for (n, (from, to)) in view.line.iter().zip(view.edge).enumerate() {
             if norm(sub(*to, *from)) > 0.0 {
                 let panel = |n: usize| view.azimuth * panels + n;
                 let inboard = if n > 0 { (panel(n - 1), 1.0) } else { (0, 0.0) };
                 let outboard = if n < panels { (panel(n), -1.0) } else { (0, 0.0) };
-                self.push([*from, *to], young_radius(context, n), Terms::pair(inboard, outboard));
+                self.push([*from, *to], radius(n), Terms::pair(inboard, outboard));
             }
         }
     }

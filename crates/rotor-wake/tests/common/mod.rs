@@ -3,8 +3,9 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use rotor_wake::{
-    BladeElementRotor, CoreSettings, FarTrailers, FlightState, FreeWakeSettings, RigidMotion,
-    SectionPolar, ShedVorticity, WakeRotor,
+    AttachedPolar, BladeElementRotor, ControlPoint, CoreModel, CoreSettings, FarTrailers,
+    FlightState, FreeWakeSettings, RigidMotion, SectionPolar, ShedVorticity, WakeRotor,
+    WakeSymmetry,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -63,6 +64,54 @@ pub(crate) fn reference_settings(near_wake_deg: f64) -> FreeWakeSettings {
         },
         shed: ShedVorticity::InWake,
         far: FarTrailers::TipAndRoot,
+        ..FreeWakeSettings::default()
+    }
+}
+
+const POLAR: AttachedPolar = AttachedPolar { zero_lift_drag: 0.008, drag_growth: 0.1 };
+
+/// The model rotor of F. X. Caradonna and C. Tung, NASA TM 81232 (1981): two untwisted blades of NACA 0012, tip
+/// Mach number 0.439.
+pub(crate) fn caradonna_tung(pitch_deg: f64) -> BladeElementRotor<'static> {
+    BladeElementRotor {
+        rotor: WakeRotor::cosine(2, 0.19, 20).unwrap(),
+        chord: 0.1905 / 1.143,
+        twist_rad: 0.0,
+        tip_mach: 0.439,
+        motion: RigidMotion { pitch_rad: [pitch_deg.to_radians(), 0.0, 0.0], flap_rad: [0.0; 3] },
+        polar: &POLAR,
+    }
+}
+
+/// Four slender blades with twist.
+pub(crate) fn landgrebe_rotor() -> BladeElementRotor<'static> {
+    BladeElementRotor {
+        rotor: WakeRotor::cosine(4, 0.19, 20).unwrap(),
+        chord: 0.055,
+        twist_rad: (-8.0_f64).to_radians(),
+        tip_mach: 0.6,
+        motion: RigidMotion { pitch_rad: [8.5_f64.to_radians(), 0.0, 0.0], flap_rad: [0.0; 3] },
+        polar: &POLAR,
+    }
+}
+
+/// An isolated rotor in hover: sections feel the wake at Weissinger's points; what is trailed rolls up within a
+/// quarter of a revolution, the sheet inboard of the tip vortex into vortices where it was trailed.
+pub(crate) fn hover_settings(model: CoreModel) -> FreeWakeSettings {
+    FreeWakeSettings {
+        turns: 3,
+        far_turns: 6,
+        near_wake_rad: 0.25 * TAU,
+        far: FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]),
+        control_point: ControlPoint::ThreeQuarterChord,
+        symmetry: WakeSymmetry::Axial,
+        core: CoreSettings {
+            model,
+            radius: 0.03,
+            panel_share: 0.3,
+            viscosity: 8.7e-8,
+            ..CoreSettings::default()
+        },
         ..FreeWakeSettings::default()
     }
 }

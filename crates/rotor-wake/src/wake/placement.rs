@@ -1,0 +1,107 @@
+//! Where the wake lies without free motion, and the same wake on another grid.
+
+use super::filament::Filament;
+use super::settings::NearWakeMotion;
+use super::{BladeLines, FreeWake};
+use crate::WakeError;
+use crate::vector::{Vec3, add, scale, sub};
+
+impl FreeWake {
+    /// The same wake on another number of azimuth steps: its distortion against undistorted helices,
+    /// interpolated linearly along azimuth and age; the start of the next stage of a sequence of grids.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] if the number does not suit the rotor.
+    pub fn on_grid(&self, azimuths: usize, lines: BladeLines) -> Result<Self, WakeError> {
+        let settings = self.settings.with_azimuths(azimuths);
+        let mut out = Self::undistorted(
+            self.rotor.clone(),
+            settings,
+            self.flight,
+            self.carrying_inflow,
+            lines,
+        )?;
+        let ratio = (self.settings.azimuths, azimuths);
+        let helix = out.clone();
+        let pairs = out.far.iter_mut().zip(&self.far).chain(out.near.iter_mut().zip(&self.near));
+        for (new, old) in pairs {
+            let node = new.node;
+            let mut distortion = old.clone();
+            distortion
+                .fill(self.settings.azimuths, |i, k| sub(old.at(i)[k], self.carried(node, i, k)));
+            new.fill(azimuths, |i, k| {
+                add(helix.carried(node, i, k), sampled(&distortion, i, k, ratio))
+            });
+        }
+        out.place_near_wake();
+        Ok(out)
+    }
+
+    /// Point that node `node` released `k` steps before azimuth `i`, carried undistorted.
+    pub(crate) fn carried(&self, node: usize, i: usize, k: usize) -> Vec3 {
+        let azimuths = self.settings.azimuths;
+        let release = self.lines.edge_at((i + azimuths - k % azimuths) % azimuths)[node];
+        add(release, self.wind_over(k))
+    }
+
+    /// How far the free stream and the mean inflow carry within `k` steps.
+    fn wind_over(&self, k: usize) -> Vec3 {
+        let wind = sub(self.free_stream(), [0.0, 0.0, self.carrying_inflow]);
+        scale(wind, k as f64 * self.settings.step_rad())
+    }
+
+    /// Puts the near wake where its motion is prescribed.
+    pub(crate) fn place_near_wake(&mut self) {
+        let azimuths = self.settings.azimuths;
+        let motion = self.settings.near_wake_motion;
+        let mut near = std::mem::take(&mut self.near);
+        for filament in &mut near {
+            let node = filament.node;
+            let place = |i: usize, k: usize| match motion {
+                // a free one keeps its shape but for the release
+                NearWakeMotion::Free if k > 0 => filament.at(i)[k],
+                NearWakeMotion::BladePlane => self.swept(node, i, k),
+                NearWakeMotion::FollowsTip => self.following(node, i, k),
+                _ => self.carried(node, i, k),
+            };
+            let mut points = Vec::with_capacity(filament.points.len());
+            for i in 0..azimuths {
+                points.extend((0..=filament.steps).map(|k| place(i, k)));
+            }
+            filament.points = points;
+        }
+        self.near = near;
+    }
+
+    /// The carried point moved by its share of the distortion of the tip vortex.
+    fn following(&self, node: usize, i: usize, k: usize) -> Vec3 {
+        let carried = self.carried(node, i, k);
+        match self.far.last() {
+            Some(tip) if k <= tip.steps => {
+                let azimuths = self.settings.azimuths;
+                let released = tip.at((i + azimuths - k % azimuths) % azimuths)[0];
+                let moved = sub(tip.at(i)[k], add(released, self.wind_over(k)));
+                add(carried, scale(moved, self.rotor.nodes()[node]))
+            }
+            _ => carried,
+        }
+    }
+
+    /// The arc behind a blade at azimuth `i` on which its node would come back by `k` steps.
+    fn swept(&self, node: usize, i: usize, k: usize) -> Vec3 {
+        let [x, y, z] = self.lines.edge_at(i)[node];
+        let (sin, cos) = (k as f64 * self.settings.step_rad()).sin_cos();
+        [x * cos + y * sin, y * cos - x * sin, z]
+    }
+}
+
+/// Point of a filament of another grid, linear between its nodes; grids by their azimuth steps.
+fn sampled(old: &Filament, i: usize, k: usize, (before, now): (usize, usize)) -> Vec3 {
+    let azimuths = before;
+    let (p, z) = (i * before / now, k * before / now);
+    let fraction = |n: usize| (n * before % now) as f64 / now as f64;
+    let (s, t) = (fraction(i), fraction(k));
+    let value = |p: usize, z: usize| old.at(p % azimuths)[z.min(old.steps)];
+    let mix = |a: Vec3, b: Vec3, t: f64| add(scale(a, 1.0 - t), scale(b, t));
+    mix(mix(value(p, z), value(p, z + 1), t), mix(value(p + 1, z), value(p + 1, z + 1), t), s)
+}
