@@ -93,7 +93,7 @@ pub fn rotating_modes(case: &Case, question: &ModesQuestion) -> Result<ModesResu
     let fan = question.speed_ratios.iter().map(|ratio| at(*ratio)).collect::<Result<_, _>>()?;
     let nominal = at(1.0)?;
     let warnings = undamped_at_a_harmonic(case, &nominal.modes);
-    Ok(ModesResult { fan, warnings, ..nominal })
+    Ok(ModesResult { warnings, fan, ..nominal })
 }
 
 /// Lag modes at a harmonic of the rotor speed that nothing damps.
