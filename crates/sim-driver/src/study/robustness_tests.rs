@@ -11,8 +11,9 @@ const CONTROLS: usize = 4;
 fn matrix() -> DMatrix<f64> {
     // well conditioned, of no symmetry
     DMatrix::from_fn(LOADS, CONTROLS, |i, j| {
+        let diagonal = if i % CONTROLS == j { 2.0 } else { 0.0 };
         let (i, j) = (i as f64, j as f64);
-        (1.3 * i + 2.1 * j + 0.4 * i * j).sin() + if i % 4.0 == j { 2.0 } else { 0.0 }
+        (1.3 * i + 2.1 * j + 0.4 * i * j).sin() + diagonal
     })
 }
 
