@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
+use crate::periodic::Iterate;
 use crate::{Orbit, PeriodicError, PeriodicSolver, PeriodicSystem};
 
 /// Size of a displacement in the differences that apply the exact Jacobian: far above rounding, far
@@ -33,6 +34,24 @@ impl Known {
         add(&mut self.image, factor, &other.image);
     }
 
+    /// What is new in it, to an image of unit size; none if that is nothing.
+    fn beyond(mut self, basis: &[Self]) -> Option<Self> {
+        let whole = self.image.norm();
+        // twice is enough to be orthogonal to rounding
+        for _ in 0..2 {
+            for known in basis {
+                let along = self.image.dot(&known.image);
+                self.add(-along, known);
+            }
+        }
+        let size = self.image.norm();
+        if size <= DEPENDENT * whole {
+            return None;
+        }
+        self.scale(1.0 / size);
+        Some(self)
+    }
+
     fn scale(&mut self, factor: f64) {
         self.direction *= factor;
         self.force *= factor;
@@ -56,6 +75,28 @@ pub struct LinearResponse {
 }
 
 impl PeriodicSolver {
+    /// What directions of an orbit bring, by differences of the system.
+    fn images<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        (orbit, base): (&Orbit, &Iterate),
+        directions: Vec<DMatrix<f64>>,
+    ) -> Result<Vec<Known>, PeriodicError<S::Error>>
+    where
+        S::Error: Send,
+    {
+        let image = |direction: DMatrix<f64>| {
+            let nodal = &orbit.nodal + &direction * DIFFERENCE;
+            let moved = self.evaluate(system, Orbit { nodal }, 0, orbit)?;
+            Ok(Known {
+                direction,
+                force: (moved.force - &base.force) / DIFFERENCE,
+                image: (moved.residual - &base.residual) / DIFFERENCE,
+            })
+        };
+        directions.into_par_iter().map(image).collect()
+    }
+
     /// Changes of a converged orbit for small changes of the load `f`.
     ///
     /// ```text
@@ -158,34 +199,11 @@ impl PeriodicSolver {
                     if size > 0.0 { -step / size } else { -step }
                 })
                 .collect();
-            let this = &*self;
-            let found = directions
-                .into_par_iter()
-                .map(|direction| {
-                    let nodal = &orbit.nodal + &direction * DIFFERENCE;
-                    let moved = this.evaluate(system, Orbit { nodal }, 0, orbit)?;
-                    Ok(Known {
-                        direction,
-                        force: (moved.force - &base.force) / DIFFERENCE,
-                        image: as_accelerations((moved.residual - &base.residual) / DIFFERENCE),
-                    })
-                })
-                .collect::<Result<Vec<_>, PeriodicError<S::Error>>>()?;
+            let found = self.images(system, (orbit, &base), directions)?;
             evaluations += found.len();
             for mut new in found {
-                let whole = new.image.norm();
-                // twice is enough to be orthogonal to rounding
-                for _ in 0..2 {
-                    for known in &basis {
-                        let along = new.image.dot(&known.image);
-                        new.add(-along, known);
-                    }
-                }
-                let size = new.image.norm();
-                if size <= DEPENDENT * whole {
-                    continue;
-                }
-                new.scale(1.0 / size);
+                new.image = as_accelerations(new.image);
+                let Some(new) = new.beyond(&basis) else { continue };
                 let changed = changes.iter_mut().zip(&mut force_changes);
                 for (r, (change, force)) in left.iter_mut().zip(changed) {
                     let along = r.dot(&new.image);

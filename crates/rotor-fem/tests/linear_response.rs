@@ -4,8 +4,8 @@
 
 use nalgebra::{DMatrix, DVector};
 use rotor_fem::{
-    LinearCoefficients, LinearPeriodic, LocalTangent, Orbit, OrbitSamples, PeriodicError,
-    PeriodicSettings, PeriodicSolver, PeriodicSystem, TimeElements,
+    LinearCoefficients, LinearPeriodic, LocalTangent, Orbit, OrbitMemory, OrbitSamples,
+    PeriodicError, PeriodicSettings, PeriodicSolver, PeriodicSystem, TimeElements,
 };
 use std::convert::Infallible;
 
@@ -126,4 +126,97 @@ fn a_load_of_the_wrong_shape_is_refused_and_none_costs_nothing() {
     let found = solver.linear_response(&system, &orbit, &still, 1e-6).unwrap();
     assert!(found.changes[0].sample(solver.time()).q.amax() < f64::MIN_POSITIVE);
     assert_eq!(found.evaluations, 1);
+}
+
+/// A linear memory, `f_2 += 3 mean q_1`, which the Newton matrix may be told of.
+struct Remembering<S> {
+    local: S,
+    told: bool,
+}
+
+const MEMORY: f64 = 3.0;
+
+impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for Remembering<S> {
+    type Error = Infallible;
+
+    fn dof(&self) -> usize {
+        self.local.dof()
+    }
+
+    fn mass(&self) -> &DMatrix<f64> {
+        self.local.mass()
+    }
+
+    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
+        self.local.residual(orbit, out)?;
+        let mean = orbit.q.row(0).mean();
+        for i in 0..out.ncols() {
+            out[(1, i)] += MEMORY * mean;
+        }
+        Ok(())
+    }
+
+    fn tangents(&self, orbit: &OrbitSamples) -> Result<Vec<LocalTangent>, Infallible> {
+        self.local.tangents(orbit)
+    }
+
+    fn memory(&self, orbit: &OrbitSamples) -> Result<Option<OrbitMemory>, Infallible> {
+        let points = orbit.q.ncols();
+        let mut memory = OrbitMemory::zero(DOF, points);
+        for now in 0..points {
+            for then in 0..points {
+                memory.dq[(now * DOF + 1, then * DOF)] = MEMORY / points as f64;
+            }
+        }
+        Ok(self.told.then_some(memory))
+    }
+}
+
+#[test]
+fn a_newton_matrix_that_knows_the_memory_needs_one_step() {
+    let [known, unknown] = [true, false].map(|told| {
+        let local = LinearPeriodic::new(DMatrix::identity(DOF, DOF), coefficients);
+        let system = Remembering { local, told };
+        let mut solver = solver();
+        let found = solver.solve(&system, &Orbit::zero(solver.time(), DOF)).unwrap();
+        let history = &found.residual_history;
+        (history[1] / history[0], found.orbit.sample(solver.time()).q)
+    });
+    // the equations are linear
+    assert!(known.0 < 1e-10, "{:e}", known.0);
+    assert!(unknown.0 > 1e-3, "{:e}", unknown.0);
+    assert!((known.1 - unknown.1).amax() < 1e-11);
+}
+
+#[test]
+fn a_memory_of_the_wrong_shape_is_refused() {
+    struct Misshapen(LinearPeriodic<fn(f64) -> LinearCoefficients>);
+    impl PeriodicSystem for Misshapen {
+        type Error = Infallible;
+
+        fn dof(&self) -> usize {
+            DOF
+        }
+
+        fn mass(&self) -> &DMatrix<f64> {
+            self.0.mass()
+        }
+
+        fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
+            self.0.residual(orbit, out)
+        }
+
+        fn tangents(&self, orbit: &OrbitSamples) -> Result<Vec<LocalTangent>, Infallible> {
+            self.0.tangents(orbit)
+        }
+
+        fn memory(&self, _: &OrbitSamples) -> Result<Option<OrbitMemory>, Infallible> {
+            Ok(Some(OrbitMemory::zero(DOF, 3)))
+        }
+    }
+    let local: fn(f64) -> LinearCoefficients = coefficients;
+    let system = Misshapen(LinearPeriodic::new(DMatrix::identity(DOF, DOF), local));
+    let mut solver = solver();
+    let found = solver.solve(&system, &Orbit::zero(solver.time(), DOF));
+    assert!(matches!(found, Err(PeriodicError::Shape { .. })), "{found:?}");
 }

@@ -1,7 +1,6 @@
 //! The memory of the unsteady sections in the Newton matrix: what it is, and what it is needed for.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
-#![expect(clippy::print_stdout, reason = "the numbers of iterations are worth seeing")]
 
 mod common;
 

@@ -43,7 +43,7 @@ impl StationAir {
         for channel in &self.lags {
             let inputs = [channel.input[0], channel.input[1]];
             let outputs = || channel.gains.iter().filter(|(output, _)| *output < 2);
-            if inputs == [0.0; 2] || outputs().next().is_none() {
+            if inputs.iter().all(|v| *v == 0.0) || outputs().next().is_none() {
                 continue;
             }
             any = true;

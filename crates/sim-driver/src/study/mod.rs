@@ -31,3 +31,6 @@ pub(crate) use run::loads_cost;
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
 pub use sensitivity::{Assumptions, Sensitivity, sensitivities, sensitivity_csv};
 pub use tables::{histories_csv, study_report};
+
+#[cfg(test)]
+mod power_weight_tests;

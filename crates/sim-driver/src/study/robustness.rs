@@ -115,10 +115,7 @@ impl Plant for Disturbed {
         let flaps = self.flaps(control_volt)?;
         let mut loads = self.loads(&flaps)?;
         self.answers += 1;
-        for load in &mut loads {
-            let draw: f64 = StandardNormal.sample(&mut self.random);
-            *load += self.noise * draw;
-        }
+        add_noise(&mut loads, self.noise, &mut self.random);
         let pairs = (0..self.layout().pairs()).filter_map(|p| self.layout().flap_and_harmonic(p));
         Ok(Measurement {
             hub_loads: loads.to_vec(),
@@ -141,6 +138,14 @@ impl Plant for Disturbed {
 
     fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, PlantError> {
         self.plant.limits(control_volt)
+    }
+}
+
+/// Adds normal noise of a standard deviation to every load.
+fn add_noise(loads: &mut [f64], deviation: f64, random: &mut ChaCha8Rng) {
+    for load in loads {
+        let draw: f64 = StandardNormal.sample(random);
+        *load += deviation * draw;
     }
 }
 
@@ -347,3 +352,7 @@ pub fn robustness_csv(cells: &[RobustnessCell]) -> String {
     }
     text
 }
+
+#[cfg(test)]
+#[path = "robustness_tests.rs"]
+mod tests;

@@ -1,0 +1,61 @@
+//! The weight of the actuation power on the ideal actuator: where it moves the optimum.
+
+use super::*;
+use crate::case::{ControlActuator, EffortChoice, LoadedCase, PAPER_CASE, shipped_case};
+use hhc_control::Plant;
+use nalgebra::{DMatrix, DVector};
+
+fn ideal_case(weight_per_watt: f64) -> LoadedCase {
+    let mut loaded = shipped_case(PAPER_CASE).unwrap();
+    let control = &mut loaded.case.control;
+    control.actuators = vec![ControlActuator::Ideal];
+    control.harmonics = vec![vec![4]];
+    control.effort = EffortChoice::Given { rho: 0.0 };
+    control.power_weight_per_watt = weight_per_watt;
+    loaded
+}
+
+/// `(T' W T + w P) u = -T' W Z0`, `P` the power of each pair per V^2: the optimum of the loop is that of the
+/// closed form, which lies at a fraction of the power of the free one.
+#[test]
+fn the_weight_of_the_power_moves_the_optimum_as_the_closed_form_says() {
+    let rotor = TrimmedRotor::new(&ideal_case(0.0), None).unwrap();
+    let weight = 2e-7;
+    let found = [0.0, weight].map(|weight| {
+        let loaded = ideal_case(weight);
+        let drives = Drives::new(&loaded.case, None).unwrap();
+        let study = control_set(&loaded.case, &rotor, &drives, &[4], &|| ()).unwrap().remove(0);
+        (study.control_volt.clone(), study.j_power, loaded, drives)
+    });
+    let [(free, ..), (weighed, j_power, loaded, drives)] = found;
+    let full = drives.limit(4).unwrap();
+    let mut plant = RotorPlant::new(rotor.clone(), drives.ideal.clone(), &[4], &[full])
+        .unwrap()
+        .with_power(None, weight)
+        .unwrap();
+    let zero = plant.layout().zero();
+    let t = plant.linearised_t(&zero).unwrap().unwrap();
+    let t = t.as_matrix().rows(0, 12).into_owned();
+    let z = DVector::from_column_slice(&rotor.trim().rotor.hub.harmonic(loaded.case.blades));
+    let unit_power = |k: usize| {
+        let mut unit = zero.clone();
+        unit[k] = 1.0;
+        plant.power_cost(&unit)
+    };
+    let power = DMatrix::from_diagonal(&DVector::from_fn(zero.len(), |k, _| unit_power(k)));
+    let closed = |power: &DMatrix<f64>| {
+        (t.transpose() * &t + power).lu().solve(&(-t.transpose() * &z)).unwrap()
+    };
+    for (found, exact) in [(&free, closed(&(&power * 0.0))), (&weighed, closed(&power))] {
+        let off = (DVector::from_column_slice(found) - &exact).norm() / exact.norm();
+        println!("loop against closed form: {off:.1e}");
+        assert!(off <= 5e-3, "{off:e}");
+    }
+    let moved = (DVector::from_column_slice(&free) - DVector::from_column_slice(&weighed)).norm();
+    let size = DVector::from_column_slice(&free).norm();
+    println!("moved by {:.2} of the free optimum", moved / size);
+    assert!(moved > 0.1 * size, "{moved} {size}");
+    assert!(plant.power_cost(&weighed) < 0.7 * plant.power_cost(&free));
+    let told = plant.power_cost(&weighed);
+    assert!((j_power - told).abs() <= 1e-12 * told, "{j_power} {told}");
+}
