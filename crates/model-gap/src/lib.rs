@@ -53,7 +53,7 @@ pub use experiment::{Channel, Experiment, Role, Use};
 pub use harmonics::{FirstHarmonicError, HarmonicFit, ResidualHarmonic, ResidualHarmonics};
 pub use misfit::Misfit;
 pub use noise::NoiseEstimate;
-pub use resampling::{drawn_again, noise_of};
+pub use resampling::NoiseDraw;
 pub use split::SplitRule;
 pub use stimulus::Stimulus;
 pub use summary::{RunError, Summary, WorstRun};

@@ -1,37 +1,55 @@
 //! Noise taken from a residual and drawn again.
 
-/// Samples of noise that are drawn together: a colour of a few samples is kept.
-const TOGETHER: usize = 16;
-/// Half the window of the mean that noise is taken about.
-const HALF_WINDOW: usize = 4;
-
-/// What is noise in a residual: each sample about the mean of itself and the four on either side, made as
-/// large as the noise would be without a mean taken out. What is smooth over nine samples stays out.
-pub fn noise_of(residual: &[f64]) -> Vec<f64> {
-    let n = residual.len();
-    (0..n)
-        .map(|i| {
-            let about = &residual[i.saturating_sub(HALF_WINDOW)..(i + HALF_WINDOW + 1).min(n)];
-            let count = about.len() as f64;
-            let off = residual[i] - about.iter().sum::<f64>() / count;
-            // the mean holds a share of the sample itself
-            off * (count / (count - 1.0).max(1.0)).sqrt()
-        })
-        .collect()
+/// How noise is taken from a residual and drawn again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoiseDraw {
+    /// Half the window of the mean that noise is taken about, samples: what is smoother counts as structure.
+    pub half_window: usize,
+    /// Samples that are drawn together: their colour is kept. Well below the window, or the slow part that the
+    /// mean took is missed.
+    pub together: usize,
 }
 
-/// Noise drawn again in blocks of 16 samples from anywhere in a record (moving-block bootstrap: H. R. Kuensch,
-/// Annals of Statistics 17 (1989)); the same for the same seed.
-pub fn drawn_again(noise: &[f64], seed: u64) -> Vec<f64> {
-    let n = noise.len();
-    let mut random = SplitMix(seed);
-    let mut drawn = Vec::with_capacity(n + TOGETHER);
-    while drawn.len() < n {
-        let first = random.below(n.saturating_sub(TOGETHER) + 1);
-        drawn.extend(noise[first..].iter().take(TOGETHER));
+impl NoiseDraw {
+    /// For records with structure that is not noise: what is smooth over nine samples stays out.
+    pub const SHARP: Self = Self { half_window: 4, together: 16 };
+    /// For residuals of a model that explains them: noise of a colour up to tens of samples, and with it what
+    /// structure of that kind is left.
+    pub const BROAD: Self = Self { half_window: 100, together: 48 };
+
+    /// What is noise in a residual: each sample about the mean of its window, made as large as the noise would
+    /// be without a mean taken out.
+    pub fn noise_of(self, residual: &[f64]) -> Vec<f64> {
+        let n = residual.len();
+        let mut sums = vec![0.0; n + 1];
+        for (i, v) in residual.iter().enumerate() {
+            sums[i + 1] = sums[i] + v;
+        }
+        (0..n)
+            .map(|i| {
+                let (from, to) =
+                    (i.saturating_sub(self.half_window), (i + self.half_window + 1).min(n));
+                let count = (to - from) as f64;
+                let off = residual[i] - (sums[to] - sums[from]) / count;
+                // the mean holds a share of the sample itself
+                off * (count / (count - 1.0).max(1.0)).sqrt()
+            })
+            .collect()
     }
-    drawn.truncate(n);
-    drawn
+
+    /// Noise drawn again in blocks from anywhere in a record (moving-block bootstrap: H. R. Kuensch,
+    /// Annals of Statistics 17 (1989)); the same for the same seed.
+    pub fn again(self, noise: &[f64], seed: u64) -> Vec<f64> {
+        let n = noise.len();
+        let mut random = SplitMix(seed);
+        let mut drawn = Vec::with_capacity(n + self.together);
+        while drawn.len() < n {
+            let first = random.below(n.saturating_sub(self.together) + 1);
+            drawn.extend(noise[first..].iter().take(self.together.max(1)));
+        }
+        drawn.truncate(n);
+        drawn
+    }
 }
 
 /// A small generator of random numbers with a fixed seed: resampling is part of the result.
@@ -60,33 +78,57 @@ impl SplitMix {
 mod tests {
     use super::*;
 
+    /// Normal numbers of an autoregression: sums of twelve uniform ones, `rho` from sample to sample.
+    fn noise(count: usize, rho: f64) -> Vec<f64> {
+        let mut random = SplitMix(5);
+        let mut before = 0.0;
+        (0..count)
+            .map(|_| {
+                let fresh =
+                    (0..12).map(|_| random.below(1_000_000) as f64 / 1e6).sum::<f64>() - 6.0;
+                before = rho * before + (1.0 - rho * rho).sqrt() * fresh;
+                before
+            })
+            .collect()
+    }
+
     #[test]
     fn noise_drawn_again_has_the_size_and_colour_of_the_residual_and_not_its_structure() {
-        let mut random = SplitMix(5);
-        let mut uniform = || random.below(1_000_000) as f64 / 1e6;
-        let mut before = 0.0;
-        let residual: Vec<f64> = (0..20_000)
-            .map(|i| {
-                // noise with a correlation of 0.6 from sample to sample, on a slow structure
-                let normal = (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
-                before = 0.6 * before + 0.8 * normal;
-                0.1 * before + 3.0 * (1e-3 * f64::from(i)).sin()
-            })
+        let residual: Vec<f64> = (0..)
+            .zip(noise(20_000, 0.6))
+            .map(|(i, e)| 0.1 * e + 3.0 * (1e-3 * f64::from(i)).sin())
             .collect();
-        let drawn = drawn_again(&noise_of(&residual), 7);
+        let sharp = NoiseDraw::SHARP;
+        let drawn = sharp.again(&sharp.noise_of(&residual), 7);
         assert_eq!(drawn.len(), residual.len());
         let size = (drawn.iter().map(|v| v * v).sum::<f64>() / drawn.len() as f64).sqrt();
         assert!((0.07..0.11).contains(&size), "{size}");
         let next: f64 = drawn.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / drawn.len() as f64;
         assert!(next > 0.15 * size * size, "{next}");
-        assert_ne!(drawn, drawn_again(&noise_of(&residual), 8));
+        assert_ne!(drawn, sharp.again(&sharp.noise_of(&residual), 8));
+    }
+
+    #[test]
+    fn a_broad_window_keeps_the_slow_part_of_noise() {
+        for rho in [0.0, 0.9] {
+            let noise = noise(40_000, rho);
+            let broad = NoiseDraw::BROAD;
+            let drawn = broad.again(&broad.noise_of(&noise), 3);
+            for span in [1, 4, 16, 64] {
+                let energy = |v: &[f64]| {
+                    v.chunks_exact(span).map(|c| c.iter().sum::<f64>().powi(2)).sum::<f64>()
+                };
+                let ratio = energy(&drawn) / energy(&noise);
+                assert!((0.55..1.15).contains(&ratio), "{ratio} over {span} at {rho}");
+            }
+        }
     }
 
     #[test]
     fn short_records_are_drawn_again_without_a_panic() {
         for n in [0, 1, 5, 16, 17] {
-            let noise = noise_of(&vec![1.0; n]);
-            assert_eq!(drawn_again(&noise, 3).len(), n);
+            let noise = NoiseDraw::SHARP.noise_of(&vec![1.0; n]);
+            assert_eq!(NoiseDraw::SHARP.again(&noise, 3).len(), n);
         }
     }
 }

@@ -47,10 +47,10 @@ pub(super) const AREA: Area = Area {
         },
         Check {
             id: "V-GAP-04",
-            quantity: "transport delay of 4 %, the first of the names: error of the delay",
-            unit: "%",
+            quantity: "transport delay of 4 %, the first of the names: error of the delay over half its 95 % interval",
+            unit: "-",
             source: SOURCE,
-            criterion: Criterion::AtMost(5.0),
+            criterion: Criterion::AtMost(1.0),
             repeatability: Repeatability::Everywhere,
             measure: delay_error,
         },
@@ -155,7 +155,9 @@ fn delay_error() -> Result<f64, CheckError> {
     if found.causes.first().is_none_or(|first| first != "transport-delay") {
         return Ok(f64::NAN);
     }
-    Ok(error_percent(&found, &answer, "delay"))
+    let interval = found.parameters.get("transport-delay").and_then(|all| all.get("delay"));
+    let half = interval.map_or(f64::NAN, |d| 0.5 * (d.ci95[1] - d.ci95[0]) / d.value);
+    Ok(error_percent(&found, &answer, "delay") / (100.0 * half))
 }
 
 fn error_percent(found: &Findings, answer: &truth::hidden::Answer, name: &str) -> f64 {

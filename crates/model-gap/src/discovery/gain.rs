@@ -3,7 +3,7 @@
 use super::Signal;
 use super::evidence::{Evidence, Products, difference};
 use super::fit::Fitted;
-use crate::resampling::{SplitMix, drawn_again, noise_of};
+use crate::resampling::{NoiseDraw, SplitMix};
 use rayon::prelude::*;
 
 /// Held-out error before and after, in the output's unit, with two intervals of the drop.
@@ -14,7 +14,7 @@ pub struct Gain {
     /// RMS of the extended model on held-out experiments.
     pub rms_after: f64,
     /// 95 % interval of the drop on these experiments, were they measured again: the noise of the
-    /// residuals drawn anew in blocks, both models fitted to it anew.
+    /// residuals drawn anew, both models fitted to it anew.
     pub drop_ci95: [f64; 2],
     /// 95 % interval of the drop on other experiments of these kinds: experiments drawn anew, blocks of
     /// a period and more within them.
@@ -90,7 +90,7 @@ fn repeated(
     held_out: (&Signal, &Signal),
 ) -> [f64; 2] {
     let noise: Signal =
-        extended.cleaned(evidence).iter().map(|residual| noise_of(residual)).collect();
+        extended.cleaned(evidence).iter().map(|left| NoiseDraw::BROAD.noise_of(left)).collect();
     let still = |fitted: &Fitted, all: &Signal| difference(all, &under(evidence, fitted, &noise));
     let (before, after) = (still(base, held_out.0), still(extended, held_out.1));
     let drops: Vec<f64> = (0..DRAWS)
@@ -98,7 +98,7 @@ fn repeated(
         .map(|draw| {
             let other: Signal = (0_u64..)
                 .zip(&noise)
-                .map(|(trace, own)| drawn_again(own, (draw << 32) + trace))
+                .map(|(trace, own)| NoiseDraw::BROAD.again(own, (draw << 32) + trace))
                 .collect();
             let size = |still: &Signal, fitted: &Fitted| {
                 output_rms(evidence, still, &under(evidence, fitted, &other))

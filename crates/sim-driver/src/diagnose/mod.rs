@@ -68,6 +68,9 @@ pub struct Diagnosis {
     /// Error of the model given on the measured runs, rms over spread, percent; none if it was not
     /// simulated.
     pub given_error_percent: Option<f64>,
+    /// Motion of the measured outputs over that of the base model, by least squares: far from 1 where the
+    /// unit of a column is not what its name says.
+    pub scale: f64,
     /// Unit of the output.
     pub output_unit: String,
     /// What to measure next.
@@ -194,6 +197,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         }),
         has_reference,
         given_error_percent: question.given.and_then(|model| given_error(model, &runs)),
+        scale: scale_of(&runs, &base),
         output_unit: measured.output_unit.clone(),
         next,
         floor: base.floor,
@@ -289,6 +293,18 @@ fn given_error(model: &ActuatorModel, runs: &[&Record]) -> Option<f64> {
     Some(100.0 * (left / all.max(1e-300)).sqrt())
 }
 
+/// Slope of what runs did against what the base model expects of them, each about its mean.
+fn scale_of(runs: &[&Record], base: &BaseModel) -> f64 {
+    let (mut both, mut own) = (0.0, 0.0);
+    for run in runs {
+        let expected = base.predict(&run.input, run.step_s);
+        let n = expected.len() as f64 * base::variance(&expected);
+        both += n * response::slope(&expected, &run.output);
+        own += n;
+    }
+    if own > 0.0 { both / own } else { 1.0 }
+}
+
 /// The range of the base model: that of the data set, widened to every input that occurs.
 fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
     a.iter()
@@ -312,4 +328,69 @@ fn generic(simulator: &BenchSimulator<'_>, spread: f64) -> Vec<Signal> {
             simulator.on_traces(&outputs)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of gain 2.5 on a slow triangle and a sine, times a factor.
+    fn runs(is_reference: bool, factor: f64) -> Vec<Record> {
+        let wave = |i: u32| (0.011 * f64::from(i)).sin() * (0.0017 * f64::from(i)).cos();
+        [0.9, 0.5]
+            .map(|amplitude| {
+                let input: Vec<f64> =
+                    (0..3000).map(|i| 65.0 + 85.0 * amplitude * wave(i)).collect();
+                let jitter = |i: usize| 0.05 * ((i * 7919 % 101) as f64 / 50.0 - 1.0);
+                let output =
+                    (0..).zip(&input).map(|(i, u)| factor * (2.5 * u + jitter(i))).collect();
+                Record {
+                    id: format!("{amplitude}"),
+                    is_reference,
+                    step_s: 2e-3,
+                    input,
+                    output,
+                    amplifier: None,
+                    temperature: None,
+                    load: None,
+                }
+            })
+            .into()
+    }
+
+    fn records(runs: Vec<Record>) -> Records {
+        Records {
+            title: "line".into(),
+            folder: "line".into(),
+            runs,
+            range: (-20.0, 150.0),
+            input_unit: "V".into(),
+            output_unit: "um".into(),
+            input_label: "command_V".into(),
+            output_label: "displacement_um".into(),
+            deg_per_um: None,
+            is_bench: true,
+            content_hash: String::new(),
+        }
+    }
+
+    #[test]
+    fn an_output_in_another_unit_is_noticed() {
+        for (factor, warned) in [(1.0, false), (1e-3, true)] {
+            let question = Question { reference: runs(true, 1.0), ..Question::default() };
+            let found = diagnose(&records(runs(false, factor)), &question).unwrap();
+            assert!((found.scale / factor - 1.0).abs() < 0.01, "{}", found.scale);
+            let text = crate::output::Printable::text(&Story::of(&found));
+            assert_eq!(text.contains("has the unit of its name"), warned, "{text}");
+        }
+    }
+
+    #[test]
+    fn data_without_measured_runs_are_refused_in_words() {
+        let message = match diagnose(&records(runs(true, 1.0)), &Question::default()) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string(),
+        };
+        assert!(message.contains("role: Measured") && message.contains("all 2"), "{message}");
+    }
 }

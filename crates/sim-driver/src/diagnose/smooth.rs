@@ -158,7 +158,7 @@ impl<'a> Smooth<'a> {
 }
 
 fn last(values: &[f64]) -> isize {
-    values.len() as isize - 1
+    isize::try_from(values.len()).unwrap_or(isize::MAX) - 1
 }
 
 /// The sample a whole number before; none before the first.
@@ -309,7 +309,7 @@ mod tests {
                     let sum: Complex<f64> = (0..n)
                         .map(|i| {
                             let s = (f64::from(i) + 0.5) / f64::from(n);
-                            (a * (1.0 - s)).exp() * s.powi(p as i32) / f64::from(n)
+                            (a * (1.0 - s)).exp() * s.powi(i32::try_from(p).unwrap()) / f64::from(n)
                         })
                         .sum();
                     assert!((sum - moment).norm() < 1e-7, "{a} {p}");

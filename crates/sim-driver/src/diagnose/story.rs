@@ -10,6 +10,9 @@ use serde::Serialize;
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
 const POOR_BASE: f64 = 0.1;
 
+/// Motion over that expected, beyond which a unit is more likely wrong than a gain.
+const LIKELY_SCALE: [f64; 2] = [0.4, 2.5];
+
 /// The story of a diagnosis, printable.
 #[derive(Debug, Clone, Serialize)]
 #[serde(transparent)]
@@ -58,6 +61,12 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
         };
         sheet.line(format_args!(
             "  The base model hardly predicts a run that it has not seen: {known}. What is not much larger cannot be seen beside that."
+        ));
+    }
+    if !(LIKELY_SCALE[0]..=LIKELY_SCALE[1]).contains(&d.scale) {
+        sheet.line(format_args!(
+            "  The measured outputs move {} times as much as the base model expects: before anything else, see whether every column has the unit of its name.",
+            significant(d.scale, 2)
         ));
     }
     if let Some(percent) = d.given_error_percent {

@@ -9,7 +9,7 @@
 use super::base::{BaseModel, mean_square};
 use super::plays::lagged;
 use super::record::Record;
-use model_gap::{drawn_again, noise_of};
+use model_gap::NoiseDraw;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -81,7 +81,8 @@ fn one(
         .enumerate()
         .map(|(r, run)| {
             let mut output = simulate(run);
-            let noise = drawn_again(&noise_of(&base.residual(run)), 0x1234_5678 + r as u64);
+            let noise = NoiseDraw::SHARP
+                .again(&NoiseDraw::SHARP.noise_of(&base.residual(run)), 0x1234_5678 + r as u64);
             output.iter_mut().zip(noise).for_each(|(y, e)| *y += e);
             Record { output, ..(*run).clone() }
         })
