@@ -30,7 +30,7 @@ pub(super) const AREA: Area = Area {
             [0.3, 0.95],
             || Ok(at(0)?.free.rms / at(0)?.drees.rms),
         ),
-        row("V-WAKE-32", "the same: over that of uniform inflow", [0.3, 1.5], || {
+        row("V-WAKE-32", "the same: over that of uniform inflow", [0.2, 0.8], || {
             Ok(at(0)?.free.rms / at(0)?.uniform.rms)
         }),
         row(
@@ -48,9 +48,23 @@ pub(super) const AREA: Area = Area {
             [0.3, 0.95],
             || Ok(at(1)?.free.rms / at(1)?.drees.rms),
         ),
-        row("V-WAKE-36", "the same: over that of uniform inflow", [0.3, 1.5], || {
+        row("V-WAKE-36", "the same: over that of uniform inflow", [0.2, 0.8], || {
             Ok(at(1)?.free.rms / at(1)?.uniform.rms)
         }),
+        gap("V-WAKE-37", "mu 0.15: collective at 0.75 R less the measured 9.37 deg", || {
+            gap_deg(0, 0)
+        }),
+        gap("V-WAKE-38", "the same: cos part of the pitch less the measured 1.11 deg", || {
+            gap_deg(0, 1)
+        }),
+        gap("V-WAKE-39", "the same: sin part less the measured -3.23 deg", || gap_deg(0, 2)),
+        gap("V-WAKE-40", "mu 0.23: collective at 0.75 R less the measured 8.16 deg", || {
+            gap_deg(1, 0)
+        }),
+        gap("V-WAKE-41", "the same: cos part of the pitch less the measured 1.52 deg", || {
+            gap_deg(1, 1)
+        }),
+        gap("V-WAKE-42", "the same: sin part less the measured -4.13 deg", || gap_deg(1, 2)),
     ],
 };
 
