@@ -1,12 +1,14 @@
 //! The inflow of a case: a linear model, or a free wake settled with the trim.
 
 use crate::case::{
-    Case, CoreChoice, FreeWakeFile, InflowChoice, LoadedCase, NearWakeChoice, RolledUpChoice,
+    Case, ControlPointChoice, CoreChoice, FreeWakeFile, InflowChoice, LoadedCase, NearWakeChoice,
+    ReleaseChoice, RolledUpChoice,
 };
 use rotor_response::{ResponseTolerances, RotorSolver};
 use rotor_wake::{
-    CoreModel, CoreSettings, FarTrailers, FlightState, FreeWakeSettings, FrozenWake, InducedInflow,
-    InflowModel, LinearInflow, NearWakeMotion, PittPeters, RotorLoading, WakeError, WakeRotor,
+    ControlPoint, CoreModel, CoreSettings, FarTrailers, FlightState, FreeWakeSettings, FrozenWake,
+    InducedInflow, InflowModel, LinearInflow, NearWakeMotion, PittPeters, ReleasePoint,
+    RotorLoading, WakeError, WakeRotor,
 };
 use std::sync::Arc;
 use trim::{
@@ -15,6 +17,9 @@ use trim::{
 
 /// Kinematic viscosity of air at sea level, m^2/s (ISA).
 const VISCOSITY_M2_S: f64 = 1.46e-5;
+
+/// Where the sheet inboard of the tip vortex goes on as vortices, unit `R`.
+const SHEET_STATIONS: [f64; 4] = [0.35, 0.5, 0.65, 0.78];
 
 /// Iterations of circulation and inflow allowed in a free wake, at least.
 const WAKE_ITERATIONS: usize = 200;
@@ -83,6 +88,7 @@ impl Case {
             RolledUpChoice::TipRootAndFlaps => {
                 FarTrailers::Stations(self.flaps.iter().flat_map(|f| [f.start, f.end]).collect())
             }
+            RolledUpChoice::TipRootAndSheet => FarTrailers::Stations(SHEET_STATIONS.to_vec()),
         };
         let wake = FreeWakeSettings {
             azimuths: file.azimuths,
@@ -95,6 +101,14 @@ impl Case {
                 NearWakeChoice::Free => NearWakeMotion::Free,
             },
             far,
+            release: match file.release {
+                ReleaseChoice::Station => ReleasePoint::Station,
+                ReleaseChoice::Centroid => ReleasePoint::Centroid,
+            },
+            control_point: match file.control_point {
+                ControlPointChoice::LiftingLine => ControlPoint::LiftingLine,
+                ControlPointChoice::ThreeQuarterChord => ControlPoint::ThreeQuarterChord,
+            },
             core: CoreSettings {
                 model: match file.core {
                     CoreChoice::Vatistas => CoreModel::Vatistas,

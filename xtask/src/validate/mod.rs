@@ -28,6 +28,9 @@ mod time_elements;
 mod trim_reference;
 mod trimmed;
 mod wake;
+mod wake_flight;
+mod wake_hover;
+mod wake_measured;
 
 pub use check::{Area, Check, Criterion, Repeatability, Row};
 pub use error::CheckError;
@@ -45,6 +48,9 @@ pub const AREAS: &[Area] = &[
     section_beyond::AREA,
     inflow::AREA,
     wake::AREA,
+    wake_hover::AREA,
+    wake_flight::AREA,
+    wake_measured::AREA,
     rotor::AREA,
     rotor_details::AREA,
     trimmed::AREA,

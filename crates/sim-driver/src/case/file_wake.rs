@@ -24,6 +24,27 @@ pub enum RolledUpChoice {
     TipAndRoot,
     /// Tip and root vortex and one at each end of the trailing-edge flaps.
     TipRootAndFlaps,
+    /// Tip and root vortex and, for the sheet between them, four where it is trailed: at 0.35, 0.5, 0.65 and
+    /// 0.78 R. Hover needs it.
+    TipRootAndSheet,
+}
+
+/// Where on the trailing edge the rolled-up vortices leave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ReleaseChoice {
+    /// At their stations: the tip vortex at the tip.
+    Station,
+    /// At the centroid of what they collect (Betz).
+    Centroid,
+}
+
+/// Where on the chord the sections feel the wake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ControlPointChoice {
+    /// On the lifting line at the quarter chord.
+    LiftingLine,
+    /// At three quarters of the chord (Weissinger): for blades of few chords' length.
+    ThreeQuarterChord,
 }
 
 /// Velocity profile of the cores.
@@ -51,6 +72,10 @@ pub struct FreeWakeFile {
     pub near_wake: NearWakeChoice,
     /// Vortices behind the near wake.
     pub rolled_up: RolledUpChoice,
+    /// Where on the trailing edge these leave.
+    pub release: ReleaseChoice,
+    /// Where on the chord the sections feel the wake.
+    pub control_point: ControlPointChoice,
     /// Velocity profile of the cores.
     pub core: CoreChoice,
     /// Core radius of the rolled-up vortices at release, radius R.
@@ -72,6 +97,8 @@ impl Default for FreeWakeFile {
             near_wake_deg: 360.0,
             near_wake: NearWakeChoice::FollowsTip,
             rolled_up: RolledUpChoice::Tip,
+            release: ReleaseChoice::Station,
+            control_point: ControlPointChoice::LiftingLine,
             core: CoreChoice::Vatistas,
             core_r: 0.02,
             near_core_r: 0.02,

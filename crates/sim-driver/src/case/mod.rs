@@ -29,7 +29,9 @@ pub use file_control::{
     EffortChoice, HorizontalTailFile, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile,
     PropulsiveTrimFile, StoredActuatorFile, StrokeChoice, TrimFile, WindTunnelTrimFile,
 };
-pub use file_wake::{CoreChoice, FreeWakeFile, NearWakeChoice, RolledUpChoice};
+pub use file_wake::{
+    ControlPointChoice, CoreChoice, FreeWakeFile, NearWakeChoice, ReleaseChoice, RolledUpChoice,
+};
 pub use read::{CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
 pub use validated::{
     ActuatorSource, ActuatorValues, BladeValues, Case, ControlValues, FlapValues, SectionValues,

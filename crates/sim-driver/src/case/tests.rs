@@ -6,6 +6,7 @@ use super::{
 };
 use crate::files::{Folder, Source, ron_text};
 use approx::assert_relative_eq;
+use rotor_wake::{ControlPoint, FarTrailers, ReleasePoint};
 
 fn read(text: &str) -> Result<LoadedCase, String> {
     let source = Source { name: "case.ron".into(), text: text.into() };
@@ -86,6 +87,31 @@ fn every_problem_is_reported_with_its_line() {
         ],
         "{text}"
     );
+}
+
+#[test]
+fn the_choices_of_a_free_wake_are_read_and_checked() {
+    let of = |fields: &str| read(&format!("(inflow: (model: FreeWake(({fields}))))"));
+    let loaded =
+        of("rolled_up: TipRootAndSheet, release: Centroid, control_point: ThreeQuarterChord")
+            .unwrap();
+    let InflowChoice::FreeWake(file) = loaded.case.inflow else { unreachable!() };
+    let wake = loaded.case.wake_trim_settings(&file).wake;
+    assert_eq!(wake.far, FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]));
+    assert_eq!(wake.release, ReleasePoint::Centroid);
+    assert_eq!(wake.control_point, ControlPoint::ThreeQuarterChord);
+    for (fields, expected) in [
+        ("control_point: QuarterChord", "inflow.model.control_point: unknown choice"),
+        ("release: Tip", "inflow.model.release: unknown choice"),
+        ("azimuths: 22", "inflow.model.azimuths: is 22"),
+        ("turns: 0", "inflow.model.turns: is 0"),
+        ("near_wake_deg: 0.0", "inflow.model.near_wake_deg: is 0"),
+        ("core_r: NaN", "inflow.model.core_r: is NaN"),
+        ("tolerance: 1.0", "inflow.model.tolerance: is 1"),
+    ] {
+        let text = of(fields).unwrap_err();
+        assert!(text.contains(expected), "{fields}: {text}");
+    }
 }
 
 /// One wrong value and a part of its message.

@@ -84,6 +84,15 @@ fn sweep_folder(advance_ratio: f64) -> String {
     format!("mu_{advance_ratio}")
 }
 
+/// Whether the rotor can fly at an advance ratio of the command line.
+fn check_advance_ratio(problems: &mut Problems, mu: f64) {
+    if !(0.0..=0.5).contains(&mu) {
+        let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
+        let fault = Fault::OutOfRange { value: mu, low: 0.0, high: 0.5, unit: "", remedy };
+        problems.push(Place::file("--mu"), fault);
+    }
+}
+
 fn run_sweep(
     loaded: &LoadedCase,
     advance_ratios: &[f64],
@@ -93,11 +102,7 @@ fn run_sweep(
     let mut problems = Problems::default();
     for (i, &mu) in advance_ratios.iter().enumerate() {
         let place = || Place::file("--mu");
-        if !(0.0..=0.5).contains(&mu) {
-            let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
-            let fault = Fault::OutOfRange { value: mu, low: 0.0, high: 0.5, unit: "", remedy };
-            problems.push(place(), fault);
-        }
+        check_advance_ratio(&mut problems, mu);
         if advance_ratios[..i].iter().any(|before| sweep_folder(*before) == sweep_folder(mu)) {
             let message = format!("{mu} is given twice; give every advance ratio once");
             problems.push(place(), Fault::Refused { message });
@@ -458,6 +463,9 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
         None => shipped_case(PAPER_CASE)?,
     };
     if let Some(mu) = args.mu {
+        let mut problems = Problems::default();
+        check_advance_ratio(&mut problems, mu);
+        problems.into_result(Some(()))?;
         loaded.case.advance_ratio = mu;
         loaded.file.advance_ratio = mu;
     }

@@ -9,3 +9,4 @@ mod import;
 mod place;
 mod rotor;
 mod stages_doc;
+mod wake;
