@@ -91,7 +91,7 @@ fn every_problem_is_reported_with_its_line() {
 
 #[test]
 fn the_choices_of_a_free_wake_are_read_and_checked() {
-    let of = |fields: &str| read(&format!("(inflow: (model: FreeWake(({fields}))))"));
+    let of = |fields: &str| read(&format!("(inflow: (model: FreeWake({fields})))"));
     let loaded =
         of("rolled_up: TipRootAndSheet, release: Centroid, control_point: ThreeQuarterChord")
             .unwrap();
