@@ -39,6 +39,24 @@ impl Story {
 
 fn text(d: &Diagnosis, findings: &Findings) -> String {
     let mut sheet = Sheet::default();
+    base(d, &mut sheet);
+    energies(d, &mut sheet);
+    screening(d, &mut sheet);
+    sheet.line(format_args!("\n{}", verdict_line(findings)));
+    causes(d, &mut sheet);
+    gain(d, findings, &mut sheet);
+    if !findings.not_observable.is_empty() {
+        sheet.line(format_args!(
+            "Not observable in these data at usual strength: {}",
+            findings.not_observable.join(", ")
+        ));
+    }
+    next(d, &mut sheet);
+    sheet.finish()
+}
+
+/// The base model, and what is odd about the runs beside it.
+fn base(d: &Diagnosis, sheet: &mut Sheet) {
     let unit = &d.output_unit;
     sheet.line(format_args!("Diagnosis: {}", d.title));
     sheet.line(format_args!(
@@ -72,6 +90,10 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
     if let Some(percent) = d.given_error_percent {
         sheet.line(format_args!("  The model given leaves {percent:.1} % of the output of the measured runs (rms over spread)."));
     }
+}
+
+/// What the base model leaves of each run.
+fn energies(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line(format_args!("\nWhat the base model leaves, run by run"));
     let rows = d.energy.iter().map(|row| {
         vec![
@@ -82,6 +104,10 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
         ]
     });
     sheet.block(&table(&["run", "explained %", "noise %", "structured %"], rows));
+}
+
+/// What each cause could explain.
+fn screening(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line(format_args!("\nScreening: what each cause could explain (noise units), beside what surrogates with nothing missing reach"));
     let mut order: Vec<usize> = (0..d.candidates.len()).collect();
     let ratio = |c: usize| d.finding.screen[c].score / d.finding.screen[c].threshold.max(1e-9);
@@ -104,7 +130,10 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
         ]
     });
     sheet.block(&table(&["cause", "score", "floor", "absorbed %", "most alike"], rows));
-    sheet.line(format_args!("\n{}", verdict_line(findings)));
+}
+
+/// The causes named, and the reasons of the verdict.
+fn causes(d: &Diagnosis, sheet: &mut Sheet) {
     for found in &d.finding.causes {
         let cause = &d.candidates[found.candidate].cause;
         sheet.line(format_args!("  {}: {}", cause.id, cause.physics));
@@ -131,7 +160,11 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
     for reason in &d.finding.reasons {
         sheet.line(format_args!("  {reason}"));
     }
-    let gain = &findings.gain;
+}
+
+/// What the extended model gains.
+fn gain(d: &Diagnosis, findings: &Findings, sheet: &mut Sheet) {
+    let (gain, unit) = (&findings.gain, &d.output_unit);
     if !findings.causes.is_empty() {
         sheet.line(format_args!(
             "\nGain on held-out experiments: {} -> {} {unit} rms, less by {} to {} if they were measured again (95 %), by {} to {} on other experiments of these kinds",
@@ -143,14 +176,6 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
             significant(gain.ci95_other_experiments[1], 3)
         ));
     }
-    if !findings.not_observable.is_empty() {
-        sheet.line(format_args!(
-            "Not observable in these data at usual strength: {}",
-            findings.not_observable.join(", ")
-        ));
-    }
-    next(d, &mut sheet);
-    sheet.finish()
 }
 
 /// What to measure next, and what that would settle.
