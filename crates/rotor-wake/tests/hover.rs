@@ -59,7 +59,7 @@ fn neither_sheet_nor_control_point_can_be_left_out() {
     }
 }
 
-/// Four slender blades with -8 deg of twist, as A. J. Landgrebe had them: radius `0.78 + 0.22 exp(-(0.145 + 27
+/// Four slender blades with -8 deg of twist, of the kind Landgrebe's fit is for: radius `0.78 + 0.22 exp(-(0.145 + 27
 /// C_T) zeta)`, pitch behind the first passage `-(1.41 + 0.0141 twist) sqrt(C_T/2)` per rad, `J. Am. Helicopter Soc.`
 /// 17 (1972). Before the first passage the vortex descends less than his; it stays within half a core of it.
 #[test]

@@ -90,9 +90,9 @@ pub struct StudyArgs {
     /// Folder of the results and the report.
     #[arg(long, value_name = "DIR", default_value = "out/paper")]
     pub out: PathBuf,
-    /// Inflow model instead of the case's.
-    #[arg(long, value_enum, alias = "wake")]
-    pub inflow: Option<InflowOverride>,
+    /// Inflow model: the paper's free wake unless another is asked for.
+    #[arg(long, value_enum, alias = "wake", default_value = "free")]
+    pub inflow: InflowOverride,
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,

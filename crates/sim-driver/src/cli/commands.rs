@@ -56,7 +56,7 @@ const SWEEP_FILE: &str = "sweep.csv";
 const EXTENDED_FILE: &str = "extended.ron";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
-    let loaded = overridden(shipped_case(PAPER_CASE)?, args.inflow);
+    let loaded = overridden(shipped_case(PAPER_CASE)?, Some(args.inflow));
     run_and_store(
         &loaded,
         &args.out,
@@ -114,7 +114,7 @@ fn run_sweep(
     let mut rows = Vec::new();
     for &mu in advance_ratios {
         let here = at_advance_ratio(loaded, mu);
-        let more = scope.sensitivity.map_or(0, Assumptions::rows);
+        let more = scope.sensitivity.map_or(0, |which| which.rows(&here));
         let progress = Progress::new(steps_of(&here) + more);
         progress.doing(format!("advance ratio {mu}"));
         let computed = continued_trim(&here, start.as_ref()).and_then(|trimmed| {
@@ -209,7 +209,7 @@ fn run_and_store(
     format: Format,
     scope: Scope,
 ) -> Result<(), SimError> {
-    let more = scope.sensitivity.map_or(0, Assumptions::rows);
+    let more = scope.sensitivity.map_or(0, |which| which.rows(loaded));
     let progress = Progress::new(steps_of(loaded) + more);
     let computed = run_case(loaded, &progress)
         .and_then(|outcome| with_scope(loaded, outcome, scope, &progress));

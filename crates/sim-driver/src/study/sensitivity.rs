@@ -6,6 +6,7 @@ use crate::case::{
     BladeValues, ControlActuator, EffortChoice, FreeWakeFile, InflowChoice, LoadedCase,
     NearWakeChoice, SectionModelChoice, TrimValues,
 };
+use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -23,8 +24,32 @@ pub struct Sensitivity {
     /// Reduction of `J_Z` (percent) for each of the harmonics that the case controls alone, ideal actuator
     /// within the stroke of the real one.
     pub reduction_percent: Vec<f64>,
-    /// Largest change of a reduction from the case as it is, percentage points.
+    /// Largest change of a reduction from the row it is compared with, percentage points.
     pub largest_change: f64,
+    /// Why there is no answer; the numbers are then NaN.
+    pub failure: Option<String>,
+}
+
+impl Sensitivity {
+    fn new(assumption: &str, reduction_percent: Vec<f64>) -> Self {
+        let assumption = assumption.to_owned();
+        Self { assumption, reduction_percent, largest_change: 0.0, failure: None }
+    }
+
+    fn failed(assumption: &str, sets: usize, error: &SimError) -> Self {
+        Self {
+            largest_change: f64::NAN,
+            failure: Some(error.to_string()),
+            ..Self::new(assumption, vec![f64::NAN; sets])
+        }
+    }
+
+    fn compare(&mut self, nominal: &[f64]) {
+        let changes = self.reduction_percent.iter().zip(nominal).map(|(a, b)| (a - b).abs());
+        if self.failure.is_none() {
+            self.largest_change = changes.fold(0.0, f64::max);
+        }
+    }
 }
 
 /// Whether an assumption changes the rotor.
@@ -60,6 +85,11 @@ fn assume(
     let change = Box::new(change);
     let stroke = StrokeOf::TheCase(1.0);
     Assumption { text, stroke, rotor: RotorOf::TheChange, change }
+}
+
+/// No change: rotor and stroke of the case.
+fn as_it_is(text: &'static str) -> Assumption {
+    Assumption { rotor: RotorOf::TheCase, ..assume(text, |_| {}) }
 }
 
 /// A linear twist in place of whatever the blade has.
@@ -117,13 +147,12 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
     };
     let of_rotor = |text, change: fn(&mut LoadedCase)| assume(text, change);
     let of_case = |text, change: fn(&mut LoadedCase)| Assumption {
-        rotor: RotorOf::TheCase,
-        ..assume(text, change)
+        change: Box::new(change),
+        ..as_it_is(text)
     };
     let stroke =
         |text, factor| Assumption { stroke: StrokeOf::TheCase(factor), ..of_case(text, |_| {}) };
     vec![
-        of_case("as the case", |_| {}),
         of_rotor("flaps .05 R further in", |c| shift_flaps(c, -0.05)),
         of_rotor("flaps .05 R further out", |c| shift_flaps(c, 0.05)),
         of_rotor("flaps .02 R further out", |c| shift_flaps(c, 0.02)),
@@ -190,13 +219,15 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
 }
 
 /// Trims and controls the case once for every assumption changed, in parallel. The case itself comes
-/// first, then the changes, the one that moves a reduction most leading.
+/// first, then the changes, the one that moves a reduction most leading; those without an answer end the table.
 ///
 /// With the ideal actuator, held to the stroke of the real one: feedback on the hysteretic actuator
-/// reaches nearly the same reductions, at several times the cost.
+/// reaches nearly the same reductions, at several times the cost. Without the rows of the wake a case that flies
+/// in a free wake is changed about Drees's inflow, which takes seconds: that row comes second, and the rows
+/// after it are compared with it.
 ///
 /// # Errors
-/// The first failure of a trim or a control study.
+/// The first failure of a trim or a control study of the case itself, or of the case in Drees's inflow.
 pub fn sensitivities(
     loaded: &LoadedCase,
     (base, drives): (&TrimmedRotor, &Drives),
@@ -209,51 +240,95 @@ pub fn sensitivities(
         Some(FlapDrive::Model { model, .. }) => Some(Arc::clone(model)),
         _ => None,
     };
-    let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
-    let mut changes = assumptions(base, loaded.case.blades);
-    if which == Assumptions::WithWake {
-        changes.extend(of_the_wake());
+    let bench = Bench { drives, model, sets: &sets, done };
+    let mut of_case = bench.row(loaded, base, &as_it_is("as the case"))?;
+    let mut table = Vec::new();
+    if which.about_drees(loaded) {
+        let mut drees = loaded.clone();
+        drees.case.inflow = InflowChoice::Drees;
+        let near = TrimmedRotor::new(&drees, Some(base.trim()))?;
+        let text = "inflow of Drees, as in the rows below";
+        let mut row = bench.row(&drees, &near, &as_it_is(text))?;
+        let changed = bench.changed(&drees, &near, assumptions(&near, loaded.case.blades), &row);
+        row.compare(&of_case.reduction_percent);
+        table.push(row);
+        table.extend(changed);
+    } else {
+        let mut changes = assumptions(base, loaded.case.blades);
+        if which == Assumptions::WithWake {
+            changes.extend(of_the_wake());
+        }
+        table = bench.changed(loaded, base, changes, &of_case);
     }
-    let mut rows = changes
-        .into_par_iter()
-        .map(|assumption| {
-            let mut varied = loaded.clone();
-            (assumption.change)(&mut varied);
-            varied.case.control.actuators = vec![ControlActuator::Ideal];
-            let limited = match assumption.stroke {
-                StrokeOf::TheCase(factor) => drives.with_strokes_scaled(factor),
-                StrokeOf::TheChange => Drives::new(&varied.case, model.clone()).map_err(failed)?,
-            };
-            varied.case.tolerances.trim = TABLE_TRIM_TOLERANCE;
-            varied.case.tolerances.periodicity = TABLE_PERIODICITY_TOLERANCE;
-            varied.case.tolerances.inflow = TABLE_INFLOW_TOLERANCE;
-            let rotor = match assumption.rotor {
-                RotorOf::TheCase => base.clone(),
-                RotorOf::TheChange => TrimmedRotor::new(&varied, Some(base.trim()))?,
-            };
-            let reduction_percent = sets
-                .iter()
-                .map(|set| {
-                    let studies =
-                        control_set(&varied.case, &rotor, &limited, set, &|| ()).map_err(failed)?;
-                    Ok(studies.first().map_or(f64::NAN, super::ControlStudy::reduction_percent))
-                })
-                .collect::<Result<Vec<f64>, SimError>>()?;
-            done();
-            let assumption = assumption.text.to_owned();
-            Ok(Sensitivity { assumption, reduction_percent, largest_change: 0.0 })
-        })
-        .collect::<Result<Vec<Sensitivity>, SimError>>()?;
-    let nominal = rows.first().map(|row| row.reduction_percent.clone()).unwrap_or_default();
-    for row in &mut rows {
-        let changes = row.reduction_percent.iter().zip(&nominal).map(|(a, b)| (a - b).abs());
-        row.largest_change = changes.fold(0.0, f64::max);
+    of_case.largest_change = 0.0;
+    table.insert(0, of_case);
+    Ok(table)
+}
+
+/// What every row of the table shares.
+struct Bench<'a> {
+    drives: &'a Drives,
+    model: Option<Arc<ActuatorModel>>,
+    sets: &'a [Vec<usize>],
+    done: &'a (dyn Fn() + Sync),
+}
+
+impl Bench<'_> {
+    /// The rows of changes, the one that moves a reduction most first.
+    fn changed(
+        &self,
+        loaded: &LoadedCase,
+        base: &TrimmedRotor,
+        changes: Vec<Assumption>,
+        nominal: &Sensitivity,
+    ) -> Vec<Sensitivity> {
+        let mut rows: Vec<Sensitivity> = changes
+            .into_par_iter()
+            .map(|change| {
+                let mut row = self.row(loaded, base, &change).unwrap_or_else(|error| {
+                    Sensitivity::failed(change.text, self.sets.len(), &error)
+                });
+                row.compare(&nominal.reduction_percent);
+                row
+            })
+            .collect();
+        rows.sort_by(|a, b| {
+            let moved = b.largest_change.total_cmp(&a.largest_change);
+            a.failure.is_some().cmp(&b.failure.is_some()).then(moved)
+        });
+        rows
     }
-    // the case itself stays first
-    if let Some((_, changed)) = rows.split_first_mut() {
-        changed.sort_by(|a, b| b.largest_change.total_cmp(&a.largest_change));
+
+    fn row(
+        &self,
+        loaded: &LoadedCase,
+        base: &TrimmedRotor,
+        assumption: &Assumption,
+    ) -> Result<Sensitivity, SimError> {
+        let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
+        let mut varied = loaded.clone();
+        (assumption.change)(&mut varied);
+        varied.case.control.actuators = vec![ControlActuator::Ideal];
+        let limited = match assumption.stroke {
+            StrokeOf::TheCase(factor) => self.drives.with_strokes_scaled(factor),
+            StrokeOf::TheChange => Drives::new(&varied.case, self.model.clone()).map_err(failed)?,
+        };
+        varied.case.tolerances.trim = TABLE_TRIM_TOLERANCE;
+        varied.case.tolerances.periodicity = TABLE_PERIODICITY_TOLERANCE;
+        varied.case.tolerances.inflow = TABLE_INFLOW_TOLERANCE;
+        let rotor = match assumption.rotor {
+            RotorOf::TheCase => base.clone(),
+            RotorOf::TheChange => TrimmedRotor::new(&varied, Some(base.trim()))?,
+        };
+        let reductions = self.sets.iter().map(|set| {
+            let studies =
+                control_set(&varied.case, &rotor, &limited, set, &|| ()).map_err(failed)?;
+            Ok(studies.first().map_or(f64::NAN, super::ControlStudy::reduction_percent))
+        });
+        let reductions = reductions.collect::<Result<Vec<f64>, SimError>>();
+        (self.done)();
+        Ok(Sensitivity::new(assumption.text, reductions?))
     }
-    Ok(rows)
 }
 
 /// The rows as CSV text.
@@ -263,10 +338,12 @@ pub fn sensitivity_csv(loaded: &LoadedCase, rows: &[Sensitivity]) -> String {
         sets.map(|set| format!("reduction_{}_per_rev_percent", set[0])).collect();
     let mut text = format!("assumption,{},largest_change\n", names.join(","));
     for row in rows {
-        let numbers: Vec<String> =
-            row.reduction_percent.iter().map(|r| format!("{r:.3}")).collect();
-        let (numbers, change) = (numbers.join(","), row.largest_change);
-        let _ = writeln!(text, "\"{}\",{numbers},{change:.3}", row.assumption);
+        // an empty field has no answer
+        let number =
+            |value: &f64| if value.is_nan() { String::new() } else { format!("{value:.3}") };
+        let numbers: Vec<String> = row.reduction_percent.iter().map(number).collect();
+        let (numbers, change) = (numbers.join(","), number(&row.largest_change));
+        let _ = writeln!(text, "\"{}\",{numbers},{change}", row.assumption);
     }
     text
 }
@@ -274,17 +351,22 @@ pub fn sensitivity_csv(loaded: &LoadedCase, rows: &[Sensitivity]) -> String {
 /// Which assumptions are changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Assumptions {
-    /// All but those that take a free wake: seconds.
+    /// All but those that take a free wake: seconds. Of a case in a free wake, about Drees's inflow.
     WithoutWake,
     /// Those of the free wake and its near part too: minutes.
     WithWake,
 }
 
 impl Assumptions {
-    /// Number of rows [`sensitivities`] makes, for a progress bar.
-    pub fn rows(self) -> usize {
+    /// Whether the changes are made about Drees's inflow.
+    fn about_drees(self, loaded: &LoadedCase) -> bool {
+        self == Self::WithoutWake && matches!(loaded.case.inflow, InflowChoice::FreeWake(_))
+    }
+
+    /// Number of rows [`sensitivities`] makes of a case, for a progress bar.
+    pub fn rows(self, loaded: &LoadedCase) -> usize {
         match self {
-            Self::WithoutWake => 24,
+            Self::WithoutWake => 24 + usize::from(self.about_drees(loaded)),
             Self::WithWake => 27,
         }
     }

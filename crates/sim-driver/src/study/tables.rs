@@ -7,6 +7,7 @@ use crate::report::{AzimuthChart, FlapTrace, LoadBars, ResultSection, StudyRepor
 use crate::results::{RunResult, StoredResult, flap_name};
 use crate::run::RunOutcome;
 use rotor_base::uniform_azimuths_rad;
+use std::fmt::Write as _;
 
 /// Azimuths of the histories.
 pub(super) const HISTORY_AZIMUTHS: usize = 120;
@@ -117,9 +118,16 @@ fn load_bars(result: &RunResult) -> Vec<LoadBars> {
 fn sensitivity_section(loaded: &LoadedCase, rows: &[Sensitivity]) -> ResultSection {
     let sets = loaded.case.control.harmonics.iter().filter(|set| set.len() == 1);
     let sets = sets.map(|set| format!("{} J %", set_name(set)));
+    let number = |value: f64| if value.is_nan() { "-".to_owned() } else { format!("{value:.1}") };
+    let mut text = "Reduction of J with one assumption changed at a time, the one that moves a reduction most first; ideal actuator, held to the stroke of the identified one.".to_owned();
+    for row in rows {
+        if let Some(why) = &row.failure {
+            let _ = write!(text, " No answer with {}: {why}.", row.assumption);
+        }
+    }
     ResultSection {
         title: "What the paper leaves open".to_owned(),
-        text: "Reduction of J with one assumption changed at a time, the one that moves a reduction most first; ideal actuator, held to the stroke of the identified one.".to_owned(),
+        text,
         header: std::iter::once("assumption".to_owned())
             .chain(sets)
             .chain(std::iter::once("largest change".to_owned()))
@@ -128,8 +136,8 @@ fn sensitivity_section(loaded: &LoadedCase, rows: &[Sensitivity]) -> ResultSecti
             .iter()
             .map(|row| {
                 std::iter::once(row.assumption.clone())
-                    .chain(row.reduction_percent.iter().map(|r| format!("{r:.1}")))
-                    .chain(std::iter::once(format!("{:.1}", row.largest_change)))
+                    .chain(row.reduction_percent.iter().map(|r| number(*r)))
+                    .chain(std::iter::once(number(row.largest_change)))
                     .collect()
             })
             .collect(),
