@@ -13,6 +13,8 @@ const DIFFERENCE: f64 = 3e-7;
 /// differences, which would be taken for an image otherwise. Right-hand sides that depend on each other bring such
 /// directions.
 const DEPENDENT: f64 = 1e-3;
+/// Right-hand sides that one thread solves at once: the same for any number of threads, so that rounding is.
+const SOLVED_TOGETHER: usize = 3;
 
 /// `sum += factor part`.
 fn add(sum: &mut DMatrix<f64>, factor: f64, part: &DMatrix<f64>) {
@@ -128,6 +130,45 @@ impl PeriodicSolver {
         S::Error: Send,
     {
         self.check(system, orbit)?;
+        let base = self.evaluate(system, orbit.clone(), 0, orbit)?;
+        let mut response = self.response_about(system, base, load_changes, tolerance)?;
+        response.evaluations += 1;
+        Ok(response)
+    }
+
+    /// The same for an orbit whose forces are known: `force` is `f` at all points, as
+    /// [`PeriodicSystem::residual`] gives it for [`Orbit::sample`], shape `dof x points`. It saves the
+    /// evaluation of the orbit itself.
+    ///
+    /// # Errors
+    /// As [`PeriodicSolver::linear_response`].
+    pub fn linear_response_from<S: PeriodicSystem>(
+        &mut self,
+        system: &S,
+        (orbit, force): (&Orbit, &DMatrix<f64>),
+        load_changes: &[DMatrix<f64>],
+        tolerance: f64,
+    ) -> Result<LinearResponse, PeriodicError<S::Error>>
+    where
+        S::Error: Send,
+    {
+        self.check(system, orbit)?;
+        let samples = orbit.sample(self.time());
+        let base = self.weigh(system, (orbit.clone(), samples, force.clone()), 0, orbit)?;
+        self.response_about(system, base, load_changes, tolerance)
+    }
+
+    fn response_about<S: PeriodicSystem>(
+        &mut self,
+        system: &S,
+        base: Iterate,
+        load_changes: &[DMatrix<f64>],
+        tolerance: f64,
+    ) -> Result<LinearResponse, PeriodicError<S::Error>>
+    where
+        S::Error: Send,
+    {
+        let orbit = &base.orbit;
         let (dof, points) = (system.dof(), self.time().points().len());
         for load in load_changes {
             if load.shape() != (dof, points) {
@@ -136,7 +177,6 @@ impl PeriodicSolver {
                 return Err(PeriodicError::Shape { what, found, expected });
             }
         }
-        let base = self.evaluate(system, orbit.clone(), 0, orbit)?;
         let kept = self.factorisation.take().filter(|f| f.dof() == dof);
         let factorisations = usize::from(kept.is_none());
         let matrix = match kept {
@@ -165,7 +205,7 @@ impl PeriodicSolver {
         let mut changes = vec![DMatrix::zeros(dof, self.time().unknowns_per_dof()); left.len()];
         let mut force_changes = load_changes.to_vec();
         let mut basis: Vec<Known> = Vec::new();
-        let (mut evaluations, mut history) = (1, Vec::new());
+        let (mut evaluations, mut history) = (0, Vec::new());
         loop {
             let shares = share(&left);
             let worst = shares.iter().fold(0.0_f64, |m, v| if *v > m { *v } else { m });
@@ -191,9 +231,9 @@ impl PeriodicSolver {
             }
             let open = left.iter().zip(&shares).filter(|(_, share)| **share > tolerance);
             let open: Vec<DMatrix<f64>> = open.map(|(r, _)| as_residual(r.clone())).collect();
-            let directions: Vec<DMatrix<f64>> = matrix
-                .solve_all(&open)
-                .into_iter()
+            let directions: Vec<DMatrix<f64>> = open
+                .par_chunks(SOLVED_TOGETHER)
+                .flat_map(|some| matrix.solve_all(some))
                 .map(|step| {
                     let size = step.amax();
                     if size > 0.0 { -step / size } else { -step }

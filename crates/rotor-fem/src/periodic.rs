@@ -286,6 +286,18 @@ impl PeriodicSolver {
         system
             .residual(&samples, &mut force)
             .map_err(|source| PeriodicError::System { iteration, source })?;
+        self.weigh(system, (orbit, samples, force), iteration, best)
+    }
+
+    /// The weak residual of an orbit whose forces at all points are known.
+    pub(crate) fn weigh<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        (orbit, samples, force): (Orbit, OrbitSamples, DMatrix<f64>),
+        iteration: usize,
+        best: &Orbit,
+    ) -> Result<Iterate, PeriodicError<S::Error>> {
+        let time = &self.time;
         let expected = (system.dof(), time.points().len());
         if force.shape() != expected {
             let (found, expected) = (force.len(), expected.0 * expected.1);

@@ -75,7 +75,10 @@ struct Base<'a> {
     orbit: OrbitSamples,
     /// The same with accelerations that satisfy the equations of motion at each azimuth.
     settled: OrbitSamples,
+    /// `f` of the orbit at all points.
     forces: DMatrix<f64>,
+    /// What `f` is without loads of the air and of the flaps.
+    bare: DMatrix<f64>,
     rest: Answer,
     condition: &'a Condition,
     about: &'a RotorSolution,
@@ -139,7 +142,7 @@ impl RotorSolver {
             InflowState::Settled => Some(inflow_slope(condition, inflow_model, about)?),
         };
         let mut changes: Vec<Direction> =
-            directions.iter().map(|d| self.moved_flaps(condition, &about.inflow, d)).collect();
+            directions.par_iter().map(|d| self.moved_flaps(condition, &about.inflow, d)).collect();
         let seed = seed.filter(|slope| slope.iter().any(|v| *v != 0.0));
         if let Some(slope) = &seed {
             changes.push(self.moved_inflow(condition, &about.inflow, slope)?);
@@ -213,12 +216,20 @@ impl<'a> Base<'a> {
         let orbit = about.orbit.sample(&solver.time);
         let points = solver.point_inputs(condition, &about.inflow);
         let system = solver.rotor.system(&solver.air, points);
-        let mut forces = DMatrix::zeros(system.dof(), orbit.q.ncols());
-        system.residual(&orbit, &mut forces)?;
         let settled = OrbitSamples { qdd: about.accelerations.clone(), ..orbit.clone() };
+        let (forces, bare) = (DMatrix::zeros(0, 0), DMatrix::zeros(0, 0));
         let rest = Answer::default();
-        let mut base = Self { solver, orbit, settled, forces, rest, condition, about, followed };
-        base.rest = base.answer(&system, &base.settled)?;
+        let mut base =
+            Self { solver, orbit, settled, forces, bare, rest, condition, about, followed };
+        let (at_rest, (forces, bare)) = rayon::join(
+            || base.answer(&system, &base.settled),
+            || {
+                let mut forces = DMatrix::zeros(system.dof(), base.orbit.q.ncols());
+                let evaluated = system.residual(&base.orbit, &mut forces);
+                (evaluated.map(|()| forces), system.unloaded(&base.orbit))
+            },
+        );
+        (base.rest, base.forces, base.bare) = (at_rest?, forces?, bare);
         Ok(base)
     }
 
@@ -256,9 +267,10 @@ impl<'a> Base<'a> {
             .map(|change| self.load_change(change))
             .collect::<Result<Vec<_>, ResponseError>>()?;
         let points = self.solver.point_inputs(self.condition, &self.about.inflow);
+        let known = (&self.about.orbit, &self.forces);
         let response = linear
             .orbits
-            .linear_response(&self.system(points), &self.about.orbit, &loads, LINEAR_TOLERANCE)
+            .linear_response_from(&self.system(points), known, &loads, LINEAR_TOLERANCE)
             .map_err(RotorSolver::orbit_error)?;
         let motions = response.changes.iter().zip(&response.force_changes);
         let found = changes
@@ -320,7 +332,7 @@ impl<'a> Base<'a> {
     fn load_change(&self, change: &Direction) -> Result<DMatrix<f64>, ResponseError> {
         let system = self.system(change.points.clone());
         if let Some(flaps) = &change.flaps
-            && let Some(slope) = system.flap_slope(&self.orbit, flaps)?
+            && let Some(slope) = system.flap_slope((&self.orbit, &self.bare), flaps)?
         {
             return Ok(slope);
         }
@@ -510,7 +522,12 @@ mod tests {
             assert!(off <= 1e-8, "{couplings:?}: {off:e}");
             // and it was the closed slope that was compared
             let system = base.system(change.points.clone());
-            assert!(system.flap_slope(&base.orbit, &change.flaps.unwrap()).unwrap().is_some());
+            assert!(
+                system
+                    .flap_slope((&base.orbit, &base.bare), &change.flaps.unwrap())
+                    .unwrap()
+                    .is_some()
+            );
         }
     }
 }

@@ -294,6 +294,22 @@ impl ResponseSystem<'_> {
 }
 
 impl ResponseSystem<'_> {
+    /// What the residual is without loads of the air and of the flaps.
+    pub(crate) fn unloaded(&self, samples: &OrbitSamples) -> DMatrix<f64> {
+        let dof = self.dof();
+        let mut out = DMatrix::zeros(dof, self.points.len());
+        let columns = out.as_mut_slice().par_chunks_mut(dof).with_min_len(POINTS_TOGETHER);
+        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, bare)| {
+            let mut motion = Motion::default();
+            self.fill(&mut motion, samples, p);
+            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
+            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
+            scratch.loads.clear(self.blade.grid.len());
+            self.project(p, (&motion, [&q, &qd, &qdd]), scratch, bare);
+        });
+        out
+    }
+
     /// Slope of the residual along a motion of the flaps given at every point, the motion of the blade
     /// held, in closed form:
     ///
@@ -303,7 +319,7 @@ impl ResponseSystem<'_> {
     /// dR = R(dF) - R(0)
     /// ```
     /// the slopes of the section loads carried along the flow, whose lags the operator that is kept for
-    /// them makes periodic; the residual is linear in its loads.
+    /// them makes periodic; the residual is linear in its loads, and `bare` is [`unloaded`](Self::unloaded).
     ///
     /// `None` where the loads are not linear in the flap: sections that stall dynamically, flaps that
     /// weigh beside the blade.
@@ -312,7 +328,7 @@ impl ResponseSystem<'_> {
     /// None that [`revolution`](Self::revolution) does not have.
     pub(crate) fn flap_slope(
         &self,
-        samples: &OrbitSamples,
+        (samples, bare): (&OrbitSamples, &DMatrix<f64>),
         flaps: &[Vec<FlapAngle>],
     ) -> Result<Option<DMatrix<f64>>, ResponseError> {
         if self.air.stalls() || self.blade.flaps_beside_blade() {
@@ -346,12 +362,9 @@ impl ResponseSystem<'_> {
             let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
             let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
             let coordinates = [q.as_slice(), &qd, &qdd];
-            let mut bare = vec![0.0; dof];
-            scratch.loads.clear(self.blade.grid.len());
-            self.project(p, (motion, coordinates), scratch, &mut bare);
             along.span_loads(p, motion, &sections[p], &mut scratch.loads);
             self.project(p, (motion, coordinates), scratch, slope);
-            for (slope, bare) in slope.iter_mut().zip(bare) {
+            for (slope, bare) in slope.iter_mut().zip(&bare.column(p)) {
                 *slope -= bare;
             }
         });
