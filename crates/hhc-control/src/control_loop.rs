@@ -133,7 +133,7 @@ impl FeedbackController {
     ) -> Result<ControlRun, RunError<P::Error>> {
         let mut here = start.clone();
         let mut steps: Vec<ControlStep> = Vec::new();
-        let mut measurements = 0;
+        let (mut measurements, mut halvings) = (0, 0);
         let mut kkt = None;
         let mut known = Knowledge::new(&self.controller, &self.law, start);
         let strict = self.settings.cost_tolerance > 0.0;
@@ -179,6 +179,7 @@ impl FeedbackController {
             let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost, back };
             let search = self.search(plant, &mut known, &from, (limits.as_ref(), &history))?;
             measurements += search.measurements;
+            halvings += search.taken.as_ref().map_or(self.settings.max_halvings, |s| s.halvings);
             if let Some(step) = search.taken {
                 let fall = here.cost.total() - step.cost.total();
                 // a part of a step that brings little does not say that the whole would not
@@ -226,6 +227,7 @@ impl FeedbackController {
             start: self.weighed(start, here.rho),
             steps,
             measurements: measurements + known.measurements,
+            halvings,
             identifications: known.identifications,
             t: known.t()?,
             kkt,

@@ -104,6 +104,8 @@ pub struct ControlRun {
     pub steps: Vec<ControlStep>,
     /// Measurements made: the start, steps, rejected steps, and what learning T took.
     pub measurements: usize,
+    /// Halvings of all steps together, those included of which no part was taken.
+    pub halvings: u32,
     /// Times T was identified again, or the controls were probed.
     pub identifications: usize,
     /// T as known at the end, 1/V.
@@ -126,11 +128,6 @@ impl ControlRun {
     /// Reduction of the load cost from start to end, percent: see [`reduction_percent`].
     pub fn reduction_percent(&self) -> f64 {
         reduction_percent(self.start.cost.loads, self.last().cost.loads)
-    }
-
-    /// Halvings of all accepted steps together.
-    pub fn halvings(&self) -> u32 {
-        self.steps.iter().map(|step| step.halvings).sum()
     }
 }
 

@@ -210,7 +210,7 @@ pub enum Fault {
     },
     /// A flap does not fit between the cut-out, its neighbour and the tip.
     #[error(
-        "the flap spans {start_r} R to {end_r} R, expected {from_r} R (cut-out or the flap before) < start_r < end_r <= 1 R; list the flaps from root to tip without overlap"
+        "the flap spans {start_r} R to {end_r} R, expected {from_r} R (cut-out or the flap before) <= start_r < end_r <= 1 R; keep it on the blade, and list flaps from root to tip without overlap"
     )]
     FlapSpan {
         /// Inboard edge, R.

@@ -91,7 +91,7 @@ fn a_loop_that_halves_learns_how_far_to_trust_its_t() {
             println!(
                 "weak {weak}, bend {bend}: {} steps, {} halvings, {:?}, u_s {:.5} of {exact:.5}",
                 run.steps.len(),
-                run.halvings(),
+                run.halvings,
                 run.outcome,
                 found[1]
             );
@@ -99,7 +99,7 @@ fn a_loop_that_halves_learns_how_far_to_trust_its_t() {
             let lost = |u: &[f64]| plant.loads(u).iter().map(|z| z * z).sum::<f64>();
             let (there, best) = (lost(found), lost(&[1.0, exact]));
             assert!(there - best <= 1e-8 * best, "{:e}", there / best - 1.0);
-            assert!(run.halvings() <= 8, "{}", run.halvings());
+            assert!(run.halvings <= 8, "{}", run.halvings);
         }
     }
 }

@@ -108,7 +108,7 @@ fn the_fixed_point_and_the_limit_hold_together() {
             found.rho,
             found.run.outcome,
             found.run.steps.len(),
-            found.run.halvings(),
+            found.run.halvings,
             found.trials.len(),
             found.measurements,
             found.run.last().cost.loads / found.run.start.cost.loads,

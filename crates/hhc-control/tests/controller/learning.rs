@@ -52,7 +52,7 @@ fn controllers_that_learn_reach_the_optimum_where_a_constant_t_stalls() {
             println!(
                 "{phase_deg} deg, {}: excess {excess:?}, {:?}",
                 way.name(),
-                run.as_ref().map(|r| (r.outcome, r.steps.len(), r.halvings(), r.measurements))
+                run.as_ref().map(|r| (r.outcome, r.steps.len(), r.halvings, r.measurements))
             );
             if way != Controller::Global {
                 assert!(excess.unwrap() < 1e-6);
@@ -103,7 +103,7 @@ fn hysteresis_the_constant_t_ends_short_those_that_learn_converge() {
             run.last().cost.loads / run.start.cost.loads,
             run.outcome,
             run.steps.len(),
-            run.halvings(),
+            run.halvings,
             run.measurements
         );
         if way != Controller::Global {

@@ -140,7 +140,7 @@ fn the_error_shrinks_as_theory_says() {
         for pair in errors.windows(2).take_while(|pair| pair[1] > 1e-9) {
             assert!((pair[1] / pair[0] - theory).abs() < 1e-5, "{gain} {phase_deg}: {errors:?}");
         }
-        assert_eq!((run.outcome, run.halvings()), (Outcome::Converged, 0));
+        assert_eq!((run.outcome, run.halvings), (Outcome::Converged, 0));
         assert!(errors[errors.len() - 1] <= 1e-8);
     }
 }
@@ -197,7 +197,7 @@ fn beyond_60_degrees_halving_saves_the_loop() {
         FeedbackController::new(&t0, &LoadWeights::Identity, settings.clone()).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
     assert_eq!(run.outcome, Outcome::Converged);
-    assert!(run.halvings() > 0);
+    assert!(run.halvings > 0);
     assert!(relative_error(&run.last().control_volt, &exact) <= 2e-6);
 
     // without halving the same loop is lost
@@ -252,6 +252,9 @@ fn near_the_least_cost_a_wrong_t_stalls_the_strict_loop() {
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.05).unwrap();
     assert_eq!(run.outcome, Outcome::Stalled);
+    // the last search took no part of its step: its halvings count too
+    let taken: u32 = run.steps.iter().map(|step| step.halvings).sum();
+    assert!(run.halvings > taken, "{} of {taken}", run.halvings);
     assert!(run.last().cost.total() < 0.95 * run.start.cost.total());
 }
 

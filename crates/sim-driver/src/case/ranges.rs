@@ -120,7 +120,9 @@ fn check_flaps(check: &mut Checker<'_>, file: &CaseFile) {
         if start_r >= from_r && end_r > start_r && end_r <= 1.0 {
             from_r = end_r;
         } else {
-            check.fault(&format!("flaps[{i}].start_r"), Fault::FlapSpan { start_r, end_r, from_r });
+            let end = start_r >= from_r && start_r < 1.0;
+            let field = if end { "end_r" } else { "start_r" };
+            check.fault(&format!("flaps[{i}].{field}"), Fault::FlapSpan { start_r, end_r, from_r });
         }
         for (key, value, low, high, remedy) in [
             ("chord_fraction", flap.chord_fraction, 0.05, 0.5, "the paper's flap has 0.20 chord"),

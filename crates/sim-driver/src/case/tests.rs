@@ -81,7 +81,7 @@ fn every_problem_is_reported_with_its_line() {
             "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping, root_offset_r, root, mass_centre_r, tension_centre_r, aerodynamic_centre_r, torque_offset_r, gravity, tables, unlike_blades",
             "case.ron:6:5: rotor.blades: is 0, expected 1 to 16; the paper's rotor has 4",
             "case.ron:7:5: rotor.gj: is NaN, expected a positive finite number; a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)",
-            "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) < start_r < end_r <= 1 R; list the flaps from root to tip without overlap",
+            "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) <= start_r < end_r <= 1 R; keep it on the blade, and list flaps from root to tip without overlap",
             "case.ron:10:12: inflow.model: unknown choice `Dress`, did you mean `Drees`?; known here: Uniform, Drees, Prescribed, PittPeters, FreeWake",
             "7 problems",
         ],
@@ -253,7 +253,7 @@ fn problems_of_the_blade_name_the_remedy() {
         ),
         (
             "(flaps: [(start_r: 0.9, end_r: 1.1)])",
-            "flaps[0].start_r: the flap spans 0.9 R to 1.1 R, expected",
+            "flaps[0].end_r: the flap spans 0.9 R to 1.1 R, expected",
         ),
         (
             "(rotor: (unlike_blades: [(blade: 5, mass: 1.01)]))",

@@ -5,7 +5,7 @@ use crate::SimError;
 use crate::case::{Case, ControlActuator, LoadedCase};
 use crate::run::RunOutcome;
 use hhc_control::{
-    AdaptiveSettings, ControlLayout, ControlLimits, Controller, FeedbackController,
+    AdaptiveSettings, ControlError, ControlLayout, ControlLimits, Controller, FeedbackController,
     FeedbackSettings, LoadWeights, Measurement, Outcome, Plant, RunError, TMatrix, identify_t,
     reduction_percent,
 };
@@ -42,7 +42,8 @@ pub struct RobustnessCell {
     pub reduction_percent: f64,
     /// The best any recorded control reached on the way.
     pub best_percent: f64,
-    /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`, `diverged`.
+    /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`; `diverged`: no first step
+    /// lowers the cost; `no-room`: at the edge of the range T could not be measured again, the reduction is not counted.
     pub outcome: &'static str,
     /// Control steps.
     pub steps: usize,
@@ -273,11 +274,14 @@ pub fn robustness(
                         Outcome::StepLimit => "step-limit",
                     },
                     steps: run.steps.len(),
-                    halvings: run.halvings(),
+                    halvings: run.halvings,
                     measurements: run.measurements,
                     ..cell
                 }),
-                Err(hhc_control::RunError::Plant { source, .. }) => Err(source),
+                Err(RunError::Plant { source, .. }) => Err(source),
+                Err(RunError::Control(ControlError::NoRoomToIdentify { .. })) => {
+                    Ok(RobustnessCell { outcome: "no-room", ..cell })
+                }
                 Err(_) => Ok(cell),
             }
         })

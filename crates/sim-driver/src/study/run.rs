@@ -66,7 +66,7 @@ impl ControlStudy {
 
     /// Steps that were halved because they raised the cost.
     pub fn halvings(&self) -> u32 {
-        self.run.as_ref().map_or(0, ControlRun::halvings)
+        self.run.as_ref().map_or(0, |run| run.halvings)
     }
 
     /// Largest mean flap angle over all recorded steps, deg.

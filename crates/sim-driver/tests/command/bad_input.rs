@@ -214,11 +214,11 @@ fn a_blade_that_is_none() {
     );
     bad_case(
         "(flaps: [(start_r: 0.9, end_r: 1.05)])",
-        &["flaps[0].start_r: the flap spans 0.9 R to 1.05 R", "<= 1 R"],
+        &["flaps[0].end_r: the flap spans 0.9 R to 1.05 R", "<= 1 R"],
     );
     bad_case(
         "(rotor: (modal_damping: 0, ei_lag: 1e5, root: (lag: Spring(stiffness: 0.33333333))))",
-        &["lag 1 has 1.0000 per rev, a harmonic of the loads, and no damping", "Remedy"],
+        &["lag 1 at 0.00 deg has 0.9982 per rev, near the harmonic 1 of the loads, and no damping", "Remedy"],
     );
 }
 
