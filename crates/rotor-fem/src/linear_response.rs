@@ -131,7 +131,7 @@ impl PeriodicSolver {
     {
         self.check(system, orbit)?;
         let base = self.evaluate(system, orbit.clone(), 0, orbit)?;
-        let mut response = self.response_about(system, base, load_changes, tolerance)?;
+        let mut response = self.response_about(system, &base, load_changes, tolerance)?;
         response.evaluations += 1;
         Ok(response)
     }
@@ -155,13 +155,13 @@ impl PeriodicSolver {
         self.check(system, orbit)?;
         let samples = orbit.sample(self.time());
         let base = self.weigh(system, (orbit.clone(), samples, force.clone()), 0, orbit)?;
-        self.response_about(system, base, load_changes, tolerance)
+        self.response_about(system, &base, load_changes, tolerance)
     }
 
     fn response_about<S: PeriodicSystem>(
         &mut self,
         system: &S,
-        base: Iterate,
+        base: &Iterate,
         load_changes: &[DMatrix<f64>],
         tolerance: f64,
     ) -> Result<LinearResponse, PeriodicError<S::Error>>
@@ -239,7 +239,7 @@ impl PeriodicSolver {
                     if size > 0.0 { -step / size } else { -step }
                 })
                 .collect();
-            let found = self.images(system, (orbit, &base), directions)?;
+            let found = self.images(system, (orbit, base), directions)?;
             evaluations += found.len();
             for mut new in found {
                 new.image = as_accelerations(new.image);

@@ -115,6 +115,24 @@ fn it_is_the_difference_of_two_orbits() {
 }
 
 #[test]
+fn forces_known_beforehand_save_an_evaluation_and_change_nothing() {
+    let system = LinearPeriodic::new(DMatrix::identity(DOF, DOF), coefficients);
+    let mut solver = solver();
+    let orbit = solver.solve(&system, &Orbit::zero(solver.time(), DOF)).unwrap().orbit;
+    let loads = loads(solver.time());
+    let mut force = DMatrix::zeros(DOF, solver.time().points().len());
+    system.residual(&orbit.sample(solver.time()), &mut force).unwrap();
+    let found = solver.linear_response(&system, &orbit, &loads, 1e-9).unwrap();
+    let known = (&orbit, &force);
+    let mut from = solver.linear_response_from(&system, known, &loads, 1e-9).unwrap();
+    from.evaluations += 1;
+    assert_eq!(found, from);
+    let wrong = DMatrix::zeros(DOF, 3);
+    let refused = solver.linear_response_from(&system, (&orbit, &wrong), &loads, 1e-9);
+    assert!(matches!(refused, Err(PeriodicError::Shape { .. })));
+}
+
+#[test]
 fn a_load_of_the_wrong_shape_is_refused_and_none_costs_nothing() {
     let system = LinearPeriodic::new(DMatrix::identity(DOF, DOF), coefficients);
     let mut solver = solver();

@@ -490,7 +490,8 @@ mod tests {
                 load_harmonics: 8,
                 ..Discretisation::default()
             };
-            let model = model(couplings, airfoils, tip_loss, flap_start);
+            let model =
+                RotorModel { gravity: 0.003, ..model(couplings, airfoils, tip_loss, flap_start) };
             let rotor = Rotor::new(model, &blade.unwrap(), d).unwrap();
             let mut solver =
                 RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();

@@ -336,6 +336,8 @@ impl ResponseSystem<'_> {
         }
         let along = |(point, flap): (&PointInput, &Vec<FlapAngle>)| PointInput {
             flap: flap.clone(),
+            // the weight does not change with the flaps
+            gravity: [0.0; 3],
             ..point.clone()
         };
         let along =
