@@ -181,7 +181,7 @@ impl PeriodicSolver {
         let factorisations = usize::from(kept.is_none());
         let matrix = match kept {
             Some(kept) => kept,
-            None => self.factorise(system, &base, 0)?,
+            None => self.factorise(system, base, 0)?,
         };
         // residuals are measured as accelerations: a light mode counts as much as a heavy one
         let mass = system.mass().diagonal();

@@ -218,7 +218,10 @@ fn a_blade_that_is_none() {
     );
     bad_case(
         "(rotor: (modal_damping: 0, ei_lag: 1e5, root: (lag: Spring(stiffness: 0.33333333))))",
-        &["lag 1 at 0.00 deg has 0.9982 per rev, near the harmonic 1 of the loads, and no damping", "Remedy"],
+        &[
+            "lag 1 at 0.00 deg has 0.9982 per rev, near the harmonic 1 of the loads, and no damping",
+            "Remedy",
+        ],
     );
 }
 

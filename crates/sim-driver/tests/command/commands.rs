@@ -22,7 +22,10 @@ fn close(found: f64, expected: f64, relative: f64) {
 #[test]
 fn modes_of_the_table_1_blade() {
     let place = Place::new();
-    place.write("case.ron", "(rotor: (ea: 1e6, twist_deg: 0), structure: (elements: 20, modes: (flap: 4)))");
+    place.write(
+        "case.ron",
+        "(rotor: (ea: 1e6, twist_deg: 0), structure: (elements: 20, modes: (flap: 4)))",
+    );
     let args = ["modes", "case.ron", "--no-gyroscopic", "--format", "json", "--speeds", "0,0.5,1"];
     let json = place.hhc(&args).json();
     close(json["rotor_speed_rad_s"].as_f64().unwrap(), 40.107_666, 1e-7);
