@@ -21,7 +21,8 @@ pub enum Controller {
     Global,
     /// T identified again about the present control before every step: from the plant's linearised
     /// solution if it has one, else by differences. If no part of a step lowers the cost all the same,
-    /// T is corrected along that step by what was measured there, and the next step asked for.
+    /// T is corrected along that step by what was measured there, and the next step asked for. Where the
+    /// plant admits neither side of a control, at the edge of its range, the T known so far stays.
     Local {
         /// Voltage step of each control for the differences, V.
         step_volt: Vec<f64>,
@@ -106,17 +107,24 @@ impl<'a> Knowledge<'a> {
                             history: Vec::new(),
                             source,
                         })?;
-                    let t = if let Some(t) = offered {
-                        t
-                    } else {
-                        let loads = &here.measurement.hub_loads;
-                        let found = identify_t_about(plant, (control, loads), step_volt)?;
-                        self.measurements += found.1;
-                        found.0
+                    known_at.clone_from(control);
+                    let loads = &here.measurement.hub_loads;
+                    let t = match offered {
+                        Some(t) => t,
+                        None => match identify_t_about(plant, (control, loads), step_volt) {
+                            Ok((t, measurements)) => {
+                                self.measurements += measurements;
+                                t
+                            }
+                            // at the edge of the range the T of the last control is the best there is
+                            Err(RunError::Control(ControlError::NoRoomToIdentify { .. })) => {
+                                return Ok(());
+                            }
+                            Err(error) => return Err(error),
+                        },
                     };
                     self.law = self.law.with_t(&t)?;
                     self.identifications += 1;
-                    known_at.clone_from(control);
                 }
             }
             How::Adaptive { filter, .. } => self.law = self.law.with_t(&filter.t()?)?,

@@ -2,8 +2,8 @@
 
 use crate::plants::{Counted, Problem, as_t, relative_error};
 use hhc_control::{
-    ControlLayout, FeedbackController, FeedbackSettings, LinearPlant, LoadWeights, Measurement,
-    Outcome, Plant, StrokeLimitedRun, StrokeStatus,
+    ControlLayout, Controller, FeedbackController, FeedbackSettings, LinearPlant, LoadWeights,
+    Measurement, Outcome, Plant, StrokeLimitedRun, StrokeStatus,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -303,4 +303,21 @@ fn steps_out_of_range_are_halved() {
     assert_eq!(run.outcome, Outcome::OutOfRange);
     let lost = controller.run(&mut odd(f64::INFINITY, 0.0, 0.1), 0.0).unwrap_err();
     assert!(lost.to_string().contains("no part of the first control step"), "{lost}");
+}
+
+#[test]
+fn a_local_controller_at_the_edge_of_the_range_goes_on_with_the_t_it_has() {
+    let problem = opposed();
+    let weights = &LoadWeights::Identity;
+    let settings = FeedbackSettings::default();
+    let global = FeedbackController::new(&as_t(&problem.t), weights, settings).unwrap();
+    let wanted = global.run_within_stroke(&mut odd(f64::INFINITY, 0.0, 2.001)).unwrap();
+    // five volt to any side are outside, so T cannot be measured there
+    let step_volt = vec![5.0; problem.t.ncols()];
+    let local = global.clone().with_controller(Controller::Local { step_volt }).unwrap();
+    let run = local.run(&mut odd(f64::INFINITY, 0.0, 2.001), wanted.rho).unwrap();
+    assert_eq!((run.outcome, run.identifications), (Outcome::Converged, 0));
+    let reached = (&run.last().control_volt, &wanted.run.last().control_volt);
+    let apart = reached.0.iter().zip(reached.1).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-3, "{apart} V");
 }

@@ -5,7 +5,7 @@ use crate::SimError;
 use crate::case::{Case, ControlActuator, LoadedCase};
 use crate::run::RunOutcome;
 use hhc_control::{
-    AdaptiveSettings, ControlError, ControlLayout, ControlLimits, Controller, FeedbackController,
+    AdaptiveSettings, ControlLayout, ControlLimits, Controller, FeedbackController,
     FeedbackSettings, LoadWeights, Measurement, Outcome, Plant, RunError, TMatrix, identify_t,
     reduction_percent,
 };
@@ -43,7 +43,7 @@ pub struct RobustnessCell {
     /// The best any recorded control reached on the way.
     pub best_percent: f64,
     /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`; `diverged`: no first step
-    /// lowers the cost; `no-room`: at the edge of the range T could not be measured again, the reduction is not counted.
+    /// lowers the cost.
     pub outcome: &'static str,
     /// Control steps.
     pub steps: usize,
@@ -279,9 +279,6 @@ pub fn robustness(
                     ..cell
                 }),
                 Err(RunError::Plant { source, .. }) => Err(source),
-                Err(RunError::Control(ControlError::NoRoomToIdentify { .. })) => {
-                    Ok(RobustnessCell { outcome: "no-room", ..cell })
-                }
                 Err(_) => Ok(cell),
             }
         })
