@@ -39,7 +39,7 @@ pub struct BenchRecord {
     pub voltage_volt: Vec<f64>,
     /// Measured output as equivalent flap angle, deg: displacement times the bench gain.
     pub output_deg: Vec<f64>,
-    /// Training or test; none leaves it to [`SplitRule`].
+    /// Training or test; none leaves it to [`crate::identify::SplitRule`].
     pub record_use: Option<RecordUse>,
     /// Frequency of the command's period, Hz; none has it found from the command.
     pub base_frequency_hz: Option<f64>,
