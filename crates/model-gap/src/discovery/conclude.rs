@@ -40,6 +40,7 @@ impl<S: Simulator> Search<'_, S> {
                 candidate: chosen[at],
                 parameters: parameters(self.discovery, self.evidence, current, at, &place.rest),
                 drop: place.drop,
+                output_drop: self.output_drop(&place.rest, current),
                 held_out_drop: self.held_out_drop(&place.rest, current),
                 alternatives: place.alternatives,
                 rivals: place.rivals,

@@ -34,7 +34,8 @@ pub struct Separation {
     /// Row `a`, column `b`: what would be left of the misfit if `a` were true and `b` were fitted, in
     /// units of the noise variance; 0 on the diagonal.
     pub distance: DMatrix<f64>,
-    /// What the effects of each rival add to the misfit of the base model there.
+    /// What the effects of each rival add to the misfit of the base model there, on the outputs: further
+    /// channels show a cause directly and ask for no model of its form.
     pub energy: Vec<f64>,
 }
 
@@ -68,7 +69,9 @@ pub fn separations<S: Simulator>(
             Ok((residual, slopes))
         })
         .collect::<Result<_, GapError>>()?;
-    let energy = looked_at.iter().map(|own| fitter.cost_of(&difference(&base, &own.0))).collect();
+    let on_outputs =
+        |effect: &[Vec<f64>]| (fitter.cost_of(effect) - evidence.beside_output(effect)).max(0.0);
+    let energy = looked_at.iter().map(|own| on_outputs(&difference(&base, &own.0))).collect();
     let count = rivals.len();
     let mut distance = DMatrix::zeros(count, count);
     for (a, truth) in looked_at.iter().enumerate() {

@@ -58,6 +58,8 @@ pub struct Found {
     pub parameters: Vec<FittedParameter>,
     /// Drop of the misfit without and with it, in units of the noise variance.
     pub drop: f64,
+    /// The part of that drop on the outputs, further channels left out.
+    pub output_drop: f64,
     /// The same where it was held out, by experiment.
     pub held_out_drop: f64,
     /// The candidates that explain the same data about as well, best first, itself left out.

@@ -18,6 +18,9 @@ pub(crate) enum ChannelKind {
     Amplifier,
     Temperature,
     Load,
+    /// The output less what an ideal sensor read of the same motion: what the base model gets wrong
+    /// cancels, what the sensor does is left.
+    Comparison,
 }
 
 /// The measured runs with the base model and the causes.
@@ -27,9 +30,38 @@ pub(crate) struct BenchSimulator<'a> {
     causes: &'a [Box<dyn BenchCause>],
     plant: Plant<'a>,
     pub(crate) channels: Vec<(usize, ChannelKind)>,
+    /// For a run read by an ideal sensor: the run of the same input read by the sensor of the bench, and
+    /// the difference of both readings.
+    twins: Vec<Option<Twin>>,
     /// Samples averaged into one.
     pub(crate) block: usize,
     pub(crate) range: (f64, f64),
+}
+
+/// A run that another one repeats.
+struct Twin {
+    run: usize,
+    /// Its reading less that of the other.
+    difference: Vec<f64>,
+}
+
+/// Part of the range of the input by which two runs of the same input may differ.
+const SAME_INPUT: f64 = 1e-3;
+
+/// The run that a run read by an ideal sensor repeats.
+fn twin_of(runs: &[&Record], number: usize, range: (f64, f64)) -> Option<Twin> {
+    let own = runs[number];
+    let (step_s, most) = (own.step_s, SAME_INPUT * (range.1 - range.0));
+    let is_same = |other: &&Record| {
+        other.input.len() == own.input.len()
+            && (other.step_s / step_s - 1.0).abs() < SAME_INPUT
+            && other.input.iter().zip(&own.input).all(|(a, b)| (a - b).abs() <= most)
+    };
+    let found =
+        |other: &&Record| !other.has_ideal_sensor() && !other.is_preloaded() && is_same(other);
+    let run = runs.iter().position(found).filter(|_| own.has_ideal_sensor())?;
+    let pairs = runs[run].output.iter().zip(&own.output);
+    Some(Twin { run, difference: pairs.map(|(read, ideal)| read - ideal).collect() })
 }
 
 impl<'a> BenchSimulator<'a> {
@@ -42,8 +74,12 @@ impl<'a> BenchSimulator<'a> {
         let all: usize = runs.iter().map(|r| r.input.len()).sum();
         let block = all.div_ceil(MOST_SAMPLES).max(1);
         let mut channels = Vec::new();
+        let twins: Vec<Option<Twin>> =
+            (0..runs.len()).map(|number| twin_of(&runs, number, range)).collect();
         for (number, run) in runs.iter().enumerate() {
-            channels.push((number, ChannelKind::Output));
+            let is_twin = twins[number].is_some();
+            let output = if is_twin { ChannelKind::Comparison } else { ChannelKind::Output };
+            channels.push((number, output));
             for (kind, given) in [
                 (ChannelKind::Amplifier, &run.amplifier),
                 (ChannelKind::Temperature, &run.temperature),
@@ -55,7 +91,7 @@ impl<'a> BenchSimulator<'a> {
             }
         }
         let plant = Plant::new(base, runs.clone(), causes, range)?;
-        Ok(Self { base, runs, causes, plant, channels, block, range })
+        Ok(Self { base, runs, causes, plant, channels, twins, block, range })
     }
 
     /// Run, channel and sampling step of every trace.
@@ -68,6 +104,7 @@ impl<'a> BenchSimulator<'a> {
                     ChannelKind::Amplifier => "amplifier",
                     ChannelKind::Temperature => "temperature",
                     ChannelKind::Load => "load",
+                    ChannelKind::Comparison => "comparison",
                 };
                 (number, name, self.runs[number].step_s * self.block as f64)
             })
@@ -82,6 +119,9 @@ impl<'a> BenchSimulator<'a> {
             ChannelKind::Amplifier => &run.amplifier,
             ChannelKind::Temperature => &run.temperature,
             ChannelKind::Load => &run.load,
+            ChannelKind::Comparison => {
+                return self.twins[number].as_ref().map_or(&[], |twin| &twin.difference);
+            }
         };
         given.as_deref().unwrap_or_default()
     }
@@ -104,18 +144,26 @@ impl<'a> BenchSimulator<'a> {
             .iter()
             .map(|&(number, kind)| match kind {
                 ChannelKind::Output => averaged(&outputs[number], self.block),
+                // what is wrong with the motion is the same in both readings
                 _ => vec![0.0; averaged_length(outputs[number].len(), self.block)],
             })
             .collect()
     }
 
-    /// What a channel reads; zero of thermometer and load cell, and the stiffness of a load spring, are
-    /// what the record says.
+    /// What a channel reads; zero of thermometer, load cell and second sensor, and the stiffness of a load
+    /// spring, are what the record says.
     fn reading(&self, number: usize, kind: ChannelKind, own: &Response) -> Vec<f64> {
         let measured = self.measured(number, kind);
         let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
         match kind {
             ChannelKind::Output => own.output(number),
+            ChannelKind::Comparison => {
+                let Some(twin) = &self.twins[number] else { return Vec::new() };
+                let mut read = own.output(twin.run);
+                read.iter_mut().zip(own.output(number)).for_each(|(read, ideal)| *read -= ideal);
+                let off = mean(measured) - mean(&read);
+                read.iter().map(|difference| difference + off).collect()
+            }
             ChannelKind::Amplifier => {
                 own.terminal(number).unwrap_or(&self.runs[number].input).to_vec()
             }
@@ -158,7 +206,12 @@ impl Simulator for BenchSimulator<'_> {
         };
         let own = |(&(number, kind), residual): (&(usize, ChannelKind), &Vec<f64>)| {
             let run = self.runs[number];
-            if kind != ChannelKind::Output || run.has_ideal_sensor() {
+            let shows_hum = match kind {
+                ChannelKind::Output => !run.has_ideal_sensor(),
+                ChannelKind::Comparison => true,
+                _ => false,
+            };
+            if !shows_hum {
                 return vec![0.0; residual.len()];
             }
             line(amplitude, frequency_hz * run.step_s * self.block as f64, residual)

@@ -49,6 +49,10 @@ impl BenchSimulator<'_> {
                         let left = (e.correlation / block).max(1.0) * e.structure.powi(2);
                         (white.sqrt(), (white + left).sqrt())
                     }
+                    ChannelKind::Comparison => {
+                        let white = white_noise(self.measured(number, kind)) / block.sqrt();
+                        (white, white)
+                    }
                     ChannelKind::Amplifier => {
                         let off: Vec<f64> = self
                             .measured(number, kind)

@@ -251,12 +251,15 @@ pub fn measured(base: u64, size: Size) -> Vec<Plan> {
     runs
 }
 
+/// A second, ideal displacement sensor on every run, added ones included.
+const LASER: &str = "laser-cross-check";
+
 /// Ids of the catalogue of experiments.
 pub const EXPERIMENTS: [&str; 15] = [
     "multisine-5-181Hz",
     "amplifier-monitor",
     "temperature-monitor",
-    "laser-cross-check",
+    LASER,
     "amplitude-sweep",
     "frequency-sweep",
     "overdrive-two-biases",
@@ -301,7 +304,17 @@ pub fn experiment(id: &str, base: u64, monitors: Monitors) -> Result<Experiment,
         let (low, high) = joined.range_volt;
         joined.range_volt = (low.min(own.range_volt.0), high.max(own.range_volt.1));
     }
+    if id.split('+').any(|part| part == LASER) {
+        let added = joined.runs.iter().filter(|run| run.fitting == Fitting::Plain);
+        let twins: Vec<Plan> = added.map(by_laser).collect();
+        joined.runs.extend(twins);
+    }
     Ok(joined)
+}
+
+/// A run once more, read by the second sensor.
+fn by_laser(run: &Plan) -> Plan {
+    Plan { id: format!("laser_{}", run.id), fitting: Fitting::Laser, ..run.clone() }
 }
 
 fn one_experiment(id: &str, base: u64, monitors: Monitors) -> Result<Experiment, TruthError> {
@@ -315,13 +328,7 @@ fn one_experiment(id: &str, base: u64, monitors: Monitors) -> Result<Experiment,
         }
         "amplifier-monitor" => done.monitors.amplifier = Monitor::Recorded,
         "temperature-monitor" => done.monitors.temperature = Monitor::Recorded,
-        "laser-cross-check" => {
-            done.runs = measured(base, Size::Small);
-            for run in &mut done.runs {
-                run.id = format!("laser_{}", run.id);
-                run.fitting = Fitting::Laser;
-            }
-        }
+        LASER => done.runs = measured(base, Size::Small).iter().map(by_laser).collect(),
         "amplitude-sweep" => {
             let waveform = bursts(10.0, BIAS_VOLT, &[10.0, 20.0, 40.0, 60.0, 80.0].map(|a| (a, 6)));
             done.runs = vec![plan("added_amplitudes", 1000, waveform)];

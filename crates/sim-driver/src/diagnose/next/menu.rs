@@ -14,6 +14,10 @@ pub(super) struct Planned {
 pub(super) enum Measured {
     /// The output on further runs.
     Runs(Vec<Planned>),
+    /// The difference between the sensor and an ideal one on the runs there are.
+    Again(Vec<Planned>),
+    /// The output on further runs, by both sensors.
+    Twice(Vec<Planned>),
     /// The terminal voltage on the runs there are.
     Amplifier,
     /// The temperature on the runs there are.
@@ -54,19 +58,21 @@ pub(super) fn menu(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experime
     menu
 }
 
+/// Two multisines that carry all frequencies a bench sensor has to follow.
+fn wide_multisines(span: Span) -> Vec<Planned> {
+    let wide = |peak| span.multisine(WIDE, 2.0, peak, 2.0, 5e-4);
+    vec![run("wide_small", 5e-4, wide(0.14)), run("wide_large", 5e-4, wide(0.35))]
+}
+
 /// Experiments that carry high frequencies, or many.
 fn fast(span: Span) -> Vec<Experiment> {
-    let wide = |peak| span.multisine(WIDE, 2.0, peak, 2.0, 5e-4);
     let sines =
         [(0.5, 2.0), (1.0, 2.0), (2.0, 4.0), (5.0, 8.0), (10.0, 12.0), (20.0, 20.0), (40.0, 40.0)];
     vec![
         Experiment {
             id: "multisine-5-181Hz",
             what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each",
-            measured: Measured::Runs(vec![
-                run("wide_small", 5e-4, wide(0.14)),
-                run("wide_large", 5e-4, wide(0.35)),
-            ]),
+            measured: Measured::Runs(wide_multisines(span)),
         },
         one(
             "amplitude-sweep",
@@ -128,7 +134,7 @@ fn slow_and_small(span: Span) -> Vec<Experiment> {
 
 /// Experiments with something else on the bench.
 fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
-    let again = |r: &&Record| run(&format!("laser_{}", r.id), r.step_s, r.input.clone());
+    let again = |r: &&Record| run(&r.id, r.step_s, r.input.clone());
     vec![
         Experiment {
             id: "preload",
@@ -141,7 +147,13 @@ fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
         Experiment {
             id: "laser-cross-check",
             what: "the same runs read by a second, ideal displacement sensor",
-            measured: Measured::Runs(runs.iter().map(again).collect()),
+            measured: Measured::Again(runs.iter().map(again).collect()),
+        },
+        Experiment {
+            id: "multisine-5-181Hz+laser-cross-check",
+            what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each, read by \
+                   the sensor and by a second, ideal one",
+            measured: Measured::Twice(wide_multisines(span)),
         },
     ]
 }

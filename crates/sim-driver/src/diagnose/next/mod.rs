@@ -143,9 +143,21 @@ impl Parting {
 }
 
 fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<Parting, GapError> {
+    let by_second_sensor = |planned: &Planned| {
+        let record = undisturbed(bench, planned);
+        let twin = Planned {
+            id: format!("laser_{}", planned.id),
+            input: planned.input.clone(),
+            ..*planned
+        };
+        [record, undisturbed(bench, &twin)]
+    };
     let mut records: Vec<Record> = match &experiment.measured {
         Measured::Runs(runs) | Measured::Warm(runs) => {
             runs.iter().map(|planned| undisturbed(bench, planned)).collect()
+        }
+        Measured::Again(runs) | Measured::Twice(runs) => {
+            runs.iter().flat_map(by_second_sensor).collect()
         }
         Measured::Amplifier | Measured::Temperature => {
             bench.runs.iter().map(|&r| Record { load: None, ..r.clone() }).collect()
@@ -153,6 +165,8 @@ fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<P
     };
     let shown = match experiment.measured {
         Measured::Runs(_) => &[ChannelKind::Output][..],
+        Measured::Again(_) => &[ChannelKind::Comparison],
+        Measured::Twice(_) => &[ChannelKind::Output, ChannelKind::Comparison],
         Measured::Warm(_) => &[ChannelKind::Output, ChannelKind::Temperature],
         Measured::Amplifier => &[ChannelKind::Amplifier],
         Measured::Temperature => &[ChannelKind::Temperature],
@@ -173,7 +187,7 @@ fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<P
     let traces: Vec<Trace> = places.iter().map(|&t| traces[t].clone()).collect();
     let simulator = Shown { whole: &whole, places };
     let found = separations(&simulator, &traces, bench.candidates, &open.rivals)?;
-    Ok(Parting::of(&found, open.drop))
+    Ok(Parting::of(&found, open.output_drop))
 }
 
 /// Some of the channels of a bench.
@@ -191,7 +205,10 @@ impl Simulator for Shown<'_> {
 
 /// A planned run of the base model, with its noise: that noise is what a distance is measured by.
 fn undisturbed(bench: &Bench<'_>, planned: &Planned) -> Record {
-    let mut noise = Noise(0x0F1E_2D3C);
+    // another draw for every run: two sensors on one motion do not share their noise
+    let of_name =
+        planned.id.bytes().fold(0, |sum: u64, b| sum.wrapping_mul(31).wrapping_add(b.into()));
+    let mut noise = Noise(0x0F1E_2D3C ^ of_name);
     let mut output = bench.base.predict(&planned.input, planned.step_s);
     for y in &mut output {
         *y += bench.base.noise * noise.normal();
