@@ -96,6 +96,9 @@ pub struct Cause {
     pub side: Side,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
+    /// Part of its effect by which this model of the cause is wrong along the effect itself, `>= 0`, such
+    /// as 0.05: intervals of the parameters grow by what it does to them.
+    pub form_error: f64,
     /// What the residual looks like.
     pub fingerprint: &'static str,
     /// Causes that look alike on ordinary data.

@@ -64,6 +64,7 @@ fn candidate(id: &'static str) -> Candidate {
             needs: None,
             step: None,
         }],
+        form_error: 0.05,
         fingerprint: "",
         confused_with: &[],
         separating: &[],

@@ -1,10 +1,10 @@
 //! The decisions, in their order.
 
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Seen, difference};
 use super::fit::{Fitted, Fitter};
 use super::judge::{Generic, paired};
 use super::screen::screen;
-use super::{Discovery, Finding, Rival, Screened, Signal, Simulator};
+use super::{Discovery, Finding, Rival, Screened, Simulator};
 use crate::{Effect, GapError};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
@@ -56,9 +56,21 @@ impl<'a, S: Simulator> Search<'a, S> {
         let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
         let generic = Generic::new(discovery, evidence);
         let kept = Mutex::new(Vec::new());
-        let energy = |s: &Signal| fitter.cost_of(s);
-        let structure_energy = discovery.structures.iter().map(energy).fold(0.0, f64::max);
-        Ok(Self { discovery, evidence, fitter, screened, generic, base, structure_energy, kept })
+        let columns: Vec<&[Vec<f64>]> = discovery.structures.iter().map(Vec::as_slice).collect();
+        let structures = evidence.seen(&columns);
+        let energy = |s: &Seen<'_>| evidence.inner(s, s);
+        let structure_energy = structures.iter().map(energy).fold(0.0, f64::max);
+        Ok(Self {
+            discovery,
+            evidence,
+            fitter,
+            screened,
+            generic,
+            base,
+            structures,
+            structure_energy,
+            kept,
+        })
     }
 }
 
@@ -88,7 +100,9 @@ pub(super) struct Search<'a, S> {
     pub(super) screened: Vec<Screened>,
     pub(super) generic: Generic<'a>,
     pub(super) base: Fitted,
-    /// Misfit that the worst surrogate leaves.
+    /// What the base model leaves of the surrogates.
+    structures: Vec<Seen<'a>>,
+    /// Misfit that the worst of them leaves.
     pub(super) structure_energy: f64,
     kept: Mutex<Kept>,
 }
@@ -284,6 +298,16 @@ impl<S: Simulator> Search<'_, S> {
         Ok(())
     }
 
+    /// What the structure that a base model may leave with nothing missing can do to the difference of
+    /// two misfits: `2 |<z, r_a - r_b>|` of the worst surrogate `z`, with the margin of the floors.
+    fn swayed(&self, a: &Fitted, b: &Fitted) -> f64 {
+        let apart = difference(&a.residual, &b.residual);
+        let apart = self.evidence.see(&apart);
+        let along = |z: &Seen<'_>| 2.0 * self.evidence.inner(z, &apart).abs();
+        let worst = self.structures.iter().map(along).fold(0.0, f64::max);
+        self.discovery.settings.structure_margin * worst
+    }
+
     /// The candidates that do about as well in the place of a chosen one, best first.
     pub(super) fn alternatives(
         &self,
@@ -307,7 +331,8 @@ impl<S: Simulator> Search<'_, S> {
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
             let behind = fit.cost - current.cost + penalty;
             let (_, error) = paired(self.evidence, fit, current);
-            if behind < margin || (behind < 2.0 * error && behind < 0.2 * drop) {
+            let open = margin + self.swayed(fit, current);
+            if behind < open || (behind < 2.0 * error && behind < 0.2 * drop) {
                 close.push((behind, fit, candidate));
             }
         }

@@ -9,9 +9,6 @@ use nalgebra::{DMatrix, DVector};
 /// Factor on the energy that surrogates leave along the directions without a name.
 const GENERIC_MARGIN: f64 = 4.0;
 
-/// Part of an effect by which its model is wrong along the effect itself.
-const FORM: f64 = 0.05;
-
 /// The directions without a name, ready to be tested against residuals.
 pub(crate) struct Generic<'a> {
     directions: Vec<Seen<'a>>,
@@ -125,16 +122,17 @@ pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize)
 ///
 /// ```text
 /// s_k' = s_k - the other slopes and the nuisance projected out
-/// form_k = FORM <e, s_k'> / |s_k'|^2,   structure_k = rms over surrogates z of <z, s_k'> / |s_k'|^2
+/// form_k = F <e, s_k'> / |s_k'|^2,   structure_k = rms over surrogates z of <z, s_k'> / |s_k'|^2
 /// ```
 /// `e` is what the effect adds to the rest. No model of a cause is exact: what it lacks is taken to be
-/// along its own effect by a part `FORM` of it, and each parameter moves as it would have to. What the
+/// along its own effect by a part `F` of it ([`crate::Cause::form_error`]), and each parameter moves as it would have to. What the
 /// base model leaves of a surrogate with nothing missing moves a parameter likewise.
 fn shifts<S>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
     fitted: &Fitted,
     rest: &Fitted,
+    form_error: f64,
 ) -> Option<DVector<f64>> {
     let added = difference(&rest.residual, &fitted.residual);
     let others = 1 + discovery.structures.len();
@@ -155,7 +153,7 @@ fn shifts<S>(
     let surrogates = (others - 1).max(1) as f64;
     Some(DVector::from_fn(n, |k, _| {
         let structure: f64 = (1..others).map(|c| moved[(k, c)].powi(2)).sum::<f64>() / surrogates;
-        (FORM * moved[(k, 0)]).powi(2) + structure
+        (form_error * moved[(k, 0)]).powi(2) + structure
     }))
 }
 
@@ -167,7 +165,9 @@ pub(crate) fn parameters<S>(
     effect: usize,
     rest: &Fitted,
 ) -> Vec<FittedParameter> {
-    let shifts = shifts(discovery, evidence, fitted, rest);
+    let own = &fitted.effects[effect];
+    let cause = &discovery.candidates[own.candidate].cause;
+    let shifts = shifts(discovery, evidence, fitted, rest, cause.form_error);
     let gram = evidence.projected(&fitted.products);
     let n = fitted.free.len();
     let mut normal = gram.view((1, 1), (n, n)).clone_owned();
@@ -176,9 +176,8 @@ pub(crate) fn parameters<S>(
         normal[(i, i)] += ridge;
     }
     let covariance = normal.cholesky().map(|c| c.inverse());
-    let own = &fitted.effects[effect];
-    let given = &discovery.candidates[own.candidate].cause.parameters;
-    given
+    cause
+        .parameters
         .iter()
         .enumerate()
         .map(|(p, parameter)| {

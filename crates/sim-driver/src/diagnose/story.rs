@@ -181,7 +181,12 @@ fn gain(d: &Diagnosis, findings: &Findings, sheet: &mut Sheet) {
 /// What to measure next, and what that would settle.
 fn next(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line(format_args!("Measure next: {} ({})", d.next.id, d.next.what));
-    if let Some(share) = d.next.resolves {
+    if d.next.resolves == Some(0.0) {
+        sheet.line(format_args!(
+            "  it comes nearest, but no experiment of the catalogue would tell these explanations apart: \
+             their effects are too alike at this strength, or the noise too large; repeat and average"
+        ));
+    } else if let Some(share) = d.next.resolves {
         sheet.line(format_args!(
             "  as the explanations left are fitted, it would single out {:.0} % of them",
             100.0 * share

@@ -1,6 +1,6 @@
 //! Current limit of the amplifier.
 
-use super::{BenchCause, Design, Part, logarithmic};
+use super::{BenchCause, Design, FORM_ERROR, Part, logarithmic};
 use model_gap::{Cause, Side};
 use preisach_dyn::{AmplifierStage, CurrentLimit};
 
@@ -19,6 +19,7 @@ impl BenchCause for AmplifierCurrentLimit {
                 0.02 * design.fast_rate.max(1.0),
                 50.0 * design.fast_rate.max(1.0),
             )],
+            form_error: FORM_ERROR,
             fingerprint: "nothing below a threshold of amplitude times frequency, then triangular, third harmonic",
             confused_with: &["electrical-lag", "voltage-saturation", "rate-dependence"],
             separating: &["amplifier-monitor", "amplitude-sweep"],

@@ -1,6 +1,6 @@
 //! Backlash in the lever.
 
-use super::{BenchCause, Design, Part, logarithmic};
+use super::{BenchCause, Design, FORM_ERROR, Part, logarithmic};
 use model_gap::{Cause, Side};
 use preisach_dyn::{Backlash, LinkageStage};
 
@@ -19,6 +19,7 @@ impl BenchCause for BacklashInLever {
                 1e-4 * design.half_stroke,
                 0.5 * design.half_stroke,
             )],
+            form_error: FORM_ERROR,
             fingerprint: "flat after every reversal, relatively larger at small motion",
             confused_with: &["coulomb-friction"],
             separating: &["preload", "small-motion"],

@@ -1,6 +1,6 @@
 //! Dry friction in the linkage.
 
-use super::{BenchCause, Design, Part, logarithmic};
+use super::{BenchCause, Design, FORM_ERROR, Part, logarithmic};
 use model_gap::{Cause, Side};
 use preisach_dyn::{CoulombFriction, LinkageStage};
 
@@ -19,6 +19,7 @@ impl BenchCause for DryFriction {
                 1e-4 * design.half_stroke,
                 0.5 * design.half_stroke,
             )],
+            form_error: FORM_ERROR,
             fingerprint: "as backlash with rounded corners, changed by preload",
             confused_with: &["backlash"],
             separating: &["preload", "small-motion"],

@@ -1,6 +1,6 @@
 //! Creep beyond that of the reference runs.
 
-use super::{BenchCause, Design, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::{LinkageStage, LogCreep};
 
@@ -17,6 +17,7 @@ impl BenchCause for Creep {
                 linear("rate_per_decade", "1", 0.0, 0.3),
                 shape(logarithmic("from", "s", 1e-3, 3.0)),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "grows as frequency falls, linear in amplitude, a straight line in log t after a step",
             confused_with: &["dielectric-heating", "load-stiffness", "rate-dependence"],
             separating: &["hold-steps-100s"],

@@ -1,6 +1,6 @@
 //! Polarisation lost under reverse voltage.
 
-use super::{BenchCause, Design, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::Depolarisation;
 
@@ -23,6 +23,7 @@ impl BenchCause for ReverseVoltage {
                 shape(logarithmic("loss_per_volt_second", "1/(V s)", 1e-6, 1.0)),
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "a gain that falls with the time below the threshold and stays lost",
             confused_with: &["voltage-saturation", "sensor-nonlinearity", "load-stiffness"],
             separating: &["bias-sweep"],

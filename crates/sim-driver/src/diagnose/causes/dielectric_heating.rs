@@ -1,6 +1,6 @@
 //! Warming by dielectric loss.
 
-use super::{BenchCause, Design, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Parameter, Side};
 use preisach_dyn::DielectricHeating;
 
@@ -20,6 +20,7 @@ impl BenchCause for Heating {
                 Parameter { needs, ..linear("coefficient", "1/K", -0.05, 0.5) },
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "slow scaling ordered by the dose of f V^2, not by the time since a step",
             confused_with: &["creep", "load-stiffness"],
             separating: &["cold-hot-cold"],

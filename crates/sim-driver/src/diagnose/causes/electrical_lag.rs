@@ -1,6 +1,6 @@
 //! Electrical lag of amplifier and ceramic.
 
-use super::{BenchCause, Design, Part, logarithmic, singles};
+use super::{BenchCause, Design, FORM_ERROR, Part, logarithmic, singles};
 use model_gap::{Cause, Side};
 use preisach_dyn::{AmplifierStage, Lag};
 
@@ -14,6 +14,7 @@ impl BenchCause for ElectricalLag {
             physics: "Output resistance of the amplifier into the capacitance of the ceramic, tau V' + V = u, tau = R C.",
             side: Side::Input,
             parameters: vec![logarithmic("tau", "s", 1e-5, 0.05)],
+            form_error: FORM_ERROR,
             fingerprint: "phase -atan(w tau) before the hysteresis, so that reversal points shrink",
             confused_with: &["transport-delay", "sensor-filter", "rate-dependence"],
             separating: &["amplifier-monitor", "multisine-5-181Hz"],

@@ -1,6 +1,6 @@
 //! Hysteresis itself: what a model without memory lacks.
 
-use super::{BenchCause, Design, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 
 /// Static hysteresis, a candidate where the base model has none.
@@ -24,6 +24,7 @@ impl BenchCause for StaticHysteresis {
                     2.0 * design.half_stroke,
                 )),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "loops as wide when slow as when fast, wider than in proportion at large amplitude",
             confused_with: &["backlash", "coulomb-friction", "creep"],
             separating: &["amplitude-sweep", "frequency-sweep"],

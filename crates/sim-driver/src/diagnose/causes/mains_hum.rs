@@ -1,6 +1,6 @@
 //! Mains frequency in the reading.
 
-use super::{BenchCause, Design, Part, linear, logarithmic};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic};
 use model_gap::{Cause, Parameter, Side};
 
 /// Mains frequency in the reading.
@@ -20,6 +20,7 @@ impl BenchCause for Hum {
                     ..linear("frequency", "Hz", 45.0, 65.0)
                 },
             ],
+            form_error: FORM_ERROR,
             fingerprint: "a line fixed in Hz, present without input, not locked to the excitation",
             confused_with: &["mechanical-resonance"],
             separating: &["zero-input-record"],

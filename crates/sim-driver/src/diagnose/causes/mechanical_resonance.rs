@@ -1,6 +1,6 @@
 //! First mechanical mode.
 
-use super::{BenchCause, Design, Part, logarithmic};
+use super::{BenchCause, Design, FORM_ERROR, Part, logarithmic};
 use model_gap::{Cause, Side};
 use preisach_dyn::{LinkageStage, Resonance};
 
@@ -22,6 +22,7 @@ impl BenchCause for MechanicalResonance {
                 logarithmic("frequency", "Hz", 20.0, highest_hz(design)),
                 logarithmic("damping_ratio", "1", 1e-3, 0.2),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "gain growing as (f / fn)^2, ringing after steps",
             confused_with: &["sensor-filter", "electrical-lag", "transport-delay"],
             separating: &["ring-down", "multisine-5-181Hz"],

@@ -28,6 +28,10 @@ use super::record::Record;
 use model_gap::{Candidate, Cause, Parameter, Scale, Stimulus};
 use preisach_dyn::{AmplifierStage, Depolarisation, DielectricHeating, LinkageStage, SensorStage};
 
+/// Part of its effect by which the model of a cause is usually wrong: no lag is of one pole, no joint dry
+/// alone.
+const FORM_ERROR: f64 = 0.05;
+
 /// What a cause switches on in the chain of an actuator.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Part {

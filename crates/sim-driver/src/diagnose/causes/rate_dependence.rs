@@ -1,6 +1,6 @@
 //! Rate dependence of the hysteresis.
 
-use super::{BenchCause, Design, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 
 /// Rate dependence of the hysteresis.
@@ -16,6 +16,7 @@ impl BenchCause for RateDependence {
                 logarithmic("tau", "s", 1e-5, 0.05),
                 shape(linear("position", "1", -0.6, 0.6)),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "phase and loop area grow with frequency and depend on amplitude and place; odd harmonics",
             confused_with: &["electrical-lag", "transport-delay", "sensor-filter"],
             separating: &["multisine-5-181Hz", "amplitude-sweep", "laser-cross-check"],

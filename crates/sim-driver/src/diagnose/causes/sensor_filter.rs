@@ -1,6 +1,6 @@
 //! Filter of the sensor.
 
-use super::{BenchCause, Design, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::{Lag, SensorStage};
 
@@ -20,6 +20,7 @@ impl BenchCause for SensorFilter {
                 logarithmic("tau", "s", 1e-5, 0.05),
                 shape(linear("second_share", "1", 0.0, 0.5)),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "a lag of the reading behind everything else, amplitude and phase",
             confused_with: &["transport-delay", "electrical-lag", "rate-dependence"],
             separating: &["laser-cross-check", "multisine-5-181Hz"],

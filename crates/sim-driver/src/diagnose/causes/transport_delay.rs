@@ -1,6 +1,6 @@
 //! Transport delay of the reading.
 
-use super::{BenchCause, Design, Part, logarithmic, singles};
+use super::{BenchCause, Design, FORM_ERROR, Part, logarithmic, singles};
 use model_gap::{Cause, Side};
 use preisach_dyn::{Delay, SensorStage};
 
@@ -14,6 +14,7 @@ impl BenchCause for TransportDelay {
             physics: "The reading comes late, y(t - T).",
             side: Side::Sensor,
             parameters: vec![logarithmic("delay", "s", 1e-5, 0.05)],
+            form_error: FORM_ERROR,
             fingerprint: "phase exactly straight in frequency, gain 1",
             confused_with: &["electrical-lag", "sensor-filter", "rate-dependence"],
             separating: &["multisine-5-181Hz", "laser-cross-check"],

@@ -1,6 +1,6 @@
 //! Voltage limits of the amplifier.
 
-use super::{BenchCause, Design, Part, linear};
+use super::{BenchCause, Design, FORM_ERROR, Part, linear};
 use model_gap::{Cause, Side};
 use preisach_dyn::{AmplifierStage, Saturation};
 
@@ -27,6 +27,7 @@ impl BenchCause for VoltageSaturation {
                     f64::midpoint(design.input.0, design.input.1),
                 ),
             ],
+            form_error: FORM_ERROR,
             fingerprint: "depends on amplitude only, flat tops; one-sided gives even harmonics",
             confused_with: &["depolarisation", "sensor-nonlinearity"],
             separating: &["amplifier-monitor", "amplitude-sweep"],

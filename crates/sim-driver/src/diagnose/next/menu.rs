@@ -134,8 +134,7 @@ fn slow_and_small(span: Span) -> Vec<Experiment> {
 
 /// Experiments with something else on the bench.
 fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
-    let again = |r: &&Record| run(&r.id, r.step_s, r.input.clone());
-    vec![
+    let mut menu = vec![
         Experiment {
             id: "preload",
             what: "a triangle and a multisine with the lever preloaded: play goes, friction stays",
@@ -145,17 +144,21 @@ fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
             ]),
         },
         Experiment {
-            id: "laser-cross-check",
-            what: "the same runs read by a second, ideal displacement sensor",
-            measured: Measured::Again(runs.iter().map(again).collect()),
-        },
-        Experiment {
             id: "multisine-5-181Hz+laser-cross-check",
             what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each, read by \
                    the sensor and by a second, ideal one",
             measured: Measured::Twice(wide_multisines(span)),
         },
-    ]
+    ];
+    if !runs.iter().any(|r| r.has_ideal_sensor()) {
+        let again = |r: &&Record| run(&r.id, r.step_s, r.input.clone());
+        menu.push(Experiment {
+            id: "laser-cross-check",
+            what: "the same runs read by a second, ideal displacement sensor",
+            measured: Measured::Again(runs.iter().map(again).collect()),
+        });
+    }
+    menu
 }
 
 /// Further columns, and what needs them.
