@@ -21,14 +21,15 @@ fn input(experiment: usize, i: usize) -> f64 {
     amplitude * (TAU * cycles * i as f64 / SAMPLES as f64).sin()
 }
 
-/// What a cause adds: 0 cubic, 1 lag, 2 the cubic once more under another name, 3 an even distortion.
+/// What a cause adds: 0 cubic, 1 lag, 2 the cubic once more under another name, 3 a fifth power, which is
+/// nearly a cubic.
 fn added(kind: usize, value: f64, experiment: usize, i: usize) -> f64 {
     let u = input(experiment, i);
     let before = input(experiment, i.saturating_sub(1));
     match kind {
         0 | 2 => value * u.powi(3),
         1 => value * (u - before) * 10.0,
-        _ => value * u * u,
+        _ => value * u.powi(5),
     }
 }
 
@@ -229,6 +230,32 @@ fn what_surrogates_leave_is_no_cause() {
     };
     let finding = discovery.find().unwrap();
     assert!(finding.causes.is_empty(), "{:?}", finding.causes);
+}
+
+#[test]
+fn what_surrogates_could_do_to_a_difference_keeps_two_causes_together() {
+    // told apart if the base model is exact, not if a surrogate leaves what lies between the two
+    let mut candidates = ["cubic", "lag", "cubic-twin", "fifth"].map(candidate);
+    candidates[2].blocked = Some("no".into());
+    let traces = traces(|e, i| added(0, 0.06, e, i), 6);
+    let named = |structures: &[Signal]| {
+        let discovery = Discovery {
+            traces: &traces,
+            simulator: &Toy,
+            candidates: &candidates,
+            generic: &[],
+            structures,
+            settings: Settings::default(),
+        };
+        let finding = discovery.find().unwrap();
+        let first = finding.causes.first().map(|c| (c.candidate, c.alternatives.clone()));
+        (finding.verdict, first)
+    };
+    let between = |e, i| 0.2 * (added(0, 0.06, e, i) - added(3, 0.04, e, i));
+    let structure: Signal =
+        (0..EXPERIMENTS).map(|e| (0..SAMPLES).map(|i| between(e, i)).collect()).collect();
+    assert_eq!(named(&[]), (Verdict::Named, Some((0, vec![]))));
+    assert_eq!(named(&[structure]), (Verdict::Ambiguous, Some((0, vec![3]))));
 }
 
 #[test]
