@@ -17,6 +17,8 @@ const RIVAL_PROMISE: f64 = 0.1;
 const NEXT_SHARE: f64 = 0.04;
 /// Share of a drop that must show where experiments are held out.
 const HELD_OUT_SHARE: f64 = 0.3;
+/// Share of the drop beyond which structure of the base model does not make two causes change places.
+const SWAY_SHARE: f64 = 0.1;
 /// Share of a drop within which two causes are not told apart: no model of a cause is better.
 const FORM_ERROR: f64 = 0.02;
 
@@ -299,13 +301,15 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     /// What the structure that a base model may leave with nothing missing can do to the difference of
-    /// two misfits: `2 |<z, r_a - r_b>|` of the worst surrogate `z`, with the margin of the floors.
+    /// two misfits: `2 |<z, r_a - r_b>|` of the worst surrogate `z`, with the margin of the floors; at most
+    /// [`SWAY_SHARE`] of the drop.
     fn swayed(&self, a: &Fitted, b: &Fitted) -> f64 {
         let apart = difference(&a.residual, &b.residual);
         let apart = self.evidence.see(&apart);
         let along = |z: &Seen<'_>| 2.0 * self.evidence.inner(z, &apart).abs();
         let worst = self.structures.iter().map(along).fold(0.0, f64::max);
-        self.discovery.settings.structure_margin * worst
+        let most = SWAY_SHARE * self.output_drop(&self.base, b);
+        (self.discovery.settings.structure_margin * worst).min(most)
     }
 
     /// The candidates that do about as well in the place of a chosen one, best first.
