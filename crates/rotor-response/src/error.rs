@@ -32,6 +32,14 @@ pub enum ResponseError {
         /// The number found.
         found: usize,
     },
+    /// Loads are asked for at a station where there is no blade.
+    #[error("loads at {station} R: the blade reaches from {root} to 1 R")]
+    LoadStation {
+        /// The station asked for, R.
+        station: f64,
+        /// Station of the blade's root, R.
+        root: f64,
+    },
     /// A model parameter is out of its range.
     #[error("{field} is {value}, expected {expected}")]
     Parameter {
