@@ -33,7 +33,7 @@ mod system;
 mod wake_coupling;
 
 pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
-pub use coupled_modes::{CoupledBladeMode, RESONANCE_PER_REV};
+pub use coupled_modes::{CoupledBladeMode, HARDLY_DAMPED, RESONANCE_PER_REV};
 pub use dissimilar::{OtherBlade, dissimilar_hub_loads};
 pub use error::ResponseError;
 pub use flap_mass::with_flap_masses;

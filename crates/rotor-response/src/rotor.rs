@@ -249,7 +249,7 @@ impl RotorSolver {
     ///
     /// # Errors
     /// [`ResponseError::FlapMotions`], [`ResponseError::Parameter`] for an advance ratio other than
-    /// the solver's; [`ResponseError::Periodic`] and
+    /// the solver's; [`ResponseError::Periodic`], [`ResponseError::PeriodicStall`] and
     /// [`ResponseError::InflowNotConverged`] with what was reached.
     pub fn solve(
         &mut self,
@@ -286,7 +286,8 @@ impl RotorSolver {
             let rotor = Arc::clone(&self.rotor);
             let air = Arc::clone(&self.air);
             let system = rotor.system(&air, self.point_inputs(condition, &inflow));
-            let solution = self.solver.solve(&system, &orbit).map_err(Self::orbit_error)?;
+            let solved = self.solver.solve(&system, &orbit);
+            let solution = solved.map_err(Self::orbit_error(&rotor))?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;
             let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
@@ -344,9 +345,18 @@ impl RotorSolver {
         })
     }
 
-    pub(crate) fn orbit_error(error: PeriodicError<ResponseError>) -> ResponseError {
-        match error {
+    /// Why an orbit was not found; sections that may stall are the likely reason.
+    pub(crate) fn orbit_error(
+        rotor: &Rotor,
+    ) -> impl Fn(PeriodicError<ResponseError>) -> ResponseError + use<> {
+        let stalls = !rotor.model.nonlinear.is_linear();
+        move |error| match error {
             PeriodicError::System { source, .. } => source,
+            other @ (PeriodicError::NotConverged { .. } | PeriodicError::NotFinite { .. })
+                if stalls =>
+            {
+                ResponseError::PeriodicStall(Box::new(other))
+            }
             other => ResponseError::Periodic(Box::new(other)),
         }
     }

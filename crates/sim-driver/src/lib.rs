@@ -24,6 +24,7 @@ pub mod cli;
 pub mod curve_identification;
 pub mod diagnose;
 pub mod dissimilar;
+mod doubts;
 mod error;
 pub mod figures;
 pub mod files;

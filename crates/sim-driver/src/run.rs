@@ -75,6 +75,9 @@ pub fn run_trimmed(
         SimError::Response { place, source }
     })?;
     let mut warnings = actuators.warnings.clone();
+    let found = trimmed.trim();
+    let about = (found.controls.theta0_rad, &found.rotor);
+    warnings.extend(loaded.doubts_in_flight(trimmed.rotor(), about)?);
     warnings.extend(stability.warnings());
     warnings.extend(studies.iter().filter_map(ControlStudy::share_warning));
     let result = RunResult {

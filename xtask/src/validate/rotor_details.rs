@@ -103,6 +103,16 @@ pub(super) const AREA: Area = Area {
         ),
         check(
             (
+                "V-RESP-58",
+                "case S2 with moderate deflections, torsion as in the reference: modal harmonics 0 to 5 of all ten modes, distance of their norm from the second-order reference",
+            ),
+            "%",
+            CROSSCHECK,
+            Criterion::AtMost(5.0),
+            || modal_error(Couplings::Moderate(AS_REFERENCE)),
+        ),
+        check(
+            (
                 "V-RESP-39",
                 "case S2 with moderate deflections, torsion as in the reference: mean tip deflection, error",
             ),

@@ -130,7 +130,7 @@ fn single_problems_name_the_remedy() {
             "actuator.range_V: (150, -20) is no range; give the lower limit first",
         ),
         (
-            "(actuator: (model: Ideal))",
+            "(actuator: (model: Ideal), control: (actuators: [Ideal, Hysteretic]))",
             "control.actuators[1]: Ignored and Hysteretic need an identified actuator",
         ),
         (
