@@ -108,7 +108,7 @@ fn flapping_exponent(
 }
 
 /// The exponents leave the lag states out: with them settled they are those of the same equation solved in
-/// closed form, apparent mass included; the lags themselves take a part of the damping of the flapping blade.
+/// closed form, apparent mass included; the lags themselves raise the frequency of the flapping blade in the air and hardly change its damping.
 #[test]
 fn settled_lags_are_what_the_exponents_hold() {
     let blade = BladeProperties::new(BladeSpec {
@@ -132,8 +132,8 @@ fn settled_lags_are_what_the_exponents_hold() {
     println!("{motion:?}, settled {settled}, with lags {with_lags}");
     assert!((motion.growth_per_rad - settled.re).abs() < 1e-5, "{motion:?} {settled}");
     assert!((motion.modal_frequency_per_rev - settled.im).abs() < 1e-5, "{motion:?} {settled}");
-    let share = with_lags.re / settled.re;
-    assert!((0.85..0.98).contains(&share), "{share}");
+    assert!((with_lags.re / settled.re - 1.0).abs() < 0.02, "{with_lags}");
+    assert!((0.04..0.07).contains(&(with_lags.im - settled.im)), "{with_lags}");
 }
 
 /// The blade of the paper is stable in flight, its first lag motion least: little air damps it.
