@@ -119,24 +119,22 @@ impl LagrangeBasis {
     /// Matrix of integrals, row `k`, column `i`: integral of basis polynomial `i` from -1 to node
     /// `k`; a last row holds the integrals over the whole of [-1, 1].
     pub fn integration_matrix(&self) -> Vec<Vec<f64>> {
+        self.nodes.iter().copied().chain([1.0]).map(|upper| self.integrals_to(upper)).collect()
+    }
+
+    /// Integral of every basis polynomial from -1 to `upper`.
+    pub fn integrals_to(&self, upper: f64) -> Vec<f64> {
         let n = self.nodes.len();
         let rule = gauss_legendre(n.div_ceil(2) + 1);
-        self.nodes
-            .iter()
-            .copied()
-            .chain([1.0])
-            .map(|upper| {
-                let half = 0.5 * (upper + 1.0);
-                let mut row = vec![0.0; n];
-                for (&node, &weight) in rule.nodes.iter().zip(&rule.weights) {
-                    let x = -1.0 + half * (node + 1.0);
-                    for (r, [value, ..]) in row.iter_mut().zip(self.evaluate(x)) {
-                        *r += half * weight * value;
-                    }
-                }
-                row
-            })
-            .collect()
+        let half = 0.5 * (upper + 1.0);
+        let mut row = vec![0.0; n];
+        for (&node, &weight) in rule.nodes.iter().zip(&rule.weights) {
+            let x = -1.0 + half * (node + 1.0);
+            for (r, [value, ..]) in row.iter_mut().zip(self.evaluate(x)) {
+                *r += half * weight * value;
+            }
+        }
+        row
     }
 }
 

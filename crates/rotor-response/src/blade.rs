@@ -4,7 +4,6 @@ use crate::flap_inertia::FlapBody;
 use crate::{Discretisation, ResponseError, RotorModel, SectionOffsets, SpanGrid};
 use flap_aero::FlapEffectiveness;
 use nalgebra::DMatrix;
-use rotor_base::{LagrangeBasis, gauss_legendre};
 use rotor_fem::{
     BladeProperties, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
     ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, modal_basis,
@@ -158,16 +157,8 @@ pub struct ResponseBlade {
     pub(crate) modal_masses: Vec<f64>,
     /// Stiffness of the springs at the root on the modal coordinates.
     pub(crate) root_spring: DMatrix<f64>,
-    /// Flap curvature of every flap mode at the root, for the bending moment there.
-    pub(crate) root_flap_curvature: Vec<f64>,
-    /// Lag curvature of every lag mode at the root.
-    pub(crate) root_lag_curvature: Vec<f64>,
-    /// Rate of twist of every torsion mode at the root, and the stiffness `GJ + k_A^2 T` there.
-    pub(crate) root_twist_rate: Vec<f64>,
-    pub(crate) root_torsion_stiffness: f64,
-    /// Bending stiffnesses `[EI_y, EI_z]` and twist at the root.
-    pub(crate) root_stiffness: [f64; 2],
-    pub(crate) root_twist: f64,
+    pub(crate) modes: ModeSet,
+    pub(crate) properties: BladeProperties,
     pub(crate) mass: Vec<f64>,
     pub(crate) ei_flap: Vec<f64>,
     pub(crate) ei_lag: Vec<f64>,
@@ -187,7 +178,8 @@ pub struct ResponseBlade {
     /// Centres ahead of the elastic axis, and the axis ahead of the rotor centre, radius R.
     pub(crate) offsets: SectionOffsets,
     pub(crate) root_offset: f64,
-    /// The blade's own modal equations, for [`Couplings::Moderate`].
+    /// The blade of [`Couplings::Moderate`], and its own modal equations.
+    pub(crate) moderate: Option<ModerateBlade>,
     pub(crate) modal: Option<ModalBlade>,
 }
 
@@ -223,23 +215,11 @@ impl ResponseBlade {
                 .collect::<Result<Vec<Vec<[f64; 3]>>, _>>()?;
             Ok(Shapes::sample(&samples))
         };
-        // The curvature of a cubic element is best at its two Gauss points (fourth order there, second
-        // at its ends: Barlow, Int. J. Numer. Methods Eng. 10 (1976) 243); extrapolate from these.
-        let barlow: Vec<f64> = (0..elements.min(3))
-            .flat_map(|e| gauss_legendre(2).nodes.into_iter().map(move |s| (e, s)))
-            .map(|(e, s)| root + length * (e as f64 + 0.5 * (1.0 + s)))
-            .collect();
-        let to_root = LagrangeBasis::new(barlow.clone()).evaluate(root);
-        let root_derivative = |kind: ModeKind, order: usize| -> Result<Vec<f64>, ResponseError> {
-            modes
-                .of(kind)
-                .iter()
-                .map(|mode| {
-                    barlow.iter().zip(&to_root).try_fold(0.0, |sum, (x, [weight, ..])| {
-                        Ok(sum + weight * mode.shape(*x)?[order])
-                    })
-                })
-                .collect()
+        let moderate = match model.couplings {
+            Couplings::Moderate(torsion) => {
+                Some(moderate_blade(properties, torsion, model.offsets)?)
+            }
+            Couplings::Linear | Couplings::Full => None,
         };
         let along =
             |f: &dyn Fn(f64) -> f64| -> Vec<f64> { grid.x().iter().map(|x| f(*x)).collect() };
@@ -255,13 +235,6 @@ impl ResponseBlade {
             frequencies: modes.modes().iter().map(UncoupledMode::frequency).collect(),
             modal_masses: modes.modes().iter().map(UncoupledMode::modal_mass).collect(),
             root_spring: root_springs(properties, &modes)?,
-            root_flap_curvature: root_derivative(ModeKind::Flap, 2)?,
-            root_lag_curvature: root_derivative(ModeKind::Lag, 2)?,
-            root_twist_rate: root_derivative(ModeKind::Torsion, 1)?,
-            root_torsion_stiffness: properties.torsion_stiffness(root)
-                + properties.squared_area_radius(root) * properties.tension(root),
-            root_stiffness: [properties.flap_stiffness(root), properties.lag_stiffness(root)],
-            root_twist: properties.twist_rad(root),
             mass: along(&|x| properties.mass(x)),
             ei_flap: along(&|x| properties.flap_stiffness(x)),
             ei_lag: along(&|x| properties.lag_stiffness(x)),
@@ -282,12 +255,13 @@ impl ResponseBlade {
             tip_loss: model.tip_loss,
             offsets: model.offsets,
             root_offset: root,
-            modal: match model.couplings {
-                Couplings::Moderate(torsion) => {
-                    Some(modal_blade(properties, (torsion, model.offsets), &modes, &grid)?)
-                }
-                Couplings::Linear | Couplings::Full => None,
+            modal: match &moderate {
+                Some(blade) => Some(modal_blade(blade, &modes, &grid)?),
+                None => None,
             },
+            moderate,
+            modes,
+            properties: properties.clone(),
             grid,
         })
     }
@@ -383,20 +357,28 @@ fn root_springs(
     }))
 }
 
-/// The blade with moderate deflections in the coordinates of the uncoupled modes.
-fn modal_blade(
+/// The blade with moderate deflections.
+fn moderate_blade(
     properties: &BladeProperties,
-    (torsion, offsets): (TorsionTerms, SectionOffsets),
-    modes: &ModeSet,
-    grid: &SpanGrid,
-) -> Result<ModalBlade, ResponseError> {
+    torsion: TorsionTerms,
+    offsets: SectionOffsets,
+) -> Result<ModerateBlade, ResponseError> {
     let spec = ModerateSpec {
         torsion,
         mass_centre: offsets.mass_centre.into(),
         tension_centre: offsets.tension_centre.into(),
         ..properties.spec().clone().into()
     };
-    let blade = ModerateBlade::new(spec)?;
+    Ok(ModerateBlade::new(spec)?)
+}
+
+/// The same in the coordinates of the uncoupled modes.
+fn modal_blade(
+    blade: &ModerateBlade,
+    modes: &ModeSet,
+    grid: &SpanGrid,
+) -> Result<ModalBlade, ResponseError> {
+    let properties = blade.properties();
     let shape = |mode: &UncoupledMode, x: f64| -> Result<SectionShape, ResponseError> {
         let value = mode.shape(x)?;
         let still = SectionShape::default();
@@ -420,5 +402,5 @@ fn modal_blade(
             })
         })
         .collect::<Result<_, ResponseError>>()?;
-    Ok(ModalBlade::new(&blade, grid.edges(), grid.points_per_piece(), None, shapes)?)
+    Ok(ModalBlade::new(blade, grid.edges(), grid.points_per_piece(), None, shapes)?)
 }

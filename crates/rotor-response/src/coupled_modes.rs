@@ -11,6 +11,9 @@ use rotor_fem::{ModeKind, oscillations};
 /// Its answer is then fifty times that of a still blade or more, and the collective, the twist under air loads
 /// and the terms of the couplings carry the frequency as far.
 pub const RESONANCE_PER_REV: f64 = 1e-2;
+/// Damping over critical below which a response within [`RESONANCE_PER_REV`] of a harmonic is that of its
+/// damping, not of its stiffness.
+pub const HARDLY_DAMPED: f64 = 1e-3;
 /// The same where the response was not found: what is likely to be the reason.
 const NEAR_RESONANCE_PER_REV: f64 = 5e-2;
 /// Distance over which the collective of a trim may carry a frequency.
@@ -222,6 +225,38 @@ impl Rotor {
             && self.coupled_modes(pitch_rad).is_ok_and(|modes| {
                 self.undamped_near(pitch_rad, modes, NEARLY_RESONANT_PER_REV).is_some()
             })
+    }
+
+    /// A lag mode within [`RESONANCE_PER_REV`] of a harmonic that next to nothing damps ([`HARDLY_DAMPED`]),
+    /// about the mean deflection in flight, or in still air: its response is bounded, but by that damping
+    /// alone. None with no damping at all, which is refused.
+    ///
+    /// # Errors
+    /// As [`Self::coupled_modes`].
+    pub fn hardly_damped_at_a_harmonic(
+        &self,
+        pitch_rad: f64,
+        flight: Option<&RotorSolution>,
+    ) -> Result<Option<CoupledBladeMode>, ResponseError> {
+        let damping = self.model().modal_damping;
+        if damping == 0.0 || damping >= HARDLY_DAMPED {
+            return Ok(None);
+        }
+        let modes = match flight {
+            None => self.coupled_modes(pitch_rad)?,
+            Some(found) => {
+                let mean = found.modal.iter().map(|q| q.mean);
+                let mean = DVector::from_iterator(found.modal.len(), mean);
+                self.coupled_modes_about(pitch_rad, &mean)?
+            }
+        };
+        let airless = self.model().lock_number == 0.0;
+        Ok(modes.into_iter().find(|mode| {
+            let frequency = mode.frequency_per_rev;
+            (mode.kind == ModeKind::Lag || airless)
+                && frequency.round() > 0.0
+                && (frequency - frequency.round()).abs() < RESONANCE_PER_REV
+        }))
     }
 
     /// The same rotor with another damping of its modes over critical.

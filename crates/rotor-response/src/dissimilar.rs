@@ -32,7 +32,8 @@ impl RotorSolver {
         }
         let (rotor, air) = (self.rotor.clone(), self.air.clone());
         let system = rotor.system(&air, self.point_inputs(condition, &about.inflow));
-        let solution = self.solver.solve(&system, &about.orbit).map_err(Self::orbit_error)?;
+        let solved = self.solver.solve(&system, &about.orbit);
+        let solution = solved.map_err(Self::orbit_error(&rotor))?;
         let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
         Ok(loads.root(&self.time, rotor.discretisation().load_harmonics + 1))
     }

@@ -32,6 +32,14 @@ pub enum ResponseError {
         /// The number found.
         found: usize,
     },
+    /// Loads are asked for at a station where there is no blade.
+    #[error("loads at {station} R: the blade reaches from {root} to 1 R")]
+    LoadStation {
+        /// The station asked for, R.
+        station: f64,
+        /// Station of the blade's root, R.
+        root: f64,
+    },
     /// A model parameter is out of its range.
     #[error("{field} is {value}, expected {expected}")]
     Parameter {
@@ -122,6 +130,11 @@ pub enum ResponseError {
     /// best orbit.
     #[error("periodic blade response: {0}")]
     Periodic(Box<PeriodicError<ResponseError>>),
+    /// The same of a rotor whose sections may stall.
+    #[error(
+        "periodic response of sections that stall: {0}. Remedy: past stall a response need not repeat, so lower collective, thrust or the stroke of the flaps, or leave dynamic stall off"
+    )]
+    PeriodicStall(Box<PeriodicError<ResponseError>>),
     /// Inflow and thrust did not settle on each other.
     #[error(
         "inflow and thrust did not settle: change {change:.3e} of the tip speed after {iterations} iterations (wanted {tolerance:.1e}), last C_T {thrust_coefficient:.6}"

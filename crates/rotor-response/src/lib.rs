@@ -13,6 +13,7 @@ mod hinge;
 mod lag;
 mod lag_memory;
 mod linearised;
+mod load_station;
 mod loads;
 mod model;
 mod motion;
@@ -21,16 +22,18 @@ mod power;
 mod revolution;
 mod rigid;
 mod rotor;
+mod section_moments;
 mod settling;
 mod span;
 mod stability;
 mod stall_history;
+mod station_loads;
 mod structure;
 mod system;
 mod wake_coupling;
 
 pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
-pub use coupled_modes::{CoupledBladeMode, RESONANCE_PER_REV};
+pub use coupled_modes::{CoupledBladeMode, HARDLY_DAMPED, RESONANCE_PER_REV};
 pub use dissimilar::{OtherBlade, dissimilar_hub_loads};
 pub use error::ResponseError;
 pub use flap_mass::with_flap_masses;
@@ -43,11 +46,11 @@ pub use model::{
 pub use nonlinear::{DynamicStall, NonlinearSections};
 pub use power::PowerBalance;
 pub use rotor::{
-    Condition, ResponseResiduals, ResponseTolerances, RootBending, Rotor, RotorSolution,
-    RotorSolver,
+    Condition, ResponseResiduals, ResponseTolerances, Rotor, RotorSolution, RotorSolver,
 };
 pub use span::SpanGrid;
 pub use stability::{BladeMotion, Stability};
+pub use station_loads::{LoadHistory, StationLoads};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -271,7 +271,7 @@ impl<'a> Base<'a> {
         let response = linear
             .orbits
             .linear_response_from(&self.system(points), known, &loads, LINEAR_TOLERANCE)
-            .map_err(RotorSolver::orbit_error)?;
+            .map_err(RotorSolver::orbit_error(&self.solver.rotor))?;
         let motions = response.changes.iter().zip(&response.force_changes);
         let found = changes
             .iter()

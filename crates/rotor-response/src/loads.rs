@@ -1,6 +1,6 @@
 //! Blade root loads by force summation, and hub loads in the fixed frame.
 
-use crate::blade::{Couplings, ResponseBlade};
+use crate::blade::ResponseBlade;
 use crate::structure::{BladeState, SpanLoads};
 use rotor_base::{HarmonicSeries, rotating_to_fixed, uniform_azimuths_rad};
 use rotor_fem::ModalLoads;
@@ -36,9 +36,8 @@ impl SixLoads {
     }
 }
 
-/// Root loads of one blade at one azimuth, rotating shaft axes, about the rotor centre.
-///
-/// Summed in coned blade axes, then turned by [`coned_to_shaft`]:
+/// Force and moment about the rotor centre, per length, of all loads on one blade at one azimuth at every
+/// station, coned blade axes.
 ///
 /// ```text
 /// f_x = m (c (c X - s w) + 2 c v' - u'') + F_x      F_x = -w_x F_z - v_x F_y (aerodynamic)
@@ -53,11 +52,11 @@ impl SixLoads {
 /// `M_y` and `M_z` also hold the moments on the slopes of flaps that weigh beside the blade.
 /// The foreshortening `u` and its rates enter in second order whatever the couplings of the modal
 /// equations: without them the vibratory in-plane loads are wrong by most of their size.
-pub(crate) fn root_loads(
+pub(crate) fn span_wrenches(
     blade: &ResponseBlade,
     state: BladeState<'_>,
     aerodynamic: &SpanLoads,
-) -> [f64; 6] {
+) -> Vec<[f64; 6]> {
     let BladeState { motion, pitch, loads } = state;
     let n = blade.grid.len();
     let (w, v) = (&motion.w, &motion.v);
@@ -76,8 +75,7 @@ pub(crate) fn root_loads(
             + w.slope[i] * w.slope_acceleration[i]
     });
     let (along, across) = blade.precone.sin_cos();
-    let mut total = [0.0; 6];
-    for i in 0..n {
+    let wrench = |i: usize| {
         let (m, x) = (blade.mass[i], blade.grid.x()[i]);
         let (u, u_rate, u_acceleration) = (-squares[i], -rates[i], -accelerations[i]);
         let y = blade.offsets.torque + v.value[i];
@@ -99,54 +97,64 @@ pub(crate) fn root_loads(
         let (km1, km2) = (blade.km1_squared[i], blade.km2_squared[i]);
         let propeller = m * (km2 - km1) * sin * cos;
         let mx = -m * (km1 + km2) * theta_acceleration - propeller + loads.moment[i];
-        let weight = blade.grid.weight()[i];
-        let parts = [
+        [
             fx,
             fy,
             fz,
             y * fz - w.value[i] * fy + mx,
             w.value[i] * fx - (x + u) * fz - loads.slope[1][i],
             (x + u) * fy - y * fx + propeller * along / across + loads.slope[0][i],
-        ];
-        for (t, part) in total.iter_mut().zip(parts) {
-            *t += weight * part;
-        }
-    }
-    let [fx, fy, fz, mx, my, mz] = total;
-    let [force, moment] = [[fx, fy, fz], [mx, my, mz]].map(|v| coned_to_shaft(blade.precone, v));
-    [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
+        ]
+    };
+    (0..n).map(wrench).collect()
 }
 
-/// Root loads of the moderately deflected blade at one azimuth, as [`root_loads`] gives them.
+/// The same of the moderately deflected blade.
 ///
 /// ```text
 /// F = sum( f - m a ),   M = sum( r x f + (1, v_x, w_x) M - integral r x a dm )
 /// ```
 /// Loads stand on the deflected axis; inertial forces are those of the equations of motion, so that the
 /// power of loads, shaft and pitch control agrees.
-pub(crate) fn moderate_root_loads(
+pub(crate) fn moderate_wrenches(
     blade: &ResponseBlade,
     state: BladeState<'_>,
     modal: &ModalLoads,
-) -> [f64; 6] {
+) -> Vec<[f64; 6]> {
     let BladeState { motion, loads, .. } = state;
     let (w, v) = (&motion.w, &motion.v);
-    let mut total = [0.0; 6];
-    for (i, inertial) in modal.wrench.iter().enumerate() {
-        let weight = blade.grid.weight()[i];
+    let wrench = |(i, inertial): (usize, &[f64; 6])| {
         let force = loads.force(blade, motion, i);
         let arm = [blade.grid.x()[i] + modal.axial[i], v.value[i], w.value[i]];
         let turn = loads.moment[i];
         let own =
             [turn, turn * v.slope[i] - loads.slope[1][i], turn * w.slope[i] + loads.slope[0][i]];
+        let mut out = [0.0; 6];
         for k in 0..3 {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
             let moment = arm[a] * force[b] - arm[b] * force[a] + own[k];
-            total[k] += weight * (force[k] - inertial[k]);
-            total[3 + k] += weight * (moment - inertial[3 + k]);
+            out[k] = force[k] - inertial[k];
+            out[3 + k] = moment - inertial[3 + k];
+        }
+        out
+    };
+    modal.wrench.iter().enumerate().map(wrench).collect()
+}
+
+/// Sum of the loads at all stations with given weights of integration.
+pub(crate) fn summed(weights: &[f64], wrenches: &[[f64; 6]]) -> [f64; 6] {
+    let mut total = [0.0; 6];
+    for (weight, wrench) in weights.iter().zip(wrenches) {
+        for (t, part) in total.iter_mut().zip(wrench) {
+            *t += weight * part;
         }
     }
-    let [fx, fy, fz, mx, my, mz] = total;
+    total
+}
+
+/// Loads of one blade on the hub at one azimuth: rotating shaft axes, about the rotor centre.
+pub(crate) fn root_loads(blade: &ResponseBlade, wrenches: &[[f64; 6]]) -> [f64; 6] {
+    let [fx, fy, fz, mx, my, mz] = summed(blade.grid.weight(), wrenches);
     let [force, moment] = [[fx, fy, fz], [mx, my, mz]].map(|v| coned_to_shaft(blade.precone, v));
     [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
 }
@@ -160,96 +168,6 @@ pub(crate) fn moderate_root_loads(
 fn coned_to_shaft(precone_rad: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = precone_rad.sin_cos();
     [x * cos - z * sin, y, x * sin + z * cos]
-}
-
-/// Moments of flap, lag and torsion at the root by force summation: tip up, tip forward, nose up.
-///
-/// ```text
-/// M_w = int x f_z - N w_x      M_v = int x f_y - N v_x      M_phi = int m_x      x from the root
-/// ```
-/// Each is the modal equation with a rigid rotation for the mode shape. Carries the terms of the couplings
-/// `Linear` and `Full`, so that it is the exact counterpart of the curvature moments of the same equations;
-/// for `Moderate`, up to third-order terms.
-pub(crate) fn root_moments(
-    blade: &ResponseBlade,
-    couplings: Couplings,
-    state: BladeState<'_>,
-) -> [f64; 3] {
-    let BladeState { motion, pitch, loads } = state;
-    let n = blade.grid.len();
-    let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
-    let full = couplings != Couplings::Linear;
-    let mut tension = vec![0.0; n];
-    let mut shortening = vec![0.0; n];
-    if full {
-        let coriolis: Vec<f64> = (0..n).map(|i| 2.0 * blade.mass[i] * v.rate[i]).collect();
-        blade.grid.integral_to_tip(&coriolis, &mut tension);
-        let rates: Vec<f64> =
-            (0..n).map(|i| v.slope[i] * v.slope_rate[i] + w.slope[i] * w.slope_rate[i]).collect();
-        blade.grid.integral_from_root(&rates, &mut shortening);
-    }
-    let bp = blade.precone;
-    let mut total = [0.0; 3];
-    for i in 0..n {
-        let (m, x) = (blade.mass[i], blade.grid.x()[i]);
-        let [_, weight_y, weight_z] = loads.gravity.map(|g| m * g);
-        let arm = x - blade.root_offset;
-        let pull = blade.tension[i] + tension[i];
-        let up = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
-        let forward = m
-            * (blade.offsets.torque + v.value[i] - v.acceleration[i]
-                + 2.0 * shortening[i]
-                + 2.0 * bp * w.rate[i])
-            + loads.fy[i]
-            + weight_y;
-        let theta = pitch.angle + blade.twist[i] + phi.value[i];
-        let radii = blade.km2_squared[i] - blade.km1_squared[i];
-        let (sin, cos) = theta.sin_cos();
-        let twisting = if full {
-            let kz = v.curvature[i] * cos + w.curvature[i] * sin;
-            let ky = w.curvature[i] * cos - v.curvature[i] * sin;
-            m * radii * sin * cos + (blade.ei_lag[i] - blade.ei_flap[i]) * kz * ky
-        } else {
-            m * radii * theta
-        };
-        let polar = m * (blade.km1_squared[i] + blade.km2_squared[i]);
-        let turning = polar * (pitch.acceleration + phi.acceleration[i]);
-        let parts = [
-            arm * up - pull * w.slope[i] + loads.slope[1][i],
-            arm * forward - pull * v.slope[i] + loads.slope[0][i],
-            loads.moment[i] - turning - twisting,
-        ];
-        for (t, part) in total.iter_mut().zip(parts) {
-            *t += blade.grid.weight()[i] * part;
-        }
-    }
-    total
-}
-
-/// Moments of flap, lag and torsion at the root from the curvature and twist rate of the mode shapes.
-pub(crate) fn root_curvature_moments(
-    blade: &ResponseBlade,
-    couplings: Couplings,
-    q: &[f64],
-    pitch_rad: f64,
-) -> [f64; 3] {
-    let sum =
-        |curvature: &[f64], q: &[f64]| -> f64 { curvature.iter().zip(q).map(|(c, q)| c * q).sum() };
-    let (flap, rest) = q.split_at(blade.flap.count());
-    let (lag, torsion) = rest.split_at(blade.lag.count());
-    let w_xx = sum(&blade.root_flap_curvature, flap);
-    let v_xx = sum(&blade.root_lag_curvature, lag);
-    let twisting = blade.root_torsion_stiffness * sum(&blade.root_twist_rate, torsion);
-    let [ei_flap, ei_lag] = blade.root_stiffness;
-    match couplings {
-        Couplings::Linear => [ei_flap * w_xx, ei_lag * v_xx, twisting],
-        Couplings::Full | Couplings::Moderate(_) => {
-            let (sin, cos) = (pitch_rad + blade.root_twist).sin_cos();
-            let (kz, ky) = (v_xx * cos + w_xx * sin, w_xx * cos - v_xx * sin);
-            let [lagging, flapping] = [ei_lag * kz, ei_flap * ky];
-            [lagging * sin + flapping * cos, lagging * cos - flapping * sin, twisting]
-        }
-    }
 }
 
 /// Hub loads in the fixed frame from the root loads of every blade, summed blade by blade.

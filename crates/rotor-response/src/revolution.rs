@@ -2,14 +2,12 @@
 
 use crate::air::SectionLoads;
 use crate::hinge::HingeMoment;
-use crate::loads::{
-    SixLoads, hub_loads, moderate_root_loads, root_curvature_moments, root_loads, root_moments,
-};
+use crate::loads::{SixLoads, hub_loads, moderate_wrenches, root_loads, span_wrenches};
 use crate::power::{AxialMotion, PowerBalance, power};
 use crate::structure::{BladeState, SpanLoads};
 use crate::system::{POINTS_TOGETHER, ResponseSystem, Revolution};
 use crate::wake_coupling::Lifting;
-use crate::{ResponseError, RootBending, Rotor};
+use crate::{ResponseError, Rotor};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
@@ -31,8 +29,6 @@ pub(crate) struct RevolutionLoads {
     root: Vec<[f64; 6]>,
     /// Aerodynamic and inertial hinge moment of each flap.
     hinge: Vec<[Vec<f64>; 2]>,
-    /// Moments of flap, lag and torsion at the root, by force summation and by curvature.
-    bending: [[Vec<f64>; 2]; 3],
     pub(crate) power: PowerBalance,
     /// The accelerations that went into the sums.
     pub(crate) accelerations: DMatrix<f64>,
@@ -44,8 +40,6 @@ struct PointLoads {
     root: [f64; 6],
     /// Aerodynamic and inertial, by flap.
     hinge: [Vec<f64>; 2],
-    /// By force summation and by curvature.
-    bending: [[f64; 2]; 3],
     power: PowerBalance,
 }
 
@@ -65,23 +59,21 @@ impl PointLoads {
         let state = BladeState { motion, pitch, loads };
         let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
         let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
-        let (root, axial) = if let Some(modal) = &blade.modal {
+        let (wrenches, axial) = if let Some(modal) = &blade.modal {
             let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
             let found = modal.loads(coordinates, pitch.into());
-            let root = moderate_root_loads(blade, state, &found);
-            (root, AxialMotion::condensed(blade, state, found))
+            let wrenches = moderate_wrenches(blade, state, &found);
+            (wrenches, AxialMotion::condensed(blade, state, found))
         } else {
             let axial = AxialMotion::inextensional(blade, couplings, state, &aerodynamic);
-            (root_loads(blade, state, &aerodynamic), axial)
+            (span_wrenches(blade, state, &aerodynamic), axial)
         };
+        let root = root_loads(blade, &wrenches);
         let damped = qd.iter().zip(rotor.damping()).map(|(rate, c)| c * rate * rate).sum();
-        let summed = root_moments(blade, couplings, state);
-        let curved = root_curvature_moments(blade, couplings, &q, pitch.angle);
         Self {
             lifting: sections.iter().map(Lifting::of).collect(),
             root,
             hinge: system.hinge_moments(p, motion, sections),
-            bending: std::array::from_fn(|k| [summed[k], curved[k]]),
             power: power(blade, state, &axial, damped, root[5]),
         }
     }
@@ -116,14 +108,9 @@ impl RevolutionLoads {
             })
             .collect();
         let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model().flaps.len()];
-        let mut bending = [(); 3].map(|()| [Vec::new(), Vec::new()]);
         let mut balance = PowerBalance::default();
         for (weight, at) in unit_weights(time).into_iter().zip(&points) {
             balance.add(weight, &at.power);
-            for (history, values) in bending.iter_mut().zip(at.bending) {
-                history[0].push(values[0]);
-                history[1].push(values[1]);
-            }
             for (k, history) in hinge.iter_mut().enumerate() {
                 for (part, moment) in history.iter_mut().zip(&at.hinge) {
                     part.push(moment[k]);
@@ -133,7 +120,7 @@ impl RevolutionLoads {
         let accelerations = samples.qdd.clone();
         let root = points.iter().map(|at| at.root).collect();
         let lifting = points.into_iter().map(|at| at.lifting).collect();
-        Ok(Self { lifting, root, hinge, bending, power: balance, accelerations })
+        Ok(Self { lifting, root, hinge, power: balance, accelerations })
     }
 
     fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {
@@ -165,14 +152,6 @@ impl RevolutionLoads {
                 inertial: Self::series(time, inertial, count),
             })
             .collect()
-    }
-
-    /// Moments of flap, lag and torsion at the root, in two ways.
-    pub(crate) fn root_bending(&self, time: &TimeElements, count: usize) -> [RootBending; 3] {
-        self.bending.each_ref().map(|[forces, curvature]| RootBending {
-            force_summation: Self::series(time, forces, count),
-            curvature: Self::series(time, curvature, count),
-        })
     }
 
     pub(crate) fn hub(&self, rotor: &Rotor, time: &TimeElements) -> SixLoads {
@@ -214,7 +193,11 @@ fn settle_accelerations(
 }
 
 /// Aerodynamic forces alone at all stations.
-fn aerodynamic_loads(stations: usize, first: usize, sections: &[SectionLoads]) -> SpanLoads {
+pub(crate) fn aerodynamic_loads(
+    stations: usize,
+    first: usize,
+    sections: &[SectionLoads],
+) -> SpanLoads {
     let mut out = SpanLoads::default();
     out.clear(stations);
     for (s, load) in sections.iter().enumerate() {

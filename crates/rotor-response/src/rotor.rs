@@ -161,22 +161,6 @@ pub struct ResponseResiduals {
     pub inflow_iterations: usize,
 }
 
-/// Moment at the root, `m0 Omega^2 R^3`: about the axis of flap (tip up positive), of lag (tip forward)
-/// or of the blade (nose up). For flap:
-///
-/// ```text
-/// force summation  M_w(0) = int_0^1 x f_z - N w_x dx      curvature  M_w(0) = EI_z kz sin th + EI_y ky cos th
-/// ```
-/// Both solve `(M_w)_xx - (N w_x)_x = f_z`. The curvature of a truncated modal series converges slowly,
-/// the force summation fast: the gap between the two measures the modal truncation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RootBending {
-    /// From the distributed loads.
-    pub force_summation: HarmonicSeries,
-    /// From the curvature of the mode shapes at the root.
-    pub curvature: HarmonicSeries,
-}
-
 /// A converged rotor.
 #[derive(Debug, Clone)]
 pub struct RotorSolution {
@@ -199,12 +183,6 @@ pub struct RotorSolution {
     pub hub: SixLoads,
     /// Hinge moments of each flap, root to tip.
     pub hinge: Vec<HingeMoment>,
-    /// Flapwise bending moment at the blade root, in two ways.
-    pub root_flap_bending: RootBending,
-    /// Lagwise bending moment there.
-    pub root_lag_bending: RootBending,
-    /// Torsion moment there; by curvature `(GJ + k_A^2 T) phi_x`.
-    pub root_torsion: RootBending,
     /// Mean power of one blade.
     pub power: PowerBalance,
     /// Residuals and iterations.
@@ -271,7 +249,7 @@ impl RotorSolver {
     ///
     /// # Errors
     /// [`ResponseError::FlapMotions`], [`ResponseError::Parameter`] for an advance ratio other than
-    /// the solver's; [`ResponseError::Periodic`] and
+    /// the solver's; [`ResponseError::Periodic`], [`ResponseError::PeriodicStall`] and
     /// [`ResponseError::InflowNotConverged`] with what was reached.
     pub fn solve(
         &mut self,
@@ -308,7 +286,8 @@ impl RotorSolver {
             let rotor = Arc::clone(&self.rotor);
             let air = Arc::clone(&self.air);
             let system = rotor.system(&air, self.point_inputs(condition, &inflow));
-            let solution = self.solver.solve(&system, &orbit).map_err(Self::orbit_error)?;
+            let solved = self.solver.solve(&system, &orbit);
+            let solution = solved.map_err(Self::orbit_error(&rotor))?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;
             let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
@@ -325,8 +304,6 @@ impl RotorSolver {
 
             if size <= self.tolerances.inflow {
                 let root = loads.root(&self.time, rotor.discretisation.load_harmonics);
-                let [root_flap_bending, root_lag_bending, root_torsion] =
-                    loads.root_bending(&self.time, rotor.discretisation.load_harmonics);
                 return Ok(RotorSolution {
                     lifting: loads.lifting.clone(),
                     accelerations: loads.accelerations.clone(),
@@ -334,9 +311,6 @@ impl RotorSolver {
                     orbit: solution.orbit,
                     thrust_coefficient: ct,
                     hinge: loads.hinge(&self.time, rotor.discretisation.load_harmonics),
-                    root_flap_bending,
-                    root_lag_bending,
-                    root_torsion,
                     inflow,
                     power: loads.power,
                     root,
@@ -371,9 +345,18 @@ impl RotorSolver {
         })
     }
 
-    pub(crate) fn orbit_error(error: PeriodicError<ResponseError>) -> ResponseError {
-        match error {
+    /// Why an orbit was not found; sections that may stall are the likely reason.
+    pub(crate) fn orbit_error(
+        rotor: &Rotor,
+    ) -> impl Fn(PeriodicError<ResponseError>) -> ResponseError + use<> {
+        let stalls = !rotor.model.nonlinear.is_linear();
+        move |error| match error {
             PeriodicError::System { source, .. } => source,
+            other @ (PeriodicError::NotConverged { .. } | PeriodicError::NotFinite { .. })
+                if stalls =>
+            {
+                ResponseError::PeriodicStall(Box::new(other))
+            }
             other => ResponseError::Periodic(Box::new(other)),
         }
     }

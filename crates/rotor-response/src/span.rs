@@ -14,6 +14,7 @@ pub struct SpanGrid {
     edges: Vec<f64>,
     halves: Vec<f64>,
     points_per_piece: usize,
+    basis: LagrangeBasis,
     integration: Vec<Vec<f64>>,
 }
 
@@ -32,13 +33,15 @@ impl SpanGrid {
         edges.sort_by(f64::total_cmp);
         edges.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
         let rule = gauss_legendre(points_per_piece);
+        let basis = LagrangeBasis::new(rule.nodes.clone());
         let mut grid = Self {
             x: Vec::new(),
             weight: Vec::new(),
             edges: edges.clone(),
             halves: Vec::new(),
             points_per_piece,
-            integration: LagrangeBasis::new(rule.nodes.clone()).integration_matrix(),
+            integration: basis.integration_matrix(),
+            basis,
         };
         for pair in edges.windows(2) {
             let (half, mid) = (0.5 * (pair[1] - pair[0]), 0.5 * (pair[1] + pair[0]));
@@ -124,6 +127,27 @@ impl SpanGrid {
         }
     }
 
+    /// Weights of the integral from a station to the tip, radius R: the polynomial through the points of the
+    /// piece cut by the station, the whole of those outboard. At the root they are [`Self::weight`], at the tip
+    /// nothing.
+    pub fn weights_outboard(&self, station: f64) -> Vec<f64> {
+        let n = self.points_per_piece;
+        let mut out = self.weight.clone();
+        for ((edges, half), weights) in
+            self.edges.windows(2).zip(&self.halves).zip(out.chunks_exact_mut(n))
+        {
+            if station >= edges[1] {
+                weights.fill(0.0);
+            } else if station > edges[0] {
+                let inboard = self.basis.integrals_to((station - edges[0]) / half - 1.0);
+                for (weight, part) in weights.iter_mut().zip(inboard) {
+                    *weight -= half * part;
+                }
+            }
+        }
+        out
+    }
+
     /// Integral of `f` over the blade.
     pub fn integral(&self, f: &[f64]) -> f64 {
         self.weight.iter().zip(f).map(|(w, v)| w * v).sum()
@@ -149,6 +173,13 @@ mod tests {
         for (got, x) in out.iter().zip(grid.x()) {
             assert_abs_diff_eq!(*got, (1.0 - x.powi(4)) / 4.0, epsilon = 1e-15);
         }
+        for station in [0.0, 0.1, 0.35, 0.4321, 0.7, 0.999, 1.0] {
+            let weights = grid.weights_outboard(station);
+            let sum: f64 = weights.iter().zip(&f).map(|(w, f)| w * f).sum();
+            assert_abs_diff_eq!(sum, (1.0 - f64::powi(station, 4)) / 4.0, epsilon = 1e-15);
+        }
+        assert_eq!(grid.weights_outboard(0.0), grid.weight());
+        assert!(grid.weights_outboard(1.0).iter().all(|w| *w == 0.0));
         let step: Vec<f64> = grid.x().iter().map(|&x| f64::from(x > 0.35)).collect();
         assert_abs_diff_eq!(grid.integral(&step), 0.65, epsilon = 1e-15);
         assert!(SpanGrid::new(0.0, &[], 0).is_err());

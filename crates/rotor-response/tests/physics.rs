@@ -6,7 +6,7 @@ mod common;
 use common::{paper_blade, paper_flaps, paper_model, paper_spec};
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_fem::{BladeProperties, BladeSpec, ModalBasis, Twist};
+use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
     ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap, hub_loads,
@@ -145,56 +145,6 @@ fn precone_turns_the_centrifugal_force_out_of_the_thrust() {
         let ct = got.thrust_coefficient;
         assert!((ct / expected - 1.0).abs() <= 5e-3, "{precone_deg} deg: {ct} against {expected}");
     }
-}
-
-/// Root moments of flap, lag and torsion: force summation against the curvature of the modes, which
-/// converges to it.
-///
-/// Without modal damping: its generalised force has no distribution along the span, so a force
-/// summation cannot hold it (with .5 % of critical it leaves a gap of 4 % at 3/rev, next to the second
-/// flap mode).
-#[test]
-fn force_summation_and_curvature_meet_with_many_modes() {
-    let gaps = [4, 10, 16].map(|modes| moment_gaps(modes, ModalBasis::Natural, Couplings::Linear));
-    for k in 0..3 {
-        assert!(gaps[0][k] > gaps[1][k] && gaps[1][k] > gaps[2][k], "{gaps:?}");
-        assert!(gaps[1][k] <= 2e-3 && gaps[2][k] <= 1e-3, "{gaps:?}");
-    }
-}
-
-/// With the couplings, which load torsion up to the root, natural modes converge with 1/N; with the
-/// completions the moments meet.
-#[test]
-fn completed_modes_carry_loads_up_to_the_root() {
-    let gaps = |basis| [4, 10, 16].map(|modes| moment_gaps(modes, basis, Couplings::Full));
-    let (completed, natural) = (gaps(ModalBasis::Completed), gaps(ModalBasis::Natural));
-    for k in 0..3 {
-        assert!(
-            completed[0][k] > completed[1][k] && completed[1][k] > completed[2][k],
-            "{completed:?}"
-        );
-        assert!(completed[2][k] <= 1e-2 && completed[2][k] < 0.2 * natural[2][k], "{completed:?}");
-    }
-    assert!(natural[2][2] > 0.1, "{natural:?}");
-}
-
-/// Gaps at 3/rev between the root moments of flap, lag and torsion in two ways, over the moments.
-fn moment_gaps(modes: usize, basis: ModalBasis, couplings: Couplings) -> [f64; 3] {
-    let d = Discretisation {
-        blade_elements: 40,
-        modes: [modes; 3],
-        basis,
-        time_elements: 12,
-        ..Discretisation::default()
-    };
-    let model = RotorModel { root_cutout: 0.35, modal_damping: 0.0, ..paper_model(couplings) };
-    let inflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
-    let condition = forward(controls_deg(8.0, 1.0, -4.5));
-    let found = solve(model, &paper_blade(), d, &condition, &inflow);
-    [found.root_flap_bending, found.root_lag_bending, found.root_torsion].map(|m| {
-        let (a, b) = (m.force_summation.harmonic(3), m.curvature.harmonic(3));
-        (a.cosine - b.cosine).hypot(a.sine - b.sine) / a.amplitude()
-    })
 }
 
 fn flapped(amplitude_deg: f64, harmonic: usize) -> RotorSolution {

@@ -4,6 +4,9 @@
 mod common;
 
 use common::{paper_blade, paper_model};
+use flap_aero::{AttachedFlowModel, FlapChord, Mach, SectionCoefficients};
+use nalgebra::Complex;
+use rotor_base::gauss_legendre;
 use rotor_fem::{BladeProperties, BladeSpec, Joint, ModeKind, RootSupport, TorsionTerms};
 use rotor_response::{
     Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
@@ -54,6 +57,83 @@ fn hovering_blade_flaps_with_a_sixteenth_of_the_lock_number() {
     let damping = -expected / (1.0_f64 - 5.2 * 0.055 / 12.0).sqrt();
     assert!((motion.damping_ratio() - damping).abs() < 1e-6, "{motion:?}");
     assert!((motion.multiplier.norm().ln() / std::f64::consts::TAU - expected).abs() < 1e-6);
+}
+
+/// Exponent of a hinged rigid blade in hover with all lag states of its sections, by Newton's method on its
+/// characteristic equation; with `settled` they follow their inputs at once:
+///
+/// ```text
+/// (s^2 + 1) / 3 = (rho c / 2) int x [ x ( direct . w + sum output input . w a p / (s + a p) ) + (c / 2) s rate . w ] dx
+/// w = [ -x s, c ],   a = x / (c / 2)
+/// ```
+fn flapping_exponent(
+    section: &SectionCoefficients,
+    model: &RotorModel,
+    settled: bool,
+) -> Complex<f64> {
+    let rule = gauss_legendre(40);
+    let (chord, semichord) = (model.chord, 0.5 * model.chord);
+    let residual = |s: Complex<f64>| {
+        let lift: Complex<f64> = rule
+            .nodes
+            .iter()
+            .zip(&rule.weights)
+            .map(|(node, weight)| {
+                let x = 0.5 * (node + 1.0);
+                let w = [-s * x, Complex::from(chord)];
+                let along = |row: &[f64; 4]| w[0] * row[0] + w[1] * row[1];
+                let lags: Complex<f64> = section
+                    .lags
+                    .iter()
+                    .map(|lag| {
+                        let pole = lag.pole * x / semichord;
+                        let follows = if settled { 1.0.into() } else { pole / (s + pole) };
+                        along(&lag.input) * lag.output[0] * follows
+                    })
+                    .sum();
+                let circulating = (along(&section.direct[0]) + lags) * x;
+                (circulating + along(&section.rate[0]) * s * semichord) * (0.5 * weight * x)
+            })
+            .sum();
+        (s * s + 1.0) / 3.0 - lift * (0.5 * model.density_chord())
+    };
+    let mut s = Complex::new(-0.3, 0.9);
+    for _ in 0..50 {
+        let step = 1e-6;
+        let slope = (residual(s + step) - residual(s - step)) / (2.0 * step);
+        s -= residual(s) / slope;
+    }
+    assert!(residual(s).norm() < 1e-12);
+    s
+}
+
+/// The exponents leave the lag states out: with them settled they are those of the same equation solved in
+/// closed form, apparent mass included; the lags themselves raise the frequency of the flapping blade in the air and hardly change its damping.
+#[test]
+fn settled_lags_are_what_the_exponents_hold() {
+    let blade = BladeProperties::new(BladeSpec {
+        root: RootSupport::HINGED,
+        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
+    })
+    .unwrap();
+    let section_model = AttachedFlowModel::Incompressible;
+    let model = RotorModel {
+        root_cutout: 0.0,
+        modal_damping: 0.0,
+        drag_coefficient: 0.0,
+        section_model,
+        ..paper_model(Couplings::Linear)
+    };
+    let chord = FlapChord::new(0.2).unwrap();
+    let section = section_model.coefficients(Mach::ZERO, chord).unwrap();
+    let [settled, with_lags] = [true, false].map(|s| flapping_exponent(&section, &model, s));
+    let result = stability(model, &blade, [1, 0, 0], 0.0);
+    let motion = result.least_stable().unwrap();
+    println!("{motion:?}, settled {settled}, with lags {with_lags}");
+    assert!((motion.growth_per_rad - settled.re).abs() < 1e-5, "{motion:?} {settled}");
+    assert!((motion.modal_frequency_per_rev - settled.im).abs() < 1e-5, "{motion:?} {settled}");
+    assert!((with_lags.re / settled.re - 1.0).abs() < 0.02, "{with_lags}");
+    assert!((0.04..0.07).contains(&(with_lags.im - settled.im)), "{with_lags}");
 }
 
 /// The blade of the paper is stable in flight, its first lag motion least: little air damps it.

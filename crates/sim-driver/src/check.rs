@@ -66,8 +66,9 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         }
         Some(FileKind::Case) => {
             let loaded = read_case(&source, &Folder::of_file(path))?;
-            let warnings = check_actuator_source(&loaded)?;
-            loaded.refuse_resonance().map_err(|error| {
+            let mut warnings = check_actuator_source(&loaded)?;
+            let doubts = loaded.refuse_resonance().and_then(|()| loaded.doubts());
+            let doubts = doubts.map_err(|error| {
                 let (place, message) = match error {
                     SimError::Response { place, source } => (place, source.to_string()),
                     SimError::Blade { place, source } => (place, source.to_string()),
@@ -75,6 +76,7 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
                 };
                 Problem::new(place, Fault::Refused { message })
             })?;
+            warnings.extend(doubts);
             let summary = loaded.case.title;
             Ok(CheckResult { file: name, kind: FileKind::Case, summary, warnings })
         }

@@ -201,6 +201,7 @@ fn response_family(error: &ResponseError) -> Family {
         | ResponseError::LagSingular { .. }
         | ResponseError::StallNotPeriodic { .. }
         | ResponseError::Periodic(_)
+        | ResponseError::PeriodicStall(_)
         | ResponseError::InflowNotConverged { .. } => Family::NumericalFailure,
         ResponseError::Fem(source) => blade_family(source),
         _ => Family::RejectedInput,
@@ -219,6 +220,7 @@ fn trim_family(error: &TrimError) -> Family {
     match error {
         TrimError::Parameter { .. }
         | TrimError::Stalled { .. }
+        | TrimError::StalledControls { .. }
         | TrimError::BeyondStall { .. }
         | TrimError::OutOfReach { .. }
         | TrimError::NoDescent { .. } => Family::RejectedInput,

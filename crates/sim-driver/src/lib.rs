@@ -12,17 +12,19 @@
 //! | case files and the validated case | [`case`], its hand-over to the models in `models` |
 //! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
 //! | one physics alone | [`modes`], [`section`] |
-//! | a whole case | [`run`], stored by [`results`]; [`stability`] of its trimmed blade, blades unlike each other in [`dissimilar`]; over advance ratios in [`sweep`] |
+//! | a whole case | [`run`], stored by [`results`]; [`stability`] of its trimmed blade, its [`blade_loads`], blades unlike each other in [`dissimilar`]; over advance ratios in [`sweep`] |
 //! | the HTML report | [`report`] |
 //! | `hhc` | [`cli`] |
 
 pub mod actuator;
+pub mod blade_loads;
 pub mod case;
 pub mod check;
 pub mod cli;
 pub mod curve_identification;
 pub mod diagnose;
 pub mod dissimilar;
+mod doubts;
 mod error;
 pub mod figures;
 pub mod files;

@@ -57,7 +57,7 @@ impl LoadedCase {
                     TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => {
                         "trim.ct_sigma"
                     }
-                    TrimValues::Prescribed { .. } => "trim",
+                    TrimValues::Prescribed { .. } => "trim.theta0_deg",
                 };
                 SimError::Trim { place: self.index.place(field), source }
             }

@@ -1,6 +1,7 @@
 //! What `hhc run` finds, and how it is stored.
 
 use crate::SimError;
+use crate::blade_loads::StationLine;
 use crate::case::CaseFile;
 use crate::dissimilar::UnlikeLine;
 use crate::files::{ron_text, write_atomic};
@@ -18,6 +19,9 @@ pub struct RunResult {
     pub residuals: Residuals,
     /// Loads without control.
     pub baseline: Baseline,
+    /// Loads of one blade along its span without control; none in results stored before they were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blade_loads: Vec<StationLine>,
     /// Stability of the trimmed blade.
     #[serde(default)]
     pub stability: StabilityLine,

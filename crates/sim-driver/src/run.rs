@@ -2,6 +2,7 @@
 
 use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
+use crate::blade_loads::{moments_table, station_lines};
 use crate::case::LoadedCase;
 use crate::dissimilar::unlike_lines;
 use crate::output::{Printable, Sheet, table};
@@ -9,6 +10,7 @@ use crate::progress::Progress;
 use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine, flap_name};
 use crate::stability::StabilityLine;
 use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line, forecasts};
+use rotor_response::StationLoads;
 use std::sync::Arc;
 use trim::TrimSolution;
 
@@ -21,6 +23,8 @@ pub struct RunOutcome {
     pub actuators: CaseActuators,
     /// The trimmed rotor.
     pub trimmed: TrimmedRotor,
+    /// Loads of one blade at the stations of the case, flaps at rest.
+    pub blade_loads: Vec<StationLoads>,
     /// The drives of the flaps with their stroke limits.
     pub drives: Drives,
     /// Every control study, in the order of the result.
@@ -66,7 +70,14 @@ pub fn run_trimmed(
         let place = loaded.index.place("rotor");
         SimError::Response { place, source }
     })?);
+    let blade_loads = trimmed.station_loads(&loaded.case.load_stations_r()).map_err(|source| {
+        let place = loaded.index.place("response.load_stations_r");
+        SimError::Response { place, source }
+    })?;
     let mut warnings = actuators.warnings.clone();
+    let found = trimmed.trim();
+    let about = (found.controls.theta0_rad, &found.rotor);
+    warnings.extend(loaded.doubts_in_flight(trimmed.rotor(), about)?);
     warnings.extend(stability.warnings());
     warnings.extend(studies.iter().filter_map(ControlStudy::share_warning));
     let result = RunResult {
@@ -77,13 +88,14 @@ pub fn run_trimmed(
                 trimmed.trim().rotor.hub.harmonic(loaded.case.blades),
             ),
         },
+        blade_loads: station_lines(&blade_loads, &loaded.case.scales),
         stability,
         unlike_blades: unlike_lines(loaded, &trimmed, &studies)?,
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
         forecasts: forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?,
         warnings,
     };
-    Ok(RunOutcome { result, actuators, trimmed, drives, studies })
+    Ok(RunOutcome { result, actuators, trimmed, blade_loads, drives, studies })
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {
@@ -147,6 +159,12 @@ impl Printable for RunResult {
                 ]
             }),
         ));
+        if !self.blade_loads.is_empty() {
+            sheet.line(format_args!(
+                "\nMoments of one blade without control, N m: tip up, tip forward, nose up"
+            ));
+            sheet.block(&moments_table(&self.blade_loads));
+        }
         if !self.control.is_empty() {
             sheet.line(format_args!(
                 "\nControl: reduction of J = 100 (1 - J/J0) and of the loads, percent"

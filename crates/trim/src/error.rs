@@ -2,6 +2,9 @@
 
 /// The last few residuals, for a message.
 fn show(history: &[f64]) -> String {
+    if history.is_empty() {
+        return "none".to_owned();
+    }
     let tail = &history[history.len().saturating_sub(6)..];
     let shown: Vec<String> = tail.iter().map(|r| format!("{r:.1e}")).collect();
     shown.join(" ")
@@ -14,6 +17,11 @@ fn most(reached: f64, theta0_deg: f64) -> String {
     } else {
         "and not one periodic response was found on the way".to_owned()
     }
+}
+
+/// Residuals of a search, or of the response where the search did not come to one.
+fn show_or(history: &[f64], cause: &TrimError) -> String {
+    if history.is_empty() { format!("none: {cause}") } else { show(history) }
 }
 
 /// Why a rotor could not be trimmed.
@@ -53,7 +61,7 @@ pub enum TrimError {
     #[error(
         "the sections stall: C_T/sigma {wanted:.4} is asked for, {}; residuals so far {}. Remedy: lower the thrust, the drag area or the advance ratio",
         most(*.reached, *.theta0_deg),
-        show(.history)
+        show_or(.history, .cause)
     )]
     Stalled {
         /// Thrust asked for, `C_T / sigma`.
@@ -67,6 +75,15 @@ pub enum TrimError {
         /// How the search ended.
         #[source]
         cause: Box<Self>,
+    },
+    /// The sections stall at the controls that are given.
+    #[error("the sections stall at the controls given, theta0 {theta0_deg:.2} deg: {cause}")]
+    StalledControls {
+        /// Collective given, degrees.
+        theta0_deg: f64,
+        /// How the response ended, its residual history included.
+        #[source]
+        cause: Box<rotor_response::ResponseError>,
     },
     /// Sections that never stall give a thrust that no aerofoil gives.
     #[error(
@@ -128,4 +145,30 @@ pub enum TrimError {
     /// The rotor could not be solved.
     #[error("rotor response inside the trim: {0}")]
     Response(#[from] rotor_response::ResponseError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rotor_response::ResponseError;
+
+    /// A search that fails at its first response has no residual of its own: it tells that of the response.
+    #[test]
+    fn a_stall_at_the_first_response_shows_its_residuals() {
+        let cause = Box::new(TrimError::Response(ResponseError::InflowNotConverged {
+            iterations: 60,
+            change: 2.5e-3,
+            tolerance: 1e-10,
+            thrust_coefficient: 0.011,
+        }));
+        let stalled = |history: Vec<f64>| {
+            let (wanted, reached, theta0_deg) = (0.13, 0.0, 14.0);
+            let cause = cause.clone();
+            TrimError::Stalled { wanted, reached, theta0_deg, history, cause }.to_string()
+        };
+        let text = stalled(vec![]);
+        assert!(text.contains("residuals so far none: rotor response"), "{text}");
+        assert!(text.contains("change 2.500e-3") && text.contains("not one periodic"), "{text}");
+        assert!(stalled(vec![0.1, 0.02]).contains("residuals so far 1.0e-1 2.0e-2. Remedy"));
+    }
 }

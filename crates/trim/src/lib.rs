@@ -8,7 +8,7 @@ mod wake;
 
 pub use balance::{TrimTarget, imbalance};
 pub use error::TrimError;
-pub use solve::{TrimSettings, TrimSolution, trim};
+pub use solve::{TrimSettings, TrimSolution, mean_lift_coefficient, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
 pub use wake::{WakeOutcome, WakeTrim, WakeTrimSettings, WakeUpdate, trim_in_free_wake};
 

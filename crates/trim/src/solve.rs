@@ -6,7 +6,7 @@ use crate::vehicle::Attitude;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_response::{Condition, Controls, RotorSolution, RotorSolver};
+use rotor_response::{Condition, Controls, ResponseError, RotorSolution, RotorSolver};
 use rotor_wake::{FlightState, InflowModel, momentum_inflow};
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ const STANDSTILL: (usize, f64) = (6, 0.02);
 /// Mean lift coefficient of the blades at a thrust, `6 (C_T / sigma) / (1 + 3 mu^2 / 2)`.
 ///
 /// Source: W. Johnson, Helicopter Theory (1980), section 5-3, mean of the square of the tangential speed.
-fn mean_lift_coefficient(ct_sigma: f64, advance_ratio: f64) -> f64 {
+pub fn mean_lift_coefficient(ct_sigma: f64, advance_ratio: f64) -> f64 {
     6.0 * ct_sigma / (1.0 + 1.5 * advance_ratio * advance_ratio)
 }
 
@@ -253,7 +253,16 @@ impl Problem<'_> {
         let found = self.search(solver, settings, start, &mut progress);
         let model = solver.rotor().model();
         if self.balance.unknowns == 0 {
-            return found;
+            return found.map_err(|error| match error {
+                TrimError::Response(
+                    cause @ (ResponseError::PeriodicStall(_)
+                    | ResponseError::StallNotPeriodic { .. }),
+                ) => {
+                    let theta0_deg = progress.last_theta0_rad.to_degrees();
+                    TrimError::StalledControls { theta0_deg, cause: Box::new(cause) }
+                }
+                error => error,
+            });
         }
         let wanted = self.balance.thrust_coefficient / model.solidity();
         match found {
@@ -301,6 +310,7 @@ impl Problem<'_> {
         progress: &mut Progress,
     ) -> Result<TrimSolution, TrimError> {
         let mut x = start.map_or_else(|| self.first_guess(solver), |s| self.unknowns_of(s));
+        progress.last_theta0_rad = self.balance.state(&x).0.theta0_rad;
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
         let solidity = solver.rotor().model().solidity();
         let stalls = !solver.rotor().model().nonlinear.is_linear();

@@ -12,6 +12,7 @@ mod actuator;
 mod actuator_data;
 mod actuator_stages;
 mod blade;
+mod blade_loads;
 mod control;
 mod discovery;
 mod hinge;
@@ -53,6 +54,7 @@ pub const AREAS: &[Area] = &[
     wake_measured::AREA,
     rotor::AREA,
     rotor_details::AREA,
+    blade_loads::AREA,
     trimmed::AREA,
     actuator::AREA,
     actuator_stages::AREA,

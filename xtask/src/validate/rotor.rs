@@ -319,9 +319,13 @@ fn bending_gap(flap_modes: usize) -> Result<f64, CheckError> {
     };
     let model = RotorModel { modal_damping: 0.0, ..paper_rotor(Couplings::Linear, 0.35) };
     let blade = paper_blade(1.0)?;
-    let solution = response(model, &blade, discretisation, &fixed_controls(), &PRESCRIBED)?;
-    let bending = solution.root_flap_bending;
-    let (summed, curved) = (bending.force_summation.harmonic(3), bending.curvature.harmonic(3));
+    let condition = fixed_controls();
+    let rotor = Arc::new(Rotor::new(model, &blade, discretisation)?);
+    let mut solver = RotorSolver::new(rotor, 0.3, ResponseTolerances::default())?;
+    let solution = solver.solve(&condition, &PRESCRIBED, None)?;
+    let loads = solver.station_loads(&condition, &solution, &[0.0])?;
+    let [summed, curved] = [&loads[0].equations, &loads[0].curvature];
+    let [summed, curved] = [summed, curved].map(|history| history.harmonics[0].harmonic(3));
     let gap = (summed.cosine - curved.cosine).hypot(summed.sine - curved.sine);
     Ok(gap / summed.amplitude())
 }

@@ -4,7 +4,8 @@ use crate::distribution::Allowed;
 use crate::{BladeProperties, BladeSpec, Distribution, FemError};
 
 use super::inertia::SectionMass;
-use super::strain::SectionStiffness;
+use super::modal::SectionShape;
+use super::strain::{STRAIN_VARIABLES, SectionStiffness, at};
 
 /// Whether the radial motion of points off the axis, by the slopes of bending, carries inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -156,6 +157,29 @@ impl ModerateBlade {
     /// Root, tip and every station between them where a property jumps or has a kink.
     pub fn breaks(&self) -> &[f64] {
         &self.breaks
+    }
+
+    /// Moments in a section that is bent and twisted and carries a tension: flapwise (tip up), lagwise (tip
+    /// forward), twisting (nose up), the forces on `w_xx`, `v_xx`, `phi_x`. Unit: m0 Omega^2 R^3.
+    ///
+    /// ```text
+    /// d/ds [ EI_z kz^2 + EI_y ky^2 + GJ kx^2 ] / 2 + N de/ds,   s = w_xx, v_xx, phi_x
+    /// ```
+    /// `pitch_rad` is the pitch without the built-in twist. A pure function of its arguments.
+    pub fn section_moments(
+        &self,
+        station: f64,
+        pitch_rad: f64,
+        shape: &SectionShape,
+        tension: f64,
+    ) -> [f64; 3] {
+        let stiffness = self.stiffness(station);
+        let theta = pitch_rad + self.properties.twist_rad(station);
+        let [v_x, w_x, v_xx, w_xx, phi, phi_x] = shape.strain();
+        let strain: [f64; STRAIN_VARIABLES] = [0.0, v_x, w_x, v_xx, w_xx, phi, phi_x];
+        let bending = stiffness.bending_force(theta, &strain);
+        let pull = stiffness.tension_force(theta, &strain, tension);
+        [at::W_XX, at::V_XX, at::PHI_X].map(|k| bending[k] + pull[k])
     }
 
     pub(crate) fn stiffness(&self, station: f64) -> SectionStiffness {

@@ -80,11 +80,15 @@ pub struct ModalForce {
 pub struct ModalLoads {
     /// Axial displacement at each station, R.
     pub axial: Vec<f64>,
+    /// Its radial derivative.
+    pub axial_slope: Vec<f64>,
     /// Its rate in azimuth.
     pub axial_rate: Vec<f64>,
     /// Mass times acceleration per length at each station as force and moment about the rotor centre,
     /// in the axes of the coned blade.
     pub wrench: Vec<[f64; 6]>,
+    /// The same as force on `u v w v_x w_x phi`, which the equations of motion are made of.
+    pub inertial: Vec<[f64; 6]>,
     /// Elastic plus inertial moment on the pitch of the root, nose up, `m0 Omega^2 R^3`: the pitch control
     /// must supply it, less the applied one.
     pub pitch_moment: f64,
@@ -255,10 +259,37 @@ impl ModalBlade {
         };
         ModalLoads {
             axial: loaded.stations.iter().map(|s| s.state.value[0]).collect(),
+            axial_slope: (self.sections.iter().zip(&loaded.stations))
+                .map(|(section, station)| section.axial_slope(station)[0])
+                .collect(),
             axial_rate: loaded.stations.iter().map(|s| s.state.rate[0]).collect(),
             wrench: self.sections.iter().zip(&loaded.stations).map(|(a, b)| of(a, b)).collect(),
+            inertial: loaded.inertial,
             pitch_moment: loaded.pitch_moment,
         }
+    }
+
+    /// Elastic force per length on `v_x`, `w_x` and `phi` at the stations, of a blade that carries the given
+    /// tension there: what bending, twist and tension do to the part outboard when it turns as a whole.
+    ///
+    /// # Panics
+    /// If the numbers of coordinates or tensions do not fit.
+    pub fn turning_forces(
+        &self,
+        value: &[f64],
+        pitch: PitchMotion,
+        tension: &[f64],
+    ) -> Vec<[f64; 3]> {
+        let zero = vec![0.0; value.len()];
+        let motion = Coordinates { value, rate: &zero, acceleration: &zero };
+        let stations = self.kinematics(&motion, &pitch);
+        let of = |((station, section), n): ((&Station<f64>, &Section), &f64)| {
+            let (theta, s) = (station.state.pitch[0], &station.strain[0]);
+            let bending = section.stiffness.bending_force(theta, s);
+            let pull = section.stiffness.tension_force(theta, s, *n);
+            [at::V_X, at::W_X, at::PHI].map(|k| bending[k] + pull[k])
+        };
+        stations.iter().zip(&self.sections).zip(tension).map(of).collect()
     }
 
     /// Modal force of applied loads per length `[f_x, f_y, f_z, nose-up moment]` at the stations, the

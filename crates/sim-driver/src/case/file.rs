@@ -474,6 +474,9 @@ pub struct ResponseFile {
     pub span_points_per_piece: usize,
     /// Highest harmonic of the loads kept in results.
     pub load_harmonics: usize,
+    /// Stations at which the loads of the blade are given, radius R; left out: root, 0.25, 0.5 and 0.75.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_stations_r: Option<Vec<f64>>,
 }
 
 impl Default for ResponseFile {
@@ -484,6 +487,7 @@ impl Default for ResponseFile {
             time_gauss_points: 8,
             span_points_per_piece: 4,
             load_harmonics: 12,
+            load_stations_r: None,
         }
     }
 }

@@ -334,7 +334,7 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
     }
     let ideal = file.actuator.model == ActuatorChoice::Ideal;
     for (i, actuator) in c.actuators.iter().enumerate() {
-        if ideal && *actuator != ControlActuator::Ideal {
+        if ideal && !c.harmonics.is_empty() && *actuator != ControlActuator::Ideal {
             check.fault(&format!("control.actuators[{i}]"), Fault::NeedsIdentifiedActuator);
         }
     }
@@ -374,6 +374,24 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
     check.within(number("control.step_tolerance", c.step_tolerance, "", remedy), 1e-12, 0.1);
 }
 
+/// Stations on the blade, each once.
+fn check_load_stations(check: &mut Checker<'_>, file: &CaseFile) {
+    let root = file.rotor.root_offset_r;
+    let stations = file.response.load_stations_r.as_deref().unwrap_or_default();
+    for (i, &station) in stations.iter().enumerate() {
+        let field = format!("response.load_stations_r[{i}]");
+        let remedy = "a station of the blade: the root is rotor.root_offset_r, the tip is 1";
+        check.within(number(&field, station, "R", remedy), root, 1.0);
+        if let Some(first) = stations[..i].iter().position(|s| (s - station).abs() < 1e-9) {
+            let message = format!(
+                "the station {station} R is in the list already (number {}); name each station once",
+                first + 1
+            );
+            check.fault(&field, Fault::Refused { message });
+        }
+    }
+}
+
 fn check_numerics(check: &mut Checker<'_>, file: &CaseFile) {
     let r = &file.response;
     let remedy = "the paper uses 8 elements of order 5";
@@ -385,6 +403,7 @@ fn check_numerics(check: &mut Checker<'_>, file: &CaseFile) {
     let least = file.rotor.blades.min(64);
     let remedy = "12 is usual; at least the blade number, whose harmonic reaches the hub";
     check.count("response.load_harmonics", r.load_harmonics, (least, 64), remedy);
+    check_load_stations(check, file);
     let t = &file.tolerances;
     for (field, value, high) in [
         ("tolerances.trim", t.trim, 1e-3),

@@ -90,7 +90,16 @@ fn check_tables(check: &mut Checker<'_>, file: &CaseFile) {
         let at = |i: usize| format!("rotor.tables.{key}[{i}]");
         for (i, &(station, value)) in table.iter().enumerate() {
             let before = if i == 0 { 0.0 } else { table[i - 1].0 };
-            if !(station >= before && (i == 0 || station > before) && station <= 1.0) {
+            let twice = table[..i].iter().position(|(s, _)| (s - station).abs() < 1e-12);
+            if let Some(first) = twice {
+                let message = format!(
+                    "the station {station} R is given twice, as number {} and number {} of the list; give each once, a jump as two stations a little apart, such as {station} and {}",
+                    first + 1,
+                    i + 1,
+                    station + 1e-3
+                );
+                check.fault(&at(i), Fault::Refused { message });
+            } else if !(station >= before && (i == 0 || station > before) && station <= 1.0) {
                 let remedy = "list the stations from root to tip, each once";
                 let (low, high) = (before, 1.0);
                 let fault = Fault::OutOfRange { value: station, low, high, unit: "R", remedy };

@@ -1,7 +1,7 @@
 //! Reading cases, from disk or from the files shipped inside the program.
 
 use super::convert::convert;
-use super::{Case, CaseFile};
+use super::{ActuatorChoice, Case, CaseFile, ControlActuator};
 use crate::files::{Folder, RonIndex, SHIPPED_CASES, Source, read_ron};
 use crate::problem::Problems;
 use std::path::Path;
@@ -29,9 +29,13 @@ pub struct LoadedCase {
 pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problems> {
     let read = read_ron::<CaseFile>(source);
     let mut problems = read.problems;
-    let Some(file) = read.value else {
+    let Some(mut file) = read.value else {
         return problems.into_result(None);
     };
+    if file.actuator.model == ActuatorChoice::Ideal && !read.index.contains("control.actuators") {
+        // the usual list needs an identified actuator
+        file.control.actuators = vec![ControlActuator::Ideal];
+    }
     let case = match convert(&file, folder, &read.index) {
         Ok(case) => Some(case),
         Err(more) => {

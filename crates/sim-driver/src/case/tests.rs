@@ -130,7 +130,7 @@ fn single_problems_name_the_remedy() {
             "actuator.range_V: (150, -20) is no range; give the lower limit first",
         ),
         (
-            "(actuator: (model: Ideal))",
+            "(actuator: (model: Ideal), control: (actuators: [Ideal, Hysteretic]))",
             "control.actuators[1]: Ignored and Hysteretic need an identified actuator",
         ),
         (
@@ -238,6 +238,22 @@ fn problems_of_the_blade_name_the_remedy() {
         (
             "(rotor: (tables: (mass: [(0, 1), (0.5, 1), (0.4, 1), (1, 1)])))",
             "rotor.tables.mass[2]: is 0.4 R, expected 0.5 to 1 R; list the stations from root to tip",
+        ),
+        (
+            "(rotor: (tables: (mass: [(0, 1), (0.5, 1), (0.5, 2), (1, 1)])))",
+            "rotor.tables.mass[2]: is refused: the station 0.5 R is given twice, as number 2 and number 3",
+        ),
+        (
+            "(response: (load_stations_r: [0.5, 1.2]))",
+            "response.load_stations_r[1]: is 1.2 R, expected 0 to 1 R",
+        ),
+        (
+            "(rotor: (root_offset_r: 0.05), response: (load_stations_r: [0.01]))",
+            "response.load_stations_r[0]: is 0.01 R, expected 0.05 to 1 R",
+        ),
+        (
+            "(response: (load_stations_r: [0.5, 0.25, 0.5]))",
+            "response.load_stations_r[2]: is refused: the station 0.5 R is in the list already (number 1)",
         ),
         (
             "(rotor: (tables: (mass: [(0, 1), (0.9, 1)])))",

@@ -6,6 +6,7 @@ use super::args::{
 };
 use crate::SimError;
 use crate::actuator::case_actuators;
+use crate::blade_loads::blade_loads_csv;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::check::check_file;
 use crate::curve_identification::identify_curves;
@@ -44,6 +45,7 @@ const STUDY_FILE: &str = "study.json";
 const REPORT_FILE: &str = "report.html";
 /// Name of the flap and voltage histories.
 const HISTORIES_FILE: &str = "histories.csv";
+const BLADE_LOADS_FILE: &str = "blade_loads.csv";
 /// Name of the sensitivities.
 const SENSITIVITY_FILE: &str = "sensitivity.csv";
 /// Name of the robustness maps.
@@ -196,6 +198,8 @@ fn store(
     }
     stored.write(&out.join(RESULT_FILE))?;
     write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
+    let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales);
+    write_atomic(&out.join(BLADE_LOADS_FILE), blade_loads.as_bytes())?;
     let numbers = serde_json::to_string(&report)
         .map_err(|e| SimError::NotWritten { path: out.join(STUDY_FILE), reason: e.to_string() })?;
     write_atomic(&out.join(STUDY_FILE), numbers.as_bytes())?;

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
 use rotor_response::{
     Condition, HingeMoment, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution,
-    RotorSolver, SixLoads, Stability, dissimilar_hub_loads,
+    RotorSolver, SixLoads, Stability, StationLoads, dissimilar_hub_loads,
 };
 use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
@@ -113,13 +113,7 @@ impl TrimmedRotor {
         state: InflowState,
         highest: usize,
     ) -> Result<FlapAuthority, ResponseError> {
-        let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
-        let condition = Condition {
-            bank_rad: self.trim.attitude.roll_rad,
-            flight: self.trim.flight,
-            controls: self.trim.controls,
-            flap_angles_rad,
-        };
+        let condition = self.flaps_at_rest();
         let about = (&condition, &self.trim.rotor);
         FlapAuthority::about(&mut self.solver.clone(), about, &self.inflow, (state, highest))
     }
@@ -142,14 +136,24 @@ impl TrimmedRotor {
     /// # Errors
     /// As [`RotorSolver::stability`].
     pub fn stability(&self) -> Result<Stability, ResponseError> {
-        let flap_angles_rad = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
-        let condition = Condition {
+        self.solver.stability(&self.flaps_at_rest(), &self.trim.rotor)
+    }
+
+    /// Loads of one blade at stations of its span (R), flaps at rest.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::station_loads`].
+    pub fn station_loads(&self, stations: &[f64]) -> Result<Vec<StationLoads>, ResponseError> {
+        self.solver.station_loads(&self.flaps_at_rest(), &self.trim.rotor, stations)
+    }
+
+    fn flaps_at_rest(&self) -> Condition {
+        Condition {
             bank_rad: self.trim.attitude.roll_rad,
             flight: self.trim.flight,
             controls: self.trim.controls,
-            flap_angles_rad,
-        };
-        self.solver.stability(&condition, &self.trim.rotor)
+            flap_angles_rad: vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()],
+        }
     }
 
     /// A solver for every unlike blade of a case, at the advance ratio of this trim.

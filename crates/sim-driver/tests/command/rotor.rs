@@ -132,3 +132,107 @@ fn gravity_and_root_are_fields_of_the_case() {
     assert!((flap - (1.0_f64 + 1.5 * 0.04 / 0.96).sqrt()).abs() < 5e-3, "{flap}");
     assert_eq!(hinged["stability"]["stable"], true);
 }
+
+/// Loads along the blade are in the table, the result and a file of their own: at the stations of the case, or at
+/// the usual ones.
+#[test]
+fn loads_along_the_blade_are_given() {
+    let place = Place::new();
+    let with = |stations: &str| {
+        let response = format!("(\n    response: ({stations}time_elements: 6),");
+        place.write("case.ron", &QUICK_CASE.replacen('(', &response, 1));
+        place.hhc(&["run", "case.ron", "--out", "o", "--format", "json"]).json()
+    };
+    let usual = with("");
+    let stations = |json: &Value| -> Vec<f64> {
+        json["blade_loads"].as_array().unwrap().iter().map(|l| number(&l["station_r"])).collect()
+    };
+    assert_eq!(stations(&usual), [0.0, 0.25, 0.5, 0.75]);
+    let json = with("load_stations_r: [0.4, 1], ");
+    assert_eq!(stations(&json), [0.4, 1.0]);
+    let [inner, tip] = [&json["blade_loads"][0], &json["blade_loads"][1]];
+    // m0 Omega^2 R^2 (1 - s^2) / 2, less what bending takes off
+    let tension = number(&inner["axial_force_N"]["mean"]);
+    let unit = 6.46 * (383.0 * std::f64::consts::TAU / 60.0_f64).powi(2) * 4.94 * 4.94;
+    assert!((tension / unit / 0.42 - 1.0).abs() < 0.02, "{tension}");
+    for method in ["force_summation", "equations", "curvature"] {
+        assert!(number(&inner["flap_moment_N_m"][method]["peak_to_peak"]) > 1.0, "{method}");
+        let at_tip = number(&tip["torsion_N_m"][method]["peak_to_peak"]);
+        assert!(method == "curvature" || at_tip == 0.0, "{method}: {at_tip}");
+    }
+    let text = place.read("o/blade_loads.csv");
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header[..3], ["azimuth_deg", "station_r", "axial_force_N"]);
+    assert!(header.contains(&"flap_moment_curvature_N_m") && header.len() == 14, "{header:?}");
+    assert!(lines.clone().all(|line| line.split(',').count() == 14));
+    assert_eq!(lines.count(), 2 * 6 * 8);
+    let text = place.hhc(&["run", "case.ron"]).done();
+    assert!(text.contains("0.400 R torsion"), "{text}");
+}
+
+/// What can be, but hardly is meant, is said with its place.
+#[test]
+fn doubtful_values_are_warned_of() {
+    let place = Place::new();
+    for (text, parts) in [
+        ("(rotor: (km1_r: 0.03, km2_r: 0.02))", ["rotor.km1_r", "are the two exchanged"]),
+        ("(rotor: (ei_flap: 1e-9))", ["rotor.ei_flap", "a hundredth of the softest blade's"]),
+        (
+            "(rotor: (tables: (gj: [(0, 0.006), (0.5, 1e-9), (1, 0.006)])))",
+            ["rotor.tables.gj[1]", "1e-9 m0 Omega^2 R^4"],
+        ),
+        (
+            "(trim: WindTunnel(ct_sigma: 0.22, shaft_tilt_deg: 5))",
+            ["trim.ct_sigma", "mean lift coefficient of 1.16"],
+        ),
+        (
+            "(rotor: (modal_damping: 1e-7, ei_lag: 0.078), trim: Prescribed(theta0_deg: 6.3),
+              structure: (modes: (flap: 2, lag: 1, torsion: 1)))",
+            ["rotor.modal_damping", "lag 1 at 6.30 deg has 1.0075 per rev, near the harmonic 1"],
+        ),
+    ] {
+        place.write("case.ron", text);
+        let checked = place.hhc(&["check", "case.ron"]);
+        for part in parts {
+            let said = checked.err.to_lowercase();
+            assert!(said.contains(&part.to_lowercase()), "{text}: {}", checked.err);
+        }
+        checked.done();
+    }
+    place.write("case.ron", "(title: \"plain\")");
+    let plain = place.hhc(&["check", "case.ron"]);
+    assert!(!plain.err.contains("warning"), "{}", plain.err);
+}
+
+/// A short case with the ideal actuator needs no list of actuators; thrust beyond stall and next to no damping
+/// are warned of in flight too.
+#[test]
+fn a_short_case_with_the_ideal_actuator_runs() {
+    let place = Place::new();
+    let rest = "structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
+         aerodynamics: (model: QuasiSteady, compressibility: None)";
+    place.write(
+        "case.ron",
+        &format!(
+            "(actuator: (model: Ideal), control: (harmonics: []), advance_ratio: 0.2,
+            rotor: (modal_damping: 1e-7, ei_lag: 0.078), {rest})"
+        ),
+    );
+    let ran = place.hhc(&["run", "case.ron", "--out", "o", "--format", "json"]);
+    assert!(ran.err.contains("rotor.modal_damping: lag 1 at"), "{}", ran.err);
+    let json = ran.json();
+    assert!(json["control"].as_array().unwrap().is_empty());
+    let stored: Value = serde_json::from_str(&place.read("o/result.json")).unwrap();
+    assert_eq!(stored["case"]["control"]["actuators"].as_array().unwrap().len(), 1);
+    place.write(
+        "case.ron",
+        &format!(
+            "(actuator: (model: Ideal), flaps: [], control: (harmonics: []), advance_ratio: 0.2,
+            trim: Prescribed(theta0_deg: 22, theta1s_deg: -4), {rest})"
+        ),
+    );
+    let ran = place.hhc(&["run", "case.ron", "--format", "json"]);
+    assert!(ran.err.contains("trim.theta0_deg: C_T/sigma"), "{}", ran.err);
+    ran.json();
+}
