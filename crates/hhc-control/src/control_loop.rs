@@ -4,8 +4,9 @@ use crate::controller::Knowledge;
 use crate::law::Anchor;
 use crate::stroke::{Strokes, track_effort};
 use crate::{
-    ControlError, ControlLayout, ControlLimits, ControlRun, ControlStep, Cost, FeedbackController,
-    KktResidual, Measurement, Outcome, Plant, PlantCall, RunError, error, layout::as_harmonics,
+    ControlError, ControlLayout, ControlLimits, ControlRun, ControlStep, Controller, Cost,
+    FeedbackController, KktCertificate, Measurement, Outcome, Plant, PlantCall, RunError,
+    StepLeave, error, layout::as_harmonics,
 };
 use rotor_base::Harmonic;
 
@@ -76,7 +77,7 @@ impl Trust {
 /// Where a step leads.
 struct Aim {
     control_volt: Vec<f64>,
-    kkt: Option<KktResidual>,
+    kkt: Option<KktCertificate>,
 }
 
 /// The search along one step.
@@ -97,8 +98,18 @@ struct Departure<'a> {
     rho: f64,
     /// Cost without control at this `rho`.
     start_cost: f64,
-    /// Whether the step leads back into limits that the state has left, whatever that costs.
-    back: bool,
+    /// Whether the step may raise the cost: back into limits that the state has left, or to the fixed point.
+    leave: StepLeave,
+}
+
+/// Where no part of a step lowers the cost and it begins to be let rise.
+struct Hill {
+    /// Steps taken by then.
+    taken: usize,
+    /// The state there.
+    foot: ControlStep,
+    /// Cost of the shortest part tried.
+    shortest: Cost,
 }
 
 impl FeedbackController {
@@ -121,7 +132,9 @@ impl FeedbackController {
         let measurement = self.measured(plant, start_volt, &[])?;
         let cost = self.cost(&measurement, start_volt, 0.0);
         let control_volt = start_volt.to_vec();
-        Ok(ControlStep { control_volt, measurement, rho: 0.0, cost, asked_volt: 0.0, halvings: 0 })
+        let leave = StepLeave::None;
+        let (rho, asked_volt, halvings) = (0.0, 0.0, 0);
+        Ok(ControlStep { control_volt, measurement, rho, cost, asked_volt, halvings, leave })
     }
 
     /// The loop itself, from a measured start; counts no measurement for the start.
@@ -138,7 +151,8 @@ impl FeedbackController {
         let mut known = Knowledge::new(&self.controller, &self.law, start);
         let strict = self.settings.cost_tolerance > 0.0;
         let (mut trust, mut last_fall) = (Trust::default(), f64::INFINITY);
-        let outcome = loop {
+        let mut hill: Option<Hill> = None;
+        let mut outcome = loop {
             known.refresh(plant, &here)?;
             let rho = match effort {
                 Effort::Fixed(rho) | Effort::Cone(rho) => *rho,
@@ -176,7 +190,12 @@ impl FeedbackController {
             }
             let history =
                 || -> Vec<ControlStep> { std::iter::once(start).chain(&steps).cloned().collect() };
-            let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost, back };
+            let leave = match (back, &hill) {
+                (true, _) => StepLeave::Limits,
+                (false, Some(_)) => StepLeave::Settling,
+                (false, None) => StepLeave::None,
+            };
+            let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost, leave };
             let search = self.search(plant, &mut known, &from, (limits.as_ref(), &history))?;
             measurements += search.measurements;
             halvings += search.taken.as_ref().map_or(self.settings.max_halvings, |s| s.halvings);
@@ -208,6 +227,18 @@ impl FeedbackController {
             if known.learn(plant, &here, &aim.control_volt)? {
                 continue;
             }
+            let constant = matches!(self.controller, Controller::Global) && !strict;
+            if let Some(shortest) = search.shortest
+                && constant
+                && hill.is_none()
+                && self.settings.settling_cost > 0.0
+            {
+                hill = Some(Hill { taken: steps.len(), foot: here.clone(), shortest });
+                continue;
+            }
+            if hill.as_ref().is_some_and(|hill| hill.taken < steps.len()) {
+                break Outcome::Stalled;
+            }
             if !steps.is_empty() {
                 break if search.left_range { Outcome::OutOfRange } else { Outcome::Stalled };
             }
@@ -221,6 +252,21 @@ impl FeedbackController {
                 None => ControlError::NotAdmitted { rho, divisor, history },
             })?;
         };
+        if let Some(Hill { taken, foot, shortest }) = hill {
+            let before = self.weighed(&foot, here.rho).cost.total();
+            if outcome != Outcome::Converged || here.cost.total() > before {
+                // beyond the hill there was nothing better
+                if taken == 0 {
+                    let (rho, start, history) = (foot.rho, foot.cost, vec![foot]);
+                    let divisor = 1_u64 << self.settings.max_halvings;
+                    Err(ControlError::Diverges { rho, divisor, start, shortest, history })?;
+                } else {
+                    steps.truncate(taken);
+                    here = foot;
+                    outcome = Outcome::Stalled;
+                }
+            }
+        }
         Ok(ControlRun {
             rho: here.rho,
             outcome,
@@ -242,7 +288,7 @@ impl FeedbackController {
         from: &Departure<'_>,
         (limits, history): (Option<&ControlLimits>, &dyn Fn() -> Vec<ControlStep>),
     ) -> Result<Search, RunError<P::Error>> {
-        let Departure { here, step, asked_volt, rho, start_cost, back } = *from;
+        let Departure { here, step, asked_volt, rho, start_cost, leave } = *from;
         let strict = self.settings.cost_tolerance > 0.0;
         let mut search = Search::default();
         for halvings in 0..=self.settings.max_halvings {
@@ -263,8 +309,12 @@ impl FeedbackController {
                 let next = aim_of(known, (rho, Trust::default()), there, limits)?.control_volt;
                 Ok(largest_amplitude(&difference(&next, &control_volt)) <= SETTLING * asked_volt)
             };
-            let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
-            if back || rise <= COST_ROUNDING || (allowed && settles()?) {
+            let allowed = match leave {
+                StepLeave::Settling => cost.total() <= self.settings.settling_cost * start_cost,
+                _ => rise <= self.settings.cost_rise_allowance,
+            };
+            let allowed = allowed && !strict && halvings == 0;
+            if leave == StepLeave::Limits || rise <= COST_ROUNDING || (allowed && settles()?) {
                 search.taken = Some(ControlStep {
                     control_volt,
                     measurement,
@@ -272,6 +322,7 @@ impl FeedbackController {
                     cost,
                     asked_volt,
                     halvings,
+                    leave: if rise > COST_ROUNDING { leave } else { StepLeave::None },
                 });
                 break;
             }
@@ -339,7 +390,7 @@ fn aim_of(
         None => Aim { control_volt: known.law.optimum_near(rho, &target, anchor), kkt: None },
         Some(limits) => {
             let found = known.law.optimum_of_target_within(rho, (&target, anchor), limits)?;
-            Aim { control_volt: found.control_volt, kkt: Some(found.kkt) }
+            Aim { control_volt: found.control_volt, kkt: Some(found.certificate) }
         }
     })
 }

@@ -121,7 +121,7 @@ fn where_no_limit_binds_it_is_the_fixed_point_of_the_law() {
     assert!(
         (u - DVector::from_column_slice(&law.last().control_volt)).norm() <= 1e-8 * free.norm()
     );
-    assert!(constrained.kkt.unwrap().largest() <= 1e-12);
+    assert!(constrained.kkt.as_ref().unwrap().residual().largest() <= 1e-12);
 }
 
 /// A plant with given limits.
@@ -309,6 +309,12 @@ proptest! {
             .unwrap();
         let found = law(&problem).optimum_within(0.0, &[0.0; 8], &z0, &limits).unwrap();
         prop_assert!(found.kkt.largest() <= 1e-6, "{:?}", found.kkt);
+        // the certificate says the same from its own numbers, and notices a point that is not the optimum
+        let certificate = &found.certificate;
+        prop_assert!(certificate.residual().largest() <= found.kkt.largest() + 1e-9);
+        let mut moved = certificate.clone();
+        moved.point[0] += 1e-3;
+        prop_assert!(moved.residual().largest() > certificate.residual().largest());
         prop_assert!(limits.usage(&found.control_volt).unwrap() <= 1.0 + 1e-12);
     }
 }
@@ -337,7 +343,7 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
             cost / best - 1.0,
             run.outcome
         );
-        assert!(run.kkt.unwrap().largest() <= 1e-6);
+        assert!(run.kkt.unwrap().residual().largest() <= 1e-6);
         if controller != Controller::Global {
             assert_eq!(run.outcome, Outcome::Converged);
             assert!((cost / best - 1.0).abs() <= 1e-8);

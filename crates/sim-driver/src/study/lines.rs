@@ -65,7 +65,7 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
         motion_error_percent: study.motion_error.map(|error| 100.0 * error),
         motion_share: study.motion_share,
         voltage_share: study.voltage_share,
-        kkt_residual: study.run.as_ref().and_then(|run| run.kkt).map(|kkt| kkt.largest()),
+        kkt_residual: study.run.as_ref().and_then(|run| run.kkt.as_ref()).map(|kkt| kkt.residual().largest()),
         largest_mean_flap_deg: study.largest_mean_flap_deg(),
         steps: study.steps(),
         halvings: study.halvings(),
