@@ -134,6 +134,10 @@ pub enum ConeStatus {
 
 /// Accuracy asked of the interior-point method.
 const SOLVER_TOLERANCE: f64 = 1e-12;
+/// KKT residual below which no other regularisation of the linear systems is tried.
+const GOOD_KKT: f64 = 1e-9;
+/// Regularisations tried, the solver's own first.
+const REGULARISATIONS: [f64; 4] = [1e-8, 1e-11, 1e-6, 1e-13];
 /// Largest KKT residual accepted.
 const LARGEST_KKT: f64 = 1e-6;
 /// At first, every so many azimuth samples are held; the others follow where they are exceeded.
@@ -225,7 +229,7 @@ impl FeedbackLaw {
                 let scaled = row.iter().map(|&(column, v)| (column, v * volt / room)).collect();
                 round.cones.push(Cone { kind: Kind::Linear, rows: vec![(scaled, 1.0)] });
             }
-            let (x, z, used) = round.solve()?;
+            let (x, z, used) = round.solve_best()?;
             iterations += used;
             let control: Vec<f64> = x.iter().map(|v| v * volt).collect();
             let exceeded: Vec<usize> = rows
@@ -351,8 +355,39 @@ impl Program {
         self.cones.push(Cone { kind: Kind::SecondOrder, rows });
     }
 
+    /// [`Self::solve`] with one regularisation after the other, until the conditions hold as they should: the
+    /// best of them.
+    fn solve_best(&self) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+        let mut best: Option<(f64, DVector<f64>, Vec<f64>)> = None;
+        let mut failure = None;
+        let mut iterations = 0;
+        for regularisation in REGULARISATIONS {
+            match self.solve(regularisation) {
+                Ok((x, z, used)) => {
+                    iterations += used;
+                    let kkt = self.kkt(&x, &z).largest();
+                    if best.as_ref().is_none_or(|(least, ..)| kkt < *least) {
+                        best = Some((kkt, x, z));
+                    }
+                    if kkt <= GOOD_KKT {
+                        break;
+                    }
+                }
+                Err(error) => failure = failure.or(Some(error)),
+            }
+        }
+        match (best, failure) {
+            (Some((_, x, z)), _) => Ok((x, z, iterations)),
+            (None, Some(error)) => Err(error),
+            (None, None) => {
+                let (status, kkt) = (ConeStatus::Refused, f64::NAN);
+                Err(ControlError::ConeProgram { status, iterations, kkt })
+            }
+        }
+    }
+
     /// Minimum, multipliers by row, iterations.
-    fn solve(&self) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+    fn solve(&self, regularisation: f64) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
         let n = self.linear.len();
         let refused = |status| ControlError::ConeProgram { status, iterations: 0, kkt: f64::NAN };
         let upper: Vec<(usize, usize, f64)> = (0..n)
@@ -382,6 +417,7 @@ impl Program {
             .tol_gap_rel(SOLVER_TOLERANCE)
             .tol_feas(SOLVER_TOLERANCE)
             .tol_ktratio(SOLVER_TOLERANCE)
+            .static_regularization_constant(regularisation)
             .build()
             .map_err(|_| refused(ConeStatus::Refused))?;
         let linear: Vec<f64> = self.linear.iter().copied().collect();

@@ -4,9 +4,9 @@ use crate::controller::Knowledge;
 use crate::law::Anchor;
 use crate::stroke::{Strokes, track_effort};
 use crate::{
-    ControlError, ControlLayout, ControlLimits, ControlRun, ControlStep, Controller, Cost,
-    FeedbackController, KktCertificate, Measurement, Outcome, Plant, PlantCall, RunError,
-    StepLeave, error, layout::as_harmonics,
+    ControlError, ControlLayout, ControlLimits, ControlRun, ControlStep, Cost, FeedbackController,
+    KktCertificate, Measurement, Outcome, Plant, PlantCall, RunError, StepLeave, error,
+    layout::as_harmonics,
 };
 use rotor_base::Harmonic;
 
@@ -112,6 +112,43 @@ struct Hill {
     shortest: Cost,
 }
 
+/// What a loop has done so far and where it stands.
+struct Walk {
+    here: ControlStep,
+    steps: Vec<ControlStep>,
+    measurements: usize,
+    halvings: u32,
+    kkt: Option<KktCertificate>,
+    trust: Trust,
+    last_fall: f64,
+    hill: Option<Hill>,
+}
+
+impl Walk {
+    fn from(start: &ControlStep) -> Self {
+        Self {
+            here: start.clone(),
+            steps: Vec::new(),
+            measurements: 0,
+            halvings: 0,
+            kkt: None,
+            trust: Trust::default(),
+            last_fall: f64::INFINITY,
+            hill: None,
+        }
+    }
+
+    fn take(&mut self, step: ControlStep) {
+        self.steps.push(step.clone());
+        self.here = step;
+    }
+
+    /// Whether nothing holds the steps short, or the last one brought little.
+    fn calm(&self, little: f64) -> bool {
+        self.trust.weight == 0.0 || self.last_fall <= little
+    }
+}
+
 impl FeedbackController {
     /// The state before the first step, measured.
     pub(crate) fn start<P: Plant>(
@@ -144,21 +181,45 @@ impl FeedbackController {
         start: &ControlStep,
         effort: &mut Effort<'_>,
     ) -> Result<ControlRun, RunError<P::Error>> {
-        let mut here = start.clone();
-        let mut steps: Vec<ControlStep> = Vec::new();
-        let (mut measurements, mut halvings) = (0, 0);
-        let mut kkt = None;
         let mut known = Knowledge::new(&self.controller, &self.law, start);
-        let strict = self.settings.cost_tolerance > 0.0;
-        let (mut trust, mut last_fall) = (Trust::default(), f64::INFINITY);
-        let mut hill: Option<Hill> = None;
-        let mut outcome = loop {
-            known.refresh(plant, &here)?;
+        let mut walk = Walk::from(start);
+        let outcome = loop {
+            let ended = self.walk(plant, &mut known, effort, (start, &mut walk))?;
+            let outcome = self.beyond_the_hill(ended, &mut walk)?;
+            if outcome != Outcome::Stalled || !known.renew(plant, &walk.here)? {
+                break outcome;
+            }
+        };
+        Ok(ControlRun {
+            rho: walk.here.rho,
+            outcome,
+            start: self.weighed(start, walk.here.rho),
+            steps: walk.steps,
+            measurements: walk.measurements + known.measurements,
+            halvings: walk.halvings,
+            identifications: known.identifications,
+            t: known.t()?,
+            kkt: walk.kkt,
+        })
+    }
+
+    /// Steps until the loop ends with the T it has, or with what it learns on the way.
+    fn walk<P: Plant>(
+        &self,
+        plant: &mut P,
+        known: &mut Knowledge<'_>,
+        effort: &mut Effort<'_>,
+        (start, walk): (&ControlStep, &mut Walk),
+    ) -> Result<Outcome, RunError<P::Error>> {
+        let strict = self.strict();
+        loop {
+            known.refresh(plant, &walk.here)?;
             let rho = match effort {
                 Effort::Fixed(rho) | Effort::Cone(rho) => *rho,
-                Effort::Tracked(strokes) => track_effort(&known, plant, strokes, &here)?,
+                Effort::Tracked(strokes) => track_effort(known, plant, strokes, &walk.here)?,
             };
-            here = self.weighed(&here, rho);
+            walk.here = self.weighed(&walk.here, rho);
+            let here = walk.here.clone();
             let start_cost = self.weighed(start, rho).cost.total();
             let limits = match effort {
                 Effort::Cone(_) => Some(limits_at(plant, &here.control_volt)?),
@@ -166,14 +227,14 @@ impl FeedbackController {
             };
             let loads = &here.measurement.hub_loads;
             let there = (here.control_volt.as_slice(), loads.as_slice());
-            let aim = aim_of(&known, (rho, trust), there, limits.as_ref())?;
-            kkt = aim.kkt.or(kkt);
+            let aim = aim_of(known, (rho, walk.trust), there, limits.as_ref())?;
+            walk.kkt = aim.kkt.or(walk.kkt.take());
             let step = difference(&aim.control_volt, &here.control_volt);
             let asked_volt = largest_amplitude(&step);
             let size =
                 largest_amplitude(&aim.control_volt).max(largest_amplitude(&here.control_volt));
             if asked_volt <= (self.settings.step_tolerance * size).max(SMALLEST_CHANGE_VOLT) {
-                break Outcome::Converged;
+                return Ok(Outcome::Converged);
             }
             let back = match &limits {
                 Some(limits) => limits.usage(&here.control_volt)? > USAGE_LEFT,
@@ -181,103 +242,104 @@ impl FeedbackController {
             };
             let little = self.settings.cost_tolerance * start_cost;
             let promise = if strict { known.promise(rho, &here, &aim.control_volt)? } else { 0.0 };
-            if strict && !back && promise <= little && (trust.weight == 0.0 || last_fall <= little)
-            {
-                break Outcome::Converged;
+            if strict && !back && promise <= little && walk.calm(little) {
+                return Ok(Outcome::Converged);
             }
-            if steps.len() >= self.settings.max_steps {
-                break Outcome::StepLimit;
+            if walk.steps.len() >= self.settings.max_steps {
+                return Ok(Outcome::StepLimit);
             }
-            let history =
-                || -> Vec<ControlStep> { std::iter::once(start).chain(&steps).cloned().collect() };
-            let leave = match (back, &hill) {
+            let history = || -> Vec<ControlStep> {
+                std::iter::once(start).chain(&walk.steps).cloned().collect()
+            };
+            let leave = match (back, &walk.hill) {
                 (true, _) => StepLeave::Limits,
                 (false, Some(_)) => StepLeave::Settling,
                 (false, None) => StepLeave::None,
             };
             let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost, leave };
-            let search = self.search(plant, &mut known, &from, (limits.as_ref(), &history))?;
-            measurements += search.measurements;
-            halvings += search.taken.as_ref().map_or(self.settings.max_halvings, |s| s.halvings);
-            if let Some(step) = search.taken {
-                let fall = here.cost.total() - step.cost.total();
-                // a part of a step that brings little does not say that the whole would not
-                let (whole, halved) = (step.halvings == 0, step.halvings);
-                let moved = difference(&step.control_volt, &here.control_volt);
-                steps.push(step.clone());
-                here = step;
-                if strict
-                    && whole
-                    && !back
-                    && fall <= little
-                    && (trust.weight == 0.0 || promise <= little)
-                {
-                    break Outcome::Converged;
+            let search = self.search(plant, known, &from, (limits.as_ref(), &history))?;
+            walk.measurements += search.measurements;
+            walk.halvings +=
+                search.taken.as_ref().map_or(self.settings.max_halvings, |s| s.halvings);
+            let Some(step) = search.taken else {
+                if known.learn(plant, &here, &aim.control_volt)? {
+                    continue;
                 }
-                // a part that was taken because the whole leaves the plant's range says nothing of T
-                let measured = whole || search.measurements > 1;
-                if strict && measured && !matches!(effort, Effort::Tracked(_)) {
-                    let curvature = known.law.curvature(rho, &moved) + trust.weight;
-                    let kept = if promise > 0.0 { fall / promise } else { 1.0 };
-                    trust.learn((halved, kept), curvature, known.law.largest_authority());
+                match self.refused(&search, known, walk)? {
+                    Some(outcome) => return Ok(outcome),
+                    None => continue,
                 }
-                last_fall = fall;
-                continue;
+            };
+            let fall = here.cost.total() - step.cost.total();
+            // a part of a step that brings little does not say that the whole would not
+            let (whole, halved) = (step.halvings == 0, step.halvings);
+            let moved = difference(&step.control_volt, &here.control_volt);
+            walk.take(step);
+            let settled = walk.trust.weight == 0.0 || promise <= little;
+            if strict && whole && !back && fall <= little && settled {
+                return Ok(Outcome::Converged);
             }
-            if known.learn(plant, &here, &aim.control_volt)? {
-                continue;
+            // a part that was taken because the whole leaves the plant's range says nothing of T
+            let measured = whole || search.measurements > 1;
+            if strict && measured && !matches!(effort, Effort::Tracked(_)) {
+                let curvature = known.law.curvature(rho, &moved) + walk.trust.weight;
+                let kept = if promise > 0.0 { fall / promise } else { 1.0 };
+                walk.trust.learn((halved, kept), curvature, known.law.largest_authority());
             }
-            let constant = matches!(self.controller, Controller::Global) && !strict;
-            if let Some(shortest) = search.shortest
-                && constant
-                && hill.is_none()
-                && self.settings.settling_cost > 0.0
-            {
-                hill = Some(Hill { taken: steps.len(), foot: here.clone(), shortest });
-                continue;
-            }
-            if hill.as_ref().is_some_and(|hill| hill.taken < steps.len()) {
-                break Outcome::Stalled;
-            }
-            if !steps.is_empty() {
-                break if search.left_range { Outcome::OutOfRange } else { Outcome::Stalled };
-            }
-            let divisor = 1_u64 << self.settings.max_halvings;
-            let history = vec![here.clone()];
-            Err(match search.shortest {
-                Some(shortest) => {
-                    let start = here.cost;
-                    ControlError::Diverges { rho, divisor, start, shortest, history }
-                }
-                None => ControlError::NotAdmitted { rho, divisor, history },
-            })?;
-        };
-        if let Some(Hill { taken, foot, shortest }) = hill {
-            let before = self.weighed(&foot, here.rho).cost.total();
-            if outcome != Outcome::Converged || here.cost.total() > before {
-                // beyond the hill there was nothing better
-                if taken == 0 {
-                    let (rho, start, history) = (foot.rho, foot.cost, vec![foot]);
-                    let divisor = 1_u64 << self.settings.max_halvings;
-                    Err(ControlError::Diverges { rho, divisor, start, shortest, history })?;
-                } else {
-                    steps.truncate(taken);
-                    here = foot;
-                    outcome = Outcome::Stalled;
-                }
-            }
+            walk.last_fall = fall;
         }
-        Ok(ControlRun {
-            rho: here.rho,
-            outcome,
-            start: self.weighed(start, here.rho),
-            steps,
-            measurements: measurements + known.measurements,
-            halvings,
-            identifications: known.identifications,
-            t: known.t()?,
-            kkt,
-        })
+    }
+
+    /// What becomes of a loop no part of whose step was taken and that learnt nothing; none if it goes on over
+    /// the hill.
+    fn refused(
+        &self,
+        search: &Search,
+        known: &Knowledge<'_>,
+        walk: &mut Walk,
+    ) -> Result<Option<Outcome>, ControlError> {
+        let may_rise = known.is_constant() && !self.strict() && self.settings.settling_cost > 0.0;
+        if let (Some(shortest), true, None) = (search.shortest, may_rise, &walk.hill) {
+            let (taken, foot) = (walk.steps.len(), walk.here.clone());
+            walk.hill = Some(Hill { taken, foot, shortest });
+            return Ok(None);
+        }
+        if walk.steps.is_empty() {
+            return Err(self.diverged(&walk.here, search.shortest));
+        }
+        let beyond = walk.hill.as_ref().is_some_and(|hill| hill.taken < walk.steps.len());
+        let out = search.left_range && !beyond;
+        Ok(Some(if out { Outcome::OutOfRange } else { Outcome::Stalled }))
+    }
+
+    /// The end of a loop that let the cost rise: where it settled, if that is better, or where it set out from.
+    fn beyond_the_hill(&self, ended: Outcome, walk: &mut Walk) -> Result<Outcome, ControlError> {
+        let Some(Hill { taken, foot, shortest }) = walk.hill.take() else { return Ok(ended) };
+        let before = self.weighed(&foot, walk.here.rho).cost.total();
+        if ended == Outcome::Converged && walk.here.cost.total() <= before {
+            return Ok(ended);
+        }
+        if taken == 0 {
+            return Err(self.diverged(&foot, Some(shortest)));
+        }
+        walk.steps.truncate(taken);
+        walk.here = foot;
+        Ok(if ended == Outcome::OutOfRange { ended } else { Outcome::Stalled })
+    }
+
+    /// The error of a first step of which no part lowers the cost.
+    fn diverged(&self, here: &ControlStep, shortest: Option<Cost>) -> ControlError {
+        let (rho, start, history) = (here.rho, here.cost, vec![here.clone()]);
+        let divisor = 1_u64 << self.settings.max_halvings;
+        match shortest {
+            Some(shortest) => ControlError::Diverges { rho, divisor, start, shortest, history },
+            None => ControlError::NotAdmitted { rho, divisor, history },
+        }
+    }
+
+    /// Whether no step may raise the cost.
+    fn strict(&self) -> bool {
+        self.settings.cost_tolerance > 0.0
     }
 
     /// The step or the longest part of it, halved and halved again, that lowers the cost.
@@ -289,7 +351,7 @@ impl FeedbackController {
         (limits, history): (Option<&ControlLimits>, &dyn Fn() -> Vec<ControlStep>),
     ) -> Result<Search, RunError<P::Error>> {
         let Departure { here, step, asked_volt, rho, start_cost, leave } = *from;
-        let strict = self.settings.cost_tolerance > 0.0;
+        let strict = self.strict();
         let mut search = Search::default();
         for halvings in 0..=self.settings.max_halvings {
             let part = 0.5_f64.powi(halvings.cast_signed());

@@ -211,7 +211,7 @@ impl FeedbackController {
     pub fn with_controller(self, controller: Controller) -> Result<Self, ControlError> {
         match &controller {
             Controller::Global => {}
-            Controller::Local { step_volt } => {
+            Controller::Local { step_volt } | Controller::Renewed { step_volt, .. } => {
                 let controls = self.law.shape().1;
                 error::check_vector("voltage steps of the T matrix (volt)", step_volt, controls)?;
                 for &step in step_volt {

@@ -191,7 +191,9 @@ fn the_bound_on_the_phase_error_is_sharp() {
         // full steps contract all the same, by 2 sin(phi/2): over a hill they reach the optimum
         let over = run_over(sign * (limit_deg + 0.5), 10.0).unwrap();
         assert_eq!(over.outcome, Outcome::Converged);
-        assert!(relative_error(&over.last().control_volt, &problem.optimum(&[1.0; LOADS], 0.0)) <= 1e-8);
+        assert!(
+            relative_error(&over.last().control_volt, &problem.optimum(&[1.0; LOADS], 0.0)) <= 1e-8
+        );
         let first = &over.steps[0];
         assert_eq!(first.leave, StepLeave::Settling);
         assert!(first.cost.total() > over.start.cost.total(), "there is no hill");
