@@ -322,7 +322,7 @@ impl FlapDrive {
         let Self::Model { range_volt: range, .. } = self else {
             let motion = self.motion(&[(harmonic, cosine(amplitude_volt))])?;
             let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
-            return Ok(FullScale { amplitude_volt, stroke_deg });
+            return Ok(FullScale { amplitude_volt, stroke_deg, reach_volt: amplitude_volt });
         };
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
         for _ in 0..FULL_SCALE_PASSES {
@@ -344,9 +344,45 @@ impl FlapDrive {
         }
         let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
         let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
-        Ok(FullScale { amplitude_volt: amplitude, stroke_deg })
+        Ok(FullScale { amplitude_volt: amplitude, stroke_deg, reach_volt: amplitude })
+    }
+
+    /// Amplitude of one harmonic that gives a stroke below full scale, V: solved on the model, because the
+    /// gain of an actuator with memory grows with its amplitude.
+    ///
+    /// # Errors
+    /// As [`Self::motion`].
+    pub fn voltage_of_stroke(
+        &self,
+        harmonic: usize,
+        stroke_deg: f64,
+        full: FullScale,
+    ) -> Result<f64, PlantError> {
+        let (mut low, mut high) = ([0.0, 0.0], [full.amplitude_volt, full.stroke_deg]);
+        for pass in 0..STROKE_PASSES {
+            // a little below the chord, and the middle by turns, so that neither end can stay
+            let aim = stroke_deg * (1.0 - 0.5 * STROKE_TOLERANCE);
+            let part = if pass % 3 == 2 { 0.5 } else { (aim - low[1]) / (high[1] - low[1]) };
+            let volt = low[0] + part * (high[0] - low[0]);
+            let motion = self.motion(&[(harmonic, cosine(volt))])?;
+            let found = motion.flap_deg.harmonic(harmonic).amplitude();
+            let end = if found <= stroke_deg { &mut low } else { &mut high };
+            *end = [volt, found];
+            let reached = low[1] >= stroke_deg * (1.0 - STROKE_TOLERANCE);
+            if reached || high[0] - low[0] <= SMALLEST_STROKE_VOLT {
+                break;
+            }
+        }
+        Ok(low[0])
     }
 }
+
+/// How far below a given stroke the voltage that belongs to it may stay, relative.
+const STROKE_TOLERANCE: f64 = 1e-4;
+/// Voltage below which that is not told apart, V.
+const SMALLEST_STROKE_VOLT: f64 = 1e-6;
+/// Trials of that voltage.
+const STROKE_PASSES: usize = 60;
 
 /// Rounds of the inverse under load: the load takes nearly the same whatever the voltage.
 const LOADED_INVERSE_ROUNDS: usize = 6;

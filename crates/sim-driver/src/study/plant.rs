@@ -326,6 +326,9 @@ const RESPONSE_STEP_RAD: f64 = 1e-3;
 const LIMIT_AZIMUTHS: usize = 720;
 /// Part of full scale from which the gain of an actuator is read off its motion.
 const LEAST_GAIN_PART: f64 = 0.2;
+/// Part of a given stroke limit that a cone program aims at: the gain moves with the control, and no end of a
+/// loop is to lie above the limit.
+const STROKE_AIMED_AT: f64 = 0.9985;
 /// Voltage step of the tangent of an actuator, V: wide enough to see past the steps of its memory.
 const TANGENT_STEP_VOLT: f64 = 1.0;
 
@@ -350,8 +353,12 @@ pub struct RotorPlant {
     coupling: Option<HingeCoupling>,
     /// One per pair of the layout.
     stroke_limits_deg: Vec<f64>,
-    /// Amplitude at which each pair reaches its limit, V.
+    /// What a cone program aims at, one per pair.
+    stroke_aims_deg: Vec<f64>,
+    /// Amplitude at which each pair, alone on its flap, reaches its limit, V.
     full_scale_volt: Vec<f64>,
+    /// Amplitude at which each pair, alone on its flap, ends the range of voltages, V.
+    reach_volt: Vec<f64>,
     power: Option<PlantPower>,
     /// Motions of one flap without hinge moment, and of all flaps under it.
     free: Recent<FlapMotion>,
@@ -385,6 +392,12 @@ impl RotorPlant {
         Ok(Self {
             full_scale_volt: per_pair(&|f| f.amplitude_volt),
             stroke_limits_deg: per_pair(&|f| f.stroke_deg),
+            reach_volt: per_pair(&|f| f.reach_volt),
+            // where the range of voltages is the limit, its circle holds the stroke
+            stroke_aims_deg: per_pair(&|f| {
+                let given = f.amplitude_volt < f.reach_volt;
+                if given { STROKE_AIMED_AT * f.stroke_deg } else { f.stroke_deg }
+            }),
             layout,
             rotor,
             drive,
@@ -554,8 +567,8 @@ impl Plant for RotorPlant {
             .zip(&self.stroke_limits_deg)
             .map(|((volt, full), limit)| limit * volt / full)
             .collect();
-        // beyond full scale the actuator cannot be asked: the stroke grows with the voltage there
-        if amplitudes.iter().zip(&self.full_scale_volt).any(|(volt, full)| volt > full) {
+        // beyond the range the actuator cannot be asked: the stroke grows with the voltage there
+        if amplitudes.iter().zip(&self.reach_volt).any(|(volt, reach)| volt > reach) {
             return Ok(by_voltage);
         }
         // harmonics that share a flap share its range of voltages
@@ -602,18 +615,25 @@ impl Plant for RotorPlant {
             azimuths: LIMIT_AZIMUTHS,
         };
         let voltages = self.layout.voltages_volt(control_volt).map_err(PlantError::Bias)?;
+        // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
+        let known: Vec<bool> = voltages
+            .iter()
+            .zip(&self.full_scale_volt)
+            .map(|(voltage, full)| voltage.amplitude() > LEAST_GAIN_PART * full)
+            .collect();
+        let volts = self.full_scale_volt.iter().zip(&self.reach_volt).zip(&known);
+        let largest_volt = volts.map(|((full, reach), known)| if *known { *reach } else { *full });
         let mut limits = ControlLimits::none(&self.layout)
-            .with_amplitudes_volt(self.full_scale_volt.clone())
+            .with_amplitudes_volt(largest_volt.collect())
             .and_then(|limits| limits.with_voltage_range(voltage))
             .map_err(PlantError::Bias)?;
         for (pair, (voltage, motion)) in voltages.iter().zip(self.pair_motion(&flaps)).enumerate() {
-            // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
-            if voltage.amplitude() > LEAST_GAIN_PART * self.full_scale_volt[pair] {
+            if known[pair] {
                 let gain = motion.amplitude() / voltage.amplitude();
                 let (sin, cos) = (motion.phase_rad() - voltage.phase_rad()).sin_cos();
                 let circle = FlapCircle {
                     gain_deg_per_volt: [[gain * cos, -gain * sin], [gain * sin, gain * cos]],
-                    limit_deg: self.stroke_limits_deg[pair],
+                    limit_deg: self.stroke_aims_deg[pair],
                 };
                 limits = limits.with_flap_circle(pair, circle).map_err(PlantError::Bias)?;
             }
