@@ -16,6 +16,10 @@ const SMALLEST_CHANGE_VOLT: f64 = 1e-12;
 /// A step no longer than this part of the step before belongs to a loop that settles.
 const SETTLING: f64 = 0.8;
 
+/// Part of the last step that a step goes back by, and square of the cosine between the two, from which the
+/// loop is going to and fro.
+const BACKWARD: f64 = 0.8;
+
 /// Use of the limits above which a state has left them: they move with the control, and a step that kept
 /// them as they stood may not keep them as they are now.
 const USAGE_LEFT: f64 = 1.0 + 1e-3;
@@ -143,6 +147,15 @@ impl Walk {
         self.here = step;
     }
 
+    /// Whether a step leads back along the last one, and about as far.
+    fn turns_back(&self, step: &[f64]) -> bool {
+        let [.., before, here] = self.steps.as_slice() else { return false };
+        let last = difference(&here.control_volt, &before.control_volt);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (square, along) = (dot(&last, &last), dot(step, &last));
+        along < -BACKWARD * square && along * along > BACKWARD * square * dot(step, step)
+    }
+
     /// Whether nothing holds the steps short, or the last one brought little.
     fn calm(&self, little: f64) -> bool {
         self.trust.weight == 0.0 || self.last_fall <= little
@@ -184,11 +197,17 @@ impl FeedbackController {
         let mut known = Knowledge::new(&self.controller, &self.law, start);
         let mut walk = Walk::from(start);
         let outcome = loop {
-            let ended = self.walk(plant, &mut known, effort, (start, &mut walk))?;
-            let outcome = self.beyond_the_hill(ended, &mut walk)?;
-            if outcome != Outcome::Stalled || !known.renew(plant, &walk.here)? {
-                break outcome;
+            let ended = self
+                .walk(plant, &mut known, effort, (start, &mut walk))
+                .and_then(|ended| Ok(self.beyond_the_hill(ended, &mut walk)?));
+            let lost = match &ended {
+                Ok(outcome) => *outcome == Outcome::Stalled,
+                Err(error) => matches!(error, RunError::Control(ControlError::Diverges { .. })),
+            };
+            if !lost || !known.renew(plant, &walk.here)? {
+                break ended?;
             }
+            walk.hill = None;
         };
         Ok(ControlRun {
             rho: walk.here.rho,
@@ -229,7 +248,7 @@ impl FeedbackController {
             let there = (here.control_volt.as_slice(), loads.as_slice());
             let aim = aim_of(known, (rho, walk.trust), there, limits.as_ref())?;
             walk.kkt = aim.kkt.or(walk.kkt.take());
-            let step = difference(&aim.control_volt, &here.control_volt);
+            let mut step = difference(&aim.control_volt, &here.control_volt);
             let asked_volt = largest_amplitude(&step);
             let size =
                 largest_amplitude(&aim.control_volt).max(largest_amplitude(&here.control_volt));
@@ -247,6 +266,10 @@ impl FeedbackController {
             }
             if walk.steps.len() >= self.settings.max_steps {
                 return Ok(Outcome::StepLimit);
+            }
+            if limits.is_some() && walk.turns_back(&step) {
+                // out of limits that move with the control and back again: what is sought lies between
+                step.iter_mut().for_each(|d| *d *= 0.5);
             }
             let history = || -> Vec<ControlStep> {
                 std::iter::once(start).chain(&walk.steps).cloned().collect()

@@ -232,6 +232,10 @@ impl RunResult {
                 "shrinks: factor from what one step asks for to the next, whole steps at the end",
             ),
             (
+                any(&|l| l.outcome == "out-of-range"),
+                "out-of-range: what is asked for lies beyond the range of voltages, and the part inside does not lower J;\n              effort: Limits makes the range part of the optimum",
+            ),
+            (
                 any(&|l| l.controller == "global" && l.outcome == "stalled"),
                 "stalled: no part of a step lowers J and full steps do not settle: a constant T is no guide there; use\n         controller: Local with effort: Limits",
             ),

@@ -484,3 +484,47 @@ fn alternating_volt(voltage: &HarmonicSeries) -> (f64, f64) {
         .map(|azimuth| alternating.value(azimuth))
         .fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use preisach_dyn::{ActuatorLaw, PrandtlIshlinskii, PrandtlParameters, WeightedPlay};
+
+    /// Plays whose gain grows with the amplitude: half of full voltage gives far less than half of the stroke.
+    fn hysteretic() -> FlapDrive {
+        let range = VoltageRange::new(-20.0, 150.0).unwrap();
+        let play = |threshold_volt| WeightedPlay { threshold_volt, weight_deg_per_volt: 0.02 };
+        let parameters = PrandtlParameters {
+            range_volt: range,
+            gain_deg_per_volt: 0.01,
+            plays: [10.0, 20.0, 30.0, 40.0].map(play).to_vec(),
+            threshold_growth_s: 0.0,
+            envelope: preisach_dyn::Envelope::default(),
+        };
+        let law = ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).unwrap());
+        let model = ActuatorModel { law, ..ActuatorModel::linear(range, 8.5, 0.04) };
+        FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+    }
+
+    #[test]
+    fn a_given_stroke_is_reached_and_never_exceeded() {
+        let drive = hysteretic();
+        let full = drive.full_scale(3, 85.0).unwrap();
+        for stroke_deg in [0.1, 0.5, 1.0, 2.0, 0.999 * full.stroke_deg] {
+            let volt = drive.voltage_of_stroke(3, stroke_deg, full).unwrap();
+            // at any phase
+            let (sin, cos) = 0.7_f64.sin_cos();
+            let turned = Harmonic { cosine: volt * cos, sine: volt * sin };
+            let motion = drive.motion(&[(3, turned)]).unwrap();
+            let found = motion.flap_deg.harmonic(3).amplitude();
+            assert!(found <= stroke_deg * (1.0 + 1e-5), "{found} of {stroke_deg}");
+            assert!(found >= stroke_deg * (1.0 - 2e-4), "{found} of {stroke_deg}");
+            // the voltage in proportion would fall short
+            let linear = full.amplitude_volt * stroke_deg / full.stroke_deg;
+            assert!(volt > linear, "{volt} {linear}");
+        }
+        let short = drive.motion(&[(3, cosine(0.3 * full.amplitude_volt))]).unwrap();
+        let part = short.flap_deg.harmonic(3).amplitude() / full.stroke_deg;
+        assert!(part < 0.25, "the actuator of this test is too straight: {part}");
+    }
+}

@@ -11,7 +11,7 @@ use super::{
     CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
 };
 use crate::SimError;
-use crate::case::{Case, LoadedCase};
+use crate::case::{Case, LoadedCase, TInflowChoice};
 use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use crate::problem::Place;
 use hhc_control::{
@@ -35,6 +35,8 @@ pub struct TrimmedRotor {
     inflow: SettledInflow,
     trim: TrimSolution,
     scales: RotorScales,
+    /// Inflow in the T of the linearised rotor.
+    t_inflow: InflowState,
     /// Change of the hinge moments with the flap motions, found when first asked for.
     hinge_response: Arc<OnceLock<DMatrix<f64>>>,
     /// Made when first asked for, the same whoever asks.
@@ -65,7 +67,11 @@ impl TrimmedRotor {
         let hinge_response = Arc::default();
         let authority = Arc::default();
         let SettledTrim { trim, inflow, wake } = settled;
-        Ok(Self { solver, inflow, trim, scales, hinge_response, authority, wake })
+        let t_inflow = match case.control.t_inflow {
+            TInflowChoice::Settled => InflowState::Settled,
+            TInflowChoice::Frozen => InflowState::Frozen,
+        };
+        Ok(Self { solver, inflow, trim, scales, t_inflow, hinge_response, authority, wake })
     }
 
     /// Moment unit `m0 Omega^2 R^3`, N m.
@@ -88,7 +94,7 @@ impl TrimmedRotor {
         self.solver.rotor()
     }
 
-    /// What the flaps do to the hub, linearised about the trimmed orbit with the inflow settled.
+    /// What the flaps do to the hub, linearised about the trimmed orbit with the inflow as the case has it in T.
     ///
     /// # Errors
     /// The errors of the linearised response.
@@ -96,7 +102,7 @@ impl TrimmedRotor {
         if let Some(known) = self.authority.get() {
             return Ok(known);
         }
-        let found = self.linearised(InflowState::Settled)?;
+        let found = self.linearised(self.t_inflow)?;
         Ok(self.authority.get_or_init(|| found))
     }
 

@@ -357,8 +357,10 @@ impl ControlSet<'_> {
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
             // a constant T promises what it cannot keep: its end is that of the paper's loop
-            cost_tolerance: match way {
-                Controller::Global | Controller::Renewed { .. } => 0.0,
+            cost_tolerance: match (&way, control.effort) {
+                // T of the ideal actuator is right wherever the loop ends, limits or not
+                (Controller::Global, EffortChoice::Limits) => COST_TOLERANCE,
+                (Controller::Global | Controller::Renewed { .. }, _) => 0.0,
                 _ => COST_TOLERANCE,
             },
             ..FeedbackSettings::default()
