@@ -269,7 +269,9 @@ impl FeedbackController {
             }
             if limits.is_some() && walk.turns_back(&step) {
                 // out of limits that move with the control and back again: what is sought lies between
-                step.iter_mut().for_each(|d| *d *= 0.5);
+                for d in &mut step {
+                    *d *= 0.5;
+                }
             }
             let history = || -> Vec<ControlStep> {
                 std::iter::once(start).chain(&walk.steps).cloned().collect()

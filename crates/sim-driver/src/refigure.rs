@@ -6,7 +6,7 @@
 //! A run writes the figures that these functions give, and `hhc report` computes them again from the file: there
 //! is no other way to them.
 
-use crate::raw::{ControlRecord, FlapRecord, ForecastRecord, Setting, loads_cost};
+use crate::raw::{CertificateLine, ControlRecord, FlapRecord, ForecastRecord, Setting, loads_cost};
 use crate::results::{ControlLine, FlapLine, Forecast, HistoryLine, RunResult};
 use crate::study::HingePower;
 use hhc_control::{Cost, FeedbackLaw, LoadWeights, TMatrix, lag_deg, lag_loss, reduction_percent};
@@ -70,7 +70,7 @@ impl ControlLine {
             motion_error_percent: motion_error(&self.harmonics, record).map(|e| 100.0 * e),
             motion_share,
             voltage_share,
-            kkt_residual: record.optimum.as_ref().map(|optimum| optimum.residual()),
+            kkt_residual: record.optimum.as_ref().map(CertificateLine::residual),
             largest_mean_flap_deg: recorded.chain(means).fold(0.0, |m, mean| mean.abs().max(m)),
             steps: history.len().saturating_sub(1),
             largest_rise_percent: largest_rise_percent(&history),
@@ -238,15 +238,15 @@ impl Forecast {
     /// The forecast computed from its T matrices and controls; numbers that do not fit together give NaN.
     #[must_use]
     pub fn refigured(&self, setting: &Setting) -> Self {
-        let made = self.from_record(setting);
+        let made = self.computed(setting);
         made.unwrap_or_else(|| {
             let nan = f64::NAN;
             let (cone, clipped, free, lag_loss_percent) = (nan, nan, nan, nan);
-            Self { cone, clipped, free, lag_loss_percent, ..self.clone() }
+            Self { lag_loss_percent, cone, clipped, free, ..self.clone() }
         })
     }
 
-    fn from_record(&self, setting: &Setting) -> Option<Self> {
+    fn computed(&self, setting: &Setting) -> Option<Self> {
         let record = &self.record;
         if record.t_per_volt.is_empty() {
             return Some(Self { harmonics: self.harmonics.clone(), ..Self::default() });

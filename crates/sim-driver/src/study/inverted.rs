@@ -23,7 +23,7 @@ impl ControlSet<'_> {
         ideal: &ControlStudy,
     ) -> Result<Result<Vec<FlapMotion>, PlantError>, StudyError> {
         let plant = self.plant(ControlActuator::Inverse)?;
-        Ok(self.made(&plant, &self.wanted(ideal, 1.0)))
+        Ok(made(&plant, &self.wanted(ideal, 1.0)))
     }
 
     /// The ideal actuator's flap motion, made by the hysteretic one: its inverse gives the voltage. Where the
@@ -40,26 +40,26 @@ impl ControlSet<'_> {
             self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
         };
         let mut share = 1.0;
-        let mut found = whole.unwrap_or_else(|| self.made(&plant, &self.wanted(ideal, share)));
+        let mut found = whole.unwrap_or_else(|| made(&plant, &self.wanted(ideal, share)));
         for _ in 0..INVERSE_TRIALS {
             let Err(error) = &found else { break };
             let Some(within) = within_reach(error) else { break };
             share *= (INVERSE_MARGIN * within).max(0.5);
-            found = self.made(&plant, &self.wanted(ideal, share));
+            found = made(&plant, &self.wanted(ideal, share));
         }
         let flaps = found.map_err(failed)?;
-        let made = Made { wanted_deg: self.wanted(ideal, share), flaps };
-        let state = plant.state_of(made.flaps.clone()).map_err(failed)?;
-        let (made, state) = if share < 1.0 {
-            self.best_in_reach(&plant, (made, state)).map_err(failed)?
+        let first = Made { wanted_deg: self.wanted(ideal, share), flaps };
+        let state = plant.state_of(first.flaps.clone()).map_err(failed)?;
+        let (best, state) = if share < 1.0 {
+            self.best_in_reach(&plant, (first, state)).map_err(failed)?
         } else {
-            (made, state)
+            (first, state)
         };
-        let volts = self.control_volt(&made.flaps);
+        let volts = self.control_volt(&best.flaps);
         Ok(ControlStudy {
             t: ideal.t.clone(),
             rho: ideal.rho,
-            wanted_deg: made.wanted_deg,
+            wanted_deg: best.wanted_deg,
             motion_share: Some(share),
             ..self.study(actuator, &plant, volts, state)?
         })
@@ -100,7 +100,7 @@ impl ControlSet<'_> {
                     .zip(&aimed)
                     .map(|(from, to)| self.between(from, to, part))
                     .collect();
-                let Ok(flaps) = self.made(plant, &wanted_deg) else { continue };
+                let Ok(flaps) = made(plant, &wanted_deg) else { continue };
                 let tried = plant.state_of(flaps.clone())?;
                 if cost(&tried) < before {
                     (best, state) = (Made { wanted_deg, flaps }, tried);
@@ -132,26 +132,6 @@ impl ControlSet<'_> {
             between.set_harmonic(n, Harmonic { cosine, sine });
         }
         between
-    }
-
-    /// Wanted motions made through the inverse under the hinge moments they bring.
-    fn made(
-        &self,
-        plant: &RotorPlant,
-        wanted_deg: &[HarmonicSeries],
-    ) -> Result<Vec<FlapMotion>, PlantError> {
-        let drive: &FlapDrive = plant.drive();
-        let loads = if drive.give_deg_per_newton_metre() == 0.0 {
-            vec![HarmonicSeries::zero(0); wanted_deg.len()]
-        } else {
-            let flaps = wanted_deg.iter().map(|flap_deg| FlapMotion {
-                voltage_volt: HarmonicSeries::zero(0),
-                flap_deg: flap_deg.clone(),
-            });
-            plant.hinge_moments_newton_metre(flaps.collect())?
-        };
-        let each = wanted_deg.par_iter().zip(&loads);
-        each.map(|(wanted, load)| drive.loaded_inverse(wanted, load)).collect()
     }
 
     /// The controlled voltages of flaps as a control vector, V.
@@ -213,6 +193,22 @@ impl ControlSet<'_> {
         }
         TMatrix::from_columns(&columns).map_err(PlantError::Bias)
     }
+}
+
+/// Wanted motions made through the inverse under the hinge moments they bring.
+fn made(plant: &RotorPlant, wanted_deg: &[HarmonicSeries]) -> Result<Vec<FlapMotion>, PlantError> {
+    let drive: &FlapDrive = plant.drive();
+    let loads = if drive.give_deg_per_newton_metre() == 0.0 {
+        vec![HarmonicSeries::zero(0); wanted_deg.len()]
+    } else {
+        let flaps = wanted_deg.iter().map(|flap_deg| FlapMotion {
+            voltage_volt: HarmonicSeries::zero(0),
+            flap_deg: flap_deg.clone(),
+        });
+        plant.hinge_moments_newton_metre(flaps.collect())?
+    };
+    let each = wanted_deg.par_iter().zip(&loads);
+    each.map(|(wanted, load)| drive.loaded_inverse(wanted, load)).collect()
 }
 
 /// Part of a wanted motion that the actuator reaches, if that is why its inverse failed.

@@ -74,7 +74,8 @@ fn history_line(step: &ControlStep) -> HistoryLine {
     }
 }
 
-fn outcome_name(outcome: Option<Outcome>) -> &'static str {
+/// Name of the end of a loop.
+pub(super) fn outcome_name(outcome: Option<Outcome>) -> &'static str {
     match outcome {
         None => "taken-over",
         Some(Outcome::Converged) => "converged",

@@ -1,5 +1,6 @@
 //! How the controllers stand noise, a wrong T and an actuator that drifts.
 
+use super::lines::outcome_name;
 use super::{Drives, PlantError, RotorPlant, StudyError, TrimmedRotor};
 use crate::SimError;
 use crate::case::{Case, ControlActuator, LoadedCase};
@@ -8,7 +9,7 @@ use crate::results::HubLoads;
 use crate::run::RunOutcome;
 use hhc_control::{
     AdaptiveSettings, ControlError, ControlLayout, ControlLimits, Controller, FeedbackController,
-    FeedbackSettings, LoadWeights, Measurement, Outcome, Plant, RunError, TMatrix, identify_t,
+    FeedbackSettings, LoadWeights, Measurement, Plant, RunError, TMatrix, identify_t,
     reduction_percent,
 };
 use rand::SeedableRng;
@@ -289,13 +290,7 @@ pub fn robustness(
                     RobustnessCell {
                         end: HubLoads::from_parts(truth(&run.last().control_volt)?),
                         best: HubLoads::from_parts(best),
-                        outcome: match run.outcome {
-                            Outcome::Converged => "converged",
-                            Outcome::Stalled => "stalled",
-                            Outcome::OutOfRange => "out-of-range",
-                            Outcome::StepLimit => "step-limit",
-                        }
-                        .to_owned(),
+                        outcome: outcome_name(Some(run.outcome)).to_owned(),
                         steps: run.steps.len(),
                         halvings: run.halvings,
                         measurements: run.measurements,
