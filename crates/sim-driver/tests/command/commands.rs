@@ -443,7 +443,7 @@ fn a_report_is_made_of_the_stored_result_alone() {
         (0, "\"advance_ratio\": 0.2,".into(), "\"advance_ratio\": 0.3,", "key"),
         (1, reduction(&written[0]), "99.25", "report.loads[0].after[0]"),
         (1, "\"quick\"".into(), "\"slow\"", "title"),
-        (2, ",0,6.5e1,".into(), ",0,6.6e1,", "line 2"),
+        (2, ",inboard,0,".into(), ",inboard,0,1", "line 2 voltage_V"),
         (3, "uniform inflow\",".into(), "uniform inflow\",1", "reduction_3_per_rev_percent"),
     ];
     for (file, from, to, field) in changes {
