@@ -166,7 +166,7 @@ impl Kalman {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cost, LoadWeights, Measurement};
+    use crate::{Cost, LoadWeights, Measurement, StepLeave};
 
     const LOADS: usize = 6;
 
@@ -186,6 +186,7 @@ mod tests {
             cost: Cost { loads: 0.0, control: 0.0 },
             asked_volt: 0.0,
             halvings: 0,
+            leave: StepLeave::None,
         }
     }
 

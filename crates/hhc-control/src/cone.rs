@@ -36,6 +36,75 @@ impl KktResidual {
     }
 }
 
+/// What shows that a point is the optimum within limits, as numbers alone: the program, scaled to order 1,
+/// with its multipliers. Limits without a multiplier are left out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct KktCertificate {
+    /// `P`, row by row.
+    pub hessian: Vec<Vec<f64>>,
+    /// `q`.
+    pub linear: Vec<f64>,
+    /// `x`: the control over [`Self::volt`].
+    pub point: Vec<f64>,
+    /// Voltage that the point is scaled by, V.
+    pub volt: f64,
+    /// The limits that bind.
+    pub cones: Vec<CertifiedCone>,
+}
+
+/// One limit of a [`KktCertificate`]: `s = bound - A x`, a single row with `s >= 0` or several with
+/// `s_0 >= |(s_1, s_2, ...)|`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CertifiedCone {
+    /// `A`, row by row.
+    pub rows: Vec<Vec<f64>>,
+    /// The bound of every row.
+    pub bounds: Vec<f64>,
+    /// The multiplier of every row.
+    pub multipliers: Vec<f64>,
+}
+
+impl KktCertificate {
+    /// The residuals of the point, formed from the numbers of the certificate alone; numbers that do not fit
+    /// together give NaN.
+    pub fn residual(&self) -> KktResidual {
+        let n = self.point.len();
+        let of_size = |rows: &[Vec<f64>]| rows.iter().all(|row| row.len() == n);
+        let fits = |cone: &CertifiedCone| {
+            let count = cone.rows.len();
+            let sizes = cone.bounds.len() == count && cone.multipliers.len() == count;
+            sizes && count > 0 && of_size(&cone.rows)
+        };
+        let square = self.hessian.len() == n && self.linear.len() == n && of_size(&self.hessian);
+        if !square || !self.cones.iter().all(fits) {
+            let nan = f64::NAN;
+            return KktResidual { stationarity: nan, primal: nan, dual: nan, complementarity: nan };
+        }
+        let cone = |cone: &CertifiedCone| Cone {
+            kind: if cone.rows.len() == 1 { Kind::Linear } else { Kind::SecondOrder },
+            rows: cone
+                .rows
+                .iter()
+                .zip(&cone.bounds)
+                .map(|(row, bound)| (row.iter().copied().enumerate().collect(), *bound))
+                .collect(),
+        };
+        let program = Program {
+            hessian: DMatrix::from_fn(n, n, |i, j| self.hessian[i][j]),
+            linear: DVector::from_column_slice(&self.linear),
+            cones: self.cones.iter().map(cone).collect(),
+        };
+        let multipliers: Vec<f64> =
+            self.cones.iter().flat_map(|cone| cone.multipliers.iter().copied()).collect();
+        program.kkt(&DVector::from_column_slice(&self.point), &multipliers)
+    }
+
+    /// The control it is about, V.
+    pub fn control_volt(&self) -> Vec<f64> {
+        self.point.iter().map(|x| x * self.volt).collect()
+    }
+}
+
 /// The best control within limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstrainedOptimum {
@@ -43,6 +112,8 @@ pub struct ConstrainedOptimum {
     pub control_volt: Vec<f64>,
     /// How exactly it is the optimum.
     pub kkt: KktResidual,
+    /// The numbers that show it.
+    pub certificate: KktCertificate,
     /// Whether a limit binds; if none does, the optimum is that of eq. (10).
     pub binding: bool,
     /// Iterations of the interior-point method; 0 if no limit binds.
@@ -63,6 +134,10 @@ pub enum ConeStatus {
 
 /// Accuracy asked of the interior-point method.
 const SOLVER_TOLERANCE: f64 = 1e-12;
+/// KKT residual below which no other regularisation of the linear systems is tried.
+const GOOD_KKT: f64 = 1e-9;
+/// Regularisations tried, the solver's own first.
+const REGULARISATIONS: [f64; 4] = [1e-8, 1e-11, 1e-6, 1e-13];
 /// Largest KKT residual accepted.
 const LARGEST_KKT: f64 = 1e-6;
 /// At first, every so many azimuth samples are held; the others follow where they are exceeded.
@@ -71,6 +146,8 @@ const COARSE_STRIDE: usize = 10;
 const AZIMUTH_ROUNDS: usize = 20;
 /// Excess of a row that is rounding, as a part of its room.
 const ROW_ROUNDING: f64 = 1e-10;
+/// Largest multiplier of a limit that does not bind, scaled as the stationarity.
+const NO_MULTIPLIER: f64 = 1e-13;
 
 impl FeedbackLaw {
     /// The control of least predicted cost among those that keep the limits.
@@ -128,10 +205,12 @@ impl FeedbackLaw {
             cones: Vec::new(),
         };
         if limits.usage(&free)? <= 1.0 {
-            let kkt = program.kkt(&(DVector::from_column_slice(&free) / volt), &[]);
+            let point = DVector::from_column_slice(&free) / volt;
+            let kkt = program.kkt(&point, &[]);
             return Ok(ConstrainedOptimum {
                 control_volt: free,
                 kkt,
+                certificate: program.certificate(&point, &[], volt),
                 binding: false,
                 iterations: 0,
             });
@@ -150,7 +229,7 @@ impl FeedbackLaw {
                 let scaled = row.iter().map(|&(column, v)| (column, v * volt / room)).collect();
                 round.cones.push(Cone { kind: Kind::Linear, rows: vec![(scaled, 1.0)] });
             }
-            let (x, z, used) = round.solve()?;
+            let (x, z, used) = round.solve_best()?;
             iterations += used;
             let control: Vec<f64> = x.iter().map(|v| v * volt).collect();
             let exceeded: Vec<usize> = rows
@@ -171,12 +250,20 @@ impl FeedbackLaw {
             // rounding of the solver, taken back toward zero control, which keeps every limit
             let usage = limits.usage(&control)?.max(1.0);
             let control_volt: Vec<f64> = control.iter().map(|u| u / usage).collect();
-            let kkt = round.kkt(&(x / usage), &z);
+            let point = x / usage;
+            let kkt = round.kkt(&point, &z);
+            let certificate = round.certificate(&point, &z, volt);
             if kkt.largest() > LARGEST_KKT {
                 let (status, kkt) = (ConeStatus::Inaccurate, kkt.largest());
                 return Err(ControlError::ConeProgram { status, iterations, kkt });
             }
-            return Ok(ConstrainedOptimum { control_volt, kkt, binding: true, iterations });
+            return Ok(ConstrainedOptimum {
+                control_volt,
+                kkt,
+                certificate,
+                binding: true,
+                iterations,
+            });
         }
         let (status, kkt) = (ConeStatus::Azimuths, f64::NAN);
         Err(ControlError::ConeProgram { status, iterations, kkt })
@@ -268,8 +355,39 @@ impl Program {
         self.cones.push(Cone { kind: Kind::SecondOrder, rows });
     }
 
+    /// [`Self::solve`] with one regularisation after the other, until the conditions hold as they should: the
+    /// best of them.
+    fn solve_best(&self) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+        let mut best: Option<(f64, DVector<f64>, Vec<f64>)> = None;
+        let mut failure = None;
+        let mut iterations = 0;
+        for regularisation in REGULARISATIONS {
+            match self.solve(regularisation) {
+                Ok((x, z, used)) => {
+                    iterations += used;
+                    let kkt = self.kkt(&x, &z).largest();
+                    if best.as_ref().is_none_or(|(least, ..)| kkt < *least) {
+                        best = Some((kkt, x, z));
+                    }
+                    if kkt <= GOOD_KKT {
+                        break;
+                    }
+                }
+                Err(error) => failure = failure.or(Some(error)),
+            }
+        }
+        match (best, failure) {
+            (Some((_, x, z)), _) => Ok((x, z, iterations)),
+            (None, Some(error)) => Err(error),
+            (None, None) => {
+                let (status, kkt) = (ConeStatus::Refused, f64::NAN);
+                Err(ControlError::ConeProgram { status, iterations, kkt })
+            }
+        }
+    }
+
     /// Minimum, multipliers by row, iterations.
-    fn solve(&self) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+    fn solve(&self, regularisation: f64) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
         let n = self.linear.len();
         let refused = |status| ControlError::ConeProgram { status, iterations: 0, kkt: f64::NAN };
         let upper: Vec<(usize, usize, f64)> = (0..n)
@@ -299,6 +417,7 @@ impl Program {
             .tol_gap_rel(SOLVER_TOLERANCE)
             .tol_feas(SOLVER_TOLERANCE)
             .tol_ktratio(SOLVER_TOLERANCE)
+            .static_regularization_constant(regularisation)
             .build()
             .map_err(|_| refused(ConeStatus::Refused))?;
         let linear: Vec<f64> = self.linear.iter().copied().collect();
@@ -315,6 +434,39 @@ impl Program {
                 Ok((DVector::from_vec(found.x), found.z, found.iterations))
             }
             _ => Err(refused(ConeStatus::Inaccurate)),
+        }
+    }
+
+    /// The numbers that show a point to be the optimum.
+    fn certificate(&self, x: &DVector<f64>, z: &[f64], volt: f64) -> KktCertificate {
+        let n = self.linear.len();
+        let mut cones = Vec::new();
+        let mut at = 0;
+        for cone in &self.cones {
+            let Some(multipliers) = z.get(at..at + cone.rows.len()) else { break };
+            at += multipliers.len();
+            if largest(multipliers) <= NO_MULTIPLIER {
+                continue;
+            }
+            let dense = |row: &[(usize, f64)]| {
+                let mut values = vec![0.0; n];
+                for &(column, value) in row {
+                    values[column] += value;
+                }
+                values
+            };
+            cones.push(CertifiedCone {
+                rows: cone.rows.iter().map(|(row, _)| dense(row)).collect(),
+                bounds: cone.rows.iter().map(|(_, bound)| *bound).collect(),
+                multipliers: multipliers.to_vec(),
+            });
+        }
+        KktCertificate {
+            hessian: self.hessian.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            linear: self.linear.iter().copied().collect(),
+            point: x.iter().copied().collect(),
+            volt,
+            cones,
         }
     }
 

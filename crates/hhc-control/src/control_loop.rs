@@ -5,7 +5,8 @@ use crate::law::Anchor;
 use crate::stroke::{Strokes, track_effort};
 use crate::{
     ControlError, ControlLayout, ControlLimits, ControlRun, ControlStep, Cost, FeedbackController,
-    KktResidual, Measurement, Outcome, Plant, PlantCall, RunError, error, layout::as_harmonics,
+    KktCertificate, Measurement, Outcome, Plant, PlantCall, RunError, StepLeave, error,
+    layout::as_harmonics,
 };
 use rotor_base::Harmonic;
 
@@ -14,6 +15,10 @@ const SMALLEST_CHANGE_VOLT: f64 = 1e-12;
 
 /// A step no longer than this part of the step before belongs to a loop that settles.
 const SETTLING: f64 = 0.8;
+
+/// Part of the last step that a step goes back by, and square of the cosine between the two, from which the
+/// loop is going to and fro.
+const BACKWARD: f64 = 0.8;
 
 /// Use of the limits above which a state has left them: they move with the control, and a step that kept
 /// them as they stood may not keep them as they are now.
@@ -76,7 +81,7 @@ impl Trust {
 /// Where a step leads.
 struct Aim {
     control_volt: Vec<f64>,
-    kkt: Option<KktResidual>,
+    kkt: Option<KktCertificate>,
 }
 
 /// The search along one step.
@@ -97,8 +102,64 @@ struct Departure<'a> {
     rho: f64,
     /// Cost without control at this `rho`.
     start_cost: f64,
-    /// Whether the step leads back into limits that the state has left, whatever that costs.
-    back: bool,
+    /// Whether the step may raise the cost: back into limits that the state has left, or to the fixed point.
+    leave: StepLeave,
+}
+
+/// Where no part of a step lowers the cost and it begins to be let rise.
+struct Hill {
+    /// Steps taken by then.
+    taken: usize,
+    /// The state there.
+    foot: ControlStep,
+    /// Cost of the shortest part tried.
+    shortest: Cost,
+}
+
+/// What a loop has done so far and where it stands.
+struct Walk {
+    here: ControlStep,
+    steps: Vec<ControlStep>,
+    measurements: usize,
+    halvings: u32,
+    kkt: Option<KktCertificate>,
+    trust: Trust,
+    last_fall: f64,
+    hill: Option<Hill>,
+}
+
+impl Walk {
+    fn from(start: &ControlStep) -> Self {
+        Self {
+            here: start.clone(),
+            steps: Vec::new(),
+            measurements: 0,
+            halvings: 0,
+            kkt: None,
+            trust: Trust::default(),
+            last_fall: f64::INFINITY,
+            hill: None,
+        }
+    }
+
+    fn take(&mut self, step: ControlStep) {
+        self.steps.push(step.clone());
+        self.here = step;
+    }
+
+    /// Whether a step leads back along the last one, and about as far.
+    fn turns_back(&self, step: &[f64]) -> bool {
+        let [.., before, here] = self.steps.as_slice() else { return false };
+        let last = difference(&here.control_volt, &before.control_volt);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (square, along) = (dot(&last, &last), dot(step, &last));
+        along < -BACKWARD * square && along * along > BACKWARD * square * dot(step, step)
+    }
+
+    /// Whether nothing holds the steps short, or the last one brought little.
+    fn calm(&self, little: f64) -> bool {
+        self.trust.weight == 0.0 || self.last_fall <= little
+    }
 }
 
 impl FeedbackController {
@@ -121,7 +182,9 @@ impl FeedbackController {
         let measurement = self.measured(plant, start_volt, &[])?;
         let cost = self.cost(&measurement, start_volt, 0.0);
         let control_volt = start_volt.to_vec();
-        Ok(ControlStep { control_volt, measurement, rho: 0.0, cost, asked_volt: 0.0, halvings: 0 })
+        let leave = StepLeave::None;
+        let (rho, asked_volt, halvings) = (0.0, 0.0, 0);
+        Ok(ControlStep { control_volt, measurement, rho, cost, asked_volt, halvings, leave })
     }
 
     /// The loop itself, from a measured start; counts no measurement for the start.
@@ -131,20 +194,51 @@ impl FeedbackController {
         start: &ControlStep,
         effort: &mut Effort<'_>,
     ) -> Result<ControlRun, RunError<P::Error>> {
-        let mut here = start.clone();
-        let mut steps: Vec<ControlStep> = Vec::new();
-        let (mut measurements, mut halvings) = (0, 0);
-        let mut kkt = None;
         let mut known = Knowledge::new(&self.controller, &self.law, start);
-        let strict = self.settings.cost_tolerance > 0.0;
-        let (mut trust, mut last_fall) = (Trust::default(), f64::INFINITY);
+        let mut walk = Walk::from(start);
         let outcome = loop {
-            known.refresh(plant, &here)?;
+            let ended = self
+                .walk(plant, &mut known, effort, (start, &mut walk))
+                .and_then(|ended| Ok(self.beyond_the_hill(ended, &mut walk)?));
+            let lost = match &ended {
+                Ok(outcome) => *outcome == Outcome::Stalled,
+                Err(error) => matches!(error, RunError::Control(ControlError::Diverges { .. })),
+            };
+            if !lost || !known.renew(plant, &walk.here)? {
+                break ended?;
+            }
+            walk.hill = None;
+        };
+        Ok(ControlRun {
+            rho: walk.here.rho,
+            outcome,
+            start: self.weighed(start, walk.here.rho),
+            steps: walk.steps,
+            measurements: walk.measurements + known.measurements,
+            halvings: walk.halvings,
+            identifications: known.identifications,
+            t: known.t()?,
+            kkt: walk.kkt,
+        })
+    }
+
+    /// Steps until the loop ends with the T it has, or with what it learns on the way.
+    fn walk<P: Plant>(
+        &self,
+        plant: &mut P,
+        known: &mut Knowledge<'_>,
+        effort: &mut Effort<'_>,
+        (start, walk): (&ControlStep, &mut Walk),
+    ) -> Result<Outcome, RunError<P::Error>> {
+        let strict = self.strict();
+        loop {
+            known.refresh(plant, &walk.here)?;
             let rho = match effort {
                 Effort::Fixed(rho) | Effort::Cone(rho) => *rho,
-                Effort::Tracked(strokes) => track_effort(&known, plant, strokes, &here)?,
+                Effort::Tracked(strokes) => track_effort(known, plant, strokes, &walk.here)?,
             };
-            here = self.weighed(&here, rho);
+            walk.here = self.weighed(&walk.here, rho);
+            let here = walk.here.clone();
             let start_cost = self.weighed(start, rho).cost.total();
             let limits = match effort {
                 Effort::Cone(_) => Some(limits_at(plant, &here.control_volt)?),
@@ -152,14 +246,14 @@ impl FeedbackController {
             };
             let loads = &here.measurement.hub_loads;
             let there = (here.control_volt.as_slice(), loads.as_slice());
-            let aim = aim_of(&known, (rho, trust), there, limits.as_ref())?;
-            kkt = aim.kkt.or(kkt);
-            let step = difference(&aim.control_volt, &here.control_volt);
+            let aim = aim_of(known, (rho, walk.trust), there, limits.as_ref())?;
+            walk.kkt = aim.kkt.or(walk.kkt.take());
+            let mut step = difference(&aim.control_volt, &here.control_volt);
             let asked_volt = largest_amplitude(&step);
             let size =
                 largest_amplitude(&aim.control_volt).max(largest_amplitude(&here.control_volt));
             if asked_volt <= (self.settings.step_tolerance * size).max(SMALLEST_CHANGE_VOLT) {
-                break Outcome::Converged;
+                return Ok(Outcome::Converged);
             }
             let back = match &limits {
                 Some(limits) => limits.usage(&here.control_volt)? > USAGE_LEFT,
@@ -167,71 +261,110 @@ impl FeedbackController {
             };
             let little = self.settings.cost_tolerance * start_cost;
             let promise = if strict { known.promise(rho, &here, &aim.control_volt)? } else { 0.0 };
-            if strict && !back && promise <= little && (trust.weight == 0.0 || last_fall <= little)
-            {
-                break Outcome::Converged;
+            if strict && !back && promise <= little && walk.calm(little) {
+                return Ok(Outcome::Converged);
             }
-            if steps.len() >= self.settings.max_steps {
-                break Outcome::StepLimit;
+            if walk.steps.len() >= self.settings.max_steps {
+                return Ok(Outcome::StepLimit);
             }
-            let history =
-                || -> Vec<ControlStep> { std::iter::once(start).chain(&steps).cloned().collect() };
-            let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost, back };
-            let search = self.search(plant, &mut known, &from, (limits.as_ref(), &history))?;
-            measurements += search.measurements;
-            halvings += search.taken.as_ref().map_or(self.settings.max_halvings, |s| s.halvings);
-            if let Some(step) = search.taken {
-                let fall = here.cost.total() - step.cost.total();
-                // a part of a step that brings little does not say that the whole would not
-                let (whole, halved) = (step.halvings == 0, step.halvings);
-                let moved = difference(&step.control_volt, &here.control_volt);
-                steps.push(step.clone());
-                here = step;
-                if strict
-                    && whole
-                    && !back
-                    && fall <= little
-                    && (trust.weight == 0.0 || promise <= little)
-                {
-                    break Outcome::Converged;
+            if limits.is_some() && walk.turns_back(&step) {
+                // out of limits that move with the control and back again: what is sought lies between
+                for d in &mut step {
+                    *d *= 0.5;
                 }
-                // a part that was taken because the whole leaves the plant's range says nothing of T
-                let measured = whole || search.measurements > 1;
-                if strict && measured && !matches!(effort, Effort::Tracked(_)) {
-                    let curvature = known.law.curvature(rho, &moved) + trust.weight;
-                    let kept = if promise > 0.0 { fall / promise } else { 1.0 };
-                    trust.learn((halved, kept), curvature, known.law.largest_authority());
+            }
+            let history = || -> Vec<ControlStep> {
+                std::iter::once(start).chain(&walk.steps).cloned().collect()
+            };
+            let leave = match (back, &walk.hill) {
+                (true, _) => StepLeave::Limits,
+                (false, Some(_)) => StepLeave::Settling,
+                (false, None) => StepLeave::None,
+            };
+            let from = Departure { here: &here, step: &step, asked_volt, rho, start_cost, leave };
+            let search = self.search(plant, known, &from, (limits.as_ref(), &history))?;
+            walk.measurements += search.measurements;
+            walk.halvings +=
+                search.taken.as_ref().map_or(self.settings.max_halvings, |s| s.halvings);
+            let Some(step) = search.taken else {
+                if known.learn(plant, &here, &aim.control_volt)? {
+                    continue;
                 }
-                last_fall = fall;
-                continue;
-            }
-            if known.learn(plant, &here, &aim.control_volt)? {
-                continue;
-            }
-            if !steps.is_empty() {
-                break if search.left_range { Outcome::OutOfRange } else { Outcome::Stalled };
-            }
-            let divisor = 1_u64 << self.settings.max_halvings;
-            let history = vec![here.clone()];
-            Err(match search.shortest {
-                Some(shortest) => {
-                    let start = here.cost;
-                    ControlError::Diverges { rho, divisor, start, shortest, history }
+                match self.refused(&search, known, walk)? {
+                    Some(outcome) => return Ok(outcome),
+                    None => continue,
                 }
-                None => ControlError::NotAdmitted { rho, divisor, history },
-            })?;
-        };
-        Ok(ControlRun {
-            rho: here.rho,
-            outcome,
-            start: self.weighed(start, here.rho),
-            steps,
-            measurements: measurements + known.measurements,
-            halvings,
-            identifications: known.identifications,
-            t: known.t()?,
-            kkt,
-        })
+            };
+            let fall = here.cost.total() - step.cost.total();
+            // a part of a step that brings little does not say that the whole would not
+            let (whole, halved) = (step.halvings == 0, step.halvings);
+            let moved = difference(&step.control_volt, &here.control_volt);
+            walk.take(step);
+            let settled = walk.trust.weight == 0.0 || promise <= little;
+            if strict && whole && !back && fall <= little && settled {
+                return Ok(Outcome::Converged);
+            }
+            // a part that was taken because the whole leaves the plant's range says nothing of T
+            let measured = whole || search.measurements > 1;
+            if strict && measured && !matches!(effort, Effort::Tracked(_)) {
+                let curvature = known.law.curvature(rho, &moved) + walk.trust.weight;
+                let kept = if promise > 0.0 { fall / promise } else { 1.0 };
+                walk.trust.learn((halved, kept), curvature, known.law.largest_authority());
+            }
+            walk.last_fall = fall;
+        }
+    }
+
+    /// What becomes of a loop no part of whose step was taken and that learnt nothing; none if it goes on over
+    /// the hill.
+    fn refused(
+        &self,
+        search: &Search,
+        known: &Knowledge<'_>,
+        walk: &mut Walk,
+    ) -> Result<Option<Outcome>, ControlError> {
+        let may_rise = known.is_constant() && !self.strict() && self.settings.settling_cost > 0.0;
+        if let (Some(shortest), true, None) = (search.shortest, may_rise, &walk.hill) {
+            let (taken, foot) = (walk.steps.len(), walk.here.clone());
+            walk.hill = Some(Hill { taken, foot, shortest });
+            return Ok(None);
+        }
+        if walk.steps.is_empty() {
+            return Err(self.diverged(&walk.here, search.shortest));
+        }
+        let beyond = walk.hill.as_ref().is_some_and(|hill| hill.taken < walk.steps.len());
+        let out = search.left_range && !beyond;
+        Ok(Some(if out { Outcome::OutOfRange } else { Outcome::Stalled }))
+    }
+
+    /// The end of a loop that let the cost rise: where it settled, if that is better, or where it set out from.
+    fn beyond_the_hill(&self, ended: Outcome, walk: &mut Walk) -> Result<Outcome, ControlError> {
+        let Some(Hill { taken, foot, shortest }) = walk.hill.take() else { return Ok(ended) };
+        let before = self.weighed(&foot, walk.here.rho).cost.total();
+        if ended == Outcome::Converged && walk.here.cost.total() <= before {
+            return Ok(ended);
+        }
+        if taken == 0 {
+            return Err(self.diverged(&foot, Some(shortest)));
+        }
+        walk.steps.truncate(taken);
+        walk.here = foot;
+        Ok(if ended == Outcome::OutOfRange { ended } else { Outcome::Stalled })
+    }
+
+    /// The error of a first step of which no part lowers the cost.
+    fn diverged(&self, here: &ControlStep, shortest: Option<Cost>) -> ControlError {
+        let (rho, start, history) = (here.rho, here.cost, vec![here.clone()]);
+        let divisor = 1_u64 << self.settings.max_halvings;
+        match shortest {
+            Some(shortest) => ControlError::Diverges { rho, divisor, start, shortest, history },
+            None => ControlError::NotAdmitted { rho, divisor, history },
+        }
+    }
+
+    /// Whether no step may raise the cost.
+    fn strict(&self) -> bool {
+        self.settings.cost_tolerance > 0.0
     }
 
     /// The step or the longest part of it, halved and halved again, that lowers the cost.
@@ -242,8 +375,8 @@ impl FeedbackController {
         from: &Departure<'_>,
         (limits, history): (Option<&ControlLimits>, &dyn Fn() -> Vec<ControlStep>),
     ) -> Result<Search, RunError<P::Error>> {
-        let Departure { here, step, asked_volt, rho, start_cost, back } = *from;
-        let strict = self.settings.cost_tolerance > 0.0;
+        let Departure { here, step, asked_volt, rho, start_cost, leave } = *from;
+        let strict = self.strict();
         let mut search = Search::default();
         for halvings in 0..=self.settings.max_halvings {
             let part = 0.5_f64.powi(halvings.cast_signed());
@@ -263,8 +396,12 @@ impl FeedbackController {
                 let next = aim_of(known, (rho, Trust::default()), there, limits)?.control_volt;
                 Ok(largest_amplitude(&difference(&next, &control_volt)) <= SETTLING * asked_volt)
             };
-            let allowed = !strict && halvings == 0 && rise <= self.settings.cost_rise_allowance;
-            if back || rise <= COST_ROUNDING || (allowed && settles()?) {
+            let allowed = match leave {
+                StepLeave::Settling => cost.total() <= self.settings.settling_cost * start_cost,
+                _ => rise <= self.settings.cost_rise_allowance,
+            };
+            let allowed = allowed && !strict && halvings == 0;
+            if leave == StepLeave::Limits || rise <= COST_ROUNDING || (allowed && settles()?) {
                 search.taken = Some(ControlStep {
                     control_volt,
                     measurement,
@@ -272,6 +409,7 @@ impl FeedbackController {
                     cost,
                     asked_volt,
                     halvings,
+                    leave: if rise > COST_ROUNDING { leave } else { StepLeave::None },
                 });
                 break;
             }
@@ -339,7 +477,7 @@ fn aim_of(
         None => Aim { control_volt: known.law.optimum_near(rho, &target, anchor), kkt: None },
         Some(limits) => {
             let found = known.law.optimum_of_target_within(rho, (&target, anchor), limits)?;
-            Aim { control_volt: found.control_volt, kkt: Some(found.kkt) }
+            Aim { control_volt: found.control_volt, kkt: Some(found.certificate) }
         }
     })
 }

@@ -19,6 +19,14 @@ pub enum Controller {
     /// T0 identified about zero control and held constant.
     #[default]
     Global,
+    /// T held constant until no part of a step lowers the cost and full steps do not settle either; it is
+    /// then identified again about the present control, by differences, and held on.
+    Renewed {
+        /// Voltage step of each control for the differences, V.
+        step_volt: Vec<f64>,
+        /// Renewals at most.
+        renewals: u32,
+    },
     /// T identified again about the present control before every step: from the plant's linearised
     /// solution if it has one, else by differences. If no part of a step lowers the cost all the same,
     /// T is corrected along that step by what was measured there, and the next step asked for. Where the
@@ -37,6 +45,7 @@ impl Controller {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Global => "global",
+            Self::Renewed { .. } => "renewed",
             Self::Local { .. } => "local",
             Self::Adaptive(_) => "adaptive",
         }
@@ -55,6 +64,7 @@ pub(crate) struct Knowledge<'a> {
 
 enum How<'a> {
     Global,
+    Renewed { step_volt: &'a [f64], left: u32 },
     Local { step_volt: &'a [f64], known_at: Vec<f64>, tried: Vec<Tried>, corrections_left: usize },
     Adaptive { filter: Kalman, probes_left: u32, rejected_volt: Option<Vec<f64>> },
 }
@@ -69,6 +79,9 @@ impl<'a> Knowledge<'a> {
     pub(crate) fn new(controller: &'a Controller, law: &FeedbackLaw, start: &ControlStep) -> Self {
         let how = match controller {
             Controller::Global => How::Global,
+            Controller::Renewed { step_volt, renewals } => {
+                How::Renewed { step_volt, left: *renewals }
+            }
             Controller::Local { step_volt } => {
                 // T0 is what would be found about zero control
                 let controls = start.control_volt.len();
@@ -95,7 +108,7 @@ impl<'a> Knowledge<'a> {
         here: &ControlStep,
     ) -> Result<(), RunError<P::Error>> {
         match &mut self.how {
-            How::Global => {}
+            How::Global | How::Renewed { .. } => {}
             How::Local { step_volt, known_at, tried, corrections_left } => {
                 let control = &here.control_volt;
                 if known_at != control {
@@ -132,10 +145,40 @@ impl<'a> Knowledge<'a> {
         Ok(())
     }
 
+    /// Whether T stays as it is from step to step.
+    pub(crate) fn is_constant(&self) -> bool {
+        matches!(self.how, How::Global | How::Renewed { .. })
+    }
+
+    /// Identifies a constant T again about a state that it does not lead away from; false where it may not, or
+    /// where the range leaves no room.
+    pub(crate) fn renew<P: Plant>(
+        &mut self,
+        plant: &mut P,
+        here: &ControlStep,
+    ) -> Result<bool, RunError<P::Error>> {
+        let How::Renewed { step_volt, left } = &mut self.how else { return Ok(false) };
+        if *left == 0 {
+            return Ok(false);
+        }
+        *left -= 1;
+        let about = (here.control_volt.as_slice(), here.measurement.hub_loads.as_slice());
+        match identify_t_about(plant, about, step_volt) {
+            Ok((t, measurements)) => {
+                self.measurements += measurements;
+                self.identifications += 1;
+                self.law = self.law.with_t(&t)?;
+                Ok(true)
+            }
+            Err(RunError::Control(ControlError::NoRoomToIdentify { .. })) => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+
     /// Takes note of a measured pair.
     pub(crate) fn observe(&mut self, control_volt: &[f64], hub_loads: &[f64]) {
         match &mut self.how {
-            How::Global => {}
+            How::Global | How::Renewed { .. } => {}
             How::Local { tried, .. } => tried
                 .push(Tried { control_volt: control_volt.to_vec(), hub_loads: hub_loads.to_vec() }),
             How::Adaptive { filter, .. } => filter.observe(control_volt, hub_loads),
@@ -183,7 +226,7 @@ impl<'a> Knowledge<'a> {
         aim_volt: &[f64],
     ) -> Result<bool, RunError<P::Error>> {
         let (filter, probes_left, rejected_volt) = match &mut self.how {
-            How::Global => return Ok(false),
+            How::Global | How::Renewed { .. } => return Ok(false),
             How::Local { tried, corrections_left, .. } => {
                 if *corrections_left == 0 {
                     return Ok(false);

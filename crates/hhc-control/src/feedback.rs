@@ -2,7 +2,7 @@
 
 use crate::control_loop::Effort;
 use crate::{
-    ControlError, Controller, Cost, FeedbackLaw, KktResidual, LoadWeights, Measurement, Plant,
+    ControlError, Controller, Cost, FeedbackLaw, KktCertificate, LoadWeights, Measurement, Plant,
     RunError, TMatrix, error, reduction_percent,
 };
 
@@ -27,6 +27,12 @@ pub struct FeedbackSettings {
     /// the last steps to it raise the cost by a trifle: halving those would keep the loop from
     /// settling. A halved step may raise nothing.
     pub cost_rise_allowance: f64,
+    /// How high the cost may go, over that of the start, once no part of a step lowers it any more and T is held
+    /// constant: full steps are then taken as long as each next one asked for is shorter by a fifth or more. An
+    /// ill-conditioned T that is right up to gain and lag leads to its fixed point, where nothing is to be
+    /// gained any more, over a hill. If the loop does not settle below the cost it set out from, it goes back
+    /// there and ends as stalled. 0 never lets it rise.
+    pub settling_cost: f64,
     /// Relative tolerance on the stroke: the larger stroke ends between `1 - stroke_tolerance` and 1
     /// times its limit.
     pub stroke_tolerance: f64,
@@ -40,6 +46,7 @@ impl Default for FeedbackSettings {
             step_tolerance: 1e-4,
             cost_tolerance: 0.0,
             cost_rise_allowance: 1e-2,
+            settling_cost: 10.0,
             stroke_tolerance: 1e-3,
         }
     }
@@ -50,6 +57,7 @@ impl FeedbackSettings {
         error::check_positive("step tolerance", self.step_tolerance)?;
         error::check_not_negative("cost tolerance", self.cost_tolerance)?;
         error::check_not_negative("cost rise allowance", self.cost_rise_allowance)?;
+        error::check_not_negative("settling cost", self.settling_cost)?;
         error::check_positive("stroke tolerance", self.stroke_tolerance)?;
         let (value, expected) = (f64::from(self.max_halvings), "0 to 60");
         if self.max_halvings > 60 {
@@ -74,6 +82,21 @@ pub struct ControlStep {
     pub asked_volt: f64,
     /// How often that change was halved before it was taken.
     pub halvings: u32,
+    /// Why a step was taken that need not lower the cost.
+    pub leave: StepLeave,
+}
+
+/// What allows a step to raise the cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum StepLeave {
+    /// Nothing but the small allowance of a step after which the loop settles.
+    #[default]
+    None,
+    /// It leads back into limits that moved with the control.
+    Limits,
+    /// No step lowers the cost any more, but full steps grow shorter: on the way to the fixed point of a
+    /// constant T, see [`FeedbackSettings::settling_cost`].
+    Settling,
 }
 
 /// How a control run ended.
@@ -81,7 +104,7 @@ pub struct ControlStep {
 pub enum Outcome {
     /// Eq. (10) asks for no further change, its fixed point, or promises no further fall of the cost.
     Converged,
-    /// Some steps lowered the cost, but no part of the next one does: near the least cost, where a
+    /// Some steps lowered the cost, but no part of the next one does, and full steps do not settle either: a
     /// constant T0 no longer points downhill. The last state is the best found.
     Stalled,
     /// The next step leads out of the range that the plant admits, and what part of it stays inside
@@ -110,8 +133,8 @@ pub struct ControlRun {
     pub identifications: usize,
     /// T as known at the end, 1/V.
     pub t: TMatrix,
-    /// How exactly the last aim was the optimum within the limits; none where there were no limits.
-    pub kkt: Option<KktResidual>,
+    /// What shows how exactly the last aim was the optimum within the limits; none where there were no limits.
+    pub kkt: Option<KktCertificate>,
 }
 
 impl ControlRun {
@@ -188,7 +211,7 @@ impl FeedbackController {
     pub fn with_controller(self, controller: Controller) -> Result<Self, ControlError> {
         match &controller {
             Controller::Global => {}
-            Controller::Local { step_volt } => {
+            Controller::Local { step_volt } | Controller::Renewed { step_volt, .. } => {
                 let controls = self.law.shape().1;
                 error::check_vector("voltage steps of the T matrix (volt)", step_volt, controls)?;
                 for &step in step_volt {

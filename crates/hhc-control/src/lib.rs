@@ -63,11 +63,13 @@ mod t_matrix;
 
 pub use adaptive::AdaptiveSettings;
 pub use bias::{BiasSolution, BiasSolver};
-pub use cone::{ConeStatus, ConstrainedOptimum, KktResidual};
+pub use cone::{CertifiedCone, ConeStatus, ConstrainedOptimum, KktCertificate, KktResidual};
 pub use controller::Controller;
 pub use cost::{Cost, HUB_LOAD_NAMES, LoadWeights, load_harmonics, reduction_percent};
 pub use error::{ControlError, PlantCall, RunError};
-pub use feedback::{ControlRun, ControlStep, FeedbackController, FeedbackSettings, Outcome};
+pub use feedback::{
+    ControlRun, ControlStep, FeedbackController, FeedbackSettings, Outcome, StepLeave,
+};
 pub use identify::{StepSensitivity, identify_t, identify_t_about, step_sensitivity};
 pub use lag::{LagLoss, lag_loss};
 pub use law::FeedbackLaw;

@@ -107,19 +107,19 @@ pub enum SimError {
         /// What went wrong.
         source: TrimError,
     },
-    /// A stored reduction does not follow from the stored loads.
+    /// A stored figure does not follow from the stored loads, controls and motions.
     #[error(
-        "{set}/rev with the {actuator} actuator: the stored hub loads and weights give a reduction of {recomputed_percent} %, the file says {stored_percent} %; it was changed after it was written"
+        "{file}: {field} is {stored}, but what the result holds gives {recomputed}; it was changed after it was written"
     )]
     NotReproduced {
-        /// Set of harmonics.
-        set: String,
-        /// The actuator.
-        actuator: String,
-        /// What the file says, percent.
-        stored_percent: f64,
-        /// What its loads give, percent.
-        recomputed_percent: f64,
+        /// The file.
+        file: String,
+        /// The field in it.
+        field: String,
+        /// What the file says.
+        stored: String,
+        /// What follows from the rest.
+        recomputed: String,
     },
     /// The control study.
     #[error("{place}: {source}")]

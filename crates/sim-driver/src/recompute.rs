@@ -1,115 +1,169 @@
-//! Every reduction computed again from a stored result alone.
+//! A stored result checked against itself: every figure computed again from what it holds raw.
 
 use crate::SimError;
-use crate::results::{HubLoads, RunResult, StoredResult};
-use crate::study::loads_cost;
-use hhc_control::reduction_percent;
+use crate::raw::Setting;
+use crate::results::{RunResult, StoredResult, result_key};
+use serde::Serialize;
+use serde_json::Value;
 use std::fmt;
 
 /// What was computed again and how well it agrees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recomputed {
-    /// Reductions computed again.
+    /// The result with its figures computed anew.
+    pub stored: StoredResult<RunResult>,
+    /// Reductions computed again: of controls, forecasts, sensitivities and robustness.
     pub reductions: usize,
-    /// Largest difference from the stored one, percentage points.
+    /// Numbers compared in all.
+    pub numbers: usize,
+    /// Largest difference of a reduction from the stored one, percentage points.
     pub largest_difference: f64,
 }
 
-/// Difference, in percentage points, that the digits of a stored number leave.
+/// Relative difference that the digits of a stored number, and another processor's, leave.
 const ROUNDING: f64 = 1e-9;
+/// The same of angles and percentages, which may be differences of large numbers.
+const ROUNDING_OF_UNITS: f64 = 1e-9;
+/// The same of residuals, which are differences of numbers of order 1.
+const ROUNDING_OF_RESIDUALS: f64 = 1e-12;
 
-/// Computes every `J_Z` and every reduction of a stored result from its hub loads and load weights.
+/// Computes every figure of a stored result from the loads, controls, motions and T matrices in it and compares.
 ///
-/// ```text
-/// J_Z = sum_k w_k (Z_kc^2 + Z_ks^2),      reduction = 100 (1 - J_Z / J_Z0)
-/// ```
+/// The weights follow from the case (given, or over the squared loads without control), the case from its key.
+///
 /// # Errors
-/// [`SimError::NotReproduced`] for the first reduction that does not follow.
-pub fn recomputed(stored: &StoredResult<RunResult>) -> Result<Recomputed, SimError> {
-    let result = &stored.result;
-    let mut largest_difference = 0.0_f64;
-    for line in &result.control {
-        let cost = |loads: &HubLoads| loads_cost(&line.load_weights, &loads.parts());
-        let (before, after) = (cost(&result.baseline.hub_4_per_rev), cost(&line.hub_4_per_rev));
-        let recomputed_percent = reduction_percent(before, after);
-        let off = |a: f64, b: f64| (a - b).abs() > 1e-9 * b.abs();
-        let difference = (recomputed_percent - line.reduction_percent).abs();
-        let agrees = difference <= ROUNDING * (1.0 + recomputed_percent.abs());
-        if !agrees || off(before, line.j_before) || off(after, line.j_after) {
-            return Err(SimError::NotReproduced {
-                set: line.set_name(),
-                actuator: line.actuator.clone(),
-                stored_percent: line.reduction_percent,
-                recomputed_percent,
-            });
-        }
-        largest_difference = largest_difference.max(difference);
+/// [`SimError::NotReproduced`] for the first figure that does not follow, with its field.
+pub fn recomputed(stored: StoredResult<RunResult>, file: &str) -> Result<Recomputed, SimError> {
+    let key = result_key(&stored.case, &stored.inputs)?;
+    let of_version = stored.program == format!("hhc {}", crate::VERSION);
+    if of_version && key != stored.key {
+        let field = "key (of the case and its inputs)".to_owned();
+        return Err(changed(file, field, stored.key, key));
     }
-    Ok(Recomputed { reductions: result.control.len(), largest_difference })
+    let result = &stored.result;
+    let setting = Setting::of_file(&stored.case, &result.baseline.hub_4_per_rev)
+        .map_err(|e| changed(file, "case.rotor".to_owned(), e.to_string(), String::new()))?;
+    let anew = result.refigured(&setting);
+    let numbers = compared_fields(result, &anew, (file, "result"))?;
+    let mut largest_difference = 0.0_f64;
+    for (then, now) in result.control.iter().zip(&anew.control) {
+        let apart = (then.reduction_percent - now.reduction_percent).abs();
+        largest_difference = largest_difference.max(apart);
+    }
+    let reductions = anew.control.len()
+        + 3 * anew.forecasts.len()
+        + anew.sensitivity.iter().map(|row| row.reduction_percent.len()).sum::<usize>()
+        + 2 * anew.robustness.len();
+    let stored = StoredResult { result: anew, ..stored };
+    Ok(Recomputed { stored, reductions, numbers, largest_difference })
+}
+
+/// Compares what a file holds with what was computed again; the count of numbers.
+///
+/// # Errors
+/// [`SimError::NotReproduced`] for the first field that differs.
+pub fn compared_fields<T: Serialize>(
+    stored: &T,
+    anew: &T,
+    (file, root): (&str, &str),
+) -> Result<usize, SimError> {
+    let value = |of: &T| {
+        serde_json::to_value(of)
+            .map_err(|e| SimError::NotWritten { path: "JSON".into(), reason: e.to_string() })
+    };
+    let mut numbers = 0;
+    same(&value(stored)?, &value(anew)?, root.to_owned(), &mut numbers)
+        .map_err(|(field, stored, anew)| changed(file, field, stored, anew))?;
+    Ok(numbers)
+}
+
+/// Compares a table as text, line by line.
+///
+/// # Errors
+/// [`SimError::NotReproduced`] for the first cell that differs.
+pub fn compared_table(stored: &str, anew: &str, file: &str) -> Result<(), SimError> {
+    let header: Vec<&str> = anew.lines().next().unwrap_or_default().split(',').collect();
+    let (mut then, mut now) = (stored.lines(), anew.lines());
+    let mut line = 0;
+    loop {
+        line += 1;
+        let (then, now) = match (then.next(), now.next()) {
+            (None, None) => return Ok(()),
+            (then, now) => (then.unwrap_or_default(), now.unwrap_or_default()),
+        };
+        if then == now {
+            continue;
+        }
+        let cells = then.split(',').zip(now.split(',')).zip(&header);
+        let first = cells.clone().find(|((a, b), _)| a != b);
+        let name = first.map_or("", |(_, name)| *name);
+        let (a, b) = first.map_or((then, now), |(pair, _)| pair);
+        return Err(changed(file, format!("line {line} {name}"), a.to_owned(), b.to_owned()));
+    }
+}
+
+/// A field that does not follow.
+pub fn changed(file: &str, field: String, stored: String, recomputed: String) -> SimError {
+    SimError::NotReproduced { file: file.to_owned(), field, stored, recomputed }
+}
+
+type Apart = (String, String, String);
+
+/// Walks two trees side by side.
+fn same(a: &Value, b: &Value, at: String, numbers: &mut usize) -> Result<(), Apart> {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            let names = a.keys().chain(b.keys().filter(|name| !a.contains_key(*name)));
+            for name in names {
+                let none = Value::Null;
+                let (a, b) = (a.get(name).unwrap_or(&none), b.get(name).unwrap_or(&none));
+                same(a, b, format!("{at}.{name}"), numbers)?;
+            }
+            Ok(())
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            for (k, (a, b)) in a.iter().zip(b).enumerate() {
+                same(a, b, format!("{at}[{k}]"), numbers)?;
+            }
+            Ok(())
+        }
+        (Value::Number(x), Value::Number(y)) => {
+            *numbers += 1;
+            let (x, y) = (x.as_f64().unwrap_or(f64::NAN), y.as_f64().unwrap_or(f64::NAN));
+            let field = at.rsplit('.').next().unwrap_or_default();
+            let of_units = field.contains("_deg") || field.contains("percent");
+            let floor = match field {
+                "kkt_residual" => ROUNDING_OF_RESIDUALS,
+                _ if of_units => ROUNDING_OF_UNITS,
+                _ => 0.0,
+            };
+            let room = (ROUNDING * x.abs().max(y.abs())).max(floor);
+            if (x - y).abs() <= room { Ok(()) } else { Err((at, a.to_string(), b.to_string())) }
+        }
+        _ if a == b => Ok(()),
+        _ => Err((at, short(a), short(b))),
+    }
+}
+
+/// A value without its depths.
+fn short(value: &Value) -> String {
+    match value {
+        Value::Array(items) => format!("{} entries", items.len()),
+        Value::Object(_) => "an object".to_owned(),
+        other => other.to_string(),
+    }
 }
 
 impl fmt::Display for Recomputed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{} reductions computed again from the stored loads and weights, largest difference {:.1e} points",
-            self.reductions, self.largest_difference
+            "{} reductions computed again from the stored loads, controls and T matrices, largest difference {:.1e} points; {} numbers agree",
+            self.reductions, self.largest_difference, self.numbers
         )
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::case::{PAPER_CASE, shipped_case};
-    use crate::results::ControlLine;
-
-    fn stored() -> StoredResult<RunResult> {
-        let parts = |size: f64| std::array::from_fn(|k| size * (1.0 + k as f64));
-        let weights = [1.0, 2.0, 0.5, 1.0, 3.0, 0.0];
-        let (before, after) = (parts(1e-4), parts(6e-5));
-        let (j_before, j_after) = (loads_cost(&weights, &before), loads_cost(&weights, &after));
-        let line = ControlLine {
-            harmonics: vec![3],
-            actuator: "hysteretic".to_owned(),
-            j_before,
-            j_after,
-            reduction_percent: reduction_percent(j_before, j_after),
-            hub_4_per_rev: HubLoads::from_parts(after),
-            load_weights: weights,
-            ..ControlLine::default()
-        };
-        let mut result = RunResult { control: vec![line], ..RunResult::default() };
-        result.baseline.hub_4_per_rev = HubLoads::from_parts(before);
-        let case = shipped_case(PAPER_CASE).unwrap().file;
-        StoredResult::new(&case, vec![], result).unwrap()
-    }
-
-    #[test]
-    fn a_result_as_written_is_reproduced() {
-        let text = serde_json::to_string(&stored()).unwrap();
-        let read: StoredResult<RunResult> = serde_json::from_str(&text).unwrap();
-        let found = recomputed(&read).unwrap();
-        assert_eq!(found.reductions, 1);
-        assert!(found.largest_difference < 1e-9);
-    }
-
-    #[test]
-    fn a_changed_load_weight_or_reduction_is_noticed() {
-        let change = |f: &dyn Fn(&mut ControlLine)| {
-            let mut stored = stored();
-            f(&mut stored.result.control[0]);
-            recomputed(&stored)
-        };
-        assert!(change(&|_| ()).is_ok());
-        let changed = [
-            change(&|line| line.hub_4_per_rev.fz[0] *= 1.001),
-            change(&|line| line.load_weights[1] = 1.0),
-            change(&|line| line.reduction_percent += 0.01),
-            change(&|line| line.j_after *= 1.0001),
-        ];
-        for result in changed {
-            assert!(matches!(result, Err(SimError::NotReproduced { .. })), "{result:?}");
-        }
-    }
-}
+#[path = "recompute_tests.rs"]
+mod tests;

@@ -5,7 +5,10 @@ use crate::blade_loads::StationLine;
 use crate::case::CaseFile;
 use crate::dissimilar::UnlikeLine;
 use crate::files::{ron_text, write_atomic};
+use crate::raw::{ControlRecord, ForecastRecord};
+use crate::refigure::WHOLE;
 use crate::stability::StabilityLine;
+use crate::study::{RobustnessCell, Sensitivity};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -30,6 +33,12 @@ pub struct RunResult {
     /// What the linearised rotor says beforehand, one entry per set; empty without an identified actuator.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub forecasts: Vec<Forecast>,
+    /// The reductions with one assumption changed at a time; empty unless asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensitivity: Vec<Sensitivity>,
+    /// What the controllers stand; empty unless asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robustness: Vec<RobustnessCell>,
     /// Hub loads with blades unlike the rest, flaps at rest and after every control; empty if all are alike.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlike_blades: Vec<UnlikeLine>,
@@ -152,14 +161,18 @@ pub struct ControlLine {
     /// inverse alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion_error_percent: Option<f64>,
-    /// Part of the ideal actuator's motion that the inverse makes, 1 where it is within reach; of the
-    /// inverse alone.
+    /// Size of the motion asked of the inverse over that of the ideal actuator's, 1 where that is within reach,
+    /// else of the best that is; of the inverse alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion_share: Option<f64>,
     /// Part of the ideal actuator's voltages that were taken over, 1 where they leave room for the bias; of
     /// `ignored` alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voltage_share: Option<f64>,
+    /// Whether the identified actuator can make the motion within its range of voltages; of the ideal actuator
+    /// beside an identified one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within_reach: Option<bool>,
     /// KKT residual of the last optimum within limits, where there were any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kkt_residual: Option<f64>,
@@ -170,6 +183,16 @@ pub struct ControlLine {
     pub steps: usize,
     /// Steps halved because they would have raised the cost.
     pub halvings: u32,
+    /// Largest rise of the cost in one step, over the cost at the start, percent: a step back into limits that
+    /// moved with the control, over a hill to the fixed point, or the allowance of a loop that settles.
+    #[serde(default)]
+    pub largest_rise_percent: f64,
+    /// Factor by which what a step asks for shrinks from one to the next, mean over the whole steps at the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contraction: Option<f64>,
+    /// Times that T was identified again or probed on the way.
+    #[serde(default)]
+    pub t_renewals: usize,
     /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`, or `taken-over` for
     /// voltages found with another actuator.
     pub outcome: String,
@@ -190,6 +213,9 @@ pub struct ControlLine {
     /// The start and every control step; empty for voltages taken over or inverted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub history: Vec<HistoryLine>,
+    /// What the figures are computed from.
+    #[serde(default)]
+    pub record: ControlRecord,
 }
 
 /// What the linearised rotor says of one set of harmonics before any control: what a lag that is ignored
@@ -216,6 +242,9 @@ pub struct Forecast {
     pub gain_at_step_percent: f64,
     /// The same with the gain at the stroke limit: what amplitude does to gain and lag.
     pub gain_at_stroke_percent: f64,
+    /// What these are computed from.
+    #[serde(default)]
+    pub record: ForecastRecord,
 }
 
 /// One recorded state of a control loop.
@@ -233,6 +262,13 @@ pub struct HistoryLine {
     pub asked_volt: f64,
     /// How often that change was halved.
     pub halvings: u32,
+    /// Why the step could raise the cost: `limits`, it led back into limits that moved with the control;
+    /// `settling`, on the way to the fixed point of a constant T.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leave: Option<String>,
+    /// Measured loads, order `FX_c FX_s FY_c ... MZ_s`, then those that stand for weighted power.
+    #[serde(default)]
+    pub loads: Vec<f64>,
     /// Voltages: flap by flap, harmonic by harmonic, cosine then sine, V.
     #[serde(rename = "control_V")]
     pub control_volt: Vec<f64>,
@@ -245,6 +281,27 @@ impl ControlLine {
     pub fn set_name(&self) -> String {
         let all: Vec<String> = self.harmonics.iter().map(usize::to_string).collect();
         all.join("+")
+    }
+
+    /// The actuator, marked where its motion is not the one it stands beside.
+    pub(crate) fn actuator_cell(&self) -> String {
+        let changed = self.motion_share.is_some_and(|share| (share - 1.0).abs() > WHOLE);
+        let mark = match self.within_reach {
+            Some(false) => "*",
+            _ if changed => "**",
+            _ => "",
+        };
+        format!("{}{mark}", self.actuator)
+    }
+
+    /// The controller, with the renewals of a constant T.
+    pub(crate) fn controller_cell(&self) -> String {
+        match self.t_renewals {
+            times if times > 0 && self.controller == "global" => {
+                format!("{}+{times}", self.controller)
+            }
+            _ => self.controller.clone(),
+        }
     }
 }
 
@@ -325,6 +382,9 @@ pub struct StoredResult<T> {
     pub key: String,
     /// blake3 of each input beside the case: actuator or bench data.
     pub inputs: Vec<String>,
+    /// blake3 of what the report shows of bench and setting, which does not follow from the result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub page_key: Option<String>,
     /// The whole case, defaults filled in.
     pub case: CaseFile,
     /// The result.
@@ -341,6 +401,7 @@ impl<T: Serialize> StoredResult<T> {
             program: format!("hhc {}", crate::VERSION),
             key: result_key(case, &inputs)?,
             inputs,
+            page_key: None,
             case: case.clone(),
             result,
         })

@@ -7,7 +7,9 @@ use crate::case::LoadedCase;
 use crate::dissimilar::unlike_lines;
 use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
-use crate::results::{Baseline, HubLoads, Residuals, RunResult, TrimLine, flap_name};
+use crate::raw::Setting;
+use crate::refigure::WHOLE;
+use crate::results::{Baseline, ControlLine, HubLoads, Residuals, RunResult, TrimLine, flap_name};
 use crate::stability::StabilityLine;
 use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line, forecasts};
 use rotor_response::StationLoads;
@@ -79,22 +81,20 @@ pub fn run_trimmed(
     let about = (found.controls.theta0_rad, &found.rotor);
     warnings.extend(loaded.doubts_in_flight(trimmed.rotor(), about)?);
     warnings.extend(stability.warnings());
-    warnings.extend(studies.iter().filter_map(ControlStudy::share_warning));
+    let baseline = HubLoads::from_parts(trimmed.trim().rotor.hub.harmonic(loaded.case.blades));
     let result = RunResult {
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),
-        baseline: Baseline {
-            hub_4_per_rev: HubLoads::from_parts(
-                trimmed.trim().rotor.hub.harmonic(loaded.case.blades),
-            ),
-        },
+        baseline: Baseline { hub_4_per_rev: baseline },
         blade_loads: station_lines(&blade_loads, &loaded.case.scales),
         stability,
         unlike_blades: unlike_lines(loaded, &trimmed, &studies)?,
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
         forecasts: forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?,
         warnings,
+        ..RunResult::default()
     };
+    let result = result.refigured(&Setting::of_case(&loaded.case, &baseline));
     Ok(RunOutcome { result, actuators, trimmed, blade_loads, drives, studies })
 }
 
@@ -170,6 +170,9 @@ impl Printable for RunResult {
                 "\nControl: reduction of J = 100 (1 - J/J0) and of the loads, percent"
             ));
             sheet.block(&self.control_table());
+            for note in self.control_notes() {
+                sheet.line(format_args!("{note}"));
+            }
             sheet.line(format_args!("\nFlaps"));
             sheet.block(&self.flap_table());
         }
@@ -194,13 +197,13 @@ impl RunResult {
         table(
             &[
                 "per rev", "actuator", "T", "J/J0", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %",
-                "MZ %", "power W", "J_P/J0", "steps", "halved", "ended",
+                "MZ %", "power W", "J_P/J0", "steps", "halved", "rise %", "shrinks", "ended",
             ],
             self.control.iter().map(|line| {
                 let mut cells = vec![
                     line.set_name(),
-                    line.actuator.clone(),
-                    line.controller.clone(),
+                    line.actuator_cell(),
+                    line.controller_cell(),
                     format!("{:.4}", line.j_after / line.j_before),
                     format!("{:.1}", line.reduction_percent),
                 ];
@@ -213,11 +216,49 @@ impl RunResult {
                     format!("{:.4}", line.j_power / line.j_before),
                     line.steps.to_string(),
                     line.halvings.to_string(),
+                    format!("{:.1}", line.largest_rise_percent),
+                    line.contraction.map_or_else(String::new, |factor| format!("{factor:.2}")),
                     line.outcome.clone(),
                 ]);
                 cells
             }),
         )
+    }
+
+    /// What the marks of the table mean, where there are any.
+    fn control_notes(&self) -> Vec<&'static str> {
+        let any = |which: &dyn Fn(&ControlLine) -> bool| self.control.iter().any(which);
+        let marks = [
+            (
+                any(&|l| l.within_reach == Some(false)),
+                "*   out of reach: the identified actuator makes this motion with voltages beyond its range only",
+            ),
+            (
+                any(&|l| l.motion_share.is_some_and(|s| (s - 1.0).abs() > WHOLE)),
+                "**  not the ideal actuator's motion, but the one of least J that the range of voltages holds",
+            ),
+            (
+                any(&|l| l.controller == "global" && l.t_renewals > 0),
+                "+n  constant T led no further and was identified again about the control reached, n times",
+            ),
+            (
+                any(&|l| l.largest_rise_percent > 0.05),
+                "rise %: largest rise of J in one step over J0: back into limits that moved with the control, over a\n        hill to the fixed point of eq. (10), or the allowance of a loop that settles (`leave` in result.json)",
+            ),
+            (
+                any(&|l| l.contraction.is_some()),
+                "shrinks: factor from what one step asks for to the next, whole steps at the end",
+            ),
+            (
+                any(&|l| l.outcome == "out-of-range"),
+                "out-of-range: what is asked for lies beyond the range of voltages, and the part inside does not lower J;\n              effort: Limits makes the range part of the optimum",
+            ),
+            (
+                any(&|l| l.controller == "global" && l.outcome == "stalled"),
+                "stalled: no part of a step lowers J and full steps do not settle: a constant T is no guide there; use\n         controller: Local with effort: Limits",
+            ),
+        ];
+        marks.into_iter().filter_map(|(there, note)| there.then_some(note)).collect()
     }
 
     /// One row per set of harmonics.

@@ -87,7 +87,7 @@ impl Program {
             controlled_loads: study.state.rotor.hub.harmonic(case.blades),
             j_before: study.j_before,
             j_after: study.j_after,
-            t_matrix_norm_per_volt: study.t_norm,
+            t_matrix_norm_per_volt: study.t_norm(),
             counts: vec![
                 ("trim_iterations", trim.iterations),
                 ("inflow_iterations", counts.inflow_iterations),

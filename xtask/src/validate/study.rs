@@ -7,10 +7,13 @@ use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::InflowState;
 use sim_driver::SimError;
-use sim_driver::case::{CONTROLLERS_CASE, ControlActuator, LoadedCase, PAPER_CASE, shipped_case};
+use sim_driver::actuator::case_actuators;
+use sim_driver::case::{
+    CONTROLLERS_CASE, ControlActuator, LoadedCase, PAPER_CASE, StrokeChoice, shipped_case,
+};
 use sim_driver::progress::Progress;
 use sim_driver::results::ControlLine;
-use sim_driver::run::run_case;
+use sim_driver::run::{run_case, run_trimmed};
 use sim_driver::study::TrimmedRotor;
 
 use super::CheckError;
@@ -52,7 +55,9 @@ pub(super) const AREA: Area = Area {
         },
         Check {
             id: "V-STUDY-04",
-            quantity: "inverse of the actuator, every set of harmonics: error of the wanted flap motion, worst",
+            quantity: "inverse of the actuator, every set of harmonics: error of the wanted flap motion, worst; wanted is the \
+                       ideal actuator's motion, but for 2 to 5/rev together, where the range of voltages does not hold \
+                       that, the motion of least J within it",
             unit: "%",
             source: SELF,
             criterion: Criterion::AtMost(1.0),
@@ -131,8 +136,109 @@ pub(super) const AREA: Area = Area {
             repeatability: Repeatability::Everywhere,
             measure: power_over_limit,
         },
+        Check {
+            id: "V-STUDY-12",
+            quantity: "constant T and tuned weight from zero at advance ratios 0.05, 0.10, 0.15 and 0.25, 2, 3, 4/rev: loops \
+                       that did not converge",
+            unit: "-",
+            source: SLOWER,
+            criterion: Criterion::AtMost(0.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let all = slower()?.iter().filter(|l| l.actuator == "hysteretic");
+                Ok(all.filter(|l| l.outcome != "converged").count() as f64)
+            },
+        },
+        Check {
+            id: "V-STUDY-13",
+            quantity: "the same: J over that of hysteresis ignored, worst",
+            unit: "-",
+            source: SLOWER,
+            criterion: Criterion::AtMost(1.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let fed_back: Vec<_> =
+                    slower()?.iter().filter(|l| l.actuator == "hysteretic").collect();
+                let ignored = slower()?.iter().filter(|l| l.actuator == "ignored");
+                let ratios = fed_back.iter().zip(ignored).map(|(a, b)| Ok(a.j_after / b.j_after));
+                worst("loops", 12, ratios)
+            },
+        },
+        Check {
+            id: "V-STUDY-14",
+            quantity: "stroke limit given, 1 deg, feedback within limits, 2, 3, 4, 5/rev and all together: largest flap \
+                       harmonic over the limit",
+            unit: "-",
+            source: "the motion of the hysteretic actuator itself",
+            criterion: Criterion::AtMost(1.0),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(given_stroke()?.0),
+        },
+        Check {
+            id: "V-STUDY-15",
+            quantity: "the same: how far the largest flap harmonic of a set stays below the limit, worst",
+            unit: "-",
+            source: "all sets bind at 1 deg",
+            criterion: Criterion::AtMost(0.005),
+            repeatability: Repeatability::Everywhere,
+            measure: || Ok(given_stroke()?.1),
+        },
+        Check {
+            id: "V-STUDY-16",
+            quantity: "2 to 5/rev together, range of voltages binding: J of the inverse's best motion in reach over that of \
+                       feedback within limits",
+            unit: "-",
+            source: "two ways to one optimum",
+            criterion: Criterion::AtMost(1.02),
+            repeatability: Repeatability::Everywhere,
+            measure: || {
+                let all = [2, 3, 4, 5];
+                Ok(line(&all, "inverse")?.j_after / line(&all, "hysteretic")?.j_after)
+            },
+        },
     ],
 };
+
+const SLOWER: &str = "the study itself, Drees inflow";
+
+/// The paper's case at other advance ratios, one after another.
+fn slower() -> Result<&'static [ControlLine], CheckError> {
+    static LINES: OnceLock<Vec<ControlLine>> = OnceLock::new();
+    if LINES.get().is_none() {
+        let loaded = shipped_case(PAPER_CASE).map_err(SimError::from)?;
+        let actuators = case_actuators(&loaded)?;
+        let mut lines = Vec::new();
+        for mu in [0.05, 0.10, 0.15, 0.25] {
+            let mut here = loaded.clone();
+            here.case.advance_ratio = mu;
+            here.file.advance_ratio = mu;
+            let rotor = TrimmedRotor::new(&here, None)?;
+            let run = run_trimmed(&here, actuators.clone(), rotor, &Progress::hidden())?;
+            lines.extend(run.result.control);
+        }
+        let _ = LINES.set(lines);
+    }
+    Ok(LINES.get().map_or(&[], Vec::as_slice))
+}
+
+/// Largest flap harmonic over a limit of 1 deg, and how far the largest of a set stays below it.
+fn given_stroke() -> Result<(f64, f64), CheckError> {
+    static FOUND: OnceLock<(f64, f64)> = OnceLock::new();
+    if FOUND.get().is_none() {
+        let mut loaded = controllers_case()?;
+        loaded.case.control.stroke_limit = StrokeChoice::Given { amplitude_deg: 1.0 };
+        loaded.case.control.actuators = vec![ControlActuator::Hysteretic];
+        let lines = run_case(&loaded, &Progress::hidden())?.result.control;
+        let largest = lines.iter().map(|line| {
+            let flaps = line.flaps.iter().map(|flap| flap.flap_amplitude_deg);
+            flaps.fold(0.0, f64::max)
+        });
+        let (over, under) =
+            largest.fold((0.0_f64, 0.0_f64), |(o, u), a| (o.max(a), u.max(1.0 - a)));
+        let _ = FOUND.set((over, under));
+    }
+    FOUND.get().copied().ok_or(CheckError::TooFew { what: "sets", found: 0, needed: 5 })
+}
 
 /// The paper's case: constant T, weight tuned to the stroke.
 fn paper_study() -> Result<&'static [ControlLine], CheckError> {

@@ -4,7 +4,7 @@ use crate::plants::{Problem, as_t};
 use hhc_control::{
     ControlError, ControlLayout, ControlLimits, ControlRun, Controller, FeedbackController,
     FeedbackLaw, FeedbackSettings, FlapCircle, LinearPlant, LoadWeights, Measurement, Outcome,
-    Plant, PowerLimit, RunError, TMatrix, VoltageRange,
+    Plant, PowerLimit, RunError, StepLeave, TMatrix, VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -121,7 +121,7 @@ fn where_no_limit_binds_it_is_the_fixed_point_of_the_law() {
     assert!(
         (u - DVector::from_column_slice(&law.last().control_volt)).norm() <= 1e-8 * free.norm()
     );
-    assert!(constrained.kkt.unwrap().largest() <= 1e-12);
+    assert!(constrained.kkt.as_ref().unwrap().residual().largest() <= 1e-12);
 }
 
 /// A plant with given limits.
@@ -309,6 +309,12 @@ proptest! {
             .unwrap();
         let found = law(&problem).optimum_within(0.0, &[0.0; 8], &z0, &limits).unwrap();
         prop_assert!(found.kkt.largest() <= 1e-6, "{:?}", found.kkt);
+        // the certificate says the same from its own numbers, and notices a point that is not the optimum
+        let certificate = &found.certificate;
+        prop_assert!(certificate.residual().largest() <= found.kkt.largest() + 1e-9);
+        let mut moved = certificate.clone();
+        moved.point[0] += 1e-3;
+        prop_assert!(moved.residual().largest() > certificate.residual().largest());
         prop_assert!(limits.usage(&found.control_volt).unwrap() <= 1.0 + 1e-12);
     }
 }
@@ -337,7 +343,7 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
             cost / best - 1.0,
             run.outcome
         );
-        assert!(run.kkt.unwrap().largest() <= 1e-6);
+        assert!(run.kkt.unwrap().residual().largest() <= 1e-6);
         if controller != Controller::Global {
             assert_eq!(run.outcome, Outcome::Converged);
             assert!((cost / best - 1.0).abs() <= 1e-8);
@@ -439,4 +445,51 @@ fn limits_of_another_layout_are_refused() {
     .unwrap();
     let refused = controller.run_constrained(&mut plant, 0.0);
     assert!(matches!(refused, Err(RunError::Control(ControlError::Length { .. }))), "{refused:?}");
+}
+
+/// Limits that give way by as much as they are left: each step to the optimum within them is a step out of
+/// them, and back, for ever, unless the loop looks between the two.
+struct Giving(LinearPlant);
+
+impl Plant for Giving {
+    type Error = Infallible;
+
+    fn layout(&self) -> &ControlLayout {
+        self.0.layout()
+    }
+
+    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
+        self.0.measure(control_volt)
+    }
+
+    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Infallible> {
+        self.0.strokes_deg(control_volt)
+    }
+
+    fn stroke_limits_deg(&self) -> Vec<f64> {
+        self.0.stroke_limits_deg()
+    }
+
+    fn limits(&mut self, u: &[f64]) -> Result<ControlLimits, Infallible> {
+        let limit = (4.0 - u[0].hypot(u[1])).clamp(1.5, 2.5);
+        Ok(ControlLimits::none(self.layout()).with_amplitudes_volt(vec![limit]).unwrap())
+    }
+}
+
+#[test]
+fn a_loop_that_goes_to_and_fro_over_its_limits_ends_between() {
+    let t = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 1.0]);
+    let problem = Problem::new(1, &[3], t, &[-8.0, -6.0]);
+    let controller = FeedbackController::new(
+        &as_t(&problem.t),
+        &LoadWeights::Identity,
+        FeedbackSettings::default(),
+    )
+    .unwrap();
+    let run = controller.run_constrained(&mut Giving(problem.plant), 0.0).unwrap();
+    assert_eq!(run.outcome, Outcome::Converged);
+    assert!(run.steps.len() <= 4, "{} steps", run.steps.len());
+    let u = &run.last().control_volt;
+    assert!((u[0] - 1.6).abs() < 1e-4 && (u[1] - 1.2).abs() < 1e-4, "{u:?}");
+    assert_eq!(run.steps[1].leave, StepLeave::Limits, "the way back raises the cost, and says why");
 }

@@ -1,9 +1,9 @@
 //! Controllers that learn T, beside the constant one.
 
-use crate::plants::{Problem, RayleighPlant, as_t};
+use crate::plants::{Problem, RayleighPlant, as_t, relative_error};
 use hhc_control::{
-    AdaptiveSettings, ControlLayout, ControlRun, Controller, FeedbackController, FeedbackSettings,
-    LoadWeights, Outcome, identify_t, lag_loss,
+    AdaptiveSettings, ControlError, ControlLayout, ControlRun, Controller, FeedbackController,
+    FeedbackSettings, LoadWeights, Outcome, RunError, identify_t, lag_loss,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -168,4 +168,25 @@ fn settings_out_of_range_are_refused() {
     for step_volt in [vec![1.0; 3], vec![0.0; 4]] {
         assert!(controller().with_controller(Controller::Local { step_volt }).is_err());
     }
+}
+
+/// A T0 turned by 120 deg leads nowhere: held constant that is an error; identified again, once, it leads to the
+/// optimum.
+#[test]
+fn a_constant_t_that_leads_nowhere_is_identified_again() {
+    let t =
+        DMatrix::from_fn(6, 4, |i, j| if i == j { 1.0 } else { 0.2 * (i as f64 - j as f64).cos() });
+    let z0: Vec<f64> = (0..6).map(|i| (0.7 * f64::from(i) + 0.3).cos()).collect();
+    let problem = Problem::new(2, &[3], t, &z0);
+    let t0 = problem.distorted_t(1.0, 120.0);
+    let controller =
+        FeedbackController::new(&t0, &LoadWeights::Identity, FeedbackSettings::default()).unwrap();
+    let held = controller.run(&mut problem.plant.clone(), 0.0);
+    assert!(matches!(held, Err(RunError::Control(ControlError::Diverges { .. }))));
+    let way = Controller::Renewed { step_volt: vec![0.1; 4], renewals: 3 };
+    let run =
+        controller.with_controller(way).unwrap().run(&mut problem.plant.clone(), 0.0).unwrap();
+    assert_eq!((run.outcome, run.identifications), (Outcome::Converged, 1));
+    let exact = problem.optimum(&[1.0; 6], 0.0);
+    assert!(relative_error(&run.last().control_volt, &exact) <= 1e-8);
 }

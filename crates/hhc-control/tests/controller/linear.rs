@@ -2,7 +2,8 @@
 
 use crate::plants::{Problem, as_t, relative_error};
 use hhc_control::{
-    ControlError, FeedbackController, FeedbackSettings, LoadWeights, Outcome, RunError, identify_t,
+    ControlError, FeedbackController, FeedbackSettings, LoadWeights, Outcome, RunError, StepLeave,
+    identify_t,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -110,7 +111,10 @@ proptest! {
     ) {
         let mut plant = problem.plant.clone();
         let t0 = problem.distorted_t(gain, phase_deg);
-        let settings = FeedbackSettings { cost_rise_allowance: 0.0, ..FeedbackSettings::default() };
+        let (cost_rise_allowance, settling_cost) = (0.0, 0.0);
+        let settings = FeedbackSettings {
+            cost_rise_allowance, settling_cost, ..FeedbackSettings::default()
+        };
         let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
         let history: Vec<_> = match controller.run(&mut plant, effort) {
             Ok(run) => run.history().cloned().collect(),
@@ -171,16 +175,37 @@ fn the_bound_on_the_phase_error_is_sharp() {
         let optimum = worst(sign);
         let z0: Vec<f64> = (-(&t * &optimum)).iter().copied().collect();
         let problem = Problem::new(1, &[3], t.clone(), &z0);
-        let run = |phase_deg: f64| {
+        let run_over = |phase_deg: f64, settling_cost: f64| {
             let t0 = problem.distorted_t(1.0, phase_deg);
-            let settings = FeedbackSettings { max_halvings: 40, ..tight() };
+            let settings = FeedbackSettings { max_halvings: 40, settling_cost, ..tight() };
             FeedbackController::new(&t0, &LoadWeights::Identity, settings)
                 .unwrap()
                 .run(&mut problem.plant.clone(), 0.0)
         };
+        let run = |phase_deg: f64| run_over(phase_deg, 0.0);
         assert!(run(sign * (limit_deg - 0.5)).is_ok());
         assert!(matches!(
             run(sign * (limit_deg + 0.5)),
+            Err(RunError::Control(ControlError::Diverges { .. }))
+        ));
+        // full steps contract all the same, by 2 sin(phi/2): over a hill they reach the optimum
+        let over = run_over(sign * (limit_deg + 0.5), 10.0).unwrap();
+        assert_eq!(over.outcome, Outcome::Converged);
+        assert!(
+            relative_error(&over.last().control_volt, &problem.optimum(&[1.0; LOADS], 0.0)) <= 1e-8
+        );
+        let first = &over.steps[0];
+        assert_eq!(first.leave, StepLeave::Settling);
+        assert!(first.cost.total() > over.start.cost.total(), "there is no hill");
+        let factor = 2.0 * (0.5 * (limit_deg + 0.5).to_radians()).sin();
+        for pair in over.steps.windows(2).take(20) {
+            assert!((pair[1].asked_volt / pair[0].asked_volt - factor).abs() < 1e-3);
+        }
+        // with too low a ceiling the same is an error again
+        let highest = over.steps.iter().map(|step| step.cost.total()).fold(0.0, f64::max);
+        let low = 0.99 * highest / over.start.cost.total();
+        assert!(matches!(
+            run_over(sign * (limit_deg + 0.5), low),
             Err(RunError::Control(ControlError::Diverges { .. }))
         ));
     }

@@ -136,6 +136,7 @@ fn build(
             load_scale: control.load_scale,
             effort: control.effort,
             controller: control.controller,
+            t_inflow: control.t_inflow,
             power_limit_watt: control.power_limit_watt,
             power_weight_per_watt: control.power_weight_per_watt,
             max_steps: control.max_steps,

@@ -247,6 +247,16 @@ pub enum ControllerChoice {
     Adaptive,
 }
 
+/// The inflow in the T of the linearised rotor: that of the local controller and of the forecasts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum TInflowChoice {
+    /// Settles on the moved loading, as it does in every measured response.
+    #[default]
+    Settled,
+    /// Stays as it is in trim: a wake slower than the controller.
+    Frozen,
+}
+
 /// What the load weights multiply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum LoadScaleChoice {
@@ -307,6 +317,9 @@ pub struct ControlFile {
     pub effort: EffortChoice,
     /// What the controller of the real actuator knows of T.
     pub controller: ControllerChoice,
+    /// Inflow in the T of the linearised rotor.
+    #[serde(skip_serializing_if = "inflow_settles")]
+    pub t_inflow: TInflowChoice,
     /// Largest mean power that the actuators of one blade give, none taken back, W; with `effort: Limits`.
     #[serde(rename = "power_limit_W", skip_serializing_if = "Option::is_none")]
     pub power_limit_watt: Option<f64>,
@@ -317,6 +330,12 @@ pub struct ControlFile {
     pub max_steps: usize,
     /// Relative change of the voltages at which the control has settled.
     pub step_tolerance: f64,
+}
+
+/// Whether the inflow of T is left out of a written case.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde asks for")]
+fn inflow_settles(choice: &TInflowChoice) -> bool {
+    *choice == TInflowChoice::Settled
 }
 
 /// Whether a weight is left out of a written case.
@@ -342,6 +361,7 @@ impl Default for ControlFile {
             load_scale: LoadScaleChoice::default(),
             effort: EffortChoice::MeetStroke,
             controller: ControllerChoice::default(),
+            t_inflow: TInflowChoice::default(),
             power_limit_watt: None,
             power_weight_per_watt: 0.0,
             max_steps: 40,

@@ -27,7 +27,8 @@ pub use file_blade::{BladeTablesFile, GravityChoice, JointChoice, RootFile, Unli
 pub use file_control::{
     ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, ControllerChoice,
     EffortChoice, HorizontalTailFile, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile,
-    PropulsiveTrimFile, StoredActuatorFile, StrokeChoice, TrimFile, WindTunnelTrimFile,
+    PropulsiveTrimFile, StoredActuatorFile, StrokeChoice, TInflowChoice, TrimFile,
+    WindTunnelTrimFile,
 };
 pub use file_wake::{
     ControlPointChoice, CoreChoice, FreeWakeFile, NearWakeChoice, ReleaseChoice, RolledUpChoice,

@@ -4,7 +4,8 @@ use super::{
     BasisChoice, BladeTablesFile, CompressibilityChoice, ControlActuator, ControllerChoice,
     CouplingsChoice, DynamicStallChoice, EffortChoice, FlapMassChoice, GravityChoice,
     HorizontalTailFile, InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile,
-    ReverseFlowChoice, RootFile, SectionModelChoice, StrokeChoice, TolerancesFile, UnlikeBladeFile,
+    ReverseFlowChoice, RootFile, SectionModelChoice, StrokeChoice, TInflowChoice, TolerancesFile,
+    UnlikeBladeFile,
 };
 use crate::files::Folder;
 use flap_aero::AirfoilSpan;
@@ -247,6 +248,8 @@ pub struct ControlValues {
     pub effort: EffortChoice,
     /// What the controller of the real actuator knows of T.
     pub controller: ControllerChoice,
+    /// Inflow in the T of the linearised rotor.
+    pub t_inflow: TInflowChoice,
     /// Largest mean power that the actuators of one blade give, W.
     pub power_limit_watt: Option<f64>,
     /// Weight of that power in the cost, per W.

@@ -22,13 +22,13 @@ use crate::modes::{AboutState, FAN_SPEEDS, ModesQuestion, fan_csv, rotating_mode
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::progress::Progress;
-use crate::recompute::recomputed;
+use crate::recompute::{changed, compared_fields, compared_table, recomputed};
 use crate::report::{StudyReport, report_html};
 use crate::results::{RunResult, StoredResult};
 use crate::run::{RunOutcome, run_case, run_trimmed, steps_of};
 use crate::stored_actuator::{StoredActuator, read_actuator};
 use crate::study::{
-    Assumptions, RobustnessCell, Sensitivity, histories_csv, robustness_csv, robustness_maps,
+    Assumptions, PagePart, histories_csv, page_part, robustness_csv, robustness_maps,
     sensitivities, sensitivity_csv, study_report,
 };
 use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
@@ -124,11 +124,10 @@ fn run_sweep(
                 .and_then(|outcome| with_scope(&here, outcome, scope, &progress))
         });
         progress.finish();
-        let computed = computed?;
-        start = Some(computed.outcome.trimmed.trim().clone());
-        let folder = out.join(sweep_folder(mu));
-        store(&here, &folder, scope, &computed)?;
-        rows.push(SweepRow { advance_ratio: mu, result: computed.outcome.result });
+        let outcome = computed?;
+        start = Some(outcome.trimmed.trim().clone());
+        store(&here, &out.join(sweep_folder(mu)), &outcome)?;
+        rows.push(SweepRow { advance_ratio: mu, result: outcome.result });
     }
     let sweep = SweepResult { rows };
     write_atomic(&out.join(SWEEP_FILE), sweep_csv(&sweep).as_bytes())?;
@@ -149,55 +148,41 @@ struct Scope {
     robustness: bool,
 }
 
-/// A run with what was computed beside it.
-struct Computed {
-    outcome: RunOutcome,
-    sensitivity: Vec<Sensitivity>,
-    robustness: Vec<RobustnessCell>,
-}
-
+/// The outcome with what is computed beside the case.
 fn with_scope(
     loaded: &LoadedCase,
-    outcome: RunOutcome,
+    mut outcome: RunOutcome,
     scope: Scope,
     progress: &Progress,
-) -> Result<Computed, SimError> {
-    let (mut sensitivity, mut robustness) = (vec![], vec![]);
+) -> Result<RunOutcome, SimError> {
     if let Some(which) = scope.sensitivity {
         progress.doing("sensitivity");
         let done = || progress.step();
-        sensitivity = sensitivities(loaded, (&outcome.trimmed, &outcome.drives), which, &done)?;
+        let rotor = (&outcome.trimmed, &outcome.drives);
+        outcome.result.sensitivity = sensitivities(loaded, rotor, which, &done)?;
     }
     if scope.robustness {
         progress.doing("robustness");
-        robustness = robustness_maps(loaded, &outcome)?;
+        outcome.result.robustness = robustness_maps(loaded, &outcome)?;
     }
-    Ok(Computed { outcome, sensitivity, robustness })
+    Ok(outcome)
 }
 
 /// Writes everything a run leaves behind; its report.
-fn store(
-    loaded: &LoadedCase,
-    out: &Path,
-    scope: Scope,
-    computed: &Computed,
-) -> Result<StudyReport, SimError> {
-    let Computed { outcome, sensitivity, robustness } = computed;
-    for warning in &outcome.result.warnings {
+fn store(loaded: &LoadedCase, out: &Path, outcome: &RunOutcome) -> Result<StudyReport, SimError> {
+    let result = &outcome.result;
+    for warning in &result.warnings {
         eprintln!("warning: {warning}");
     }
     let inputs = outcome.actuators.inputs.clone();
-    let stored = StoredResult::new(&loaded.file, inputs, outcome.result.clone())?;
-    let report = study_report(loaded, outcome, &stored, (sensitivity, robustness))?;
-    if scope.sensitivity.is_some() {
-        let text = sensitivity_csv(loaded, sensitivity);
-        write_atomic(&out.join(SENSITIVITY_FILE), text.as_bytes())?;
-    }
-    if scope.robustness {
-        write_atomic(&out.join(ROBUSTNESS_FILE), robustness_csv(robustness).as_bytes())?;
+    let page = page_part(loaded, outcome)?;
+    let mut stored = StoredResult::new(&loaded.file, inputs, result.clone())?;
+    stored.page_key = Some(page.key()?);
+    let report = study_report(&stored, page);
+    for (name, text) in tables(&stored) {
+        write_atomic(&out.join(name), text.as_bytes())?;
     }
     stored.write(&out.join(RESULT_FILE))?;
-    write_atomic(&out.join(HISTORIES_FILE), histories_csv(&outcome.studies).as_bytes())?;
     let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales);
     write_atomic(&out.join(BLADE_LOADS_FILE), blade_loads.as_bytes())?;
     let numbers = serde_json::to_string(&report)
@@ -205,6 +190,20 @@ fn store(
     write_atomic(&out.join(STUDY_FILE), numbers.as_bytes())?;
     write_atomic(&out.join(REPORT_FILE), report_html(&report).as_bytes())?;
     Ok(report)
+}
+
+/// The tables that a stored result gives, by file name.
+fn tables(stored: &StoredResult<RunResult>) -> Vec<(&'static str, String)> {
+    let result = &stored.result;
+    let mut files = vec![(HISTORIES_FILE, histories_csv(&result.control))];
+    if !result.sensitivity.is_empty() {
+        let harmonics = &stored.case.control.harmonics;
+        files.push((SENSITIVITY_FILE, sensitivity_csv(harmonics, &result.sensitivity)));
+    }
+    if !result.robustness.is_empty() {
+        files.push((ROBUSTNESS_FILE, robustness_csv(&result.robustness)));
+    }
+    files
 }
 
 fn run_and_store(
@@ -218,9 +217,9 @@ fn run_and_store(
     let computed = run_case(loaded, &progress)
         .and_then(|outcome| with_scope(loaded, outcome, scope, &progress));
     progress.finish();
-    let computed = computed?;
-    let report = store(loaded, out, scope, &computed)?;
-    let result = &computed.outcome.result;
+    let outcome = computed?;
+    let report = store(loaded, out, &outcome)?;
+    let result = &outcome.result;
     match format {
         Format::Json => print(&result.render(format)?),
         Format::Text => {
@@ -513,9 +512,28 @@ fn starting_case() -> Result<String, Problem> {
 }
 
 pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
-    let report: StudyReport = json_of(&args.dir.join(STUDY_FILE))?;
+    let shown: StudyReport = json_of(&args.dir.join(STUDY_FILE))?;
     let stored: StoredResult<RunResult> = json_of(&args.dir.join(RESULT_FILE))?;
-    let checked = recomputed(&stored)?;
+    let checked = recomputed(stored, RESULT_FILE)?;
+    let page = PagePart::of(&shown);
+    if let Some(key) = &checked.stored.page_key {
+        let found = page.key()?;
+        if *key != found {
+            let field = "title, setting, data_title, fits or loops".to_owned();
+            return Err(changed(
+                STUDY_FILE,
+                field,
+                format!("of key {found}"),
+                format!("key {key}"),
+            ));
+        }
+    }
+    let report = study_report(&checked.stored, page);
+    compared_fields(&shown, &report, (STUDY_FILE, "report"))?;
+    for (name, text) in tables(&checked.stored) {
+        let found = Source::read(&args.dir.join(name))?;
+        compared_table(&found.text, &text, name)?;
+    }
     let path = args.dir.join(REPORT_FILE);
     write_atomic(&path, report_html(&report).as_bytes())?;
     print(&format!("{checked}{} written\n", path.display()))

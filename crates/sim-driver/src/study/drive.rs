@@ -322,7 +322,7 @@ impl FlapDrive {
         let Self::Model { range_volt: range, .. } = self else {
             let motion = self.motion(&[(harmonic, cosine(amplitude_volt))])?;
             let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
-            return Ok(FullScale { amplitude_volt, stroke_deg });
+            return Ok(FullScale { amplitude_volt, stroke_deg, reach_volt: amplitude_volt });
         };
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
         for _ in 0..FULL_SCALE_PASSES {
@@ -344,9 +344,45 @@ impl FlapDrive {
         }
         let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
         let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
-        Ok(FullScale { amplitude_volt: amplitude, stroke_deg })
+        Ok(FullScale { amplitude_volt: amplitude, stroke_deg, reach_volt: amplitude })
+    }
+
+    /// Amplitude of one harmonic that gives a stroke below full scale, V: solved on the model, because the
+    /// gain of an actuator with memory grows with its amplitude.
+    ///
+    /// # Errors
+    /// As [`Self::motion`].
+    pub fn voltage_of_stroke(
+        &self,
+        harmonic: usize,
+        stroke_deg: f64,
+        full: FullScale,
+    ) -> Result<f64, PlantError> {
+        let (mut low, mut high) = ([0.0, 0.0], [full.amplitude_volt, full.stroke_deg]);
+        for pass in 0..STROKE_PASSES {
+            // a little below the chord, and the middle by turns, so that neither end can stay
+            let aim = stroke_deg * (1.0 - 0.5 * STROKE_TOLERANCE);
+            let part = if pass % 3 == 2 { 0.5 } else { (aim - low[1]) / (high[1] - low[1]) };
+            let volt = low[0] + part * (high[0] - low[0]);
+            let motion = self.motion(&[(harmonic, cosine(volt))])?;
+            let found = motion.flap_deg.harmonic(harmonic).amplitude();
+            let end = if found <= stroke_deg { &mut low } else { &mut high };
+            *end = [volt, found];
+            let reached = low[1] >= stroke_deg * (1.0 - STROKE_TOLERANCE);
+            if reached || high[0] - low[0] <= SMALLEST_STROKE_VOLT {
+                break;
+            }
+        }
+        Ok(low[0])
     }
 }
+
+/// How far below a given stroke the voltage that belongs to it may stay, relative.
+const STROKE_TOLERANCE: f64 = 1e-4;
+/// Voltage below which that is not told apart, V.
+const SMALLEST_STROKE_VOLT: f64 = 1e-6;
+/// Trials of that voltage.
+const STROKE_PASSES: usize = 60;
 
 /// Rounds of the inverse under load: the load takes nearly the same whatever the voltage.
 const LOADED_INVERSE_ROUNDS: usize = 6;
@@ -447,4 +483,48 @@ fn alternating_volt(voltage: &HarmonicSeries) -> (f64, f64) {
         .into_iter()
         .map(|azimuth| alternating.value(azimuth))
         .fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use preisach_dyn::{ActuatorLaw, PrandtlIshlinskii, PrandtlParameters, WeightedPlay};
+
+    /// Plays whose gain grows with the amplitude: half of full voltage gives far less than half of the stroke.
+    fn hysteretic() -> FlapDrive {
+        let range = VoltageRange::new(-20.0, 150.0).unwrap();
+        let play = |threshold_volt| WeightedPlay { threshold_volt, weight_deg_per_volt: 0.02 };
+        let parameters = PrandtlParameters {
+            range_volt: range,
+            gain_deg_per_volt: 0.01,
+            plays: [10.0, 20.0, 30.0, 40.0].map(play).to_vec(),
+            threshold_growth_s: 0.0,
+            envelope: preisach_dyn::Envelope::default(),
+        };
+        let law = ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).unwrap());
+        let model = ActuatorModel { law, ..ActuatorModel::linear(range, 8.5, 0.04) };
+        FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+    }
+
+    #[test]
+    fn a_given_stroke_is_reached_and_never_exceeded() {
+        let drive = hysteretic();
+        let full = drive.full_scale(3, 85.0).unwrap();
+        for stroke_deg in [0.1, 0.5, 1.0, 2.0, 0.999 * full.stroke_deg] {
+            let volt = drive.voltage_of_stroke(3, stroke_deg, full).unwrap();
+            // at any phase
+            let (sin, cos) = 0.7_f64.sin_cos();
+            let turned = Harmonic { cosine: volt * cos, sine: volt * sin };
+            let motion = drive.motion(&[(3, turned)]).unwrap();
+            let found = motion.flap_deg.harmonic(3).amplitude();
+            assert!(found <= stroke_deg * (1.0 + 1e-5), "{found} of {stroke_deg}");
+            assert!(found >= stroke_deg * (1.0 - 2e-4), "{found} of {stroke_deg}");
+            // the voltage in proportion would fall short
+            let linear = full.amplitude_volt * stroke_deg / full.stroke_deg;
+            assert!(volt > linear, "{volt} {linear}");
+        }
+        let short = drive.motion(&[(3, cosine(0.3 * full.amplitude_volt))]).unwrap();
+        let part = short.flap_deg.harmonic(3).amplitude() / full.stroke_deg;
+        assert!(part < 0.25, "the actuator of this test is too straight: {part}");
+    }
 }

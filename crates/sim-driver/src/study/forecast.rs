@@ -3,10 +3,9 @@
 use super::run::{ControlSet, LEAST_EFFORT};
 use super::{Drives, FlapDrive, PlantError, StudyError, TrimmedRotor};
 use crate::case::{Case, ControlActuator};
-use crate::results::Forecast;
-use hhc_control::{
-    FeedbackLaw, LoadWeights, Plant, PlantCall, RunError, TMatrix, lag_deg, lag_loss,
-};
+use crate::raw::{ForecastRecord, Setting};
+use crate::results::{Forecast, HubLoads};
+use hhc_control::{FeedbackLaw, LoadWeights, Plant, PlantCall, RunError, TMatrix, lag_deg};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 
@@ -32,6 +31,8 @@ pub fn forecasts(
 
 /// A small motion of a flap per V: voltage, gain in deg/V and lag in rad.
 struct HarmonicGain {
+    /// Motion for a cosine of the voltage.
+    flap_deg: Harmonic,
     gain_deg_per_volt: f64,
     lag_rad: f64,
 }
@@ -43,6 +44,7 @@ impl HarmonicGain {
         let motion = drive.motion(&[(harmonic, voltage)])?;
         let flap = motion.flap_deg.harmonic(harmonic);
         Ok(Self {
+            flap_deg: flap,
             gain_deg_per_volt: flap.amplitude() / amplitude_volt,
             lag_rad: lag_deg(voltage, flap).to_radians(),
         })
@@ -76,16 +78,8 @@ impl ControlSet<'_> {
         let surplus = t.controls() > t.loads();
         let scale = law.singular_values().first().map_or(0.0, |s| s * s);
         let rho = if surplus { LEAST_EFFORT * scale } else { 0.0 };
-        let free = law.optimum_volt(rho, &zero, &baseline).map_err(control_failed)?;
         let limits = ideal.limits(&zero).map_err(plant_failed)?;
         let cone = law.optimum_within(rho, &zero, &baseline, &limits).map_err(control_failed)?;
-        let clipped = self.clipped(&free);
-        let cost = |u: &[f64]| -> Result<f64, StudyError> {
-            let change = t.loads_for(u).map_err(control_failed)?;
-            let pairs = law.load_weights().iter().zip(baseline.iter().zip(change));
-            Ok(pairs.map(|(w, (z, dz))| w * (z + dz) * (z + dz)).sum())
-        };
-        let before = cost(&zero)?;
 
         let drive = self.drives.hysteretic.as_ref().unwrap_or(&self.drives.ideal);
         let gains = |amplitude: &dyn Fn(usize) -> f64| {
@@ -95,45 +89,32 @@ impl ControlSet<'_> {
         };
         let at_stroke = gains(&|k| self.limits[k].amplitude_volt).map_err(plant_failed)?;
         let at_step = gains(&|_| self.step_volt()).map_err(plant_failed)?;
-        let pairs = ideal.layout().pairs();
-        let lags: Vec<f64> =
-            (0..pairs).map(|pair| at_stroke[pair % at_stroke.len()].lag_rad).collect();
-        let loss = lag_loss(&t, &weights, &free, &lags).map_err(control_failed)?;
         let dynamic = self.dynamic_t(drive).map_err(plant_failed)?;
-        let apart = |gains: &[HarmonicGain]| -> Result<f64, StudyError> {
-            let simple = self.gain_t(gains).map_err(plant_failed)?;
-            Ok(100.0 * simple.relative_difference(&dynamic).map_err(control_failed)?)
-        };
-        Ok(Forecast {
-            harmonics: self.harmonics.to_vec(),
-            lag_deg: at_stroke.iter().map(|gain| gain.lag_rad.to_degrees()).collect(),
-            lag_loss_percent: 100.0 * loss.part,
-            isotropic_loss_percent: 100.0 * loss.isotropic,
-            cone: cost(&cone.control_volt)? / before,
-            clipped: cost(&clipped)? / before,
-            free: cost(&free)? / before,
-            gain_at_step_percent: apart(&at_step)?,
-            gain_at_stroke_percent: apart(&at_stroke)?,
-        })
-    }
-
-    /// Every harmonic cut to its stroke, its phase kept: what is not done.
-    fn clipped(&self, control_volt: &[f64]) -> Vec<f64> {
         let per_deg = self.case.control.amplitude_volt / self.case.actuator.ideal_amplitude_deg;
-        let pairs = control_volt.chunks_exact(2).enumerate();
-        pairs
-            .flat_map(|(pair, u)| {
-                let limit = self.limits[pair % self.limits.len()].stroke_deg * per_deg;
-                let part = (limit / u[0].hypot(u[1])).min(1.0);
-                [part * u[0], part * u[1]]
-            })
-            .collect()
+        let forecast = Forecast {
+            harmonics: self.harmonics.to_vec(),
+            record: ForecastRecord {
+                t_per_volt: columns,
+                rho_per_volt2: rho,
+                cone_volt: cone.control_volt,
+                stroke_volt: self.limits.iter().map(|l| l.stroke_deg * per_deg).collect(),
+                at_stroke_deg: at_stroke
+                    .iter()
+                    .map(|gain| [gain.flap_deg.cosine, gain.flap_deg.sine])
+                    .collect(),
+                dynamic_t_per_volt: dynamic.columns(),
+                gain_t_at_step_per_volt: self.gain_t(&at_step).map_err(plant_failed)?.columns(),
+                gain_t_at_stroke_per_volt: self.gain_t(&at_stroke).map_err(plant_failed)?.columns(),
+            },
+            ..Forecast::default()
+        };
+        Ok(forecast.refigured(&Setting::of_case(self.case, &HubLoads::from_parts(baseline))))
     }
 
     /// T of the linearised rotor with a harmonic gain for the actuator, load per V.
     fn gain_t(&self, gains: &[HarmonicGain]) -> Result<TMatrix, PlantError> {
         self.t_of(|n, quadrature, k| {
-            let HarmonicGain { gain_deg_per_volt, lag_rad } = gains[k];
+            let HarmonicGain { gain_deg_per_volt, lag_rad, .. } = gains[k];
             let phase = if quadrature { std::f64::consts::FRAC_PI_2 } else { 0.0 };
             let mut motion = HarmonicSeries::zero(n);
             motion.set_harmonic(

@@ -6,6 +6,7 @@ mod drive;
 mod error;
 mod forecast;
 mod hinge_power;
+mod inverted;
 mod lines;
 mod pair_power;
 mod paper;
@@ -26,11 +27,12 @@ pub use lines::control_line;
 pub use pair_power::given_watt_per_rad2;
 pub use plant::{PlantState, RotorPlant, TrimmedRotor, UnlikeSolver};
 pub use robustness::{Disturbance, RobustnessCell, robustness, robustness_csv, robustness_maps};
-use run::load_weights;
-pub(crate) use run::loads_cost;
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
-pub use sensitivity::{Assumptions, Sensitivity, sensitivities, sensitivity_csv};
-pub use tables::{histories_csv, study_report};
+pub(crate) use sensitivity::refigure_sensitivity;
+pub use sensitivity::{
+    Assumptions, Sensitivity, SensitivityRecord, sensitivities, sensitivity_csv,
+};
+pub use tables::{PagePart, histories_csv, page_part, study_report};
 
 #[cfg(test)]
 mod power_weight_tests;

@@ -11,7 +11,7 @@ use super::{
     CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
 };
 use crate::SimError;
-use crate::case::{Case, LoadedCase};
+use crate::case::{Case, LoadedCase, TInflowChoice};
 use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use crate::problem::Place;
 use hhc_control::{
@@ -35,6 +35,8 @@ pub struct TrimmedRotor {
     inflow: SettledInflow,
     trim: TrimSolution,
     scales: RotorScales,
+    /// Inflow in the T of the linearised rotor.
+    t_inflow: InflowState,
     /// Change of the hinge moments with the flap motions, found when first asked for.
     hinge_response: Arc<OnceLock<DMatrix<f64>>>,
     /// Made when first asked for, the same whoever asks.
@@ -65,7 +67,11 @@ impl TrimmedRotor {
         let hinge_response = Arc::default();
         let authority = Arc::default();
         let SettledTrim { trim, inflow, wake } = settled;
-        Ok(Self { solver, inflow, trim, scales, hinge_response, authority, wake })
+        let t_inflow = match case.control.t_inflow {
+            TInflowChoice::Settled => InflowState::Settled,
+            TInflowChoice::Frozen => InflowState::Frozen,
+        };
+        Ok(Self { solver, inflow, trim, scales, t_inflow, hinge_response, authority, wake })
     }
 
     /// Moment unit `m0 Omega^2 R^3`, N m.
@@ -88,7 +94,7 @@ impl TrimmedRotor {
         self.solver.rotor()
     }
 
-    /// What the flaps do to the hub, linearised about the trimmed orbit with the inflow settled.
+    /// What the flaps do to the hub, linearised about the trimmed orbit with the inflow as the case has it in T.
     ///
     /// # Errors
     /// The errors of the linearised response.
@@ -96,7 +102,7 @@ impl TrimmedRotor {
         if let Some(known) = self.authority.get() {
             return Ok(known);
         }
-        let found = self.linearised(InflowState::Settled)?;
+        let found = self.linearised(self.t_inflow)?;
         Ok(self.authority.get_or_init(|| found))
     }
 
@@ -330,6 +336,9 @@ const RESPONSE_STEP_RAD: f64 = 1e-3;
 const LIMIT_AZIMUTHS: usize = 720;
 /// Part of full scale from which the gain of an actuator is read off its motion.
 const LEAST_GAIN_PART: f64 = 0.2;
+/// Part of a given stroke limit that a cone program aims at: the gain moves with the control, and no end of a
+/// loop is to lie above the limit.
+const STROKE_AIMED_AT: f64 = 0.9985;
 /// Voltage step of the tangent of an actuator, V: wide enough to see past the steps of its memory.
 const TANGENT_STEP_VOLT: f64 = 1.0;
 
@@ -354,8 +363,12 @@ pub struct RotorPlant {
     coupling: Option<HingeCoupling>,
     /// One per pair of the layout.
     stroke_limits_deg: Vec<f64>,
-    /// Amplitude at which each pair reaches its limit, V.
+    /// What a cone program aims at, one per pair.
+    stroke_aims_deg: Vec<f64>,
+    /// Amplitude at which each pair, alone on its flap, reaches its limit, V.
     full_scale_volt: Vec<f64>,
+    /// Amplitude at which each pair, alone on its flap, ends the range of voltages, V.
+    reach_volt: Vec<f64>,
     power: Option<PlantPower>,
     /// Motions of one flap without hinge moment, and of all flaps under it.
     free: Recent<FlapMotion>,
@@ -389,6 +402,12 @@ impl RotorPlant {
         Ok(Self {
             full_scale_volt: per_pair(&|f| f.amplitude_volt),
             stroke_limits_deg: per_pair(&|f| f.stroke_deg),
+            reach_volt: per_pair(&|f| f.reach_volt),
+            // where the range of voltages is the limit, its circle holds the stroke
+            stroke_aims_deg: per_pair(&|f| {
+                let given = f.amplitude_volt < f.reach_volt;
+                if given { STROKE_AIMED_AT * f.stroke_deg } else { f.stroke_deg }
+            }),
             layout,
             rotor,
             drive,
@@ -558,8 +577,8 @@ impl Plant for RotorPlant {
             .zip(&self.stroke_limits_deg)
             .map(|((volt, full), limit)| limit * volt / full)
             .collect();
-        // beyond full scale the actuator cannot be asked: the stroke grows with the voltage there
-        if amplitudes.iter().zip(&self.full_scale_volt).any(|(volt, full)| volt > full) {
+        // beyond the range the actuator cannot be asked: the stroke grows with the voltage there
+        if amplitudes.iter().zip(&self.reach_volt).any(|(volt, reach)| volt > reach) {
             return Ok(by_voltage);
         }
         // harmonics that share a flap share its range of voltages
@@ -606,18 +625,25 @@ impl Plant for RotorPlant {
             azimuths: LIMIT_AZIMUTHS,
         };
         let voltages = self.layout.voltages_volt(control_volt).map_err(PlantError::Bias)?;
+        // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
+        let known: Vec<bool> = voltages
+            .iter()
+            .zip(&self.full_scale_volt)
+            .map(|(voltage, full)| voltage.amplitude() > LEAST_GAIN_PART * full)
+            .collect();
+        let volts = self.full_scale_volt.iter().zip(&self.reach_volt).zip(&known);
+        let largest_volt = volts.map(|((full, reach), known)| if *known { *reach } else { *full });
         let mut limits = ControlLimits::none(&self.layout)
-            .with_amplitudes_volt(self.full_scale_volt.clone())
+            .with_amplitudes_volt(largest_volt.collect())
             .and_then(|limits| limits.with_voltage_range(voltage))
             .map_err(PlantError::Bias)?;
         for (pair, (voltage, motion)) in voltages.iter().zip(self.pair_motion(&flaps)).enumerate() {
-            // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
-            if voltage.amplitude() > LEAST_GAIN_PART * self.full_scale_volt[pair] {
+            if known[pair] {
                 let gain = motion.amplitude() / voltage.amplitude();
                 let (sin, cos) = (motion.phase_rad() - voltage.phase_rad()).sin_cos();
                 let circle = FlapCircle {
                     gain_deg_per_volt: [[gain * cos, -gain * sin], [gain * sin, gain * cos]],
-                    limit_deg: self.stroke_limits_deg[pair],
+                    limit_deg: self.stroke_aims_deg[pair],
                 };
                 limits = limits.with_flap_circle(pair, circle).map_err(PlantError::Bias)?;
             }

@@ -25,7 +25,9 @@ fn the_weight_of_the_power_moves_the_optimum_as_the_closed_form_says() {
         let loaded = ideal_case(weight);
         let drives = Drives::new(&loaded.case, None).unwrap();
         let study = control_set(&loaded.case, &rotor, &drives, &[4], &|| ()).unwrap().remove(0);
-        (study.control_volt.clone(), study.j_power, loaded, drives)
+        let pairs = study.control_volt.chunks_exact(2).zip(&study.power_gains_per_volt);
+        let j_power: f64 = pairs.map(|(u, g)| g * g * (u[0] * u[0] + u[1] * u[1])).sum();
+        (study.control_volt.clone(), j_power, loaded, drives)
     });
     let [(free, ..), (weighed, j_power, loaded, drives)] = found;
     let full = drives.limit(4).unwrap();

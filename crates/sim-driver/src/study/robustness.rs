@@ -1,12 +1,15 @@
 //! How the controllers stand noise, a wrong T and an actuator that drifts.
 
-use super::{Drives, PlantError, RotorPlant, StudyError, TrimmedRotor, load_weights};
+use super::lines::outcome_name;
+use super::{Drives, PlantError, RotorPlant, StudyError, TrimmedRotor};
 use crate::SimError;
 use crate::case::{Case, ControlActuator, LoadedCase};
+use crate::raw::{Setting, loads_cost};
+use crate::results::HubLoads;
 use crate::run::RunOutcome;
 use hhc_control::{
-    AdaptiveSettings, ControlLayout, ControlLimits, Controller, FeedbackController,
-    FeedbackSettings, LoadWeights, Measurement, Outcome, Plant, RunError, TMatrix, identify_t,
+    AdaptiveSettings, ControlError, ControlLayout, ControlLimits, Controller, FeedbackController,
+    FeedbackSettings, LoadWeights, Measurement, Plant, RunError, TMatrix, identify_t,
     reduction_percent,
 };
 use rand::SeedableRng;
@@ -14,10 +17,11 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
+use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
 /// What is disturbed in one run.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Disturbance {
     /// Standard deviation of the noise of a load, percent of the root mean square baseline load.
     pub noise_percent: f64,
@@ -30,12 +34,12 @@ pub struct Disturbance {
 }
 
 /// One cell of the map.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RobustnessCell {
     /// Harmonic under control, per rev.
     pub harmonic: usize,
     /// `global`, `local` or `adaptive`.
-    pub controller: &'static str,
+    pub controller: String,
     /// What was disturbed.
     pub disturbance: Disturbance,
     /// Fall of `J_Z` at the end, percent: of the loads without noise, with the actuator as it is by then.
@@ -44,13 +48,29 @@ pub struct RobustnessCell {
     pub best_percent: f64,
     /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`; `diverged`: no first step
     /// lowers the cost.
-    pub outcome: &'static str,
+    pub outcome: String,
     /// Control steps.
     pub steps: usize,
     /// Halvings.
     pub halvings: u32,
     /// Measurements.
     pub measurements: usize,
+    /// Hub loads at the end, without noise.
+    pub end: HubLoads,
+    /// The best of the way, without noise.
+    pub best: HubLoads,
+}
+
+impl RobustnessCell {
+    /// The cell with its reductions computed from its loads.
+    #[must_use]
+    pub fn refigured(&self, setting: &Setting) -> Self {
+        let weights = setting.load_weights();
+        let before = loads_cost(&weights, &setting.baseline);
+        let fall =
+            |loads: &HubLoads| reduction_percent(before, loads_cost(&weights, &loads.parts()));
+        Self { reduction_percent: fall(&self.end), best_percent: fall(&self.best), ..self.clone() }
+    }
 }
 
 const NOISE_PERCENT: [f64; 4] = [0.0, 1.0, 3.0, 10.0];
@@ -209,7 +229,8 @@ pub fn robustness(
         Ok(t0) => t0,
         Err(error) => return Err(plant_error(error)),
     };
-    let weights = load_weights(case, &baseline);
+    let setting = Setting::of_case(case, &HubLoads::from_parts(baseline));
+    let weights = setting.load_weights();
     let each: Vec<(Disturbance, Controller)> = disturbances()
         .into_iter()
         .flat_map(|disturbance| {
@@ -243,44 +264,47 @@ pub fn robustness(
             let made = FeedbackController::new(&wrong, &LoadWeights::Diagonal(diagonal), settings)
                 .and_then(|c| c.with_controller(way))
                 .map_err(PlantError::Bias)?;
-            let before = super::loads_cost(&weights, &baseline);
             let ended = made.run_constrained(&mut disturbed, 0.0);
-            let truth = |u: &[f64]| -> Result<f64, PlantError> {
-                let loads = disturbed.loads(&disturbed.flaps(u)?)?;
-                Ok(reduction_percent(before, super::loads_cost(&weights, &loads)))
-            };
+            let truth = |u: &[f64]| disturbed.loads(&disturbed.flaps(u)?);
+            // a run that diverges stays where it is
+            let at_rest = HubLoads::from_parts(baseline);
             let cell = RobustnessCell {
                 harmonic,
-                controller,
+                controller: controller.to_owned(),
                 disturbance,
-                reduction_percent: 0.0,
-                best_percent: 0.0,
-                outcome: "diverged",
-                steps: 0,
-                halvings: 0,
+                outcome: "diverged".to_owned(),
                 measurements: disturbed.answers as usize,
+                end: at_rest,
+                best: at_rest,
+                ..RobustnessCell::default()
             };
-            match ended {
-                Ok(run) => Ok(RobustnessCell {
-                    reduction_percent: truth(&run.last().control_volt)?,
-                    best_percent: run
-                        .history()
-                        .map(|step| truth(&step.control_volt))
-                        .try_fold(0.0, |best: f64, r| r.map(|r| best.max(r)))?,
-                    outcome: match run.outcome {
-                        Outcome::Converged => "converged",
-                        Outcome::Stalled => "stalled",
-                        Outcome::OutOfRange => "out-of-range",
-                        Outcome::StepLimit => "step-limit",
-                    },
-                    steps: run.steps.len(),
-                    halvings: run.halvings,
-                    measurements: run.measurements,
-                    ..cell
-                }),
-                Err(RunError::Plant { source, .. }) => Err(source),
-                Err(_) => Ok(cell),
-            }
+            let cell = match ended {
+                Ok(run) => {
+                    let mut best = baseline;
+                    for step in run.history() {
+                        let loads = truth(&step.control_volt)?;
+                        if loads_cost(&weights, &loads) < loads_cost(&weights, &best) {
+                            best = loads;
+                        }
+                    }
+                    RobustnessCell {
+                        end: HubLoads::from_parts(truth(&run.last().control_volt)?),
+                        best: HubLoads::from_parts(best),
+                        outcome: outcome_name(Some(run.outcome)).to_owned(),
+                        steps: run.steps.len(),
+                        halvings: run.halvings,
+                        measurements: run.measurements,
+                        ..cell
+                    }
+                }
+                Err(RunError::Plant { source, .. }) => return Err(source),
+                Err(RunError::Control(
+                    ControlError::Diverges { .. } | ControlError::NotAdmitted { .. },
+                )) => cell,
+                Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
+                Err(_) => return Err(PlantError::BiasSearch),
+            };
+            Ok(cell.refigured(&setting))
         })
         .collect()
 }

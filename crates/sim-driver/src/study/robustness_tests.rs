@@ -2,6 +2,7 @@
 
 use super::*;
 use hhc_control::LinearPlant;
+use hhc_control::Outcome;
 use nalgebra::{DMatrix, DVector};
 use std::convert::Infallible;
 

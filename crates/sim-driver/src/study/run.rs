@@ -1,16 +1,17 @@
 //! One case from trim to controlled vibration.
 
-use super::{FlapDrive, FlapMotion, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor};
-use crate::case::{
-    Case, ControlActuator, ControllerChoice, EffortChoice, LoadScaleChoice, StrokeChoice,
-};
+use super::inverted::within_reach;
+use super::{FlapDrive, PlantError, PlantState, RotorPlant, StudyError, TrimmedRotor};
+use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice, StrokeChoice};
+use crate::raw::{Setting, loads_cost};
+use crate::results::HubLoads;
 use hhc_control::{
     AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackSettings, LoadWeights,
     Outcome, Plant, RunError, TMatrix, identify_t, reduction_percent,
 };
-use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
+use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
-use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_base::HarmonicSeries;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -25,16 +26,18 @@ pub struct ControlStudy {
     pub control_volt: Vec<f64>,
     /// The recorded run; none where voltages were taken over from another actuator.
     pub run: Option<ControlRun>,
-    /// Frobenius norm of the T matrix, load per V; of the run whose voltages are used.
-    pub t_norm: f64,
+    /// The T matrix, load per V; of the run whose voltages are used.
+    pub t: Option<TMatrix>,
     /// Control weight `W_u = rho I` of that run, 1/V^2.
     pub rho: f64,
     /// What the controller knew of T; none where voltages were taken over or inverted.
     pub controller: Option<&'static str>,
-    /// Largest error of a wanted flap harmonic over the largest wanted one of the flap; of the inverse.
-    pub motion_error: Option<f64>,
-    /// Part of the ideal motion that the inverse makes: below 1 where the range of voltages ends first.
+    /// Motion asked of the inverse, flap by flap, deg; empty but for the inverse.
+    pub wanted_deg: Vec<HarmonicSeries>,
+    /// Its size over that of the ideal motion: below 1 where the range of voltages ends first.
     pub motion_share: Option<f64>,
+    /// Whether the identified actuator can make the motion; of the ideal one.
+    pub within_reach: Option<bool>,
     /// Part of the voltages that were taken over: below 1 where they leave no room for the bias.
     pub voltage_share: Option<f64>,
     /// Stroke limit of each controlled harmonic, deg.
@@ -45,8 +48,8 @@ pub struct ControlStudy {
     pub j_before: f64,
     /// `J_Z` with control.
     pub j_after: f64,
-    /// Part of the weighted actuation power in the cost at the end, beside `J_Z`.
-    pub j_power: f64,
+    /// What turns the voltage of each pair into the square root of its weighted power, per V.
+    pub power_gains_per_volt: Vec<f64>,
     /// Rotor and flaps at the end.
     pub state: PlantState,
     /// Force (moment) the moving flaps leave unbalanced at the trimmed controls, over the weight.
@@ -69,32 +72,9 @@ impl ControlStudy {
         self.run.as_ref().map_or(0, |run| run.halvings)
     }
 
-    /// Largest mean flap angle over all recorded steps, deg.
-    pub fn largest_mean_flap_deg(&self) -> f64 {
-        let of_steps = self.run.iter().flat_map(ControlRun::history);
-        let recorded = of_steps.flat_map(|step| step.measurement.mean_flap_deg.iter().copied());
-        let here = self.state.flaps.iter().map(|flap| flap.flap_deg.mean);
-        recorded.chain(here).fold(0.0, |m, mean| mean.abs().max(m))
-    }
-
-    /// What a reader should know of a control that was not taken over as a whole.
-    pub fn share_warning(&self) -> Option<String> {
-        let (share, of, why) = match (self.voltage_share, self.motion_share) {
-            (Some(share), _) => {
-                (share, "voltages", "all of them leave no room for the bias that centres the flap")
-            }
-            (_, Some(share)) => (share, "flap motion", "the range of voltages ends there"),
-            _ => return None,
-        };
-        let all: Vec<String> = self.harmonics.iter().map(usize::to_string).collect();
-        (share < 1.0).then(|| {
-            format!(
-                "{}/rev, {}: {:.1} % of the ideal actuator's {of}; {why}",
-                all.join("+"),
-                self.actuator.name(),
-                100.0 * share
-            )
-        })
+    /// Frobenius norm of the T matrix, load per V; 0 without one.
+    pub fn t_norm(&self) -> f64 {
+        self.t.as_ref().map_or(0.0, TMatrix::frobenius_norm)
     }
 
     /// How the loop ended; converged where voltages were taken over.
@@ -110,6 +90,8 @@ pub struct FullScale {
     pub amplitude_volt: f64,
     /// Flap amplitude, deg.
     pub stroke_deg: f64,
+    /// Largest amplitude that the range of voltages leaves to this harmonic alone, V.
+    pub reach_volt: f64,
 }
 
 /// The drives of a case and the stroke limits they set.
@@ -163,11 +145,21 @@ impl Drives {
             let frequency_hz = case.bench_frequency_hz(harmonic);
             StudyError::Stroke { harmonic, frequency_hz, source }
         })?;
+        let failed = |source| {
+            let frequency_hz = case.bench_frequency_hz(harmonic);
+            StudyError::Stroke { harmonic, frequency_hz, source }
+        };
         Ok(match control.stroke_limit {
             StrokeChoice::FromActuator => full,
+            StrokeChoice::Given { amplitude_deg } if amplitude_deg >= full.stroke_deg => {
+                FullScale { stroke_deg: amplitude_deg, ..full }
+            }
             StrokeChoice::Given { amplitude_deg } => FullScale {
-                amplitude_volt: full.amplitude_volt * (amplitude_deg / full.stroke_deg).min(1.0),
+                amplitude_volt: drive
+                    .voltage_of_stroke(harmonic, amplitude_deg, full)
+                    .map_err(failed)?,
                 stroke_deg: amplitude_deg,
+                ..full
             },
         })
     }
@@ -179,6 +171,7 @@ impl Drives {
         for limit in scaled.limits.values_mut() {
             limit.amplitude_volt *= factor;
             limit.stroke_deg *= factor;
+            limit.reach_volt *= factor;
         }
         scaled
     }
@@ -201,22 +194,51 @@ pub fn control_set(
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<ControlStudy>, StudyError> {
     let set = ControlSet::new(case, rotor, drives, harmonics)?;
-    // the ideal actuator's run serves two actuators and is made only for them
-    let mut ideal: Option<ControlStudy> = None;
-    let mut studies = Vec::with_capacity(case.control.actuators.len());
-    for &actuator in &case.control.actuators {
-        if actuator != ControlActuator::Hysteretic && ideal.is_none() {
-            ideal = Some(set.feedback(ControlActuator::Ideal)?);
+    let asked = &case.control.actuators;
+    // the ideal actuator's run serves three actuators and is made only for them
+    let ideal = if asked.iter().any(|&actuator| actuator != ControlActuator::Hysteretic) {
+        Some(set.feedback(ControlActuator::Ideal)?)
+    } else {
+        None
+    };
+    let inverse =
+        |a: &ControlActuator| matches!(a, ControlActuator::Ideal | ControlActuator::Inverse);
+    let made = match &ideal {
+        Some(ideal) if drives.hysteretic.is_some() && asked.iter().any(inverse) => {
+            Some(set.made_whole(ideal)?)
         }
+        _ => None,
+    };
+    let mut studies = Vec::with_capacity(asked.len());
+    for &actuator in asked {
         studies.push(match (actuator, &ideal) {
-            (ControlActuator::Ideal, Some(ideal)) => ideal.clone(),
+            (ControlActuator::Ideal, Some(ideal)) => {
+                let within_reach = made.as_ref().and_then(|made| match made {
+                    Ok(_) => Some(true),
+                    Err(error) => within_reach(error).map(|_| false),
+                });
+                ControlStudy { within_reach, ..ideal.clone() }
+            }
             (ControlActuator::Ignored, Some(ideal)) => set.taken_over(ideal)?,
-            (ControlActuator::Inverse, Some(ideal)) => set.inverted(ideal)?,
+            (ControlActuator::Inverse, Some(ideal)) => set.inverted(ideal, made.clone())?,
             _ => set.feedback(actuator)?,
         });
         done();
     }
     Ok(studies)
+}
+
+/// One set of harmonics with the ideal actuator alone.
+///
+/// # Errors
+/// [`StudyError`].
+pub(super) fn ideal_control(
+    case: &Case,
+    rotor: &TrimmedRotor,
+    drives: &Drives,
+    harmonics: &[usize],
+) -> Result<ControlStudy, StudyError> {
+    ControlSet::new(case, rotor, drives, harmonics)?.feedback(ControlActuator::Ideal)
 }
 
 /// Controls every set of harmonics of the case; sets in parallel, results in the order of the case.
@@ -289,7 +311,10 @@ impl ControlSet<'_> {
                 let scale = self
                     .limits
                     .iter()
-                    .map(|l| FullScale { amplitude_volt: l.stroke_deg * per_deg, ..*l })
+                    .map(|l| {
+                        let amplitude_volt = l.stroke_deg * per_deg;
+                        FullScale { amplitude_volt, reach_volt: amplitude_volt, ..*l }
+                    })
                     .collect();
                 (&self.drives.ideal, scale)
             }
@@ -332,7 +357,12 @@ impl ControlSet<'_> {
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
             // a constant T promises what it cannot keep: its end is that of the paper's loop
-            cost_tolerance: if way == Controller::Global { 0.0 } else { COST_TOLERANCE },
+            cost_tolerance: match (&way, control.effort) {
+                // T of the ideal actuator is right wherever the loop ends, limits or not
+                (Controller::Global, EffortChoice::Limits) => COST_TOLERANCE,
+                (Controller::Global | Controller::Renewed { .. }, _) => 0.0,
+                _ => COST_TOLERANCE,
+            },
             ..FeedbackSettings::default()
         };
         // the weight of the power is in its loads already
@@ -343,7 +373,7 @@ impl ControlSet<'_> {
             .with_controller(way)?)
     }
 
-    fn study(
+    pub(super) fn study(
         &self,
         actuator: ControlActuator,
         plant: &RotorPlant,
@@ -356,19 +386,19 @@ impl ControlSet<'_> {
         let trim_imbalance = self.rotor.imbalance(&target, &state.rotor)?;
         let load_weights = self.load_weights();
         let after = state.rotor.hub.harmonic(blades);
-        let j_power = plant.power_cost(&control_volt);
         Ok(ControlStudy {
-            j_power,
+            power_gains_per_volt: plant.power_gains(),
             harmonics: self.harmonics.to_vec(),
             actuator,
             trim_imbalance,
             control_volt,
             run: None,
-            t_norm: 0.0,
+            t: None,
             rho: 0.0,
             controller: None,
-            motion_error: None,
+            wanted_deg: Vec::new(),
             motion_share: None,
+            within_reach: None,
             voltage_share: None,
             stroke_limit_deg: self.limits.iter().map(|l| l.stroke_deg).collect(),
             load_weights,
@@ -379,7 +409,7 @@ impl ControlSet<'_> {
     }
 
     /// The state at a control vector.
-    fn state(
+    pub(super) fn state(
         &self,
         actuator: ControlActuator,
         plant: &RotorPlant,
@@ -404,13 +434,17 @@ impl ControlSet<'_> {
             _ => control.controller,
         };
         let way = match choice {
-            ControllerChoice::Global => Controller::Global,
+            ControllerChoice::Global if actuator == ControlActuator::Ideal => Controller::Global,
+            ControllerChoice::Global => Controller::Renewed { step_volt, renewals: RENEWALS },
             ControllerChoice::Local => Controller::Local { step_volt },
             ControllerChoice::Adaptive => {
                 Controller::Adaptive(AdaptiveSettings::of_full_scale(control.amplitude_volt))
             }
         };
-        let name = way.name();
+        let name = match &way {
+            Controller::Renewed { .. } => Controller::Global.name(),
+            way => way.name(),
+        };
         let controller = self.controller(&t, way).map_err(failed)?;
         let (run, rho) = match control.effort {
             EffortChoice::MeetStroke => {
@@ -430,7 +464,7 @@ impl ControlSet<'_> {
         let state = self.state(actuator, &plant, &volts)?;
         Ok(ControlStudy {
             run: Some(run),
-            t_norm: t.frobenius_norm(),
+            t: Some(t),
             rho,
             controller: Some(name),
             ..self.study(actuator, &plant, volts, state)?
@@ -457,114 +491,16 @@ impl ControlSet<'_> {
         let volts = part(share);
         let state = self.state(actuator, &plant, &volts)?;
         Ok(ControlStudy {
-            t_norm: ideal.t_norm,
+            t: ideal.t.clone(),
             rho: ideal.rho,
             voltage_share: Some(share),
             ..self.study(actuator, &plant, volts, state)?
         })
     }
-
-    /// The ideal actuator's flap motion, made by the hysteretic one: its inverse gives the voltage.
-    fn inverted(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
-        let actuator = ControlActuator::Inverse;
-        let plant = self.plant(actuator)?;
-        let failed = |source| {
-            let call = hhc_control::PlantCall::Measure { control_volt: ideal.control_volt.clone() };
-            self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
-        };
-        let made = |share: f64| {
-            let wanted: Vec<HarmonicSeries> = ideal
-                .state
-                .flaps
-                .iter()
-                .map(|motion| self.wanted(&motion.flap_deg, share))
-                .collect();
-            let loads = if plant.drive().give_deg_per_newton_metre() == 0.0 {
-                vec![HarmonicSeries::zero(0); wanted.len()]
-            } else {
-                let flaps = wanted.iter().map(|flap_deg| FlapMotion {
-                    voltage_volt: HarmonicSeries::zero(0),
-                    flap_deg: flap_deg.clone(),
-                });
-                plant.hinge_moments_newton_metre(flaps.collect())?
-            };
-            let each = wanted.par_iter().zip(&loads);
-            each.map(|(wanted, load)| self.made(plant.drive(), wanted, load))
-                .collect::<Result<Vec<_>, PlantError>>()
-        };
-        // several harmonics together may ask for more than the range holds: the same motion, smaller
-        let mut share = 1.0;
-        let mut inverted = made(share);
-        for _ in 0..INVERSE_TRIALS {
-            let Err(error) = &inverted else { break };
-            let Some(within) = within_reach(error) else { break };
-            share *= (INVERSE_MARGIN * within).max(0.5);
-            inverted = made(share);
-        }
-        let inverted = inverted.map_err(failed)?;
-        let motion_error = inverted.iter().map(|(_, error)| *error).fold(0.0, f64::max);
-        let flaps: Vec<_> = inverted.into_iter().map(|(motion, _)| motion).collect();
-        let controlled: Vec<Harmonic> = flaps
-            .iter()
-            .flat_map(|f| self.harmonics.iter().map(|&n| f.voltage_volt.harmonic(n)))
-            .collect();
-        let volts = controlled.iter().flat_map(|h| [h.cosine, h.sine]).collect();
-        let state = plant.state_of(flaps).map_err(failed)?;
-        Ok(ControlStudy {
-            t_norm: ideal.t_norm,
-            rho: ideal.rho,
-            motion_error: Some(motion_error),
-            motion_share: Some(share),
-            ..self.study(actuator, &plant, volts, state)?
-        })
-    }
-
-    /// A share of the controlled harmonics of a flap motion.
-    fn wanted(&self, motion_deg: &HarmonicSeries, share: f64) -> HarmonicSeries {
-        let highest = self.harmonics.iter().copied().max().unwrap_or(1);
-        let mut wanted = HarmonicSeries::zero(highest);
-        for &n in self.harmonics {
-            let h = motion_deg.harmonic(n);
-            wanted.set_harmonic(n, Harmonic { cosine: share * h.cosine, sine: share * h.sine });
-        }
-        wanted
-    }
-
-    /// A flap motion made through the inverse under a hinge moment, N m, and the largest error of a
-    /// wanted harmonic over the largest wanted one.
-    fn made(
-        &self,
-        drive: &FlapDrive,
-        wanted: &HarmonicSeries,
-        hinge_moment_newton_metre: &HarmonicSeries,
-    ) -> Result<(FlapMotion, f64), PlantError> {
-        let made = drive.loaded_inverse(wanted, hinge_moment_newton_metre)?;
-        let sizes = self.harmonics.iter().map(|&n| wanted.harmonic(n).amplitude());
-        let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
-        let errors = self.harmonics.iter().map(|&n| {
-            let (a, b) = (made.flap_deg.harmonic(n), wanted.harmonic(n));
-            (a.cosine - b.cosine).hypot(a.sine - b.sine) / size
-        });
-        let error = errors.fold(0.0, f64::max);
-        Ok((made, error))
-    }
 }
 
-/// Part of a wanted motion that the actuator reaches, if that is why its inverse failed.
-fn within_reach(error: &PlantError) -> Option<f64> {
-    match error {
-        PlantError::Actuator(PreisachError::MotionOutOfReach {
-            wanted_deg, reachable_deg, ..
-        }) => Some(reachable_deg / wanted_deg),
-        PlantError::Actuator(PreisachError::InverseNotConverged { share, .. }) => Some(*share),
-        _ => None,
-    }
-}
-
-/// Smaller motions to try where one is out of reach.
-const INVERSE_TRIALS: usize = 6;
-/// Part of the reachable motion that is asked for.
-const INVERSE_MARGIN: f64 = 0.98;
+/// Times that a constant T which leads nowhere is identified again.
+const RENEWALS: u32 = 4;
 
 /// Accuracy of the part of a voltage that is taken over.
 const TAKEN_OVER_TOLERANCE: f64 = 1e-4;
@@ -577,18 +513,5 @@ pub(super) const LEAST_EFFORT: f64 = 1e-8;
 
 /// Weight of each load of a case, for the hub loads without control.
 pub(super) fn load_weights(case: &Case, baseline: &[f64; 12]) -> [f64; 6] {
-    let w = &case.control.load_weights;
-    let mut weights = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz];
-    if case.control.load_scale == LoadScaleChoice::Baseline {
-        for (weight, z) in weights.iter_mut().zip(baseline.chunks_exact(2)) {
-            let square = z[0] * z[0] + z[1] * z[1];
-            *weight = if square > 0.0 { *weight / square } else { *weight };
-        }
-    }
-    weights
-}
-
-/// `J_Z` of a hub load vector.
-pub(crate) fn loads_cost(weights: &[f64; 6], loads: &[f64; 12]) -> f64 {
-    loads.chunks_exact(2).zip(weights).map(|(z, w)| w * (z[0] * z[0] + z[1] * z[1])).sum()
+    Setting::of_case(case, &HubLoads::from_parts(*baseline)).load_weights()
 }

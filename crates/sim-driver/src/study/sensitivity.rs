@@ -1,13 +1,18 @@
 //! How the reductions move with the assumptions the paper leaves open.
 
-use super::{Drives, FlapDrive, TrimmedRotor, control_set};
+use super::run::ideal_control;
+use super::{Drives, FlapDrive, TrimmedRotor};
 use crate::SimError;
 use crate::case::{
-    BladeValues, ControlActuator, EffortChoice, FreeWakeFile, InflowChoice, LoadedCase,
+    BladeValues, EffortChoice, FreeWakeFile, InflowChoice, LoadScaleChoice, LoadedCase,
     NearWakeChoice, SectionModelChoice, TrimValues,
 };
+use crate::raw::{Setting, loads_cost};
+use crate::results::HubLoads;
+use hhc_control::reduction_percent;
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -16,39 +21,74 @@ const TABLE_TRIM_TOLERANCE: f64 = 1e-7;
 const TABLE_PERIODICITY_TOLERANCE: f64 = 1e-9;
 const TABLE_INFLOW_TOLERANCE: f64 = 1e-8;
 
+/// The change that weights each load by its own baseline.
+const BY_BASELINE: &str = "each load weighted by its own baseline";
+
 /// One assumption changed, and what becomes of the reductions.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sensitivity {
     /// What was changed, with the value it has in the case.
     pub assumption: String,
     /// Reduction of `J_Z` (percent) for each of the harmonics that the case controls alone, ideal actuator
-    /// within the stroke of the real one.
+    /// within the stroke of the real one; empty without an answer.
     pub reduction_percent: Vec<f64>,
     /// Largest change of a reduction from the row it is compared with, percentage points.
-    pub largest_change: f64,
-    /// Why there is no answer; the numbers are then NaN.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_change: Option<f64>,
+    /// The row it is compared with, counted from 0.
+    pub compared_with: usize,
+    /// Why there is no answer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
+    /// What the reductions are computed from; none without an answer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<SensitivityRecord>,
+}
+
+/// What the reductions of a row are computed from.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SensitivityRecord {
+    /// Hub loads without control.
+    pub baseline: HubLoads,
+    /// Hub loads with control, one entry per reduction.
+    pub hub_4_per_rev: Vec<HubLoads>,
 }
 
 impl Sensitivity {
-    fn new(assumption: &str, reduction_percent: Vec<f64>) -> Self {
-        let assumption = assumption.to_owned();
-        Self { assumption, reduction_percent, largest_change: 0.0, failure: None }
+    fn new(assumption: &str, record: SensitivityRecord) -> Self {
+        Self { assumption: assumption.to_owned(), record: Some(record), ..Self::default() }
     }
 
-    fn failed(assumption: &str, sets: usize, error: &SimError) -> Self {
-        Self {
-            largest_change: f64::NAN,
-            failure: Some(error.to_string()),
-            ..Self::new(assumption, vec![f64::NAN; sets])
-        }
+    /// A row without an answer.
+    fn failed(assumption: &str, error: &SimError) -> Self {
+        let (assumption, failure) = (assumption.to_owned(), Some(error.to_string()));
+        Self { assumption, failure, ..Self::default() }
     }
 
-    fn compare(&mut self, nominal: &[f64]) {
-        let changes = self.reduction_percent.iter().zip(nominal).map(|(a, b)| (a - b).abs());
-        if self.failure.is_none() {
-            self.largest_change = changes.fold(0.0, f64::max);
+    /// The reductions from the loads, with the weights as the row has them.
+    fn reductions(&self, case: &Setting) -> Vec<f64> {
+        let Some(record) = &self.record else { return Vec::new() };
+        let mut setting = Setting { baseline: record.baseline.parts(), ..case.clone() };
+        if self.assumption == BY_BASELINE {
+            setting.scale = LoadScaleChoice::Baseline;
         }
+        let weights = setting.load_weights();
+        let before = loads_cost(&weights, &setting.baseline);
+        let after = record.hub_4_per_rev.iter().map(|loads| loads_cost(&weights, &loads.parts()));
+        after.map(|after| reduction_percent(before, after)).collect()
+    }
+}
+
+/// The reductions of all rows and their changes, computed from their loads.
+pub(crate) fn refigure_sensitivity(rows: &mut [Sensitivity], setting: &Setting) {
+    for row in &mut *rows {
+        row.reduction_percent = row.reductions(setting);
+    }
+    let all: Vec<Vec<f64>> = rows.iter().map(|row| row.reduction_percent.clone()).collect();
+    for row in rows {
+        let nominal = all.get(row.compared_with).map_or(&[][..], Vec::as_slice);
+        let changes = row.reduction_percent.iter().zip(nominal).map(|(a, b)| (a - b).abs());
+        row.largest_change = row.record.is_some().then(|| changes.fold(0.0, f64::max));
     }
 }
 
@@ -139,12 +179,7 @@ fn of_the_wake() -> Vec<Assumption> {
 }
 
 /// The changes, one at a time.
-fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
-    let amplitudes = base.trim().rotor.hub.harmonic(blades);
-    let weight = move |k: usize| {
-        let square = amplitudes[2 * k].powi(2) + amplitudes[2 * k + 1].powi(2);
-        if square > 0.0 { 1.0 / square } else { 1.0 }
-    };
+fn assumptions() -> Vec<Assumption> {
     let of_rotor = |text, change: fn(&mut LoadedCase)| assume(text, change);
     let of_case = |text, change: fn(&mut LoadedCase)| Assumption {
         change: Box::new(change),
@@ -193,11 +228,7 @@ fn assumptions(base: &TrimmedRotor, blades: usize) -> Vec<Assumption> {
         }),
         Assumption {
             rotor: RotorOf::TheCase,
-            ..assume("each load weighted by its own baseline", move |c| {
-                let w = &mut c.case.control.load_weights;
-                (w.fx, w.fy, w.fz) = (weight(0), weight(1), weight(2));
-                (w.mx, w.my, w.mz) = (weight(3), weight(4), weight(5));
-            })
+            ..assume(BY_BASELINE, |c| c.case.control.load_scale = LoadScaleChoice::Baseline)
         },
         of_case("stroke met by a tuned weight for the cone program (or the reverse)", |c| {
             let effort = &mut c.case.control.effort;
@@ -241,27 +272,32 @@ pub fn sensitivities(
         _ => None,
     };
     let bench = Bench { drives, model, sets: &sets, done };
-    let mut of_case = bench.row(loaded, base, &as_it_is("as the case"))?;
-    let mut table = Vec::new();
+    let mut table = vec![bench.row(loaded, base, &as_it_is("as the case"))?];
     if which.about_drees(loaded) {
         let mut drees = loaded.clone();
         drees.case.inflow = InflowChoice::Drees;
         let near = TrimmedRotor::new(&drees, Some(base.trim()))?;
         let text = "inflow of Drees, as in the rows below";
-        let mut row = bench.row(&drees, &near, &as_it_is(text))?;
-        let changed = bench.changed(&drees, &near, assumptions(&near, loaded.case.blades), &row);
-        row.compare(&of_case.reduction_percent);
-        table.push(row);
-        table.extend(changed);
+        table.push(bench.row(&drees, &near, &as_it_is(text))?);
+        table.extend(bench.changed(&drees, &near, assumptions(), 1));
     } else {
-        let mut changes = assumptions(base, loaded.case.blades);
+        let mut changes = assumptions();
         if which == Assumptions::WithWake {
             changes.extend(of_the_wake());
         }
-        table = bench.changed(loaded, base, changes, &of_case);
+        table.extend(bench.changed(loaded, base, changes, 0));
     }
-    of_case.largest_change = 0.0;
-    table.insert(0, of_case);
+    let baseline = base.trim().rotor.hub.harmonic(loaded.case.blades);
+    let setting = Setting::of_case(&loaded.case, &HubLoads::from_parts(baseline));
+    refigure_sensitivity(&mut table, &setting);
+    let changed = table.iter().filter(|row| row.compared_with > 0).count();
+    let first = if changed > 0 { 2 } else { 1 };
+    if let Some(rows) = table.get_mut(first..) {
+        rows.sort_by(|a, b| {
+            let size = |row: &Sensitivity| row.largest_change.unwrap_or(-1.0);
+            size(b).total_cmp(&size(a))
+        });
+    }
     Ok(table)
 }
 
@@ -274,29 +310,23 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// The rows of changes, the one that moves a reduction most first.
+    /// The rows of changes.
     fn changed(
         &self,
         loaded: &LoadedCase,
         base: &TrimmedRotor,
         changes: Vec<Assumption>,
-        nominal: &Sensitivity,
+        compared_with: usize,
     ) -> Vec<Sensitivity> {
-        let mut rows: Vec<Sensitivity> = changes
+        changes
             .into_par_iter()
             .map(|change| {
-                let mut row = self.row(loaded, base, &change).unwrap_or_else(|error| {
-                    Sensitivity::failed(change.text, self.sets.len(), &error)
-                });
-                row.compare(&nominal.reduction_percent);
-                row
+                let row = self
+                    .row(loaded, base, &change)
+                    .unwrap_or_else(|error| Sensitivity::failed(change.text, &error));
+                Sensitivity { compared_with, ..row }
             })
-            .collect();
-        rows.sort_by(|a, b| {
-            let moved = b.largest_change.total_cmp(&a.largest_change);
-            a.failure.is_some().cmp(&b.failure.is_some()).then(moved)
-        });
-        rows
+            .collect()
     }
 
     fn row(
@@ -308,7 +338,6 @@ impl Bench<'_> {
         let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
         let mut varied = loaded.clone();
         (assumption.change)(&mut varied);
-        varied.case.control.actuators = vec![ControlActuator::Ideal];
         let limited = match assumption.stroke {
             StrokeOf::TheCase(factor) => self.drives.with_strokes_scaled(factor),
             StrokeOf::TheChange => Drives::new(&varied.case, self.model.clone()).map_err(failed)?,
@@ -320,29 +349,30 @@ impl Bench<'_> {
             RotorOf::TheCase => base.clone(),
             RotorOf::TheChange => TrimmedRotor::new(&varied, Some(base.trim()))?,
         };
-        let reductions = self.sets.iter().map(|set| {
-            let studies =
-                control_set(&varied.case, &rotor, &limited, set, &|| ()).map_err(failed)?;
-            Ok(studies.first().map_or(f64::NAN, super::ControlStudy::reduction_percent))
+        let blades = varied.case.blades;
+        let loads = self.sets.iter().map(|set| {
+            let study = ideal_control(&varied.case, &rotor, &limited, set).map_err(failed)?;
+            Ok(HubLoads::from_parts(study.state.rotor.hub.harmonic(blades)))
         });
-        let reductions = reductions.collect::<Result<Vec<f64>, SimError>>();
+        let loads = loads.collect::<Result<Vec<HubLoads>, SimError>>();
         (self.done)();
-        Ok(Sensitivity::new(assumption.text, reductions?))
+        let baseline = HubLoads::from_parts(rotor.trim().rotor.hub.harmonic(blades));
+        Ok(Sensitivity::new(assumption.text, SensitivityRecord { baseline, hub_4_per_rev: loads? }))
     }
 }
 
 /// The rows as CSV text.
-pub fn sensitivity_csv(loaded: &LoadedCase, rows: &[Sensitivity]) -> String {
-    let sets = loaded.case.control.harmonics.iter().filter(|set| set.len() == 1);
+pub fn sensitivity_csv(harmonics: &[Vec<usize>], rows: &[Sensitivity]) -> String {
+    let sets = harmonics.iter().filter(|set| set.len() == 1);
     let names: Vec<String> =
         sets.map(|set| format!("reduction_{}_per_rev_percent", set[0])).collect();
     let mut text = format!("assumption,{},largest_change\n", names.join(","));
     for row in rows {
         // an empty field has no answer
-        let number =
-            |value: &f64| if value.is_nan() { String::new() } else { format!("{value:.3}") };
-        let numbers: Vec<String> = row.reduction_percent.iter().map(number).collect();
-        let (numbers, change) = (numbers.join(","), number(&row.largest_change));
+        let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.3}"));
+        let numbers: Vec<String> =
+            (0..names.len()).map(|k| number(row.reduction_percent.get(k).copied())).collect();
+        let (numbers, change) = (numbers.join(","), number(row.largest_change));
         let _ = writeln!(text, "\"{}\",{numbers},{change}", row.assumption);
     }
     text

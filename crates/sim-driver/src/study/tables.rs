@@ -1,60 +1,107 @@
 //! The report of a study: charts and tables from what was computed.
 
-use super::{ControlStudy, RobustnessCell, Sensitivity, paper};
+use super::{RobustnessCell, Sensitivity, paper};
 use crate::SimError;
 use crate::case::LoadedCase;
-use crate::report::{AzimuthChart, FlapTrace, LoadBars, ResultSection, StudyReport, bench_loops};
-use crate::results::{RunResult, StoredResult, flap_name};
+use crate::raw::SeriesLine;
+use crate::report::{
+    AzimuthChart, FlapTrace, LoadBars, LoopChart, ResultSection, StudyReport, bench_loops,
+};
+use crate::results::{ControlLine, RunResult, StoredResult, flap_name};
 use crate::run::RunOutcome;
+use crate::stored_actuator::StoredFit;
 use rotor_base::uniform_azimuths_rad;
+use serde::Serialize;
 use std::fmt::Write as _;
 
 /// Azimuths of the histories.
 pub(super) const HISTORY_AZIMUTHS: usize = 120;
 
-/// The report of a run: sensitivity and robustness are empty where none were asked for.
+/// What a report shows that does not follow from the result: bench and setting.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct PagePart {
+    /// Title of the page.
+    pub title: String,
+    /// What was run, a sentence each.
+    pub setting: Vec<String>,
+    /// Title of the bench data.
+    pub data_title: String,
+    /// Fit of every bench run.
+    pub fits: Vec<StoredFit>,
+    /// Measured and simulated loops.
+    pub loops: Vec<LoopChart>,
+}
+
+impl PagePart {
+    /// That of a stored report.
+    pub fn of(report: &StudyReport) -> Self {
+        Self {
+            title: report.title.clone(),
+            setting: report.setting.clone(),
+            data_title: report.data_title.clone(),
+            fits: report.fits.clone(),
+            loops: report.loops.clone(),
+        }
+    }
+
+    /// blake3 of all of it.
+    ///
+    /// # Errors
+    /// [`SimError::NotWritten`] if JSON cannot express it.
+    pub fn key(&self) -> Result<String, SimError> {
+        let text = serde_json::to_string(self)
+            .map_err(|e| SimError::NotWritten { path: "JSON".into(), reason: e.to_string() })?;
+        Ok(blake3::hash(text.as_bytes()).to_hex().to_string())
+    }
+}
+
+/// Bench and setting of a run.
 ///
 /// # Errors
 /// [`SimError::Actuator`] if a model cannot follow a bench record.
-pub fn study_report(
-    loaded: &LoadedCase,
-    outcome: &RunOutcome,
-    stored: &StoredResult<RunResult>,
-    (sensitivity, robustness): (&[Sensitivity], &[RobustnessCell]),
-) -> Result<StudyReport, SimError> {
-    let result = &outcome.result;
+pub fn page_part(loaded: &LoadedCase, outcome: &RunOutcome) -> Result<PagePart, SimError> {
     let loops = match &outcome.actuators.bench {
         Some((data, found)) => bench_loops(data, found)?,
         None => vec![],
     };
-    Ok(StudyReport {
+    Ok(PagePart {
         title: loaded.case.title.clone(),
+        setting: setting(loaded),
+        data_title: outcome.actuators.data_title.clone(),
+        fits: outcome.actuators.fits.clone(),
+        loops,
+    })
+}
+
+/// The report of a stored result: every figure of the control from the result alone.
+pub fn study_report(stored: &StoredResult<RunResult>, page: PagePart) -> StudyReport {
+    let result = &stored.result;
+    let harmonics = &stored.case.control.harmonics;
+    let at_paper = (stored.case.advance_ratio - paper::ADVANCE_RATIO).abs() < 1e-9;
+    StudyReport {
+        title: page.title,
         program: stored.program.clone(),
         key: stored.key.clone(),
-        setting: setting(loaded),
+        setting: page.setting,
         warnings: result.warnings.clone(),
-        data_title: outcome.actuators.data_title.clone(),
-        headline: if at_paper_condition(loaded) { paper::headline(result) } else { vec![] },
+        data_title: page.data_title,
+        headline: if at_paper { paper::headline(result) } else { vec![] },
         trim: result.trim,
         residuals: result.residuals,
         stability: result.stability.clone(),
-        fits: outcome.actuators.fits.clone(),
-        loops,
-        azimuth: outcome.studies.iter().map(azimuth_chart).collect(),
+        fits: page.fits,
+        loops: page.loops,
+        azimuth: result.control.iter().map(azimuth_chart).collect(),
         loads: load_bars(result),
         sections: [
-            (!sensitivity.is_empty()).then(|| sensitivity_section(loaded, sensitivity)),
-            (!robustness.is_empty()).then(|| robustness_section(robustness)),
+            (!result.sensitivity.is_empty())
+                .then(|| sensitivity_section(harmonics, &result.sensitivity)),
+            (!result.robustness.is_empty()).then(|| robustness_section(&result.robustness)),
         ]
         .into_iter()
         .flatten()
         .collect(),
-    })
-}
-
-/// Whether the case flies at the one advance ratio the paper reports.
-fn at_paper_condition(loaded: &LoadedCase) -> bool {
-    (loaded.case.advance_ratio - paper::ADVANCE_RATIO).abs() < 1e-9
+    }
 }
 
 fn setting(loaded: &LoadedCase) -> Vec<String> {
@@ -81,20 +128,18 @@ pub(super) fn set_name(harmonics: &[usize]) -> String {
     format!("{}/rev", all.join("+"))
 }
 
-fn azimuth_chart(study: &ControlStudy) -> AzimuthChart {
+fn azimuth_chart(line: &ControlLine) -> AzimuthChart {
     let azimuths = uniform_azimuths_rad(HISTORY_AZIMUTHS);
+    let values = |series: &SeriesLine| azimuths.iter().map(|a| series.0.value(*a)).collect();
+    let flaps = line.record.flaps.iter().enumerate();
     AzimuthChart {
-        title: format!("{}, {}", set_name(&study.harmonics), study.actuator.name()),
+        title: format!("{}, {}", set_name(&line.harmonics), line.actuator),
         azimuth_deg: azimuths.iter().map(|a| a.to_degrees()).collect(),
-        flaps: study
-            .state
-            .flaps
-            .iter()
-            .enumerate()
-            .map(|(k, motion)| FlapTrace {
+        flaps: flaps
+            .map(|(k, flap)| FlapTrace {
                 name: flap_name(k),
-                voltage_volt: azimuths.iter().map(|a| motion.voltage_volt.value(*a)).collect(),
-                flap_deg: azimuths.iter().map(|a| motion.flap_deg.value(*a)).collect(),
+                voltage_volt: values(&flap.voltage_volt),
+                flap_deg: values(&flap.flap_deg),
             })
             .collect(),
     }
@@ -115,10 +160,15 @@ fn load_bars(result: &RunResult) -> Vec<LoadBars> {
     bars
 }
 
-fn sensitivity_section(loaded: &LoadedCase, rows: &[Sensitivity]) -> ResultSection {
-    let sets = loaded.case.control.harmonics.iter().filter(|set| set.len() == 1);
-    let sets = sets.map(|set| format!("{} J %", set_name(set)));
-    let number = |value: f64| if value.is_nan() { "-".to_owned() } else { format!("{value:.1}") };
+fn sensitivity_section(harmonics: &[Vec<usize>], rows: &[Sensitivity]) -> ResultSection {
+    let sets: Vec<String> = harmonics
+        .iter()
+        .filter(|set| set.len() == 1)
+        .map(|set| format!("{} J %", set_name(set)))
+        .collect();
+    let count = sets.len();
+    let number =
+        |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1}"));
     let mut text = "Reduction of J with one assumption changed at a time, the one that moves a reduction most first; ideal actuator, held to the stroke of the identified one.".to_owned();
     for row in rows {
         if let Some(why) = &row.failure {
@@ -136,7 +186,7 @@ fn sensitivity_section(loaded: &LoadedCase, rows: &[Sensitivity]) -> ResultSecti
             .iter()
             .map(|row| {
                 std::iter::once(row.assumption.clone())
-                    .chain(row.reduction_percent.iter().map(|r| number(*r)))
+                    .chain((0..count).map(|k| number(row.reduction_percent.get(k).copied())))
                     .chain(std::iter::once(number(row.largest_change)))
                     .collect()
             })
@@ -176,18 +226,18 @@ fn robustness_section(cells: &[RobustnessCell]) -> ResultSection {
 ///
 /// One row per azimuth (deg, psi = 0 aft) of the blade the flaps belong to; flap angle trailing edge down
 /// positive.
-pub fn histories_csv(studies: &[ControlStudy]) -> String {
+pub fn histories_csv(lines: &[ControlLine]) -> String {
     let mut text = String::from("set,actuator,flap,azimuth_deg,voltage_V,flap_deg\n");
-    for study in studies {
-        let (set, actuator) = (set_name(&study.harmonics), study.actuator.name());
-        for (k, motion) in study.state.flaps.iter().enumerate() {
+    for line in lines {
+        let (set, actuator) = (set_name(&line.harmonics), &line.actuator);
+        for (k, flap) in line.record.flaps.iter().enumerate() {
             for azimuth in uniform_azimuths_rad(HISTORY_AZIMUTHS) {
                 let row = format!(
                     "{set},{actuator},{},{},{:e},{:e}\n",
                     flap_name(k),
                     azimuth.to_degrees(),
-                    motion.voltage_volt.value(azimuth),
-                    motion.flap_deg.value(azimuth)
+                    flap.voltage_volt.0.value(azimuth),
+                    flap.flap_deg.0.value(azimuth)
                 );
                 text.push_str(&row);
             }

@@ -422,6 +422,42 @@ fn run_prints_and_stores_the_same_result() {
     assert!(text.contains("Residuals  trim"), "{text}");
 }
 
+/// What `hhc report` shows follows from result.json; a number changed in any file is named with its place.
+#[test]
+fn a_report_is_made_of_the_stored_result_alone() {
+    let place = Place::new();
+    place.write("quick.ron", QUICK_CASE);
+    place.hhc(&["run", "quick.ron", "--out", "out", "--sensitivity"]).done();
+    let names = ["result.json", "study.json", "histories.csv", "sensitivity.csv", "report.html"];
+    let written = names.map(|name| place.read(&format!("out/{name}")));
+    let text = place.hhc(&["report", "out"]).done();
+    assert!(text.contains("reductions computed again"), "{text}");
+    assert_eq!(place.read("out/report.html"), written[4], "the same page");
+
+    let reduction = |json: &str| -> String {
+        let value: Value = serde_json::from_str(json).unwrap();
+        value["result"]["control"][0]["reduction_percent"].to_string()
+    };
+    let changes = [
+        (0, reduction(&written[0]), "99.25", "result.control[0].reduction_percent"),
+        (0, "\"advance_ratio\": 0.2,".into(), "\"advance_ratio\": 0.3,", "key"),
+        (1, reduction(&written[0]), "99.25", "report.loads[0].after[0]"),
+        (1, "\"quick\"".into(), "\"slow\"", "title"),
+        (2, ",inboard,0,".into(), ",inboard,0,1", "line 2 voltage_V"),
+        (3, "uniform inflow\",".into(), "uniform inflow\",1", "reduction_3_per_rev_percent"),
+    ];
+    for (file, from, to, field) in changes {
+        let name = names[file];
+        assert!(written[file].contains(&from), "no {from} in {name}");
+        place.write(&format!("out/{name}"), &written[file].replacen(&from, to, 1));
+        let ran = place.hhc(&["report", "out"]);
+        assert_ne!(ran.code, 0, "{name}: {from} to {to} passes");
+        assert!(ran.err.contains(name) && ran.err.contains(field), "{}", ran.err);
+        place.write(&format!("out/{name}"), &written[file]);
+    }
+    place.hhc(&["report", "out"]).done();
+}
+
 #[test]
 fn help_and_usage() {
     let place = Place::new();

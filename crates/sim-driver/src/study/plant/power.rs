@@ -45,7 +45,7 @@ impl RotorPlant {
     }
 
     /// Loads that the weight of the power adds to a measurement, and their derivatives by pair.
-    pub(super) fn power_gains(&self) -> Vec<f64> {
+    pub(in crate::study) fn power_gains(&self) -> Vec<f64> {
         let Some(power) = &self.power else { return Vec::new() };
         if power.weight_per_watt == 0.0 {
             return Vec::new();

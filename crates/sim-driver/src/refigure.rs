@@ -1,0 +1,309 @@
+//! Every figure of a result, computed from what the result holds raw.
+//!
+//! ```text
+//! J_Z = sum_k w_k (Z_kc^2 + Z_ks^2),      reduction = 100 (1 - J_Z / J_Z0)
+//! ```
+//! A run writes the figures that these functions give, and `hhc report` computes them again from the file: there
+//! is no other way to them.
+
+use crate::raw::{CertificateLine, ControlRecord, FlapRecord, ForecastRecord, Setting, loads_cost};
+use crate::results::{ControlLine, FlapLine, Forecast, HistoryLine, RunResult};
+use crate::study::HingePower;
+use hhc_control::{Cost, FeedbackLaw, LoadWeights, TMatrix, lag_deg, lag_loss, reduction_percent};
+use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
+use rotor_response::HingeMoment;
+
+impl RunResult {
+    /// The same result with every figure computed from its raw numbers.
+    #[must_use]
+    pub fn refigured(&self, setting: &Setting) -> Self {
+        let mut result = self.clone();
+        let said = result.share_warnings().len();
+        result.control =
+            self.control
+                .iter()
+                .map(|line| {
+                    let ideal = self.control.iter().find(|other| {
+                        other.harmonics == line.harmonics && other.actuator == "ideal"
+                    });
+                    line.refigured(setting, ideal)
+                })
+                .collect();
+        result.forecasts = self.forecasts.iter().map(|line| line.refigured(setting)).collect();
+        crate::study::refigure_sensitivity(&mut result.sensitivity, setting);
+        result.robustness = self.robustness.iter().map(|c| c.refigured(setting)).collect();
+        // what they say of shares stands at the end
+        result.warnings.truncate(result.warnings.len().saturating_sub(said));
+        result.warnings.extend(result.share_warnings());
+        result
+    }
+
+    /// What a reader should know of controls that were not taken over as a whole.
+    pub fn share_warnings(&self) -> Vec<String> {
+        self.control.iter().filter_map(ControlLine::share_warning).collect()
+    }
+}
+
+impl ControlLine {
+    /// The line with every figure computed from its raw numbers; `ideal` is the ideal actuator with the same
+    /// harmonics.
+    #[must_use]
+    pub fn refigured(&self, setting: &Setting, ideal: Option<&Self>) -> Self {
+        let record = &self.record;
+        let load_weights = setting.load_weights();
+        let j_before = loads_cost(&load_weights, &setting.baseline);
+        let j_after = loads_cost(&load_weights, &self.hub_4_per_rev.parts());
+        let history: Vec<HistoryLine> =
+            self.history.iter().map(|step| step.refigured(&load_weights)).collect();
+        let powers = record.flaps.iter().map(|flap| hinge_power(flap, &setting.scales).given_watt);
+        let means = record.flaps.iter().map(|flap| flap.flap_deg.0.mean);
+        let recorded = history.iter().flat_map(|step| step.mean_flap_deg.iter().copied());
+        let (motion_share, voltage_share) = self.shares(ideal);
+        Self {
+            j_before,
+            j_after,
+            reduction_percent: reduction_percent(j_before, j_after),
+            j_power: power_cost(record),
+            actuation_power_watt: powers.sum(),
+            flaps: flap_lines(&self.harmonics, record, &setting.scales),
+            load_weights,
+            motion_error_percent: motion_error(&self.harmonics, record).map(|e| 100.0 * e),
+            motion_share,
+            voltage_share,
+            kkt_residual: record.optimum.as_ref().map(CertificateLine::residual),
+            largest_mean_flap_deg: recorded.chain(means).fold(0.0, |m, mean| mean.abs().max(m)),
+            steps: history.len().saturating_sub(1),
+            largest_rise_percent: largest_rise_percent(&history),
+            contraction: contraction(&history),
+            t_norm_per_volt: record.t_per_volt.iter().flatten().map(|t| t * t).sum::<f64>().sqrt(),
+            rho_per_volt2: history.last().map_or(self.rho_per_volt2, |step| step.rho_per_volt2),
+            history,
+            ..self.clone()
+        }
+    }
+
+    /// Part of the ideal actuator's motion that was asked of the inverse and part of its voltages that were taken
+    /// over; as stored where there is no ideal actuator beside.
+    fn shares(&self, ideal: Option<&Self>) -> (Option<f64>, Option<f64>) {
+        let Some(ideal) = ideal else { return (self.motion_share, self.voltage_share) };
+        let size = |numbers: &[f64]| numbers.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let part = |own: &[f64], whole: &[f64]| {
+            let whole = size(whole);
+            if whole > 0.0 { size(own) / whole } else { 1.0 }
+        };
+        let pairs = |series: &dyn Fn(&FlapRecord) -> Option<HarmonicSeries>, line: &Self| {
+            let flaps: Option<Vec<_>> = line.record.flaps.iter().map(series).collect();
+            flaps.map(|flaps| controlled(&line.harmonics, &flaps))
+        };
+        let motion = pairs(&|flap| flap.wanted_deg.as_ref().map(|w| w.0.clone()), self)
+            .zip(pairs(&|flap| Some(flap.flap_deg.0.clone()), ideal))
+            .map(|(wanted, whole)| part(&wanted, &whole));
+        let voltage =
+            self.voltage_share.map(|_| part(&self.record.control_volt, &ideal.record.control_volt));
+        (self.motion_share.and(motion), voltage)
+    }
+
+    /// What a reader should know of a control that was not taken over as a whole.
+    pub fn share_warning(&self) -> Option<String> {
+        let (share, what) = match (self.voltage_share, self.motion_share) {
+            (Some(share), _) => (
+                share,
+                "of the ideal actuator's voltages; all of them leave no room for the bias that centres the flap",
+            ),
+            (_, Some(share)) => (
+                share,
+                "of the size of the ideal actuator's flap motion, the best in reach; all of it takes voltages beyond the range",
+            ),
+            _ => return None,
+        };
+        (share < 1.0 - WHOLE).then(|| {
+            format!("{}/rev, {}: {:.1} % {what}", self.set_name(), self.actuator, 100.0 * share)
+        })
+    }
+}
+
+/// How far a share may be from 1 by rounding.
+pub(crate) const WHOLE: f64 = 1e-12;
+
+/// Cosines and sines of harmonics, flap by flap.
+fn controlled(harmonics: &[usize], flaps: &[HarmonicSeries]) -> Vec<f64> {
+    let each = flaps.iter().flat_map(|flap| harmonics.iter().map(|&n| flap.harmonic(n)));
+    each.flat_map(|h| [h.cosine, h.sine]).collect()
+}
+
+/// Part of the weighted power in the cost.
+fn power_cost(record: &ControlRecord) -> f64 {
+    let pairs = record.control_volt.chunks_exact(2).zip(&record.power_gains_per_volt);
+    pairs.map(|(u, gain)| gain * gain * (u[0] * u[0] + u[1] * u[1])).fold(0.0, |sum, j| sum + j)
+}
+
+fn hinge_power(flap: &FlapRecord, scales: &RotorScales) -> HingePower {
+    let hinge = HingeMoment {
+        aerodynamic: flap.aerodynamic_moment.0.clone(),
+        inertial: flap.inertial_moment.0.clone(),
+    };
+    HingePower::new(&hinge, &flap.flap_deg.0, scales)
+}
+
+/// Largest error of a wanted flap harmonic over the largest wanted one of the flap.
+fn motion_error(harmonics: &[usize], record: &ControlRecord) -> Option<f64> {
+    let errors = record.flaps.iter().filter_map(|flap| {
+        let wanted = &flap.wanted_deg.as_ref()?.0;
+        let sizes = harmonics.iter().map(|&n| wanted.harmonic(n).amplitude());
+        let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
+        let errors = harmonics.iter().map(|&n| {
+            let (a, b) = (flap.flap_deg.0.harmonic(n), wanted.harmonic(n));
+            (a.cosine - b.cosine).hypot(a.sine - b.sine) / size
+        });
+        Some(errors.fold(0.0, f64::max))
+    });
+    errors.fold(None, |worst: Option<f64>, error| Some(worst.map_or(error, |w| w.max(error))))
+}
+
+fn flap_lines(harmonics: &[usize], record: &ControlRecord, scales: &RotorScales) -> Vec<FlapLine> {
+    let powers: Vec<HingePower> =
+        record.flaps.iter().map(|flap| hinge_power(flap, scales)).collect();
+    let each = harmonics.iter().flat_map(|&n| {
+        let inboard = record.flaps.first().map(|flap| flap.flap_deg.0.harmonic(n));
+        record.flaps.iter().zip(&powers).enumerate().map(move |(k, (flap, power))| {
+            let (voltage, angle) = (flap.voltage_volt.0.harmonic(n), flap.flap_deg.0.harmonic(n));
+            let lead = match inboard {
+                Some(inboard) if k > 0 => lag_deg(angle, inboard),
+                _ => 0.0,
+            };
+            FlapLine {
+                flap: k,
+                harmonic: n,
+                voltage_amplitude_volt: voltage.amplitude(),
+                voltage_phase_deg: voltage.phase_deg(),
+                flap_phase_deg: angle.phase_deg(),
+                flap_amplitude_deg: angle.amplitude(),
+                lag_deg: lag_deg(voltage, angle),
+                lead_over_inboard_deg: lead,
+                bias_volt: flap.voltage_volt.0.mean,
+                mean_flap_deg: flap.flap_deg.0.mean,
+                peak_hinge_moment_newton_metre: power.peak_newton_metre,
+                peak_aerodynamic_newton_metre: power.peak_aerodynamic_newton_metre,
+                peak_inertial_newton_metre: power.peak_inertial_newton_metre,
+                actuation_power_watt: power.given_watt,
+                net_actuation_power_watt: power.net_watt,
+            }
+        })
+    });
+    each.collect()
+}
+
+impl HistoryLine {
+    /// The cost of the loads as measured, those that stand for the power included, and of the control.
+    fn refigured(&self, load_weights: &[f64; 6]) -> Self {
+        let further = self.loads.len().saturating_sub(12);
+        let weights: Vec<f64> = load_weights
+            .iter()
+            .flat_map(|&w| [w, w])
+            .chain(std::iter::repeat_n(1.0, further))
+            .collect();
+        let cost = Cost::of(&self.loads, &weights, &self.control_volt, self.rho_per_volt2);
+        Self { j_loads: cost.loads, j_control: cost.control, ..self.clone() }
+    }
+}
+
+/// Largest rise of the cost in one step, both sides with the weight of the step, over the cost at the start,
+/// percent.
+fn largest_rise_percent(history: &[HistoryLine]) -> f64 {
+    let Some(start) = history.first() else { return 0.0 };
+    let pairs = history.iter().zip(history.iter().skip(1));
+    let rises = pairs.map(|(before, after)| {
+        let square: f64 = before.control_volt.iter().map(|u| u * u).sum();
+        let before = before.j_loads + after.rho_per_volt2 * square;
+        100.0 * (after.j_loads + after.j_control - before) / start.j_loads
+    });
+    rises.fold(0.0, f64::max)
+}
+
+/// Factor by which what a step asks for shrinks from step to step, the geometric mean over the whole steps that
+/// a loop ends with; none of fewer than three.
+fn contraction(history: &[HistoryLine]) -> Option<f64> {
+    let asked: Vec<f64> = history
+        .iter()
+        .skip(1)
+        .rev()
+        .take_while(|step| step.halvings == 0)
+        .map(|step| step.asked_volt)
+        .collect();
+    let (last, first) = (asked.first()?, asked.last()?);
+    (asked.len() > 2 && *first > 0.0).then(|| (last / first).powf(1.0 / (asked.len() - 1) as f64))
+}
+
+impl Forecast {
+    /// The forecast computed from its T matrices and controls; numbers that do not fit together give NaN.
+    #[must_use]
+    pub fn refigured(&self, setting: &Setting) -> Self {
+        let made = self.computed(setting);
+        made.unwrap_or_else(|| {
+            let nan = f64::NAN;
+            let (cone, clipped, free, lag_loss_percent) = (nan, nan, nan, nan);
+            Self { lag_loss_percent, cone, clipped, free, ..self.clone() }
+        })
+    }
+
+    fn computed(&self, setting: &Setting) -> Option<Self> {
+        let record = &self.record;
+        if record.t_per_volt.is_empty() {
+            return Some(Self { harmonics: self.harmonics.clone(), ..Self::default() });
+        }
+        let t = TMatrix::from_columns(&record.t_per_volt).ok()?;
+        let weights: Vec<f64> = setting.load_weights().into_iter().flat_map(|w| [w, w]).collect();
+        let load_weights = LoadWeights::Diagonal(weights.clone());
+        let law = FeedbackLaw::new(&t, &load_weights).ok()?;
+        let zero = vec![0.0; t.controls()];
+        let baseline = &setting.baseline;
+        let free = law.optimum_volt(record.rho_per_volt2, &zero, baseline).ok()?;
+        let clipped = clipped(&free, &record.stroke_volt);
+        let cost = |u: &[f64]| -> Option<f64> {
+            let change = t.loads_for(u).ok()?;
+            let pairs = weights.iter().zip(baseline.iter().zip(change));
+            Some(pairs.map(|(w, (z, dz))| w * (z + dz) * (z + dz)).sum())
+        };
+        let before = cost(&zero)?;
+        let lags_rad: Vec<f64> = record
+            .at_stroke_deg
+            .iter()
+            .map(|&[cosine, sine]| {
+                let voltage = Harmonic { cosine: 1.0, sine: 0.0 };
+                lag_deg(voltage, Harmonic { cosine, sine }).to_radians()
+            })
+            .collect();
+        let of_pairs: Vec<f64> = lags_rad.iter().copied().cycle().take(t.controls() / 2).collect();
+        let loss = lag_loss(&t, &load_weights, &free, &of_pairs).ok()?;
+        Some(Self {
+            harmonics: self.harmonics.clone(),
+            lag_deg: lags_rad.iter().map(|lag| lag.to_degrees()).collect(),
+            lag_loss_percent: 100.0 * loss.part,
+            isotropic_loss_percent: 100.0 * loss.isotropic,
+            cone: cost(&record.cone_volt)? / before,
+            clipped: cost(&clipped)? / before,
+            free: cost(&free)? / before,
+            gain_at_step_percent: apart(record, &record.gain_t_at_step_per_volt)?,
+            gain_at_stroke_percent: apart(record, &record.gain_t_at_stroke_per_volt)?,
+            record: record.clone(),
+        })
+    }
+}
+
+/// Distance of a T from that of the full actuator, percent.
+fn apart(record: &ForecastRecord, simple: &[Vec<f64>]) -> Option<f64> {
+    let dynamic = TMatrix::from_columns(&record.dynamic_t_per_volt).ok()?;
+    let simple = TMatrix::from_columns(simple).ok()?;
+    Some(100.0 * simple.relative_difference(&dynamic).ok()?)
+}
+
+/// Every harmonic cut to its stroke, its phase kept: what is not done.
+fn clipped(control_volt: &[f64], stroke_volt: &[f64]) -> Vec<f64> {
+    let pairs = control_volt.chunks_exact(2).zip(stroke_volt.iter().cycle());
+    pairs
+        .flat_map(|(u, limit)| {
+            let part = (limit / u[0].hypot(u[1])).min(1.0);
+            [part * u[0], part * u[1]]
+        })
+        .collect()
+}
