@@ -33,6 +33,7 @@ mod kernel;
 mod linear;
 mod momentum;
 mod pitt_peters;
+pub mod reference;
 mod vector;
 mod wake;
 

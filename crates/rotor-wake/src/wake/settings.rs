@@ -196,6 +196,28 @@ impl Default for FreeWakeSettings {
 }
 
 impl FreeWakeSettings {
+    /// An isolated rotor in hover without cyclic pitch: the wake turns with it, sections feel it at Weissinger's
+    /// points, and what is trailed rolls up within a quarter of a revolution, the sheet inboard of the tip vortex into
+    /// vortices where it was trailed.
+    pub fn hover(model: CoreModel) -> Self {
+        Self {
+            turns: 3,
+            far_turns: 6,
+            near_wake_rad: 0.25 * std::f64::consts::TAU,
+            far: FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]),
+            control_point: ControlPoint::ThreeQuarterChord,
+            symmetry: WakeSymmetry::Axial,
+            core: CoreSettings {
+                model,
+                radius: 0.03,
+                panel_share: 0.3,
+                viscosity: 8.7e-8,
+                ..CoreSettings::default()
+            },
+            ..Self::default()
+        }
+    }
+
     /// Azimuth step, rad.
     pub fn step_rad(&self) -> f64 {
         std::f64::consts::TAU / self.azimuths as f64
