@@ -3,10 +3,11 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
+use rotor_wake::reference::{olaf as olaf_rotor, olaf_flight, olaf_settings, olaf_thrust_newton};
 use rotor_wake::{
-    BladeElementRotor, BladeElementSolution, BladeLines, CoreModel, CoreSettings, CouplingSettings,
-    FarTrailers, FlightState, FreeWake, FreeWakeSettings, RigidMotion, SectionPolar, SegmentSet,
-    ShedVorticity, Vec3, WakeError, WakeRotor, arc_velocity, induced_velocities, momentum_inflow,
+    BladeElementSolution, BladeLines, CoreModel, CouplingSettings, FlightState, FreeWake,
+    FreeWakeSettings, SegmentSet, Vec3, WakeError, WakeRotor, arc_velocity, induced_velocities,
+    momentum_inflow,
 };
 
 use super::CheckError;
@@ -189,54 +190,10 @@ fn helices(advance_ratio: f64) -> Result<f64, CheckError> {
     Ok(sum / area / inflow)
 }
 
-/// Polar of the reference rotor.
-struct ReferencePolar;
-
-impl SectionPolar for ReferencePolar {
-    fn lift_drag(&self, alpha_rad: f64, _mach: f64) -> [f64; 2] {
-        let a = (alpha_rad + PI).rem_euclid(TAU) - PI;
-        let f = 1.0 / (1.0 + ((a.to_degrees().abs() - 14.0) / 1.5).exp());
-        let attached = [TAU * a.sin(), 0.008 + 0.1 * a * a];
-        let separated = [1.1 * (2.0 * a).sin(), 0.02 + 1.8 * a.sin().powi(2)];
-        [0, 1].map(|k| f * attached[k] + (1.0 - f) * separated[k])
-    }
-}
-
-const RADIUS_M: f64 = 4.94;
-const TIP_SPEED_M_S: f64 = 383.0 * TAU / 60.0 * RADIUS_M;
-
 fn reference(near_wake_deg: u32) -> Result<BladeElementSolution, WakeError> {
-    let tilt = 5.0_f64.to_radians();
-    let advance_ratio = 59.44 * tilt.cos() / TIP_SPEED_M_S;
-    let flight = FlightState { advance_ratio, shaft_tilt_rad: tilt };
-    let rotor = BladeElementRotor {
-        rotor: WakeRotor::uniform(4, 0.2, 20)?,
-        chord: 0.2717 / RADIUS_M,
-        twist_rad: (-8.0_f64).to_radians(),
-        tip_mach: 0.0,
-        motion: RigidMotion {
-            pitch_rad: [8.0, 2.0, -4.5].map(f64::to_radians),
-            flap_rad: [0.0; 3],
-        },
-        polar: &ReferencePolar,
-    };
-    let core = 0.3764 / RADIUS_M;
-    let settings = FreeWakeSettings {
-        turns: 3,
-        far_turns: 1,
-        near_wake_rad: f64::from(near_wake_deg).to_radians(),
-        core: CoreSettings {
-            radius: core,
-            near_radius: core,
-            panel_share: f64::INFINITY,
-            viscosity: 0.0,
-            ..CoreSettings::default()
-        },
-        shed: ShedVorticity::InWake,
-        far: FarTrailers::TipAndRoot,
-        ..FreeWakeSettings::default()
-    };
-    let mut wake = rotor.starting_wake(&settings, flight, 0.005)?;
+    let settings = olaf_settings(f64::from(near_wake_deg).to_radians());
+    let rotor = olaf_rotor(20)?;
+    let mut wake = rotor.starting_wake(&settings, olaf_flight(), 0.005)?;
     let coupling =
         CouplingSettings { inflow_tolerance: 2e-4, sweeps: 3, ..CouplingSettings::default() };
     rotor.solve(&mut wake, &coupling)
@@ -266,7 +223,7 @@ fn four_per_rev(samples: &[(f64, f64)]) -> [f64; 3] {
 /// Thrust of the reference rotor, N.
 fn thrust(near_wake_deg: u32) -> Result<[f64; 3], CheckError> {
     let solution = solved(near_wake_deg)?;
-    let scale = 1.225 * PI * RADIUS_M.powi(2) * TIP_SPEED_M_S.powi(2);
+    let scale = olaf_thrust_newton();
     let sums = solution.rotating_sums(4);
     let step = TAU / sums.len() as f64;
     let samples: Vec<(f64, f64)> =
