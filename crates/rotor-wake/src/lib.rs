@@ -53,8 +53,8 @@ pub use vector::Vec3;
 pub use wake::{
     BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarTrailers, FreeWake,
     FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ReleasePoint,
-    ShedVorticity, StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeRotor, WakeSymmetry,
-    contraction_drift,
+    ShedVorticity, StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeMethod, WakeRotor,
+    WakeSymmetry, contraction_drift,
 };
 
 /// The example of the crate's README, run as a documentation test.

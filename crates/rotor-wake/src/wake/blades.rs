@@ -1,8 +1,12 @@
 //! Where the lifting line of a blade is at every azimuth.
 
 use super::WakeRotor;
+use crate::WakeError;
 use crate::vector::{Vec3, about_the_shaft, add, norm, scale, sub};
 use std::f64::consts::TAU;
+
+/// Motion over a revolution up to which blades count as turning only, unit `R`.
+const STEADY: f64 = 1e-3;
 
 /// Ends of the panels in hub axes (unit `R`) at uniform azimuths, `[azimuth][node]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +56,24 @@ impl BladeLines {
             *edge = [edge[0] + distance * sin, edge[1] - distance * cos, edge[2]];
         }
         Self { edges, ..self }
+    }
+
+    /// The blade of azimuth 0 turned to all azimuths, for an axial wake.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] if the blades move by more than a thousandth of the radius as they turn.
+    pub fn axial(&self) -> Result<Self, WakeError> {
+        let motion = self.departure_from_turning();
+        if motion.is_nan() || motion > STEADY {
+            let quantity = "motion of the blades of an axial wake, R";
+            let expected = "at most 0.001: hover without cyclic pitch";
+            return Err(WakeError::BadInput { quantity, value: motion, expected });
+        }
+        let turned = |first: &[Vec3]| -> Vec<Vec3> {
+            let angles = (0..self.azimuths()).map(|i| TAU * i as f64 / self.azimuths() as f64);
+            angles.flat_map(|angle| first.iter().map(move |p| about_the_shaft(*p, angle))).collect()
+        };
+        Ok(Self { nodes: self.nodes, points: turned(self.at(0)), edges: turned(self.edge_at(0)) })
     }
 
     /// Largest distance of a node from where the blade at azimuth 0 would be when turned there, unit `R`.

@@ -1,7 +1,7 @@
 //! The wake marched in time, blade by blade.
 
 use super::filament::Filament;
-use super::settings::NearWakeMotion;
+use super::settings::{NearWakeMotion, WakeMethod};
 use super::sources::{BladeView, RollUp, SourceContext, Sources};
 use super::{CirculationMap, FreeWake};
 use crate::WakeError;
@@ -31,10 +31,10 @@ struct BladeState {
 /// which is `(3 r_p - 4 r_(p-1) + r_(p-2)) / 2d` on both ends of the cell with the central difference in age, all
 /// at the new azimuth. In hover and at low speed, where relaxation may settle on what no real wake does.
 ///
-/// Differs from source: there the differences are about the middle of the cell, `(3 r_p - r_(p-1) - 3 r_(p-2)
-/// + r_(p-3)) / 4d` and the mean of `v` over four corners. That is the mean of the formula here at `p` and at
-/// `p - 1`, so that an error which changes sign from step to step satisfies it and stays for ever: the start leaves one
-/// of some `1e-4 R`. Here it dies out.
+/// Differs from source: there the difference is about the middle of the cell,
+/// `(3 r_p - r_(p-1) - 3 r_(p-2) + r_(p-3)) / 4d`, with the mean of `v` over four corners. That is the mean of the
+/// formula here at `p` and at `p - 1`, so that an error which changes sign from step to step satisfies it and stays for
+/// ever: the start leaves one of some `1e-4 R`. Here it dies out.
 ///
 /// Source: Bhagwat and Leishman, J. Am. Helicopter Soc. 46 (2001) 59.
 #[derive(Debug, Clone)]
@@ -42,6 +42,35 @@ pub struct WakeMarch {
     wake: FreeWake,
     blades: Vec<BladeState>,
     near_is_free: bool,
+}
+
+impl FreeWake {
+    /// Carries the wake on by some sweeps or revolutions; returns the last RMS displacement, unit `R`.
+    ///
+    /// # Errors
+    /// As [`sweep`](Self::sweep) and [`WakeMarch::revolutions`]; the wake is then the last good one.
+    pub fn carry_on(
+        &mut self,
+        method: WakeMethod,
+        count: usize,
+        circulation: &CirculationMap,
+    ) -> Result<f64, WakeError> {
+        let mut displacement = f64::INFINITY;
+        match method {
+            WakeMethod::Relaxed => {
+                for _ in 0..count {
+                    displacement = self.sweep(circulation)?;
+                }
+            }
+            WakeMethod::Marched => {
+                let mut march = WakeMarch::new(self.clone());
+                let outcome = march.revolutions(count, circulation);
+                *self = march.wake;
+                displacement = outcome?.last().copied().unwrap_or(displacement);
+            }
+        }
+        Ok(displacement)
+    }
 }
 
 impl WakeMarch {
@@ -127,7 +156,8 @@ impl WakeMarch {
         for state in &mut self.blades {
             state.azimuth = (state.azimuth + 1) % azimuths;
             state.levels.rotate_right(1);
-            state.levels[0] = state.levels[1].clone();
+            let [now, last, _] = &mut state.levels;
+            now.clone_from(last);
         }
         // predictor: the velocities at the new azimuth are those of the last one
         let releases = self.wake.releases(circulation);

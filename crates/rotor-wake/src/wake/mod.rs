@@ -24,6 +24,6 @@ pub use march::{WakeMarch, contraction_drift};
 pub use rotor::WakeRotor;
 pub use settings::{
     ControlPoint, CoreSettings, FarTrailers, FreeWakeSettings, NearWakeMotion, ReleasePoint,
-    ShedVorticity, StrainEffect, WakeSymmetry,
+    ShedVorticity, StrainEffect, WakeMethod, WakeSymmetry,
 };
 pub use solve::{ClosestPassage, WakeConvergence};

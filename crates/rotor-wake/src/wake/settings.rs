@@ -87,6 +87,18 @@ pub enum WakeSymmetry {
     Axial,
 }
 
+/// How the geometry is carried on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum WakeMethod {
+    /// Sweeps of pseudo-implicit relaxation of a wake that is the same every revolution: a count is of sweeps.
+    #[default]
+    Relaxed,
+    /// Marched in time by PC2B ([`WakeMarch`](super::WakeMarch)), every blade on its own from the periodic wake: a count is of
+    /// revolutions.
+    Marched,
+}
+
 /// Whether stretching makes a vortex thinner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
