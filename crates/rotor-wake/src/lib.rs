@@ -51,8 +51,8 @@ pub use momentum::{VORTEX_RING_TRANSPORT, momentum_inflow, momentum_residual, wa
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
-    BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarTrailers, FreeWake,
-    FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ReleasePoint,
+    BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers,
+    FreeWake, FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ReleasePoint,
     ShedVorticity, StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeMethod, WakeRotor,
     WakeSymmetry, contraction_drift,
 };

@@ -7,9 +7,9 @@ mod common;
 use common::harmonic;
 use rotor_wake::reference::{olaf, olaf_flight, olaf_settings, olaf_thrust_newton};
 use rotor_wake::{
-    BladeElementSolution, BladeLines, CirculationMap, CoreModel, CouplingSettings, FlightState,
-    FreeWake, FreeWakeSettings, SegmentSet, Vec3, WakeError, WakeRotor, induced_velocities,
-    momentum_inflow,
+    BladeElementSolution, BladeLines, CirculationMap, CoreModel, CouplingSettings, FarField,
+    FlightState, FreeWake, FreeWakeSettings, SegmentSet, Vec3, WakeError, WakeRotor,
+    induced_velocities, momentum_inflow,
 };
 use std::f64::consts::TAU;
 
@@ -139,6 +139,21 @@ fn grids_in_sequence_and_interpolated_velocities() {
     let thinned = relaxed(FreeWakeSettings { velocity_stride: 2, ..settings.with_azimuths(24) });
     assert!(distance(&thinned, &fine) < 0.01, "{}", distance(&thinned, &fine));
     assert!(distance(&thinned, &fine) > 1e-6, "interpolation did nothing");
+}
+
+/// Old vortices in single precision: the settled wake is the same within a few millionths of the radius.
+#[test]
+fn a_far_field_in_single_precision_gives_the_same_wake() {
+    let settings =
+        FreeWakeSettings { azimuths: 12, turns: 2, tolerance: 1e-5, ..Default::default() };
+    let [double, single] = [FarField::Double, FarField::Single].map(|far_field| {
+        let wake = relaxed(FreeWakeSettings { far_field, ..settings.clone() });
+        wake.vortices().remove(0).points
+    });
+    let pairs = double.iter().flatten().flatten().zip(single.iter().flatten().flatten());
+    let worst = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+    println!("largest distance {worst:.1e} R");
+    assert!(worst < 1e-5 && worst > 0.0, "{worst:e}");
 }
 
 #[test]

@@ -235,8 +235,8 @@ fn climb() -> Result<(f64, f64), CheckError> {
         let mut alternating = 0.0_f64;
         if let Some(tip) = march.wake().vortices().last() {
             for age in 1..tip.points[0].len() {
-                let signed = |i: usize| if i % 2 == 0 { 1.0 } else { -1.0 } * tip.points[i][age][2];
-                let sum: f64 = (0..STEPS).map(signed).sum();
+                let pairs = tip.points.chunks_exact(2);
+                let sum: f64 = pairs.map(|pair| pair[0][age][2] - pair[1][age][2]).sum();
                 alternating = alternating.max(sum.abs() / STEPS as f64);
             }
         }

@@ -99,6 +99,18 @@ pub enum WakeMethod {
     Marched,
 }
 
+/// Precision of the velocities that old rolled-up vortices induce on the wake itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum FarField {
+    /// Double.
+    #[default]
+    Double,
+    /// Single for the vortices older than a revolution: their sums run faster, and the velocities differ by some 1e-6 of the
+    /// tip speed at most. What the blades feel stays double.
+    Single,
+}
+
 /// Whether stretching makes a vortex thinner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -174,6 +186,8 @@ pub struct FreeWakeSettings {
     pub core: CoreSettings,
     /// What the wakes at different azimuths have in common.
     pub symmetry: WakeSymmetry,
+    /// Precision of the velocities by old vortices.
+    pub far_field: FarField,
     /// Induced velocities are computed at every `velocity_stride`-th age and interpolated between
     /// along the path of the air; 1 computes all.
     pub velocity_stride: usize,
@@ -199,6 +213,7 @@ impl Default for FreeWakeSettings {
             control_point: ControlPoint::default(),
             core: CoreSettings::default(),
             symmetry: WakeSymmetry::default(),
+            far_field: FarField::default(),
             velocity_stride: 1,
             relaxation: 0.5,
             tolerance: 1e-4,
