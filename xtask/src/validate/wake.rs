@@ -122,6 +122,24 @@ pub(super) const AREA: Area = Area {
             repeatability: Repeatability::Everywhere,
             measure: || Ok(thrust(90)?[1] / thrust(360)?[1]),
         },
+        Check {
+            id: "V-WAKE-46",
+            quantity: "the same with steps of 10 deg in place of 15: 4/rev thrust, relative change",
+            unit: "-",
+            source: "converged; `cargo xtask wake-refinement` has the whole table",
+            criterion: Criterion::AtMost(0.02),
+            repeatability: Repeatability::MachineDependent,
+            measure: || Ok((thrust_after(|s| s.azimuths = 36)?[1] / thrust(360)?[1] - 1.0).abs()),
+        },
+        Check {
+            id: "V-WAKE-47",
+            quantity: "the same with 5 turns in place of 3: mean thrust, relative change",
+            unit: "-",
+            source: "the same",
+            criterion: Criterion::AtMost(0.003),
+            repeatability: Repeatability::MachineDependent,
+            measure: || Ok((thrust_after(|s| s.turns = 5)?[0] / thrust(360)?[0] - 1.0).abs()),
+        },
     ],
 };
 
@@ -191,9 +209,12 @@ fn helices(advance_ratio: f64) -> Result<f64, CheckError> {
 }
 
 fn reference(near_wake_deg: u32) -> Result<BladeElementSolution, WakeError> {
-    let settings = olaf_settings(f64::from(near_wake_deg).to_radians());
+    in_wake(&olaf_settings(f64::from(near_wake_deg).to_radians()))
+}
+
+fn in_wake(settings: &FreeWakeSettings) -> Result<BladeElementSolution, WakeError> {
     let rotor = olaf_rotor(20)?;
-    let mut wake = rotor.starting_wake(&settings, olaf_flight(), 0.005)?;
+    let mut wake = rotor.starting_wake(settings, olaf_flight(), 0.005)?;
     let coupling =
         CouplingSettings { inflow_tolerance: 2e-4, sweeps: 3, ..CouplingSettings::default() };
     rotor.solve(&mut wake, &coupling)
@@ -222,13 +243,23 @@ fn four_per_rev(samples: &[(f64, f64)]) -> [f64; 3] {
 
 /// Thrust of the reference rotor, N.
 fn thrust(near_wake_deg: u32) -> Result<[f64; 3], CheckError> {
-    let solution = solved(near_wake_deg)?;
+    Ok(thrust_of(solved(near_wake_deg)?))
+}
+
+/// The same after a change of the wake.
+fn thrust_after(change: impl Fn(&mut FreeWakeSettings)) -> Result<[f64; 3], CheckError> {
+    let mut settings = olaf_settings(TAU);
+    change(&mut settings);
+    Ok(thrust_of(&in_wake(&settings)?))
+}
+
+fn thrust_of(solution: &BladeElementSolution) -> [f64; 3] {
     let scale = olaf_thrust_newton();
     let sums = solution.rotating_sums(4);
     let step = TAU / sums.len() as f64;
     let samples: Vec<(f64, f64)> =
         sums.iter().enumerate().map(|(i, sum)| (i as f64 * step, sum[2] * scale)).collect();
-    Ok(four_per_rev(&samples))
+    four_per_rev(&samples)
 }
 
 /// The same of the independent wake: azimuth 0 of its table is psi 180 deg.
