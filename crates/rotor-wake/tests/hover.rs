@@ -142,6 +142,33 @@ fn an_axial_wake_is_refused_in_forward_flight_and_with_flapping_blades() {
     assert!(matches!(refused, Err(WakeError::BadInput { .. })));
 }
 
+/// Blades that move a little become their mean, which turns; circulation likewise. More is refused.
+#[test]
+fn an_axial_wake_takes_the_mean_of_the_blades() {
+    let rotor = slender().unwrap().rotor;
+    let flapping = |size: f64| {
+        BladeLines::deflected(&rotor, 24, |i, n| {
+            let azimuth = TAU * i as f64 / 24.0;
+            [rotor.nodes()[n] * (0.05 + size * azimuth.cos()), 0.0]
+        })
+    };
+    let mean = flapping(0.003).axial().unwrap();
+    let still = flapping(0.0);
+    for i in 0..24 {
+        for (p, q) in mean.at(i).iter().zip(still.at(i)) {
+            assert!((0..3).all(|c| (p[c] - q[c]).abs() < 1e-12), "{p:?} {q:?}");
+        }
+    }
+    assert!(matches!(flapping(0.02).axial(), Err(WakeError::BadInput { .. })));
+    let uneven = CirculationMap::from_fn(24, 20, |i, s| {
+        0.01 * (1.0 + s as f64 + 0.1 * (TAU * i as f64 / 24.0).cos())
+    });
+    let even = uneven.unwrap().axial();
+    for i in 0..24 {
+        assert!(even.row(i).iter().zip(1..).all(|(g, s)| (g - 0.01 * f64::from(s)).abs() < 1e-12));
+    }
+}
+
 fn march(azimuths: usize, strength: f64) -> (FreeWake, WakeMarch, CirculationMap) {
     let flight = FlightState { advance_ratio: 0.25, shaft_tilt_rad: 0.087 };
     let rotor = WakeRotor::cosine(4, 0.2, 8).unwrap();
