@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use xtask::{
     XtaskError, calibrate, ci, files, hidden_effects, layers, refinement, regress, tidy, validate,
-    workspace,
+    wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -41,6 +41,8 @@ enum Chore {
     },
     /// Show what refining the paper's case does to its 4/rev hub loads
     Refinement,
+    /// Show what grid, near wake and core of the free wake do to the thrust of a reference rotor; minutes
+    WakeRefinement,
     /// Compare a sweep of the whole program with its golden values
     Regress {
         /// Rewrite the goldens of the cases that differ
@@ -123,6 +125,10 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
         }
         Chore::Refinement => {
             say(&mut std::io::stdout(), &refinement::table()?);
+            Ok(ExitCode::SUCCESS)
+        }
+        Chore::WakeRefinement => {
+            wake_refinement::table(|line| say(&mut std::io::stdout(), line));
             Ok(ExitCode::SUCCESS)
         }
         Chore::Regress { bless, filter, golden } => {

@@ -4,10 +4,11 @@
 
 use std::process::{Command, Output};
 
-use xtask::regress::{Program, Snapshot, SweepPoint};
+use xtask::regress::{Program, Snapshot, SweepInflow, SweepPoint};
 use xtask::workspace;
 
-const POINT: SweepPoint = SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 3 };
+const POINT: SweepPoint =
+    SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 3, inflow: SweepInflow::Drees };
 
 fn xtask(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_xtask")).args(arguments).output().unwrap()

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use xtask::regress::{
-    Difference, Filter, GUARDED_CHANGE, HUB_LOADS, Mode, Report, Snapshot, SweepPoint, SweepResult,
-    Tolerance, TrimChannels, Verdict, all_points, compare, run, unfit_for_a_golden,
+    Difference, Filter, GUARDED_CHANGE, HUB_LOADS, Mode, Report, Snapshot, SweepInflow, SweepPoint,
+    SweepResult, Tolerance, TrimChannels, Verdict, all_points, compare, run, unfit_for_a_golden,
 };
 use xtask::workspace;
 
@@ -44,7 +44,8 @@ fn computed(point: SweepPoint) -> Result<SweepResult, NoTrim> {
     Ok(plausible(point))
 }
 
-const POINT: SweepPoint = SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 3 };
+const POINT: SweepPoint =
+    SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 3, inflow: SweepInflow::Drees };
 
 fn snapshot() -> Snapshot {
     plausible(POINT).snapshot(POINT)
@@ -58,7 +59,7 @@ fn everything() -> Filter {
 fn blessed() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let report = run(folder.path(), Mode::Bless, &everything(), computed).unwrap();
-    assert_eq!(report.cases.len(), 24);
+    assert_eq!(report.cases.len(), 25);
     assert!(report.cases.iter().all(|case| matches!(case.verdict, Verdict::Blessed(_))));
     folder
 }
@@ -222,7 +223,7 @@ fn an_unchanged_program_agrees_with_its_goldens() {
     let folder = blessed();
     let report = compared(folder.path());
     assert_eq!(report.exit_code(), 0);
-    assert!(report.text().starts_with("24 of 24 cases"), "{}", report.text());
+    assert!(report.text().starts_with("25 of 25 cases"), "{}", report.text());
 }
 
 #[test]
@@ -237,7 +238,7 @@ fn a_changed_golden_makes_exit_code_3_and_is_named() {
     let text = report.text();
     assert!(text.contains("mu=0.30,n=3") && text.contains("my_cos"), "{text}");
     assert!(text.contains("-0.990 %") && text.contains("m0 Omega^2 R^3"), "{text}");
-    assert!(text.contains("23 of 24 cases") && text.contains("1 different"), "{text}");
+    assert!(text.contains("24 of 25 cases") && text.contains("1 different"), "{text}");
     // another case does not care
     let others = Filter::parse("mu=0.30,n=2,n=4,n=5").unwrap();
     assert_eq!(run(folder.path(), Mode::Compare, &others, computed).unwrap().exit_code(), 0);
@@ -283,7 +284,7 @@ fn blessing_rewrites_what_changed_and_nothing_else() {
     assert_eq!(std::fs::read_to_string(&untouched).unwrap(), marked);
     assert_eq!(run(folder.path(), Mode::Compare, &everything(), changed).unwrap().exit_code(), 0);
     // nothing is left behind by the atomic writes
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 24);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 25);
 }
 
 #[test]
@@ -311,7 +312,7 @@ fn a_case_that_cannot_be_computed_is_exit_code_1_and_the_others_are_still_compar
     assert_eq!(report.exit_code(), 1);
     let text = report.text();
     assert!(text.contains("mu=0.30,n=3: not computed: no trim after 40 iterations"), "{text}");
-    assert!(text.contains("23 of 24"), "{text}");
+    assert!(text.contains("24 of 25"), "{text}");
 }
 
 #[test]

@@ -101,6 +101,23 @@ fn kernel(criterion: &mut Criterion) {
     let moore =
         rate(|| induced_velocities_serial(black_box(&targets), black_box(&corrected), &mut out));
     println!("kernel, corrected core, 1 thread: {moore:.3e} evaluations/s");
+    let mut far = SegmentSet::new(CoreModel::Vatistas);
+    for pair in nodes.windows(2) {
+        far.push_single(pair[0], pair[1], 0.01, CORE);
+    }
+    let exact = induced_velocities(&targets, &set);
+    let apart =
+        exact.iter().flatten().zip(induced_velocities(&targets, &far).into_iter().flatten());
+    let [error, largest] = apart.fold([0.0_f64; 2], |[error, largest], (a, b)| {
+        [error.max((a - b).abs()), largest.max(a.abs())]
+    });
+    let single = rate(|| induced_velocities_serial(black_box(&targets), black_box(&far), &mut out));
+    println!(
+        "kernel, single precision, 1 thread: {single:.3e} evaluations/s, {:.2} times double; largest error {:.1e} of the \
+         largest velocity",
+        single / serial,
+        error / largest
+    );
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let parallel = pool.install(|| {
         rate(|| {

@@ -33,6 +33,7 @@ mod kernel;
 mod linear;
 mod momentum;
 mod pitt_peters;
+pub mod reference;
 mod vector;
 mod wake;
 
@@ -50,10 +51,10 @@ pub use momentum::{VORTEX_RING_TRANSPORT, momentum_inflow, momentum_residual, wa
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
-    BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarTrailers, FreeWake,
-    FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ReleasePoint,
-    ShedVorticity, StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeRotor, WakeSymmetry,
-    contraction_drift,
+    BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers,
+    FreeWake, FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ReleasePoint,
+    ShedVorticity, StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeMethod, WakeRotor,
+    WakeSymmetry, contraction_drift,
 };
 
 /// The example of the crate's README, run as a documentation test.

@@ -161,3 +161,43 @@ proptest! {
         prop_assert_eq!(last[0], one[count - 1]);
     }
 }
+
+/// Segments in single precision: within 1e-4 of the largest velocity (targets ten radii from the origin are known
+/// to 1e-6 R, a part of the core), a target on a segment's end or line included, and the same bits with one thread and two.
+#[test]
+fn single_precision_is_near_and_repeatable() {
+    let nodes: Vec<Vec3> = (0..400)
+        .map(|k| {
+            let angle = 0.1 * f64::from(k);
+            [angle.cos() + 0.2 * angle, angle.sin(), -0.01 * angle]
+        })
+        .collect();
+    let targets: Vec<Vec3> =
+        nodes.iter().flat_map(|p| [*p, [p[0] + 0.03, p[1] - 0.01, p[2] + 0.02]]).collect();
+    for model in [CoreModel::Vatistas, CoreModel::RosenheadMoore] {
+        let mut double = SegmentSet::new(model);
+        let mut mixed = SegmentSet::new(model);
+        for (k, pair) in nodes.windows(2).enumerate() {
+            double.push(pair[0], pair[1], 0.01, 0.02);
+            if k < 100 {
+                mixed.push(pair[0], pair[1], 0.01, 0.02);
+            } else {
+                mixed.push_single(pair[0], pair[1], 0.01, 0.02);
+            }
+        }
+        assert_eq!(mixed.len(), double.len());
+        let (exact, got) =
+            (induced_velocities(&targets, &double), induced_velocities(&targets, &mixed));
+        let largest = exact.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let worst = exact
+            .iter()
+            .flatten()
+            .zip(got.iter().flatten())
+            .fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+        println!("{model:?}: {:.1e} of the largest velocity", worst / largest);
+        assert!(worst < 1e-4 * largest && worst > 0.0, "{model:?}: {:e}", worst / largest);
+        let mut serial = vec![[0.0; 3]; targets.len()];
+        induced_velocities_serial(&targets, &mixed, &mut serial);
+        assert_eq!(serial, got);
+    }
+}

@@ -2,13 +2,13 @@
 
 use crate::case::{
     Case, ControlPointChoice, CoreChoice, FreeWakeFile, InflowChoice, LoadedCase, NearWakeChoice,
-    ReleaseChoice, RolledUpChoice,
+    ReleaseChoice, RolledUpChoice, SymmetryChoice, WakeMethodChoice,
 };
 use rotor_response::{ResponseTolerances, RotorSolver};
 use rotor_wake::{
     ControlPoint, CoreModel, CoreSettings, FarTrailers, FlightState, FreeWakeSettings, FrozenWake,
     InducedInflow, InflowModel, LinearInflow, NearWakeMotion, PittPeters, ReleasePoint,
-    RotorLoading, WakeError, WakeRotor,
+    RotorLoading, WakeError, WakeMethod, WakeRotor, WakeSymmetry,
 };
 use std::sync::Arc;
 use trim::{
@@ -93,6 +93,7 @@ impl Case {
         let wake = FreeWakeSettings {
             azimuths: file.azimuths,
             turns: file.turns,
+            far_turns: file.far_turns,
             near_wake_rad: file.near_wake_deg.to_radians(),
             near_wake_motion: match file.near_wake {
                 NearWakeChoice::BladePlane => NearWakeMotion::BladePlane,
@@ -116,8 +117,13 @@ impl Case {
                 },
                 radius: file.core_r,
                 near_radius: file.near_core_r,
+                panel_share: file.panel_share,
                 viscosity: VISCOSITY_M2_S / speed,
                 ..CoreSettings::default()
+            },
+            symmetry: match file.symmetry {
+                SymmetryChoice::Periodic => WakeSymmetry::Periodic,
+                SymmetryChoice::Axial => WakeSymmetry::Axial,
             },
             ..FreeWakeSettings::default()
         };
@@ -126,6 +132,10 @@ impl Case {
             panels: file.panels,
             inflow_tolerance: file.tolerance,
             updates: file.updates,
+            method: match file.method {
+                WakeMethodChoice::Relaxed => WakeMethod::Relaxed,
+                WakeMethodChoice::Marched => WakeMethod::Marched,
+            },
             ..WakeTrimSettings::default()
         }
     }

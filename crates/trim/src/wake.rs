@@ -3,8 +3,8 @@
 use crate::{TrimError, TrimSettings, TrimSolution, TrimTarget, trim};
 use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
-    CirculationMap, ClosestPassage, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow,
-    LinearInflow, WakeError, WakeRotor, momentum_inflow,
+    BladeLines, CirculationMap, ClosestPassage, FreeWake, FreeWakeSettings, FrozenWake,
+    InducedInflow, LinearInflow, WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
 };
 
 /// Residual of the trim between updates of the wake, over the weight.
@@ -27,7 +27,9 @@ pub struct WakeTrimSettings {
     pub inflow_tolerance: f64,
     /// Updates of the geometry allowed in each stage.
     pub updates: usize,
-    /// Sweeps of the wake per update.
+    /// Relaxation or march in time.
+    pub method: WakeMethod,
+    /// Sweeps of the wake per update, or revolutions of the march.
     pub sweeps: usize,
 }
 
@@ -39,6 +41,7 @@ impl Default for WakeTrimSettings {
             stages: vec![12],
             inflow_tolerance: 2e-4,
             updates: 12,
+            method: WakeMethod::default(),
             sweeps: 3,
         }
     }
@@ -132,8 +135,8 @@ pub fn trim_in_free_wake(
     let mut state: Option<WakeTrim> = None;
     for azimuths in stages {
         let start = state.as_ref().map_or(&drees, |s| &s.trim);
-        let lines = solver.blade_lines(&start.rotor, &panels, azimuths);
-        let circulation = solver.circulation(&start.rotor, &panels, azimuths)?;
+        let (lines, circulation) =
+            on_the_grid(solver, start, &panels, &settings.wake.with_azimuths(azimuths))?;
         let wake = match &state {
             Some(s) => s.wake.on_grid(azimuths, lines),
             None => FreeWake::undistorted(
@@ -180,6 +183,23 @@ pub fn trim_in_free_wake(
     Ok(done)
 }
 
+/// Lifting lines and circulation of a trimmed rotor on the grid of a wake; in an axial wake, those that turn with the
+/// blades.
+fn on_the_grid(
+    solver: &RotorSolver,
+    trimmed: &TrimSolution,
+    panels: &WakeRotor,
+    settings: &FreeWakeSettings,
+) -> Result<(BladeLines, CirculationMap), TrimError> {
+    let lines = solver.blade_lines(&trimmed.rotor, panels, settings.azimuths);
+    let circulation = solver.circulation(&trimmed.rotor, panels, settings.azimuths)?;
+    if settings.symmetry == WakeSymmetry::Periodic {
+        return Ok((lines, circulation));
+    }
+    let lines = lines.axial().map_err(ResponseError::from)?;
+    Ok((lines, circulation.axial()))
+}
+
 impl WakeTrim {
     /// One update; whether the stage is over.
     fn update(
@@ -192,8 +212,7 @@ impl WakeTrim {
         let wrong = |source: WakeError| TrimError::from(ResponseError::from(source));
         let azimuths = self.wake.settings().azimuths;
         let panels = self.wake.rotor().clone();
-        let lines = solver.blade_lines(&self.trim.rotor, &panels, azimuths);
-        let circulation = solver.circulation(&self.trim.rotor, &panels, azimuths)?;
+        let (lines, circulation) = on_the_grid(solver, &self.trim, &panels, self.wake.settings())?;
         // half of a change at once: near passages of vortices answer strongly
         let circulation = circulation.mixed(&self.moving, 0.5).map_err(wrong)?;
         let mean = momentum_inflow(&self.trim.flight, self.trim.rotor.thrust_coefficient);
@@ -202,9 +221,7 @@ impl WakeTrim {
         let moved = mean
             .and_then(|mean| wake.set_condition(self.trim.flight, mean, lines))
             .and_then(|()| {
-                for _ in 0..settings.sweeps {
-                    displacement = wake.sweep(&circulation)?;
-                }
+                displacement = wake.carry_on(settings.method, settings.sweeps, &circulation)?;
                 wake.line_induction(&circulation)
             });
         let induction = match moved {

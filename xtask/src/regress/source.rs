@@ -6,12 +6,12 @@ use preisach_dyn::ActuatorModel;
 use sim_driver::SimError;
 use sim_driver::actuator::case_actuators;
 use sim_driver::case::{
-    ControlActuator, ControllerChoice, EffortChoice, InflowChoice, LoadedCase, PAPER_CASE,
-    shipped_case,
+    ControlActuator, ControllerChoice, EffortChoice, FreeWakeFile, InflowChoice, LoadedCase,
+    PAPER_CASE, shipped_case,
 };
 use sim_driver::study::{Drives, StudyError, TrimmedRotor, control_set};
 
-use super::sweep::{SweepPoint, SweepResult, TrimChannels};
+use super::sweep::{SweepInflow, SweepPoint, SweepResult, TrimChannels};
 
 /// Why a case could not be computed.
 #[derive(Debug, thiserror::Error)]
@@ -52,7 +52,7 @@ impl Program {
         Ok(Self { paper, actuator })
     }
 
-    /// Computes one case: the paper's rotor with Drees inflow at another advance ratio, one harmonic of
+    /// Computes one case: the paper's rotor in the inflow of the case at another advance ratio, one harmonic of
     /// control, the identified actuator, constant T0 and a tuned control weight as in the paper.
     ///
     /// # Errors
@@ -61,7 +61,10 @@ impl Program {
         let harmonics = [point.harmonic_per_rev as usize];
         let mut loaded = self.paper.clone();
         loaded.case.advance_ratio = point.advance_ratio;
-        loaded.case.inflow = InflowChoice::Drees;
+        loaded.case.inflow = match point.inflow {
+            SweepInflow::Drees => InflowChoice::Drees,
+            SweepInflow::FreeWake => InflowChoice::FreeWake(FreeWakeFile::default()),
+        };
         loaded.case.control.harmonics = vec![harmonics.to_vec()];
         loaded.case.control.actuators = vec![ControlActuator::Hysteretic];
         // the paper's controller, which sees every change of plant and law
@@ -88,12 +91,17 @@ impl Program {
             j_before: study.j_before,
             j_after: study.j_after,
             t_matrix_norm_per_volt: study.t_norm(),
-            counts: vec![
-                ("trim_iterations", trim.iterations),
-                ("inflow_iterations", counts.inflow_iterations),
-                ("control_steps", study.steps()),
-                ("control_halvings", study.halvings() as usize),
-            ],
+            counts: rotor
+                .wake()
+                .map(|wake| ("wake_updates", wake.updates.len()))
+                .into_iter()
+                .chain([
+                    ("trim_iterations", trim.iterations),
+                    ("inflow_iterations", counts.inflow_iterations),
+                    ("control_steps", study.steps()),
+                    ("control_halvings", study.halvings() as usize),
+                ])
+                .collect(),
         })
     }
 }

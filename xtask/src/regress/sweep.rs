@@ -16,6 +16,19 @@ pub const HUB_LOADS: [&str; 12] = [
     "my_sin", "mz_cos", "mz_sin",
 ];
 
+/// Inflow of a case of the sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SweepInflow {
+    /// Drees's.
+    Drees,
+    /// The free wake at its defaults.
+    FreeWake,
+}
+
+/// The case that flies in a free wake as well.
+pub const FREE_WAKE_POINT: SweepPoint =
+    SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 4, inflow: SweepInflow::FreeWake };
+
 /// One case of the sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepPoint {
@@ -23,29 +36,42 @@ pub struct SweepPoint {
     pub advance_ratio: f64,
     /// Harmonic of the control, per rev.
     pub harmonic_per_rev: u32,
+    /// Inflow.
+    pub inflow: SweepInflow,
 }
 
 impl SweepPoint {
     /// Name of the golden file, for example `mu030_n3.ron`.
     pub fn file_name(&self) -> String {
-        format!("mu{:03.0}_n{}.ron", 100.0 * self.advance_ratio, self.harmonic_per_rev)
+        let of_the_wake = match self.inflow {
+            SweepInflow::Drees => "",
+            SweepInflow::FreeWake => "_free_wake",
+        };
+        let mu = 100.0 * self.advance_ratio;
+        format!("mu{mu:03.0}_n{}{of_the_wake}.ron", self.harmonic_per_rev)
     }
 }
 
 impl fmt::Display for SweepPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "mu={:.2},n={}", self.advance_ratio, self.harmonic_per_rev)
+        write!(f, "mu={:.2},n={}", self.advance_ratio, self.harmonic_per_rev)?;
+        match self.inflow {
+            SweepInflow::Drees => Ok(()),
+            SweepInflow::FreeWake => f.write_str(", free wake"),
+        }
     }
 }
 
-/// All cases, advance ratio by advance ratio.
+/// All cases, advance ratio by advance ratio, and the one in a free wake.
 pub fn all_points() -> Vec<SweepPoint> {
     let of = |advance_ratio| {
-        HARMONICS_PER_REV
-            .into_iter()
-            .map(move |harmonic_per_rev| SweepPoint { advance_ratio, harmonic_per_rev })
+        HARMONICS_PER_REV.into_iter().map(move |harmonic_per_rev| SweepPoint {
+            advance_ratio,
+            harmonic_per_rev,
+            inflow: SweepInflow::Drees,
+        })
     };
-    ADVANCE_RATIOS.into_iter().flat_map(of).collect()
+    ADVANCE_RATIOS.into_iter().flat_map(of).chain([FREE_WAKE_POINT]).collect()
 }
 
 /// Trim of a case.

@@ -3,10 +3,11 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
+use rotor_wake::reference::{olaf as olaf_rotor, olaf_flight, olaf_settings, olaf_thrust_newton};
 use rotor_wake::{
-    BladeElementRotor, BladeElementSolution, BladeLines, CoreModel, CoreSettings, CouplingSettings,
-    FarTrailers, FlightState, FreeWake, FreeWakeSettings, RigidMotion, SectionPolar, SegmentSet,
-    ShedVorticity, Vec3, WakeError, WakeRotor, arc_velocity, induced_velocities, momentum_inflow,
+    BladeElementSolution, BladeLines, CoreModel, CouplingSettings, FlightState, FreeWake,
+    FreeWakeSettings, SegmentSet, Vec3, WakeError, WakeRotor, arc_velocity, induced_velocities,
+    momentum_inflow,
 };
 
 use super::CheckError;
@@ -121,6 +122,24 @@ pub(super) const AREA: Area = Area {
             repeatability: Repeatability::Everywhere,
             measure: || Ok(thrust(90)?[1] / thrust(360)?[1]),
         },
+        Check {
+            id: "V-WAKE-46",
+            quantity: "the same with steps of 10 deg in place of 15: 4/rev thrust, relative change",
+            unit: "-",
+            source: "converged; `cargo xtask wake-refinement` has the whole table",
+            criterion: Criterion::AtMost(0.02),
+            repeatability: Repeatability::MachineDependent,
+            measure: || Ok((thrust_after(|s| s.azimuths = 36)?[1] / thrust(360)?[1] - 1.0).abs()),
+        },
+        Check {
+            id: "V-WAKE-47",
+            quantity: "the same with 5 turns in place of 3: mean thrust, relative change",
+            unit: "-",
+            source: "the same",
+            criterion: Criterion::AtMost(0.003),
+            repeatability: Repeatability::MachineDependent,
+            measure: || Ok((thrust_after(|s| s.turns = 5)?[0] / thrust(360)?[0] - 1.0).abs()),
+        },
     ],
 };
 
@@ -189,54 +208,13 @@ fn helices(advance_ratio: f64) -> Result<f64, CheckError> {
     Ok(sum / area / inflow)
 }
 
-/// Polar of the reference rotor.
-struct ReferencePolar;
-
-impl SectionPolar for ReferencePolar {
-    fn lift_drag(&self, alpha_rad: f64, _mach: f64) -> [f64; 2] {
-        let a = (alpha_rad + PI).rem_euclid(TAU) - PI;
-        let f = 1.0 / (1.0 + ((a.to_degrees().abs() - 14.0) / 1.5).exp());
-        let attached = [TAU * a.sin(), 0.008 + 0.1 * a * a];
-        let separated = [1.1 * (2.0 * a).sin(), 0.02 + 1.8 * a.sin().powi(2)];
-        [0, 1].map(|k| f * attached[k] + (1.0 - f) * separated[k])
-    }
+fn reference(near_wake_deg: u32) -> Result<BladeElementSolution, WakeError> {
+    in_wake(&olaf_settings(f64::from(near_wake_deg).to_radians()))
 }
 
-const RADIUS_M: f64 = 4.94;
-const TIP_SPEED_M_S: f64 = 383.0 * TAU / 60.0 * RADIUS_M;
-
-fn reference(near_wake_deg: u32) -> Result<BladeElementSolution, WakeError> {
-    let tilt = 5.0_f64.to_radians();
-    let advance_ratio = 59.44 * tilt.cos() / TIP_SPEED_M_S;
-    let flight = FlightState { advance_ratio, shaft_tilt_rad: tilt };
-    let rotor = BladeElementRotor {
-        rotor: WakeRotor::uniform(4, 0.2, 20)?,
-        chord: 0.2717 / RADIUS_M,
-        twist_rad: (-8.0_f64).to_radians(),
-        tip_mach: 0.0,
-        motion: RigidMotion {
-            pitch_rad: [8.0, 2.0, -4.5].map(f64::to_radians),
-            flap_rad: [0.0; 3],
-        },
-        polar: &ReferencePolar,
-    };
-    let core = 0.3764 / RADIUS_M;
-    let settings = FreeWakeSettings {
-        turns: 3,
-        far_turns: 1,
-        near_wake_rad: f64::from(near_wake_deg).to_radians(),
-        core: CoreSettings {
-            radius: core,
-            near_radius: core,
-            panel_share: f64::INFINITY,
-            viscosity: 0.0,
-            ..CoreSettings::default()
-        },
-        shed: ShedVorticity::InWake,
-        far: FarTrailers::TipAndRoot,
-        ..FreeWakeSettings::default()
-    };
-    let mut wake = rotor.starting_wake(&settings, flight, 0.005)?;
+fn in_wake(settings: &FreeWakeSettings) -> Result<BladeElementSolution, WakeError> {
+    let rotor = olaf_rotor(20)?;
+    let mut wake = rotor.starting_wake(settings, olaf_flight(), 0.005)?;
     let coupling =
         CouplingSettings { inflow_tolerance: 2e-4, sweeps: 3, ..CouplingSettings::default() };
     rotor.solve(&mut wake, &coupling)
@@ -265,13 +243,23 @@ fn four_per_rev(samples: &[(f64, f64)]) -> [f64; 3] {
 
 /// Thrust of the reference rotor, N.
 fn thrust(near_wake_deg: u32) -> Result<[f64; 3], CheckError> {
-    let solution = solved(near_wake_deg)?;
-    let scale = 1.225 * PI * RADIUS_M.powi(2) * TIP_SPEED_M_S.powi(2);
+    Ok(thrust_of(solved(near_wake_deg)?))
+}
+
+/// The same after a change of the wake.
+fn thrust_after(change: impl Fn(&mut FreeWakeSettings)) -> Result<[f64; 3], CheckError> {
+    let mut settings = olaf_settings(TAU);
+    change(&mut settings);
+    Ok(thrust_of(&in_wake(&settings)?))
+}
+
+fn thrust_of(solution: &BladeElementSolution) -> [f64; 3] {
+    let scale = olaf_thrust_newton();
     let sums = solution.rotating_sums(4);
     let step = TAU / sums.len() as f64;
     let samples: Vec<(f64, f64)> =
         sums.iter().enumerate().map(|(i, sum)| (i as f64 * step, sum[2] * scale)).collect();
-    Ok(four_per_rev(&samples))
+    four_per_rev(&samples)
 }
 
 /// The same of the independent wake: azimuth 0 of its table is psi 180 deg.

@@ -8,12 +8,15 @@
 //! The targets lie in the lanes of the vector unit and the segments are summed one after the other,
 //! so that a result has the same bits whatever the number of threads and the width of the vectors.
 //!
+//! Segments pushed as single-precision ones are summed in that precision, sixteen at a time, and these sums in double.
+//!
 //! Source: the Biot-Savart integral over a straight segment; Vatistas, Kozel and Mih, Exp. Fluids 11
 //! (1991) 73, for the profile; Moore, Proc. R. Soc. A 345 (1975), and Saffman, Vortex Dynamics (1992),
 //! section 11.2, for the cut-off.
 
 mod lanes;
 mod segment;
+mod single;
 
 pub use segment::{CoreModel, SegmentSet, arc_velocity};
 
@@ -21,6 +24,7 @@ use crate::vector::Vec3;
 use lanes::{LANES, Lanes, Law, RosenheadMoore, Vatistas};
 use pulp::Arch;
 use rayon::prelude::*;
+use single::{SINGLE_LANES, add_single};
 
 /// Targets that one task of the thread pool works on.
 const TASK_TARGETS: usize = 8 * LANES;
@@ -53,6 +57,18 @@ pub fn induced_velocities_serial(targets: &[Vec3], segments: &SegmentSet, out: &
             },
         );
         sum.scatter(out);
+    }
+    if segments.single().is_empty() {
+        return;
+    }
+    for (out, at) in out.chunks_mut(SINGLE_LANES).zip(targets.chunks(SINGLE_LANES)) {
+        arch.dispatch(
+            #[inline(always)]
+            || match segments.core() {
+                CoreModel::Vatistas => add_single::<false>(at, segments.single(), out),
+                CoreModel::RosenheadMoore => add_single::<true>(at, segments.single(), out),
+            },
+        );
     }
 }
 

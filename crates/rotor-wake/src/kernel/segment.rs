@@ -1,5 +1,6 @@
 //! Segments as the kernel wants them, and the part of the corrected model that adjacent segments lack.
 
+use super::single::PreparedSingle;
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use std::f64::consts::PI;
 
@@ -57,12 +58,13 @@ pub(super) struct Prepared {
 pub struct SegmentSet {
     core: CoreModel,
     prepared: Vec<Prepared>,
+    single: Vec<PreparedSingle>,
 }
 
 impl SegmentSet {
     /// No segments.
     pub fn new(core: CoreModel) -> Self {
-        Self { core, prepared: Vec::new() }
+        Self { core, prepared: Vec::new(), single: Vec::new() }
     }
 
     /// Adds a segment from `start` to `end` with a circulation in the right-hand sense about that
@@ -84,6 +86,12 @@ impl SegmentSet {
         self.prepared.push(Prepared { start, along, strength, core, cut_off });
     }
 
+    /// The same for a segment whose velocity is computed in single precision, with coordinates of seven
+    /// digits: some 1e-5 of the velocity next to the core. [`induced_velocities`](super::induced_velocities) adds it to that of the others.
+    pub fn push_single(&mut self, start: Vec3, end: Vec3, circulation: f64, core_radius: f64) {
+        self.single.push(PreparedSingle::new(self.core, [start, end], circulation, core_radius));
+    }
+
     /// The core model.
     pub fn core(&self) -> CoreModel {
         self.core
@@ -91,17 +99,22 @@ impl SegmentSet {
 
     /// Number of segments.
     pub fn len(&self) -> usize {
-        self.prepared.len()
+        self.prepared.len() + self.single.len()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.prepared.is_empty()
+        self.prepared.is_empty() && self.single.is_empty()
     }
 
     /// Takes all segments out and keeps the memory.
     pub fn clear(&mut self) {
         self.prepared.clear();
+        self.single.clear();
+    }
+
+    pub(super) fn single(&self) -> &[PreparedSingle] {
+        &self.single
     }
 
     pub(super) fn prepared(&self) -> &[Prepared] {

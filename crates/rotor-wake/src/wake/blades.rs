@@ -1,8 +1,12 @@
 //! Where the lifting line of a blade is at every azimuth.
 
 use super::WakeRotor;
+use crate::WakeError;
 use crate::vector::{Vec3, about_the_shaft, add, norm, scale, sub};
 use std::f64::consts::TAU;
+
+/// Motion over a revolution up to which blades count as turning only, unit `R`: less than a core.
+const STEADY: f64 = 0.01;
 
 /// Ends of the panels in hub axes (unit `R`) at uniform azimuths, `[azimuth][node]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +56,32 @@ impl BladeLines {
             *edge = [edge[0] + distance * sin, edge[1] - distance * cos, edge[2]];
         }
         Self { edges, ..self }
+    }
+
+    /// The mean blade of all azimuths turned to each of them, for an axial wake.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] if the blades move by more than a hundredth of the radius as they turn.
+    pub fn axial(&self) -> Result<Self, WakeError> {
+        let motion = self.departure_from_turning();
+        if motion.is_nan() || motion > STEADY {
+            let quantity = "motion of the blades of an axial wake, R";
+            let expected = "at most 0.01: hover with little cyclic pitch";
+            return Err(WakeError::BadInput { quantity, value: motion, expected });
+        }
+        let azimuths = self.azimuths();
+        let angle = |i: usize| TAU * i as f64 / azimuths as f64;
+        let turned = |nodes: &[Vec3]| -> Vec<Vec3> {
+            let mut mean = vec![[0.0; 3]; self.nodes];
+            for (i, blade) in nodes.chunks_exact(self.nodes).enumerate() {
+                for (m, p) in mean.iter_mut().zip(blade) {
+                    *m = add(*m, scale(about_the_shaft(*p, -angle(i)), 1.0 / azimuths as f64));
+                }
+            }
+            let blades = 0..azimuths;
+            blades.flat_map(|i| mean.iter().map(move |p| about_the_shaft(*p, angle(i)))).collect()
+        };
+        Ok(Self { nodes: self.nodes, points: turned(&self.points), edges: turned(&self.edges) })
     }
 
     /// Largest distance of a node from where the blade at azimuth 0 would be when turned there, unit `R`.

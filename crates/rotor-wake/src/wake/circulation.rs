@@ -112,6 +112,15 @@ impl CirculationMap {
         Self::new(self.panels, pairs.map(|(a, b)| part * a + (1.0 - part) * b).collect())
     }
 
+    /// The mean over the azimuth at every azimuth, for an axial wake.
+    #[must_use]
+    pub fn axial(&self) -> Self {
+        let azimuths = self.azimuths();
+        let mean = |s: usize| (0..azimuths).map(|i| self.row(i)[s]).sum::<f64>() / azimuths as f64;
+        let row: Vec<f64> = (0..self.panels).map(mean).collect();
+        Self { panels: self.panels, values: row.repeat(azimuths) }
+    }
+
     /// The same function of azimuth on another number of azimuths, by its harmonics.
     ///
     /// # Errors

@@ -23,7 +23,7 @@ pub use influence::{FrozenWake, LineInduction};
 pub use march::{WakeMarch, contraction_drift};
 pub use rotor::WakeRotor;
 pub use settings::{
-    ControlPoint, CoreSettings, FarTrailers, FreeWakeSettings, NearWakeMotion, ReleasePoint,
-    ShedVorticity, StrainEffect, WakeSymmetry,
+    ControlPoint, CoreSettings, FarField, FarTrailers, FreeWakeSettings, NearWakeMotion,
+    ReleasePoint, ShedVorticity, StrainEffect, WakeMethod, WakeSymmetry,
 };
 pub use solve::{ClosestPassage, WakeConvergence};

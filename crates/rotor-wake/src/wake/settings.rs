@@ -87,6 +87,30 @@ pub enum WakeSymmetry {
     Axial,
 }
 
+/// How the geometry is carried on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum WakeMethod {
+    /// Sweeps of pseudo-implicit relaxation of a wake that is the same every revolution: a count is of sweeps.
+    #[default]
+    Relaxed,
+    /// Marched in time by PC2B ([`WakeMarch`](super::WakeMarch)), every blade on its own from the periodic wake: a count is of
+    /// revolutions.
+    Marched,
+}
+
+/// Precision of the velocities that old rolled-up vortices induce on the wake itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum FarField {
+    /// Double.
+    #[default]
+    Double,
+    /// Single for the vortices older than a revolution: their sums run faster, and the velocities differ by some 1e-6 of the
+    /// tip speed at most. What the blades feel stays double.
+    Single,
+}
+
 /// Whether stretching makes a vortex thinner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -162,6 +186,8 @@ pub struct FreeWakeSettings {
     pub core: CoreSettings,
     /// What the wakes at different azimuths have in common.
     pub symmetry: WakeSymmetry,
+    /// Precision of the velocities by old vortices.
+    pub far_field: FarField,
     /// Induced velocities are computed at every `velocity_stride`-th age and interpolated between
     /// along the path of the air; 1 computes all.
     pub velocity_stride: usize,
@@ -187,6 +213,7 @@ impl Default for FreeWakeSettings {
             control_point: ControlPoint::default(),
             core: CoreSettings::default(),
             symmetry: WakeSymmetry::default(),
+            far_field: FarField::default(),
             velocity_stride: 1,
             relaxation: 0.5,
             tolerance: 1e-4,
@@ -196,6 +223,28 @@ impl Default for FreeWakeSettings {
 }
 
 impl FreeWakeSettings {
+    /// An isolated rotor in hover without cyclic pitch: the wake turns with it, sections feel it at Weissinger's
+    /// points, and what is trailed rolls up within a quarter of a revolution, the sheet inboard of the tip vortex into
+    /// vortices where it was trailed.
+    pub fn hover(model: CoreModel) -> Self {
+        Self {
+            turns: 3,
+            far_turns: 6,
+            near_wake_rad: 0.25 * std::f64::consts::TAU,
+            far: FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]),
+            control_point: ControlPoint::ThreeQuarterChord,
+            symmetry: WakeSymmetry::Axial,
+            core: CoreSettings {
+                model,
+                radius: 0.03,
+                panel_share: 0.3,
+                viscosity: 8.7e-8,
+                ..CoreSettings::default()
+            },
+            ..Self::default()
+        }
+    }
+
     /// Azimuth step, rad.
     pub fn step_rad(&self) -> f64 {
         std::f64::consts::TAU / self.azimuths as f64

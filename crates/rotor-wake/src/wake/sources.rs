@@ -1,7 +1,8 @@
 //! The vortex segments of all blades at one instant, and how each depends on the circulation.
 
 use super::settings::{
-    FarTrailers, FreeWakeSettings, NearWakeMotion, ReleasePoint, ShedVorticity, StrainEffect,
+    FarField, FarTrailers, FreeWakeSettings, NearWakeMotion, ReleasePoint, ShedVorticity,
+    StrainEffect,
 };
 use super::{CirculationMap, WakeRotor};
 use crate::SegmentSet;
@@ -179,17 +180,19 @@ pub(crate) struct SourceContext<'a> {
 }
 
 /// Segments of one instant.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Sources {
     ends: Vec<[Vec3; 2]>,
     radii: Vec<f64>,
     terms: Vec<Terms>,
+    /// Whether a segment may be summed in single precision: it is old.
+    old: Vec<bool>,
 }
 
 impl Sources {
     /// What the blades feel: lifting lines, the full span of the near wake, the rolled-up vortices behind it.
     pub(crate) fn of_loads(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
-        let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
+        let mut out = Self::default();
         for view in views {
             out.bound(view, context);
             out.chords(view, context, |n| young_radius(context, n));
@@ -205,7 +208,7 @@ impl Sources {
         if context.settings.near_wake_motion == NearWakeMotion::Free {
             return Self::of_loads(views, context);
         }
-        let mut out = Self { ends: Vec::new(), radii: Vec::new(), terms: Vec::new() };
+        let mut out = Self::default();
         for view in views {
             out.bound(view, context);
             // about to roll up: as thick as what comes of them
@@ -221,18 +224,25 @@ impl Sources {
 
     /// For the kernel, with the strengths of a circulation.
     pub(crate) fn segments(&self, context: &SourceContext<'_>, circulation: &[f64]) -> SegmentSet {
-        self.set(context, |terms| terms.strength(circulation))
-    }
-
-    /// For the kernel, all of unit strength.
-    pub(crate) fn unit_segments(&self, context: &SourceContext<'_>) -> SegmentSet {
-        self.set(context, |_| 1.0)
-    }
-
-    fn set(&self, context: &SourceContext<'_>, strength: impl Fn(&Terms) -> f64) -> SegmentSet {
         let mut set = SegmentSet::new(context.settings.core.model);
-        for ((ends, &radius), terms) in self.ends.iter().zip(&self.radii).zip(&self.terms) {
-            set.push(ends[0], ends[1], strength(terms), radius);
+        let single = context.settings.far_field == FarField::Single;
+        let segments = self.ends.iter().zip(&self.radii).zip(&self.terms).zip(&self.old);
+        for (((ends, &radius), terms), &old) in segments {
+            let strength = terms.strength(circulation);
+            if single && old {
+                set.push_single(ends[0], ends[1], strength, radius);
+            } else {
+                set.push(ends[0], ends[1], strength, radius);
+            }
+        }
+        set
+    }
+
+    /// For the kernel, all of unit strength and in double precision.
+    pub(crate) fn unit_segments(&self, context: &SourceContext<'_>) -> SegmentSet {
+        let mut set = SegmentSet::new(context.settings.core.model);
+        for (ends, &radius) in self.ends.iter().zip(&self.radii) {
+            set.push(ends[0], ends[1], 1.0, radius);
         }
         set
     }
@@ -242,7 +252,13 @@ impl Sources {
             self.ends.push(ends);
             self.radii.push(radius);
             self.terms.push(terms);
+            self.old.push(false);
         }
+    }
+
+    /// Of all segments from number `from` on: they are old.
+    fn mark_old(&mut self, from: usize) {
+        self.old[from..].fill(true);
     }
 
     fn bound(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
@@ -325,7 +341,12 @@ impl Sources {
                 let young = context.young[f][release(age)];
                 core_radius(settings, age, strength, norm(sub(ends[1], ends[0])) / young)
             };
-            for k in first..steps {
+            for k in first..azimuths.min(steps) {
+                let ends = [points[k], points[k + 1]];
+                self.push(ends, radius(k, &ends), terms(k));
+            }
+            let young = self.ends.len();
+            for k in first.max(azimuths)..steps {
                 let ends = [points[k], points[k + 1]];
                 self.push(ends, radius(k, &ends), terms(k));
             }
@@ -339,6 +360,7 @@ impl Sources {
                     last = next;
                 }
             }
+            self.mark_old(young);
         }
     }
 }

@@ -47,6 +47,24 @@ pub enum ControlPointChoice {
     ThreeQuarterChord,
 }
 
+/// How the wake is carried on between two trims.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum WakeMethodChoice {
+    /// Sweeps of pseudo-implicit relaxation: the same every revolution.
+    Relaxed,
+    /// Revolutions marched in time (PC2B), every blade on its own.
+    Marched,
+}
+
+/// What the wakes at different azimuths have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SymmetryChoice {
+    /// Each azimuth has its own.
+    Periodic,
+    /// The wake turns with its blades: hover without cyclic pitch.
+    Axial,
+}
+
 /// Velocity profile of the cores.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CoreChoice {
@@ -64,6 +82,8 @@ pub struct FreeWakeFile {
     pub azimuths: usize,
     /// Free turns of the rolled-up vortices.
     pub turns: usize,
+    /// Turns that repeat the last free one behind it.
+    pub far_turns: usize,
     /// Spanwise panels of a blade.
     pub panels: usize,
     /// Age up to which all trailers are kept, deg.
@@ -82,17 +102,28 @@ pub struct FreeWakeFile {
     pub core_r: f64,
     /// Core radius of the near wake, radius R.
     pub near_core_r: f64,
+    /// Core radius of the youngest trailers over the width of the panel beside them, at most; a large number for no
+    /// limit.
+    pub panel_share: f64,
+    /// Relaxation or march in time.
+    pub method: WakeMethodChoice,
+    /// What the wakes at different azimuths have in common.
+    pub symmetry: SymmetryChoice,
     /// Largest change of the inflow between two updates of the wake, tip speed.
     pub tolerance: f64,
     /// Updates of the wake allowed.
     pub updates: usize,
 }
 
+/// A share of a panel that no core reaches.
+const NO_LIMIT: f64 = 1e6;
+
 impl Default for FreeWakeFile {
     fn default() -> Self {
         Self {
             azimuths: 24,
             turns: 4,
+            far_turns: 2,
             panels: 20,
             near_wake_deg: 360.0,
             near_wake: NearWakeChoice::FollowsTip,
@@ -102,6 +133,9 @@ impl Default for FreeWakeFile {
             core: CoreChoice::Vatistas,
             core_r: 0.02,
             near_core_r: 0.02,
+            panel_share: NO_LIMIT,
+            method: WakeMethodChoice::Relaxed,
+            symmetry: SymmetryChoice::Periodic,
             tolerance: 2e-4,
             updates: 12,
         }

@@ -32,6 +32,7 @@ pub use file_control::{
 };
 pub use file_wake::{
     ControlPointChoice, CoreChoice, FreeWakeFile, NearWakeChoice, ReleaseChoice, RolledUpChoice,
+    SymmetryChoice, WakeMethodChoice,
 };
 pub use read::{CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
 pub use validated::{

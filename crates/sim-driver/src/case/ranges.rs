@@ -4,7 +4,7 @@ use super::checker::{Checker, Number};
 use super::ranges_blade::check_blade;
 use super::{
     ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice, FreeWakeFile,
-    HorizontalTailFile, InflowChoice, SectionModelChoice, StrokeChoice, TrimFile,
+    HorizontalTailFile, InflowChoice, SectionModelChoice, StrokeChoice, SymmetryChoice, TrimFile,
 };
 use crate::problem::Fault;
 use std::f64::consts::TAU;
@@ -42,6 +42,7 @@ fn check_flight(check: &mut Checker<'_>, file: &CaseFile) {
     }
     if let InflowChoice::FreeWake(wake) = &file.inflow.model {
         check_wake(check, wake, file.rotor.blades);
+        check_axial(check, wake, file.advance_ratio);
     }
 }
 
@@ -52,15 +53,32 @@ fn check_wake(check: &mut Checker<'_>, wake: &FreeWakeFile, blades: usize) {
     let remedy = "make it a multiple of the number of blades";
     check.count(&at("azimuths"), wake.azimuths, (whole, whole), remedy);
     check.count(&at("turns"), wake.turns, (1, 12), "4 are usual in forward flight");
+    check.count(&at("far_turns"), wake.far_turns, (0, 20), "2 are usual, 6 in hover");
     check.count(&at("panels"), wake.panels, (6, 60), "20 are usual");
     check.count(&at("updates"), wake.updates, (1, 200), "12 are usual");
     for (key, value, low, high, unit, remedy) in [
         ("near_wake_deg", wake.near_wake_deg, 1.0, 1440.0, "deg", "360 is one revolution"),
         ("core_r", wake.core_r, 1e-3, 0.2, "R", "about a third of the chord is usual"),
         ("near_core_r", wake.near_core_r, 1e-3, 0.2, "R", "about a third of the chord is usual"),
+        (
+            "panel_share",
+            wake.panel_share,
+            0.01,
+            1e6,
+            "",
+            "0.3 is usual in hover; leave it out for no limit",
+        ),
         ("tolerance", wake.tolerance, 1e-8, 1e-2, "", "2e-4 of the tip speed is usual"),
     ] {
         check.within(number(&at(key), value, unit, remedy), low, high);
+    }
+}
+
+/// Refuses an axial wake in forward flight.
+fn check_axial(check: &mut Checker<'_>, wake: &FreeWakeFile, advance_ratio: f64) {
+    if wake.symmetry == SymmetryChoice::Axial {
+        let remedy = "a wake turns with its blades in hover only; leave inflow.model.symmetry out";
+        check.within(number("advance_ratio", advance_ratio, "", remedy), 0.0, 0.0);
     }
 }
 

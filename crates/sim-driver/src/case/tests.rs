@@ -6,7 +6,7 @@ use super::{
 };
 use crate::files::{Folder, Source, ron_text};
 use approx::assert_relative_eq;
-use rotor_wake::{ControlPoint, FarTrailers, ReleasePoint};
+use rotor_wake::{ControlPoint, FarTrailers, ReleasePoint, WakeMethod, WakeSymmetry};
 
 fn read(text: &str) -> Result<LoadedCase, String> {
     let source = Source { name: "case.ron".into(), text: text.into() };
@@ -93,10 +93,19 @@ fn every_problem_is_reported_with_its_line() {
 fn the_choices_of_a_free_wake_are_read_and_checked() {
     let of = |fields: &str| read(&format!("(inflow: (model: FreeWake({fields})))"));
     let loaded =
-        of("rolled_up: TipRootAndSheet, release: Centroid, control_point: ThreeQuarterChord")
-            .unwrap();
+        of("rolled_up: TipRootAndSheet, release: Centroid, control_point: ThreeQuarterChord, \
+            method: Marched, panel_share: 0.3, far_turns: 6")
+        .unwrap();
     let InflowChoice::FreeWake(file) = loaded.case.inflow else { unreachable!() };
-    let wake = loaded.case.wake_trim_settings(&file).wake;
+    let settings = loaded.case.wake_trim_settings(&file);
+    assert_eq!(settings.method, WakeMethod::Marched);
+    let wake = settings.wake;
+    assert_eq!((wake.core.panel_share, wake.far_turns), (0.3, 6));
+    assert_eq!(wake.symmetry, WakeSymmetry::Periodic);
+    let hover = "(advance_ratio: 0.0, inflow: (model: FreeWake(symmetry: Axial)))";
+    let InflowChoice::FreeWake(axial) = read(hover).unwrap().case.inflow else { unreachable!() };
+    let axial = loaded.case.wake_trim_settings(&axial).wake;
+    assert_eq!(axial.symmetry, WakeSymmetry::Axial);
     assert_eq!(wake.far, FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]));
     assert_eq!(wake.release, ReleasePoint::Centroid);
     assert_eq!(wake.control_point, ControlPoint::ThreeQuarterChord);
@@ -107,6 +116,10 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
         ("turns: 0", "inflow.model.turns: is 0"),
         ("near_wake_deg: 0.0", "inflow.model.near_wake_deg: is 0"),
         ("core_r: NaN", "inflow.model.core_r: is NaN"),
+        ("symmetry: Axial", "a wake turns with its blades in hover only"),
+        ("method: PC2B", "inflow.model.method: unknown choice"),
+        ("panel_share: 0.0", "inflow.model.panel_share: is 0"),
+        ("far_turns: 21", "inflow.model.far_turns: is 21"),
         ("tolerance: 1.0", "inflow.model.tolerance: is 1"),
     ] {
         let text = of(fields).unwrap_err();
