@@ -183,19 +183,6 @@ pub(super) const AREA: Area = Area {
             repeatability: Repeatability::Everywhere,
             measure: || Ok(given_stroke()?.1),
         },
-        Check {
-            id: "V-STUDY-16",
-            quantity: "2 to 5/rev together, range of voltages binding: J of the inverse's best motion in reach over that of \
-                       feedback within limits",
-            unit: "-",
-            source: "two ways to one optimum",
-            criterion: Criterion::AtMost(1.02),
-            repeatability: Repeatability::Everywhere,
-            measure: || {
-                let all = [2, 3, 4, 5];
-                Ok(line(&all, "inverse")?.j_after / line(&all, "hysteretic")?.j_after)
-            },
-        },
     ],
 };
 
