@@ -8,7 +8,8 @@
 //! outboard puts on the section, in coned blade axes: x outboard, y to the leading edge, z up; the torsion is that
 //! about the deflected axis.
 //!
-//! Source: W. Johnson, Helicopter Theory (1980), section 9-5, force summation and curvature.
+//! Source: force summation and mode displacement of R. L. Bisplinghoff, H. Ashley, R. L. Halfman, Aeroelasticity
+//! (1955), on a rotating blade.
 
 use crate::load_station::LoadStation;
 use crate::loads::{moderate_wrenches, span_wrenches, summed};

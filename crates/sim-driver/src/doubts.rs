@@ -10,8 +10,8 @@ use trim::mean_lift_coefficient;
 /// softest articulated blades.
 const LEAST_STIFFNESS: f64 = 2e-5;
 
-/// Mean lift coefficient above which rotors stall: `C_T/sigma` of 0.15 in hover, 0.17 at an advance ratio of
-/// 0.3, beyond the limits of thrust measured in wind tunnels.
+/// Mean lift coefficient above which rotors stall: `C_T/sigma` of 0.15 in hover, and 0.17 at an advance ratio
+/// of 0.3, which is beyond the limits of thrust measured in wind tunnels.
 ///
 /// Source: F. J. `McHugh`, 34th Annual Forum of the American Helicopter Society (1978).
 const STALLING_LIFT_COEFFICIENT: f64 = 0.9;

@@ -108,7 +108,7 @@ pub(super) const AREA: Area = Area {
             ),
             "%",
             CROSSCHECK,
-            Criterion::AtMost(5.0),
+            Criterion::AtMost(1.0),
             || modal_error(Couplings::Moderate(AS_REFERENCE)),
         ),
         check(
