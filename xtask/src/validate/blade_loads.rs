@@ -11,87 +11,63 @@ use rotor_response::{
 use rotor_wake::LinearInflow;
 
 use super::CheckError;
-use super::check::{Area, Check, Criterion, Repeatability};
+use super::check::{Area, Criterion, everywhere as check};
 use super::reference::worst;
 use super::rotor::{fixed_controls, paper_blade, paper_rotor};
 
 const SAME_EQUATION: &str = "both integrate the same equation";
 const MONOTONE: &str = "monotone convergence";
 
-const fn check(
-    (id, quantity): (&'static str, &'static str),
-    unit: &'static str,
-    source: &'static str,
-    criterion: Criterion,
-    measure: fn() -> Result<f64, CheckError>,
-) -> Check {
-    Check {
-        id,
-        quantity,
-        unit,
-        source,
-        criterion,
-        repeatability: Repeatability::Everywhere,
-        measure,
-    }
-}
-
 pub(super) const AREA: Area = Area {
     heading: "Loads of the blade (`rotor-response`)",
     checks: &[
         check(
-            (
-                "V-RESP-45",
-                "flap, lag and torsion moment at root, .25, .5, .75 R, mean to 4/rev: curvature of 16 completed modes of each off force summation, Full, over the largest along the span: worst of all",
-            ),
+            "V-RESP-45",
+            "flap, lag and torsion moment at root, .25, .5, .75 R, mean to 4/rev: curvature of 16 completed modes of each off force summation, Full, over the largest along the span: worst of all",
             "%",
-            SAME_EQUATION,
-            Criterion::AtMost(1.0),
+            (SAME_EQUATION, Criterion::AtMost(1.0)),
             || Ok(100.0 * largest(&gaps(16, ModalBasis::Completed, Couplings::Full)?)),
         ),
         check(
-            (
-                "V-RESP-46",
-                "the same: gap with 16 over 10 and 10 over 4 modes, largest of the three moments",
-            ),
+            "V-RESP-46",
+            "the same: gap with 16 over 10 and 10 over 4 modes, largest of the three moments",
             "-",
-            MONOTONE,
-            Criterion::AtMost(0.99),
+            (MONOTONE, Criterion::AtMost(0.99)),
             || gap_ratio(Couplings::Full),
         ),
         check(
-            ("V-RESP-52", "the same with Moderate, 16 modes"),
+            "V-RESP-52",
+            "the same with Moderate, 16 modes",
             "%",
-            SAME_EQUATION,
-            Criterion::AtMost(1.0),
+            (SAME_EQUATION, Criterion::AtMost(1.0)),
             || Ok(100.0 * largest(&gaps(16, ModalBasis::Completed, MODERATE)?)),
         ),
         check(
-            ("V-RESP-53", "the same with Moderate: gap with 16 over 10 and 10 over 4 modes"),
+            "V-RESP-53",
+            "the same with Moderate: gap with 16 over 10 and 10 over 4 modes",
             "-",
-            MONOTONE,
-            Criterion::AtMost(0.99),
+            (MONOTONE, Criterion::AtMost(0.99)),
             || gap_ratio(MODERATE),
         ),
         check(
-            ("V-RESP-35", "the same with Linear, 16 modes"),
+            "V-RESP-35",
+            "the same with Linear, 16 modes",
             "%",
-            SAME_EQUATION,
-            Criterion::AtMost(1.0),
+            (SAME_EQUATION, Criterion::AtMost(1.0)),
             || Ok(100.0 * largest(&gaps(16, ModalBasis::Completed, Couplings::Linear)?)),
         ),
         check(
-            ("V-RESP-36", "the same with Linear: gap with 16 over 10 and 10 over 4 modes"),
+            "V-RESP-36",
+            "the same with Linear: gap with 16 over 10 and 10 over 4 modes",
             "-",
-            MONOTONE,
-            Criterion::AtMost(0.99),
+            (MONOTONE, Criterion::AtMost(0.99)),
             || gap_ratio(Couplings::Linear),
         ),
         check(
-            ("V-RESP-54", "the same with 16 natural modes at .25, .5, .75 R, Full and Moderate"),
+            "V-RESP-54",
+            "the same with 16 natural modes at .25, .5, .75 R, Full and Moderate",
             "%",
-            SAME_EQUATION,
-            Criterion::AtMost(1.0),
+            (SAME_EQUATION, Criterion::AtMost(1.0)),
             || {
                 let gaps = [Couplings::Full, MODERATE].map(|couplings| {
                     Ok(100.0 * largest(&gaps(16, ModalBasis::Natural, couplings)?[1..]))
@@ -100,43 +76,31 @@ pub(super) const AREA: Area = Area {
             },
         ),
         check(
-            (
-                "V-RESP-37",
-                "the same with 16 natural modes at the root, Full: what mode displacement misses where torsion is loaded to the root",
-            ),
+            "V-RESP-37",
+            "the same with 16 natural modes at the root, Full: what mode displacement misses where torsion is loaded to the root",
             "%",
-            SAME_EQUATION,
-            Criterion::Between(10.0, 40.0),
+            (SAME_EQUATION, Criterion::Between(10.0, 40.0)),
             || Ok(100.0 * largest(&gaps(16, ModalBasis::Natural, Couplings::Full)?[..1])),
         ),
         check(
-            (
-                "V-RESP-55",
-                "forces and moments of force summation at the root, unsteady sections, gravity, Full and Moderate, harmonics 0 to 12: off the load on the hub; at the tip: off zero",
-            ),
+            "V-RESP-55",
+            "forces and moments of force summation at the root, unsteady sections, gravity, Full and Moderate, harmonics 0 to 12: off the load on the hub; at the tip: off zero",
             "m0 Omega^2 R^2",
-            "identity",
-            Criterion::AtMost(1e-14),
+            ("identity", Criterion::AtMost(1e-14)),
             end_error,
         ),
         check(
-            (
-                "V-RESP-56",
-                "tension of a stiff blade in vacuum at 0, .1, .333, .5, .75 R, Full and Moderate: largest error",
-            ),
+            "V-RESP-56",
+            "tension of a stiff blade in vacuum at 0, .1, .333, .5, .75 R, Full and Moderate: largest error",
             "%",
-            "(1 - s^2) / 2",
-            Criterion::AtMost(1e-4),
+            ("(1 - s^2) / 2", Criterion::AtMost(1e-4)),
             tension_error,
         ),
         check(
-            (
-                "V-RESP-57",
-                "terms of third order in the moments at root, .25, .5, .75 R: force summation off its counterpart in the equations of Full at any azimuth, over the largest peak to peak along the span",
-            ),
+            "V-RESP-57",
+            "terms of third order in the moments at root, .25, .5, .75 R: force summation off its counterpart in the equations of Full at any azimuth, over the largest peak to peak along the span",
             "%",
-            "the statics of the deflected blade",
-            Criterion::AtMost(5.0),
+            ("the statics of the deflected blade", Criterion::AtMost(5.0)),
             ordering,
         ),
     ],

@@ -104,6 +104,18 @@ impl Check {
     }
 }
 
+/// A check that is the same on every machine: id, quantity, unit, reference and bound, way to compute it.
+pub(super) const fn everywhere(
+    id: &'static str,
+    quantity: &'static str,
+    unit: &'static str,
+    (source, criterion): (&'static str, Criterion),
+    measure: fn() -> Result<f64, CheckError>,
+) -> Check {
+    let repeatability = Repeatability::Everywhere;
+    Check { id, quantity, unit, source, criterion, repeatability, measure }
+}
+
 /// The checks of one crate.
 #[derive(Debug, Clone, Copy)]
 pub struct Area {

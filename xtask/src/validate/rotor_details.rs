@@ -15,7 +15,7 @@ use rotor_response::{
 use rotor_wake::{FlightState, LinearInflow};
 
 use super::CheckError;
-use super::check::{Area, Check, Criterion, Repeatability};
+use super::check::{Area, Criterion, everywhere as check};
 use super::reference::{self, worst};
 use super::rotor::{fixed_controls, norm, paper_blade, paper_rotor, response};
 use crate::refinement::{
@@ -26,187 +26,142 @@ use crate::refinement::{
 const CROSSCHECK: &str = "independent Fourier collocation model, crosscheck_S1_S2.json";
 const FINER: &str = "8 stations per piece and 24 time elements";
 
-const fn check(
-    (id, quantity): (&'static str, &'static str),
-    unit: &'static str,
-    source: &'static str,
-    criterion: Criterion,
-    measure: fn() -> Result<f64, CheckError>,
-) -> Check {
-    Check {
-        id,
-        quantity,
-        unit,
-        source,
-        criterion,
-        repeatability: Repeatability::Everywhere,
-        measure,
-    }
-}
-
 pub(super) const AREA: Area = Area {
     heading: "Rotor response, details (`rotor-response`)",
     checks: &[
         check(
-            (
-                "V-RESP-30",
-                "hover coning of a stiff blade on a flap hinge, collective 6 and 10 deg: largest error",
-            ),
+            "V-RESP-30",
+            "hover coning of a stiff blade on a flap hinge, collective 6 and 10 deg: largest error",
             "%",
-            "beta = 3 K (theta M3 - lambda M2) / (1 - 3 K c/2 M2), blade-element theory",
-            Criterion::AtMost(0.5),
+            (
+                "beta = 3 K (theta M3 - lambda M2) / (1 - 3 K c/2 M2), blade-element theory",
+                Criterion::AtMost(0.5),
+            ),
             coning_error,
         ),
         check(
-            (
-                "V-RESP-31",
-                "droop of a stiff blade on springs under gravity, shaft tilted: flap and lag, largest error",
-            ),
+            "V-RESP-31",
+            "droop of a stiff blade on springs under gravity, shaft tilted: flap and lag, largest error",
             "%",
-            "-1.5 g cos a / nu_b^2 and 1.5 g sin a / (nu_z^2 - 1)",
-            Criterion::AtMost(0.01),
+            ("-1.5 g cos a / nu_b^2 and 1.5 g sin a / (nu_z^2 - 1)", Criterion::AtMost(0.01)),
             droop_error,
         ),
         check(
-            ("V-RESP-32", "hover thrust with tip loss .97 and .90: largest error"),
+            "V-RESP-32",
+            "hover thrust with tip loss .97 and .90: largest error",
             "%",
-            "(sigma a / 2) (theta (B^3 - x0^3) / 3 - lambda (B^2 - x0^2) / 2)",
-            Criterion::AtMost(0.05),
+            (
+                "(sigma a / 2) (theta (B^3 - x0^3) / 3 - lambda (B^2 - x0^2) / 2)",
+                Criterion::AtMost(0.05),
+            ),
             tip_loss_error,
         ),
         check(
-            (
-                "V-RESP-33",
-                "1/rev in-plane hub force of a blade 2 % heavier, stiff, in vacuum: error",
-            ),
+            "V-RESP-33",
+            "1/rev in-plane hub force of a blade 2 % heavier, stiff, in vacuum: error",
             "%",
-            "Delta m Omega^2 R^2 / 2",
-            Criterion::AtMost(0.01),
+            ("Delta m Omega^2 R^2 / 2", Criterion::AtMost(0.01)),
             || heavy_blade(0.02).map(|found| 100.0 * (found / 0.01 - 1.0).abs()),
         ),
         check(
-            (
-                "V-RESP-34",
-                "hub loads summed over separately solved blades, all alike: distance from those of one blade",
-            ),
+            "V-RESP-34",
+            "hub loads summed over separately solved blades, all alike: distance from those of one blade",
             "m0 Omega^2 R^2",
-            "identity",
-            Criterion::AtMost(1e-12),
+            ("identity", Criterion::AtMost(1e-12)),
             alike_error,
         ),
         check(
-            ("V-RESP-38", "case S2: modal harmonics 0 to 5 of all ten modes, error of their norm"),
+            "V-RESP-38",
+            "case S2: modal harmonics 0 to 5 of all ten modes, error of their norm",
             "%",
-            CROSSCHECK,
-            Criterion::AtMost(0.1),
+            (CROSSCHECK, Criterion::AtMost(0.1)),
             || modal_error(Couplings::Full),
         ),
         check(
-            (
-                "V-RESP-58",
-                "case S2 with moderate deflections, torsion as in the reference: modal harmonics 0 to 5 of all ten modes, distance of their norm from the second-order reference",
-            ),
+            "V-RESP-58",
+            "case S2 with moderate deflections, torsion as in the reference: modal harmonics 0 to 5 of all ten modes, distance of their norm from the second-order reference",
             "%",
-            CROSSCHECK,
-            Criterion::AtMost(1.0),
+            (CROSSCHECK, Criterion::AtMost(1.0)),
             || modal_error(Couplings::Moderate(AS_REFERENCE)),
         ),
         check(
-            (
-                "V-RESP-39",
-                "case S2 with moderate deflections, torsion as in the reference: mean tip deflection, error",
-            ),
+            "V-RESP-39",
+            "case S2 with moderate deflections, torsion as in the reference: mean tip deflection, error",
             "%",
-            CROSSCHECK,
-            Criterion::AtMost(1.0),
+            (CROSSCHECK, Criterion::AtMost(1.0)),
             tip_error,
         ),
         check(
-            (
-                "V-RESP-40",
-                "4/rev hub loads at the default mesh, unsteady sections, fixed controls, mu 0.30: largest of all six loads, off the fine mesh",
-            ),
+            "V-RESP-40",
+            "4/rev hub loads at the default mesh, unsteady sections, fixed controls, mu 0.30: largest of all six loads, off the fine mesh",
             "%",
-            FINER,
-            Criterion::AtMost(1.0),
+            (FINER, Criterion::AtMost(1.0)),
             || Ok(largest(refinement(UNSTEADY, 0.2, ReverseFlow::Gradual)?)),
         ),
         check(
-            (
-                "V-RESP-41",
-                "the same, 8 time elements off 24 with the same stations: what kinks of fast lags leave inside an element",
-            ),
+            "V-RESP-41",
+            "the same, 8 time elements off 24 with the same stations: what kinks of fast lags leave inside an element",
             "%",
-            "24 time elements",
-            Criterion::AtMost(0.1),
+            ("24 time elements", Criterion::AtMost(0.1)),
             refinement_in_time,
         ),
         check(
-            (
-                "V-RESP-44",
-                "the same with circulation that jumps where the tangential speed turns round (Abrupt): largest of all six loads",
-            ),
+            "V-RESP-44",
+            "the same with circulation that jumps where the tangential speed turns round (Abrupt): largest of all six loads",
             "%",
-            FINER,
-            Criterion::AtMost(1.0),
+            (FINER, Criterion::AtMost(1.0)),
             || Ok(largest(refinement(UNSTEADY, 0.2, ReverseFlow::Abrupt)?)),
         ),
         check(
-            (
-                "V-RESP-47",
-                "4/rev hub loads of the paper's case, trimmed, at the default discretisation: largest of all six loads, off the fine mesh",
-            ),
+            "V-RESP-47",
+            "4/rev hub loads of the paper's case, trimmed, at the default discretisation: largest of all six loads, off the fine mesh",
             "%",
-            FINER,
-            Criterion::AtMost(1.0),
+            (FINER, Criterion::AtMost(1.0)),
             || Ok(largest(trimmed_refinement(default_mesh, finer_mesh)?)),
         ),
         check(
-            ("V-RESP-48", "the same, off many modes: largest of all six loads"),
+            "V-RESP-48",
+            "the same, off many modes: largest of all six loads",
             "%",
-            "12 flap, 12 lag, 10 torsion modes of 40 beam elements",
-            Criterion::AtMost(1.0),
+            ("12 flap, 12 lag, 10 torsion modes of 40 beam elements", Criterion::AtMost(1.0)),
             || Ok(largest(trimmed_refinement(default_mesh, most_modes)?)),
         ),
         check(
-            ("V-RESP-49", "the same, off more of everything: largest of all six loads"),
+            "V-RESP-49",
+            "the same, off more of everything: largest of all six loads",
             "%",
-            "8 flap, 8 lag, 6 torsion modes of 20 beam elements, 8 stations per piece, 24 time elements",
-            Criterion::AtMost(1.0),
+            (
+                "8 flap, 8 lag, 6 torsion modes of 20 beam elements, 8 stations per piece, 24 time elements",
+                Criterion::AtMost(1.0),
+            ),
             || Ok(largest(trimmed_refinement(default_mesh, all_finer)?)),
         ),
         check(
-            ("V-RESP-50", "10 flap, 10 lag, 8 torsion modes: the many modes have converged"),
+            "V-RESP-50",
+            "10 flap, 10 lag, 8 torsion modes: the many modes have converged",
             "%",
-            "12 flap, 12 lag, 10 torsion modes of 40 beam elements",
-            Criterion::AtMost(0.1),
+            ("12 flap, 12 lag, 10 torsion modes of 40 beam elements", Criterion::AtMost(0.1)),
             || Ok(largest(trimmed_refinement(many_modes, most_modes)?)),
         ),
         check(
-            (
-                "V-RESP-51",
-                "the paper's 4 flap, 4 lag, 2 torsion modes: largest of all loads but MZ, which is the default's reason",
-            ),
+            "V-RESP-51",
+            "the paper's 4 flap, 4 lag, 2 torsion modes: largest of all loads but MZ, which is the default's reason",
             "%",
-            "12 flap, 12 lag, 10 torsion modes of 40 beam elements",
-            Criterion::AtMost(1.0),
+            ("12 flap, 12 lag, 10 torsion modes of 40 beam elements", Criterion::AtMost(1.0)),
             || Ok(largest(trimmed_refinement(paper_modes, most_modes)?.into_iter().take(5))),
         ),
         check(
-            ("V-RESP-42", "the same with quasi-steady sections: largest of all six loads"),
+            "V-RESP-42",
+            "the same with quasi-steady sections: largest of all six loads",
             "%",
-            FINER,
-            Criterion::AtMost(1.0),
+            (FINER, Criterion::AtMost(1.0)),
             || Ok(largest(refinement(AttachedFlowModel::QuasiSteady, 0.2, ReverseFlow::Gradual)?)),
         ),
         check(
-            (
-                "V-RESP-43",
-                "the same with unsteady sections and the cut-out outside the reverse-flow circle, .3: largest of all six loads",
-            ),
+            "V-RESP-43",
+            "the same with unsteady sections and the cut-out outside the reverse-flow circle, .3: largest of all six loads",
             "%",
-            FINER,
-            Criterion::AtMost(1.0),
+            (FINER, Criterion::AtMost(1.0)),
             || Ok(largest(refinement(UNSTEADY, 0.3, ReverseFlow::Gradual)?)),
         ),
     ],

@@ -17,24 +17,13 @@ use rotor_response::{
 use rotor_wake::{FlightState, LinearInflow};
 
 use super::CheckError;
-use super::check::{Area, Check, Criterion, Repeatability};
+use super::check::{Area, Criterion, everywhere as check};
 use super::reference::worst;
 use super::rotor::{paper_rotor, response};
 
 const MEASURED: &str = "McAlister et al., NASA TM-84245, frame 10022, digitised";
 const CL: &str = include_str!("../../../fixtures/reference/deep_stall/exp_cl.txt");
 const CD: &str = include_str!("../../../fixtures/reference/deep_stall/exp_cd.txt");
-
-const fn check(
-    id: &'static str,
-    quantity: &'static str,
-    unit: &'static str,
-    (source, criterion): (&'static str, Criterion),
-    measure: fn() -> Result<f64, CheckError>,
-) -> Check {
-    let repeatability = Repeatability::Everywhere;
-    Check { id, quantity, unit, source, criterion, repeatability, measure }
-}
 
 pub(super) const AREA: Area = Area {
     heading: "Sections beyond attached theory, in air and rotor (`flap-aero`, `rotor-response`)",

@@ -12,25 +12,13 @@ use flap_aero::{
 use num_complex::Complex64;
 
 use super::CheckError;
-use super::check::{Area, Check, Criterion, Repeatability};
+use super::check::{Area, Check, Criterion, everywhere as check};
 use super::reference::{Table, TableRow, worst};
 use crate::calibrate::{ErrorBands, errors_against_possio, errors_of_flaps};
 
 const OWN: &str = "Possio's equation, the project's own solver; Theodorsen at Mach 0";
 const SLOW: usize = 0;
 const FAST: usize = 1;
-
-/// A check that is the same on every machine.
-const fn check(
-    id: &'static str,
-    quantity: &'static str,
-    unit: &'static str,
-    (source, criterion): (&'static str, Criterion),
-    measure: fn() -> Result<f64, CheckError>,
-) -> Check {
-    let repeatability = Repeatability::Everywhere;
-    Check { id, quantity, unit, source, criterion, repeatability, measure }
-}
 
 const fn calibrated(
     id: &'static str,
