@@ -96,7 +96,9 @@ pub(crate) fn span_wrenches(
         let (sin, cos) = theta.sin_cos();
         let (km1, km2) = (blade.km1_squared[i], blade.km2_squared[i]);
         let propeller = m * (km2 - km1) * sin * cos;
-        let mx = -m * (km1 + km2) * theta_acceleration - propeller + loads.moment[i];
+        let mx = -m * (km1 + km2) * theta_acceleration - propeller
+            + loads.moment[i]
+            + across_the_axis(loads, [v.slope[i], w.slope[i]], i);
         [
             fx,
             fy,
@@ -107,6 +109,16 @@ pub(crate) fn span_wrenches(
         ]
     };
     (0..n).map(wrench).collect()
+}
+
+/// What the moments on the slopes have along the blade's own axis, taken out of the turning moment.
+///
+/// ```text
+/// t . M = M_x + v_x M_y + w_x M_z,   M_y = -slope_w,   M_z = slope_v
+/// ```
+/// The turning moment of a flap beside the blade is `t . M`, about the deflected axis; the wrench holds `M_x`.
+fn across_the_axis(loads: &SpanLoads, [v_x, w_x]: [f64; 2], i: usize) -> f64 {
+    v_x * loads.slope[1][i] - w_x * loads.slope[0][i]
 }
 
 /// The same of the moderately deflected blade.
@@ -127,8 +139,11 @@ pub(crate) fn moderate_wrenches(
         let force = loads.force(blade, motion, i);
         let arm = [blade.grid.x()[i] + modal.axial[i], v.value[i], w.value[i]];
         let turn = loads.moment[i];
-        let own =
-            [turn, turn * v.slope[i] - loads.slope[1][i], turn * w.slope[i] + loads.slope[0][i]];
+        let own = [
+            turn + across_the_axis(loads, [v.slope[i], w.slope[i]], i),
+            turn * v.slope[i] - loads.slope[1][i],
+            turn * w.slope[i] + loads.slope[0][i],
+        ];
         let mut out = [0.0; 6];
         for k in 0..3 {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);

@@ -222,3 +222,27 @@ fn a_station_off_the_blade_is_refused() {
         assert!(error.to_string().contains("from 0 to 1 R"), "{error}");
     }
 }
+
+/// The turning moment of a flap that weighs beside the blade is about the deflected axis already: summed
+/// along the span it is what the equations of motion twist the blade by, up to their own order.
+#[test]
+fn a_heavy_flap_beside_the_blade_twists_it_once() {
+    for couplings in [Couplings::Full, MODERATE] {
+        let flaps = paper_flaps()
+            .into_iter()
+            .map(|flap| TrailingEdgeFlap { mass: FlapMass::AddedToBlade, ..flap })
+            .collect();
+        let model = RotorModel { flaps, ..paper_model(couplings) };
+        let rotor = (model, paper_spec());
+        let d = Discretisation::default();
+        let stations = [0.0, 0.25, 0.5, 0.7, 0.75];
+        let (_, at) = loads(rotor, d, moving_flap(), &stations);
+        let torsion = |history: &rotor_response::LoadHistory<3>| history.harmonics[2].mean;
+        let largest = at.iter().map(|at| torsion(&at.equations).abs()).fold(0.0, f64::max);
+        for at in &at {
+            let gap = (torsion(&at.moments) - torsion(&at.equations)).abs() / largest;
+            println!("{couplings:?} at {}: {gap:.4} of {largest:.2e}", at.station);
+            assert!(gap < 0.01, "{couplings:?} at {}: {gap}", at.station);
+        }
+    }
+}

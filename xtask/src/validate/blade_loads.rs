@@ -23,7 +23,7 @@ pub(super) const AREA: Area = Area {
     checks: &[
         check(
             "V-RESP-45",
-            "flap, lag and torsion moment at root, .25, .5, .75 R, mean to 4/rev: curvature of 16 completed modes of each off force summation, Full, over the largest along the span: worst of all",
+            "flap, lag and torsion moment at root, .25, .5, .75 R, mean to 4/rev: curvature of 16 completed modes of each off the force summation in the order of the equations of motion (`equations`; V-RESP-57 has the terms beyond), Full, over the largest along the span: worst of all",
             "%",
             (SAME_EQUATION, Criterion::AtMost(1.0)),
             || Ok(100.0 * largest(&gaps(16, ModalBasis::Completed, Couplings::Full)?)),
