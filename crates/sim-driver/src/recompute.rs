@@ -82,7 +82,7 @@ pub fn compared_fields<T: Serialize>(
 /// # Errors
 /// [`SimError::NotReproduced`] for the first cell that differs.
 pub fn compared_table(stored: &str, anew: &str, file: &str) -> Result<(), SimError> {
-    let header: Vec<&str> = anew.lines().next().unwrap_or_default().split(',').collect();
+    let header = cells_of(anew.lines().next().unwrap_or_default());
     let (mut then, mut now) = (stored.lines(), anew.lines());
     let mut line = 0;
     loop {
@@ -94,12 +94,23 @@ pub fn compared_table(stored: &str, anew: &str, file: &str) -> Result<(), SimErr
         if then == now {
             continue;
         }
-        let cells = then.split(',').zip(now.split(',')).zip(&header);
-        let first = cells.clone().find(|((a, b), _)| a != b);
+        let (stored, anew) = (cells_of(then), cells_of(now));
+        let mut cells = stored.into_iter().zip(anew).zip(&header);
+        let first = cells.find(|((a, b), _)| a != b);
         let name = first.map_or("", |(_, name)| *name);
         let (a, b) = first.map_or((then, now), |(pair, _)| pair);
         return Err(changed(file, format!("line {line} {name}"), a.to_owned(), b.to_owned()));
     }
+}
+
+/// The cells of a line: commas between quotation marks part nothing.
+fn cells_of(line: &str) -> Vec<&str> {
+    let mut is_quoted = false;
+    line.split(|c: char| {
+        is_quoted ^= c == '"';
+        c == ',' && !is_quoted
+    })
+    .collect()
 }
 
 /// A field that does not follow.

@@ -161,4 +161,9 @@ fn a_changed_cell_of_a_table_is_named() {
     let text = found.unwrap_err().to_string();
     assert!(text.contains("a.csv: line 3 deg is 2.6") && text.contains("gives 2.5"), "{text}");
     assert!(compared_table("set,flap,deg\n3,0,1.5\n", table, "a.csv").is_err());
+    // a comma in a name parts no cells
+    let named = "assumption,a,b\n\"wake, near\",1,2\n";
+    let found = compared_table("assumption,a,b\n\"wake, near\",9,2\n", named, "a.csv");
+    let text = found.unwrap_err().to_string();
+    assert!(text.contains("line 2 a is 9"), "{text}");
 }

@@ -385,6 +385,9 @@ pub struct StoredResult<T> {
     /// blake3 of what the report shows of bench and setting, which does not follow from the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub page_key: Option<String>,
+    /// blake3 of the loads of the blade, here and as a table: they follow from the flight alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blade_loads_key: Option<String>,
     /// The whole case, defaults filled in.
     pub case: CaseFile,
     /// The result.
@@ -402,6 +405,7 @@ impl<T: Serialize> StoredResult<T> {
             key: result_key(case, &inputs)?,
             inputs,
             page_key: None,
+            blade_loads_key: None,
             case: case.clone(),
             result,
         })

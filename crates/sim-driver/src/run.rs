@@ -235,7 +235,7 @@ impl RunResult {
             ),
             (
                 any(&|l| l.motion_share.is_some_and(|s| (s - 1.0).abs() > WHOLE)),
-                "**  not the ideal actuator's motion, but the one of least J that the range of voltages holds",
+                "**  not the ideal actuator's motion, which the range of voltages does not hold, but the best in the range that a\n    search from there found; feedback may find a better one",
             ),
             (
                 any(&|l| l.controller == "global" && l.t_renewals > 0),
@@ -252,6 +252,10 @@ impl RunResult {
             (
                 any(&|l| l.outcome == "out-of-range"),
                 "out-of-range: what is asked for lies beyond the range of voltages, and the part inside does not lower J;\n              effort: Limits makes the range part of the optimum",
+            ),
+            (
+                any(&|l| l.outcome == "step-limit"),
+                "step-limit: the loop had not settled after the steps allowed; what is shown is its last step",
             ),
             (
                 any(&|l| l.controller == "global" && l.outcome == "stalled"),

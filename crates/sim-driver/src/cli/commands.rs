@@ -178,18 +178,28 @@ fn store(loaded: &LoadedCase, out: &Path, outcome: &RunOutcome) -> Result<StudyR
     let page = page_part(loaded, outcome)?;
     let mut stored = StoredResult::new(&loaded.file, inputs, result.clone())?;
     stored.page_key = Some(page.key()?);
+    let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales);
+    stored.blade_loads_key = Some(blade_loads_key(result, &blade_loads)?);
     let report = study_report(&stored, page);
     for (name, text) in tables(&stored) {
         write_atomic(&out.join(name), text.as_bytes())?;
     }
     stored.write(&out.join(RESULT_FILE))?;
-    let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales);
     write_atomic(&out.join(BLADE_LOADS_FILE), blade_loads.as_bytes())?;
     let numbers = serde_json::to_string(&report)
         .map_err(|e| SimError::NotWritten { path: out.join(STUDY_FILE), reason: e.to_string() })?;
     write_atomic(&out.join(STUDY_FILE), numbers.as_bytes())?;
     write_atomic(&out.join(REPORT_FILE), report_html(&report).as_bytes())?;
     Ok(report)
+}
+
+/// blake3 of the loads of the blade in a result and in their table.
+fn blade_loads_key(result: &RunResult, table: &str) -> Result<String, SimError> {
+    let lines = serde_json::to_string(&result.blade_loads)
+        .map_err(|e| SimError::NotWritten { path: RESULT_FILE.into(), reason: e.to_string() })?;
+    let mut hash = blake3::Hasher::new();
+    hash.update(lines.as_bytes()).update(table.as_bytes());
+    Ok(hash.finalize().to_hex().to_string())
 }
 
 /// The tables that a stored result gives, by file name.
@@ -526,6 +536,14 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
                 format!("of key {found}"),
                 format!("key {key}"),
             ));
+        }
+    }
+    if let Some(key) = &checked.stored.blade_loads_key {
+        let table = Source::read(&args.dir.join(BLADE_LOADS_FILE))?;
+        let found = blade_loads_key(&checked.stored.result, &table.text)?;
+        if *key != found {
+            let (stored, anew) = (format!("of key {found}"), format!("key {key}"));
+            return Err(changed(BLADE_LOADS_FILE, "table or blade_loads".to_owned(), stored, anew));
         }
     }
     let report = study_report(&checked.stored, page);

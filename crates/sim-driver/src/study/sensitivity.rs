@@ -24,6 +24,12 @@ const TABLE_INFLOW_TOLERANCE: f64 = 1e-8;
 /// The change that weights each load by its own baseline.
 const BY_BASELINE: &str = "each load weighted by its own baseline";
 
+const FREE_WAKE: &str = "free wake";
+const NEAR_WAKES: [&str; 2] = [
+    "near wake convected, off the free wake",
+    "near wake of 30 deg in the blade plane, off the free wake",
+];
+
 /// One assumption changed, and what becomes of the reductions.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sensitivity {
@@ -165,17 +171,25 @@ fn free_wake(loaded: &LoadedCase) -> FreeWakeFile {
 fn of_the_wake() -> Vec<Assumption> {
     let of_rotor = |text, change: fn(&mut LoadedCase)| assume(text, change);
     vec![
-        of_rotor("free wake", |c| c.case.inflow = InflowChoice::FreeWake(free_wake(c))),
-        of_rotor("free wake, near wake convected", |c| {
+        of_rotor(FREE_WAKE, |c| c.case.inflow = InflowChoice::FreeWake(free_wake(c))),
+        of_rotor(NEAR_WAKES[0], |c| {
             let near_wake = NearWakeChoice::Convected;
             c.case.inflow = InflowChoice::FreeWake(FreeWakeFile { near_wake, ..free_wake(c) });
         }),
-        of_rotor("free wake, near wake of 30 deg in the blade plane", |c| {
+        of_rotor(NEAR_WAKES[1], |c| {
             let near_wake = NearWakeChoice::BladePlane;
             let file = FreeWakeFile { near_wake, near_wake_deg: 30.0, ..free_wake(c) };
             c.case.inflow = InflowChoice::FreeWake(file);
         }),
     ]
+}
+
+/// Compares another near wake with the free wake as it is, so that one thing is changed at a time.
+fn compare_near_wakes(table: &mut [Sensitivity]) {
+    let Some(place) = table.iter().position(|row| row.assumption == FREE_WAKE) else { return };
+    for row in table.iter_mut().filter(|row| NEAR_WAKES.contains(&row.assumption.as_str())) {
+        row.compared_with = place;
+    }
 }
 
 /// The changes, one at a time.
@@ -289,15 +303,18 @@ pub fn sensitivities(
     }
     let baseline = base.trim().rotor.hub.harmonic(loaded.case.blades);
     let setting = Setting::of_case(&loaded.case, &HubLoads::from_parts(baseline));
-    refigure_sensitivity(&mut table, &setting);
     let changed = table.iter().filter(|row| row.compared_with > 0).count();
     let first = if changed > 0 { 2 } else { 1 };
+    compare_near_wakes(&mut table);
+    refigure_sensitivity(&mut table, &setting);
     if let Some(rows) = table.get_mut(first..) {
         rows.sort_by(|a, b| {
             let size = |row: &Sensitivity| row.largest_change.unwrap_or(-1.0);
             size(b).total_cmp(&size(a))
         });
     }
+    // the row they are compared with has moved
+    compare_near_wakes(&mut table);
     Ok(table)
 }
 

@@ -1,6 +1,6 @@
 //! The power of the actuators in the plant: its limit and its weight.
 
-use super::{LEAST_GAIN_PART, RotorPlant};
+use super::RotorPlant;
 use crate::study::authority::added;
 use crate::study::pair_power::watt_per_deg2;
 use crate::study::{FlapMotion, HingePower, PlantError};
@@ -8,6 +8,10 @@ use hhc_control::PowerLimit;
 use nalgebra::{DMatrix, DVector};
 use rotor_base::HarmonicSeries;
 use rotor_response::HingeMoment;
+
+/// Part of full scale from which on the motion of a pair is taken for what its power is worked out from: far
+/// below any control, so that the form of the power does not jump on the way.
+const LEAST_MOTION_PART: f64 = 1e-4;
 
 /// What the power of the actuators has to do with the control.
 #[derive(Debug, Clone)]
@@ -101,7 +105,7 @@ impl RotorPlant {
         for (pair, watt) in watt_per_deg2.iter().enumerate() {
             let full = self.full_scale_volt[pair];
             let (amplitude, stroke) = (amplitudes[pair], motion[pair].amplitude());
-            let known = amplitude > LEAST_GAIN_PART * full;
+            let known = amplitude > LEAST_MOTION_PART * full;
             let gain = if known { stroke / amplitude } else { self.stroke_limits_deg[pair] / full };
             form.push(watt * gain * gain);
             model += watt * stroke * stroke;
