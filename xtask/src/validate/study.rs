@@ -123,7 +123,7 @@ pub(super) const AREA: Area = Area {
             quantity: "the same over the unconstrained step clipped flap by flap",
             unit: "-",
             source: "the trap, shown beside it",
-            criterion: Criterion::AtMost(1.0),
+            criterion: Criterion::AtMost(0.8),
             repeatability: Repeatability::Everywhere,
             measure: || Ok(binding()?.clipped),
         },
@@ -146,8 +146,10 @@ pub(super) const AREA: Area = Area {
             criterion: Criterion::AtMost(0.0),
             repeatability: Repeatability::Everywhere,
             measure: || {
-                let all = slower()?.iter().filter(|l| l.actuator == "hysteretic");
-                Ok(all.filter(|l| l.outcome != "converged").count() as f64)
+                let all: Vec<_> = slower()?.iter().filter(|l| l.actuator == "hysteretic").collect();
+                // as many loops as were asked for
+                worst("loops", 12, all.iter().map(|_| Ok(0.0)))?;
+                Ok(all.iter().filter(|l| l.outcome != "converged").count() as f64)
             },
         },
         Check {
@@ -275,7 +277,8 @@ struct Binding {
     clipped: f64,
 }
 
-/// Both flaps at 4/rev within half of what each would take without limits, linear in the flap angle, deg.
+/// The flaps at 4/rev within a half and a fifth of what each would take without limits, linear in the flap
+/// angle, deg.
 fn binding() -> Result<Binding, CheckError> {
     let rotor = TrimmedRotor::new(&controllers_case()?, None)?;
     let authority = rotor.linearised(InflowState::Settled)?;
@@ -296,7 +299,9 @@ fn binding() -> Result<Binding, CheckError> {
     };
     let free = law.optimum_volt(0.0, &[0.0; 4], &loads)?;
     let size = |u: &[f64]| [u[0].hypot(u[1]), u[2].hypot(u[3])];
-    let limit = size(&free).map(|s| 0.5 * s);
+    let own = size(&free);
+    // unlike shares of what each flap would take: a clipped step then turns away from the optimum
+    let limit = [0.5 * own[0], 0.2 * own[1]];
     let layout = ControlLayout::new(2, vec![4])?;
     let limits = ControlLimits::none(&layout).with_amplitudes_volt(limit.to_vec())?;
     let cone = law.optimum_within(0.0, &[0.0; 4], &loads, &limits)?;
