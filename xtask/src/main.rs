@@ -41,7 +41,7 @@ enum Chore {
     },
     /// Show what refining the paper's case does to its 4/rev hub loads
     Refinement,
-    /// Show what grid, near wake and core of the free wake do to the thrust of a reference rotor; minutes
+    /// Show what grid, near wake and core of the free wake do to the paper's rotor and to a reference rotor; minutes
     WakeRefinement,
     /// Compare a sweep of the whole program with its golden values
     Regress {
@@ -128,6 +128,8 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(ExitCode::SUCCESS)
         }
         Chore::WakeRefinement => {
+            wake_refinement::paper_table(|line| say(&mut std::io::stdout(), line));
+            say(&mut std::io::stdout(), "\n");
             wake_refinement::table(|line| say(&mut std::io::stdout(), line));
             Ok(ExitCode::SUCCESS)
         }

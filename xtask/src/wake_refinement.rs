@@ -1,12 +1,117 @@
-//! Refinement of the free wake: thrust of the rotor of the independent wake over grid, near wake and core.
+//! Refinement of the free wake over grid, near wake and core: the paper's rotor trimmed in it, and the thrust of the rotor
+//! of the independent wake.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
+use rotor_fem::{BladeProperties, BladeSpec};
+use rotor_response::{
+    Discretisation, ResponseError, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+};
 use rotor_wake::reference::{olaf, olaf_flight, olaf_settings, olaf_thrust_newton};
 use rotor_wake::{
-    BladeElementSolution, CouplingSettings, FreeWakeSettings, NearWakeMotion, ShedVorticity,
-    WakeError,
+    BladeElementSolution, CoreModel, CouplingSettings, FreeWakeSettings, NearWakeMotion,
+    ShedVorticity, WakeError, momentum_inflow,
 };
+use trim::{
+    TrimError, TrimSettings, TrimTarget, Vehicle, WakeOutcome, WakeTrim, WakeTrimSettings,
+    trim_in_free_wake,
+};
+
+/// A change of the wake of the paper's rotor and of the response in it.
+type PaperChange = fn(&mut WakeTrimSettings, &mut Discretisation);
+
+/// Core of the near wake of the paper's rotor, R: its chord.
+const PAPER_CHORD: f64 = 0.055;
+
+/// What is changed, and how, from the defaults of a case.
+const PAPER_ROWS: [(&str, PaperChange); 25] = [
+    ("none", |_, _| ()),
+    ("steps of 30 deg", |s, _| s.wake.azimuths = 12),
+    ("steps of 15 deg", |s, _| s.wake.azimuths = 24),
+    ("steps of 10 deg, 12 time points", |s, d| steps(s, d, (36, 12))),
+    ("steps of 7.5 deg, 12 time points", |s, d| steps(s, d, (48, 12))),
+    ("steps of 5 deg, 16 time points", |s, d| steps(s, d, (72, 16))),
+    ("2 turns", |s, _| s.wake.turns = 2),
+    ("5 turns", |s, _| s.wake.turns = 5),
+    ("near wake 30 deg", |s, _| s.wake.near_wake_rad = TAU / 12.0),
+    ("near wake 90 deg", |s, _| s.wake.near_wake_rad = TAU / 4.0),
+    ("near wake 180 deg", |s, _| s.wake.near_wake_rad = TAU / 2.0),
+    ("near wake 270 deg", |s, _| s.wake.near_wake_rad = 0.75 * TAU),
+    ("near core x 0.5", |s, _| s.wake.core.near_radius *= 0.5),
+    ("near core x 0.5, steps of 7.5 deg", |s, d| {
+        s.wake.core.near_radius *= 0.5;
+        steps(s, d, (48, 12));
+    }),
+    ("near core x 2", |s, _| s.wake.core.near_radius *= 2.0),
+    ("near core x 2, steps of 7.5 deg", |s, d| {
+        s.wake.core.near_radius *= 2.0;
+        steps(s, d, (48, 12));
+    }),
+    ("own sheet with the near core too", |s, _| s.wake.core.panel_share = 1e6),
+    ("share of the panels 0.15", |s, _| s.wake.core.panel_share = 0.15),
+    ("share of the panels 0.5", |s, _| s.wake.core.panel_share = 0.5),
+    ("14 panels", |s, _| s.panels = 14),
+    ("30 panels, stations twice as dense", |s, d| panels(s, d, 30)),
+    ("40 panels, stations twice as dense", |s, d| panels(s, d, 40)),
+    ("mutual cores x 0.5", |s, _| s.wake.core.mutual_radius *= 0.5),
+    ("mutual cores x 2", |s, _| s.wake.core.mutual_radius *= 2.0),
+    ("corrected cores", |s, _| s.wake.core.model = CoreModel::RosenheadMoore),
+];
+
+fn steps(settings: &mut WakeTrimSettings, response: &mut Discretisation, grid: (usize, usize)) {
+    (settings.wake.azimuths, response.time_gauss_points) = grid;
+}
+
+fn panels(settings: &mut WakeTrimSettings, response: &mut Discretisation, count: usize) {
+    settings.panels = count;
+    response.span_points_per_piece *= 2;
+}
+
+fn paper_trimmed(change: PaperChange) -> Result<WakeTrim, TrimError> {
+    const ADVANCE_RATIO: f64 = 0.3;
+    let (mut settings, mut response) = (WakeTrimSettings::default(), Discretisation::default());
+    settings.wake.core.near_radius = PAPER_CHORD;
+    change(&mut settings, &mut response);
+    let blade = BladeProperties::new(BladeSpec::table_1()).map_err(ResponseError::from)?;
+    let rotor = Rotor::new(RotorModel::paper_case(), &blade, response)?;
+    let tolerances = ResponseTolerances::default();
+    let mut solver = RotorSolver::new(Arc::new(rotor), ADVANCE_RATIO, tolerances)?;
+    let target = TrimTarget::Propulsive { weight_ct_sigma: 0.07, vehicle: Vehicle::default() };
+    let trim_settings = TrimSettings::default();
+    trim_in_free_wake(&mut solver, &settings, ADVANCE_RATIO, &target, &trim_settings)
+}
+
+/// Mean inflow over Glauert's, collective, and the 4/rev forces and moments of the hub.
+fn paper_line(wake: &WakeTrim) -> String {
+    let rotor = &wake.trim.rotor;
+    let glauert = momentum_inflow(&wake.trim.flight, rotor.thrust_coefficient);
+    let mean = glauert.map_or(f64::NAN, |g| rotor.inflow.mean() / g);
+    let z = rotor.hub.harmonic(4);
+    let amplitudes = z.chunks_exact(2).map(|p| format!("{:.3}", 1e3 * p[0].hypot(p[1])));
+    let amplitudes: Vec<String> = amplitudes.collect();
+    let settled = if wake.outcome == WakeOutcome::Settled { "" } else { " (not settled)" };
+    format!(
+        "{mean:.3}{settled} | {:.3} | {} | {:.1}",
+        wake.trim.controls.theta0_rad.to_degrees(),
+        amplitudes.join(", "),
+        z[5].atan2(z[4]).to_degrees()
+    )
+}
+
+/// The table of the paper's rotor, row by row to `say`.
+pub fn paper_table(say: impl Fn(&str)) {
+    say(
+        "| change | mean inflow over Glauert's | theta0, deg | FX, FY, FZ, MX, MY, MZ at 4/rev, 1e-3 | phase of FZ, deg |\n",
+    );
+    say("|---|---|---|---|---|\n");
+    for (name, change) in PAPER_ROWS {
+        say(&match paper_trimmed(change) {
+            Ok(wake) => format!("| {name} | {} |\n", paper_line(&wake)),
+            Err(error) => format!("| {name} | {error} | | | |\n"),
+        });
+    }
+}
 
 /// A change of the wake.
 type Change = fn(&mut FreeWakeSettings);

@@ -1,6 +1,6 @@
 //! The optimum within limits, as a second-order cone program.
 
-use crate::law::Anchor;
+use crate::law::{Anchor, order_one};
 use crate::limits::ControlLimits;
 use crate::{ControlError, FeedbackLaw, error};
 use clarabel::algebra::CscMatrix;
@@ -136,8 +136,26 @@ pub enum ConeStatus {
 const SOLVER_TOLERANCE: f64 = 1e-12;
 /// KKT residual below which no other regularisation of the linear systems is tried.
 const GOOD_KKT: f64 = 1e-9;
-/// Regularisations tried, the solver's own first.
-const REGULARISATIONS: [f64; 4] = [1e-8, 1e-11, 1e-6, 1e-13];
+/// KKT residual with which the usual regularisations are enough, and how many these are.
+const FAIR_KKT: f64 = 1e-7;
+const USUAL: usize = 4;
+/// Regularisations tried, the solver's own first, each with the scaling of rows and columns or without.
+const REGULARISATIONS: [(f64, bool); 10] = [
+    (1e-8, true),
+    (1e-11, true),
+    (1e-6, true),
+    (1e-13, true),
+    (1e-8, false),
+    (1e-10, false),
+    (1e-12, false),
+    (1e-9, true),
+    (1e-7, true),
+    (1e-7, false),
+];
+/// Refinements of a linear solution.
+const REFINEMENTS: u32 = 50;
+/// Accuracy of a linear solution.
+const REFINED_TO: f64 = 1e-14;
 /// Largest KKT residual accepted.
 const LARGEST_KKT: f64 = 1e-6;
 /// At first, every so many azimuth samples are held; the others follow where they are exceeded.
@@ -196,14 +214,8 @@ impl FeedbackLaw {
         }
         let free = self.optimum_near(rho, target, anchor);
         let volt = limits.typical_volt().unwrap_or_else(|| largest(&free).max(f64::MIN_POSITIVE));
-        let (hessian, linear) = anchor.added(self.quadratic(rho, target));
-        let size = (hessian.amax() * volt * volt).max(linear.amax() * volt);
-        let size = if size > 0.0 { size } else { 1.0 };
-        let mut program = Program {
-            hessian: hessian * (volt * volt / size),
-            linear: linear * (volt / size),
-            cones: Vec::new(),
-        };
+        let (hessian, linear) = order_one(anchor.added(self.quadratic(rho, target)), volt);
+        let mut program = Program { hessian, linear, cones: Vec::new() };
         if limits.usage(&free)? <= 1.0 {
             let point = DVector::from_column_slice(&free) / volt;
             let kkt = program.kkt(&point, &[]);
@@ -361,7 +373,11 @@ impl Program {
         let mut best: Option<(f64, DVector<f64>, Vec<f64>)> = None;
         let mut failure = None;
         let mut iterations = 0;
-        for regularisation in REGULARISATIONS {
+        for (tried, regularisation) in REGULARISATIONS.into_iter().enumerate() {
+            let fair = best.as_ref().is_some_and(|(least, ..)| *least <= FAIR_KKT);
+            if tried >= USUAL && fair {
+                break;
+            }
             match self.solve(regularisation) {
                 Ok((x, z, used)) => {
                     iterations += used;
@@ -387,7 +403,10 @@ impl Program {
     }
 
     /// Minimum, multipliers by row, iterations.
-    fn solve(&self, regularisation: f64) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+    fn solve(
+        &self,
+        (regularisation, is_scaled): (f64, bool),
+    ) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
         let n = self.linear.len();
         let refused = |status| ControlError::ConeProgram { status, iterations: 0, kkt: f64::NAN };
         let upper: Vec<(usize, usize, f64)> = (0..n)
@@ -418,6 +437,10 @@ impl Program {
             .tol_feas(SOLVER_TOLERANCE)
             .tol_ktratio(SOLVER_TOLERANCE)
             .static_regularization_constant(regularisation)
+            .equilibrate_enable(is_scaled)
+            .iterative_refinement_max_iter(REFINEMENTS)
+            .iterative_refinement_reltol(REFINED_TO)
+            .iterative_refinement_abstol(REFINED_TO)
             .build()
             .map_err(|_| refused(ConeStatus::Refused))?;
         let linear: Vec<f64> = self.linear.iter().copied().collect();

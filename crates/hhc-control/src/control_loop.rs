@@ -1,17 +1,14 @@
 //! The loop all controllers share.
 
-use crate::controller::Knowledge;
+use crate::controller::{Knowledge, Verified};
 use crate::law::Anchor;
 use crate::stroke::{Strokes, track_effort};
 use crate::{
     ControlError, ControlLayout, ControlLimits, ControlRun, ControlStep, Cost, FeedbackController,
-    KktCertificate, Measurement, Outcome, Plant, PlantCall, RunError, StepLeave, error,
-    layout::as_harmonics,
+    FeedbackSettings, KktCertificate, LoopEnd, Measurement, Outcome, Plant, PlantCall, RefusedStep,
+    RunError, StepLeave, error, layout::as_harmonics,
 };
 use rotor_base::Harmonic;
-
-/// Changes below a picovolt are rounding, should the optimum be no control at all.
-const SMALLEST_CHANGE_VOLT: f64 = 1e-12;
 
 /// A step no longer than this part of the step before belongs to a loop that settles.
 const SETTLING: f64 = 0.8;
@@ -19,6 +16,10 @@ const SETTLING: f64 = 0.8;
 /// Part of the last step that a step goes back by, and square of the cosine between the two, from which the
 /// loop is going to and fro.
 const BACKWARD: f64 = 0.8;
+/// Part of a step within which its end counts as a place where the loop has been.
+const CLOSED: f64 = 0.25;
+/// Steps of the longest circle that is looked for.
+const LONGEST_CIRCLE: usize = 4;
 
 /// Use of the limits above which a state has left them: they move with the control, and a step that kept
 /// them as they stood may not keep them as they are now.
@@ -79,6 +80,7 @@ impl Trust {
 }
 
 /// Where a step leads.
+#[derive(Clone)]
 struct Aim {
     control_volt: Vec<f64>,
     kkt: Option<KktCertificate>,
@@ -116,29 +118,50 @@ struct Hill {
     shortest: Cost,
 }
 
+/// Steps taken before a loop that goes on from there, and those refused.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Taken {
+    pub(crate) steps: Vec<ControlStep>,
+    pub(crate) refused: Vec<RefusedStep>,
+}
+
 /// What a loop has done so far and where it stands.
 struct Walk {
     here: ControlStep,
+    /// Steps taken, those before it included.
     steps: Vec<ControlStep>,
+    /// How many were taken before it.
+    before: usize,
     measurements: usize,
     halvings: u32,
+    refused: Vec<RefusedStep>,
     kkt: Option<KktCertificate>,
+    end: LoopEnd,
     trust: Trust,
-    last_fall: f64,
     hill: Option<Hill>,
+    /// Whether it has given up steps and stands where it stood before them.
+    went_back: bool,
+    /// Part of a step that is gone: halved wherever it would close a circle.
+    share: f64,
 }
 
 impl Walk {
-    fn from(start: &ControlStep) -> Self {
+    fn from(start: &ControlStep, taken: Taken) -> Self {
+        let Taken { steps, refused } = taken;
+        let halved = steps.iter().map(|s| s.halvings).chain(refused.iter().map(|r| r.halvings));
         Self {
-            here: start.clone(),
-            steps: Vec::new(),
+            halvings: halved.sum(),
+            here: steps.last().unwrap_or(start).clone(),
+            before: steps.len(),
+            steps,
             measurements: 0,
-            halvings: 0,
+            refused,
             kkt: None,
+            end: LoopEnd::default(),
             trust: Trust::default(),
-            last_fall: f64::INFINITY,
             hill: None,
+            went_back: false,
+            share: 1.0,
         }
     }
 
@@ -156,9 +179,18 @@ impl Walk {
         along < -BACKWARD * square && along * along > BACKWARD * square * dot(step, step)
     }
 
-    /// Whether nothing holds the steps short, or the last one brought little.
-    fn calm(&self, little: f64) -> bool {
-        self.trust.weight == 0.0 || self.last_fall <= little
+    /// Whether a step leads to where the loop stood a few steps ago: limits that move with the control can send
+    /// it round and round.
+    fn closes_a_circle(&self, step: &[f64]) -> bool {
+        let [earlier @ .., _before, here] = self.steps.as_slice() else { return false };
+        let next: Vec<f64> = here.control_volt.iter().zip(step).map(|(u, d)| u + d).collect();
+        let near = CLOSED * largest_amplitude(step);
+        let since = earlier.len().saturating_sub(LONGEST_CIRCLE - 1);
+        let limits_moved = self.steps[since..].iter().any(|step| step.leave == StepLeave::Limits);
+        limits_moved
+            && earlier[since..]
+                .iter()
+                .any(|there| largest_amplitude(&difference(&next, &there.control_volt)) < near)
     }
 }
 
@@ -194,8 +226,18 @@ impl FeedbackController {
         start: &ControlStep,
         effort: &mut Effort<'_>,
     ) -> Result<ControlRun, RunError<P::Error>> {
-        let mut known = Knowledge::new(&self.controller, &self.law, start);
-        let mut walk = Walk::from(start);
+        self.go_on(plant, (start, Taken::default()), effort)
+    }
+
+    /// The loop from the last of some steps that were taken already; they are in its record.
+    pub(crate) fn go_on<P: Plant>(
+        &self,
+        plant: &mut P,
+        (start, taken): (&ControlStep, Taken),
+        effort: &mut Effort<'_>,
+    ) -> Result<ControlRun, RunError<P::Error>> {
+        let mut walk = Walk::from(start, taken);
+        let mut known = Knowledge::new(&self.controller, &self.law, &walk.here);
         let outcome = loop {
             let ended = self
                 .walk(plant, &mut known, effort, (start, &mut walk))
@@ -209,6 +251,16 @@ impl FeedbackController {
             }
             walk.hill = None;
         };
+        if walk.went_back {
+            let limits = match effort {
+                Effort::Cone(_) => Some(limits_at(plant, &walk.here.control_volt)?),
+                _ => None,
+            };
+            let rho = walk.here.rho;
+            let aim = aim_of(&known, (rho, Trust::default()), &walk.here, limits.as_ref())?;
+            walk.end = Self::end_at(&known, rho, &walk.here, &aim.control_volt)?;
+            walk.kkt = aim.kkt;
+        }
         Ok(ControlRun {
             rho: walk.here.rho,
             outcome,
@@ -216,8 +268,11 @@ impl FeedbackController {
             steps: walk.steps,
             measurements: walk.measurements + known.measurements,
             halvings: walk.halvings,
-            identifications: known.identifications,
+            refused: walk.refused,
+            identifications: known.identified_after.len(),
             t: known.t()?,
+            identified_after: known.identified_after,
+            end: walk.end,
             kkt: walk.kkt,
         })
     }
@@ -232,6 +287,7 @@ impl FeedbackController {
     ) -> Result<Outcome, RunError<P::Error>> {
         let strict = self.strict();
         loop {
+            known.steps_taken = walk.steps.len();
             known.refresh(plant, &walk.here)?;
             let rho = match effort {
                 Effort::Fixed(rho) | Effort::Cone(rho) => *rho,
@@ -244,27 +300,34 @@ impl FeedbackController {
                 Effort::Cone(_) => Some(limits_at(plant, &here.control_volt)?),
                 _ => None,
             };
-            let loads = &here.measurement.hub_loads;
-            let there = (here.control_volt.as_slice(), loads.as_slice());
-            let aim = aim_of(known, (rho, walk.trust), there, limits.as_ref())?;
-            walk.kkt = aim.kkt.or(walk.kkt.take());
+            let aim = aim_of(known, (rho, walk.trust), &here, limits.as_ref())?;
+            let whole = if walk.trust.weight > 0.0 {
+                aim_of(known, (rho, Trust::default()), &here, limits.as_ref())?
+            } else {
+                aim.clone()
+            };
+            walk.went_back = false;
+            walk.end = Self::end_at(known, rho, &here, &whole.control_volt)?;
+            walk.kkt = whole.kkt.or(walk.kkt.take());
             let mut step = difference(&aim.control_volt, &here.control_volt);
-            let asked_volt = largest_amplitude(&step);
-            let size =
-                largest_amplitude(&aim.control_volt).max(largest_amplitude(&here.control_volt));
-            if asked_volt <= (self.settings.step_tolerance * size).max(SMALLEST_CHANGE_VOLT) {
-                return Ok(Outcome::Converged);
-            }
+            walk.end.next_volt = largest_amplitude(&step);
+            let promise = if strict { known.promise(rho, &here, &aim.control_volt)? } else { 0.0 };
+            // inside the limits their optimum is never worse than where the loop stands
             let back = match &limits {
-                Some(limits) => limits.usage(&here.control_volt)? > USAGE_LEFT,
+                Some(limits) => {
+                    limits.usage(&here.control_volt)? > USAGE_LEFT
+                        || promise < -COST_ROUNDING * start_cost
+                }
                 None => false,
             };
-            let little = self.settings.cost_tolerance * start_cost;
-            let promise = if strict { known.promise(rho, &here, &aim.control_volt)? } else { 0.0 };
-            if strict && !back && promise <= little && walk.calm(little) {
-                return Ok(Outcome::Converged);
+            if self.is_settled(&walk.end, start_cost) {
+                match known.verify(plant, &here, &whole.control_volt)? {
+                    Verified::Yes => return Ok(Outcome::Converged),
+                    Verified::Anew => continue,
+                    Verified::Cannot => return Ok(Outcome::Stalled),
+                }
             }
-            if walk.steps.len() >= self.settings.max_steps {
+            if walk.steps.len() - walk.before >= self.settings.max_steps {
                 return Ok(Outcome::StepLimit);
             }
             if limits.is_some() && walk.turns_back(&step) {
@@ -273,6 +336,15 @@ impl FeedbackController {
                     *d *= 0.5;
                 }
             }
+            if limits.is_some() {
+                if walk.closes_a_circle(&step) {
+                    walk.share *= 0.5;
+                }
+                for d in &mut step {
+                    *d *= walk.share;
+                }
+            }
+            let asked_volt = largest_amplitude(&step);
             let history = || -> Vec<ControlStep> {
                 std::iter::once(start).chain(&walk.steps).cloned().collect()
             };
@@ -287,6 +359,8 @@ impl FeedbackController {
             walk.halvings +=
                 search.taken.as_ref().map_or(self.settings.max_halvings, |s| s.halvings);
             let Some(step) = search.taken else {
+                let (after_steps, halvings) = (walk.steps.len(), self.settings.max_halvings);
+                walk.refused.push(RefusedStep { after_steps, asked_volt, halvings });
                 if known.learn(plant, &here, &aim.control_volt)? {
                     continue;
                 }
@@ -300,10 +374,6 @@ impl FeedbackController {
             let (whole, halved) = (step.halvings == 0, step.halvings);
             let moved = difference(&step.control_volt, &here.control_volt);
             walk.take(step);
-            let settled = walk.trust.weight == 0.0 || promise <= little;
-            if strict && whole && !back && fall <= little && settled {
-                return Ok(Outcome::Converged);
-            }
             // a part that was taken because the whole leaves the plant's range says nothing of T
             let measured = whole || search.measurements > 1;
             if strict && measured && !matches!(effort, Effort::Tracked(_)) {
@@ -311,7 +381,6 @@ impl FeedbackController {
                 let kept = if promise > 0.0 { fall / promise } else { 1.0 };
                 walk.trust.learn((halved, kept), curvature, known.law.largest_authority());
             }
-            walk.last_fall = fall;
         }
     }
 
@@ -347,8 +416,11 @@ impl FeedbackController {
         if taken == 0 {
             return Err(self.diverged(&foot, Some(shortest)));
         }
-        walk.steps.truncate(taken);
-        walk.here = foot;
+        for step in walk.steps.drain(taken..) {
+            let (asked_volt, halvings) = (step.asked_volt, step.halvings);
+            walk.refused.push(RefusedStep { after_steps: taken, asked_volt, halvings });
+        }
+        (walk.here, walk.went_back) = (foot, true);
         Ok(if ended == Outcome::OutOfRange { ended } else { Outcome::Stalled })
     }
 
@@ -360,6 +432,23 @@ impl FeedbackController {
             Some(shortest) => ControlError::Diverges { rho, divisor, start, shortest, history },
             None => ControlError::NotAdmitted { rho, divisor, history },
         }
+    }
+
+    /// Whether what is still asked for at a state is within the tolerances of the step and, for a loop that may
+    /// not raise the cost, of its fall.
+    fn is_settled(&self, end: &LoopEnd, start_cost: f64) -> bool {
+        let FeedbackSettings { step_tolerance, cost_tolerance, .. } = self.settings;
+        end.is_settled([step_tolerance, cost_tolerance], start_cost)
+    }
+
+    /// What a loop knows at a state from which it is to go to a control.
+    fn end_at(
+        known: &Knowledge<'_>,
+        rho: f64,
+        here: &ControlStep,
+        aim_volt: &[f64],
+    ) -> Result<LoopEnd, ControlError> {
+        LoopEnd::new(&known.law, rho, (&here.control_volt, &known.seen_loads(here)), aim_volt)
     }
 
     /// Whether no step may raise the cost.
@@ -393,14 +482,19 @@ impl FeedbackController {
             let rise = (cost.total() - here.cost.total()) / start_cost;
             let settles = || -> Result<bool, ControlError> {
                 let there = (control_volt.as_slice(), measurement.hub_loads.as_slice());
-                let next = aim_of(known, (rho, Trust::default()), there, limits)?.control_volt;
+                let next = aim_from(known, (rho, Trust::default()), there, limits)?.control_volt;
                 Ok(largest_amplitude(&difference(&next, &control_volt)) <= SETTLING * asked_volt)
             };
-            let allowed = match leave {
-                StepLeave::Settling => cost.total() <= self.settings.settling_cost * start_cost,
-                _ => rise <= self.settings.cost_rise_allowance,
+            let allowed = match (leave, strict, limits) {
+                (StepLeave::Settling, false, _) => {
+                    cost.total() <= self.settings.settling_cost * start_cost
+                }
+                (_, false, _) => rise <= self.settings.cost_rise_allowance,
+                // limits move with the control: the last steps that follow them may cost a trifle
+                (_, true, Some(_)) => rise <= self.settings.cost_tolerance,
+                (_, true, None) => false,
             };
-            let allowed = allowed && !strict && halvings == 0;
+            let allowed = allowed && halvings == 0;
             if leave == StepLeave::Limits || rise <= COST_ROUNDING || (allowed && settles()?) {
                 search.taken = Some(ControlStep {
                     control_volt,
@@ -456,16 +550,27 @@ impl FeedbackController {
 }
 
 /// Largest amplitude of the harmonics of a control vector, volt.
-fn largest_amplitude(control_volt: &[f64]) -> f64 {
+pub(crate) fn largest_amplitude(control_volt: &[f64]) -> f64 {
     as_harmonics(control_volt).iter().map(Harmonic::amplitude).fold(0.0, f64::max)
 }
 
-fn difference(to: &[f64], from: &[f64]) -> Vec<f64> {
+pub(crate) fn difference(to: &[f64], from: &[f64]) -> Vec<f64> {
     to.iter().zip(from).map(|(a, b)| a - b).collect()
 }
 
-/// The control the law aims at from a measured state `(u, Z)`.
+/// The control the law aims at from a recorded state.
 fn aim_of(
+    known: &Knowledge<'_>,
+    how: (f64, Trust),
+    here: &ControlStep,
+    limits: Option<&ControlLimits>,
+) -> Result<Aim, ControlError> {
+    let there = (here.control_volt.as_slice(), here.measurement.hub_loads.as_slice());
+    aim_from(known, how, there, limits)
+}
+
+/// The control the law aims at from a measured state `(u, Z)`.
+fn aim_from(
     known: &Knowledge<'_>,
     (rho, trust): (f64, Trust),
     (control_volt, hub_loads): (&[f64], &[f64]),

@@ -29,8 +29,8 @@ pub enum Controller {
     },
     /// T identified again about the present control before every step: from the plant's linearised
     /// solution if it has one, else by differences. If no part of a step lowers the cost all the same,
-    /// T is corrected along that step by what was measured there, and the next step asked for. Where the
-    /// plant admits neither side of a control, at the edge of its range, the T known so far stays.
+    /// T is corrected along that step by what was measured there, and the next step asked for; once as many
+    /// corrections as controls have led nowhere, T is found by differences from there on. Where the plant admits neither side of a control, at the edge of its range, the T known so far stays.
     Local {
         /// Voltage step of each control for the differences, V.
         step_volt: Vec<f64>,
@@ -58,15 +58,58 @@ pub(crate) struct Knowledge<'a> {
     how: How<'a>,
     /// Measurements made to learn, beyond those of the steps.
     pub(crate) measurements: usize,
-    /// Times T was identified again or probed.
-    pub(crate) identifications: usize,
+    /// Steps taken by each time that T was identified again or probed.
+    pub(crate) identified_after: Vec<usize>,
+    /// Steps taken so far.
+    pub(crate) steps_taken: usize,
 }
 
 enum How<'a> {
     Global,
-    Renewed { step_volt: &'a [f64], left: u32 },
-    Local { step_volt: &'a [f64], known_at: Vec<f64>, tried: Vec<Tried>, corrections_left: usize },
-    Adaptive { filter: Kalman, probes_left: u32, rejected_volt: Option<Vec<f64>> },
+    Renewed {
+        step_volt: &'a [f64],
+        left: u32,
+    },
+    Local {
+        step_volt: &'a [f64],
+        /// None where T has to be found anew.
+        known_at: Option<Vec<f64>>,
+        tried: Vec<Tried>,
+        corrections_left: usize,
+        source: Source,
+    },
+    Adaptive {
+        filter: Kalman,
+        probes_left: u32,
+        rejected_volt: Option<Vec<f64>>,
+        /// Where the controls were probed last.
+        probed_at: Option<Vec<f64>>,
+        /// Times that the end may still be looked at.
+        looks_left: u32,
+    },
+}
+
+/// Where a local T comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Source {
+    /// The plant's linearised solution, if it has one.
+    Offered,
+    /// Differences, as that one led nowhere or there is none.
+    Differences,
+}
+
+/// Times that an adaptive loop may look at T where it would end.
+const LOOKS: u32 = 10;
+
+/// Whether what T asks for at the end of a loop can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Verified {
+    /// It can.
+    Yes,
+    /// T has been looked at anew: ask again.
+    Anew,
+    /// Nothing is left to look with.
+    Cannot,
 }
 
 /// A pair measured since T was last identified.
@@ -87,18 +130,27 @@ impl<'a> Knowledge<'a> {
                 let controls = start.control_volt.len();
                 How::Local {
                     step_volt,
-                    known_at: vec![0.0; controls],
+                    known_at: Some(vec![0.0; controls]),
                     tried: Vec::new(),
                     corrections_left: controls,
+                    source: Source::Offered,
                 }
             }
             Controller::Adaptive(settings) => How::Adaptive {
                 filter: Kalman::new(settings, law, start),
                 probes_left: settings.probes,
                 rejected_volt: None,
+                probed_at: None,
+                looks_left: LOOKS,
             },
         };
-        Self { law: law.clone(), how, measurements: 0, identifications: 0 }
+        Self {
+            law: law.clone(),
+            how,
+            measurements: 0,
+            identified_after: Vec::new(),
+            steps_taken: 0,
+        }
     }
 
     /// Brings T up to date before a step from a measured state.
@@ -109,22 +161,28 @@ impl<'a> Knowledge<'a> {
     ) -> Result<(), RunError<P::Error>> {
         match &mut self.how {
             How::Global | How::Renewed { .. } => {}
-            How::Local { step_volt, known_at, tried, corrections_left } => {
+            How::Local { step_volt, known_at, tried, corrections_left, source } => {
                 let control = &here.control_volt;
-                if known_at != control {
+                if known_at.as_ref() != Some(control) {
                     tried.clear();
                     *corrections_left = control.len();
-                    let offered =
-                        plant.linearised_t(control).map_err(|source| RunError::Plant {
-                            call: PlantCall::Linearise { control_volt: control.clone() },
-                            history: Vec::new(),
-                            source,
-                        })?;
-                    known_at.clone_from(control);
+                    let offered = match source {
+                        Source::Differences => None,
+                        Source::Offered => {
+                            plant.linearised_t(control).map_err(|source| RunError::Plant {
+                                call: PlantCall::Linearise { control_volt: control.clone() },
+                                history: Vec::new(),
+                                source,
+                            })?
+                        }
+                    };
+                    *known_at = Some(control.clone());
                     let loads = &here.measurement.hub_loads;
-                    let t = match offered {
-                        Some(t) => t,
-                        None => match identify_t_about(plant, (control, loads), step_volt) {
+                    let t = if let Some(t) = offered {
+                        t
+                    } else {
+                        *source = Source::Differences;
+                        match identify_t_about(plant, (control, loads), step_volt) {
                             Ok((t, measurements)) => {
                                 self.measurements += measurements;
                                 t
@@ -134,10 +192,10 @@ impl<'a> Knowledge<'a> {
                                 return Ok(());
                             }
                             Err(error) => return Err(error),
-                        },
+                        }
                     };
                     self.law = self.law.with_t(&t)?;
-                    self.identifications += 1;
+                    self.identified_after.push(self.steps_taken);
                 }
             }
             How::Adaptive { filter, .. } => self.law = self.law.with_t(&filter.t()?)?,
@@ -166,7 +224,7 @@ impl<'a> Knowledge<'a> {
         match identify_t_about(plant, about, step_volt) {
             Ok((t, measurements)) => {
                 self.measurements += measurements;
-                self.identifications += 1;
+                self.identified_after.push(self.steps_taken);
                 self.law = self.law.with_t(&t)?;
                 Ok(true)
             }
@@ -206,13 +264,7 @@ impl<'a> Knowledge<'a> {
         here: &ControlStep,
         aim_volt: &[f64],
     ) -> Result<f64, ControlError> {
-        let target = self.target(&here.control_volt, &here.measurement.hub_loads)?;
-        let (hessian, linear) = self.law.quadratic(rho, &target);
-        let twice = |u: &[f64]| -> f64 {
-            let u = DVector::from_column_slice(u);
-            u.dot(&(&hessian * &u)) + 2.0 * linear.dot(&u)
-        };
-        Ok(twice(&here.control_volt) - twice(aim_volt))
+        self.law.promise(rho, (&here.control_volt, &self.seen_loads(here)), aim_volt)
     }
 
     /// After a step that no part of which was taken: whether something was learnt that makes another
@@ -225,23 +277,24 @@ impl<'a> Knowledge<'a> {
         here: &ControlStep,
         aim_volt: &[f64],
     ) -> Result<bool, RunError<P::Error>> {
-        let (filter, probes_left, rejected_volt) = match &mut self.how {
+        let (probes_left, rejected_volt) = match &mut self.how {
             How::Global | How::Renewed { .. } => return Ok(false),
-            How::Local { tried, corrections_left, .. } => {
+            How::Local { tried, corrections_left, source, known_at, .. } => {
                 if *corrections_left == 0 {
-                    return Ok(false);
+                    // what is offered leads nowhere, corrected or not: from here on by differences
+                    let offered = *source == Source::Offered;
+                    (*source, *known_at) = (Source::Differences, None);
+                    return Ok(offered);
                 }
                 *corrections_left -= 1;
                 let corrected = corrected(&self.law.matrix(), here, aim_volt, tried);
                 tried.clear();
                 let Some(t) = corrected else { return Ok(false) };
                 self.law = self.law.with_t(&t?)?;
-                self.identifications += 1;
+                self.identified_after.push(self.steps_taken);
                 return Ok(true);
             }
-            How::Adaptive { filter, probes_left, rejected_volt } => {
-                (filter, probes_left, rejected_volt)
-            }
+            How::Adaptive { probes_left, rejected_volt, .. } => (probes_left, rejected_volt),
         };
         if *probes_left == 0 {
             return Ok(false);
@@ -257,7 +310,42 @@ impl<'a> Knowledge<'a> {
         if !again {
             return Ok(true);
         }
-        self.identifications += 1;
+        self.probe(plant, here, aim_volt)?;
+        Ok(true)
+    }
+
+    /// Before a loop calls itself converged: whether its T is that of the present control. A filter that has
+    /// followed a path knows T along it; each control is moved once where it ends.
+    pub(crate) fn verify<P: Plant>(
+        &mut self,
+        plant: &mut P,
+        here: &ControlStep,
+        aim_volt: &[f64],
+    ) -> Result<Verified, RunError<P::Error>> {
+        let How::Adaptive { looks_left, probed_at, .. } = &mut self.how else {
+            return Ok(Verified::Yes);
+        };
+        if probed_at.as_ref() == Some(&here.control_volt) {
+            return Ok(Verified::Yes);
+        }
+        if *looks_left == 0 {
+            return Ok(Verified::Cannot);
+        }
+        *looks_left -= 1;
+        *probed_at = Some(here.control_volt.clone());
+        self.probe(plant, here, aim_volt)?;
+        Ok(Verified::Anew)
+    }
+
+    /// Moves every control once and lets the filter see what it does.
+    fn probe<P: Plant>(
+        &mut self,
+        plant: &mut P,
+        here: &ControlStep,
+        aim_volt: &[f64],
+    ) -> Result<(), RunError<P::Error>> {
+        let How::Adaptive { filter, .. } = &mut self.how else { return Ok(()) };
+        self.identified_after.push(self.steps_taken);
         let probe_volt = filter.probe_volt();
         for control in 0..aim_volt.len() {
             let mut moved = here.control_volt.clone();
@@ -278,7 +366,17 @@ impl<'a> Knowledge<'a> {
             self.measurements += 1;
             filter.observe(&moved, &measurement.hub_loads);
         }
-        Ok(true)
+        // the last word is that of the state itself
+        filter.observe(&here.control_volt, &here.measurement.hub_loads);
+        Ok(())
+    }
+
+    /// The loads that the law aims from: those measured, or what the filter makes of them.
+    pub(crate) fn seen_loads(&self, here: &ControlStep) -> Vec<f64> {
+        match &self.how {
+            How::Adaptive { filter, .. } => filter.loads_at(&here.control_volt),
+            _ => here.measurement.hub_loads.clone(),
+        }
     }
 
     /// The T matrix as known now.

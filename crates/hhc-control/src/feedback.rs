@@ -1,6 +1,6 @@
 //! The feedback controller: what is asked of it and what it answers.
 
-use crate::control_loop::Effort;
+use crate::control_loop::{Effort, difference, largest_amplitude};
 use crate::{
     ControlError, Controller, Cost, FeedbackLaw, KktCertificate, LoadWeights, Measurement, Plant,
     RunError, TMatrix, error, reduction_percent,
@@ -16,10 +16,10 @@ pub struct FeedbackSettings {
     /// The loop has converged when eq. (10) asks for a change of no voltage harmonic by more than
     /// this fraction of the largest one.
     pub step_tolerance: f64,
-    /// The loop has also converged when eq. (10) promises, or a step brings, a fall of the cost by no more
-    /// than this fraction of the cost at the start; then no step may raise the cost at all. 0 leaves the
-    /// test of the step alone. For controllers that renew T: where hysteresis bends the loads, their last
-    /// steps may go round in a circle of nearly equal cost.
+    /// Above 0 no step may raise the cost (within limits, which move with the control, by this fraction of the cost
+    /// at the start if the next step is shorter by a fifth or more), and the loop has converged only where eq. (10) also promises a
+    /// fall of the cost by no more than this fraction of the cost at the start. For controllers that renew T. 0
+    /// leaves the test of the step alone: a constant T promises what it cannot keep.
     pub cost_tolerance: f64,
     /// How much a full step may raise the cost and still be taken, as a fraction of the cost at the
     /// start, if the next step asked for after it is shorter by a fifth or more. Where T0 is not exact and
@@ -99,10 +99,82 @@ pub enum StepLeave {
     Settling,
 }
 
+/// A step no part of which was taken in the end: those whose cost rose or that the plant did not admit, and those
+/// that were taken on the way over a hill and given up again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RefusedStep {
+    /// Steps of the record taken by then.
+    pub after_steps: usize,
+    /// Largest change of a voltage harmonic that was asked for, V.
+    pub asked_volt: f64,
+    /// How often it was halved.
+    pub halvings: u32,
+}
+
+/// What a loop knew where it ended: with T enough to form the next step again.
+///
+/// The step is the whole one, nothing holding it near the control reached.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LoopEnd {
+    /// The loads it aimed from: those measured, or what a filter makes of them.
+    pub seen_loads: Vec<f64>,
+    /// Control weight, 1/V^2.
+    pub rho: f64,
+    /// Largest change of a voltage harmonic that is still asked for, V.
+    pub asked_volt: f64,
+    /// The same of the step that the loop would take: held near the control where steps had to be halved.
+    pub next_volt: f64,
+    /// Largest voltage harmonic of the control reached and of the one asked for, V: what the tolerance of the step
+    /// refers to.
+    pub size_volt: f64,
+    /// Fall of the cost that the whole step promises.
+    pub promise: f64,
+}
+
+/// Changes below a picovolt are rounding, should the optimum be no control at all.
+const SMALLEST_CHANGE_VOLT: f64 = 1e-12;
+
+impl LoopEnd {
+    /// What is asked for at a control by a law that sees given loads there and goes to `aim_volt`, all vectors of
+    /// the layout, V.
+    ///
+    /// # Errors
+    /// Vectors of the wrong length or not finite.
+    pub fn new(
+        law: &FeedbackLaw,
+        rho: f64,
+        (control_volt, seen_loads): (&[f64], &[f64]),
+        aim_volt: &[f64],
+    ) -> Result<Self, ControlError> {
+        let asked_volt = largest_amplitude(&difference(aim_volt, control_volt));
+        Ok(Self {
+            seen_loads: seen_loads.to_vec(),
+            rho,
+            asked_volt,
+            next_volt: asked_volt,
+            size_volt: largest_amplitude(aim_volt).max(largest_amplitude(control_volt)),
+            promise: law.promise(rho, (control_volt, seen_loads), aim_volt)?,
+        })
+    }
+
+    /// Whether it is the end of a loop that has converged: the step asked for within its tolerance, relative to the
+    /// largest voltage, and, with a tolerance of the cost above 0, its promise within that part of the cost at the
+    /// start. Where steps had to be halved because the loads bend, the step is the one that the loop would take.
+    pub fn is_settled(&self, [step, cost]: [f64; 2], start_cost: f64) -> bool {
+        let within = |volt: f64| volt <= (step * self.size_volt).max(SMALLEST_CHANGE_VOLT);
+        if cost > 0.0 {
+            within(self.next_volt) && self.promise <= cost * start_cost
+        } else {
+            within(self.asked_volt)
+        }
+    }
+}
+
 /// How a control run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// Eq. (10) asks for no further change, its fixed point, or promises no further fall of the cost.
+    /// Eq. (10) asks for no further change: its fixed point. The step asked for and, for a controller that
+    /// renews T, the fall that it promises are both within their tolerances.
     Converged,
     /// Some steps lowered the cost, but no part of the next one does, and full steps do not settle either: a
     /// constant T0 no longer points downhill. The last state is the best found.
@@ -129,11 +201,17 @@ pub struct ControlRun {
     pub measurements: usize,
     /// Halvings of all steps together, those included of which no part was taken.
     pub halvings: u32,
+    /// Steps of which no part is in the record.
+    pub refused: Vec<RefusedStep>,
     /// Times T was identified again, or the controls were probed.
     pub identifications: usize,
+    /// Steps taken by each of those times.
+    pub identified_after: Vec<usize>,
+    /// What is asked for where it ended.
+    pub end: LoopEnd,
     /// T as known at the end, 1/V.
     pub t: TMatrix,
-    /// What shows how exactly the last aim was the optimum within the limits; none where there were no limits.
+    /// What shows how exactly what it asks for at the end is the optimum within the limits; none where there were no limits.
     pub kkt: Option<KktCertificate>,
 }
 
@@ -253,9 +331,34 @@ impl FeedbackController {
         rho: f64,
         start_volt: &[f64],
     ) -> Result<ControlRun, RunError<P::Error>> {
-        error::check_not_negative("control weight rho (1/V^2)", rho)?;
+        self.run_with(plant, Effort::Fixed(rho), start_volt)
+    }
+
+    /// Runs the loop from another control vector (volt) to the optimum within the plant's limits, as
+    /// [`FeedbackController::run_constrained`].
+    ///
+    /// # Errors
+    /// As [`FeedbackController::run_constrained`].
+    pub fn run_constrained_from<P: Plant>(
+        &self,
+        plant: &mut P,
+        rho: f64,
+        start_volt: &[f64],
+    ) -> Result<ControlRun, RunError<P::Error>> {
+        self.run_with(plant, Effort::Cone(rho), start_volt)
+    }
+
+    fn run_with<P: Plant>(
+        &self,
+        plant: &mut P,
+        mut effort: Effort<'_>,
+        start_volt: &[f64],
+    ) -> Result<ControlRun, RunError<P::Error>> {
+        if let Effort::Fixed(rho) | Effort::Cone(rho) = effort {
+            error::check_not_negative("control weight rho (1/V^2)", rho)?;
+        }
         let start = self.start(plant, start_volt)?;
-        let mut run = self.iterate(plant, &start, &mut Effort::Fixed(rho))?;
+        let mut run = self.iterate(plant, &start, &mut effort)?;
         run.measurements += 1;
         Ok(run)
     }
@@ -274,11 +377,7 @@ impl FeedbackController {
         plant: &mut P,
         rho: f64,
     ) -> Result<ControlRun, RunError<P::Error>> {
-        error::check_not_negative("control weight rho (1/V^2)", rho)?;
         let zero = plant.layout().zero();
-        let start = self.start(plant, &zero)?;
-        let mut run = self.iterate(plant, &start, &mut Effort::Cone(rho))?;
-        run.measurements += 1;
-        Ok(run)
+        self.run_constrained_from(plant, rho, &zero)
     }
 }

@@ -26,6 +26,16 @@ pub struct FeedbackLaw {
 
 const SVD_ITERATIONS: usize = 10_000;
 
+/// A quadratic form of the control as one of the control over `volt`, its largest number 1.
+pub(crate) fn order_one(
+    (hessian, linear): (DMatrix<f64>, DVector<f64>),
+    volt: f64,
+) -> (DMatrix<f64>, DVector<f64>) {
+    let size = (hessian.amax() * volt * volt).max(linear.amax() * volt);
+    let size = if size > 0.0 { size } else { 1.0 };
+    (hessian * (volt * volt / size), linear * (volt / size))
+}
+
 /// A control that a step is held near: `weight |u - u_here|^2` beside the cost.
 ///
 /// Source: K. Levenberg, Quart. Appl. Math. 2 (1944) 164; D. Marquardt, SIAM J. Appl. Math. 11 (1963) 431.
@@ -102,6 +112,43 @@ impl FeedbackLaw {
         Ok(self.optimum_of(rho, &target))
     }
 
+    /// Fall of the cost that the law sees between a control with its loads and another control.
+    ///
+    /// # Errors
+    /// Vectors of the wrong length or not finite.
+    pub fn promise(
+        &self,
+        rho: f64,
+        (control_volt, hub_loads): (&[f64], &[f64]),
+        aim_volt: &[f64],
+    ) -> Result<f64, ControlError> {
+        let controls = self.shape().1;
+        error::check_vector("control vector aimed at (volt)", aim_volt, controls)?;
+        let (hessian, linear) = self.quadratic(rho, &self.modal_target(control_volt, hub_loads)?);
+        let (from, to) =
+            (DVector::from_column_slice(control_volt), DVector::from_column_slice(aim_volt));
+        // a difference of squares: the step first, then what it is multiplied with
+        let step = &from - &to;
+        Ok(step.dot(&(hessian * (&from + &to))) + 2.0 * linear.dot(&step))
+    }
+
+    /// The predicted cost, halved and without its constant, for a control over `volt`, scaled to order 1 as a
+    /// cone program has it: `P` row by row and `q` of `x'Px/2 + q'x`.
+    ///
+    /// # Errors
+    /// Vectors of the wrong length or not finite.
+    pub fn scaled_quadratic(
+        &self,
+        rho: f64,
+        (control_volt, hub_loads): (&[f64], &[f64]),
+        volt: f64,
+    ) -> Result<(Vec<Vec<f64>>, Vec<f64>), ControlError> {
+        let target = self.modal_target(control_volt, hub_loads)?;
+        let (hessian, linear) = order_one(self.quadratic(rho, &target), volt);
+        let rows = hessian.row_iter().map(|row| row.iter().copied().collect());
+        Ok((rows.collect(), linear.iter().copied().collect()))
+    }
+
     /// Singular values of `W_Z^(1/2) T`, largest first, 1/V: the authority of each independent
     /// combination of controls. Their squares are the scale of `rho`.
     pub fn singular_values(&self) -> &[f64] {
@@ -114,6 +161,12 @@ impl FeedbackLaw {
             (Some(largest), Some(smallest)) => largest / smallest,
             _ => f64::INFINITY,
         }
+    }
+
+    /// Whether there are more controls than loads, so that the optimum without a weight is one of many.
+    pub fn has_surplus_controls(&self) -> bool {
+        let (loads, controls) = self.shape();
+        controls > loads
     }
 
     /// Diagonal of `W_Z`.

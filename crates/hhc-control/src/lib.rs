@@ -58,6 +58,7 @@ mod limits;
 mod linear_plant;
 mod plant;
 mod root;
+mod spectrum;
 mod stroke;
 mod t_matrix;
 
@@ -68,7 +69,8 @@ pub use controller::Controller;
 pub use cost::{Cost, HUB_LOAD_NAMES, LoadWeights, load_harmonics, reduction_percent};
 pub use error::{ControlError, PlantCall, RunError};
 pub use feedback::{
-    ControlRun, ControlStep, FeedbackController, FeedbackSettings, Outcome, StepLeave,
+    ControlRun, ControlStep, FeedbackController, FeedbackSettings, LoopEnd, Outcome, RefusedStep,
+    StepLeave,
 };
 pub use identify::{StepSensitivity, identify_t, identify_t_about, step_sensitivity};
 pub use lag::{LagLoss, lag_loss};

@@ -1,6 +1,6 @@
 //! The stroke limit, met through the control weight.
 
-use crate::control_loop::Effort;
+use crate::control_loop::{Effort, Taken};
 use crate::controller::Knowledge;
 use crate::root::{Bracketed, Trial, root_between};
 use crate::{
@@ -88,7 +88,8 @@ impl FeedbackController {
     /// alone, so the dear measurements are those of a single run, and no step leads out of the range.
     /// Where it converges with the stroke at its limit, control and weight are a fixed point of eq. (10)
     /// together, and that run is the answer. If not, the weight is predicted by where it ended, and
-    /// `ln rho` is searched by a bracketed root find over whole runs from zero control with a fixed `rho`.
+    /// `ln rho` is searched by a bracketed root find over whole runs with a fixed `rho`: from zero control, or, for
+    /// a controller that learns T, whose end is that of the control alone, from the end of the run before.
     ///
     /// Never does this clip a control to its limit: a clipped optimum is not the optimum of the
     /// clipped problem, and can be worse than no control. On a linear plant the result is the exact
@@ -134,11 +135,17 @@ impl FeedbackController {
             }
         }
 
+        // a loop that learns depends on the control alone: each weight goes on from the one before
+        let learns = self.settings.cost_tolerance > 0.0;
+        let mut taken = Taken::default();
+        if learns {
+            taken = Taken { steps: tracked.steps, refused: tracked.refused };
+        }
         let predicted = (tracked.rho > 0.0).then_some(tracked.rho);
         let otherwise = |_| 1e-3 * self.law.largest_authority();
-        let mut trials = Vec::new();
+        let mut trials: Vec<EffortTrial> = Vec::new();
         let found = find_effort(strokes.accepted(0.45), predicted, otherwise, |rho| {
-            let run = match self.iterate(plant, &start, &mut Effort::Fixed(rho)) {
+            let run = match self.go_on(plant, (&start, taken.clone()), &mut Effort::Fixed(rho)) {
                 // a control out of range is one too large
                 Err(RunError::Control(ControlError::NotAdmitted { .. })) => {
                     return Ok((f64::INFINITY, None));
@@ -146,6 +153,9 @@ impl FeedbackController {
                 run => run?,
             };
             measurements += run.measurements;
+            if learns {
+                taken = Taken { steps: run.steps.clone(), refused: run.refused.clone() };
+            }
             let strokes_deg = strokes.ask(plant, &run.last().control_volt)?;
             let outcome = run.outcome;
             let stroke_ratio = match outcome {
@@ -155,17 +165,23 @@ impl FeedbackController {
             trials.push(EffortTrial { rho, stroke_ratio, outcome });
             Ok((stroke_ratio, Some((run, strokes_deg))))
         })?;
-        let (rho, stroke_ratio) = (found.rho, found.ratio);
+        let rho = found.rho;
         let Some((mut run, strokes_deg)) = found.state else {
+            let stroke_ratio = found.ratio;
             return Err(
                 ControlError::StrokeNotMet { rho, stroke_ratio, trials: trials.len() }.into()
             );
         };
         run.measurements += 1;
+        let stroke_ratio = strokes.ratio(&strokes_deg);
+        let met = strokes.met(rho, &strokes_deg);
         Ok(StrokeLimitedRun {
             run,
             rho,
-            status: found.status,
+            status: match (found.status, met) {
+                (StrokeStatus::AtLimit, None) => StrokeStatus::BelowJump,
+                (status, _) => status,
+            },
             strokes_deg,
             stroke_limits_deg: strokes.limits_deg,
             largest_stroke_ratio: stroke_ratio,

@@ -78,6 +78,36 @@ impl TMatrix {
         self.matrix.column_iter().map(|column| column.norm()).collect()
     }
 
+    /// The same with the voltage harmonic of every pair multiplied by a complex factor `g exp(i phi)`: what an
+    /// actuator of another gain and phase makes of it.
+    ///
+    /// ```text
+    /// [T_c, T_s]  <-  g [ T_c cos phi + T_s sin phi,  T_s cos phi - T_c sin phi ]
+    /// ```
+    /// | argument | symbol | unit | range |
+    /// |---|---|---|---|
+    /// | `gain` | `g` | - | any |
+    /// | `phase_rad` | `phi` | rad | any; a lag of the harmonic `A cos(n psi - phase)` is positive |
+    ///
+    /// # Errors
+    /// [`ControlError::OutOfRange`] for an odd number of controls, [`ControlError::NotFinite`].
+    pub fn turned(&self, gain: f64, phase_rad: f64) -> Result<Self, ControlError> {
+        error::check_vector("gain and phase of T", &[gain, phase_rad], 2)?;
+        let controls = self.controls();
+        if !controls.is_multiple_of(2) {
+            let (what, value) = ("controls of the T matrix", controls as f64);
+            return Err(ControlError::OutOfRange { what, value, expected: "pairs" });
+        }
+        let (sin, cos) = phase_rad.sin_cos();
+        let mut matrix = self.matrix.clone();
+        for c in (0..controls).step_by(2) {
+            let (cosine, sine) = (self.matrix.column(c), self.matrix.column(c + 1));
+            matrix.set_column(c, &((cosine * cos + sine * sin) * gain));
+            matrix.set_column(c + 1, &((sine * cos - cosine * sin) * gain));
+        }
+        Ok(Self { matrix })
+    }
+
     /// Difference from a reference matrix, relative to that matrix.
     ///
     /// ```text
@@ -130,6 +160,18 @@ mod tests {
         assert!(narrow.relative_difference(&t).is_err());
         let zero = TMatrix::from_columns(&[vec![0.0, 0.0], vec![0.0, 0.0]]).unwrap();
         assert_eq!(t.relative_difference(&zero), Err(ControlError::NoAuthority));
+    }
+
+    /// A quarter turn makes the sine's column of the cosine's: `cos(n psi - 90 deg) = sin(n psi)`.
+    #[test]
+    fn a_quarter_turn_is_a_lag_of_90_degrees() {
+        let t = TMatrix::from_columns(&[vec![1.0, 2.0], vec![3.0, 5.0]]).unwrap();
+        let turned = t.turned(2.0, std::f64::consts::FRAC_PI_2).unwrap().columns();
+        for (found, exact) in turned.concat().iter().zip([6.0, 10.0, -2.0, -4.0]) {
+            assert_abs_diff_eq!(*found, exact, epsilon = 1e-14);
+        }
+        assert!(TMatrix::from_columns(&[vec![1.0]]).unwrap().turned(1.0, 0.0).is_err());
+        assert!(t.turned(f64::NAN, 0.0).is_err());
     }
 
     #[test]

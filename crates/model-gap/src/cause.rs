@@ -43,6 +43,10 @@ pub struct Parameter {
     /// What must be measured besides before the value means anything; none if these data suffice. Without
     /// it only a product with something unknown is found, and the interval is the whole range.
     pub needs: Option<&'static str>,
+    /// Standard deviation of a value that is taken and not fitted, in the coordinate: it stays where the
+    /// search starts, and the intervals of the fitted parameters grow by what a shift of so much would move
+    /// them. None: it is fitted.
+    pub held: Option<f64>,
     /// Step of numerical slopes and width of a start, in the coordinate; none: 2 % of the value.
     pub step: Option<f64>,
 }
@@ -74,6 +78,16 @@ impl Parameter {
             Scale::Linear => 0.02 * value.abs().max(0.01 * (self.high - self.low)),
             Scale::Log => 0.02,
         }
+    }
+
+    /// Whether an interval of a value on a logarithmic scale leaves one end of the range open, to one part
+    /// in a hundred of it: its size is then not known.
+    pub(crate) fn is_open_ended(&self, interval: [f64; 2]) -> bool {
+        if self.scale == Scale::Linear || self.needs.is_some() {
+            return false;
+        }
+        let slack = 1e-2 * (self.high / self.low).ln();
+        (interval[0] / self.low).ln() <= slack || (self.high / interval[1]).ln() <= slack
     }
 
     /// Whether a value lies at an end of the range, to one part in a thousand of it.
@@ -117,6 +131,9 @@ pub struct Candidate {
     pub starts: Vec<Vec<f64>>,
     /// Why these data cannot show it, found before any fit; none if they may.
     pub blocked: Option<String>,
+    /// Why it cannot be there, found before any fit: a measurement of its agent reads none. It is fitted all
+    /// the same: what looks most like it has no name.
+    pub refuted: Option<String>,
 }
 
 /// A cause switched on, with values of its parameters.

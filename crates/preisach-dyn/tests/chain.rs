@@ -63,7 +63,7 @@ fn full(law: preisach_dyn::ActuatorLaw) -> ActuatorModel {
 #[test]
 fn the_chain_acts_in_its_order() {
     // clip then lag is not lag then clip
-    let clip = AmplifierStage::Saturation(Saturation { v_min_volt: -20.0, v_max_volt: 90.0 });
+    let clip = AmplifierStage::Saturation(Saturation::sharp(-20.0, 90.0));
     let lag = AmplifierStage::Lag(Lag { tau_s: 0.02 });
     let input = sampled(200, 1e-3, |t| 65.0 + 80.0 * (TAU * 8.0 * t).sin());
     let a = measured(&ActuatorModel { amplifier: vec![clip, lag], ..unit() }, &input, 1e-3);
@@ -129,10 +129,7 @@ fn bad_parameters_are_refused_with_their_name() {
             amplifier(AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: 0.0 })),
             "slew_rate",
         ),
-        (
-            amplifier(AmplifierStage::Saturation(Saturation { v_min_volt: 1.0, v_max_volt: 0.0 })),
-            "empty",
-        ),
+        (amplifier(AmplifierStage::Saturation(Saturation::sharp(1.0, 0.0))), "empty"),
         (
             amplifier(AmplifierStage::DielectricHeating(DielectricHeating::new(0.0, 1e-3))),
             "time_constant_s",

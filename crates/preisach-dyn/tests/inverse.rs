@@ -314,7 +314,7 @@ fn small_motions_come_through_a_gap_with_few_harmonics() {
 #[test]
 fn an_amplifier_that_saturates_ends_the_reach() {
     let mut model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
-    let limits = Saturation { v_min_volt: 0.0, v_max_volt: 130.0 };
+    let limits = Saturation::sharp(0.0, 130.0);
     model.amplifier.push(AmplifierStage::Saturation(limits));
     let settings = InverseSettings { voltage_harmonics: 8, ..InverseSettings::default() };
     let error = model.periodic_inverse(&target(8.0), REV_HZ, &settings).unwrap_err();

@@ -23,7 +23,7 @@ fn identities() -> Vec<ActuatorModel> {
     vec![
         amplifier(AmplifierStage::Lag(Lag { tau_s: 0.0 })),
         amplifier(AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: 1e9 })),
-        amplifier(AmplifierStage::Saturation(Saturation { v_min_volt: -1e5, v_max_volt: 1e5 })),
+        amplifier(AmplifierStage::Saturation(Saturation::sharp(-1e5, 1e5))),
         amplifier(AmplifierStage::Delay(Delay { delay_s: 0.0 })),
         amplifier(AmplifierStage::DielectricHeating(DielectricHeating::new(30.0, 0.0))),
         amplifier(AmplifierStage::Depolarisation(Depolarisation::new(-1e5))),
@@ -404,12 +404,37 @@ fn a_current_limit_is_exact_for_straight_pieces_at_any_step() {
 
 #[test]
 fn saturation_clips() {
-    let stage = Saturation { v_min_volt: -20.0, v_max_volt: 100.0 };
+    let stage = Saturation::sharp(-20.0, 100.0);
     let input = sampled(400, 1e-3, |t| 65.0 + 100.0 * (TAU * 5.0 * t).sin());
     let output = measured(&amplifier(AmplifierStage::Saturation(stage)), &input, 1e-3);
     for (u, y) in input.iter().zip(output) {
         assert_eq!(y, u.clamp(-20.0, 100.0));
     }
+}
+
+/// Inside the straight part nothing is changed, beyond the knee the limit stands, and between them the
+/// slope falls from 1 to 0 on a straight line: checked by the integral of that slope.
+#[test]
+fn a_knee_bends_into_the_limit() {
+    let (low, high, knee) = (-20.0, 100.0, 4.0);
+    let stage = Saturation { knee_volt: knee, ..Saturation::sharp(low, high) };
+    let input = sampled(40_001, 1e-3, |t| 40.0 + 4.0 * (t - 20.0));
+    let output = measured(&amplifier(AmplifierStage::Saturation(stage)), &input, 1e-3);
+    let slope = |u: f64| {
+        let upper = (high + knee - u) / (2.0 * knee);
+        let lower = (u - (low - knee)) / (2.0 * knee);
+        upper.min(lower).clamp(0.0, 1.0)
+    };
+    let mut sum = low;
+    for (i, (u, y)) in input.iter().zip(&output).enumerate() {
+        if i > 0 {
+            sum += 0.5 * (slope(input[i - 1]) + slope(*u)) * (u - input[i - 1]);
+        }
+        assert!((y - sum).abs() < 2e-4, "{u} V: {y} against {sum}");
+    }
+    assert_eq!((output[0], output[40_000]), (low, high));
+    let bent = output.iter().zip(&input).filter(|(y, u)| y != u && **u < high && **u > low);
+    assert!(bent.count() > 1000);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use rotor_base::{LagrangeBasis, gauss_legendre};
 use crate::{FemError, LocalTangent, TimeElements};
 
 /// Stages of the Gauss collocation that carries a motion over a step (order eight).
-const STAGES: usize = 4;
+pub(crate) const STAGES: usize = 4;
 /// Largest angle, rad, that the fastest motion of the linearisation turns in one step.
 const LARGEST_ANGLE_PER_STEP: f64 = 0.7;
 /// A multiplier smaller than this fraction of the largest is lost in its round-off.
@@ -88,12 +88,16 @@ impl Floquet {
                     .ok_or(FemError::MassSingular { azimuth_rad: (e as f64 + from) * length })?;
             }
         }
-        let modes = motions(&monodromy, mass)?;
+        let modes = motions(&monodromy, mass, 2 * dof)?;
         Ok(Self { monodromy, modes })
     }
 
+    pub(crate) fn from_parts(monodromy: DMatrix<f64>, modes: Vec<FloquetMode>) -> Self {
+        Self { monodromy, modes }
+    }
+
     /// The matrix that carries displacements and rates over one revolution from azimuth 0, shape
-    /// `2 dof x 2 dof`.
+    /// `2 dof x 2 dof`; of a system with lags these follow as further states.
     pub fn monodromy(&self) -> &DMatrix<f64> {
         &self.monodromy
     }
@@ -110,7 +114,11 @@ impl Floquet {
 }
 
 /// Refuses tangents of the wrong number, shape or value.
-fn check(time: &TimeElements, dof: usize, tangents: &[LocalTangent]) -> Result<(), FemError> {
+pub(crate) fn check(
+    time: &TimeElements,
+    dof: usize,
+    tangents: &[LocalTangent],
+) -> Result<(), FemError> {
     let (found, expected) = (tangents.len(), time.points().len());
     if found != expected {
         return Err(FemError::Tangents { what: "number", point: 0, found, expected });
@@ -150,10 +158,10 @@ fn steps_of(mass: &DMatrix<f64>, element: &[LocalTangent], length: f64) -> Optio
 }
 
 /// `mass x'' + damping x' + stiffness x = 0` at one azimuth.
-struct Coefficients {
-    mass: DMatrix<f64>,
-    damping: DMatrix<f64>,
-    stiffness: DMatrix<f64>,
+pub(crate) struct Coefficients {
+    pub(crate) mass: DMatrix<f64>,
+    pub(crate) damping: DMatrix<f64>,
+    pub(crate) stiffness: DMatrix<f64>,
 }
 
 impl Coefficients {
@@ -168,25 +176,29 @@ impl Coefficients {
         out
     }
 
-    fn interpolate(mass: &DMatrix<f64>, element: &[LocalTangent], shapes: &[[f64; 3]]) -> Self {
+    pub(crate) fn interpolate(
+        mass: &DMatrix<f64>,
+        element: &[LocalTangent],
+        shapes: &[[f64; 3]],
+    ) -> Self {
         Self::sum(mass, shapes.iter().map(|s| s[0]).zip(element))
     }
 }
 
 /// Gauss collocation of a second-order equation on the unit step.
-struct Stepper {
-    nodes: [f64; STAGES],
-    weights: [f64; STAGES],
+pub(crate) struct Stepper {
+    pub(crate) nodes: [f64; STAGES],
+    pub(crate) weights: [f64; STAGES],
     /// Integrals of the stage polynomials up to each node.
-    once: [[f64; STAGES]; STAGES],
+    pub(crate) once: [[f64; STAGES]; STAGES],
     /// The same integrated twice.
-    twice: [[f64; STAGES]; STAGES],
+    pub(crate) twice: [[f64; STAGES]; STAGES],
     /// Integrals of `once` over the whole step.
-    end_twice: [f64; STAGES],
+    pub(crate) end_twice: [f64; STAGES],
 }
 
 impl Stepper {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let rule = gauss_legendre(STAGES);
         let rows = LagrangeBasis::new(rule.nodes.clone()).integration_matrix();
         let array = |f: &dyn Fn(usize) -> f64| std::array::from_fn::<f64, STAGES, _>(f);
@@ -237,27 +249,81 @@ impl Stepper {
     }
 }
 
-/// The motions of a monodromy matrix, one of each conjugate pair, fastest growing first.
-fn motions(monodromy: &DMatrix<f64>, mass: &DMatrix<f64>) -> Result<Vec<FloquetMode>, FemError> {
+/// The motions of a monodromy matrix, one of each conjugate pair, fastest growing first: the `kept` ones in which
+/// displacements and rates, which come before other states, participate most.
+pub(crate) fn motions(
+    monodromy: &DMatrix<f64>,
+    mass: &DMatrix<f64>,
+    kept: usize,
+) -> Result<Vec<FloquetMode>, FemError> {
     let (size, dof) = (monodromy.nrows(), mass.nrows());
     let matrix = Mat::from_fn(size, size, |i, j| monodromy[(i, j)]);
     let eigen = matrix.eigen().map_err(|_| FemError::Eigen { size })?;
     let (values, vectors) = (eigen.S().column_vector(), eigen.U());
     let largest = (0..size).map(|k| values[k].norm()).fold(0.0, f64::max);
-    let mut modes: Vec<FloquetMode> = (0..size)
-        .filter(|&k| values[k].im >= 0.0)
-        .map(|k| {
+    let mut order: Vec<(usize, f64)> = (0..size).map(|k| (k, 1.0)).collect();
+    if kept < size {
+        // how much of a motion is motion of the blade: left times right eigenvector over its states
+        let right = DMatrix::from_fn(size, size, |i, k| {
+            Complex::new(vectors[(i, k)].re, vectors[(i, k)].im)
+        });
+        let states = DMatrix::<Complex<f64>>::identity(size, 2 * dof);
+        let left = right.clone().lu().solve(&states).ok_or(FemError::Eigen { size })?;
+        for (k, share) in &mut order {
+            let of = |i: usize| left[(*k, i)] * right[(i, *k)];
+            *share = (0..2 * dof).map(of).sum::<Complex<f64>>().norm();
+        }
+        order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    }
+    let kept: Vec<usize> =
+        order.into_iter().take(kept).map(|(k, _)| k).filter(|&k| values[k].im >= 0.0).collect();
+    let energies: Vec<Vec<f64>> = kept
+        .iter()
+        .map(|&k| {
+            let energy: Vec<f64> =
+                (0..dof).map(|i| vectors[(i, k)].norm_sqr() * mass[(i, i)]).collect();
+            let whole = energy.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+            energy.into_iter().map(|part| part / whole).collect()
+        })
+        .collect();
+    let pairs: Vec<bool> = kept.iter().map(|&k| values[k].im > 0.0).collect();
+    let leaders = leaders(&energies, &pairs);
+    let mut modes: Vec<FloquetMode> = kept
+        .iter()
+        .zip(leaders)
+        .map(|(&k, leading_dof)| {
             let multiplier = Complex::new(values[k].re, values[k].im);
             let size = multiplier.norm().max(ROUND_OFF * largest);
-            let energy = |i: usize| vectors[(i, k)].norm_sqr() * mass[(i, i)];
             FloquetMode {
                 multiplier,
                 growth_per_rad: size.ln() / TAU,
                 frequency_per_rev: multiplier.arg().abs() / TAU,
-                leading_dof: (0..dof).max_by(|&i, &j| energy(i).total_cmp(&energy(j))).unwrap_or(0),
+                leading_dof,
             }
         })
         .collect();
     modes.sort_by(|a, b| b.growth_per_rad.total_cmp(&a.growth_per_rad));
     Ok(modes)
+}
+
+/// Which degree of freedom leads each motion: the largest share of energy first, no degree of freedom more than
+/// one conjugate pair, or two real motions.
+fn leaders(shares: &[Vec<f64>], pairs: &[bool]) -> Vec<usize> {
+    let dof = shares.first().map_or(0, Vec::len);
+    let mut claims: Vec<(usize, usize)> =
+        (0..shares.len()).flat_map(|k| (0..dof).map(move |i| (k, i))).collect();
+    claims.sort_by(|&(k, i), &(l, j)| shares[l][j].total_cmp(&shares[k][i]));
+    let mut room = vec![2_u8; dof];
+    let mut found: Vec<Option<usize>> = vec![None; shares.len()];
+    for (k, i) in claims {
+        let needed = if pairs[k] { 2 } else { 1 };
+        if found[k].is_none() && room[i] >= needed {
+            (found[k], room[i]) = (Some(i), room[i] - needed);
+        }
+    }
+    // one that found no room keeps its largest share
+    let largest = |k: usize| {
+        (0..dof).max_by(|&i, &j| shares[k][i].total_cmp(&shares[k][j])).unwrap_or_default()
+    };
+    found.iter().enumerate().map(|(k, leader)| leader.unwrap_or_else(|| largest(k))).collect()
 }

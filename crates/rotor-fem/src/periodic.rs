@@ -7,6 +7,9 @@ use crate::newton_matrix::{Factorisation, NewtonMatrixError};
 use crate::renewal::{Renewal, Verdict};
 use crate::{FemError, Orbit, OrbitSamples, PeriodicError, PeriodicSystem, TimeElements};
 
+/// Steps of a careful search in which the best residual has to fall, and to what part of it: one that does not
+/// goes nowhere.
+const STANDSTILL: (usize, f64) = (30, 0.5);
 /// Halvings of a step that makes the residual grow.
 const MAX_HALVINGS: i32 = 6;
 
@@ -75,6 +78,15 @@ pub(crate) struct Iterate {
     norm: f64,
 }
 
+/// Whether a search that is careful since a step has stopped gaining.
+fn stands_still(history: &[f64], careful_from: Option<usize>) -> bool {
+    let (steps, part) = STANDSTILL;
+    let best = |residuals: &[f64]| residuals.iter().copied().fold(f64::INFINITY, f64::min);
+    let before = history.len().saturating_sub(steps);
+    careful_from.is_some_and(|from| from <= before)
+        && best(&history[before..]) > part * best(&history[..before])
+}
+
 /// Newton's method on a whole revolution, with a factorisation that outlives a solve.
 ///
 /// ```text
@@ -82,7 +94,7 @@ pub(crate) struct Iterate {
 /// ```
 /// The Newton matrix is factorised once and used for chord steps, also in later solves, until a step
 /// contracts the residual too little; when chord steps stall, the search goes back to the best orbit and
-/// takes Newton steps, shortened until the residual falls. The sequence of solves is therefore part of the result at the
+/// takes Newton steps, shortened until the residual falls, and ends where thirty of them do not halve it. The sequence of solves is therefore part of the result at the
 /// level of the tolerance: use one solver per thread, or [`forget_factorisation`] between solves.
 ///
 /// Assumes: a constant symmetric mass matrix; period 2 pi.
@@ -155,9 +167,10 @@ impl PeriodicSolver {
             Acceleration::Anderson { depth } => depth,
         });
         let mut renewal = Renewal::new(self.settings.refresh_contraction);
+        let mut careful_from = None;
         while state.norm > self.settings.tolerance {
             let iteration = history.len();
-            if iteration > self.settings.max_iterations {
+            if iteration > self.settings.max_iterations || stands_still(&history, careful_from) {
                 return Err(PeriodicError::NotConverged {
                     iterations: iteration - 1,
                     residual: state.norm,
@@ -206,6 +219,7 @@ impl PeriodicSolver {
                 state = self.evaluate(system, best.1.clone(), iteration, &best.1)?;
                 self.factorisation = None;
                 mixing = Anderson::new(0);
+                careful_from = Some(history.len());
             }
         }
         Ok(PeriodicSolution {
@@ -408,5 +422,20 @@ impl PeriodicSolver {
                 best: Box::new(state.orbit.clone()),
             }),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stands_still;
+
+    /// A careful search may be slow, but not without end: thirty steps have to halve the residual.
+    #[test]
+    fn a_search_that_gains_nothing_ends() {
+        let slow: Vec<f64> = (0..60).map(|k| 0.97_f64.powi(k)).collect();
+        let stuck: Vec<f64> = (0..60).map(|k| 0.5 + 0.01 * f64::from(k % 7)).collect();
+        assert!(!stands_still(&slow, Some(0)) && !stands_still(&stuck, None));
+        assert!(stands_still(&stuck, Some(20)), "careful for forty steps");
+        assert!(!stands_still(&stuck, Some(40)), "careful for twenty");
     }
 }

@@ -91,9 +91,37 @@ pub enum PeriodicError<E: std::error::Error + 'static> {
     },
 }
 
-/// The last few residuals, for a message.
+/// Residuals shown of a history at most.
+const SHOWN: usize = 30;
+
+/// The whole history for a message; of a long one every so many residuals from the start, and the last.
 fn show(history: &[f64]) -> String {
-    let tail = &history[history.len().saturating_sub(6)..];
-    let shown: Vec<String> = tail.iter().map(|r| format!("{r:.1e}")).collect();
+    let stride = history.len().div_ceil(SHOWN).max(1);
+    let last = history.len().saturating_sub(1);
+    let mut shown: Vec<String> = history
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| k % stride == 0 || *k == last)
+        .map(|(_, residual)| format!("{residual:.1e}"))
+        .collect();
+    if stride > 1 {
+        shown.push(format!("(each {stride} steps, and the last)"));
+    }
     shown.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::show;
+
+    #[test]
+    fn a_history_is_shown_from_its_start_to_its_end() {
+        assert_eq!(show(&[1.0, 0.1]), "1.0e0 1.0e-1");
+        let long: Vec<f64> = (0..200).map(f64::from).collect();
+        let text = show(&long);
+        assert!(text.starts_with("0.0e0 7.0e0") && text.contains(" 2.0e2 (each 7"), "{text}");
+        let numbers =
+            text.split(' ').filter(|word| word.contains('e') && word.parse::<f64>().is_ok());
+        assert_eq!(numbers.count(), 30);
+    }
 }

@@ -1,7 +1,8 @@
 //! One periodic response of the paper rotor with moving flaps.
 //!
 //! Budget: 50 ms from a nearby orbit at the paper's discretisation on one core, so that a T matrix of
-//! twelve columns costs less than a second.
+//! twelve columns costs less than a second. A new Newton matrix, which holds the memory of the lags of the sections
+//! (quasi-steady ones have none), has the same budget: a trim from nothing makes a few.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use flap_aero::AttachedFlowModel;
@@ -70,9 +71,46 @@ fn response(criterion: &mut Criterion) {
     }
 }
 
+/// What a new Newton matrix costs: a response with a solver that has none, less one with a solver that keeps its own.
+#[expect(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    reason = "a bench reads the clock and reports"
+)]
+fn newton_matrix(criterion: &mut Criterion) {
+    for model in [AttachedFlowModel::QuasiSteady, AttachedFlowModel::HariharanLeishman] {
+        let built = solver(model).and_then(|fresh| {
+            let mut kept = fresh.clone();
+            let rest = kept.solve(&condition(0.0), &LinearInflow::Drees, None)?;
+            Ok((fresh, kept, rest))
+        });
+        let Ok((fresh, kept, rest)) = built else { continue };
+        let moved = condition(0.05);
+        let run = |solver: &RotorSolver| {
+            let mut solver = solver.clone();
+            black_box(solver.solve(&moved, &LinearInflow::Drees, Some(&rest)))
+        };
+        let time = |solver: &RotorSolver| {
+            let (started, count) = (Instant::now(), 10);
+            let made: usize = (0..count)
+                .map(|_| run(solver).map_or(0, |found| found.residuals.factorisations))
+                .sum();
+            (started.elapsed().as_secs_f64() / f64::from(count), made as f64 / f64::from(count))
+        };
+        let ((anew, matrices), (again, kept_matrices)) = (time(&fresh), time(&kept));
+        let each = (anew - again) / (matrices - kept_matrices).max(1.0);
+        println!(
+            "{model:?}: a Newton matrix {:.1} ms, {:.2} of the budget ({matrices} against {kept_matrices} made)",
+            1e3 * each,
+            each / BUDGET_S
+        );
+        criterion.bench_function(&format!("newton_matrix/{model:?}"), |b| b.iter(|| run(&fresh)));
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(10).measurement_time(Duration::from_secs(3));
-    targets = response
+    targets = response, newton_matrix
 }
 criterion_main!(benches);

@@ -1,11 +1,19 @@
 //! Air velocities and section loads at the stations.
 //!
 //! ```text
-//! U_R = mu cos psi + y_t                              along the blade, y_t the torque offset
-//! U_T = x + mu sin psi + v' + v_x U_R                 tangential, from leading to trailing edge
+//! a   = V - W                                         the section through the air, coned blade axes
+//! V   = (u' - c y, v' + c X - s w, w' + s y)          X = x + u,  y = y_t + v,  c = cos bp,  s = sin bp
+//! W   = (c mu cos psi - s lambda, -mu sin psi, -(c lambda + s mu cos psi))
 //! om  = th' + w_x + bp                                pitch rate of the section
-//! U_P = lambda + w' + (w_x + bp) U_R + e_d om         down through the blade at the aerodynamic centre
+//! U_T = a . chord                                     tangential, from leading to trailing edge
+//! U_P = a . normal + e_d om                           down through the blade at the aerodynamic centre
 //! ```
+//! with chord and normal of [`SectionAxes`], along which the loads stand: velocity and force are each other's
+//! transpose, so that in hover shaft torque is inflow times thrust plus profile drag whatever the blade does.
+//! With `Linear` and `Full` neither the foreshortening `u` nor the lag `v` carries the section round, `X = x` and
+//! `V_x = -c y_t`, and the normal does not lean back with a lagged blade: of a blade that turns as a whole about its
+//! root, `w_x v` and `-v_x w_x x` cancel but for `e v_x w_x`.
+//!
 //! and the four section inputs as velocities: `U_T th - U_P`, `c om`, `U_T delta`, `c delta'`.
 //! The lift is normal to the local flow: a lift per tangential speed `L/|U_T|` gives
 //! `F_z = L`, `F_y = -s (L/|U_T|) U_P`, which stays finite where the tangential speed vanishes. The
@@ -62,6 +70,89 @@ pub(crate) struct AirPoint {
     pub(crate) reverse_flow: ReverseFlow,
 }
 
+/// A vector in coned blade axes with its azimuth derivative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Turned {
+    pub(crate) value: [f64; 3],
+    pub(crate) rate: [f64; 3],
+}
+
+impl Turned {
+    /// Component along another vector and its derivative.
+    fn along(&self, other: &Self) -> [f64; 2] {
+        let product = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let rate = product(&self.rate, &other.value) + product(&self.value, &other.rate);
+        [product(&self.value, &other.value), rate]
+    }
+}
+
+/// Chord (toward the leading edge, at no pitch) and normal of a section of the deflected blade.
+///
+/// ```text
+/// chord = (-v_x, 1, 0)                    normal = (-w_x, 0, 1)                          Linear, Full
+/// chord = (-v_x, 1 - v_x^2/2, 0)          normal = (-w_x, -v_x w_x, 1 - w_x^2/2)         Moderate
+/// ```
+/// The second are those of a section turned by lag and then by flap, `t x chord` with `t = (1, v_x, w_x)`, to second order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SectionAxes {
+    pub(crate) chord: Turned,
+    pub(crate) normal: Turned,
+}
+
+impl SectionAxes {
+    /// At station `i`.
+    pub(crate) fn of(blade: &ResponseBlade, motion: &Motion, i: usize) -> Self {
+        let (v_x, v_rate) = (motion.v.slope[i], motion.v.slope_rate[i]);
+        let (w_x, w_rate) = (motion.w.slope[i], motion.w.slope_rate[i]);
+        let second = if blade.modal.is_some() { 1.0 } else { 0.0 };
+        Self {
+            chord: Turned {
+                value: [-v_x, 1.0 - second * 0.5 * v_x * v_x, 0.0],
+                rate: [-v_rate, -second * v_x * v_rate, 0.0],
+            },
+            normal: Turned {
+                value: [-w_x, -second * v_x * w_x, 1.0 - second * 0.5 * w_x * w_x],
+                rate: [-w_rate, -second * (v_rate * w_x + v_x * w_rate), -second * w_x * w_rate],
+            },
+        }
+    }
+
+    /// Forces toward the leading edge and up, in coned blade axes, of a load along the section's axes. The one along
+    /// the blade is [`SpanLoads::fx`](crate::structure::SpanLoads::fx).
+    pub(crate) fn force(&self, loads: &SectionLoads) -> [f64; 2] {
+        [1, 2].map(|k| loads.fy * self.chord.value[k] + loads.fz * self.normal.value[k])
+    }
+}
+
+/// Velocity of a section through the air, coned blade axes; the inflow is held in the rate.
+fn through_air(
+    blade: &ResponseBlade,
+    motion: &Motion,
+    point: &AirPoint,
+    (i, lambda): (usize, f64),
+) -> Turned {
+    let (w, v) = (&motion.w, &motion.v);
+    let (mu_sin, mu_cos) = (point.advance_ratio * point.sin, point.advance_ratio * point.cos);
+    let (s, c) = blade.precone.sin_cos();
+    let y_t = blade.offsets.torque;
+    let [u, u_rate, u_acceleration] = motion.shortening(i);
+    // what the section has of the speed along the blade by its lag
+    let [lag, lag_rate] = if blade.modal.is_some() { [v.value[i], v.rate[i]] } else { [0.0; 2] };
+    let x = blade.grid.x()[i];
+    Turned {
+        value: [
+            u_rate - c * (y_t + lag) - c * mu_cos + s * lambda,
+            v.rate[i] + c * (x + u) - s * w.value[i] + mu_sin,
+            w.rate[i] + s * (y_t + v.value[i]) + c * lambda + s * mu_cos,
+        ],
+        rate: [
+            u_acceleration - c * lag_rate + c * mu_sin,
+            v.acceleration[i] + c * u_rate - s * w.rate[i] + mu_cos,
+            w.acceleration[i] + s * v.rate[i] - s * mu_sin,
+        ],
+    }
+}
+
 /// Flow at station `i` for a total inflow `lambda` (down positive, tip speed).
 pub(crate) fn section_flow(
     blade: &ResponseBlade,
@@ -71,24 +162,26 @@ pub(crate) fn section_flow(
     (i, lambda): (usize, f64),
     delta: FlapAngle,
 ) -> SectionFlow {
-    let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
-    let (mu_sin, mu_cos) = (point.advance_ratio * point.sin, point.advance_ratio * point.cos);
+    let (w, phi) = (&motion.w, &motion.phi);
     let theta = point.pitch.angle + blade.twist[i] + phi.value[i];
     let theta_rate = point.pitch.rate + phi.rate[i];
-    let along = mu_cos + blade.offsets.torque;
     let centre = blade.offsets.aerodynamic_centre;
     let om = theta_rate + w.slope[i] + blade.precone;
     let om_rate = point.pitch.acceleration + phi.acceleration[i] + w.slope_rate[i];
-    let u_t = blade.grid.x()[i] + mu_sin + v.rate[i] + v.slope[i] * along;
-    let u_p = lambda + w.rate[i] + (w.slope[i] + blade.precone) * along + centre * om;
-    let u_t_rate = mu_cos + v.acceleration[i] + v.slope_rate[i] * along - v.slope[i] * mu_sin;
-    let u_p_rate = w.acceleration[i] + w.slope_rate[i] * along
-        - (w.slope[i] + blade.precone) * mu_sin
-        + centre * om_rate;
+    let through = through_air(blade, motion, point, (i, lambda));
+    let axes = SectionAxes::of(blade, motion, i);
+    let [u_t, u_t_rate] = through.along(&axes.chord);
+    let [normal, normal_rate] = through.along(&axes.normal);
+    let u_p = normal + centre * om;
+    let u_p_rate = normal_rate + centre * om_rate;
     SectionFlow {
         u_t,
         u_p,
-        sense: sense(point.reverse_flow, (u_t, u_p), blade.grid.x()[i] + mu_sin),
+        sense: sense(
+            point.reverse_flow,
+            (u_t, u_p),
+            blade.grid.x()[i] + point.advance_ratio * point.sin,
+        ),
         pitch: theta,
         input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
         input_rate: [

@@ -5,7 +5,7 @@ use crate::{Discretisation, ResponseError, RotorModel, SectionOffsets, SpanGrid}
 use flap_aero::FlapEffectiveness;
 use nalgebra::DMatrix;
 use rotor_fem::{
-    BladeProperties, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
+    BladeProperties, Joint, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
     ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, modal_basis,
 };
 
@@ -157,6 +157,8 @@ pub struct ResponseBlade {
     pub(crate) modal_masses: Vec<f64>,
     /// Stiffness of the springs at the root on the modal coordinates.
     pub(crate) root_spring: DMatrix<f64>,
+    /// Slope of every flap and lag mode at the root, twist of every torsion mode.
+    root_rotation: Vec<f64>,
     pub(crate) modes: ModeSet,
     pub(crate) properties: BladeProperties,
     pub(crate) mass: Vec<f64>,
@@ -235,6 +237,7 @@ impl ResponseBlade {
             frequencies: modes.modes().iter().map(UncoupledMode::frequency).collect(),
             modal_masses: modes.modes().iter().map(UncoupledMode::modal_mass).collect(),
             root_spring: root_springs(properties, &modes)?,
+            root_rotation: root_rotations(&modes, root)?,
             mass: along(&|x| properties.mass(x)),
             ei_flap: along(&|x| properties.flap_stiffness(x)),
             ei_lag: along(&|x| properties.lag_stiffness(x)),
@@ -264,6 +267,18 @@ impl ResponseBlade {
             properties: properties.clone(),
             grid,
         })
+    }
+
+    /// Angles of the joints of the root for modal coordinates in the order flap, lag, torsion, rad: slope toward
+    /// the leading edge, slope up, twist nose up. Zero where a joint is locked, and from coordinates that lack.
+    pub fn joint_angles_rad(&self, coordinates: &[f64]) -> [f64; 3] {
+        let (flap, lag) = (self.flap.count(), self.lag.count());
+        let mut angles = [0.0; 3];
+        for (i, (rotation, q)) in self.root_rotation.iter().zip(coordinates).enumerate() {
+            let place = if i < flap { 1 } else { 2 * usize::from(i >= flap + lag) };
+            angles[place] += rotation * q;
+        }
+        angles
     }
 
     /// Whether a flap weighs beside the blade.
@@ -307,13 +322,23 @@ impl ResponseBlade {
         matrix
     }
 
-    /// Modal damping coefficients `2 zeta omega M`.
+    /// Whether a mode is the rotation about a free hinge, which strains nothing.
+    pub(crate) fn turns_freely(&self, mode: (ModeKind, usize)) -> bool {
+        let root = self.properties.spec().root;
+        match mode {
+            (ModeKind::Flap, 1) => root.flap == Joint::FREE,
+            (ModeKind::Lag, 1) => root.lag == Joint::FREE,
+            _ => false,
+        }
+    }
+
+    /// Modal damping coefficients `2 zeta omega M`; none of the first mode of a free hinge, a rotation about it
+    /// that strains nothing.
     pub(crate) fn damping(&self, ratio: f64) -> Vec<f64> {
-        self.frequencies
-            .iter()
-            .zip(&self.modal_masses)
-            .map(|(omega, mass)| 2.0 * ratio * omega * mass)
-            .collect()
+        let of = |(i, (omega, mass)): (usize, (&f64, &f64))| {
+            if self.turns_freely(self.mode(i)) { 0.0 } else { 2.0 * ratio * omega * mass }
+        };
+        self.frequencies.iter().zip(&self.modal_masses).enumerate().map(of).collect()
     }
 
     /// Stations and quadrature of the blade.
@@ -336,25 +361,29 @@ fn root_springs(
     properties: &BladeProperties,
     modes: &ModeSet,
 ) -> Result<DMatrix<f64>, ResponseError> {
-    let root = properties.spec().root_offset;
+    let rotations = root_rotations(modes, properties.spec().root_offset)?;
     let [lag, flap, feather] = properties.spec().root.springs();
-    let rotations = modes
-        .modes()
-        .iter()
-        .map(|mode| {
-            let shape = mode.shape(root)?;
-            Ok(match mode.kind() {
-                ModeKind::Flap => (mode.kind(), flap, shape[1]),
-                ModeKind::Lag => (mode.kind(), lag, shape[1]),
-                _ => (mode.kind(), feather, shape[0]),
-            })
+    let rotations: Vec<_> = (modes.modes().iter().zip(rotations))
+        .map(|(mode, rotation)| match mode.kind() {
+            ModeKind::Flap => (mode.kind(), flap, rotation),
+            ModeKind::Lag => (mode.kind(), lag, rotation),
+            _ => (mode.kind(), feather, rotation),
         })
-        .collect::<Result<Vec<_>, ResponseError>>()?;
+        .collect();
     let count = rotations.len();
     Ok(DMatrix::from_fn(count, count, |i, j| {
         let ((kind, spring, a), (other, _, b)) = (rotations[i], rotations[j]);
         if kind == other { spring * a * b } else { 0.0 }
     }))
+}
+
+/// Slope of every flap and lag mode at the root, twist of every torsion mode.
+fn root_rotations(modes: &ModeSet, root: f64) -> Result<Vec<f64>, ResponseError> {
+    let rotation = |mode: &UncoupledMode| {
+        let shape = mode.shape(root)?;
+        Ok(if matches!(mode.kind(), ModeKind::Flap | ModeKind::Lag) { shape[1] } else { shape[0] })
+    };
+    modes.modes().iter().map(rotation).collect()
 }
 
 /// The blade with moderate deflections.

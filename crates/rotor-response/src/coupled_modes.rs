@@ -160,7 +160,10 @@ impl Rotor {
     /// Whether nothing but the air damps the lag modes, or a mode has no frequency.
     fn may_resonate(&self) -> bool {
         let uncoupled = self.blade().frequencies_per_rev();
-        self.model().modal_damping == 0.0 || uncoupled.iter().any(|f| *f < RESONANCE_PER_REV)
+        let free = [ModeKind::Flap, ModeKind::Lag].map(|kind| self.blade().turns_freely((kind, 1)));
+        self.model().modal_damping == 0.0
+            || free.contains(&true)
+            || uncoupled.iter().any(|f| *f < RESONANCE_PER_REV)
     }
 
     /// The mode within a distance of a harmonic that nothing damps.
@@ -175,7 +178,7 @@ impl Rotor {
             let harmonic = frequency_per_rev.round();
             // damping is a share of the frequency; flap and torsion are damped by the air
             let free = harmonic == 0.0
-                || (model.modal_damping == 0.0
+                || ((model.modal_damping == 0.0 || self.blade().turns_freely((kind, number)))
                     && (kind == ModeKind::Lag || model.lock_number == 0.0));
             let near = (frequency_per_rev - harmonic).abs() < within_per_rev;
             (free && near).then_some(ResponseError::Resonance {

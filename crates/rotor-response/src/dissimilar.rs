@@ -2,7 +2,8 @@
 
 use crate::loads::{SixLoads, hub_loads};
 use crate::revolution::RevolutionLoads;
-use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
+use crate::{Condition, ResponseError, ResponseResiduals, RotorSolution, RotorSolver};
+use rotor_fem::PeriodicSolution;
 
 /// A blade unlike the rest.
 #[derive(Debug, Clone)]
@@ -26,6 +27,48 @@ impl RotorSolver {
         condition: &Condition,
         about: &RotorSolution,
     ) -> Result<SixLoads, ResponseError> {
+        let loads = self.in_inflow_of(condition, about)?.1;
+        Ok(loads.root(&self.time, self.rotor.discretisation().load_harmonics + 1))
+    }
+
+    /// The response of one blade of this rotor in the inflow of a solution, held, for its stability and its
+    /// loads along the span: motion, loads, hinge moments and power are the blade's, inflow, thrust and hub
+    /// loads those of the solution.
+    ///
+    /// # Errors
+    /// As [`Self::blade_loads`].
+    pub fn blade_response(
+        &mut self,
+        condition: &Condition,
+        about: &RotorSolution,
+    ) -> Result<RotorSolution, ResponseError> {
+        let (solution, loads) = self.in_inflow_of(condition, about)?;
+        let count = self.rotor.discretisation().load_harmonics;
+        let residuals = ResponseResiduals {
+            periodicity: solution.residual_norm,
+            response_iterations: solution.iterations,
+            factorisations: solution.factorisations,
+            inflow_iterations: 0,
+            ..about.residuals
+        };
+        Ok(RotorSolution {
+            modal: self.modal_harmonics(&solution.samples),
+            orbit: solution.orbit,
+            root: loads.root(&self.time, count),
+            hinge: loads.hinge(&self.time, count),
+            power: loads.power,
+            lifting: loads.lifting,
+            accelerations: loads.accelerations,
+            residuals,
+            ..about.clone()
+        })
+    }
+
+    fn in_inflow_of(
+        &mut self,
+        condition: &Condition,
+        about: &RotorSolution,
+    ) -> Result<(PeriodicSolution, RevolutionLoads), ResponseError> {
         let (given, expected) = (condition.flap_angles_rad.len(), self.rotor.model().flaps.len());
         if given != expected {
             return Err(ResponseError::FlapMotions { given, expected });
@@ -35,7 +78,7 @@ impl RotorSolver {
         let solved = self.solver.solve(&system, &about.orbit);
         let solution = solved.map_err(Self::orbit_error(&rotor))?;
         let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
-        Ok(loads.root(&self.time, rotor.discretisation().load_harmonics + 1))
+        Ok((solution, loads))
     }
 }
 

@@ -6,7 +6,7 @@
 
 mod memory;
 
-pub(crate) use self::memory::StationMemory;
+pub(crate) use self::memory::{StationChannel, StationMemory};
 
 use crate::air::{
     AirScales, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads,
@@ -36,6 +36,8 @@ struct StationLag {
     gains: Vec<(usize, Vec<f64>)>,
     /// Whether the flap has no part in it; only of sections beyond linear theory.
     rigid: bool,
+    /// Rate at every point, per rad.
+    rates: Vec<f64>,
     lag: PeriodicLag,
 }
 
@@ -457,6 +459,7 @@ impl StationLag {
             .collect();
         let input = coefficients.first().map_or([0.0; 4], |k| of(k).input);
         let rigid = !model.nonlinear.is_linear() && input[2] == 0.0 && input[3] == 0.0;
-        Ok(Self { input, gains, rigid, lag: PeriodicLag::new(collocation, &rates)? })
+        let lag = PeriodicLag::new(collocation, &rates)?;
+        Ok(Self { input, gains, rigid, rates, lag })
     }
 }

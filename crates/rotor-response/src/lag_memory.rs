@@ -3,22 +3,26 @@
 //! ```text
 //! d(lag part)_o(p) = sum_p' k_o0[p, p'] d(U alpha)(p') + k_o1[p, p'] d(c om)(p')
 //! d(U alpha) = U_T dphi + th dU_T - dU_P          d(c om) = c (dphi' + dw_x)
-//! dU_T = dv' + dv_x U_R      dU_P = dw' + dw_x U_R + e_d (dphi' + dw_x)
+//! dU_T, dU_P by differences of the flow (R.8)
 //! dF_z = (1/2) rho c |U_T| d(lift)      dF_y = -(1/2) rho c s U_P d(lift)      dM = (1/2) rho c^2 |U_T| d(moment)
 //! ```
-//! projected on the modes. Changes of the speeds at which the lagged part acts are second order in the
+//! projected on the modes. The axial part of the loads and, of the moderately deflected blade, its partner `-v_x w_x dF_z`, which it
+//! cancels for a blade that turns about a hinge, are left out together. Changes of the speeds at which the lagged part acts are second order in the
 //! angles and left out, as is the axial part of the loads: only the speed of convergence depends on this
 //! matrix, never the solution.
 
 use crate::air::SectionFlow;
 use crate::blade::ResponseBlade;
-use crate::flight_air::StationMemory;
+use crate::flight_air::{StationChannel, StationMemory};
 use crate::motion::Motion;
 use crate::system::ResponseSystem;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rotor_fem::{OrbitMemory, OrbitSamples, PeriodicSystem};
+use rotor_fem::{LagChannel, LagPlace, OrbitMemory, OrbitSamples, PeriodicSystem};
 use std::ops::Range;
+
+/// Step of the central differences of the inputs, which are quadratic in the motion but for third-order terms.
+const INPUT_STEP: f64 = 1e-4;
 
 /// Places of the modes of each family among the coordinates.
 struct Modes {
@@ -67,10 +71,9 @@ impl ResponseSystem<'_> {
                 let mut motion = Motion::default();
                 self.fill(&mut motion, samples, p);
                 let flows = self.flows(p, &motion);
-                let stations = flows.iter().take(stations.len()).enumerate();
-                stations
-                    .map(|(s, flow)| (self.input_slopes(p, s, flow), self.load_slopes(s, flow)))
-                    .collect()
+                let inputs = self.input_slopes(p, samples);
+                let loads = flows.iter().take(stations.len()).enumerate();
+                inputs.into_iter().zip(loads.map(|(s, flow)| self.load_slopes(s, flow))).collect()
             })
             .collect();
         // column by column of the past: point `then`, its displacements and its rates
@@ -84,6 +87,41 @@ impl ResponseSystem<'_> {
             memory.dqd.columns_mut(then * dof, dof).copy_from(&dqd);
         }
         Some(memory)
+    }
+
+    /// The lags of all stations with what drives them and what they do, for the stability of blade and lags
+    /// together; none over tables, with dynamic stall, and where no section has lags.
+    pub(crate) fn lag_places(&self, samples: &OrbitSamples) -> Vec<LagPlace> {
+        let Some(channels) = self.air.channels() else { return Vec::new() };
+        let lost_from = self.load_law(false).lost_from;
+        let dof = self.dof();
+        let flows: Vec<Vec<SectionFlow>> = (0..self.points.len())
+            .into_par_iter()
+            .map(|p| {
+                let mut motion = Motion::default();
+                self.fill(&mut motion, samples, p);
+                self.flows(p, &motion)
+            })
+            .collect();
+        let by_point: Vec<Vec<InputSlopes>> =
+            (0..self.points.len()).into_par_iter().map(|p| self.input_slopes(p, samples)).collect();
+        let place = |(s, channels): (usize, Vec<StationChannel>)| {
+            let (mut inputs, mut loads) = (Vec::new(), Vec::new());
+            for (p, row) in flows.iter().enumerate() {
+                let input = &by_point[p][s];
+                let load = self.load_slopes(s, &row[s]);
+                let both = [input.alpha.as_slice(), &input.pitch_rate].concat();
+                inputs.push(DMatrix::from_row_slice(2, 2 * dof, &both));
+                loads.push(DMatrix::from_column_slice(dof, 2, &[load.lift, load.moment].concat()));
+            }
+            let channels = channels
+                .into_iter()
+                .map(|c| LagChannel { rates: c.rates, input: c.input, gains: c.gains })
+                .collect();
+            LagPlace { inputs, loads, channels }
+        };
+        let known = channels.into_par_iter().enumerate().take(lost_from);
+        known.filter(|(_, channels)| !channels.is_empty()).map(place).collect()
     }
 
     /// The columns of one point of the past, by displacement and by rate; shape `dof points x dof`.
@@ -125,29 +163,31 @@ impl ResponseSystem<'_> {
         [0, dof].map(|from| DMatrix::from_fn(dof * points, dof, |row, j| entry(row, from + j)))
     }
 
-    fn input_slopes(&self, point: usize, lifting: usize, flow: &SectionFlow) -> InputSlopes {
-        let (blade, air) = (self.blade, &self.points[point].air);
-        let i = self.air.first_station() + lifting;
-        let along = air.advance_ratio * air.cos + blade.offsets.torque;
-        let (centre, chord) = (blade.offsets.aerodynamic_centre, self.scales.chord);
+    /// Slopes of the inputs of all lifting stations at a point, by differences: the flow is quadratic in the motion.
+    fn input_slopes(&self, point: usize, samples: &OrbitSamples) -> Vec<InputSlopes> {
         let dof = self.dof();
-        let mut slopes = InputSlopes { alpha: vec![0.0; 2 * dof], pitch_rate: vec![0.0; 2 * dof] };
-        let modes = Modes::of(blade);
-        for (j, mode) in modes.flap.clone().zip(&blade.flap.value) {
-            let slope = blade.flap.slope[j - modes.flap.start][i];
-            slopes.alpha[j] = -slope * (along + centre);
-            slopes.alpha[dof + j] = -mode[i];
-            slopes.pitch_rate[j] = chord * slope;
-        }
-        for (j, mode) in modes.lag.clone().zip(&blade.lag.value) {
-            let slope = blade.lag.slope[j - modes.lag.start][i];
-            slopes.alpha[j] = flow.pitch * slope * along;
-            slopes.alpha[dof + j] = flow.pitch * mode[i];
-        }
-        for (j, mode) in modes.torsion.zip(&blade.torsion.value) {
-            slopes.alpha[j] = flow.u_t * mode[i];
-            slopes.alpha[dof + j] = -centre * mode[i];
-            slopes.pitch_rate[dof + j] = chord * mode[i];
+        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
+        let mut state = [&samples.q, &samples.qd].map(column);
+        let accelerations = column(&samples.qdd);
+        let mut motion = Motion::default();
+        let mut flows = |[q, qd]: &[Vec<f64>; 2]| {
+            motion.fill(self.blade, q, qd, &accelerations);
+            self.flows(point, &motion)
+        };
+        let none = || InputSlopes { alpha: vec![0.0; 2 * dof], pitch_rate: vec![0.0; 2 * dof] };
+        let mut slopes: Vec<InputSlopes> = flows(&state).iter().map(|_| none()).collect();
+        for j in 0..2 * dof {
+            let at = state[j / dof][j % dof];
+            let mut moved = |by: f64| {
+                state[j / dof][j % dof] = at + by;
+                flows(&state)
+            };
+            let (above, below) = (moved(INPUT_STEP), moved(-INPUT_STEP));
+            state[j / dof][j % dof] = at;
+            for ((slope, above), below) in slopes.iter_mut().zip(&above).zip(&below) {
+                let of = |k: usize| (above.input[k] - below.input[k]) / (2.0 * INPUT_STEP);
+                (slope.alpha[j], slope.pitch_rate[j]) = (of(0), of(1));
+            }
         }
         slopes
     }

@@ -21,7 +21,9 @@ mod nonlinear;
 mod power;
 mod revolution;
 mod rigid;
+mod root_reaction;
 mod rotor;
+mod section_lift;
 mod section_moments;
 mod settling;
 mod span;
@@ -48,8 +50,9 @@ pub use power::PowerBalance;
 pub use rotor::{
     Condition, ResponseResiduals, ResponseTolerances, Rotor, RotorSolution, RotorSolver,
 };
+pub use section_lift::SectionLift;
 pub use span::SpanGrid;
-pub use stability::{BladeMotion, Stability};
+pub use stability::{BladeMotion, SectionLags, Stability};
 pub use station_loads::{LoadHistory, StationLoads};
 
 /// The example of the crate's README, run as a documentation test.

@@ -1,4 +1,4 @@
-//! Blade root loads by force summation, and hub loads in the fixed frame.
+//! Force and moment per length of the deflected blade, and hub loads in the fixed frame.
 
 use crate::blade::ResponseBlade;
 use crate::structure::{BladeState, SpanLoads};
@@ -46,8 +46,9 @@ impl SixLoads {
 /// m_x = -m km^2 th'' - m (km2^2 - km1^2) sin th cos th + M,  m_z = m (km2^2 - km1^2) sin th cos th s / c
 /// M_x = int y f_z - w f_y + m_x,  M_y = int w f_x - X f_z,  M_z = int X f_y - y f_x + m_z
 /// ```
-/// The inertial forces are those of a point in axes that turn about the shaft, exact in the precone, so that
-/// their mean torque is zero and the mean power of the shaft is that of the air and of the damping.
+/// The inertial forces are those of a point in axes that turn about the shaft, exact in the precone. The hub
+/// gets the forces; its moments are those of the equations of motion ([`crate::root_reaction`]), but with
+/// `Linear`.
 ///
 /// `M_y` and `M_z` also hold the moments on the slopes of flaps that weigh beside the blade.
 /// The foreshortening `u` and its rates enter in second order whatever the couplings of the modal
@@ -167,20 +168,13 @@ pub(crate) fn summed(weights: &[f64], wrenches: &[[f64; 6]]) -> [f64; 6] {
     total
 }
 
-/// Loads of one blade on the hub at one azimuth: rotating shaft axes, about the rotor centre.
-pub(crate) fn root_loads(blade: &ResponseBlade, wrenches: &[[f64; 6]]) -> [f64; 6] {
-    let [fx, fy, fz, mx, my, mz] = summed(blade.grid.weight(), wrenches);
-    let [force, moment] = [[fx, fy, fz], [mx, my, mz]].map(|v| coned_to_shaft(blade.precone, v));
-    [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
-}
-
 /// A vector of the coned blade axes in the rotating shaft axes: x outboard in the plane of the hub, z
 /// along the shaft. Without it the centrifugal force of a coned blade would pull the hub down.
 ///
 /// ```text
 /// X = x cos bp - z sin bp,   Y = y,   Z = x sin bp + z cos bp
 /// ```
-fn coned_to_shaft(precone_rad: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
+pub(crate) fn coned_to_shaft(precone_rad: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = precone_rad.sin_cos();
     [x * cos - z * sin, y, x * sin + z * cos]
 }

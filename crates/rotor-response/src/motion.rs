@@ -60,6 +60,8 @@ pub(crate) struct Motion {
     pub(crate) w: Deflection,
     pub(crate) v: Deflection,
     pub(crate) phi: Deflection,
+    /// Axial displacement by foreshortening with two rates; none of an inextensional blade.
+    shortening: [Vec<f64>; 3],
 }
 
 impl Motion {
@@ -71,5 +73,32 @@ impl Motion {
         self.w.fill(&blade.flap, part(0, nf), stations);
         self.v.fill(&blade.lag, part(nf, nf + nl), stations);
         self.phi.fill(&blade.torsion, part(nf + nl, q.len()), stations);
+        if blade.modal.is_some() {
+            self.shorten(blade);
+        }
+    }
+
+    /// `u = -int_0^x (v_x^2 + w_x^2) / 2` with its rates.
+    fn shorten(&mut self, blade: &ResponseBlade) {
+        let stations = blade.grid.len();
+        let mut integrand = vec![0.0; stations];
+        for (k, out) in self.shortening.iter_mut().enumerate() {
+            for (i, value) in integrand.iter_mut().enumerate() {
+                let of = |d: &Deflection| match k {
+                    0 => 0.5 * d.slope[i] * d.slope[i],
+                    1 => d.slope[i] * d.slope_rate[i],
+                    _ => d.slope_rate[i].powi(2) + d.slope[i] * d.slope_acceleration[i],
+                };
+                *value = -(of(&self.v) + of(&self.w));
+            }
+            out.resize(stations, 0.0);
+            blade.grid.integral_from_root(&integrand, out);
+        }
+    }
+
+    /// Axial displacement of a station by foreshortening with two rates, R; nothing unless the couplings are
+    /// `Moderate`.
+    pub(crate) fn shortening(&self, station: usize) -> [f64; 3] {
+        self.shortening.each_ref().map(|of| of.get(station).copied().unwrap_or(0.0))
     }
 }

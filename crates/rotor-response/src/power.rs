@@ -16,7 +16,8 @@ use rotor_fem::ModalLoads;
 /// With the couplings `Moderate` the couple stands along the deflected blade, `om_M = theta' + phi' + Omega w_x`,
 /// and the axial force works on the foreshortening. With `Linear` and `Full` it stands along the straight
 /// blade, `om_M = theta' + phi'`, in root loads as in the power, and the axial force works on no
-/// foreshortening, in the equations as in the power.
+/// foreshortening, in the equations as in the power. With `Full`, whose torque is that of its equations of
+/// motion, neither foreshortening nor lag carry the section round, `V = (-y_t, v' + x, w')`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PowerBalance {
     /// From the air (and from the flaps, where they move), negative in powered flight.
@@ -50,6 +51,8 @@ pub(crate) struct AxialMotion {
     pub(crate) value: Vec<f64>,
     /// Its rate, as far as the equations let the axial force work on it.
     pub(crate) rate: Vec<f64>,
+    /// Distance ahead of the shaft, as far as the force along the blade has it for a lever.
+    pub(crate) lever: Vec<f64>,
     /// Force along the blade, weight included.
     pub(crate) force: Vec<f64>,
     /// Slope `w_x` of the axis about which the section is twisted.
@@ -64,6 +67,7 @@ impl AxialMotion {
         let BladeState { motion, loads, .. } = state;
         Self {
             force: (0..blade.grid.len()).map(|i| loads.force(blade, motion, i)[0]).collect(),
+            lever: motion.v.value.iter().map(|v| blade.offsets.torque + v).collect(),
             tilt: motion.w.slope.clone(),
             value: of.axial,
             rate: of.axial_rate,
@@ -75,7 +79,7 @@ impl AxialMotion {
     /// tilted with the blade.
     ///
     /// ```text
-    /// u = -int_0^x (v_x^2 + w_x^2) / 2
+    /// u = -int_0^x (v_x^2 + w_x^2) / 2 for Linear, none for Full
     /// M = int m km^2 th'' + m (km2^2 - km1^2) sin th cos th + (EI_z - EI_y) kz ky      Full
     /// M = int m km^2 th'' + m (km2^2 - km1^2) th                                       Linear
     /// ```
@@ -108,10 +112,16 @@ impl AxialMotion {
             })
             .collect();
         let weight = loads.gravity[0];
+        let force = |i: usize| aerodynamic.fx(motion, i) + loads.axial[i] + blade.mass[i] * weight;
+        let y_t = blade.offsets.torque;
+        let (lever, value) = if couplings == Couplings::Linear {
+            (v.value.iter().map(|v| y_t + v).collect(), value)
+        } else {
+            (vec![y_t; n], vec![0.0; n])
+        };
         Self {
-            force: (0..n)
-                .map(|i| aerodynamic.fx(motion, i) + loads.axial[i] + blade.mass[i] * weight)
-                .collect(),
+            force: (0..n).map(force).collect(),
+            lever,
             value,
             rate: vec![0.0; n],
             tilt: vec![0.0; n],
@@ -138,7 +148,7 @@ pub(crate) fn power(
         let force = [axial.force[i], fy, fz];
         let y = blade.offsets.torque + v.value[i];
         let velocity = [
-            axial.rate[i] - across * y,
+            axial.rate[i] - across * axial.lever[i],
             v.rate[i] + across * (blade.grid.x()[i] + axial.value[i]) - along * w.value[i],
             w.rate[i] + along * y,
         ];

@@ -2,8 +2,9 @@
 
 use crate::air::SectionLoads;
 use crate::hinge::HingeMoment;
-use crate::loads::{SixLoads, hub_loads, moderate_wrenches, root_loads, span_wrenches};
-use crate::power::{AxialMotion, PowerBalance, power};
+use crate::loads::{SixLoads, hub_loads};
+use crate::power::{PowerBalance, power};
+use crate::root_reaction::Loading;
 use crate::structure::{BladeState, SpanLoads};
 use crate::system::{POINTS_TOGETHER, ResponseSystem, Revolution};
 use crate::wake_coupling::Lifting;
@@ -11,7 +12,7 @@ use crate::{ResponseError, Rotor};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{ModalMotion, OrbitSamples, PeriodicSolver, PeriodicSystem, TimeElements};
+use rotor_fem::{OrbitSamples, PeriodicSolver, PeriodicSystem, TimeElements};
 use std::f64::consts::TAU;
 
 /// Iterations of the accelerations.
@@ -51,30 +52,19 @@ impl PointLoads {
         (p, loads): (usize, &mut SpanLoads),
     ) -> Self {
         let (blade, couplings) = (rotor.blade(), rotor.model().couplings);
-        let first = system.air.first_station();
         let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
-        system.span_loads(p, motion, sections, loads);
-        let aerodynamic = aerodynamic_loads(blade.grid.len(), first, sections);
-        let pitch = system.points[p].air.pitch;
-        let state = BladeState { motion, pitch, loads };
         let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
         let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
-        let (wrenches, axial) = if let Some(modal) = &blade.modal {
-            let coordinates = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
-            let found = modal.loads(coordinates, pitch.into());
-            let wrenches = moderate_wrenches(blade, state, &found);
-            (wrenches, AxialMotion::condensed(blade, state, found))
-        } else {
-            let axial = AxialMotion::inextensional(blade, couplings, state, &aerodynamic);
-            (span_wrenches(blade, state, &aerodynamic), axial)
-        };
-        let root = root_loads(blade, &wrenches);
+        let loading = Loading::new(system, revolution, (p, loads), [&q, &qd, &qdd]);
+        let pitch = system.points[p].air.pitch;
+        let state = BladeState { motion, pitch, loads };
+        let root = loading.on_hub((blade, couplings), state, &q);
         let damped = qd.iter().zip(rotor.damping()).map(|(rate, c)| c * rate * rate).sum();
         Self {
             lifting: sections.iter().map(Lifting::of).collect(),
             root,
             hinge: system.hinge_moments(p, motion, sections),
-            power: power(blade, state, &axial, damped, root[5]),
+            power: power(blade, state, &loading.axial, damped, root[5]),
         }
     }
 }

@@ -239,6 +239,10 @@ impl RotorSolver {
         self.tolerances
     }
 
+    pub(crate) fn advance_ratio(&self) -> f64 {
+        self.advance_ratio
+    }
+
     pub(crate) fn time(&self) -> &TimeElements {
         &self.time
     }
@@ -402,7 +406,7 @@ impl RotorSolver {
         [outward * along + up[2] * across, leading, up[2] * along - outward * across]
     }
 
-    fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
+    pub(crate) fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
         let weights = unit_weights(&self.time);
         let count = self.rotor.discretisation.load_harmonics;
         samples

@@ -20,15 +20,16 @@ pub(crate) struct Turning {
 /// ```text
 /// M_w(s) = int_s^1 (x - s) f_z + m_w dx      M_v(s) = int_s^1 (x - s) f_y + m_v dx      M_phi(s) = int_s^1 m_phi dx
 /// ```
-/// Each is the equation of motion with the part outboard turned as a whole for the mode shape.
-pub(crate) fn summed_moments(
-    blade: &ResponseBlade,
-    station: &LoadStation,
+/// Each is the equation of motion with the part outboard turned as a whole for the mode shape. `outboard` are
+/// the weights of integrals from the station to the tip over the `points` of the span.
+pub(crate) fn moments_outboard(
+    (station, outboard): (f64, &[f64]),
+    points: &[f64],
     turning: &[Turning],
 ) -> [f64; 3] {
     let mut total = [0.0; 3];
-    for ((of, weight), x) in turning.iter().zip(&station.outboard).zip(blade.grid.x()) {
-        let arm = x - station.x;
+    for ((of, weight), x) in turning.iter().zip(outboard).zip(points) {
+        let arm = x - station;
         let [up, forward] = of.force;
         for (sum, part) in total.iter_mut().zip([arm * up, arm * forward, 0.0]) {
             *sum += weight * part;
@@ -43,7 +44,7 @@ pub(crate) fn summed_moments(
 /// With the terms of the couplings `Linear` and `Full`.
 ///
 /// ```text
-/// m_w = -N w_x      m_v = -N v_x      N = T + int_x^1 2 m v'
+/// m_w = -N w_x      m_v = -N v_x      N = T + c int_x^1 2 m v'
 /// m_phi = M - m km^2 th'' - m (km2^2 - km1^2) sin th cos th - (EI_z - EI_y) kz ky
 /// ```
 pub(crate) fn turning(
@@ -55,25 +56,27 @@ pub(crate) fn turning(
     let n = blade.grid.len();
     let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
     let full = couplings != Couplings::Linear;
+    let (along, across) = blade.precone.sin_cos();
     let mut tension = vec![0.0; n];
     let mut shortening = vec![0.0; n];
     if full {
-        let coriolis: Vec<f64> = (0..n).map(|i| 2.0 * blade.mass[i] * v.rate[i]).collect();
+        let coriolis: Vec<f64> = (0..n).map(|i| 2.0 * across * blade.mass[i] * v.rate[i]).collect();
         blade.grid.integral_to_tip(&coriolis, &mut tension);
         let rates: Vec<f64> =
             (0..n).map(|i| v.slope[i] * v.slope_rate[i] + w.slope[i] * w.slope_rate[i]).collect();
         blade.grid.integral_from_root(&rates, &mut shortening);
     }
-    let bp = blade.precone;
     let of = |i: usize| {
         let (m, x) = (blade.mass[i], blade.grid.x()[i]);
         let [_, weight_y, weight_z] = loads.gravity.map(|g| m * g);
         let pull = blade.tension[i] + tension[i];
-        let up = -m * (w.acceleration[i] + bp * (x + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
+        let up = -m
+            * (w.acceleration[i] + along * (across * x + 2.0 * v.rate[i] - along * w.value[i]))
+            + loads.fz[i]
+            + weight_z;
         let forward = m
             * (blade.offsets.torque + v.value[i] - v.acceleration[i]
-                + 2.0 * shortening[i]
-                + 2.0 * bp * w.rate[i])
+                + 2.0 * (across * shortening[i] + along * w.rate[i]))
             + loads.fy[i]
             + weight_y;
         let theta = pitch.angle + blade.twist[i] + phi.value[i];

@@ -49,10 +49,21 @@ fn nearest_frequency(growth: f64, frequency: f64, natural: f64) -> f64 {
     best
 }
 
+/// What the lags of the sections do while the blade moves about its orbit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SectionLags {
+    /// They move with the blade.
+    #[default]
+    Moving,
+    /// They are settled at every azimuth: the circulation follows the motion without delay.
+    Settled,
+}
+
 /// Floquet exponents of one blade in flight.
 ///
-/// One blade is disturbed, the inflow stays as it is and the circulation follows the motion without
-/// delay (the lag states of the sections are settled). Blades couple through the hub and the inflow,
+/// One blade is disturbed, the inflow stays as it is, and the lag states of the sections move with the blade: the
+/// motions are those of structure and lags together (of attached sections; over tables and with dynamic stall, and at
+/// stations whose flow turns round inside a time element, the lags are settled). Blades couple through the hub and the inflow,
 /// which is not part of it: air resonance and flap-lag of a moving hub are not seen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stability {
@@ -81,8 +92,8 @@ impl Stability {
 impl RotorSolver {
     /// Stability of a solution of this solver, obtained in `condition`.
     ///
-    /// The tangents of the Newton matrix at the converged orbit, carried over one revolution
-    /// ([`Floquet`](rotor_fem::Floquet)).
+    /// The tangents of the Newton matrix at the converged orbit and the lags of the sections, carried over one
+    /// revolution ([`Floquet::with_lags`](rotor_fem::Floquet::with_lags)).
     ///
     /// # Errors
     /// [`ResponseError::FlapMotions`], and [`ResponseError::Fem`] if the monodromy matrix cannot be made.
@@ -91,15 +102,33 @@ impl RotorSolver {
         condition: &Condition,
         solution: &RotorSolution,
     ) -> Result<Stability, ResponseError> {
+        self.stability_with(condition, solution, SectionLags::Moving)
+    }
+
+    /// The same with lags as asked for.
+    ///
+    /// # Errors
+    /// As [`Self::stability`].
+    pub fn stability_with(
+        &self,
+        condition: &Condition,
+        solution: &RotorSolution,
+        lags: SectionLags,
+    ) -> Result<Stability, ResponseError> {
         let (given, expected) = (condition.flap_angles_rad.len(), self.rotor.model().flaps.len());
         if given != expected {
             return Err(ResponseError::FlapMotions { given, expected });
         }
         let points = self.point_inputs(condition, &solution.inflow);
         let system = self.rotor.system(&self.air, points);
-        let tangents = system.tangents(&solution.orbit.sample(&self.time))?;
+        let samples = solution.orbit.sample(&self.time);
+        let tangents = system.tangents(&samples)?;
+        let places = match lags {
+            SectionLags::Moving => system.lag_places(&samples),
+            SectionLags::Settled => Vec::new(),
+        };
         let blade = self.rotor.blade();
-        let motions = Floquet::of(&self.time, system.mass, &tangents)?
+        let motions = Floquet::with_lags(&self.time, system.mass, &tangents, &places)?
             .modes()
             .iter()
             .map(|mode| {

@@ -1,8 +1,10 @@
-//! Loads of the blade at any station, by force summation and by curvature.
+//! Loads of the blade at any station, by force summation, by the statics of the deflected blade, by curvature.
 //!
 //! ```text
-//! F(s) = int_s^1 (f - m a) dx,   M(s) = int_s^1 (r - r_s) x (f - m a) + m dx,   r_s = (s + u, y_t + v, w) deflected
-//! torsion = (1, v_x, w_x) . M,   flap = -M_y,   lag = M_z
+//! F(s) = int_s^1 (f - m a) dx
+//! M_w(s) = int_s^1 (x - s) f_z + m_w dx,   M_v(s) = int_s^1 (x - s) f_y + m_v dx,   M_phi(s) = int_s^1 m_phi dx
+//! statics   M(s) = int_s^1 (r - r_s) x (f - m a) + m dx,   r_s = (s + u, y_t + v, w) deflected
+//!           torsion = (1, v_x, w_x) . M,   flap = -M_y,   lag = M_z
 //! ```
 //! `f` holds the loads of the air, the inertia of the flaps and the weight. Forces and moments are what the blade
 //! outboard puts on the section, in coned blade axes: x outboard, y to the leading edge, z up; the torsion is that
@@ -12,18 +14,17 @@
 //! (1955), on a rotating blade.
 
 use crate::load_station::LoadStation;
-use crate::loads::{moderate_wrenches, span_wrenches, summed};
-use crate::revolution::{aerodynamic_loads, unit_weights};
-use crate::section_moments::{
-    Turning, curvature_moments, moderate_turning, summed_moments, turning,
-};
-use crate::structure::{BladeState, SpanLoads};
+use crate::loads::summed;
+use crate::revolution::unit_weights;
+use crate::root_reaction::Loading;
+use crate::section_moments::{curvature_moments, moments_outboard};
+use crate::structure::SpanLoads;
 use crate::system::{POINTS_TOGETHER, ResponseSystem, Revolution};
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{ModalMotion, OrbitSamples, TimeElements};
+use rotor_fem::{OrbitSamples, TimeElements};
 
 /// Loads over one revolution: at the points of the time elements, and as harmonics.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,14 +60,16 @@ impl<const N: usize> LoadHistory<N> {
 /// What the blade outboard of a station puts on the rest of it; forces in `m0 Omega^2 R^2`, moments in
 /// `m0 Omega^2 R^3`.
 ///
-/// Moments are in the order flap (tip up positive), lag (tip forward), torsion (nose up). `moments` and
-/// `equations` are sums of the same loads. `moments` is the statics of the deflected blade, whole. `equations`
-/// holds the terms that the equations of motion keep, so that its gap to `curvature` is the modal truncation and
-/// nothing else, while its gap to `moments` is the terms of third order (with `Linear` of second order) that the
-/// equations leave out: a few percent of the flap moment at the root, more where a harmonic of the moment
-/// passes through zero on its way outboard.
+/// Moments are in the order flap (tip up positive), lag (tip forward), torsion (nose up). `moments` and `statics`
+/// are sums of the same loads. `moments` holds the terms that the equations of motion keep: it is the reaction of
+/// the equations at the section, zero at a free hinge, stiffness times angle at a spring, and its gap to
+/// `curvature` is the modal truncation and nothing else. Hub loads, trim and control know it alone (with `Linear`
+/// they know `statics`). `statics` is that of the deflected blade, whole: its gap to `moments` is the terms of
+/// third order (with `Linear` of second order) that the equations leave out, the lever that deflection gives the
+/// loads: a few percent of the flap moment at the root, and moments at a free hinge.
 ///
-/// Modal damping has no distribution along the span: what it holds stays in the gap to `curvature`.
+/// Modal damping has no distribution along the span: what it holds stays in the gap to `curvature`, and a joint
+/// carries it as a damper would.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StationLoads {
     /// Station, R.
@@ -75,10 +78,10 @@ pub struct StationLoads {
     pub azimuths_rad: Vec<f64>,
     /// Axial force (tension positive), in-plane shear (toward the leading edge), out-of-plane shear (up).
     pub forces: LoadHistory<3>,
-    /// Force summation about the deflected axis.
+    /// Force summation with the terms of the equations of motion: what the hub gets.
     pub moments: LoadHistory<3>,
-    /// Force summation with the terms of the equations of motion.
-    pub equations: LoadHistory<3>,
+    /// Statics of the deflected blade, about the deflected axis.
+    pub statics: LoadHistory<3>,
     /// From curvature and rate of twist: mode displacement, which converges slowly with the modes.
     pub curvature: LoadHistory<3>,
 }
@@ -87,17 +90,8 @@ pub struct StationLoads {
 struct PointLoads {
     forces: [f64; 3],
     moments: [f64; 3],
-    equations: [f64; 3],
+    statics: [f64; 3],
     curvature: [f64; 3],
-}
-
-/// Loads on the whole span at one azimuth.
-struct Loading {
-    /// Force and moment about the rotor centre, per length, coned blade axes.
-    wrenches: Vec<[f64; 6]>,
-    /// Radial derivative of the axial displacement.
-    shortening: Vec<f64>,
-    turning: Vec<Turning>,
 }
 
 impl RotorSolver {
@@ -154,7 +148,7 @@ impl RotorSolver {
                 azimuths_rad: self.time.points().to_vec(),
                 forces: history(s, |at| at.forces),
                 moments: history(s, |at| at.moments),
-                equations: history(s, |at| at.equations),
+                statics: history(s, |at| at.statics),
                 curvature: history(s, |at| at.curvature),
             })
             .collect())
@@ -181,8 +175,12 @@ fn at_point(
         let (forces, [mx, my, mz]) = moved(wrench, place);
         PointLoads {
             forces,
-            moments: [-my, mz, mx + shape.lag[1] * my + shape.flap[1] * mz],
-            equations: summed_moments(blade, station, &loading.turning),
+            statics: [-my, mz, mx + shape.lag[1] * my + shape.flap[1] * mz],
+            moments: moments_outboard(
+                (station.x, &station.outboard),
+                blade.grid.x(),
+                &loading.turning,
+            ),
             curvature: curvature_moments(blade, couplings, station, (&q, pitch), forces[0]),
         }
     };
@@ -194,38 +192,6 @@ fn moved(wrench: [f64; 6], place: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let [fx, fy, fz, mx, my, mz] = wrench;
     let [x, y, z] = place;
     ([fx, fy, fz], [mx - y * fz + z * fy, my - z * fx + x * fz, mz - x * fy + y * fx])
-}
-
-impl Loading {
-    fn new(
-        system: &ResponseSystem<'_>,
-        revolution: &Revolution,
-        (p, loads): (usize, &mut SpanLoads),
-        [q, qd, qdd]: [&[f64]; 3],
-    ) -> Self {
-        let (blade, couplings) = (system.blade, system.couplings);
-        let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
-        system.span_loads(p, motion, sections, loads);
-        let pitch = system.points[p].air.pitch;
-        let state = BladeState { motion, pitch, loads };
-        if let Some(modal) = &blade.modal {
-            let coordinates = ModalMotion { value: q, rate: qd, acceleration: qdd };
-            let found = modal.loads(coordinates, pitch.into());
-            return Self {
-                wrenches: moderate_wrenches(blade, state, &found),
-                turning: moderate_turning((blade, modal), state, (q, &found)),
-                shortening: found.axial_slope,
-            };
-        }
-        let first = system.air.first_station();
-        let aerodynamic = aerodynamic_loads(blade.grid.len(), first, sections);
-        let slopes = motion.v.slope.iter().zip(&motion.w.slope);
-        Self {
-            wrenches: span_wrenches(blade, state, &aerodynamic),
-            shortening: slopes.map(|(v, w)| -0.5 * (v * v + w * w)).collect(),
-            turning: turning(blade, couplings, state),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -316,7 +282,7 @@ mod tests {
                     std::array::from_fn(|k| between(&rotor, ends, &|i| loading.wrenches[i][k]));
                 // moments about the shaft do not know where the station is
                 let about_shaft = |at: &StationLoads, (r, slope): ([f64; 3], [f64; 2])| {
-                    let (f, [flap, lag, torsion]) = (at.forces.values[p], at.moments.values[p]);
+                    let (f, [flap, lag, torsion]) = (at.forces.values[p], at.statics.values[p]);
                     let own = [torsion + slope[0] * flap - slope[1] * lag, -flap, lag];
                     let moment: [f64; 3] = std::array::from_fn(|k| {
                         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
@@ -330,7 +296,7 @@ mod tests {
                 }
                 assert!(change.iter().all(|c| c.abs() < 1.0) && change[4].abs() > 1e-3);
                 let twisting = between(&rotor, ends, &|i| loading.turning[i].moment[2]);
-                let gap = inner.equations.values[p][2] - outer.equations.values[p][2] - twisting;
+                let gap = inner.moments.values[p][2] - outer.moments.values[p][2] - twisting;
                 assert!(gap.abs() < 1e-15, "{gap:e}");
             }
         }

@@ -1,16 +1,16 @@
 //! Structural and inertial part of the modal equations at one azimuth.
 //!
 //! ```text
-//! flap    int [ m bp (x + 2 v') - F_z ] F + N w_x F_x + M_w F_xx
-//! lag     int [ -m (y_t + v) + 2 m u' - 2 m bp w' - F_y ] L + N v_x L_x + M_v L_xx
+//! flap    int [ m s (c x + 2 v' - s w) - F_z ] F + N w_x F_x + M_w F_xx
+//! lag     int [ -m (y_t + v) + 2 m c u' - 2 m s w' - F_y ] L + N v_x L_x + M_v L_xx
 //! torsion int [ m km^2 th'' + m (km2^2 - km1^2) sin th cos th + (EI_z - EI_y) kz ky - M ] P
 //!             + (GJ + kA^2 T) phi_x P_x
 //! kz = v_xx cos th + w_xx sin th      ky = w_xx cos th - v_xx sin th
 //! M_w = EI_z kz sin th + EI_y ky cos th      M_v = EI_z kz cos th - EI_y ky sin th
-//! N = T + int_x^1 2 m v'      T = int_x^1 m x      u' = -int_0^x (v_x v_x' + w_x w_x')
+//! N = T + c int_x^1 2 m v'      T = c^2 int_x^1 m x      u' = -int_0^x (v_x v_x' + w_x w_x')
 //! ```
 //! (here `'` is the azimuth derivative and a subscript `x` the spanwise one; `y_t` is the torque offset; the constant mass part is
-//! left to the time elements; `bp` is the precone). Inextensional blade, elastic axis, centre of
+//! left to the time elements; `s`, `c` are sine and cosine of the precone). Inextensional blade, elastic axis, centre of
 //! gravity and aerodynamic centre at the quarter chord.
 //!
 //! Source: second-order terms of Hodges and Dowell, NASA TN D-7818 (1974), in the order of Bir and
@@ -184,6 +184,7 @@ fn modal_residual(
     scratch.resize(n);
     let full = couplings != Couplings::Linear;
     let s = scratch;
+    let (along, across) = blade.precone.sin_cos();
     if full {
         for i in 0..n {
             s.integrand[i] = motion.v.slope[i] * motion.v.slope_rate[i]
@@ -191,7 +192,7 @@ fn modal_residual(
         }
         blade.grid.integral_from_root(&s.integrand, &mut s.foreshortening_rate);
         for i in 0..n {
-            s.integrand[i] = 2.0 * blade.mass[i] * motion.v.rate[i];
+            s.integrand[i] = 2.0 * across * blade.mass[i] * motion.v.rate[i];
         }
         blade.grid.integral_to_tip(&s.integrand, &mut s.coriolis_tension);
     } else {
@@ -206,10 +207,11 @@ fn modal_residual(
         let radii = blade.km2_squared[i] - blade.km1_squared[i];
         let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);
         let [_, weight_y, weight_z] = loads.gravity.map(|g| m * g);
-        s.force[0][i] = m * blade.precone * (x + 2.0 * v.rate[i]) - loads.fz[i] - weight_z;
+        s.force[0][i] = m * along * (across * x + 2.0 * v.rate[i] - along * w.value[i])
+            - loads.fz[i]
+            - weight_z;
         s.force[1][i] = -m * (blade.offsets.torque + v.value[i])
-            - 2.0 * m * s.foreshortening_rate[i]
-            - 2.0 * m * blade.precone * w.rate[i]
+            - 2.0 * m * (across * s.foreshortening_rate[i] + along * w.rate[i])
             - loads.fy[i]
             - weight_y;
         s.slope_force[0][i] = tension * w.slope[i];

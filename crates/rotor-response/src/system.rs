@@ -1,7 +1,9 @@
 //! The aeroelastic blade as a periodic system for the time elements.
 
 use crate::ResponseError;
-use crate::air::{AirPoint, AirScales, FlapAngle, SectionFlow, SectionLoads, section_flow};
+use crate::air::{
+    AirPoint, AirScales, FlapAngle, SectionAxes, SectionFlow, SectionLoads, section_flow,
+};
 use crate::blade::{Couplings, FlapMass, ResponseBlade};
 use crate::flap_inertia::FlapSection;
 use crate::flight_air::{FlightAir, LoadLaw};
@@ -151,8 +153,8 @@ impl ResponseSystem<'_> {
         out.gravity = self.points[point].gravity;
         let first = self.air.first_station();
         for (s, load) in sections.iter().enumerate() {
-            out.fz[first + s] = load.fz;
-            out.fy[first + s] = load.fy;
+            let axes = SectionAxes::of(self.blade, motion, first + s);
+            [out.fy[first + s], out.fz[first + s]] = axes.force(load);
             out.moment[first + s] = load.moment;
         }
         if self.blade.offsets.mass_centre != 0.0 {

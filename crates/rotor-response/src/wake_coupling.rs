@@ -18,6 +18,10 @@ impl Lifting {
     pub(crate) fn of(loads: &SectionLoads) -> Self {
         Self { lift: loads.fz, circulation: loads.circulation }
     }
+
+    pub(crate) fn circulation(&self) -> f64 {
+        self.circulation
+    }
 }
 
 /// Value at `r` of a table over ascending stations: linear between them, constant beyond.
@@ -34,8 +38,26 @@ fn between(stations: &[f64], values: &[f64], r: f64) -> f64 {
     }
 }
 
-/// Circulation at the panels of a wake: linear between stations, and in azimuth by the harmonics that the
-/// wake's azimuths resolve.
+/// Overlap of two different harmonics under a quadrature above which it tells them apart no more.
+const OVERLAP: f64 = 0.02;
+
+/// Harmonics up to `most` that the points of the time elements resolve: of any two of them, and of one with itself, the
+/// quadrature takes the mean of the product right.
+fn resolved_harmonics(time: &TimeElements, weights: &[f64], most: usize) -> usize {
+    let overlap = |m: usize| {
+        let (mut c, mut s) = (0.0, 0.0);
+        for (psi, w) in time.points().iter().zip(weights) {
+            let angle = m as f64 * psi;
+            c += w * angle.cos();
+            s += w * angle.sin();
+        }
+        c.hypot(s)
+    };
+    (1..=most).take_while(|n| overlap(2 * n - 1).max(overlap(2 * n)) < OVERLAP).count()
+}
+
+/// Circulation at the panels of a wake: linear between stations, and in azimuth by the harmonics that both the wake's
+/// azimuths and the time elements resolve.
 fn circulation(
     rotor: &Rotor,
     time: &TimeElements,
@@ -45,6 +67,7 @@ fn circulation(
     let x = rotor.blade().grid().x();
     let stations = &x[x.len() - lifting.first().map_or(0, Vec::len)..];
     let weights = unit_weights(time);
+    let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
     let rows: Vec<Vec<f64>> =
         lifting.iter().map(|row| row.iter().map(|l| l.circulation).collect()).collect();
     let series: Vec<HarmonicSeries> = wake_rotor
@@ -52,7 +75,7 @@ fn circulation(
         .iter()
         .map(|&r| {
             let history: Vec<f64> = rows.iter().map(|row| between(stations, row, r)).collect();
-            HarmonicSeries::project(time.points(), &weights, &history, (azimuths - 1) / 2)
+            HarmonicSeries::project(time.points(), &weights, &history, harmonics)
         })
         .collect();
     let at = uniform_azimuths_rad(azimuths);

@@ -10,12 +10,21 @@ use rotor_base::gauss_legendre;
 use rotor_fem::{BladeProperties, BladeSpec, Joint, ModeKind, RootSupport, TorsionTerms};
 use rotor_response::{
     Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
-    RotorSolver, Stability,
+    RotorSolver, SectionLags, Stability,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::sync::Arc;
 
 fn stability(model: RotorModel, blade: &BladeProperties, modes: [usize; 3], mu: f64) -> Stability {
+    stability_with(model, blade, (modes, mu), SectionLags::Moving)
+}
+
+fn stability_with(
+    model: RotorModel,
+    blade: &BladeProperties,
+    (modes, mu): ([usize; 3], f64),
+    lags: SectionLags,
+) -> Stability {
     let discretisation = Discretisation { modes, ..Discretisation::default() };
     let rotor = Rotor::new(model, blade, discretisation).unwrap();
     let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
@@ -27,7 +36,7 @@ fn stability(model: RotorModel, blade: &BladeProperties, modes: [usize; 3], mu: 
     };
     let inflow = LinearInflow::Prescribed { induced_inflow: 0.05 };
     let solution = solver.solve(&condition, &inflow, None).unwrap();
-    solver.stability(&condition, &solution).unwrap()
+    solver.stability_with(&condition, &solution, lags).unwrap()
 }
 
 /// A hinged rigid blade in hover: `b'' + (g/8) b' + (1 - g c/12) b = 0`. The last term is the lift of the
@@ -107,10 +116,10 @@ fn flapping_exponent(
     s
 }
 
-/// The exponents leave the lag states out: with them settled they are those of the same equation solved in
-/// closed form, apparent mass included; the lags themselves raise the frequency of the flapping blade in the air and hardly change its damping.
+/// Structure and lags move together: the exponent is that of the characteristic equation with all lag states;
+/// with settled lags that of the equation without. The lags raise the frequency of the flapping blade.
 #[test]
-fn settled_lags_are_what_the_exponents_hold() {
+fn exponents_are_those_of_blade_and_lags_together() {
     let blade = BladeProperties::new(BladeSpec {
         root: RootSupport::HINGED,
         ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
@@ -127,11 +136,13 @@ fn settled_lags_are_what_the_exponents_hold() {
     let chord = FlapChord::new(0.2).unwrap();
     let section = section_model.coefficients(Mach::ZERO, chord).unwrap();
     let [settled, with_lags] = [true, false].map(|s| flapping_exponent(&section, &model, s));
-    let result = stability(model, &blade, [1, 0, 0], 0.0);
-    let motion = result.least_stable().unwrap();
-    println!("{motion:?}, settled {settled}, with lags {with_lags}");
-    assert!((motion.growth_per_rad - settled.re).abs() < 1e-5, "{motion:?} {settled}");
-    assert!((motion.modal_frequency_per_rev - settled.im).abs() < 1e-5, "{motion:?} {settled}");
+    for (lags, expected) in [(SectionLags::Moving, with_lags), (SectionLags::Settled, settled)] {
+        let result = stability_with(model.clone(), &blade, ([1, 0, 0], 0.0), lags);
+        let motion = result.least_stable().unwrap();
+        println!("{lags:?} {motion:?}, expected {expected}");
+        assert!((motion.growth_per_rad - expected.re).abs() < 1e-5, "{motion:?} {expected}");
+        assert!((motion.modal_frequency_per_rev - expected.im).abs() < 1e-5, "{motion:?}");
+    }
     assert!((with_lags.re / settled.re - 1.0).abs() < 0.02, "{with_lags}");
     assert!((0.04..0.07).contains(&(with_lags.im - settled.im)), "{with_lags}");
 }
@@ -161,6 +172,31 @@ fn the_paper_blade_is_stable_and_lags_longest() {
     }
 }
 
+/// Unsteady sections of the paper's case in flight: with its lags the blade has other damping than with settled
+/// ones, and keeps its motions.
+#[test]
+fn lags_of_unsteady_sections_change_the_damping_in_flight() {
+    let model = RotorModel { flaps: vec![], ..RotorModel::paper_case() };
+    let of = |lags| stability_with(model.clone(), &paper_blade(), ([2, 2, 1], 0.3), lags);
+    let (moving, settled) = (of(SectionLags::Moving), of(SectionLags::Settled));
+    assert!(moving.motions.len() >= 5 && settled.motions.len() >= 5);
+    for m in moving.motions.iter().chain(&settled.motions) {
+        println!(
+            "{} {} {:.4} {:.4}",
+            m.kind, m.number, m.growth_per_rad, m.modal_frequency_per_rev
+        );
+    }
+    for kind in [ModeKind::Flap, ModeKind::Lag, ModeKind::Torsion] {
+        let one =
+            |s: &Stability| *s.motions.iter().find(|m| (m.kind, m.number) == (kind, 1)).unwrap();
+        let (a, b) = (one(&moving), one(&settled));
+        println!("{kind}: {a:?}\n       {b:?}");
+        assert!((a.modal_frequency_per_rev - b.modal_frequency_per_rev).abs() < 0.2);
+    }
+    let damping = |s: &Stability| s.motions.iter().map(|m| m.growth_per_rad).collect::<Vec<_>>();
+    assert!(moving.is_stable() && damping(&moving) != damping(&settled));
+}
+
 /// What damps is the air and the modal damping: without both nothing is left.
 #[test]
 fn a_blade_in_vacuum_without_damping_neither_grows_nor_dies() {
@@ -188,4 +224,127 @@ fn a_hinge_spring_stiffens_the_flapping_blade() {
         let motion = stability(model, &blade, [1, 0, 0], 0.0).motions[0];
         assert!((motion.frequency_per_rev - (nu - 1.0)).abs() < 1e-5, "{couplings:?} {motion:?}");
     }
+}
+
+/// A hinged rigid blade in flight with all lag states of its sections, written down on its own and integrated over a
+/// revolution by a Runge-Kutta method of fourth order:
+///
+/// ```text
+/// (b'' + b) / 3 = (rho c / 2) int x [ U y + (c / 2) rate . w' ] dx,   U = x + mu sin psi
+/// w = [ -x b' - mu cos psi b, c b ],   y = direct . w + sum output z,   z' = pole U / (c / 2) (input . w - z)
+/// ```
+/// The cut-out keeps reverse flow out, so that everything is smooth.
+struct FlyingBlade {
+    section: SectionCoefficients,
+    chord: f64,
+    half_density: f64,
+    mu: f64,
+    /// Stations and weights of the lifting span.
+    stations: Vec<(f64, f64)>,
+}
+
+impl FlyingBlade {
+    fn states(&self) -> usize {
+        2 + self.stations.len() * self.section.lags.len()
+    }
+
+    /// Rates of `b, b'` and the lags, station by station.
+    fn rates(&self, psi: f64, state: &[f64]) -> Vec<f64> {
+        let (sin, cos) = (self.mu * psi.sin(), self.mu * psi.cos());
+        let (b, rate, semichord) = (state[0], state[1], 0.5 * self.chord);
+        let (section, lags) = (&self.section, self.section.lags.len());
+        let mut rates = vec![0.0; state.len()];
+        rates[0] = rate;
+        let (mut moment, mut inertia) = (0.0, 1.0 / 3.0);
+        for (s, &(x, weight)) in self.stations.iter().enumerate() {
+            let speed = x + sin;
+            let w = [-x * rate - cos * b, self.chord * b];
+            // without the part of b'', which stands on the other side
+            let w_rate = [sin * b - cos * rate, self.chord * rate];
+            let along = |row: &[f64; 4], w: [f64; 2]| w[0] * row[0] + w[1] * row[1];
+            let mut y = along(&section.direct[0], w);
+            for (l, lag) in section.lags.iter().enumerate() {
+                let k = 2 + s * lags + l;
+                y += lag.output[0] * state[k];
+                rates[k] = lag.pole * speed / semichord * (along(&lag.input, w) - state[k]);
+            }
+            let arm = weight * x * self.half_density;
+            moment += arm * (speed * y + semichord * along(&section.rate[0], w_rate));
+            inertia += arm * semichord * section.rate[0][0] * x;
+        }
+        rates[1] = (moment - b / 3.0) / inertia;
+        rates
+    }
+
+    /// Multiplier nearest to another one.
+    fn multiplier_near(&self, other: Complex<f64>, steps: usize) -> Complex<f64> {
+        let (n, h) = (self.states(), std::f64::consts::TAU / steps as f64);
+        let plus = |a: &[f64], factor: f64, b: &[f64]| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| a + factor * b).collect()
+        };
+        let mut monodromy = nalgebra::DMatrix::zeros(n, n);
+        for column in 0..n {
+            let mut state = vec![0.0; n];
+            state[column] = 1.0;
+            for step in 0..steps {
+                let psi = step as f64 * h;
+                let k1 = self.rates(psi, &state);
+                let k2 = self.rates(psi + 0.5 * h, &plus(&state, 0.5 * h, &k1));
+                let k3 = self.rates(psi + 0.5 * h, &plus(&state, 0.5 * h, &k2));
+                let k4 = self.rates(psi + h, &plus(&state, h, &k3));
+                for (weight, k) in [(1.0, k1), (2.0, k2), (2.0, k3), (1.0, k4)] {
+                    state = plus(&state, weight * h / 6.0, &k);
+                }
+            }
+            monodromy.set_column(column, &nalgebra::DVector::from_vec(state));
+        }
+        let all = monodromy.complex_eigenvalues();
+        let near = |a: &&Complex<f64>, b: &&Complex<f64>| {
+            (**a - other).norm().total_cmp(&(**b - other).norm())
+        };
+        *all.iter().min_by(near).unwrap()
+    }
+}
+
+/// Multipliers with moving lags in flight meet direct integration of blade and lags, 1e-9 of the largest; those with
+/// settled lags do not.
+#[test]
+fn multipliers_with_lags_in_flight_meet_direct_integration() {
+    let mu = 0.3;
+    let blade = BladeProperties::new(BladeSpec {
+        root: RootSupport::HINGED,
+        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
+    })
+    .unwrap();
+    let section_model = AttachedFlowModel::Incompressible;
+    let model = RotorModel {
+        root_cutout: 0.4,
+        modal_damping: 0.0,
+        drag_coefficient: 0.0,
+        reverse_flow: rotor_response::ReverseFlow::Abrupt,
+        section_model,
+        ..paper_model(Couplings::Linear)
+    };
+    let section = section_model.coefficients(Mach::ZERO, FlapChord::new(0.2).unwrap()).unwrap();
+    let rule = gauss_legendre(12);
+    let half_span = 0.5 * (1.0 - model.root_cutout);
+    let place = |node: f64| model.root_cutout + half_span * (node + 1.0);
+    let stations = rule.nodes.iter().zip(&rule.weights);
+    let flying = FlyingBlade {
+        section,
+        chord: model.chord,
+        half_density: 0.5 * model.density_chord(),
+        mu,
+        stations: stations.map(|(&node, weight)| (place(node), half_span * weight)).collect(),
+    };
+    let off = |lags| {
+        let found = stability_with(model.clone(), &blade, ([1, 0, 0], mu), lags);
+        let multiplier = found.least_stable().unwrap().multiplier;
+        let expected = flying.multiplier_near(multiplier, 2000);
+        println!("{lags:?}: {multiplier}, directly {expected}");
+        (multiplier - expected).norm() / expected.norm()
+    };
+    let [moving, settled] = [SectionLags::Moving, SectionLags::Settled].map(off);
+    println!("off by {moving:.1e}, with settled lags {settled:.1e}");
+    assert!(moving < 1e-9 && settled > 1e-2, "{moving:e} {settled:e}");
 }

@@ -67,7 +67,7 @@ fn rotors() -> Vec<(RotorModel, BladeSpec)> {
     let heavy = SectionOffsets { mass_centre: 0.002, ..SectionOffsets::default() };
     vec![
         (of(Couplings::Linear, FlapMass::PartOfBlade, ahead), paper_spec()),
-        (of(Couplings::Full, FlapMass::AddedToBlade, ahead), paper_spec()),
+        (of(Couplings::Full, FlapMass::AddedToBlade, SectionOffsets::default()), paper_spec()),
         (of(MODERATE, FlapMass::AddedToBlade, heavy), paper_spec()),
     ]
 }
@@ -83,7 +83,7 @@ fn parts(series: &HarmonicSeries) -> Vec<f64> {
 fn at_the_root_it_is_the_load_on_the_hub_and_at_the_tip_nothing() {
     for rotor in rotors() {
         // the axis of the blade passes y_t ahead of the centre about which the hub loads are taken
-        let torque = rotor.0.offsets.torque;
+        let (torque, couplings) = (rotor.0.offsets.torque, rotor.0.couplings);
         let d = Discretisation::default();
         let (found, at) = loads(rotor, d, moving_flap(), &[0.0, 1.0]);
         let hub = |k: usize| parts(&found.root.components[k]);
@@ -92,15 +92,23 @@ fn at_the_root_it_is_the_load_on_the_hub_and_at_the_tip_nothing() {
         };
         let turned: Vec<f64> = hub(4).iter().map(|m| -m).collect();
         let expected = [hub(0), hub(1), hub(2), turned, moved(5, torque, 0), moved(3, -torque, 2)];
-        let got = at[0].forces.harmonics.iter().chain(&at[0].moments.harmonics);
+        // with Linear the statics, whose terms of second order its equations leave out
+        let moments = if couplings == Couplings::Linear { &at[0].statics } else { &at[0].moments };
+        let got = at[0].forces.harmonics.iter().chain(&moments.harmonics);
         for (k, (got, expected)) in got.zip(expected).enumerate() {
+            if k == 4 && matches!(couplings, Couplings::Moderate(_)) {
+                // the section turns as a whole about the shaft: off the lag moment by terms of third order
+                let apart = (got.mean - expected[0]).abs();
+                assert!(apart > 1e-9 && apart < 0.05 * got.mean.abs(), "{apart:e} of {}", got.mean);
+                continue;
+            }
             let gap = parts(got)
                 .iter()
                 .zip(expected)
                 .fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
             assert!(gap < 1e-15, "{k}: {gap:e}");
         }
-        for history in [&at[1].forces, &at[1].moments, &at[1].equations] {
+        for history in [&at[1].forces, &at[1].moments, &at[1].statics] {
             assert!(history.values.iter().flatten().all(|v| *v == 0.0));
         }
     }
@@ -161,8 +169,7 @@ fn gaps(modes: usize, basis: ModalBasis, couplings: Couplings) -> [[f64; 3]; 4] 
     let size = |[c, s]: [f64; 2]| f64::hypot(c, s);
     std::array::from_fn(|station| {
         std::array::from_fn(|k| {
-            let summed =
-                at.iter().map(|a| harmonics(&a.equations.harmonics[k])).collect::<Vec<_>>();
+            let summed = at.iter().map(|a| harmonics(&a.moments.harmonics[k])).collect::<Vec<_>>();
             let curved = harmonics(&at[station].curvature.harmonics[k]);
             let gap = |n: usize| {
                 let largest = summed.iter().map(|s| size(s[n])).fold(0.0, f64::max);
@@ -238,9 +245,9 @@ fn a_heavy_flap_beside_the_blade_twists_it_once() {
         let stations = [0.0, 0.25, 0.5, 0.7, 0.75];
         let (_, at) = loads(rotor, d, moving_flap(), &stations);
         let torsion = |history: &rotor_response::LoadHistory<3>| history.harmonics[2].mean;
-        let largest = at.iter().map(|at| torsion(&at.equations).abs()).fold(0.0, f64::max);
+        let largest = at.iter().map(|at| torsion(&at.moments).abs()).fold(0.0, f64::max);
         for at in &at {
-            let gap = (torsion(&at.moments) - torsion(&at.equations)).abs() / largest;
+            let gap = (torsion(&at.statics) - torsion(&at.moments)).abs() / largest;
             println!("{couplings:?} at {}: {gap:.4} of {largest:.2e}", at.station);
             assert!(gap < 0.01, "{couplings:?} at {}: {gap}", at.station);
         }

@@ -91,6 +91,19 @@ pub enum WakeError {
         /// Smallest RMS displacement met, unit `R`.
         least: f64,
     },
+    /// Inflow and circulation drive each other beyond what a rotor's wake induces.
+    #[error(
+        "wake and blades run away from each other: the inflow changes by {change:.2} of the tip speed in update {update} (at \
+         most {largest} is of a rotor's size); vortices meet the blades: use a larger core or fewer rolled-up vortices"
+    )]
+    InflowRunsAway {
+        /// Update of the coupling.
+        update: usize,
+        /// Largest change of the inflow, tip speed.
+        change: f64,
+        /// The largest that is accepted.
+        largest: f64,
+    },
     /// The sweeps of the free wake do not settle.
     #[error(
         "the free wake has not settled after {iterations} sweeps: RMS displacement {displacement:.3e} R, \

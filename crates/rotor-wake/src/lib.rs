@@ -52,9 +52,9 @@ pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
     BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers,
-    FreeWake, FreeWakeSettings, FrozenWake, InflowMap, LineInduction, NearWakeMotion, ReleasePoint,
-    ShedVorticity, StrainEffect, WakeConvergence, WakeFilament, WakeMarch, WakeMethod, WakeRotor,
-    WakeSymmetry, contraction_drift,
+    FilamentStates, FreeWake, FreeWakeSettings, FrozenWake, InflowMap, LineInduction,
+    NearWakeMotion, ReleasePoint, SegmentState, ShedVorticity, StrainEffect, WakeConvergence,
+    WakeFilament, WakeMarch, WakeMethod, WakeRotor, WakeSymmetry, contraction_drift,
 };
 
 /// The example of the crate's README, run as a documentation test.

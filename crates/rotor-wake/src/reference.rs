@@ -140,6 +140,7 @@ pub fn olaf_settings(near_wake_rad: f64) -> FreeWakeSettings {
         core: CoreSettings {
             radius: core,
             near_radius: core,
+            panel_share: f64::INFINITY,
             viscosity: 0.0,
             ..CoreSettings::default()
         },

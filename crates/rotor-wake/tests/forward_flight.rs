@@ -197,3 +197,31 @@ fn a_descent_into_the_own_wake_is_named() {
     let error = rotor.starting_wake(&olaf_settings(TAU), flight, 0.005).unwrap_err();
     assert!(matches!(error, WakeError::VortexRingState { .. }), "{error}");
 }
+
+/// Vortices that move each other by thin cores go back and forth for ever at mu 0.2, sweeps in part or not; with cores of
+/// 0.05 R between them whole sweeps come to rest, and so do parts of sweeps at the same place.
+#[test]
+fn mutual_cores_bring_the_sweeps_to_rest() {
+    let flight = FlightState { advance_ratio: 0.2, shaft_tilt_rad: 0.048 };
+    let circulation = CirculationMap::constant(24, 8, TAU * THRUST / 4.0).unwrap();
+    let after = |mutual_radius: f64, part: f64, count: usize| {
+        let rotor = WakeRotor::cosine(4, 0.2, 8).unwrap();
+        let mut settings = FreeWakeSettings::default();
+        settings.core.mutual_radius = mutual_radius;
+        let lines = BladeLines::flat(&rotor, 24);
+        let mut wake = FreeWake::undistorted(rotor, settings, flight, 0.012, lines).unwrap();
+        let mut displacement = f64::INFINITY;
+        for _ in 0..count {
+            displacement = wake.sweep_in_part(&circulation, part).unwrap();
+        }
+        (displacement, wake)
+    };
+    let (wandering, _) = after(0.0, 1.0, 40);
+    let (settled, whole) = after(0.05, 1.0, 40);
+    let (slowly, in_part) = after(0.05, 0.5, 60);
+    assert!(wandering > 1e-2 && settled < 1e-6 && slowly < 1e-6, "{wandering} {settled} {slowly}");
+    let ends = |wake: &FreeWake| wake.vortices()[0].points.concat();
+    let apart = ends(&whole).into_iter().zip(ends(&in_part));
+    let apart = apart.flat_map(|(a, b)| (0..3).map(move |c| (a[c] - b[c]).abs()));
+    assert!(apart.fold(0.0, f64::max) < 1e-4);
+}

@@ -39,14 +39,18 @@ fn is_finite(wake: &FreeWake) -> bool {
 /// has carried it meanwhile: beyond its core or within.
 #[test]
 fn the_nearest_passage_is_that_of_the_helix() {
-    for inflow in [0.05, 0.02, 0.01, 0.0] {
-        let passage = helices(HOVER, inflow).closest_passage().unwrap();
-        let distance = inflow * FRAC_PI_2;
+    for inflow in [0.08, 0.05, 0.02, 0.01, 0.0] {
+        let passage = helices(HOVER, inflow).closest_passage(&circulation()).unwrap().unwrap();
+        // below the tip stands a node; the segment that ends there rises inboard of it, at 7.5 deg to the blade's normal
+        let half = 0.5 * TAU / 24.0;
+        let (across, rise) = (half.cos(), inflow * half / half.sin());
+        let distance = inflow * FRAC_PI_2 * across / across.hypot(rise);
         assert!((passage.distance - distance).abs() < 1e-12, "{inflow}: {passage:?}");
-        assert!((passage.station - 1.0).abs() < 1e-12, "{passage:?}");
-        assert_eq!(passage.within_core(), distance < 0.02, "{inflow}: {passage:?}");
+        assert!((passage.station - 1.0).abs() < 2e-3, "{passage:?}");
+        assert_eq!(passage.core_radius.to_bits(), 0.05_f64.to_bits());
+        assert_eq!(passage.within_core(), distance < 0.05, "{inflow}: {passage:?}");
         if inflow > 0.0 {
-            assert!((passage.age_rad - FRAC_PI_2).abs() < 1e-12, "{passage:?}");
+            assert!((passage.age_rad - FRAC_PI_2).abs() < 0.02, "{passage:?}");
         }
     }
 }
@@ -56,10 +60,11 @@ fn the_nearest_passage_is_that_of_the_helix() {
 fn vortices_on_the_blades_are_named_and_give_numbers() {
     let flight = FlightState { advance_ratio: 0.15, shaft_tilt_rad: 0.0 };
     let mut wake = helices(flight, 0.0);
-    let passage = wake.closest_passage().unwrap();
-    assert!(passage.within_core() && passage.distance < 0.01, "{passage:?}");
-    assert!(passage.station < 1.0 && passage.age_rad > 0.7, "{passage:?}");
     let circulation = circulation();
+    let passage = wake.closest_passage(&circulation).unwrap().unwrap();
+    // cut between two nodes, 0.01 R away at their nearest
+    assert!(passage.within_core() && passage.distance < 1e-12, "{passage:?}");
+    assert!(passage.station < 1.0 && passage.age_rad > 0.2, "{passage:?}");
     let inflow = wake.line_induction(&circulation).unwrap().inflow(&circulation).unwrap();
     assert!(inflow.values().iter().all(|x| x.is_finite()));
     for _ in 0..5 {
@@ -68,7 +73,7 @@ fn vortices_on_the_blades_are_named_and_give_numbers() {
     assert!(is_finite(&wake));
     // lifted clear of the blades by a forward tilt, it is no longer
     let tilted = FlightState { shaft_tilt_rad: 0.3, ..flight };
-    let clear = helices(tilted, 0.02).closest_passage().unwrap();
+    let clear = helices(tilted, 0.02).closest_passage(&circulation).unwrap().unwrap();
     assert!(!clear.within_core(), "{clear:?}");
 }
 
@@ -90,14 +95,26 @@ fn vortex_ring_descent_is_named() {
 /// A strength that leaves the numbers: an error, and the wake is the one before, relaxed or marched.
 #[test]
 fn a_lost_wake_is_the_one_before() {
-    let strong = CirculationMap::constant(24, 8, 1e250).unwrap();
-    for method in [WakeMethod::Relaxed, WakeMethod::Marched] {
+    let start = {
         let mut wake = helices(FlightState { advance_ratio: 0.2, shaft_tilt_rad: 0.1 }, 0.01);
-        wake.carry_on(method, 1, &circulation()).unwrap();
-        let before = wake.clone();
-        let error = wake.carry_on(method, 1, &strong).unwrap_err();
-        assert!(matches!(error, WakeError::WakeLost { .. }), "{error}");
-        assert!(wake == before && is_finite(&wake), "{method:?}");
+        wake.carry_on(WakeMethod::Relaxed, 1, &circulation()).unwrap();
+        wake
+    };
+    // of the strengths between, some leave the numbers well within the revolution, when the grid already holds new shapes
+    for (method, powers) in
+        [(WakeMethod::Relaxed, vec![250]), (WakeMethod::Marched, vec![52, 53, 56, 70, 130, 250])]
+    {
+        let mut lost = 0;
+        for power in powers {
+            let strong = CirculationMap::constant(24, 8, 10_f64.powi(power)).unwrap();
+            let mut wake = start.clone();
+            if let Err(error) = wake.carry_on(method, 1, &strong) {
+                assert!(matches!(error, WakeError::WakeLost { .. }), "{error}");
+                assert!(wake == start && is_finite(&wake), "{method:?} 1e{power}");
+                lost = power;
+            }
+        }
+        assert_eq!(lost, 250, "{method:?}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Loads along one blade of the trimmed rotor as a result: at stations, in two ways.
+//! Loads along one blade of the trimmed rotor as a result: at stations, in three ways.
 
 use crate::case::Case;
 use crate::output::table;
@@ -61,11 +61,12 @@ pub struct LoadLine {
 /// One moment, as it was found.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MomentLine {
-    /// Force summation about the deflected axis of the blade.
+    /// Force summation with the terms that the equations of motion keep: what the hub gets, and the exact
+    /// counterpart of the curvature.
     pub force_summation: LoadLine,
-    /// Force summation with the terms that the equations of motion keep: the exact counterpart of the
-    /// curvature.
-    pub equations: LoadLine,
+    /// Statics of the whole blade as it is deflected, about its deflected axis: off the force summation by the
+    /// terms of third order that the equations leave out.
+    pub deflected_statics: LoadLine,
     /// Curvature and rate of twist of the modes.
     pub curvature: LoadLine,
 }
@@ -88,10 +89,10 @@ impl StationLine {
         };
         let force = |k| line(&loads.forces, k, scales.force_newton());
         let moment = |k| {
-            let [force_summation, equations, curvature] =
-                [&loads.moments, &loads.equations, &loads.curvature]
+            let [force_summation, deflected_statics, curvature] =
+                [&loads.moments, &loads.statics, &loads.curvature]
                     .map(|history| line(history, k, scales.moment_newton_metre()));
-            MomentLine { force_summation, equations, curvature }
+            MomentLine { force_summation, deflected_statics, curvature }
         };
         Self {
             station_r: loads.station,
@@ -110,7 +111,7 @@ pub(crate) fn station_lines(loads: &[StationLoads], scales: &RotorScales) -> Vec
     loads.iter().map(|at| StationLine::new(at, scales)).collect()
 }
 
-/// The moments at every station as a table: force summation with the terms of the equations beside curvature.
+/// The moments at every station as a table: force summation beside the statics of the deflected blade and the curvature.
 pub(crate) fn moments_table(lines: &[StationLine]) -> String {
     let rows = lines.iter().flat_map(|line| {
         [
@@ -120,8 +121,8 @@ pub(crate) fn moments_table(lines: &[StationLine]) -> String {
         ]
         .map(|(name, moment)| {
             let number = |value: f64| format!("{value:.2}");
-            let MomentLine { force_summation, equations, curvature } = moment;
-            let [summed, equal, curved] = [force_summation, equations, curvature];
+            let MomentLine { force_summation, deflected_statics, curvature } = moment;
+            let [summed, deflected, curved] = [force_summation, deflected_statics, curvature];
             let per_rev = |n: usize| {
                 let amplitude = summed.harmonics.get(n - 1).map(|[c, s]| c.hypot(*s));
                 amplitude.map_or_else(String::new, number)
@@ -134,8 +135,8 @@ pub(crate) fn moments_table(lines: &[StationLine]) -> String {
                 per_rev(3),
                 per_rev(4),
                 number(summed.peak_to_peak),
-                number(equal.mean),
-                number(equal.peak_to_peak),
+                number(deflected.mean),
+                number(deflected.peak_to_peak),
                 number(curved.mean),
                 number(curved.peak_to_peak),
             ]
@@ -150,7 +151,7 @@ pub(crate) fn moments_table(lines: &[StationLine]) -> String {
             "3/rev",
             "4/rev",
             "peak to peak",
-            "equations mean",
+            "statics mean",
             "p-p",
             "curvature mean",
             "p-p",
@@ -166,7 +167,7 @@ pub fn blade_loads_csv(loads: &[StationLoads], scales: &RotorScales) -> String {
         // writing to a string cannot fail
         let _ = write!(text, ",{force}_N");
     }
-    for method in ["force_summation", "equations", "curvature"] {
+    for method in ["force_summation", "deflected_statics", "curvature"] {
         for moment in ["flap_moment", "lag_moment", "torsion"] {
             let _ = write!(text, ",{moment}_{method}_N_m");
         }
@@ -176,7 +177,7 @@ pub fn blade_loads_csv(loads: &[StationLoads], scales: &RotorScales) -> String {
     for at in loads {
         for (p, azimuth) in at.azimuths_rad.iter().enumerate() {
             let _ = write!(text, "{:e},{}", azimuth.to_degrees(), at.station);
-            let moments = [&at.moments, &at.equations, &at.curvature];
+            let moments = [&at.moments, &at.statics, &at.curvature];
             let columns = at.forces.values[p]
                 .iter()
                 .map(|f| newton * f)

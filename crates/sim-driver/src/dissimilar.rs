@@ -1,10 +1,12 @@
 //! Hub loads of a rotor whose blades are not all alike, as a result.
 
 use crate::SimError;
+use crate::blade_loads::{StationLine, station_lines};
 use crate::case::LoadedCase;
 use crate::output::table;
 use crate::results::HubLoads;
-use crate::study::{ControlStudy, FlapMotion, TrimmedRotor};
+use crate::stability::StabilityLine;
+use crate::study::{ControlStudy, FlapMotion, TrimmedRotor, UnlikeSolver};
 use rotor_base::HarmonicSeries;
 use rotor_response::{ResponseError, SixLoads};
 use serde::{Deserialize, Serialize};
@@ -18,6 +20,49 @@ pub struct UnlikeLine {
     pub mean: [f64; 6],
     /// Loads at 1, 2, 3 ... per rev.
     pub per_rev: Vec<HubLoads>,
+}
+
+/// One blade unlike the rest in the inflow and at the controls of the trimmed rotor, flaps at rest.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct UnlikeBladeLine {
+    /// Which blade, from 1.
+    pub blade: usize,
+    /// Its stability.
+    pub stability: StabilityLine,
+    /// Its loads along the span.
+    pub blade_loads: Vec<StationLine>,
+}
+
+impl UnlikeBladeLine {
+    /// What a reader must know of every motion that does not die out.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        self.stability.warnings_of(&format!("blade {}, unlike the rest,", self.blade))
+    }
+}
+
+/// Stability and loads of every blade unlike the rest.
+///
+/// # Errors
+/// [`SimError::Blade`] and [`SimError::Response`] at the line of the blade.
+pub fn each_unlike_blade(
+    loaded: &LoadedCase,
+    trimmed: &TrimmedRotor,
+) -> Result<Vec<UnlikeBladeLine>, SimError> {
+    let (case, stations) = (&loaded.case, loaded.case.load_stations_r());
+    let solvers = trimmed.unlike_solvers(case)?;
+    let line = |(i, solver): (usize, UnlikeSolver)| {
+        let found = trimmed.unlike_blade(&solver, &stations);
+        let (stability, loads) = found.map_err(|source| {
+            let place = loaded.index.place(&format!("rotor.unlike_blades[{i}]"));
+            SimError::Response { place, source }
+        })?;
+        Ok(UnlikeBladeLine {
+            blade: case.blade.unlike[i].blade,
+            stability: StabilityLine::from(&stability),
+            blade_loads: station_lines(&loads, &case.scales),
+        })
+    };
+    solvers.into_iter().enumerate().map(line).collect()
 }
 
 /// The loads with flaps at rest and after every control study; none if all blades are alike.

@@ -1,9 +1,9 @@
 //! What a case asks for that can be, but hardly is meant: warnings of `hhc check` and `hhc run`.
 
 use crate::SimError;
-use crate::case::{LoadedCase, TrimValues};
+use crate::case::{CouplingsChoice, JointChoice, LoadedCase, RotorFile, TrimValues};
 use crate::problem::{Fault, Problem};
-use rotor_response::{CoupledBladeMode, Rotor, RotorSolution};
+use rotor_response::{CoupledBladeMode, Rotor, RotorSolution, SectionLift};
 use trim::mean_lift_coefficient;
 
 /// Bending and torsion stiffness below which a blade is a rope, over `m0 Omega^2 R^4`: a hundredth of the
@@ -15,6 +15,17 @@ const LEAST_STIFFNESS: f64 = 2e-5;
 ///
 /// Source: F. J. `McHugh`, 34th Annual Forum of the American Helicopter Society (1978).
 const STALLING_LIFT_COEFFICIENT: f64 = 0.9;
+
+/// Mean lift coefficient above which a rotor is near stall: `C_T/sigma` of 0.115 in hover, 0.13 at an advance
+/// ratio of 0.3, where wind-tunnel rotors begin to stall on the retreating side.
+const NEAR_STALL_LIFT_COEFFICIENT: f64 = 0.69;
+/// Lift coefficient of a section above which aerofoils stall: held still they do at 1.2 to 1.4.
+const SECTION_STALL: f64 = 1.4;
+/// Axial stiffness below which a blade stretches by more than half a percent, `m0 Omega^2 R^2`.
+const LEAST_AXIAL_STIFFNESS: f64 = 100.0;
+
+/// Hinge offset, and height of the hub over the centre of gravity, below which neither tilts the helicopter, R.
+const LEAST_LEVER: f64 = 0.01;
 
 impl LoadedCase {
     /// Doubts about the case alone, each with its place: values, thrust, and modes at a harmonic at the
@@ -50,11 +61,25 @@ impl LoadedCase {
         &self,
         rotor: &Rotor,
         (theta0_rad, found): (f64, &RotorSolution),
+        most: Option<SectionLift>,
     ) -> Result<Vec<String>, SimError> {
         let mut doubts = self.value_doubts();
-        doubts.extend(self.lift_doubt(found.thrust_coefficient / rotor.model().solidity()));
+        let ct_sigma = found.thrust_coefficient / rotor.model().solidity();
+        let doubt = self.lift_doubt(ct_sigma).map_or_else(|| self.section_doubt(most), Some);
+        doubts.extend(doubt);
         doubts.extend(self.resonance_doubt(rotor, (theta0_rad, Some(found)))?);
+        doubts.extend(self.torque_doubt());
         Ok(doubts)
+    }
+
+    /// A torque and a power whose second-order terms the equations lack.
+    fn torque_doubt(&self) -> Option<String> {
+        let structure = &self.file.structure;
+        let is_linear = structure.couplings == CouplingsChoice::Linear;
+        (is_linear && structure.modes.lag > 0).then(|| {
+            let message = "torque and power of Linear are the statics of a blade whose lag its air does not follow: in hover about 1 % off inflow times thrust and profile drag for a blade that is clamped, 14 % for one that lags by 0.1 rad or stands 0.05 R off the shaft, more beyond. For a power choose structure.couplings: Full";
+            self.doubt("structure.couplings", message.to_owned())
+        })
     }
 
     fn doubt(&self, field: &str, message: String) -> String {
@@ -84,6 +109,14 @@ impl LoadedCase {
                 doubts.push(self.doubt(&format!("rotor.tables.{key}[{i}]"), soft(table[i].1)));
             }
         }
+        doubts.extend(self.moment_trim_doubt());
+        doubts.extend(self.axial_doubt());
+        if let Some((stiffness, frequency)) = self.soft_pitch() {
+            let message = format!(
+                "a pitch spring of {stiffness} m0 Omega^2 R^3 leaves the blade a pitch frequency of about {frequency:.1} per rev: the loads turn it by many degrees. A pitch link gives 3 per rev and more"
+            );
+            doubts.push(self.doubt("rotor.root.pitch.stiffness", message));
+        }
         let tables = !file.tables.km1_r.is_empty() || !file.tables.km2_r.is_empty();
         if !tables && file.km1_r > file.km2_r {
             let message = format!(
@@ -93,6 +126,47 @@ impl LoadedCase {
             doubts.push(self.doubt("rotor.km1_r", message));
         }
         doubts
+    }
+
+    /// A moment trim of a hub that the flapping puts no moment on.
+    fn moment_trim_doubt(&self) -> Option<String> {
+        let file = &self.file.rotor;
+        let is_central = file.root.flap == JointChoice::Free && file.root_offset_r < LEAST_LEVER;
+        let (field, message) = match self.case.trim {
+            TrimValues::WindTunnel { .. } => (
+                "trim",
+                "a free flap hinge at the rotor centre puts no flap moment on the hub: zero hub moments set the cyclic by the pitching moments of the blades alone, and the disk tilts as it likes. Give rotor.root_offset_r, or the controls with trim: Prescribed",
+            ),
+            TrimValues::Propulsive { cg_below_hub, .. } if cg_below_hub.abs() < LEAST_LEVER => (
+                "trim.cg_below_hub_r",
+                "a free flap hinge at the rotor centre puts no flap moment on the hub, and hub forces turn the helicopter by the height of the hub over its centre of gravity alone, which is next to none: pitch and roll balance at any tilt of the disk. Give cg_below_hub_r (0.2 is usual) or rotor.root_offset_r",
+            ),
+            TrimValues::Propulsive { .. } | TrimValues::Prescribed { .. } => return None,
+        };
+        is_central.then(|| self.doubt(field, message.to_owned()))
+    }
+
+    /// An axial stiffness that the flight does not know, or a blade that stretches much.
+    fn axial_doubt(&self) -> Option<String> {
+        let file = &self.file.rotor;
+        let (key, value) = match file.tables.ea.iter().map(|(_, value)| *value).reduce(f64::min) {
+            Some(least) => ("rotor.tables.ea", least),
+            None => ("rotor.ea", file.ea),
+        };
+        if self.file.structure.couplings != CouplingsChoice::Moderate {
+            let given = key != "rotor.ea" || (value - RotorFile::default().ea).abs() > 0.0;
+            return given.then(|| {
+                let message = "Linear and Full know no stretch, the blade keeps its length: the value serves hhc modes alone; for flight choose structure.couplings: Moderate";
+                self.doubt(key, message.to_owned())
+            });
+        }
+        (value < LEAST_AXIAL_STIFFNESS).then(|| {
+            let message = format!(
+                "the axial stiffness {value} m0 Omega^2 R^2 is less than {LEAST_AXIAL_STIFFNESS}: rotation stretches the blade by {:.1} % at the root, and the stretch by the changing part of the tension, which Moderate leaves out, is no longer small. A blade has 500 to 5000",
+                50.0 / value
+            );
+            self.doubt(key, message)
+        })
     }
 
     /// A thrust at which real sections stall, carried by sections that cannot.
@@ -105,14 +179,36 @@ impl LoadedCase {
             TrimValues::Prescribed { .. } => "trim.theta0_deg",
             TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => "trim.ct_sigma",
         };
-        (lift > STALLING_LIFT_COEFFICIENT).then(|| {
-            self.doubt(
-                field,
-                format!(
-                    "C_T/sigma {ct_sigma:.3} is a mean lift coefficient of {lift:.2}, beyond {STALLING_LIFT_COEFFICIENT}, where rotors stall; the attached sections of this case do not, and their loads mean nothing there. Lower the thrust, or give aerodynamics.airfoils and dynamic_stall"
-                ),
+        let meaning = if lift > STALLING_LIFT_COEFFICIENT {
+            format!(
+                "beyond {STALLING_LIFT_COEFFICIENT}, where rotors stall; the attached sections of this case do not, and their loads mean nothing there"
             )
-        })
+        } else if lift > NEAR_STALL_LIFT_COEFFICIENT {
+            format!(
+                "near stall (above {NEAR_STALL_LIFT_COEFFICIENT}); the attached sections of this case do not stall, those of a real rotor do on the retreating side"
+            )
+        } else {
+            return None;
+        };
+        let message = format!(
+            "C_T/sigma {ct_sigma:.3} is a mean lift coefficient of {lift:.2}, {meaning}. Lower the thrust, or give aerodynamics.airfoils and dynamic_stall"
+        );
+        Some(self.doubt(field, message))
+    }
+
+    /// A section of the trimmed rotor that lifts more than aerofoils do, where sections cannot stall.
+    fn section_doubt(&self, most: Option<SectionLift>) -> Option<String> {
+        let most = most.filter(|most| most.lift_coefficient > SECTION_STALL)?;
+        if !self.case.rotor_model().nonlinear.is_linear() {
+            return None;
+        }
+        let message = format!(
+            "the section at {:.2} R has a lift coefficient of {:.2} at azimuth {:.0} deg, above {SECTION_STALL}, where aerofoils stall; the attached sections of this case do not. Lower the thrust or the advance ratio, or give aerodynamics.airfoils and dynamic_stall",
+            most.station,
+            most.lift_coefficient,
+            most.azimuth_rad.to_degrees()
+        );
+        Some(self.doubt("aerodynamics", message))
     }
 
     /// A mode at a harmonic that next to nothing damps.
@@ -128,10 +224,15 @@ impl LoadedCase {
             SimError::Response { place, source }
         })?;
         Ok(found.map(|CoupledBladeMode { kind, number, frequency_per_rev }| {
+            let where_found = match (flight, &self.case.trim) {
+                (Some(_), _) => "about the mean deflection in flight, pitch",
+                (None, TrimValues::Prescribed { .. }) => "in still air, pitch",
+                (None, _) => "in still air (the trim looks again at its own pitch), pitch",
+            };
             self.doubt(
                 field,
                 format!(
-                    "{kind} {number} at {:.2} deg has {frequency_per_rev:.4} per rev, near the harmonic {} of the loads, and {:e} of critical damping: its response and the loads at that harmonic are those of the damping alone. Give modal_damping of 0.005, or another stiffness",
+                    "{kind} {number} {where_found} {:.2} deg, has {frequency_per_rev:.4} per rev, near the harmonic {} of the loads, and {:e} of critical damping: its response and the loads at that harmonic are those of the damping alone. Give modal_damping of 0.005, or another stiffness",
                     theta0_rad.to_degrees(),
                     frequency_per_rev.round(),
                     rotor.model().modal_damping

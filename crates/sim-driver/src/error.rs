@@ -107,6 +107,20 @@ pub enum SimError {
         /// What went wrong.
         source: TrimError,
     },
+    /// The trim of a blade whose pitch link is so soft that it holds no pitch.
+    #[error(
+        "{place}: a pitch spring of {stiffness} leaves the blade a pitch frequency of about {frequency_per_rev:.1} per rev, too soft for the loads it holds: {source}. Remedy: a stiffer spring (a pitch link gives 3 per rev and more), or Locked"
+    )]
+    SoftPitch {
+        /// The spring in the case.
+        place: Place,
+        /// Its stiffness, `m0 Omega^2 R^3`.
+        stiffness: f64,
+        /// Frequency of the rigid blade on it, propeller moment included.
+        frequency_per_rev: f64,
+        /// What went wrong.
+        source: TrimError,
+    },
     /// A stored figure does not follow from the stored loads, controls and motions.
     #[error(
         "{file}: {field} is {stored}, but what the result holds gives {recomputed}; it was changed after it was written"
@@ -168,7 +182,7 @@ impl SimError {
             Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),
-            Self::Trim { source, .. } => trim_family(source),
+            Self::Trim { source, .. } | Self::SoftPitch { source, .. } => trim_family(source),
             Self::Study { source, .. } => study_family(source),
         }
     }

@@ -1,13 +1,14 @@
 //! The inflow of a case: a linear model, or a free wake settled with the trim.
 
 use crate::case::{
-    Case, ControlPointChoice, CoreChoice, FreeWakeFile, InflowChoice, LoadedCase, NearWakeChoice,
-    ReleaseChoice, RolledUpChoice, SymmetryChoice, WakeMethodChoice,
+    Case, CirculationChoice, ControlPointChoice, CoreChoice, FarFieldChoice, FreeWakeFile,
+    InflowChoice, LoadedCase, NearWakeChoice, ReleaseChoice, RolledUpChoice, SymmetryChoice,
+    WakeMethodChoice,
 };
 use rotor_response::{ResponseTolerances, RotorSolver};
 use rotor_wake::{
-    ControlPoint, CoreModel, CoreSettings, FarTrailers, FlightState, FreeWakeSettings, FrozenWake,
-    InducedInflow, InflowModel, LinearInflow, NearWakeMotion, PittPeters, ReleasePoint,
+    ControlPoint, CoreModel, CoreSettings, FarField, FarTrailers, FlightState, FreeWakeSettings,
+    FrozenWake, InducedInflow, InflowModel, LinearInflow, NearWakeMotion, PittPeters, ReleasePoint,
     RotorLoading, WakeError, WakeMethod, WakeRotor, WakeSymmetry,
 };
 use std::sync::Arc;
@@ -116,7 +117,8 @@ impl Case {
                     CoreChoice::Corrected => CoreModel::RosenheadMoore,
                 },
                 radius: file.core_r,
-                near_radius: file.near_core_r,
+                mutual_radius: file.mutual_core_r,
+                near_radius: file.near_core_r.unwrap_or(self.rotor_model().chord),
                 panel_share: file.panel_share,
                 viscosity: VISCOSITY_M2_S / speed,
                 ..CoreSettings::default()
@@ -125,12 +127,17 @@ impl Case {
                 SymmetryChoice::Periodic => WakeSymmetry::Periodic,
                 SymmetryChoice::Axial => WakeSymmetry::Axial,
             },
+            far_field: match file.far_field {
+                FarFieldChoice::Double => FarField::Double,
+                FarFieldChoice::Single => FarField::Single,
+            },
             ..FreeWakeSettings::default()
         };
         WakeTrimSettings {
             wake,
             panels: file.panels,
             inflow_tolerance: file.tolerance,
+            displacement_tolerance: file.displacement_tolerance_r,
             updates: file.updates,
             method: match file.method {
                 WakeMethodChoice::Relaxed => WakeMethod::Relaxed,
@@ -160,6 +167,13 @@ pub fn settled_trim(
             SettledInflow::Linear(LinearInflow::Prescribed { induced_inflow: lambda_i })
         }
         InflowChoice::FreeWake(file) => {
+            if let CirculationChoice::Prescribed(given) = file.circulation {
+                return Err(TrimError::Parameter {
+                    field: "C_T/sigma of the prescribed circulation of the free wake",
+                    value: given.ct_sigma,
+                    expected: "none: a rotor is trimmed with the circulation it has; `hhc wake` looks at the wake alone",
+                });
+            }
             let coupling = case.wake_trim_settings(&file);
             let tolerances = solver.tolerances();
             let inflow_iterations = tolerances.inflow_iterations.max(WAKE_ITERATIONS);
@@ -177,14 +191,53 @@ pub fn settled_trim(
     Ok(SettledTrim { trim, inflow, wake: None })
 }
 
+/// What may help a wake that does not settle.
+const WAKE_REMEDY: &str =
+    "Remedy: more `updates`, `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`";
+
+/// Where a coupling that failed has stopped, on a grid of so many steps per revolution.
+fn kept(
+    azimuths: usize,
+    updates: usize,
+    inflow_change: f64,
+    error: &dyn std::error::Error,
+) -> String {
+    let state = if inflow_change.is_finite() {
+        format!(
+            "what is given is the state of the least change of the inflow, {inflow_change:.1e} of the tip speed, on {azimuths} steps per revolution"
+        )
+    } else {
+        format!(
+            "what is given is the last state before, on {azimuths} steps per revolution: of a coarser grid if the case asks for more"
+        )
+    };
+    format!("wake and trim part after {updates} updates: {error}; {state}. {WAKE_REMEDY}")
+}
+
 /// What a user should know about a wake; empty if there is nothing.
 pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
     let mut warnings = Vec::new();
+    let azimuths = wake.wake.settings().azimuths;
     match &wake.outcome {
-        WakeOutcome::NotSettled { inflow_change } => warnings.push(format!(
-            "the free wake has not settled: the inflow still changes by {inflow_change:.1e} of the tip speed between updates; allow more updates or a larger core"
-        )),
-        WakeOutcome::WakeFailed(error) => warnings.push(error.to_string()),
+        WakeOutcome::NotSettled {
+            updates,
+            inflow_change,
+            tolerance,
+            displacement,
+            displacement_tolerance,
+            theta0_band_rad,
+        } => {
+            let [low, high] = theta0_band_rad.map(f64::to_degrees);
+            warnings.push(format!(
+                "the free wake has not settled in {updates} updates: the inflow still changes by {inflow_change:.1e} of the tip speed ({tolerance:.1e} was asked) and the wake moves by {displacement:.1e} R ({displacement_tolerance:.1e}) in the update kept, the nearest to rest; theta0 between {low:.3} and {high:.3} deg in it and the second half of the updates, on {azimuths} steps per revolution. {WAKE_REMEDY}"
+            ));
+        }
+        WakeOutcome::WakeFailed { updates, inflow_change, error } => {
+            warnings.push(kept(azimuths, *updates, *inflow_change, error));
+        }
+        WakeOutcome::TrimFailed { updates, inflow_change, error } => {
+            warnings.push(kept(azimuths, *updates, *inflow_change, error));
+        }
         _ => {}
     }
     if let Some(passage) = wake.closest_passage.filter(rotor_wake::ClosestPassage::within_core) {

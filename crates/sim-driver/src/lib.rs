@@ -31,6 +31,7 @@ pub mod files;
 pub mod identification;
 pub mod import;
 pub mod inflow;
+pub mod mean_loads;
 mod models;
 pub mod modes;
 pub mod output;

@@ -109,7 +109,7 @@ fn undamped_at_a_harmonic(case: &Case, modes: &[ModeLine]) -> Vec<String> {
         .map(|(name, mode)| {
             let harmonic = mode.per_rev.unwrap_or_default().round();
             format!(
-                "{name} is at the harmonic {harmonic} of the loads and rotor.modal_damping is 0: no rotor is trimmed with it"
+                "{name} is at the harmonic {harmonic} of the loads at this pitch and rotor.modal_damping is 0: a rotor that flies at it is refused"
             )
         })
         .collect()

@@ -249,6 +249,16 @@ pub enum Fault {
     /// A limit that only the cone program keeps.
     #[error("a limit of the power is kept by the cone program alone; set control.effort to Limits")]
     NeedsLimits,
+    /// A weight met by the stroke goes with a T that stays.
+    #[error(
+        "a weight tuned to the stroke (effort: MeetStroke) is a root find over whole loops with one T; with a T that is learnt their ends scatter; write controller: Global, or effort: Limits, which keeps the stroke of each flap exactly"
+    )]
+    NeedsConstantT,
+    /// A converged wake where there is none.
+    #[error(
+        "there is no free wake to converge anew; write t_inflow: Settled, or inflow: FreeWake()"
+    )]
+    NeedsFreeWake,
     /// No load is weighted.
     #[error(
         "every load weight is 0, so there is nothing to reduce; 1 is the paper's identity weight"

@@ -2,7 +2,9 @@
 
 use crate::SimError;
 use crate::raw::Setting;
-use crate::results::{RunResult, StoredResult, result_key};
+use crate::report::StudyReport;
+use crate::results::{RunResult, StoredResult, json_key, key_of_version};
+use crate::study::{PagePart, study_report};
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt;
@@ -34,8 +36,10 @@ const ROUNDING_OF_RESIDUALS: f64 = 1e-12;
 /// # Errors
 /// [`SimError::NotReproduced`] for the first figure that does not follow, with its field.
 pub fn recomputed(stored: StoredResult<RunResult>, file: &str) -> Result<Recomputed, SimError> {
-    let key = result_key(&stored.case, &stored.inputs)?;
-    let of_version = stored.program == format!("hhc {}", crate::VERSION);
+    let version = stored.program.strip_prefix("hhc ").unwrap_or_default();
+    let key = key_of_version(version, &stored.case, &stored.inputs)?;
+    // what an older program canonised in its own way cannot be keyed again
+    let of_version = version == crate::VERSION;
     if of_version && key != stored.key {
         let field = "key (of the case and its inputs)".to_owned();
         return Err(changed(file, field, stored.key, key));
@@ -45,6 +49,12 @@ pub fn recomputed(stored: StoredResult<RunResult>, file: &str) -> Result<Recompu
         .map_err(|e| changed(file, "case.rotor".to_owned(), e.to_string(), String::new()))?;
     let anew = result.refigured(&setting);
     let numbers = compared_fields(result, &anew, (file, "result"))?;
+    let found = json_key(result)?;
+    let keyed = stored.result_key.as_ref();
+    if keyed.map_or(of_version, |key| *key != found) {
+        let field = "result_key (of what the figures are computed from)".to_owned();
+        return Err(changed(file, field, keyed.cloned().unwrap_or_default(), found));
+    }
     let mut largest_difference = 0.0_f64;
     for (then, now) in result.control.iter().zip(&anew.control) {
         let apart = (then.reduction_percent - now.reduction_percent).abs();
@@ -56,6 +66,31 @@ pub fn recomputed(stored: StoredResult<RunResult>, file: &str) -> Result<Recompu
         + 2 * anew.robustness.len();
     let stored = StoredResult { result: anew, ..stored };
     Ok(Recomputed { stored, reductions, numbers, largest_difference })
+}
+
+/// Names of the two files of a run that a report is made from.
+pub const RESULT_FILE: &str = "result.json";
+/// The numbers that a report shows.
+pub const STUDY_FILE: &str = "study.json";
+
+/// Checks a stored result and the report shown of it; the report as it follows from the result.
+///
+/// # Errors
+/// [`SimError::NotReproduced`] for the first field that does not follow.
+pub fn reproduced(
+    shown: &StudyReport,
+    stored: StoredResult<RunResult>,
+) -> Result<(Recomputed, StudyReport), SimError> {
+    let checked = recomputed(stored, RESULT_FILE)?;
+    let page = PagePart::of(shown);
+    let (key, found) = (checked.stored.page_key.clone().unwrap_or_default(), page.key()?);
+    if key != found {
+        let field = "title, setting, data_title, fits or loops".to_owned();
+        return Err(changed(STUDY_FILE, field, format!("of key {found}"), format!("key {key}")));
+    }
+    let report = study_report(&checked.stored, page);
+    compared_fields(shown, &report, (STUDY_FILE, "report"))?;
+    Ok((checked, report))
 }
 
 /// Compares what a file holds with what was computed again; the count of numbers.
@@ -142,7 +177,9 @@ fn same(a: &Value, b: &Value, at: String, numbers: &mut usize) -> Result<(), Apa
             *numbers += 1;
             let (x, y) = (x.as_f64().unwrap_or(f64::NAN), y.as_f64().unwrap_or(f64::NAN));
             let field = at.rsplit('.').next().unwrap_or_default();
-            let of_units = field.contains("_deg") || field.contains("percent");
+            let of_units = field.contains("_deg")
+                || field.contains("percent")
+                || (field.ends_with("_V") && !field.contains("per_V"));
             let floor = match field {
                 "kkt_residual" => ROUNDING_OF_RESIDUALS,
                 _ if of_units => ROUNDING_OF_UNITS,

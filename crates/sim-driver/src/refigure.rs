@@ -6,10 +6,13 @@
 //! A run writes the figures that these functions give, and `hhc report` computes them again from the file: there
 //! is no other way to them.
 
-use crate::raw::{CertificateLine, ControlRecord, FlapRecord, ForecastRecord, Setting, loads_cost};
+use crate::case::{ControlActuator, ControllerChoice, StrokeChoice};
+use crate::raw::{CertificateLine, ControlRecord, EndLine, FlapRecord, Setting, loads_cost};
 use crate::results::{ControlLine, FlapLine, Forecast, HistoryLine, RunResult};
-use crate::study::HingePower;
-use hhc_control::{Cost, FeedbackLaw, LoadWeights, TMatrix, lag_deg, lag_loss, reduction_percent};
+use crate::study::{HingePower, cost_tolerance};
+use hhc_control::{
+    Controller, Cost, FeedbackLaw, LoadWeights, LoopEnd, TMatrix, lag_deg, lag_loss,
+};
 use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
 use rotor_response::HingeMoment;
 
@@ -18,68 +21,183 @@ impl RunResult {
     #[must_use]
     pub fn refigured(&self, setting: &Setting) -> Self {
         let mut result = self.clone();
-        let said = result.share_warnings().len();
-        result.control =
-            self.control
-                .iter()
-                .map(|line| {
-                    let ideal = self.control.iter().find(|other| {
-                        other.harmonics == line.harmonics && other.actuator == "ideal"
-                    });
-                    line.refigured(setting, ideal)
-                })
-                .collect();
-        result.forecasts = self.forecasts.iter().map(|line| line.refigured(setting)).collect();
+        let said = result.own_warnings(setting).len();
+        let asked = setting.control.harmonics.iter().flat_map(|set| {
+            setting.control.actuators.iter().map(move |actuator| (set.clone(), *actuator))
+        });
+        let stored = self.control.iter().map(Some).chain(std::iter::repeat(None));
+        result.control = asked
+            .zip(stored)
+            .map(|((harmonics, actuator), line)| {
+                let line = ControlLine {
+                    harmonics,
+                    actuator: actuator.name().to_owned(),
+                    ..line.cloned().unwrap_or_default()
+                };
+                let ideal = self
+                    .control
+                    .iter()
+                    .find(|other| other.harmonics == line.harmonics && other.actuator == "ideal");
+                line.refigured(setting, actuator, ideal)
+            })
+            .collect();
+        result.mean_loads = self.mean_loads.map(|loads| loads.refigured(setting));
+        let sets = setting.control.harmonics.iter();
+        let forecasts = self.forecasts.iter().zip(sets);
+        result.forecasts = forecasts
+            .map(|(line, set)| Forecast { harmonics: set.clone(), ..line.refigured(setting) })
+            .collect();
         crate::study::refigure_sensitivity(&mut result.sensitivity, setting);
         result.robustness = self.robustness.iter().map(|c| c.refigured(setting)).collect();
-        // what they say of shares stands at the end
+        // what they say of the control stands at the end
         result.warnings.truncate(result.warnings.len().saturating_sub(said));
-        result.warnings.extend(result.share_warnings());
+        result.warnings.extend(result.own_warnings(setting));
         result
     }
 
-    /// What a reader should know of controls that were not taken over as a whole.
-    pub fn share_warnings(&self) -> Vec<String> {
-        self.control.iter().filter_map(ControlLine::share_warning).collect()
+    /// What a reader should know of controls that were not taken over as a whole, and of a rotor without vibration.
+    fn own_warnings(&self, setting: &Setting) -> Vec<String> {
+        let shares = self.control.iter().filter_map(ControlLine::share_warning);
+        let still = (setting.is_still() && !self.control.is_empty()).then(|| {
+            "without control the hub loads at the blade number per rev are zero to rounding: there is nothing to reduce, and percentages are left out".to_owned()
+        });
+        shares.chain(still).collect()
     }
 }
 
 impl ControlLine {
     /// The line with every figure computed from its raw numbers; `ideal` is the ideal actuator with the same
     /// harmonics.
-    #[must_use]
-    pub fn refigured(&self, setting: &Setting, ideal: Option<&Self>) -> Self {
-        let record = &self.record;
+    fn refigured(
+        &self,
+        setting: &Setting,
+        actuator: ControlActuator,
+        ideal: Option<&Self>,
+    ) -> Self {
         let load_weights = setting.load_weights();
         let j_before = loads_cost(&load_weights, &setting.baseline);
         let j_after = loads_cost(&load_weights, &self.hub_4_per_rev.parts());
-        let history: Vec<HistoryLine> =
-            self.history.iter().map(|step| step.refigured(&load_weights)).collect();
+        let history = self.refigured_history(&load_weights);
+        let record = self.refigured_record(actuator, setting, &history);
         let powers = record.flaps.iter().map(|flap| hinge_power(flap, &setting.scales).given_watt);
         let means = record.flaps.iter().map(|flap| flap.flap_deg.0.mean);
         let recorded = history.iter().flat_map(|step| step.mean_flap_deg.iter().copied());
         let (motion_share, voltage_share) = self.shares(ideal);
+        let taken = history.iter().map(|step| step.halvings);
+        let halvings = taken.chain(record.refused.iter().map(|step| step.halvings)).sum();
         Self {
             j_before,
             j_after,
-            reduction_percent: reduction_percent(j_before, j_after),
-            j_power: power_cost(record),
+            reduction_percent: setting.reduction_percent(j_before, j_after),
+            j_power: power_cost(&record),
             actuation_power_watt: powers.sum(),
-            flaps: flap_lines(&self.harmonics, record, &setting.scales),
+            flaps: flap_lines(&self.harmonics, &record, &setting.scales),
+            controller: controller_name(actuator, setting.control.controller).to_owned(),
             load_weights,
-            motion_error_percent: motion_error(&self.harmonics, record).map(|e| 100.0 * e),
+            motion_error_percent: motion_error(&self.harmonics, &record).map(|e| 100.0 * e),
             motion_share,
             voltage_share,
+            within_reach: record.reach_share.map(|share| share >= 1.0),
             kkt_residual: record.optimum.as_ref().map(CertificateLine::residual),
             largest_mean_flap_deg: recorded.chain(means).fold(0.0, |m, mean| mean.abs().max(m)),
             steps: history.len().saturating_sub(1),
-            largest_rise_percent: largest_rise_percent(&history),
+            halvings,
+            largest_rise_percent: if setting.is_still() {
+                0.0
+            } else {
+                largest_rise_percent(&history)
+            },
             contraction: contraction(&history),
+            spectral_radius: spectral_radius(&record, &load_weights),
+            t_renewals: record.identified_after.len(),
+            outcome: ended(actuator, &record, (&history, setting)),
             t_norm_per_volt: record.t_per_volt.iter().flatten().map(|t| t * t).sum::<f64>().sqrt(),
-            rho_per_volt2: history.last().map_or(self.rho_per_volt2, |step| step.rho_per_volt2),
+            // voltages taken over have the weight of those they come from
+            rho_per_volt2: match (&record.end, ideal) {
+                (Some(end), _) => end.rho_per_volt2,
+                (None, Some(ideal)) => ideal.rho_per_volt2,
+                (None, None) => self.rho_per_volt2,
+            },
+            stroke_limit_deg: stroke_limits_deg(&record, setting.control.stroke_limit),
             history,
+            record,
             ..self.clone()
         }
+    }
+
+    /// The history: costs from loads and controls, what was asked for from the steps taken; it ends where the line
+    /// does.
+    fn refigured_history(&self, load_weights: &[f64; 6]) -> Vec<HistoryLine> {
+        let mut history: Vec<HistoryLine> = self.history.clone();
+        if let Some(last) = history.last_mut() {
+            let (loads, flaps) = (self.hub_4_per_rev.parts(), &self.record.flaps);
+            for (load, found) in last.loads.iter_mut().zip(loads) {
+                *load = found;
+            }
+            last.control_volt = controlled_volt(&self.harmonics, flaps);
+            last.mean_flap_deg = flaps.iter().map(|flap| flap.flap_deg.0.mean).collect();
+        }
+        if let Some(start) = history.first_mut() {
+            // from zero control, its cost with the weight of the end
+            start.control_volt.fill(0.0);
+            (start.asked_volt, start.halvings) = (0.0, 0);
+            start.rho_per_volt2 =
+                self.record.end.as_ref().map_or(start.rho_per_volt2, |end| end.rho_per_volt2);
+        }
+        let controls: Vec<Vec<f64>> =
+            history.iter().map(|step| step.control_volt.clone()).collect();
+        for (step, before) in history.iter_mut().skip(1).zip(&controls) {
+            let taken = step.control_volt.iter().zip(before).map(|(a, b)| a - b);
+            step.asked_volt = 2.0_f64.powi(step.halvings.cast_signed())
+                * largest_amplitude(&taken.collect::<Vec<f64>>());
+        }
+        history.iter().map(|step| step.refigured(load_weights)).collect()
+    }
+
+    /// The record: the control from the voltages of the flaps, the end of the loop from T and the loads seen there.
+    fn refigured_record(
+        &self,
+        actuator: ControlActuator,
+        setting: &Setting,
+        history: &[HistoryLine],
+    ) -> ControlRecord {
+        let mut record = self.record.clone();
+        record.control_volt = controlled_volt(&self.harmonics, &record.flaps);
+        let Some(end) = &record.end else { return record };
+        let weights = setting.load_weights();
+        let anew = law_of(&record.t_per_volt, &weights).and_then(|law| {
+            let seen = match setting.control.controller {
+                // what a filter makes of the loads is its own
+                ControllerChoice::Adaptive if actuator != ControlActuator::Ideal => {
+                    end.seen_loads.clone()
+                }
+                _ => history.last().map(|step| step.loads.clone()).unwrap_or_default(),
+            };
+            let (rho, control) = (end.rho_per_volt2, record.control_volt.as_slice());
+            let optimum = match &record.optimum {
+                None => None,
+                Some(line) => {
+                    let (hessian, linear) =
+                        law.scaled_quadratic(rho, (control, &seen), line.volt).ok()?;
+                    Some(CertificateLine { hessian, linear, ..line.clone() })
+                }
+            };
+            let aim = match &optimum {
+                Some(line) => line.control_volt(),
+                None => law.optimum_volt(rho, control, &seen).ok()?,
+            };
+            let found = LoopEnd::new(&law, rho, (control, &seen), &aim).ok()?;
+            // a step that nothing holds near the control is the whole one
+            let held = end.next_volt < end.asked_volt * (1.0 - WHOLE);
+            Some((EndLine::of(&found, held.then_some(end.next_volt), end), optimum))
+        });
+        // numbers that do not fit together stay, and the end with them is none
+        let (end, optimum) = match anew {
+            Some((end, optimum)) => (end, optimum),
+            None => (EndLine::default(), record.optimum.clone()),
+        };
+        (record.end, record.optimum) = (Some(end), optimum);
+        record
     }
 
     /// Part of the ideal actuator's motion that was asked of the inverse and part of its voltages that were taken
@@ -120,6 +238,80 @@ impl ControlLine {
             format!("{}/rev, {}: {:.1} % {what}", self.set_name(), self.actuator, 100.0 * share)
         })
     }
+}
+
+/// What a controller knows of T, by name.
+fn controller_name(actuator: ControlActuator, choice: ControllerChoice) -> &'static str {
+    match (actuator, choice) {
+        (ControlActuator::Ignored | ControlActuator::Inverse, _) => "none",
+        (ControlActuator::Ideal, _) | (_, ControllerChoice::Global) => "global",
+        (_, ControllerChoice::Local) => "local",
+        (_, ControllerChoice::Adaptive) => "adaptive",
+    }
+}
+
+/// The name of the end of a loop: converged where what it still asks for is within the tolerances of the case.
+fn ended(
+    actuator: ControlActuator,
+    record: &ControlRecord,
+    (history, setting): (&[HistoryLine], &Setting),
+) -> String {
+    let Some(end) = &record.end else { return "taken-over".to_owned() };
+    let control = &setting.control;
+    let step_volt = Vec::new();
+    let way = match (actuator, control.controller) {
+        (ControlActuator::Ideal, _) => Controller::Global,
+        (_, ControllerChoice::Global) => Controller::Renewed { step_volt, renewals: 0 },
+        _ => Controller::Local { step_volt },
+    };
+    let tolerances = [control.step_tolerance, cost_tolerance(&way, control.effort)];
+    let start_cost = history.first().map_or(0.0, |start| start.j_loads);
+    let is_settled = end.loop_end().is_settled(tolerances, start_cost);
+    match (is_settled, end.stopped.as_deref()) {
+        (true, None) => "converged",
+        (false, Some("step-limit")) if history.len() > control.max_steps => "step-limit",
+        (false, Some("out-of-range")) => "out-of-range",
+        (true, Some(_)) | (false, Some("stalled")) => "stalled",
+        (false, _) => "not converged",
+    }
+    .to_owned()
+}
+
+/// Stroke limit of each harmonic, deg: as given, or what the actuator makes of the voltage that belongs to it.
+fn stroke_limits_deg(record: &ControlRecord, choice: StrokeChoice) -> Vec<f64> {
+    let reached = record.at_stroke_deg.iter().map(|[cosine, sine]| cosine.hypot(*sine));
+    match choice {
+        StrokeChoice::FromActuator => reached.collect(),
+        StrokeChoice::Given { amplitude_deg } => reached.map(|_| amplitude_deg).collect(),
+    }
+}
+
+/// The law of a T matrix and the weights of the hub loads; loads beyond those stand for power, of weight 1.
+fn law_of(t_per_volt: &[Vec<f64>], load_weights: &[f64; 6]) -> Option<FeedbackLaw> {
+    let t = TMatrix::from_columns(t_per_volt).ok()?;
+    let weights: Vec<f64> = load_weights.iter().flat_map(|w| [*w, *w]).collect();
+    let further = t.loads().saturating_sub(weights.len());
+    let weights = weights.into_iter().chain(std::iter::repeat_n(1.0, further)).collect();
+    FeedbackLaw::new(&t, &LoadWeights::Diagonal(weights)).ok()
+}
+
+/// Spectral radius of the loop with its T and weight held, about where it ended.
+fn spectral_radius(record: &ControlRecord, load_weights: &[f64; 6]) -> Option<f64> {
+    let there = TMatrix::from_columns(&record.t_at_end_per_volt).ok()?;
+    let law = law_of(&record.t_per_volt, load_weights)?;
+    law.iteration_spectral_radius(record.end.as_ref()?.rho_per_volt2, &there).ok()
+}
+
+/// The controlled voltages of flaps as a control vector, V.
+fn controlled_volt(harmonics: &[usize], flaps: &[FlapRecord]) -> Vec<f64> {
+    let voltages: Vec<HarmonicSeries> =
+        flaps.iter().map(|flap| flap.voltage_volt.0.clone()).collect();
+    controlled(harmonics, &voltages)
+}
+
+/// Largest amplitude of the harmonics of a control vector, V.
+fn largest_amplitude(control_volt: &[f64]) -> f64 {
+    control_volt.chunks_exact(2).map(|u| u[0].hypot(u[1])).fold(0.0, f64::max)
 }
 
 /// How far a share may be from 1 by rounding.
@@ -274,6 +466,7 @@ impl Forecast {
             })
             .collect();
         let of_pairs: Vec<f64> = lags_rad.iter().copied().cycle().take(t.controls() / 2).collect();
+        let (dynamic, settled) = (&record.dynamic_t_per_volt, &record.settled_t_per_volt);
         let loss = lag_loss(&t, &load_weights, &free, &of_pairs).ok()?;
         Some(Self {
             harmonics: self.harmonics.clone(),
@@ -283,18 +476,23 @@ impl Forecast {
             cone: cost(&record.cone_volt)? / before,
             clipped: cost(&clipped)? / before,
             free: cost(&free)? / before,
-            gain_at_step_percent: apart(record, &record.gain_t_at_step_per_volt)?,
-            gain_at_stroke_percent: apart(record, &record.gain_t_at_stroke_per_volt)?,
+            gain_at_step_percent: apart(dynamic, &record.gain_t_at_step_per_volt)?,
+            gain_at_stroke_percent: apart(dynamic, &record.gain_t_at_stroke_per_volt)?,
+            frozen_percent: apart(settled, &record.frozen_t_per_volt)?,
+            reconverged_percent: match record.reconverged_t_per_volt.as_slice() {
+                [] => None,
+                reconverged => Some(apart(settled, reconverged)?),
+            },
             record: record.clone(),
         })
     }
 }
 
-/// Distance of a T from that of the full actuator, percent.
-fn apart(record: &ForecastRecord, simple: &[Vec<f64>]) -> Option<f64> {
-    let dynamic = TMatrix::from_columns(&record.dynamic_t_per_volt).ok()?;
-    let simple = TMatrix::from_columns(simple).ok()?;
-    Some(100.0 * simple.relative_difference(&dynamic).ok()?)
+/// Distance of one T from another, over the latter, percent.
+fn apart(from: &[Vec<f64>], other: &[Vec<f64>]) -> Option<f64> {
+    let from = TMatrix::from_columns(from).ok()?;
+    let other = TMatrix::from_columns(other).ok()?;
+    Some(100.0 * other.relative_difference(&from).ok()?)
 }
 
 /// Every harmonic cut to its stroke, its phase kept: what is not done.

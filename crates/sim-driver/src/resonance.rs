@@ -1,10 +1,13 @@
 //! Undamped modes at a harmonic of the rotor speed: looked for before a rotor is trimmed.
 
 use crate::SimError;
-use crate::case::{LoadedCase, TrimValues};
+use crate::case::{JointChoice, LoadedCase, TrimValues};
 use crate::problem::Place;
 use rotor_response::{ResponseError, Rotor};
 use trim::TrimError;
+
+/// Frequency of the rigid blade on its pitch link below which it hardly holds its pitch, per rev.
+const SOFT_PITCH_PER_REV: f64 = 2.0;
 
 impl LoadedCase {
     /// Refuses a rotor, or one of its unlike blades, with an undamped coupled mode at a harmonic: at the
@@ -53,6 +56,12 @@ impl LoadedCase {
                 SimError::Response { place: self.at_fault(&source), source }
             }
             source => {
+                if let (true, Some((stiffness, frequency_per_rev))) =
+                    (matches!(source, TrimError::Response(_)), self.soft_pitch())
+                {
+                    let place = self.index.place("rotor.root.pitch.stiffness");
+                    return SimError::SoftPitch { place, stiffness, frequency_per_rev, source };
+                }
                 let field = match self.case.trim {
                     TrimValues::Propulsive { .. } | TrimValues::WindTunnel { .. } => {
                         "trim.ct_sigma"
@@ -62,5 +71,19 @@ impl LoadedCase {
                 SimError::Trim { place: self.index.place(field), source }
             }
         }
+    }
+
+    /// Stiffness of a pitch spring that hardly holds the blade, and the frequency of the rigid blade on it.
+    ///
+    /// ```text
+    /// p^2 = k / int m (k_m1^2 + k_m2^2) + (k_m2^2 - k_m1^2) / (k_m1^2 + k_m2^2)      uniform blade
+    /// ```
+    pub(crate) fn soft_pitch(&self) -> Option<(f64, f64)> {
+        let file = &self.file.rotor;
+        let JointChoice::Spring { stiffness } = file.root.pitch else { return None };
+        let [thin, wide] = [file.km1_r, file.km2_r].map(|k| k * k);
+        let inertia = (thin + wide) * (1.0 - file.root_offset_r);
+        let frequency_per_rev = (stiffness / inertia + (wide - thin) / (thin + wide)).sqrt();
+        (frequency_per_rev < SOFT_PITCH_PER_REV).then_some((stiffness, frequency_per_rev))
     }
 }

@@ -3,8 +3,9 @@
 use crate::SimError;
 use crate::blade_loads::StationLine;
 use crate::case::CaseFile;
-use crate::dissimilar::UnlikeLine;
+use crate::dissimilar::{UnlikeBladeLine, UnlikeLine};
 use crate::files::{ron_text, write_atomic};
+use crate::mean_loads::MeanLoads;
 use crate::raw::{ControlRecord, ForecastRecord};
 use crate::refigure::WHOLE;
 use crate::stability::StabilityLine;
@@ -20,12 +21,15 @@ pub struct RunResult {
     pub trim: TrimLine,
     /// How well the equations are satisfied; no vibration number without them.
     pub residuals: Residuals,
+    /// Mean loads on the hub and the power of the shaft; none in results stored before they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_loads: Option<MeanLoads>,
     /// Loads without control.
     pub baseline: Baseline,
-    /// Loads of one blade along its span without control; none in results stored before they were.
+    /// Loads of one blade along its span without control, of each of the like ones where some are unlike; none in results stored before they were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blade_loads: Vec<StationLine>,
-    /// Stability of the trimmed blade.
+    /// Stability of the trimmed blade, of each of the like ones where some are unlike.
     #[serde(default)]
     pub stability: StabilityLine,
     /// One entry per set of harmonics and actuator.
@@ -42,6 +46,9 @@ pub struct RunResult {
     /// Hub loads with blades unlike the rest, flaps at rest and after every control; empty if all are alike.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlike_blades: Vec<UnlikeLine>,
+    /// Stability and loads of every blade unlike the rest, flaps at rest; empty if all are alike.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub each_unlike_blade: Vec<UnlikeBladeLine>,
     /// What a reader should know before using the numbers.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -190,6 +197,10 @@ pub struct ControlLine {
     /// Factor by which what a step asks for shrinks from one to the next, mean over the whole steps at the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contraction: Option<f64>,
+    /// Largest factor from the error of one control to that of the next with the T held and the weight of the end:
+    /// below 1 whole steps settle there. Of a loop with a constant T and a control weight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spectral_radius: Option<f64>,
     /// Times that T was identified again or probed on the way.
     #[serde(default)]
     pub t_renewals: usize,
@@ -242,6 +253,13 @@ pub struct Forecast {
     pub gain_at_step_percent: f64,
     /// The same with the gain at the stroke limit: what amplitude does to gain and lag.
     pub gain_at_stroke_percent: f64,
+    /// Distance of T with the wake frozen from T with the inflow settled on the moved loading, over the latter,
+    /// percent.
+    #[serde(default)]
+    pub frozen_percent: f64,
+    /// The same of T with the geometry of the free wake converged anew; where the case asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reconverged_percent: Option<f64>,
     /// What these are computed from.
     #[serde(default)]
     pub record: ForecastRecord,
@@ -385,6 +403,9 @@ pub struct StoredResult<T> {
     /// blake3 of what the report shows of bench and setting, which does not follow from the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub page_key: Option<String>,
+    /// blake3 of the whole result: what its figures are computed from is what the run wrote.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub result_key: Option<String>,
     /// blake3 of the loads of the blade, here and as a table: they follow from the flight alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blade_loads_key: Option<String>,
@@ -405,6 +426,7 @@ impl<T: Serialize> StoredResult<T> {
             key: result_key(case, &inputs)?,
             inputs,
             page_key: None,
+            result_key: Some(json_key(&result)?),
             blade_loads_key: None,
             case: case.clone(),
             result,
@@ -421,6 +443,15 @@ impl<T: Serialize> StoredResult<T> {
     }
 }
 
+/// blake3 of a value as JSON.
+///
+/// # Errors
+/// [`SimError::NotWritten`] if JSON cannot express it.
+pub fn json_key<T: Serialize>(value: &T) -> Result<String, SimError> {
+    let text = serde_json::to_string(value).map_err(|e| not_written(Path::new("JSON"), &e))?;
+    Ok(blake3::hash(text.as_bytes()).to_hex().to_string())
+}
+
 /// blake3 of program version, canonical case and input hashes.
 ///
 /// The canonical case is the case file with its defaults filled in, so comments, order and layout of
@@ -429,9 +460,18 @@ impl<T: Serialize> StoredResult<T> {
 /// # Errors
 /// [`SimError::NotWritten`] for a case RON cannot express.
 pub fn result_key(case: &CaseFile, inputs: &[String]) -> Result<String, SimError> {
+    key_of_version(crate::VERSION, case, inputs)
+}
+
+/// The same of the version that a result says it is of.
+pub(crate) fn key_of_version(
+    version: &str,
+    case: &CaseFile,
+    inputs: &[String],
+) -> Result<String, SimError> {
     let canonical = ron_text(case).map_err(|e| not_written(Path::new("case"), &e))?;
     let mut hash = blake3::Hasher::new();
-    for part in std::iter::once(crate::VERSION)
+    for part in std::iter::once(version)
         .chain(std::iter::once(canonical.as_str()))
         .chain(inputs.iter().map(String::as_str))
     {

@@ -4,10 +4,12 @@ use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
 use crate::blade_loads::{moments_table, station_lines};
 use crate::case::LoadedCase;
-use crate::dissimilar::unlike_lines;
+use crate::dissimilar::{UnlikeBladeLine, each_unlike_blade, unlike_lines};
+use crate::inflow::wake_warnings;
+use crate::mean_loads::MeanLoads;
 use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
-use crate::raw::Setting;
+use crate::raw::{Setting, is_still};
 use crate::refigure::WHOLE;
 use crate::results::{Baseline, ControlLine, HubLoads, Residuals, RunResult, TrimLine, flap_name};
 use crate::stability::StabilityLine;
@@ -79,22 +81,32 @@ pub fn run_trimmed(
     let mut warnings = actuators.warnings.clone();
     let found = trimmed.trim();
     let about = (found.controls.theta0_rad, &found.rotor);
-    warnings.extend(loaded.doubts_in_flight(trimmed.rotor(), about)?);
+    let most = trimmed.largest_section_lift();
+    warnings.extend(loaded.doubts_in_flight(trimmed.rotor(), about, most)?);
+    warnings.extend(trimmed.wake().into_iter().flat_map(wake_warnings));
     warnings.extend(stability.warnings());
+    let each_unlike = each_unlike_blade(loaded, &trimmed)?;
+    warnings.extend(each_unlike.iter().flat_map(UnlikeBladeLine::warnings));
     let baseline = HubLoads::from_parts(trimmed.trim().rotor.hub.harmonic(loaded.case.blades));
+    let setting = Setting::of_case(&loaded.case, &baseline);
+    let unlike_blades = unlike_lines(loaded, &trimmed, &studies)?;
+    // the rest stands first; with every blade alike there is no line
+    let mean = unlike_blades.first().map_or_else(|| found.rotor.hub.mean(), |rest| rest.mean);
     let result = RunResult {
+        mean_loads: Some(MeanLoads::new(mean, &setting)),
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),
         baseline: Baseline { hub_4_per_rev: baseline },
         blade_loads: station_lines(&blade_loads, &loaded.case.scales),
         stability,
-        unlike_blades: unlike_lines(loaded, &trimmed, &studies)?,
+        unlike_blades,
+        each_unlike_blade: each_unlike,
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
         forecasts: forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?,
         warnings,
         ..RunResult::default()
     };
-    let result = result.refigured(&Setting::of_case(&loaded.case, &baseline));
+    let result = result.refigured(&setting);
     Ok(RunOutcome { result, actuators, trimmed, blade_loads, drives, studies })
 }
 
@@ -135,12 +147,25 @@ impl Printable for RunResult {
             "           C_T/sigma {:.5}, induced inflow {:.5}, {} iterations",
             t.ct_sigma, t.induced_inflow, t.iterations
         ));
+        if let Some([loads, shaft]) = self.mean_loads.as_ref().map(MeanLoads::text) {
+            sheet.line(format_args!("Mean       {loads}"));
+            sheet.line(format_args!("           {shaft}"));
+        }
         sheet.line(format_args!(
             "Residuals  trim {:.1e}, periodicity {:.1e}, inflow {:.1e}",
             r.trim, r.periodicity, r.inflow
         ));
         if let Some(stability) = self.stability.text() {
-            sheet.line(format_args!("Stability  {stability}"));
+            let of = if self.each_unlike_blade.is_empty() { "" } else { "each like blade " };
+            sheet.line(format_args!("Stability  {of}{stability}"));
+        }
+        for line in &self.each_unlike_blade {
+            if let Some(stability) = line.stability.text() {
+                sheet.line(format_args!(
+                    "           blade {}, unlike the rest, {stability}",
+                    line.blade
+                ));
+            }
         }
         sheet.line(format_args!(""));
         let baseline = self.baseline.hub_4_per_rev;
@@ -160,16 +185,30 @@ impl Printable for RunResult {
             }),
         ));
         if !self.blade_loads.is_empty() {
+            let whose =
+                if self.each_unlike_blade.is_empty() { "one blade" } else { "each like blade" };
             sheet.line(format_args!(
-                "\nMoments of one blade without control, N m: tip up, tip forward, nose up"
+                "\nMoments of {whose} without control, N m: tip up, tip forward, nose up"
             ));
             sheet.block(&moments_table(&self.blade_loads));
+        }
+        for line in &self.each_unlike_blade {
+            sheet.line(format_args!(
+                "\nMoments of blade {}, unlike the rest, without control, N m",
+                line.blade
+            ));
+            sheet.block(&moments_table(&line.blade_loads));
         }
         if !self.control.is_empty() {
             sheet.line(format_args!(
                 "\nControl: reduction of J = 100 (1 - J/J0) and of the loads, percent"
             ));
             sheet.block(&self.control_table());
+            if self.is_still() {
+                sheet.line(format_args!(
+                    "-  no vibration without control: every load at the blade number per rev is rounding, nothing is to be\n   reduced and a percentage of nothing says nothing"
+                ));
+            }
             for note in self.control_notes() {
                 sheet.line(format_args!("{note}"));
             }
@@ -192,32 +231,44 @@ impl Printable for RunResult {
 }
 
 impl RunResult {
+    /// Whether there is nothing to reduce.
+    fn is_still(&self) -> bool {
+        is_still(&self.baseline.hub_4_per_rev.parts())
+    }
+
     fn control_table(&self) -> String {
         let before = self.baseline.hub_4_per_rev.amplitudes();
+        let is_still = self.is_still();
+        let share = |text: String| if is_still { "-".to_owned() } else { text };
         table(
             &[
                 "per rev", "actuator", "T", "J/J0", "J %", "FX %", "FY %", "FZ %", "MX %", "MY %",
-                "MZ %", "power W", "J_P/J0", "steps", "halved", "rise %", "shrinks", "ended",
+                "MZ %", "power W", "J_P/J0", "steps", "halved", "rise %", "shrinks", "radius",
+                "ended",
             ],
             self.control.iter().map(|line| {
                 let mut cells = vec![
                     line.set_name(),
                     line.actuator_cell(),
                     line.controller_cell(),
-                    format!("{:.4}", line.j_after / line.j_before),
-                    format!("{:.1}", line.reduction_percent),
+                    share(format!("{:.4}", line.j_after / line.j_before)),
+                    share(format!("{:.1}", line.reduction_percent)),
                 ];
                 let after = line.hub_4_per_rev.amplitudes();
                 cells.extend(
-                    after.iter().zip(&before).map(|(a, b)| format!("{:.0}", 100.0 * (1.0 - a / b))),
+                    after
+                        .iter()
+                        .zip(&before)
+                        .map(|(a, b)| share(format!("{:.0}", 100.0 * (1.0 - a / b)))),
                 );
                 cells.extend([
                     format!("{:.2}", line.actuation_power_watt),
-                    format!("{:.4}", line.j_power / line.j_before),
+                    share(format!("{:.4}", line.j_power / line.j_before)),
                     line.steps.to_string(),
                     line.halvings.to_string(),
                     format!("{:.1}", line.largest_rise_percent),
                     line.contraction.map_or_else(String::new, |factor| format!("{factor:.2}")),
+                    line.spectral_radius.map_or_else(String::new, |radius| format!("{radius:.2}")),
                     line.outcome.clone(),
                 ]);
                 cells
@@ -235,7 +286,7 @@ impl RunResult {
             ),
             (
                 any(&|l| l.motion_share.is_some_and(|s| (s - 1.0).abs() > WHOLE)),
-                "**  not the ideal actuator's motion, which the range of voltages does not hold, but the best in the range that a\n    search from there found; feedback may find a better one",
+                "**  not the ideal actuator's motion, which the range of voltages does not hold, but the best in the range, planned\n    by a cone program on the model of actuators and linearised rotor, whatever `effort` the fed-back rows have",
             ),
             (
                 any(&|l| l.controller == "global" && l.t_renewals > 0),
@@ -250,16 +301,30 @@ impl RunResult {
                 "shrinks: factor from what one step asks for to the next, whole steps at the end",
             ),
             (
+                any(&|l| l.spectral_radius.is_some()),
+                "radius: spectral radius of eq. (10) with T and weight held, about the end: whole steps settle below 1, and\n        only halving or a new T helps above",
+            ),
+            (
                 any(&|l| l.outcome == "out-of-range"),
-                "out-of-range: what is asked for lies beyond the range of voltages, and the part inside does not lower J;\n              effort: Limits makes the range part of the optimum",
+                "out-of-range: not an optimum. What eq. (10) asks for lies beyond the range of voltages, and the part inside does\n              not lower J: ask for the optimum within the range with effort: Limits and controller: Local, or for less with a\n              larger rho",
             ),
             (
                 any(&|l| l.outcome == "step-limit"),
-                "step-limit: the loop had not settled after the steps allowed; what is shown is its last step",
+                "step-limit: the loop had not settled after the steps allowed; what is shown is its last step: allow more with\n            max_steps, or, where `shrinks` is near 1, take another controller or weight: more steps of that kind lead nowhere",
             ),
             (
-                any(&|l| l.controller == "global" && l.outcome == "stalled"),
-                "stalled: no part of a step lowers J and full steps do not settle: a constant T is no guide there; use\n         controller: Local with effort: Limits",
+                any(&|l| l.outcome == "stalled" && l.actuator == "ideal" && !self.is_still()),
+                "stalled, ideal: no part of a step lowers J: the T of the rotor at rest is held while the rotor bends, and J is\n         the best found, not shown to be the least; controller: Local renews it",
+            ),
+            (
+                any(&|l| {
+                    l.controller == "global" && l.outcome == "stalled" && l.actuator != "ideal"
+                }),
+                "stalled, global: no part of a step lowers J and full steps do not settle: a constant T is no guide there;\n         use controller: Local with effort: Limits",
+            ),
+            (
+                any(&|l| l.controller != "global" && l.outcome == "stalled"),
+                "stalled: no part of a step lowers J, though T still asks for one larger than step_tolerance: J is the best\n         found, not shown to be the least",
             ),
         ];
         marks.into_iter().filter_map(|(there, note)| there.then_some(note)).collect()
@@ -267,6 +332,8 @@ impl RunResult {
 
     /// One row per set of harmonics.
     fn forecast_table(&self) -> String {
+        let is_still = self.is_still();
+        let share = |text: String| if is_still { "-".to_owned() } else { text };
         let join = |values: &[f64]| {
             let all: Vec<String> = values.iter().map(|v| format!("{v:.1}")).collect();
             all.join(" ")
@@ -282,6 +349,8 @@ impl RunResult {
                 "clipped",
                 "T by gain %",
                 "by gain at stroke %",
+                "T frozen %",
+                "reconverged %",
             ],
             self.forecasts.iter().map(|line| {
                 let set: Vec<String> = line.harmonics.iter().map(usize::to_string).collect();
@@ -290,11 +359,13 @@ impl RunResult {
                     join(&line.lag_deg),
                     format!("{:.1}", line.lag_loss_percent),
                     format!("{:.1}", line.isotropic_loss_percent),
-                    format!("{:.4}", line.free),
-                    format!("{:.4}", line.cone),
-                    format!("{:.4}", line.clipped),
+                    share(format!("{:.4}", line.free)),
+                    share(format!("{:.4}", line.cone)),
+                    share(format!("{:.4}", line.clipped)),
                     format!("{:.3}", line.gain_at_step_percent),
                     format!("{:.1}", line.gain_at_stroke_percent),
+                    format!("{:.1}", line.frozen_percent),
+                    line.reconverged_percent.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}")),
                 ]
             }),
         )

@@ -3,14 +3,15 @@
 use rotor_response::{BladeMotion, Stability};
 use serde::{Deserialize, Serialize};
 
-/// Floquet exponents of one blade about its trimmed orbit; inflow held, section lags settled.
+/// Floquet exponents of one blade about its trimmed orbit; inflow held, the lags of attached sections move with the blade.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct StabilityLine {
     /// Whether every motion dies out.
     pub stable: bool,
     /// The motion with the least damping over critical; none in results stored before stability was.
     pub least_damped: Option<MotionLine>,
-    /// Every motion, least stable first.
+    /// Every motion, least stable first. A motion locked to the rotor speed or half of it has two real multipliers and
+    /// is there twice, once for each growth.
     pub motions: Vec<MotionLine>,
 }
 
@@ -27,6 +28,46 @@ pub struct MotionLine {
     pub growth_per_rad: f64,
     /// Floquet multiplier, `[real, imaginary]`: factor of the motion over one revolution.
     pub multiplier: [f64; 2],
+}
+
+impl MotionLine {
+    /// Whether the motion is the same from revolution to revolution but for its size: a multiplier that is real
+    /// and positive, the divergence of a blade in hover.
+    fn diverges(&self) -> bool {
+        let [real, imaginary] = self.multiplier;
+        imaginary == 0.0 && real > 0.0
+    }
+
+    /// How it grows: a multiplier that is real locks the motion to whole or half numbers per rev.
+    fn growth_text(&self) -> String {
+        let [real, imaginary] = self.multiplier;
+        if self.diverges() {
+            "diverges: the same deflection from revolution to revolution grows".to_owned()
+        } else if imaginary == 0.0 && real < 0.0 {
+            format!(
+                "at {:.3} per rev, locked to half the rotor speed, grows",
+                self.frequency_per_rev
+            )
+        } else {
+            format!("at {:.3} per rev grows", self.frequency_per_rev)
+        }
+    }
+
+    /// What helps. Which mode has most of a motion says little of its cause: a blade that its mass or its lift turns nose
+    /// up leaves in flap and lag as well, and torsion, with next to no inertia, seldom leads.
+    fn remedy(&self) -> &'static str {
+        match (self.mode.starts_with("lag"), self.diverges()) {
+            (_, true) => {
+                "a stiffer pitch link (rotor.root.pitch) or blade (gj), the mass centre farther forward (rotor.mass_centre_r) or the quarter chord farther aft (rotor.aerodynamic_centre_r); of a blade soft in lag a stiffer spring (rotor.root.lag) or a hinge farther from the centre; damping does not help"
+            }
+            (true, false) => {
+                "more damping in lag (rotor.modal_damping), a lower thrust or advance ratio; with a soft pitch link (rotor.root.pitch) a stiffer one"
+            }
+            (false, false) => {
+                "the mass centre farther forward (rotor.mass_centre_r; at the quarter chord or ahead of it is usual), a stiffer pitch link (rotor.root.pitch) or blade (gj), more modal_damping, or a lower advance ratio"
+            }
+        }
+    }
 }
 
 impl From<&BladeMotion> for MotionLine {
@@ -67,16 +108,29 @@ impl StabilityLine {
 
     /// What a reader must know of every motion that does not die out.
     pub fn warnings(&self) -> Vec<String> {
-        self.motions
-            .iter()
-            .filter(|m| m.growth_per_rad >= 0.0)
-            .map(|m| {
-                format!(
-                    "the trimmed blade is unstable: {} at {:.3} per rev grows by {:.4} per rad (damping ratio {:.4}); the periodic response exists, but the blade will leave it. Remedy: more modal_damping, a stiffer blade or a lower advance ratio",
-                    m.mode, m.frequency_per_rev, m.growth_per_rad, m.damping_ratio
-                )
-            })
-            .collect()
+        self.warnings_of("the trimmed blade")
+    }
+
+    /// The same of a blade with a name.
+    pub(crate) fn warnings_of(&self, blade: &str) -> Vec<String> {
+        let mut named: Vec<&str> = Vec::new();
+        let mut warnings = Vec::new();
+        for m in self.motions.iter().filter(|m| m.growth_per_rad >= 0.0) {
+            // two real multipliers of one mode are one instability: that which grows faster
+            if named.contains(&m.mode.as_str()) {
+                continue;
+            }
+            named.push(&m.mode);
+            warnings.push(format!(
+                "{blade} is unstable: {} {} by {:.4} per rad (damping ratio {:.4}); the periodic response exists, but the blade will leave it. Remedy: {}",
+                m.mode,
+                m.growth_text(),
+                m.growth_per_rad,
+                m.damping_ratio,
+                m.remedy()
+            ));
+        }
+        warnings
     }
 }
 
@@ -112,6 +166,31 @@ mod tests {
         assert!(!line.stable && warnings.len() == 1, "{warnings:?}");
         assert!(warnings[0].contains("lag 1 at 0.700 per rev grows by 0.0100"), "{warnings:?}");
         assert!(line.text().unwrap().starts_with("UNSTABLE, least damped lag 1"));
+        assert!(warnings[0].contains("more damping in lag"), "{warnings:?}");
         assert_eq!(StabilityLine::default().text(), None);
+    }
+
+    /// Two real multipliers of one mode are one instability, and a mass centre too far aft has its own remedies.
+    #[test]
+    fn a_locked_motion_is_warned_of_once_and_divergence_says_what_helps() {
+        let real = |kind, growth: f64, sign: f64| BladeMotion {
+            multiplier: Complex::from(sign * (std::f64::consts::TAU * growth).exp()),
+            ..motion(kind, growth, 1.5)
+        };
+        let warnings_of =
+            |motions: Vec<BladeMotion>| StabilityLine::from(&Stability { motions }).warnings();
+        let flap = |growth| real(ModeKind::Flap, growth, -1.0);
+        let locked = warnings_of(vec![flap(0.3), flap(0.1)]);
+        assert_eq!(locked.len(), 1, "{locked:?}");
+        assert!(
+            locked[0]
+                .contains("flap 1 at 1.500 per rev, locked to half the rotor speed, grows by 0.3")
+        );
+        assert!(
+            locked[0].contains("rotor.mass_centre_r") && locked[0].contains("rotor.root.pitch")
+        );
+        let diverging = warnings_of(vec![real(ModeKind::Torsion, 0.2, 1.0)]);
+        assert!(diverging[0].contains("torsion 1 diverges"), "{diverging:?}");
+        assert!(diverging[0].contains("damping does not help"), "{diverging:?}");
     }
 }

@@ -183,7 +183,7 @@ impl StoredActuator {
             None => ("Actuator".to_owned(), String::new()),
         };
         let comment = format!(
-            "// {what} identified by hhc {} from: {}\n{units}// Written by `hhc identify`; identify again rather than edit.\n",
+            "// {what} identified by hhc {} from: {}\n{units}// Made of the data; `hhc identify` or `hhc diagnose` again rather than edit.\n",
             self.program_version, self.title
         );
         write_atomic(path, text.replacen('\n', &format!("\n{comment}"), 1).as_bytes())

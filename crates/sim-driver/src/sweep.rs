@@ -84,6 +84,8 @@ impl SweepRow {
         let angles = [t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg];
         cells.extend(angles.map(|a| format!("{a:.3}")));
         cells.push(format!("{:.5}", t.induced_inflow));
+        let power = r.mean_loads.map(|loads| format!("{:.2}", 1e-3 * loads.shaft_power_watt));
+        cells.push(power.unwrap_or_default());
         cells.extend(r.baseline.hub_4_per_rev.amplitudes().map(|a| format!("{a:.3e}")));
         let least = r.stability.least_damped.as_ref();
         cells.push(least.map_or_else(String::new, |m| format!("{:.4}", m.damping_ratio)));
@@ -93,16 +95,16 @@ impl SweepRow {
     }
 }
 
-const HEADER: [&str; 15] = [
-    "mu", "theta0", "theta1c", "theta1s", "tilt", "bank", "inflow", "FX", "FY", "FZ", "MX", "MY",
-    "MZ", "damping", "best J %",
+const HEADER: [&str; 16] = [
+    "mu", "theta0", "theta1c", "theta1s", "tilt", "bank", "inflow", "power kW", "FX", "FY", "FZ",
+    "MX", "MY", "MZ", "damping", "best J %",
 ];
 
 impl Printable for SweepResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!(
-            "Trim (deg), hub loads at the blade number per rev without control, least damping ratio, best reduction of J"
+            "Trim (deg), power of the shaft, hub loads at the blade number per rev without control, least damping ratio, best reduction of J"
         ));
         sheet.block(&table(&HEADER, self.rows.iter().map(SweepRow::cells)));
         sheet.finish()
@@ -112,7 +114,7 @@ impl Printable for SweepResult {
 /// The same as CSV, every digit kept.
 pub fn sweep_csv(sweep: &SweepResult) -> String {
     let mut text = String::from(
-        "advance_ratio,theta0_deg,theta1c_deg,theta1s_deg,alpha_s_deg,phi_s_deg,induced_inflow,fx,fy,fz,mx,my,mz,least_damping_ratio,iterations\n",
+        "advance_ratio,theta0_deg,theta1c_deg,theta1s_deg,alpha_s_deg,phi_s_deg,induced_inflow,fx,fy,fz,mx,my,mz,least_damping_ratio,iterations,shaft_power_W\n",
     );
     for row in &sweep.rows {
         let t = &row.result.trim;
@@ -129,9 +131,10 @@ pub fn sweep_csv(sweep: &SweepResult) -> String {
         .into_iter()
         .chain(row.result.baseline.hub_4_per_rev.amplitudes())
         .chain([least.map_or(f64::NAN, |m| m.damping_ratio)]);
+        let power = row.result.mean_loads.map_or(f64::NAN, |loads| loads.shaft_power_watt);
         let cells: Vec<String> = numbers.map(|n| format!("{n:e}")).collect();
         // writing to a string cannot fail
-        let _ = writeln!(text, "{},{}", cells.join(","), t.iterations);
+        let _ = writeln!(text, "{},{},{power:e}", cells.join(","), t.iterations);
     }
     text
 }

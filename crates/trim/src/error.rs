@@ -1,19 +1,20 @@
 //! The errors of this crate.
 
-/// The last few residuals, for a message.
+/// All residuals, for a message: a search has few, and where it got stuck is seen from its beginning.
 fn show(history: &[f64]) -> String {
     if history.is_empty() {
         return "none".to_owned();
     }
-    let tail = &history[history.len().saturating_sub(6)..];
-    let shown: Vec<String> = tail.iter().map(|r| format!("{r:.1e}")).collect();
+    let shown: Vec<String> = history.iter().map(|r| format!("{r:.1e}")).collect();
     shown.join(" ")
 }
 
 /// The most thrust of a search, for a message.
 fn most(reached: f64, theta0_deg: f64) -> String {
     if reached > 0.0 {
-        format!("the most that was reached is {reached:.4} at theta0 {theta0_deg:.2} deg")
+        format!(
+            "the most that was met on the way, trimmed or not, is {reached:.4} at theta0 {theta0_deg:.2} deg"
+        )
     } else {
         "and not one periodic response was found on the way".to_owned()
     }
@@ -87,11 +88,11 @@ pub enum TrimError {
     },
     /// Sections that never stall give a thrust that no aerofoil gives.
     #[error(
-        "C_T/sigma {wanted:.4} asks a mean lift coefficient of {lift_coefficient:.2} of the sections, which stall near {largest}: the trim found with attached flow (residuals {}) is none. Remedy: lower the thrust, or give aerofoil tables, which stall",
+        "C_T/sigma {wanted:.4} asks a mean lift coefficient of {lift_coefficient:.2} of the sections, which stall near {largest}: what was found with attached flow (residuals {}) is no flight. Remedy: lower the thrust (with prescribed controls the collective), or give aerofoil tables, which stall",
         show(.history)
     )]
     BeyondStall {
-        /// Thrust asked for, `C_T / sigma`.
+        /// Thrust asked for, or reached with prescribed controls, `C_T / sigma`.
         wanted: f64,
         /// Mean lift coefficient it takes.
         lift_coefficient: f64,

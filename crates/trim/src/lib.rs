@@ -1,16 +1,19 @@
 //! Rotor and vehicle equilibrium over the aeroelastic response.
 
 mod balance;
+mod coupling;
 mod error;
 mod solve;
 mod vehicle;
 mod wake;
+mod wake_response;
 
 pub use balance::{TrimTarget, imbalance};
 pub use error::TrimError;
 pub use solve::{TrimSettings, TrimSolution, mean_lift_coefficient, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
 pub use wake::{WakeOutcome, WakeTrim, WakeTrimSettings, WakeUpdate, trim_in_free_wake};
+pub use wake_response::{WakeDifference, WakeDifferenceSettings, wake_difference};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -73,9 +73,24 @@ pub fn mean_lift_coefficient(ct_sigma: f64, advance_ratio: f64) -> f64 {
     6.0 * ct_sigma / (1.0 + 1.5 * advance_ratio * advance_ratio)
 }
 
+/// Responses without a periodic motion after which a search among sections that stall gives up.
+const MOST_LOST: usize = 8;
+
+/// Whether sections that stall have left the blade without a periodic motion.
+fn is_lost(error: &TrimError) -> bool {
+    matches!(
+        error,
+        TrimError::Response(
+            ResponseError::PeriodicStall(_) | ResponseError::StallNotPeriodic { .. }
+        )
+    )
+}
+
 /// What a search has seen.
 #[derive(Debug, Default)]
 struct Progress {
+    /// Responses that had no periodic motion for stall.
+    lost: usize,
     /// Largest residual of every iterate.
     history: Vec<f64>,
     /// Largest thrust of an iterate, as `C_T / sigma`, and its collective.
@@ -252,7 +267,24 @@ impl Problem<'_> {
         let mut progress = Progress::default();
         let found = self.search(solver, settings, start, &mut progress);
         let model = solver.rotor().model();
+        let solidity = model.solidity();
+        let within_stall = |ct_sigma: f64, trimmed: TrimSolution| {
+            let lift_coefficient =
+                mean_lift_coefficient(ct_sigma.abs(), self.balance.advance_ratio);
+            if !model.nonlinear.is_linear() || lift_coefficient <= LARGEST_LIFT_COEFFICIENT {
+                return Ok(trimmed);
+            }
+            Err(TrimError::BeyondStall {
+                wanted: ct_sigma,
+                lift_coefficient,
+                largest: LARGEST_LIFT_COEFFICIENT,
+                history: trimmed.residual_history,
+            })
+        };
         if self.balance.unknowns == 0 {
+            let found = found.and_then(|trimmed| {
+                within_stall(trimmed.rotor.thrust_coefficient / solidity, trimmed)
+            });
             return found.map_err(|error| match error {
                 TrimError::Response(
                     cause @ (ResponseError::PeriodicStall(_)
@@ -266,18 +298,7 @@ impl Problem<'_> {
         }
         let wanted = self.balance.thrust_coefficient / model.solidity();
         match found {
-            Ok(trimmed) if model.nonlinear.is_linear() => {
-                let lift_coefficient = mean_lift_coefficient(wanted, self.balance.advance_ratio);
-                if lift_coefficient > LARGEST_LIFT_COEFFICIENT {
-                    return Err(TrimError::BeyondStall {
-                        wanted,
-                        lift_coefficient,
-                        largest: LARGEST_LIFT_COEFFICIENT,
-                        history: trimmed.residual_history,
-                    });
-                }
-                Ok(trimmed)
-            }
+            Ok(trimmed) => within_stall(wanted, trimmed),
             Err(cause)
                 if !model.nonlinear.is_linear() && progress.reached < STALLED_SHARE * wanted =>
             {
@@ -297,7 +318,7 @@ impl Problem<'_> {
                 .rotor()
                 .likely_resonance(progress.last_theta0_rad)
                 .map_or(cause, TrimError::Response)),
-            found => found,
+            Err(cause) => Err(cause),
         }
     }
 
@@ -342,20 +363,22 @@ impl Problem<'_> {
                 let history = progress.history.clone();
                 return Err(Self::out_of_reach(limited, x[limited], iteration, history));
             }
-            let no_descent = || TrimError::NoDescent {
+            let theta0_deg = self.balance.state(&x).0.theta0_rad.to_degrees();
+            let no_descent = |progress: &Progress| TrimError::NoDescent {
                 iteration,
                 residual,
                 history: progress.history.clone(),
-                theta0_deg: self.balance.state(&x).0.theta0_rad.to_degrees(),
+                theta0_deg,
             };
             if stalls && progress.stands_still() {
-                return Err(no_descent());
+                return Err(no_descent(progress));
             }
-            let Some((step, new)) = self.descend(solver, &x, &(step * part), &current)? else {
+            let found = self.descend(solver, (&x, &(step * part)), &current, progress)?;
+            let Some((step, new)) = found else {
                 if !fresh {
                     continue;
                 }
-                return Err(no_descent());
+                return Err(no_descent(progress));
             };
             let gained = new.1.amax() <= 0.3 * residual;
             // Broyden's rank-one update; a matrix that stopped paying is computed anew
@@ -377,13 +400,13 @@ impl Problem<'_> {
 
     /// The longest of the step, its half, its quarter... that lowers the norm of the residuals;
     /// none if no part does. A part at which the rotor has no periodic response is too long too,
-    /// unless none has one: that is the response's error.
+    /// unless none has one, or sections that stall have lost it time and again: that is the response's error.
     fn descend(
         &self,
         solver: &mut RotorSolver,
-        x: &DVector<f64>,
-        step: &DVector<f64>,
+        (x, step): (&DVector<f64>, &DVector<f64>),
         current: &(RotorSolution, DVector<f64>),
+        progress: &mut Progress,
     ) -> Result<Option<Descent>, TrimError> {
         let norm = current.1.norm();
         let mut failure = None;
@@ -392,7 +415,13 @@ impl Problem<'_> {
             match self.evaluate(solver, &(x + &step), Some(&current.0)) {
                 Ok(new) if new.1.norm() < norm => return Ok(Some((step, new))),
                 Ok(_) => failure = None,
-                Err(error) => failure = Some(error),
+                Err(error) => {
+                    progress.lost += usize::from(is_lost(&error));
+                    if progress.lost >= MOST_LOST {
+                        return Err(error);
+                    }
+                    failure = Some(error);
+                }
             }
         }
         failure.map_or(Ok(None), Err)

@@ -16,7 +16,9 @@ mod blade_loads;
 mod control;
 mod discovery;
 mod hinge;
+mod hover_torque;
 mod inflow;
+mod joints;
 mod moderate;
 mod moderate_blades;
 mod rotor;
@@ -25,6 +27,7 @@ mod section;
 mod section_beyond;
 mod section_compressible;
 mod study;
+mod study_work;
 mod time_elements;
 mod trim_reference;
 mod trimmed;
@@ -32,6 +35,7 @@ mod wake;
 mod wake_flight;
 mod wake_hover;
 mod wake_measured;
+mod wake_trim;
 
 pub use check::{Area, Check, Criterion, Repeatability, Row};
 pub use error::CheckError;
@@ -52,9 +56,12 @@ pub const AREAS: &[Area] = &[
     wake_hover::AREA,
     wake_flight::AREA,
     wake_measured::AREA,
+    wake_trim::AREA,
     rotor::AREA,
     rotor_details::AREA,
     blade_loads::AREA,
+    joints::AREA,
+    hover_torque::AREA,
     trimmed::AREA,
     actuator::AREA,
     actuator_stages::AREA,

@@ -324,7 +324,7 @@ fn bending_gap(flap_modes: usize) -> Result<f64, CheckError> {
     let mut solver = RotorSolver::new(rotor, 0.3, ResponseTolerances::default())?;
     let solution = solver.solve(&condition, &PRESCRIBED, None)?;
     let loads = solver.station_loads(&condition, &solution, &[0.0])?;
-    let [summed, curved] = [&loads[0].equations, &loads[0].curvature];
+    let [summed, curved] = [&loads[0].moments, &loads[0].curvature];
     let [summed, curved] = [summed, curved].map(|history| history.harmonics[0].harmonic(3));
     let gap = (summed.cosine - curved.cosine).hypot(summed.sine - curved.sine);
     Ok(gap / summed.amplitude())

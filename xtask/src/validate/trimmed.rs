@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::TorsionTerms;
 use rotor_response::{
-    Couplings, Discretisation, PowerBalance, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+    Condition, Couplings, Discretisation, FlapMass, PowerBalance, ResponseTolerances, Rotor,
+    RotorModel, RotorSolver, TrailingEdgeFlap,
 };
 use rotor_wake::LinearInflow;
 use trim::{TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
@@ -58,8 +60,9 @@ pub(super) const AREA: Area = Area {
             id: "V-TRIM-06",
             quantity: "power of air, damping, shaft and pitch control on the trimmed orbit, mu 0.30, \
                        default discretisation, unsteady sections, couplings Full (in its own order: the \
-                       axial force works on no foreshortening, the couple stands along the straight \
-                       blade) and Moderate (all terms): larger sum over the shaft's",
+                       foreshortening neither carries a section round nor lets a force work on it, the \
+                       couple stands along the straight blade) and Moderate (all terms), torque as on the \
+                       hub: larger sum over the shaft's",
             unit: "-",
             source: "conservation of energy",
             criterion: Criterion::AtMost(1e-5),
@@ -94,6 +97,16 @@ pub(super) const AREA: Area = Area {
             criterion: Criterion::AtLeast(2e-5),
             repeatability: Repeatability::Everywhere,
             measure: power_without_a_part,
+        },
+        Check {
+            id: "V-TRIM-10",
+            quantity: "the same with flaps that weigh beside the blade and move at 3/rev, controls of the \
+                       trim held, Full and Moderate: larger sum over the shaft's",
+            unit: "-",
+            source: "conservation of energy",
+            criterion: Criterion::AtMost(1e-5),
+            repeatability: Repeatability::Everywhere,
+            measure: power_beside_the_blade,
         },
         Check {
             id: "V-TRIM-05",
@@ -159,6 +172,32 @@ fn trimmed_power() -> Result<f64, CheckError> {
     let default = ResponseTolerances::default().periodicity;
     let imbalances =
         COUPLINGS().map(|couplings| Ok(power(couplings, 8, default)?.imbalance().abs()));
+    worst("couplings", 2, imbalances)
+}
+
+/// On the orbit that flaps beside the blade leave, the controls of the trim held.
+fn power_beside_the_blade() -> Result<f64, CheckError> {
+    let imbalances = COUPLINGS().map(|couplings| {
+        let flaps = TrailingEdgeFlap::paper_case()
+            .map(|flap| TrailingEdgeFlap { mass: FlapMass::AddedToBlade, ..flap });
+        let model = RotorModel { couplings, flaps: flaps.to_vec(), ..RotorModel::paper_case() };
+        let rotor = Rotor::new(model, &paper_blade(1.0)?, Discretisation::default())?;
+        let tolerances = ResponseTolerances::default();
+        let mut solver = RotorSolver::new(Arc::new(rotor), 0.3, tolerances)?;
+        let (inflow, settings) = (LinearInflow::Drees, TrimSettings::default());
+        let trimmed = trim(&mut solver, &inflow, 0.3, &LEVEL(), &settings, None)?;
+        let mut angle = HarmonicSeries::zero(3);
+        angle.set_harmonic(3, Harmonic { cosine: 0.03, sine: 0.02 });
+        let condition = Condition {
+            bank_rad: trimmed.attitude.roll_rad,
+            flight: trimmed.flight,
+            controls: trimmed.controls,
+            flap_angles_rad: vec![angle.clone(), angle],
+        };
+        let moved = solver.solve(&condition, &inflow, Some(&trimmed.rotor))?;
+        let of = |power: PowerBalance| power.imbalance().abs();
+        Ok(of(trimmed.rotor.power).max(of(moved.power)))
+    });
     worst("couplings", 2, imbalances)
 }
 

@@ -493,3 +493,49 @@ fn a_loop_that_goes_to_and_fro_over_its_limits_ends_between() {
     assert!((u[0] - 1.6).abs() < 1e-4 && (u[1] - 1.2).abs() < 1e-4, "{u:?}");
     assert_eq!(run.steps[1].leave, StepLeave::Limits, "the way back raises the cost, and says why");
 }
+
+/// Two flaps whose limits move with the control of the other one: the optimum within them turns by a quarter about
+/// one volt each, and a little farther out each time.
+struct Turning(LinearPlant);
+
+impl Plant for Turning {
+    type Error = Infallible;
+
+    fn layout(&self) -> &ControlLayout {
+        self.0.layout()
+    }
+
+    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
+        self.0.measure(control_volt)
+    }
+
+    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Infallible> {
+        self.0.strokes_deg(control_volt)
+    }
+
+    fn stroke_limits_deg(&self) -> Vec<f64> {
+        self.0.stroke_limits_deg()
+    }
+
+    fn limits(&mut self, u: &[f64]) -> Result<ControlLimits, Infallible> {
+        let [first, second] = [u[0].hypot(u[1]), u[2].hypot(u[3])];
+        let limits = [1.0 + 1.05 * (second - 1.0), 1.0 - 1.05 * (first - 1.0)];
+        let limits = limits.map(|limit| limit.clamp(0.5, 1.5)).to_vec();
+        Ok(ControlLimits::none(self.layout()).with_amplitudes_volt(limits).unwrap())
+    }
+}
+
+#[test]
+fn a_loop_that_runs_round_in_its_limits_ends_in_the_middle() {
+    let t = DMatrix::identity(4, 4);
+    let problem = Problem::new(2, &[3], t, &[-8.0, 0.0, -6.0, 0.0]);
+    let settings = FeedbackSettings { max_steps: 60, ..FeedbackSettings::default() };
+    let controller =
+        FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings).unwrap();
+    let run = controller.run_constrained(&mut Turning(problem.plant), 0.0).unwrap();
+    let u = &run.last().control_volt;
+    println!("{:?} after {} steps: {u:?}", run.outcome, run.steps.len());
+    // within a thousandth of limits that move a step back need not be
+    assert_ne!(run.outcome, Outcome::StepLimit);
+    assert!((u[0] - 1.0).abs() < 1e-3 && (u[2] - 1.0).abs() < 1e-3, "{u:?}");
+}

@@ -1,10 +1,10 @@
 //! What is said of the causes that a search has found: verdict, confidence, doubts.
 
-use super::decide::Search;
+use super::decide::{Notes, Search};
 use super::fit::Fitted;
 use super::gain::gain;
 use super::judge::{drift, parameters};
-use super::{Confidence, Finding, Found, Screened, Simulator, Verdict};
+use super::{Compared, Confidence, Finding, Found, Screened, Simulator, StandsOut, Verdict};
 use crate::{GapError, Scale};
 
 /// Relative spread from which on the name is wrong.
@@ -18,6 +18,9 @@ const DRIFTING: f64 = 0.25;
 const DRIFT_COSTS: [f64; 2] = [0.06, 0.15];
 /// Share of the misfit above the floor below which something else than the names is missing too.
 const LEAST_SHARE: f64 = 0.6;
+/// Times the energy that the worst surrogate leaves on an experiment, beyond which that experiment stands
+/// out alone.
+const RUN_MARGIN: f64 = 4.0;
 /// Misfit over the floor, in floors, from which that share means anything.
 const STANDS_OUT: f64 = 0.5;
 
@@ -28,30 +31,19 @@ impl<S: Simulator> Search<'_, S> {
         current: &Fitted,
         singles: &[Option<Fitted>],
         single_drops: Vec<Option<f64>>,
-        mut reasons: Vec<String>,
+        notes: Notes,
     ) -> Result<Finding, GapError> {
         let settings = self.discovery.settings;
+        let Notes { mut reasons, is_alike_to_refuted } = notes;
         let before = self.generic.along(self.evidence, &self.base.residual);
         let after = self.generic.along(self.evidence, &current.residual);
-        let mut causes = Vec::new();
-        for at in 0..chosen.len() {
-            let place = self.alternatives(chosen, at, current, singles)?;
-            causes.push(Found {
-                candidate: chosen[at],
-                parameters: parameters(self.discovery, self.evidence, current, at, &place.rest),
-                drop: place.drop,
-                output_drop: self.output_drop(&place.rest, current),
-                held_out_drop: self.held_out_drop(&place.rest, current),
-                alternatives: place.alternatives,
-                rivals: place.rivals,
-            });
-        }
+        let mut causes = self.found(chosen, current, singles)?;
         let drop = self.base.cost - current.cost;
         let lack = (after - self.generic.threshold).max(0.0);
         let explained = if drop > 0.0 { drop / (drop + lack) } else { 0.0 };
         let ambiguous = causes.iter().any(|c| !c.alternatives.is_empty());
         let (found, worst_drift) = self.doubts(current);
-        let mut doubts = !found.is_empty();
+        let mut doubts = !found.is_empty() || is_alike_to_refuted;
         reasons.extend(found);
         if chosen.is_empty() {
             doubts = false;
@@ -70,16 +62,29 @@ impl<S: Simulator> Search<'_, S> {
                 100.0 * whole
             ));
         }
-        let wrong_name = explained < 0.5 || worst_drift > WRONG_NAME;
+        let gain = gain(self.evidence, &self.base, current, settings.resamplings);
+        let [least, most] = if chosen.is_empty() { [1.0; 2] } else { gain.drop_ci95 };
+        let (gains, gains_surely) = (most > 0.0, least > 0.0);
+        if !gains {
+            reasons.push("the extended model is worse where it is held out".into());
+        } else if !gains_surely {
+            reasons.push("held out it may gain nothing: the name is tentative".into());
+        }
+        let wrong_name =
+            !gains || explained < 0.5 || whole < LEAST_SHARE || worst_drift > WRONG_NAME;
         if wrong_name && !chosen.is_empty() && before <= self.generic.threshold {
             reasons.push("what is left is within the floor: the name is dropped".into());
             let base = self.base.clone();
-            let mut finding = self.conclude(&[], &base, singles, single_drops, reasons)?;
+            let notes = Notes { reasons, is_alike_to_refuted };
+            let mut finding = self.conclude(&[], &base, singles, single_drops, notes)?;
             finding.confidence = Confidence::Tentative;
             return Ok(finding);
         }
-        let verdict = if chosen.is_empty() {
-            self.nothing_named(before, &mut reasons)
+        let standing_out = self.standing_out();
+        let verdict = if chosen.is_empty() && is_alike_to_refuted {
+            Verdict::Unknown
+        } else if chosen.is_empty() {
+            self.nothing_named(before, &standing_out, &mut reasons)
         } else if wrong_name {
             Verdict::Unknown
         } else if ambiguous {
@@ -90,14 +95,12 @@ impl<S: Simulator> Search<'_, S> {
             Verdict::Named
         };
         let strong = causes.iter().all(|c| c.drop > STRONG * self.screened[c.candidate].threshold);
-        // a cause whose own signal was not measured may stand for any other slow or scaling error
-        let guessed = causes.iter().flat_map(|c| &c.parameters).find_map(|p| p.needs);
-        if let Some(needs) = guessed {
-            reasons.push(format!("without {needs} a name that needs it is tentative"));
-        }
+        let tentative = self.tentative(&causes);
+        let named_surely = strong && tentative.is_empty() && gains_surely;
+        reasons.extend(tentative);
         let sure = match verdict {
             Verdict::NothingMissing => settings.has_reference,
-            Verdict::Named => settings.has_reference && strong && guessed.is_none(),
+            Verdict::Named => settings.has_reference && named_surely,
             _ => false,
         };
         let confidence = if sure { Confidence::Confident } else { Confidence::Tentative };
@@ -111,10 +114,46 @@ impl<S: Simulator> Search<'_, S> {
             screen: self.screened.clone(),
             single_drops,
             excess: [before, after],
-            gain: gain(self.evidence, &self.base, current, settings.resamplings),
+            gain,
+            structure_remains: doubts,
+            standing_out,
             residual_before: self.base.cleaned(self.evidence),
             residual_after: current.cleaned(self.evidence),
         })
+    }
+
+    /// Every chosen cause with what was found about it.
+    fn found(
+        &self,
+        chosen: &[usize],
+        current: &Fitted,
+        singles: &[Option<Fitted>],
+    ) -> Result<Vec<Found>, GapError> {
+        let one = |at: usize| {
+            let place = self.alternatives(chosen, at, current, singles)?;
+            Ok(Found {
+                candidate: chosen[at],
+                parameters: parameters(self.discovery, self.evidence, current, at, &place.rest)?,
+                drop: place.drop,
+                output_drop: self.output_drop(&place.rest, current),
+                held_out_drop: self.held_out_drop(&place.rest, current),
+                alternatives: place.alternatives,
+                rivals: place.rivals,
+                compared: place.compared,
+            })
+        };
+        (0..chosen.len()).map(one).collect()
+    }
+
+    /// Why the names of these causes are tentative, if they are.
+    fn tentative(&self, causes: &[Found]) -> Vec<String> {
+        // a cause whose own signal was not measured may stand for any other slow or scaling error
+        let guessed = causes.iter().flat_map(|c| &c.parameters).find_map(|p| p.needs);
+        let guessed =
+            guessed.map(|needs| format!("without {needs} a name that needs it is tentative"));
+        let not_excluded = causes.iter().find_map(|found| self.not_excluded(found));
+        let open_ended = causes.iter().find_map(|found| self.open_ended(found));
+        [guessed, not_excluded, open_ended].into_iter().flatten().collect()
     }
 
     /// What speaks against the parameters of fitted effects: ends of ranges, drift from experiment to
@@ -153,6 +192,38 @@ impl<S: Simulator> Search<'_, S> {
         (doubts, worst)
     }
 
+    /// What is said of a cause whose closest rival is less likely, but not excluded.
+    fn not_excluded(&self, found: &Found) -> Option<String> {
+        let listed = |c: &Compared| found.alternatives.iter().any(|a| a.candidate == c.candidate);
+        let mut near = found.compared.iter().filter(|c| c.is_near() && !listed(c));
+        near.next().map(|other| {
+            let how = if other.is_open() { "is not excluded" } else { "is excluded by little" };
+            format!(
+                "{} explains {:.0} noise units less than {} and {how}: {:.0} would exclude it",
+                self.id(other.candidate),
+                other.behind,
+                self.id(found.candidate),
+                other.told_apart_beyond
+            )
+        })
+    }
+
+    /// What is said of a parameter whose interval reaches an end of its range: an effect of such a kind was
+    /// seen by one of its sides, as a mode far above the runs by its tail.
+    fn open_ended(&self, found: &Found) -> Option<String> {
+        let id = self.id(found.candidate);
+        let parameters = &self.discovery.candidates[found.candidate].cause.parameters;
+        let own = found.parameters.iter().zip(parameters).filter(|p| !p.0.is_shape);
+        own.filter(|(value, parameter)| parameter.is_open_ended(value.ci95))
+            .map(|(value, _)| {
+                format!(
+                    "{} of {id} is not determined: its interval reaches an end of its range, the name is tentative",
+                    value.name
+                )
+            })
+            .next()
+    }
+
     /// Share of the misfit above the floor that a fit takes away; 1 where nothing stands out. The floor
     /// is what noise and the worst surrogate leave.
     fn share_of_excess(&self, current: &Fitted) -> f64 {
@@ -163,11 +234,38 @@ impl<S: Simulator> Search<'_, S> {
         if before > STANDS_OUT * floor { (drop / before).min(1.0) } else { 1.0 }
     }
 
-    fn nothing_named(&self, excess: f64, reasons: &mut Vec<String>) -> Verdict {
+    /// Experiments whose own misfit lies above their own floor: one run far out is lost among many.
+    fn standing_out(&self) -> Vec<StandsOut> {
+        let left = self.base.cleaned(self.evidence);
+        let excess = self.evidence.excess_by_experiment(&left);
+        let floors: Vec<Vec<f64>> =
+            self.discovery.structures.iter().map(|s| self.evidence.by_experiment(s)).collect();
+        let own = |(experiment, (excess, error)): (usize, (f64, f64))| {
+            let floor = floors.iter().map(|f| f[experiment]).fold(0.0, f64::max);
+            let most = RUN_MARGIN * floor + self.discovery.settings.noise_deviations * error;
+            let times = (excess / floor.max(error)).max(0.0).sqrt();
+            (excess > most).then_some(StandsOut { experiment, times })
+        };
+        excess.into_iter().enumerate().filter_map(own).collect()
+    }
+
+    fn nothing_named(
+        &self,
+        excess: f64,
+        alone: &[StandsOut],
+        reasons: &mut Vec<String>,
+    ) -> Verdict {
         let threshold = self.generic.threshold;
         if excess > threshold {
             reasons.push(format!(
                 "{excess:.0} noise units of structure are missing, {threshold:.0} would be the floor, and no known cause explains them"
+            ));
+            return Verdict::Unknown;
+        }
+        if !alone.is_empty() {
+            reasons.push(format!(
+                "{} of the runs are missed by more than any surrogate is there: what is missing is not in all of them alike",
+                alone.len()
             ));
             return Verdict::Unknown;
         }

@@ -2,9 +2,10 @@
 
 use super::evidence::{Evidence, Seen, difference};
 use super::fit::{Fitted, Fitter};
-use super::judge::{Generic, paired};
+use super::gain::held_out_residual;
+use super::judge::{Generic, paired, parameters};
 use super::screen::screen;
-use super::{Discovery, Finding, Rival, Screened, Simulator};
+use super::{Alternative, Compared, Discovery, Finding, Rival, Screened, Simulator};
 use crate::{Effect, GapError};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
@@ -46,7 +47,7 @@ pub(super) fn refit<S: Simulator>(
         }
     }
     let none = vec![None; discovery.candidates.len()];
-    search.conclude(&chosen, &current, &none, none.iter().map(|_| None).collect(), Vec::new())
+    search.conclude(&chosen, &current, &none, none.iter().map(|_| None).collect(), Notes::default())
 }
 
 impl<'a, S: Simulator> Search<'a, S> {
@@ -76,14 +77,25 @@ impl<'a, S: Simulator> Search<'a, S> {
     }
 }
 
+/// What a search noted on its way.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    /// Why it took each decision.
+    pub(super) reasons: Vec<String>,
+    /// Whether what is missing looks most like a cause that cannot be there.
+    pub(super) is_alike_to_refuted: bool,
+}
+
 /// One of the causes found, taken out and looked at again.
 pub(super) struct Place {
     /// The fit without it.
     pub(super) rest: Fitted,
-    /// The candidates that do about as well in its place, best first.
-    pub(super) alternatives: Vec<usize>,
-    /// It and those, as fitted.
+    /// The candidates as likely in its place, best first.
+    pub(super) alternatives: Vec<Alternative>,
+    /// It and those that cannot be excluded, as fitted.
     pub(super) rivals: Vec<Rival>,
+    /// Everything fitted in its place, least behind first.
+    pub(super) compared: Vec<Compared>,
     pub(super) drop: f64,
 }
 
@@ -111,7 +123,7 @@ pub(super) struct Search<'a, S> {
 
 impl<S: Simulator> Search<'_, S> {
     fn run(self) -> Result<Finding, GapError> {
-        let mut reasons = Vec::new();
+        let mut notes = Notes::default();
         let singles = self.fits_after(&self.base, &[], 0.0)?;
         let single_drops: Vec<Option<f64>> =
             singles.iter().map(|f| f.as_ref().map(|f| self.base.cost - f.cost)).collect();
@@ -119,9 +131,18 @@ impl<S: Simulator> Search<'_, S> {
         let mut chosen: Vec<usize> = Vec::new();
         let mut fits = singles.clone();
         while chosen.len() < self.discovery.settings.most_causes {
-            let Some((candidate, next)) = self.best_of(&current, &fits) else { break };
-            if let Err(reason) = self.enters(&current, candidate, &next) {
-                reasons.push(reason);
+            let (candidate, next) = match self.next(&current, &fits) {
+                None => break,
+                Some(Err(reason)) => {
+                    notes.reasons.push(reason);
+                    break;
+                }
+                Some(Ok(next)) => next,
+            };
+            if let Some(why) = &self.discovery.candidates[candidate].refuted {
+                let id = self.id(candidate);
+                notes.reasons.push(format!("what is missing looks most like {id}, but {why}"));
+                notes.is_alike_to_refuted = true;
                 break;
             }
             chosen.push(candidate);
@@ -135,7 +156,11 @@ impl<S: Simulator> Search<'_, S> {
             }
         }
         self.check_backward(&mut chosen, &mut current)?;
-        self.conclude(&chosen, &current, &singles, single_drops, reasons)
+        self.conclude(&chosen, &current, &singles, single_drops, notes)
+    }
+
+    fn is_refuted(&self, candidate: usize) -> bool {
+        self.discovery.candidates[candidate].refuted.is_some()
     }
 
     fn allowed(&self, candidate: usize) -> bool {
@@ -164,20 +189,45 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     fn penalty(&self, candidate: usize) -> f64 {
-        let free = self.discovery.candidates[candidate].cause.parameters.len() as f64;
-        self.discovery.settings.parameter_penalty * free
+        let parameters = &self.discovery.candidates[candidate].cause.parameters;
+        let free = parameters.iter().filter(|p| p.held.is_none()).count();
+        self.discovery.settings.parameter_penalty * free as f64
     }
 
-    /// The candidate with the largest drop, its parameters paid for.
-    fn best_of(&self, current: &Fitted, fits: &[Option<Fitted>]) -> Option<(usize, Fitted)> {
+    /// The candidate with the largest drop of a kind, its parameters paid for, of some of them.
+    fn best_by(
+        &self,
+        fits: &[Option<Fitted>],
+        drop: impl Fn(&Fitted) -> f64,
+        of: impl Fn(usize, &Fitted) -> bool,
+    ) -> Option<(usize, Fitted)> {
         fits.iter()
             .enumerate()
             .filter_map(|(c, f)| f.as_ref().map(|f| (c, f)))
+            .filter(|&(c, f)| of(c, f))
             .max_by(|a, b| {
-                let worth = |x: &(usize, &Fitted)| current.cost - x.1.cost - self.penalty(x.0);
+                let worth = |x: &(usize, &Fitted)| drop(x.1) - self.penalty(x.0);
                 worth(a).total_cmp(&worth(b))
             })
             .map(|(c, f)| (c, f.clone()))
+    }
+
+    /// The candidate that enters next. Whether one does is decided within the chain alone; which one it is,
+    /// by everything that was measured.
+    fn next(
+        &self,
+        current: &Fitted,
+        fits: &[Option<Fitted>],
+    ) -> Option<Result<(usize, Fitted), String>> {
+        let shown = self.best_by(fits, |f| self.proven_drop(current, f), |_, _| true)?;
+        let next = self.enters(current, shown.0, &shown.1).and_then(|_| {
+            let shows = |c: usize, f: &Fitted| {
+                self.proven_drop(current, f) - self.penalty(c) >= self.threshold_after(current, c)
+            };
+            let best = self.best_by(fits, |f| current.cost - f.cost, shows).unwrap_or(shown);
+            self.enters(current, best.0, &best.1).map(|_| best)
+        });
+        Some(next)
     }
 
     pub(super) fn id(&self, candidate: usize) -> &'static str {
@@ -186,13 +236,12 @@ impl<S: Simulator> Search<'_, S> {
 
     /// Both keys: the drop exceeds what surrogates reach, and most of it shows where it is held out.
     fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, String> {
-        let drop = current.cost - next.cost - self.penalty(candidate);
-        let before = self.output_drop(&self.base, current);
-        let threshold = self.screened[candidate].threshold + NEXT_SHARE * before;
+        let drop = self.proven_drop(current, next) - self.penalty(candidate);
+        let threshold = self.threshold_after(current, candidate);
         let id = self.id(candidate);
         if drop < threshold {
             return Err(format!(
-                "{id} would explain most, {drop:.0} noise units, within the {threshold:.0} that surrogates with nothing missing can reach"
+                "{id} would explain most, {drop:.0} noise units in the chain, within the {threshold:.0} that surrogates with nothing missing can reach"
             ));
         }
         let held_out = self.held_out_drop(current, next);
@@ -211,6 +260,19 @@ impl<S: Simulator> Search<'_, S> {
         Ok(held_out)
     }
 
+    /// What a candidate after those of `current` must take off the misfit.
+    fn threshold_after(&self, current: &Fitted, candidate: usize) -> f64 {
+        let before = self.output_drop(&self.base, current);
+        self.screened[candidate].threshold + NEXT_SHARE * before
+    }
+
+    /// What a fit takes off the misfit within the chain. A thermometer that warms or a load cell that feels
+    /// a load shows that an agent is there, not that it does anything.
+    fn proven_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
+        let around = |f: &Fitted| self.evidence.of_circumstances(&f.residual);
+        before.cost - after.cost - (around(before) - around(after))
+    }
+
     /// What a fit takes off the misfit of the outputs. A further channel shows a cause directly: it says
     /// nothing about the form of its effect on the output, which is what a next cause may mend.
     pub(super) fn output_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
@@ -219,9 +281,16 @@ impl<S: Simulator> Search<'_, S> {
         drop.max(0.0)
     }
 
+    /// The same as the drop within the chain, every experiment predicted by a fit that has not seen it.
     pub(super) fn held_out_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
         let sum = |f: &Fitted| f.held_out(self.evidence).iter().sum::<f64>();
-        sum(before) - sum(after)
+        let drop = sum(before) - sum(after);
+        if self.evidence.has_circumstances() {
+            let around =
+                |f: &Fitted| self.evidence.of_circumstances(&held_out_residual(self.evidence, f));
+            return drop - (around(before) - around(after));
+        }
+        drop
     }
 
     /// Effects without one of them.
@@ -259,7 +328,9 @@ impl<S: Simulator> Search<'_, S> {
     fn swap(&self, chosen: &mut [usize], current: &mut Fitted) -> Result<(), GapError> {
         for at in 0..chosen.len() {
             let place = self.taken_out(chosen, at, current)?;
-            if let Some((candidate, found)) = self.best_of(&place.rest, &place.fits) {
+            let drop = |f: &Fitted| place.rest.cost - f.cost;
+            let may_be = |c: usize, _: &Fitted| !self.is_refuted(c);
+            if let Some((candidate, found)) = self.best_by(&place.fits, drop, may_be) {
                 let better = current.cost - found.cost
                     > self.discovery.settings.separation + self.penalty(candidate)
                         - self.penalty(chosen[at]);
@@ -329,24 +400,35 @@ impl<S: Simulator> Search<'_, S> {
         let drop = rest.cost - current.cost;
         let margin =
             self.discovery.settings.separation + FORM_ERROR * self.output_drop(rest, current);
-        let mut close: Vec<(f64, &Fitted, usize)> = Vec::new();
+        let mut compared: Vec<(Compared, &Fitted)> = Vec::new();
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
             let behind = fit.cost - current.cost + penalty;
             let (_, error) = paired(self.evidence, fit, current);
             let open = margin + self.swayed(fit, current);
-            if behind < open || (behind < 2.0 * error && behind < 0.2 * drop) {
-                close.push((behind, fit, candidate));
-            }
+            let told_apart_beyond = open.max((2.0 * error).min(0.2 * drop));
+            compared.push((Compared { candidate, behind, told_apart_beyond }, fit));
         }
-        close.sort_by(|a, b| a.0.total_cmp(&b.0));
+        compared.sort_by(|a, b| a.0.behind.total_cmp(&b.0.behind));
+        let may_be = |c: &&(Compared, &Fitted)| !self.is_refuted(c.0.candidate);
+        let open = compared.iter().filter(|c| c.0.is_open()).filter(may_be);
         let own = std::iter::once((current, chosen[at]));
         let rivals = own
-            .chain(close.iter().map(|c| (c.1, c.2)))
+            .chain(open.map(|c| (c.1, c.0.candidate)))
             .map(|(fit, candidate)| Rival::of(self.evidence, fit, candidate))
             .collect();
-        let alternatives = close.into_iter().map(|c| c.2).collect();
-        Ok(Place { rest: rest.clone(), alternatives, rivals, drop })
+        let likely = compared.iter().filter(|c| c.0.is_as_likely()).filter(may_be);
+        let alternatives = likely
+            .map(|(c, fit)| {
+                // a candidate fitted in the place of another stands last
+                let last = fit.effects.len() - 1;
+                let parameters = parameters(self.discovery, self.evidence, fit, last, rest)?;
+                Ok(Alternative { candidate: c.candidate, parameters })
+            })
+            .collect::<Result<_, GapError>>()?;
+        let compared: Vec<Compared> = compared.iter().map(|c| c.0).collect();
+        let drop = self.proven_drop(rest, current);
+        Ok(Place { rest: rest.clone(), alternatives, rivals, compared, drop })
     }
 }

@@ -1,6 +1,6 @@
 //! Sums of squares with the nuisance projected out.
 
-use super::Trace;
+use super::{Trace, TraceRole};
 use crate::GapError;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -41,6 +41,8 @@ pub(crate) struct Seen<'s> {
 
 /// Rows that are multiplied together: with the nuisance they stay in a second-level cache.
 const ROWS: usize = 512;
+/// Relative error of the noise of a channel, taken from its differences.
+const NOISE_DOUBT: f64 = 0.05;
 
 /// The traces with their nuisance factorised, for all experiments and with each fold left out.
 #[derive(Debug, Clone)]
@@ -167,7 +169,7 @@ impl<'a> Evidence<'a> {
     pub(crate) fn output_energy(&self) -> f64 {
         self.traces
             .iter()
-            .filter(|t| t.is_output)
+            .filter(|t| t.role == TraceRole::Output)
             .map(|t| {
                 let mean = t.measured.iter().sum::<f64>() / t.measured.len().max(1) as f64;
                 t.measured.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (t.sigma * t.sigma)
@@ -175,24 +177,60 @@ impl<'a> Evidence<'a> {
             .sum()
     }
 
-    /// Sum of squares of a residual over the noise on the channels beside the output, which no nuisance
-    /// touches: part of every cost.
-    pub(crate) fn beside_output(&self, residual: &[Vec<f64>]) -> f64 {
+    /// Sum of squares of a residual over what it weighs with, on the channels of some roles.
+    fn energy_of(&self, residual: &[Vec<f64>], counts: impl Fn(TraceRole) -> bool) -> f64 {
         self.traces
             .iter()
             .zip(residual)
-            .filter(|(t, _)| !t.is_output)
+            .filter(|(t, _)| counts(t.role))
             .map(|(t, r)| r.iter().map(|x| x * x).sum::<f64>() / (t.sigma * t.sigma))
             .sum()
+    }
+
+    /// The channels beside the output, which no nuisance touches: part of every cost.
+    pub(crate) fn beside_output(&self, residual: &[Vec<f64>]) -> f64 {
+        self.energy_of(residual, |role| role != TraceRole::Output)
+    }
+
+    /// The part of [`Self::beside_output`] of what surrounds the chain.
+    pub(crate) fn of_circumstances(&self, residual: &[Vec<f64>]) -> f64 {
+        self.energy_of(residual, |role| role == TraceRole::Circumstance)
+    }
+
+    /// Whether something around the chain was measured.
+    pub(crate) fn has_circumstances(&self) -> bool {
+        self.traces.iter().any(|t| t.role == TraceRole::Circumstance)
     }
 
     /// Sum of squares of the outputs that noise alone would leave, over what they weigh with.
     pub(crate) fn noise_energy(&self) -> f64 {
         self.traces
             .iter()
-            .filter(|t| t.is_output)
+            .filter(|t| t.role == TraceRole::Output)
             .map(|t| t.measured.len() as f64 * (t.noise / t.sigma).powi(2))
             .sum()
+    }
+
+    /// Sum of squares of a signal on the outputs over what they weigh with, experiment by experiment.
+    pub(crate) fn by_experiment(&self, signal: &[Vec<f64>]) -> Vec<f64> {
+        let mut all = vec![0.0; self.experiments];
+        for (t, r) in self.traces.iter().zip(signal).filter(|(t, _)| t.role == TraceRole::Output) {
+            all[t.experiment] += r.iter().map(|x| x * x).sum::<f64>() / (t.sigma * t.sigma);
+        }
+        all
+    }
+
+    /// The same of a residual less what noise alone would leave, with the standard error of that.
+    pub(crate) fn excess_by_experiment(&self, residual: &[Vec<f64>]) -> Vec<(f64, f64)> {
+        let mut all: Vec<(f64, f64)> =
+            self.by_experiment(residual).into_iter().map(|energy| (energy, 0.0)).collect();
+        for t in self.traces.iter().filter(|t| t.role == TraceRole::Output) {
+            let (share, n) = ((t.noise / t.sigma).powi(2), t.measured.len() as f64);
+            let own = &mut all[t.experiment];
+            own.0 -= n * share;
+            own.1 = own.1.hypot(share * (2.0 * n).sqrt() + NOISE_DOUBT * n * share);
+        }
+        all
     }
 
     /// Products of columns, experiment by experiment.

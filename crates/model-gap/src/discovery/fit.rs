@@ -102,6 +102,7 @@ impl<S: Simulator> Fitter<'_, S> {
             .iter()
             .enumerate()
             .flat_map(|(e, effect)| (0..effect.values.len()).map(move |p| (e, p)))
+            .filter(|&at| self.parameter(&effects, at).held.is_none())
             .collect();
         let mut residual = self.residual(&effects)?;
         let mut cost = self.cost_of(&residual);

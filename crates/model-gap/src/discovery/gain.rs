@@ -1,8 +1,9 @@
 //! What the extension is worth on data not used for it.
 
-use super::Signal;
 use super::evidence::{Evidence, Products, difference};
 use super::fit::Fitted;
+use super::judge::student_975;
+use super::{Signal, TraceRole};
 use crate::resampling::{NoiseDraw, SplitMix};
 use rayon::prelude::*;
 
@@ -26,8 +27,6 @@ type Block = (f64, f64, f64);
 
 /// Draws of the noise; the interval takes the quantile of Student's distribution for as many.
 const DRAWS: u64 = 40;
-/// Quantile 0.975 of Student's distribution with 39 degrees of freedom.
-const STUDENT: f64 = 2.023;
 
 /// The gain of an extended model with both intervals.
 pub(crate) fn gain(
@@ -40,7 +39,7 @@ pub(crate) fn gain(
     let after = held_out_residual(evidence, extended);
     let mut experiments: Vec<Vec<Block>> = vec![Vec::new(); evidence.experiments];
     for (number, trace) in evidence.traces.iter().enumerate() {
-        if !trace.is_output {
+        if trace.role != TraceRole::Output {
             continue;
         }
         let pairs = before[number].chunks(trace.block).zip(after[number].chunks(trace.block));
@@ -108,7 +107,8 @@ fn repeated(
         .collect();
     let mean = drops.iter().sum::<f64>() / drops.len() as f64;
     let square: f64 = drops.iter().map(|d| (d - mean).powi(2)).sum();
-    let spread = STUDENT * (square / (drops.len() as f64 - 1.0)).sqrt();
+    let spread =
+        student_975(drops.len() as f64 - 1.0) * (square / (drops.len() as f64 - 1.0)).sqrt();
     let drop = output_rms(evidence, held_out.0, &[]) - output_rms(evidence, held_out.1, &[]);
     [drop - spread, drop + spread]
 }
@@ -116,7 +116,8 @@ fn repeated(
 /// RMS of the sum of two signals on the outputs; the second may be missing.
 fn output_rms(evidence: &Evidence<'_>, a: &Signal, b: &[Vec<f64>]) -> f64 {
     let (mut square, mut count) = (0.0, 0.0);
-    for (number, _) in evidence.traces.iter().enumerate().filter(|(_, t)| t.is_output) {
+    let outputs = evidence.traces.iter().enumerate().filter(|(_, t)| t.role == TraceRole::Output);
+    for (number, _) in outputs {
         square += match b.get(number) {
             Some(b) => a[number].iter().zip(b).map(|(a, b)| (a + b).powi(2)).sum::<f64>(),
             None => a[number].iter().map(|a| a * a).sum(),

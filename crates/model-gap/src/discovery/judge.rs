@@ -1,9 +1,10 @@
 //! The open set: what is left, whether parameters hold still, how well they are known.
 
 use super::FittedParameter;
-use super::evidence::{Evidence, Products, Seen, difference};
+use super::evidence::{Evidence, Products, Seen, difference, residual};
 use super::fit::Fitted;
-use super::{Discovery, Signal};
+use super::{Discovery, Signal, Simulator};
+use crate::GapError;
 use nalgebra::{DMatrix, DVector};
 
 /// Factor on the energy that surrogates leave along the directions without a name.
@@ -122,21 +123,28 @@ pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize)
 ///
 /// ```text
 /// s_k' = s_k - the other slopes and the nuisance projected out
-/// form_k = F <e, s_k'> / |s_k'|^2,   structure_k = rms over surrogates z of <z, s_k'> / |s_k'|^2
+/// form_k = F <e, s_k'> / |s_k'|^2,   structure_k = q rms over surrogates z of <z, s_k'> / |s_k'|^2
+/// held_k = <h, s_k'> / |s_k'|^2
 /// ```
 /// `e` is what the effect adds to the rest. No model of a cause is exact: what it lacks is taken to be
-/// along its own effect by a part `F` of it ([`crate::Cause::form_error`]), and each parameter moves as it would have to. What the
-/// base model leaves of a surrogate with nothing missing moves a parameter likewise.
-fn shifts<S>(
+/// along its own effect by a part `F` of it ([`crate::Cause::form_error`]), and each parameter moves as it would have to. `h` is what a standard
+/// deviation of a parameter that is held adds. What the
+/// base model leaves of a surrogate with nothing missing moves a parameter likewise; `q` is Student's quantile
+/// for so many surrogates over the normal one, because a few draws tell a spread badly.
+fn shifts<S: Simulator>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
     fitted: &Fitted,
+    effect: usize,
     rest: &Fitted,
-    form_error: f64,
-) -> Option<DVector<f64>> {
+) -> Result<Option<DVector<f64>>, GapError> {
+    let cause = &discovery.candidates[fitted.effects[effect].candidate].cause;
     let added = difference(&rest.residual, &fitted.residual);
-    let others = 1 + discovery.structures.len();
+    let held = held_shifts(discovery, evidence, fitted, effect)?;
+    let first = 1 + held.len();
+    let others = first + discovery.structures.len();
     let columns: Vec<&[Vec<f64>]> = std::iter::once(added.as_slice())
+        .chain(held.iter().map(Vec::as_slice))
         .chain(discovery.structures.iter().map(Vec::as_slice))
         .chain(fitted.slopes.iter().map(Vec::as_slice))
         .collect();
@@ -149,25 +157,69 @@ fn shifts<S>(
         normal[(i, i)] += ridge;
     }
     // regression on all slopes at once: each coefficient is <., s'> / |s'|^2
-    let moved = normal.cholesky()?.solve(&gram.view((others, 0), (n, others)).clone_owned());
-    let surrogates = (others - 1).max(1) as f64;
-    Some(DVector::from_fn(n, |k, _| {
-        let structure: f64 = (1..others).map(|c| moved[(k, c)].powi(2)).sum::<f64>() / surrogates;
-        (form_error * moved[(k, 0)]).powi(2) + structure
-    }))
+    let right = gram.view((others, 0), (n, others)).clone_owned();
+    let Some(moved) = normal.cholesky().map(|c| c.solve(&right)) else { return Ok(None) };
+    let surrogates = discovery.structures.len().max(1) as f64;
+    let few = student_975(surrogates) / NORMAL_975;
+    Ok(Some(DVector::from_fn(n, |k, _| {
+        let sum =
+            |columns: std::ops::Range<usize>| columns.map(|c| moved[(k, c)].powi(2)).sum::<f64>();
+        (cause.form_error * moved[(k, 0)]).powi(2)
+            + sum(1..first)
+            + few * few * sum(first..others) / surrogates
+    })))
+}
+
+/// Quantile 0.975 of the normal distribution.
+const NORMAL_975: f64 = 1.959_963_985;
+
+/// Quantile 0.975 of Student's distribution, by the first terms of its expansion about the normal one: right to
+/// 4e-3 from five degrees of freedom on. Source: M. Abramowitz and I. A. Stegun, *Handbook of Mathematical
+/// Functions*, 26.7.5.
+pub(crate) fn student_975(degrees: f64) -> f64 {
+    let z = NORMAL_975;
+    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
+    z + (z3 + z) / (4.0 * degrees)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * degrees.powi(2))
+        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * degrees.powi(3))
+}
+
+/// What a standard deviation of each parameter that is held does to the residual.
+fn held_shifts<S: Simulator>(
+    discovery: &Discovery<'_, S>,
+    evidence: &Evidence<'_>,
+    fitted: &Fitted,
+    effect: usize,
+) -> Result<Vec<Signal>, GapError> {
+    let own = &fitted.effects[effect];
+    let parameters = &discovery.candidates[own.candidate].cause.parameters;
+    let mut shifts = Vec::new();
+    for (p, parameter) in parameters.iter().enumerate() {
+        if let Some(std) = parameter.held {
+            let mut effects = fitted.effects.clone();
+            let x = parameter.coordinate(own.values[p]);
+            effects[effect].values[p] = parameter.value(x + std);
+            let moved = residual(evidence.traces, &discovery.simulator.predict(&effects)?);
+            shifts.push(difference(&moved, &fitted.residual));
+        }
+    }
+    Ok(shifts)
 }
 
 /// Values with 95 % intervals of the parameters of effect `effect`; `rest` is the fit without it.
-pub(crate) fn parameters<S>(
+///
+/// # Errors
+/// As [`Simulator::predict`].
+pub(crate) fn parameters<S: Simulator>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
     fitted: &Fitted,
     effect: usize,
     rest: &Fitted,
-) -> Vec<FittedParameter> {
+) -> Result<Vec<FittedParameter>, GapError> {
     let own = &fitted.effects[effect];
     let cause = &discovery.candidates[own.candidate].cause;
-    let shifts = shifts(discovery, evidence, fitted, rest, cause.form_error);
+    let shifts = shifts(discovery, evidence, fitted, effect, rest)?;
     let gram = evidence.projected(&fitted.products);
     let n = fitted.free.len();
     let mut normal = gram.view((1, 1), (n, n)).clone_owned();
@@ -176,7 +228,7 @@ pub(crate) fn parameters<S>(
         normal[(i, i)] += ridge;
     }
     let covariance = normal.cholesky().map(|c| c.inverse());
-    cause
+    let fitted = cause
         .parameters
         .iter()
         .enumerate()
@@ -203,7 +255,8 @@ pub(crate) fn parameters<S>(
                 needs: parameter.needs,
             }
         })
-        .collect()
+        .collect();
+    Ok(fitted)
 }
 
 /// Drop of the misfit from one fit to another, with its standard error over the blocks.
@@ -238,4 +291,17 @@ pub(crate) fn unmoved(columns: usize) -> DVector<f64> {
         *first = 1.0;
     }
     shift
+}
+
+#[cfg(test)]
+mod tests {
+    use super::student_975;
+
+    /// Against the printed table (Abramowitz and Stegun, table 26.10).
+    #[test]
+    fn students_quantile_is_that_of_the_table() {
+        for (degrees, quantile) in [(5.0, 2.571), (10.0, 2.228), (39.0, 2.023)] {
+            assert!((student_975(degrees) - quantile).abs() < 4e-3, "{degrees}");
+        }
+    }
 }

@@ -14,8 +14,10 @@ mod verdict;
 pub use gain::Gain;
 pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
-pub use trace::{Simulator, Trace};
-pub use verdict::{Confidence, Finding, FittedParameter, Found, Verdict};
+pub use trace::{Simulator, Trace, TraceRole};
+pub use verdict::{
+    Alternative, Compared, Confidence, Finding, FittedParameter, Found, StandsOut, Verdict,
+};
 
 use crate::{Candidate, GapError};
 use evidence::Evidence;

@@ -27,8 +27,21 @@ pub struct Trace {
     pub nuisance: DMatrix<f64>,
     /// Samples per block of the bootstrap: at least one period.
     pub block: usize,
-    /// Whether this is the output whose error counts (or a further channel, such as a monitor).
-    pub is_output: bool,
+    /// What it says of a cause.
+    pub role: TraceRole,
+}
+
+/// What a measured signal says of a cause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TraceRole {
+    /// The output, whose error counts.
+    Output,
+    /// A signal within the chain, such as the voltage at the terminals or a second sensor: a cause that
+    /// shows there acts on the output.
+    Witness,
+    /// What surrounds the chain, such as a temperature or a load. It tells how much of an agent there is,
+    /// not what the agent does: a cause that shows nowhere else is not shown.
+    Circumstance,
 }
 
 /// What predicts every trace under given effects.

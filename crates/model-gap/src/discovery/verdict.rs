@@ -63,9 +63,66 @@ pub struct Found {
     /// The same where it was held out, by experiment.
     pub held_out_drop: f64,
     /// The candidates that explain the same data about as well, best first, itself left out.
-    pub alternatives: Vec<usize>,
-    /// It and its alternatives, as fitted: what a further experiment has to tell apart.
+    pub alternatives: Vec<Alternative>,
+    /// It and every candidate that cannot be excluded, as fitted: what a further experiment has to tell
+    /// apart.
     pub rivals: Vec<Rival>,
+    /// How far behind it every other candidate fitted in its place stays, least first.
+    pub compared: Vec<Compared>,
+}
+
+/// An experiment that the base model misses by more than any surrogate there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StandsOut {
+    /// Its number, from 0.
+    pub experiment: usize,
+    /// What it leaves, in amplitude, over what the worst surrogate or the doubt of the noise leaves.
+    pub times: f64,
+}
+
+/// A candidate as likely as the one found, in its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alternative {
+    /// Position among the candidates.
+    pub candidate: usize,
+    /// Its parameters, were it the one.
+    pub parameters: Vec<FittedParameter>,
+}
+
+/// Another candidate fitted in the place of the one found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compared {
+    /// Position among the candidates.
+    pub candidate: usize,
+    /// Misfit that it leaves beyond that of the one found, parameters paid for; in units of the noise
+    /// variance.
+    pub behind: f64,
+    /// What it would have to be behind by to be told apart: noise, errors of form, and structure of the
+    /// base model could turn less round.
+    pub told_apart_beyond: f64,
+}
+
+/// Part of what tells two causes apart within which the other one is as likely.
+const AS_LIKELY: f64 = 0.5;
+/// Times what tells two causes apart that the other one must be behind by for a sure name: what
+/// surrogates can do is known from five of them.
+const SURELY: f64 = 1.25;
+
+impl Compared {
+    /// Whether it cannot be excluded.
+    pub fn is_open(&self) -> bool {
+        self.behind < self.told_apart_beyond
+    }
+
+    /// Whether it is too close for a sure name.
+    pub fn is_near(&self) -> bool {
+        self.behind < SURELY * self.told_apart_beyond
+    }
+
+    /// Whether it is so close that it belongs to the answer.
+    pub fn is_as_likely(&self) -> bool {
+        self.behind < AS_LIKELY * self.told_apart_beyond
+    }
 }
 
 /// Everything found.
@@ -79,6 +136,10 @@ pub struct Finding {
     pub causes: Vec<Found>,
     /// The effects as fitted together.
     pub effects: Vec<Effect>,
+    /// Whether the causes named leave structure that they do not explain.
+    pub structure_remains: bool,
+    /// Experiments whose own misfit to the base model lies above their own floor.
+    pub standing_out: Vec<StandsOut>,
     /// Why the verdict is what it is, in order of the decisions.
     pub reasons: Vec<String>,
     /// The screening, candidate by candidate.

@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn a_sound_actuator_raises_none() {
         let mut model = sound();
-        let limit = Saturation { v_min_volt: -20.0, v_max_volt: 150.0 };
+        let limit = Saturation::sharp(-20.0, 150.0);
         model.amplifier.push(AmplifierStage::Saturation(limit));
         model.linkage.push(LinkageStage::Backlash(Backlash { width_um: 5.0 }));
         model.linkage.push(LinkageStage::LoadStiffness(LoadStiffness {
@@ -257,7 +257,7 @@ mod tests {
     fn limits_thresholds_and_gaps_act_inside_the_range() {
         let amplifier = |stage| only(&ActuatorModel { amplifier: vec![stage], ..sound() });
         let limits = |v_min_volt, v_max_volt| {
-            amplifier(AmplifierStage::Saturation(Saturation { v_min_volt, v_max_volt }))
+            amplifier(AmplifierStage::Saturation(Saturation::sharp(v_min_volt, v_max_volt)))
         };
         assert_eq!(limits(-200.0, 400.0), ("amplifier[0]".into(), Weight::Unlikely));
         assert_eq!(limits(160.0, 400.0), ("amplifier[0]".into(), Weight::Impossible));

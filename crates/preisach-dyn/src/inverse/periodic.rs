@@ -111,8 +111,9 @@ impl ActuatorModel {
             return None;
         };
         let range = self.range_volt;
-        let low = range.lowest_volt().max(limits.v_min_volt);
-        let high = range.highest_volt().min(limits.v_max_volt);
+        let (low, high) = limits.reached_volt();
+        let low = range.lowest_volt().max(low);
+        let high = range.highest_volt().min(high);
         if low <= range.lowest_volt() && high >= range.highest_volt() {
             return None;
         }

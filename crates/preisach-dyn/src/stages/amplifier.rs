@@ -72,9 +72,12 @@ impl Step for CurrentStep {
 /// Voltage limits of the amplifier.
 ///
 /// ```text
-/// V = max(v_min, min(v_max, u))
+/// V = max(v_min, min(v_max, u)),   within a knee w of a limit
+/// V = u - (u - (v_max - w))^2 / 4w  at the upper one, likewise at the lower one
 /// ```
-/// Limits beyond the command's are the identity. Source: elementary.
+/// An output stage runs out of gain before it runs out of supply: over the knee the slope `dV/du` falls
+/// from 1 to 0 on a straight line, and the limit is reached at `u = v_max + w`. With `w = 0` it is a
+/// sharp corner. Limits beyond the command's by the knee are the identity. Source: elementary.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Saturation {
@@ -82,15 +85,36 @@ pub struct Saturation {
     pub v_min_volt: f64,
     /// Highest voltage, V, above the lowest.
     pub v_max_volt: f64,
+    /// Half-width of the knee at both limits in the command, V: `>= 0`, at most half the distance
+    /// between the limits; 0 if left out.
+    #[serde(default)]
+    pub knee_volt: f64,
 }
 
 impl Saturation {
+    /// Limits with sharp corners, V.
+    pub fn sharp(v_min_volt: f64, v_max_volt: f64) -> Self {
+        Self { v_min_volt, v_max_volt, knee_volt: 0.0 }
+    }
+
     pub(super) fn check(&self) -> Result<(), PreisachError> {
-        crate::VoltageRange::new(self.v_min_volt, self.v_max_volt).map(|_| ())
+        crate::VoltageRange::new(self.v_min_volt, self.v_max_volt)?;
+        let most = 0.5 * (self.v_max_volt - self.v_min_volt);
+        let (quantity, value) = ("knee_volt", self.knee_volt);
+        if (0.0..=most).contains(&value) {
+            Ok(())
+        } else {
+            Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most })
+        }
+    }
+
+    /// The commands beyond which nothing changes any more, V.
+    pub(crate) fn reached_volt(&self) -> (f64, f64) {
+        (self.v_min_volt - self.knee_volt, self.v_max_volt + self.knee_volt)
     }
 
     pub(super) fn prepared(&self) -> SaturationStep {
-        SaturationStep { low: self.v_min_volt, high: self.v_max_volt }
+        SaturationStep { low: self.v_min_volt, high: self.v_max_volt, knee: self.knee_volt }
     }
 }
 
@@ -98,18 +122,39 @@ impl Saturation {
 pub(crate) struct SaturationStep {
     low: f64,
     high: f64,
+    knee: f64,
+}
+
+impl SaturationStep {
+    /// What is lost of a command that goes beyond the start of a knee.
+    #[inline]
+    fn lost(&self, beyond: f64) -> f64 {
+        if beyond > 0.0 { beyond * beyond / (4.0 * self.knee) } else { 0.0 }
+    }
+
+    #[inline]
+    fn limited(&self, input: f64) -> f64 {
+        let (above, below) = (input - (self.high - self.knee), (self.low + self.knee) - input);
+        if above >= 2.0 * self.knee {
+            self.high
+        } else if below >= 2.0 * self.knee {
+            self.low
+        } else {
+            input - self.lost(above) + self.lost(below)
+        }
+    }
 }
 
 impl Step for SaturationStep {
     type Memory = ();
 
     fn start(&self, input: f64) -> ((), f64) {
-        ((), input.clamp(self.low, self.high))
+        ((), self.limited(input))
     }
 
     #[inline]
     fn advance(&self, (): &mut (), input: f64) -> f64 {
-        input.clamp(self.low, self.high)
+        self.limited(input)
     }
 }
 

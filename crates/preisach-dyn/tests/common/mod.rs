@@ -230,7 +230,7 @@ pub(crate) fn effects() -> Vec<ActuatorModel> {
     vec![
         amplifier(AmplifierStage::Lag(Lag { tau_s: 2e-3 })),
         amplifier(AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: 2e3 })),
-        amplifier(AmplifierStage::Saturation(Saturation { v_min_volt: -5.0, v_max_volt: 120.0 })),
+        amplifier(AmplifierStage::Saturation(Saturation::sharp(-5.0, 120.0))),
         amplifier(AmplifierStage::Delay(Delay { delay_s: 1.7e-3 })),
         amplifier(AmplifierStage::DielectricHeating(DielectricHeating::new(0.2, 2e-3))),
         amplifier(AmplifierStage::Depolarisation(Depolarisation {

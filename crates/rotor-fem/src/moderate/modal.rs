@@ -1,9 +1,9 @@
 //! The moderately deflected blade in modal coordinates, its axial motion condensed.
 //!
 //! ```text
-//! u_x = T0 / EA - (v_x^2 + w_x^2) / 2 - k_A^2 (th_x phi_x + phi_x^2 / 2) + e_A kappa_z
+//! u_x = T0 / EA - q/2 - q^2/8 - k_A^2 (th_x phi_x + phi_x^2 / 2) + e_A kappa_z
 //! ```
-//! The stretch is that of the steady tension T0; everything else of the axial motion follows from
+//! with `q = v_x^2 + w_x^2`. The stretch is that of the steady tension T0; everything else of the axial motion follows from
 //! bending and twist, exactly and with its rates. The tension is then what axial equilibrium asks for,
 //! and acts on the derivative of the right side: centrifugal stiffening, Coriolis tension, the tension's
 //! part of torsion and the moment of an offset tension axis come out of one expression.
@@ -464,8 +464,11 @@ impl Section {
         let k = Curvatures::new(state.pitch[0], 0.0, s);
         let [sin, cos] = [k.z.gradient[at::W_XX], k.z.gradient[at::V_XX]];
         let bending = two * t1 * (s1[at::W_XX] * cos - s1[at::V_XX] * sin) - t1 * t1 * k.z.value;
-        let squares = s1[at::V_X] * s1[at::V_X]
-            + s1[at::W_X] * s1[at::W_X]
+        let (v_x, w_x) = (s[at::V_X], s[at::W_X]);
+        let growth = T::one() + T::from_real(0.5) * (v_x * v_x + w_x * w_x);
+        let turn = v_x * s1[at::V_X] + w_x * s1[at::W_X];
+        let squares = growth * (s1[at::V_X] * s1[at::V_X] + s1[at::W_X] * s1[at::W_X])
+            + turn * turn
             + ka_2 * s1[at::PHI_X] * s1[at::PHI_X];
         [
             T::from_real(self.stretch) - e.value,

@@ -90,6 +90,18 @@ impl ModalBlade {
     }
 }
 
+/// Derivative of `q/2 + q^2/8`, `q = v_x^2 + w_x^2`, in the two slopes with two rates: `(v_x, w_x) (1 + q/2)`.
+fn turning_shortens([s, s1, s2]: &[[f64; STRAIN_VARIABLES]; 3]) -> [[f64; 2]; 3] {
+    let [a, b, c] = [s, s1, s2].map(|part| [part[at::V_X], part[at::W_X]]);
+    let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+    let growth = [1.0 + 0.5 * dot(a, a), dot(a, b), dot(b, b) + dot(a, c)];
+    [
+        a.map(|slope| slope * growth[0]),
+        [0, 1].map(|k| b[k] * growth[0] + a[k] * growth[1]),
+        [0, 1].map(|k| c[k] * growth[0] + 2.0 * b[k] * growth[1] + a[k] * growth[2]),
+    ]
+}
+
 /// Derivative of the shortening per length in a mode's coordinate, with its two rates.
 fn shortening(
     stiffness: &SectionStiffness,
@@ -110,12 +122,13 @@ fn shortening(
         ahead(s1) - t1 * k.z.value,
         ahead(s2) - 2.0 * t1 * along(s1) - t2 * k.z.value - t1 * t1 * k.y.value,
     ];
+    let turning = turning_shortens(&station.strain);
     let pretwist = [stiffness.twist_rate, 0.0, 0.0];
     let ([_, v_x, v_xx], [_, w_x, w_xx], [phi, phi_x]) = (shape.lag, shape.flap, shape.twist);
     std::array::from_fn(|n| {
         let part = &station.strain[n];
-        part[at::V_X] * v_x
-            + part[at::W_X] * w_x
+        turning[n][0] * v_x
+            + turning[n][1] * w_x
             + stiffness.area_radius_squared * (pretwist[n] + part[at::PHI_X]) * phi_x
             - stiffness.tension_centre * (lag[n] * v_xx + flap[n] * w_xx + twist[n] * phi)
     })

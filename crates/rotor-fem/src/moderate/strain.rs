@@ -83,8 +83,11 @@ impl SectionStiffness {
     /// Strain of the tension centre's fibre, with the shortening by twist.
     ///
     /// ```text
-    /// e = u_x + (v_x^2 + w_x^2) / 2 + k_A^2 (th_x phi_x + phi_x^2 / 2) - e_A kappa_z
+    /// e = u_x + q/2 + q^2/8 + k_A^2 (th_x phi_x + phi_x^2 / 2) - e_A kappa_z
     /// ```
+    /// with `q = v_x^2 + w_x^2`: the foreshortening of a blade that turns by a finite angle, `1 - sqrt(1 - q)`, to fourth order. The
+    /// centrifugal stiffness of a hinge close to the shaft is the small difference `e` of two terms of the size of the
+    /// radius, and `q^2` is not small beside it.
     pub(crate) fn stretch<T: Scalar>(
         &self,
         theta_rad: f64,
@@ -96,10 +99,13 @@ impl SectionStiffness {
         let bending = Curvatures::new(theta_rad, self.bending_twist, s).z;
         let mut gradient = bending.gradient.map(|g| -ea * g);
         gradient[at::U_X] += T::one();
-        gradient[at::V_X] += v_x;
-        gradient[at::W_X] += w_x;
+        let q = v_x * v_x + w_x * w_x;
+        let growth = T::one() + half * q;
+        gradient[at::V_X] += v_x * growth;
+        gradient[at::W_X] += w_x * growth;
         gradient[at::PHI_X] += ka_2 * (twist_rate + phi_x);
-        let value = s[at::U_X] + half * (v_x * v_x + w_x * w_x) - ea * bending.value
+        let value = s[at::U_X] + half * q * (T::one() + T::from_real(0.25) * q)
+            - ea * bending.value
             + ka_2 * phi_x * (twist_rate + half * phi_x);
         Measure { value, gradient }
     }
@@ -176,8 +182,11 @@ impl SectionStiffness {
     ) -> SMatrix<f64, STRAIN_VARIABLES, STRAIN_VARIABLES> {
         let k = Curvatures::new(theta_rad, self.bending_twist, s);
         let mut out = SMatrix::zeros();
-        out[(at::V_X, at::V_X)] = n;
-        out[(at::W_X, at::W_X)] = n;
+        let (v_x, w_x) = (s[at::V_X], s[at::W_X]);
+        let growth = 1.0 + 0.5 * (v_x * v_x + w_x * w_x);
+        out[(at::V_X, at::V_X)] = n * (growth + v_x * v_x);
+        out[(at::W_X, at::W_X)] = n * (growth + w_x * w_x);
+        add_pair(&mut out, (at::V_X, at::W_X), n * v_x * w_x);
         out[(at::PHI_X, at::PHI_X)] = n * self.area_radius_squared;
         add_rotation(&mut out, -n * self.tension_centre, &k.z, &k.y.gradient);
         out

@@ -34,7 +34,50 @@ impl FlightAir {
     }
 }
 
+/// One lag of a station for its stability: rate and gains on lift and moment at every point, shares of the first
+/// two inputs.
+#[derive(Debug, Clone)]
+pub(crate) struct StationChannel {
+    pub(crate) rates: Vec<f64>,
+    pub(crate) input: [f64; 2],
+    pub(crate) gains: Vec<[f64; 2]>,
+}
+
+impl FlightAir {
+    /// The lags of every lifting station, and none of those with finer azimuth points.
+    ///
+    /// `None` over tables and where sections stall dynamically: settled lags are all that is known there.
+    pub(crate) fn channels(&self) -> Option<Vec<Vec<StationChannel>>> {
+        let beyond = |air: &StationAir| air.tables.is_some() || air.stall.is_some();
+        if self.stations.iter().any(|station| beyond(&station.air)) {
+            return None;
+        }
+        let of = |station: &super::Station| match &station.fine {
+            None => station.air.channels(),
+            Some(_) => Vec::new(),
+        };
+        Some(self.stations.iter().map(of).collect())
+    }
+}
+
 impl StationAir {
+    fn channels(&self) -> Vec<StationChannel> {
+        let points = self.prompt.len();
+        let of = |lag: &super::StationLag| {
+            let mut gains = vec![[0.0; 2]; points];
+            for (output, along) in lag.gains.iter().filter(|(output, _)| *output < 2) {
+                for (gain, value) in gains.iter_mut().zip(along) {
+                    gain[*output] += value;
+                }
+            }
+            let input = [lag.input[0], lag.input[1]];
+            let nothing = |pair: &[f64; 2]| pair.iter().all(|v| v.abs() == 0.0);
+            let idle = nothing(&input) || gains.iter().all(nothing);
+            (!idle).then(|| StationChannel { rates: lag.rates.clone(), input, gains })
+        };
+        self.lags.iter().filter_map(of).collect()
+    }
+
     fn memory(&self) -> Option<StationMemory> {
         let points = self.prompt.len();
         let zero = || DMatrix::zeros(points, points);

@@ -99,6 +99,12 @@ impl BladeLines {
         worst
     }
 
+    /// Chord at the tip if the wake leaves at the trailing edge, 0 if at the line, unit `R`.
+    pub(crate) fn chord(&self) -> f64 {
+        let tip = self.nodes - 1;
+        norm(sub(self.edges[tip], self.points[tip])) / 0.75
+    }
+
     /// Number of azimuths.
     pub fn azimuths(&self) -> usize {
         self.points.len() / self.nodes

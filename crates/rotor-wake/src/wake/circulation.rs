@@ -57,6 +57,36 @@ impl CirculationMap {
         Self::new(panels, vec![value; azimuths * panels])
     }
 
+    /// Elliptic along the span, of a thrust coefficient and without rolling moment.
+    ///
+    /// ```text
+    /// Gamma = G sqrt((r - r_0) (1 - r)) (1 - b sin psi),      b: sum of r (r + mu sin psi) sin psi Gamma vanishes
+    /// ```
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); none for a rotor.
+    pub fn elliptic(
+        rotor: &WakeRotor,
+        azimuths: usize,
+        thrust_coefficient: f64,
+        advance_ratio: f64,
+    ) -> Result<Self, WakeError> {
+        let (stations, widths, root) = (rotor.stations(), rotor.widths(), rotor.nodes()[0]);
+        let shape: Vec<f64> = stations.iter().map(|r| ((r - root) * (1.0 - r)).sqrt()).collect();
+        let moment = |power: i32| -> f64 {
+            let terms = stations.iter().zip(&widths).zip(&shape);
+            terms.map(|((r, dr), gamma)| r.powi(power) * gamma * dr).sum()
+        };
+        let balance = advance_ratio * moment(1) / moment(2);
+        let of = |scale: f64| {
+            Self::from_fn(azimuths, shape.len(), |i, s| {
+                let sin = (std::f64::consts::TAU * i as f64 / azimuths as f64).sin();
+                scale * shape[s] * (1.0 - balance * sin)
+            })
+        };
+        of(thrust_coefficient / of(1.0)?.thrust_coefficient(rotor, advance_ratio))
+    }
+
     /// Number of azimuths.
     pub fn azimuths(&self) -> usize {
         self.values.len() / self.panels

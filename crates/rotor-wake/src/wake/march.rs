@@ -59,18 +59,36 @@ impl FreeWake {
         count: usize,
         circulation: &CirculationMap,
     ) -> Result<f64, WakeError> {
+        self.carry_on_in_part(method, count, circulation, 1.0)
+    }
+
+    /// The same of which the nodes go a part of the way, 0 to 1: of each sweep, or once after the revolutions. Returns the
+    /// last RMS displacement of the whole way.
+    ///
+    /// # Errors
+    /// As [`carry_on`](Self::carry_on).
+    pub fn carry_on_in_part(
+        &mut self,
+        method: WakeMethod,
+        count: usize,
+        circulation: &CirculationMap,
+        part: f64,
+    ) -> Result<f64, WakeError> {
         let mut displacement = f64::INFINITY;
         match method {
             WakeMethod::Relaxed => {
                 for _ in 0..count {
-                    displacement = self.sweep(circulation)?;
+                    displacement = self.sweep_in_part(circulation, part)?;
                 }
             }
             WakeMethod::Marched => {
                 let mut march = WakeMarch::new(self.clone());
                 let outcome = march.revolutions(count, circulation);
-                *self = march.wake;
+                let before = std::mem::replace(self, march.wake);
                 displacement = outcome?.last().copied().unwrap_or(displacement);
+                if part < 1.0 {
+                    self.draw_back(&before, part);
+                }
             }
         }
         Ok(displacement)
@@ -203,6 +221,8 @@ impl WakeMarch {
             settings: &wake.settings,
             roll_up: &roll_up,
             circulation,
+            advance_ratio: wake.flight.advance_ratio,
+            chord: wake.lines.chord(),
             turn: self.turn(),
             young: &wake.young_lengths(),
         };

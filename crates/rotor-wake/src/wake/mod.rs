@@ -7,6 +7,7 @@ mod free_wake;
 mod inflow_map;
 mod influence;
 mod march;
+mod passage;
 mod placement;
 mod rotor;
 mod settings;
@@ -21,9 +22,10 @@ pub use free_wake::{FreeWake, WakeFilament};
 pub use inflow_map::InflowMap;
 pub use influence::{FrozenWake, LineInduction};
 pub use march::{WakeMarch, contraction_drift};
+pub use passage::{ClosestPassage, FilamentStates, SegmentState};
 pub use rotor::WakeRotor;
 pub use settings::{
     ControlPoint, CoreSettings, FarField, FarTrailers, FreeWakeSettings, NearWakeMotion,
     ReleasePoint, ShedVorticity, StrainEffect, WakeMethod, WakeSymmetry,
 };
-pub use solve::{ClosestPassage, WakeConvergence};
+pub use solve::WakeConvergence;

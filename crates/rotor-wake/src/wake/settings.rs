@@ -1,6 +1,7 @@
 //! The choices of a free wake.
 
 use crate::{CoreModel, WakeError};
+use std::f64::consts::FRAC_PI_6;
 
 /// How the trailers of the near wake travel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -134,11 +135,18 @@ pub struct CoreSettings {
     pub model: CoreModel,
     /// Core radius `r_c0` of the rolled-up vortices at release, unit `R`.
     pub radius: f64,
-    /// Core radius of near-wake trailers, shed and bound vortices, unit `R`.
+    /// Core radius, at least, with which rolled-up vortices move each other, unit `R`; 0 for their own cores. What the
+    /// blades feel keeps its own core. Vortices with cores much thinner than `0.05 R` pair without end at advance ratios
+    /// of 0.1 to 0.25, whatever the grid, and the sweeps do not settle.
+    pub mutual_radius: f64,
+    /// Core radius of near-wake trailers, shed and bound vortices, unit `R`: about a chord. The lift of a section answers
+    /// the downwash averaged over its chord, so that a lifting line that meets a vortex of less overrates it.
     pub near_radius: f64,
-    /// Core radius of the youngest trailers over the width of the panel beside them, at most: a core wider
-    /// than the panels would take the downwash away that a tip makes at itself.
+    /// Core radius of the trailers younger than [`sheet_rad`](Self::sheet_rad), which no other blade meets, over the width of
+    /// the panel beside them, at most: a core wider than the panels would take the downwash away that a blade makes at itself.
     pub panel_share: f64,
+    /// Age up to which the trailers are the sheet of their own blade, rad: no more than the blade spacing.
+    pub sheet_rad: f64,
     /// Kinematic viscosity `nu / (Omega R^2)`; 0 for no growth.
     pub viscosity: f64,
     /// Squire's coefficient `a_1` of turbulent growth.
@@ -152,8 +160,10 @@ impl Default for CoreSettings {
         Self {
             model: CoreModel::Vatistas,
             radius: 0.02,
-            near_radius: 0.02,
-            panel_share: f64::INFINITY,
+            mutual_radius: 0.05,
+            near_radius: 0.05,
+            panel_share: 0.3,
+            sheet_rad: FRAC_PI_6,
             viscosity: 1.5e-8,
             squire: 2e-4,
             strain: StrainEffect::Ignored,
@@ -237,7 +247,9 @@ impl FreeWakeSettings {
             core: CoreSettings {
                 model,
                 radius: 0.03,
-                panel_share: 0.3,
+                mutual_radius: 0.0,
+                near_radius: 0.02,
+                sheet_rad: FRAC_PI_6 / 2.0,
                 viscosity: 8.7e-8,
                 ..CoreSettings::default()
             },
@@ -252,8 +264,19 @@ impl FreeWakeSettings {
 
     /// Age steps of the near wake: at least one.
     pub fn near_steps(&self) -> usize {
+        self.steps_up_to(self.near_wake_rad)
+    }
+
+    /// Youngest age steps of the near wake, the sheet of the blade's own. The next blade is farther,
+    /// and what is older the own blade feels as from far.
+    pub fn sheet_steps(&self) -> usize {
+        self.steps_up_to(self.core.sheet_rad)
+    }
+
+    /// Age steps of an age, rounded, at least one and no more than there are.
+    fn steps_up_to(&self, age_rad: f64) -> usize {
         let (step, most) = (self.step_rad(), self.far_steps());
-        let below = |k: &usize| (*k as f64 + 0.5) * step < self.near_wake_rad;
+        let below = |k: &usize| (*k as f64 + 0.5) * step < age_rad;
         (1..most).take_while(below).count() + 1
     }
 
@@ -297,6 +320,9 @@ impl FreeWakeSettings {
             if !positive(value) || value > 0.5 {
                 return bad(quantity, value, "more than 0 and at most 0.5 R");
             }
+        }
+        if !(0.0..=0.5).contains(&core.mutual_radius) {
+            return bad("core mutual_radius", core.mutual_radius, "0 to 0.5 R");
         }
         if core.panel_share.is_nan() || core.panel_share <= 0.0 {
             return bad("core panel_share", core.panel_share, "more than 0");

@@ -13,6 +13,10 @@ const ALPHA: f64 = 1.256_43;
 /// Thinnest and thickest that strain makes a core, over its unstrained radius.
 const STRAIN_LIMITS: [f64; 2] = [0.5, 2.0];
 
+/// Speed of a section along its chord, tip speed, below which its sheet does not leave it where the free stream slows it or
+/// turns it round: it lies within some chords after the ages of a sheet. No more than the advance ratio.
+const SLOW: f64 = 0.2;
+
 /// Strength of a segment: a sum of at most four circulations `(index in the map, factor)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Terms([(u32, f64); 4]);
@@ -173,10 +177,79 @@ pub(crate) struct SourceContext<'a> {
     pub(crate) settings: &'a FreeWakeSettings,
     pub(crate) roll_up: &'a RollUp,
     pub(crate) circulation: &'a CirculationMap,
+    pub(crate) advance_ratio: f64,
+    /// Chord of the blades at the tip, unit `R`; 0 if the wake leaves at the lifting line.
+    pub(crate) chord: f64,
     /// Displacement of the wake in one turn at its free end.
     pub(crate) turn: Vec3,
     /// Length of the youngest segment of each rolled-up filament, `[filament][azimuth]`.
     pub(crate) young: &'a [Vec<f64>],
+}
+
+impl SourceContext<'_> {
+    /// Azimuth at which a blade at `azimuth` released what is `age` steps old.
+    fn release(&self, azimuth: usize, age: usize) -> usize {
+        let azimuths = self.settings.azimuths;
+        (azimuth + azimuths - age % azimuths) % azimuths
+    }
+
+    /// What the segment of filament `f` from an age to the next one carries.
+    fn rolled_up_terms(&self, f: usize, azimuth: usize, age: usize) -> Terms {
+        let releases = [age, age + 1].map(|age| self.release(azimuth, age));
+        self.roll_up.terms(f, releases, self.rotor.panels())
+    }
+
+    /// Strength of the same.
+    pub(crate) fn rolled_up_strength(&self, f: usize, azimuth: usize, age: usize) -> f64 {
+        self.rolled_up_terms(f, azimuth, age).strength(self.circulation.values())
+    }
+
+    /// Core radius of the same.
+    pub(crate) fn rolled_up_radius(
+        &self,
+        f: usize,
+        azimuth: usize,
+        age: usize,
+        ends: &[Vec3; 2],
+    ) -> f64 {
+        let strength = self.rolled_up_strength(f, azimuth, age);
+        let stretch = norm(sub(ends[1], ends[0])) / self.young[f][self.release(azimuth, age)];
+        core_radius(self.settings, age, strength, stretch)
+    }
+
+    /// What the trailer of a node carries from an age to the next one.
+    fn trailer_terms(&self, node: usize, azimuth: usize, age: usize) -> Terms {
+        let panels = self.rotor.panels();
+        let mut terms = [(0, 0.0); 4];
+        for (pair, age) in terms.chunks_exact_mut(2).zip([age, age + 1]) {
+            let at = self.release(azimuth, age) * panels;
+            if node > 0 {
+                pair[0] = narrow((at + node - 1, 0.5));
+            }
+            if node < panels {
+                pair[1] = narrow((at + node, -0.5));
+            }
+        }
+        Terms(terms)
+    }
+
+    /// Strength of the same.
+    pub(crate) fn trailer_strength(&self, node: usize, azimuth: usize, age: usize) -> f64 {
+        self.trailer_terms(node, azimuth, age).strength(self.circulation.values())
+    }
+
+    /// Core radius of the same: in the sheet of the own blade no wider than its panels ask for; but no less than a chord for
+    /// sections in slow or reverse flow, whose sheet lies on the blade.
+    pub(crate) fn trailer_radius(&self, node: usize, azimuth: usize, age: usize) -> f64 {
+        let released = self.release(azimuth, age) as f64 * self.settings.step_rad();
+        let along = self.rotor.nodes()[node] + self.advance_ratio * released.sin();
+        let near = self.settings.core.near_radius;
+        match (age < self.settings.sheet_steps(), along >= SLOW.min(self.advance_ratio)) {
+            (true, true) => young_radius(self, node),
+            (true, false) => near.max(self.chord),
+            (false, _) => near,
+        }
+    }
 }
 
 /// Segments of one instant.
@@ -195,25 +268,31 @@ impl Sources {
         let mut out = Self::default();
         for view in views {
             out.bound(view, context);
-            out.chords(view, context, |n| young_radius(context, n));
-            out.near(view, context);
-            out.far(view, context, context.settings.near_steps());
+            out.chords(view, context, |n| context.trailer_radius(n, view.azimuth, 0));
+            out.near(view, context, 0.0);
+            out.far(view, context, (context.settings.near_steps(), 0.0));
         }
         out
     }
 
     /// What the rolled-up vortices feel: lifting lines and themselves, rolled up from the blade on. The sheet
-    /// of the near wake, that rolls up around them, would lift them off their own track.
+    /// of the near wake, that rolls up around them, would lift them off their own track. Where the near wake is free, its
+    /// trailers are felt in place of the young vortices. What moves freely moves what moves freely with mutual cores.
     pub(crate) fn of_geometry(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
-        if context.settings.near_wake_motion == NearWakeMotion::Free {
-            return Self::of_loads(views, context);
-        }
+        let core = &context.settings.core;
+        let free = context.settings.near_wake_motion == NearWakeMotion::Free;
         let mut out = Self::default();
         for view in views {
             out.bound(view, context);
-            // about to roll up: as thick as what comes of them
-            out.chords(view, context, |_| context.settings.core.radius);
-            out.far(view, context, 0);
+            if free {
+                out.chords(view, context, |n| context.trailer_radius(n, view.azimuth, 0));
+                out.near(view, context, core.mutual_radius);
+                out.far(view, context, (context.settings.near_steps(), core.mutual_radius));
+            } else {
+                // about to roll up: as thick as what comes of them
+                out.chords(view, context, |_| core.radius);
+                out.far(view, context, (0, core.mutual_radius));
+            }
         }
         out
     }
@@ -287,28 +366,17 @@ impl Sources {
         }
     }
 
-    /// Trailers and shed vortices of the near wake.
-    fn near(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
+    /// Trailers and shed vortices of the near wake, with cores no thinner than `least`.
+    fn near(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>, least: f64) {
         let (settings, panels) = (context.settings, context.rotor.panels());
         let azimuths = settings.azimuths;
-        let release =
-            |age: usize| (view.azimuth + azimuths * (1 + age / azimuths) - age) % azimuths;
-        let radius = settings.core.near_radius;
+        let release = |age: usize| (view.azimuth + azimuths - age % azimuths) % azimuths;
         let steps = settings.near_steps();
         for (n, points) in view.near.iter().enumerate() {
             for k in 0..steps {
-                let mut terms = [(0, 0.0); 4];
-                for (pair, age) in terms.chunks_exact_mut(2).zip([k, k + 1]) {
-                    let at = release(age) * panels;
-                    if n > 0 {
-                        pair[0] = narrow((at + n - 1, 0.5));
-                    }
-                    if n < panels {
-                        pair[1] = narrow((at + n, -0.5));
-                    }
-                }
-                let radius = if k == 0 { young_radius(context, n) } else { radius };
-                self.push([points[k], points[k + 1]], radius, Terms(terms));
+                let radius = context.trailer_radius(n, view.azimuth, k).max(least);
+                let terms = context.trailer_terms(n, view.azimuth, k);
+                self.push([points[k], points[k + 1]], radius, terms);
             }
         }
         if settings.shed == ShedVorticity::InSections {
@@ -320,26 +388,26 @@ impl Sources {
             let older = release(k + 1) * panels;
             for s in 0..panels {
                 let ends = [view.near[s][k], view.near[s + 1][k]];
+                let radius = settings.core.near_radius.max(least);
                 self.push(ends, radius, Terms::pair((older + s, 0.5), (younger + s, -0.5)));
             }
         }
     }
 
-    /// Rolled-up filaments behind the near wake and their repeated last turn.
-    fn far(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>, first: usize) {
+    /// Rolled-up filaments from an age (steps) on and their repeated last turn, with cores no thinner than `least`.
+    fn far(
+        &mut self,
+        view: &BladeView<'_>,
+        context: &SourceContext<'_>,
+        (first, least): (usize, f64),
+    ) {
         let settings = context.settings;
         let azimuths = settings.azimuths;
-        let release = |age: usize| (view.azimuth + azimuths - age % azimuths) % azimuths;
         for (f, points) in view.far.iter().enumerate() {
             let steps = points.len() - 1;
-            let terms = |age: usize| {
-                let releases = [release(age), release(age + 1)];
-                context.roll_up.terms(f, releases, context.rotor.panels())
-            };
+            let terms = |age: usize| context.rolled_up_terms(f, view.azimuth, age);
             let radius = |age: usize, ends: &[Vec3; 2]| {
-                let strength = terms(age).strength(context.circulation.values());
-                let young = context.young[f][release(age)];
-                core_radius(settings, age, strength, norm(sub(ends[1], ends[0])) / young)
+                context.rolled_up_radius(f, view.azimuth, age, ends).max(least)
             };
             for k in first..azimuths.min(steps) {
                 let ends = [points[k], points[k + 1]];
@@ -365,7 +433,7 @@ impl Sources {
     }
 }
 
-/// Core radius of the youngest trailers of a node.
+/// Core radius of the trailers of a node while the next blade is far.
 fn young_radius(context: &SourceContext<'_>, node: usize) -> f64 {
     let nodes = context.rotor.nodes();
     let inboard = node.checked_sub(1).map(|n| nodes[node] - nodes[n]);

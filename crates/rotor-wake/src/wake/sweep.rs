@@ -57,6 +57,19 @@ impl FreeWake {
         near.chain(far).collect()
     }
 
+    /// Leaves the free nodes at a part of the way from another wake to this one.
+    pub(super) fn draw_back(&mut self, from: &Self, part: f64) {
+        let near_is_free = self.settings.near_wake_motion == NearWakeMotion::Free;
+        let Self { near, far, .. } = self;
+        let free = near.iter_mut().filter(|_| near_is_free).chain(far);
+        for (here, there) in free.zip(from.free()) {
+            for (to, from) in here.points.iter_mut().zip(&there.points) {
+                *to = add(*from, scale(sub(*to, *from), part));
+            }
+        }
+        self.place_near_wake();
+    }
+
     /// One predictor-corrector sweep; returns the RMS displacement of the free nodes, unit `R`.
     ///
     /// The predictor carries every node with the velocities of the geometry before, the corrector with a
@@ -70,6 +83,19 @@ impl FreeWake {
     /// [`WakeError::BadInput`] for a circulation of another grid; [`WakeError::WakeLost`] if a node left
     /// the numbers: the wake is then as it was before.
     pub fn sweep(&mut self, circulation: &CirculationMap) -> Result<f64, WakeError> {
+        self.sweep_in_part(circulation, 1.0)
+    }
+
+    /// A sweep of which the nodes go a part of the way, 0 to 1: it settles where whole sweeps go back and forth. Returns
+    /// the RMS displacement of the whole way.
+    ///
+    /// # Errors
+    /// As [`sweep`](Self::sweep).
+    pub fn sweep_in_part(
+        &mut self,
+        circulation: &CirculationMap,
+        part: f64,
+    ) -> Result<f64, WakeError> {
         self.check(circulation)?;
         let first = self.velocities(circulation);
         let releases = self.releases(circulation);
@@ -92,6 +118,9 @@ impl FreeWake {
         let rms = (sum / f64::from(count.max(1))).sqrt();
         if !(rms.is_finite() && corrected.free().all(|f| f.points.iter().all(|p| is_finite(*p)))) {
             return Err(WakeError::WakeLost { displacement: rms });
+        }
+        if part < 1.0 {
+            corrected.draw_back(self, part);
         }
         *self = corrected;
         Ok(rms)

@@ -60,6 +60,8 @@ impl FreeWake {
             settings: &self.settings,
             roll_up: &roll_up,
             circulation,
+            advance_ratio: self.flight.advance_ratio,
+            chord: self.lines.chord(),
             turn: self.turn(),
             young: &self.young_lengths(),
         };
@@ -179,11 +181,13 @@ impl FreeWake {
         v: &mut [Vec3],
     ) {
         let azimuths = self.settings.azimuths;
+        // the core at release: with grown ones the wake of a two-bladed rotor in hover does not settle
+        let radius = self.settings.core.radius.max(self.settings.core.mutual_radius);
         for (k, arc) in points.windows(3).enumerate() {
             let release = (azimuth + azimuths - (k + 1) % azimuths) % azimuths;
             let strength = circulation.row(release)[peaks[release]];
             let arc = [arc[0], arc[1], arc[2]];
-            v[k + 1] = add(v[k + 1], arc_velocity(arc, strength, self.settings.core.radius));
+            v[k + 1] = add(v[k + 1], arc_velocity(arc, strength, radius));
         }
     }
 }

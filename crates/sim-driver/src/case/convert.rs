@@ -5,8 +5,8 @@ use super::checker::Checker;
 use super::file_control::SHIPPED_DATASET;
 use super::ranges::check_case;
 use super::{
-    ActuatorChoice, ActuatorSource, ActuatorValues, BladeValues, Case, CaseFile, ControlValues,
-    FlapValues, SectionValues, TrimFile, TrimValues,
+    ActuatorChoice, ActuatorSource, ActuatorValues, BladeValues, Case, CaseFile, ControlFile,
+    ControlValues, FlapValues, SectionValues, TrimFile, TrimValues,
 };
 use crate::files::{Folder, RonIndex, SHIPPED_BENCH};
 use crate::problem::{Fault, Problem, Problems};
@@ -125,7 +125,16 @@ fn build(
             bench_rev_hz: file.actuator.bench_rev_hz,
             range_volt: file.actuator.range_volt,
         },
-        control: ControlValues {
+        control: ControlValues::of(control),
+        response: file.response.clone(),
+        tolerances: file.tolerances.clone(),
+    }
+}
+
+impl ControlValues {
+    /// The control of a case file.
+    pub(crate) fn of(control: &ControlFile) -> Self {
+        Self {
             harmonics: control.harmonics.clone(),
             actuators: control.actuators.clone(),
             bias_volt: control.bias_volt,
@@ -141,9 +150,7 @@ fn build(
             power_weight_per_watt: control.power_weight_per_watt,
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
-        },
-        response: file.response.clone(),
-        tolerances: file.tolerances.clone(),
+        }
     }
 }
 

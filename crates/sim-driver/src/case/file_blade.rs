@@ -1,6 +1,7 @@
 //! The blade in detail, as users write it: root, gravity, tables along the span, blades unlike the rest.
 
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// How one rotation of the blade's root is held.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -41,37 +42,47 @@ pub enum GravityChoice {
 }
 
 /// Values along the span in place of the uniform ones: `(station_r, value)` from root to tip, straight
-/// lines between; empty for the uniform value.
+/// lines between. A table that is left out is the uniform value; one that is given holds values.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BladeTablesFile {
     /// Mass per length over `mass_kg_m`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub mass: Vec<(f64, f64)>,
     /// `EI_y / (m0 Omega^2 R^4)`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub ei_flap: Vec<(f64, f64)>,
     /// `EI_z / (m0 Omega^2 R^4)`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub ei_lag: Vec<(f64, f64)>,
     /// `GJ / (m0 Omega^2 R^4)`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub gj: Vec<(f64, f64)>,
     /// `EA / (m0 Omega^2 R^2)`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub ea: Vec<(f64, f64)>,
     /// Mass radius of gyration about the chord line, R.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub km1_r: Vec<(f64, f64)>,
     /// Mass radius of gyration about the normal to the chord, R.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub km2_r: Vec<(f64, f64)>,
     /// Area radius of gyration, R.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub ka_r: Vec<(f64, f64)>,
     /// Twist, deg; it then says itself where it is zero.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
     pub twist_deg: Vec<(f64, f64)>,
+}
+
+/// A table as it is given: one without a value would pass for one that is left out.
+fn not_empty<'de, D: Deserializer<'de>>(given: D) -> Result<Vec<(f64, f64)>, D::Error> {
+    let table = Vec::<(f64, f64)>::deserialize(given)?;
+    if table.is_empty() {
+        let message = "the table has no value: list (station_r, value) from the root to 1 R, or leave the table out for the uniform value";
+        return Err(D::Error::custom(message));
+    }
+    Ok(table)
 }
 
 /// A table with its name, and whether its values must be positive.

@@ -250,11 +250,14 @@ pub enum ControllerChoice {
 /// The inflow in the T of the linearised rotor: that of the local controller and of the forecasts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum TInflowChoice {
-    /// Settles on the moved loading, as it does in every measured response.
+    /// Settles on the moved loading, as it does in every measured response; a free wake keeps its geometry.
     #[default]
     Settled,
     /// Stays as it is in trim: a wake slower than the controller.
     Frozen,
+    /// The geometry of the free wake converges anew as well, at the controlled harmonics: by central
+    /// differences. In the other inflows the same as `Settled`.
+    Reconverged,
 }
 
 /// What the load weights multiply.

@@ -65,6 +65,15 @@ pub enum SymmetryChoice {
     Axial,
 }
 
+/// Precision of the velocities that old vortices induce on the wake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FarFieldChoice {
+    /// Double.
+    Double,
+    /// Single for rolled-up vortices older than a revolution; what the blades feel stays double.
+    Single,
+}
+
 /// Velocity profile of the cores.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CoreChoice {
@@ -74,10 +83,65 @@ pub enum CoreChoice {
     Corrected,
 }
 
+/// Circulation of a wake that is looked at alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CirculationShape {
+    /// The same everywhere, `2 pi C_T / N_b`.
+    Constant,
+    /// Elliptic along the lifting span, less on the advancing side so that there is no rolling moment, of the thrust asked
+    /// for.
+    Elliptic,
+}
+
+/// What a wake of prescribed circulation does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum GeometryChoice {
+    /// Moves with the velocities it induces.
+    Free,
+    /// Helices, carried by the free stream and Glauert's mean inflow.
+    Undistorted,
+}
+
+/// A circulation given beforehand, on straight blades in the plane of the hub.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PrescribedCirculation {
+    /// How it is spread over the disk.
+    pub shape: CirculationShape,
+    /// Thrust coefficient over solidity.
+    pub ct_sigma: f64,
+    /// Tilt of the shaft, forward positive, deg.
+    pub shaft_tilt_deg: f64,
+    /// Whether the wake moves.
+    pub geometry: GeometryChoice,
+}
+
+impl Default for PrescribedCirculation {
+    fn default() -> Self {
+        Self {
+            shape: CirculationShape::Elliptic,
+            ct_sigma: 0.07,
+            shaft_tilt_deg: 5.0,
+            geometry: GeometryChoice::Free,
+        }
+    }
+}
+
+/// Where the circulation of the blades comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum CirculationChoice {
+    /// From the rotor, trimmed in its wake.
+    Trimmed,
+    /// Given: for `hhc wake` alone.
+    Prescribed(PrescribedCirculation),
+}
+
 /// The free wake of Bagai and Leishman. Every field has a default.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FreeWakeFile {
+    /// Where the circulation comes from.
+    pub circulation: CirculationChoice,
     /// Azimuth steps per revolution, a multiple of the number of blades.
     pub azimuths: usize,
     /// Free turns of the rolled-up vortices.
@@ -100,28 +164,32 @@ pub struct FreeWakeFile {
     pub core: CoreChoice,
     /// Core radius of the rolled-up vortices at release, radius R.
     pub core_r: f64,
-    /// Core radius of the near wake, radius R.
-    pub near_core_r: f64,
-    /// Core radius of the youngest trailers over the width of the panel beside them, at most; a large number for no
-    /// limit.
+    /// Core radius, at least, with which rolled-up vortices move each other, radius R; 0 for their own.
+    pub mutual_core_r: f64,
+    /// Core radius of the near wake, radius R; none for one chord of the blade.
+    pub near_core_r: Option<f64>,
+    /// Core radius of the trailers younger than 30 deg over the width of the panel beside them, at most; a large number
+    /// for no limit.
     pub panel_share: f64,
     /// Relaxation or march in time.
     pub method: WakeMethodChoice,
     /// What the wakes at different azimuths have in common.
     pub symmetry: SymmetryChoice,
+    /// Precision of the velocities that old vortices induce on the wake.
+    pub far_field: FarFieldChoice,
     /// Largest change of the inflow between two updates of the wake, tip speed.
     pub tolerance: f64,
+    /// RMS displacement of the wake in the last sweep of an update, radius R.
+    pub displacement_tolerance_r: f64,
     /// Updates of the wake allowed.
     pub updates: usize,
 }
 
-/// A share of a panel that no core reaches.
-const NO_LIMIT: f64 = 1e6;
-
 impl Default for FreeWakeFile {
     fn default() -> Self {
         Self {
-            azimuths: 24,
+            circulation: CirculationChoice::Trimmed,
+            azimuths: 36,
             turns: 4,
             far_turns: 2,
             panels: 20,
@@ -132,12 +200,15 @@ impl Default for FreeWakeFile {
             control_point: ControlPointChoice::LiftingLine,
             core: CoreChoice::Vatistas,
             core_r: 0.02,
-            near_core_r: 0.02,
-            panel_share: NO_LIMIT,
+            mutual_core_r: 0.05,
+            near_core_r: None,
+            panel_share: 0.3,
             method: WakeMethodChoice::Relaxed,
             symmetry: SymmetryChoice::Periodic,
+            far_field: FarFieldChoice::Double,
             tolerance: 2e-4,
-            updates: 12,
+            displacement_tolerance_r: 2e-3,
+            updates: 30,
         }
     }
 }

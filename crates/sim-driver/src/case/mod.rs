@@ -31,10 +31,14 @@ pub use file_control::{
     WindTunnelTrimFile,
 };
 pub use file_wake::{
-    ControlPointChoice, CoreChoice, FreeWakeFile, NearWakeChoice, ReleaseChoice, RolledUpChoice,
-    SymmetryChoice, WakeMethodChoice,
+    CirculationChoice, CirculationShape, ControlPointChoice, CoreChoice, FarFieldChoice,
+    FreeWakeFile, GeometryChoice, NearWakeChoice, PrescribedCirculation, ReleaseChoice,
+    RolledUpChoice, SymmetryChoice, WakeMethodChoice,
 };
-pub use read::{CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case};
+pub use read::{
+    CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case,
+    with_actuator_file,
+};
 pub use validated::{
     ActuatorSource, ActuatorValues, BladeValues, Case, ControlValues, FlapValues, SectionValues,
     TrimValues,

@@ -3,8 +3,9 @@
 use super::checker::{Checker, Number};
 use super::ranges_blade::check_blade;
 use super::{
-    ActuatorChoice, CaseFile, CompressibilityChoice, ControlActuator, EffortChoice, FreeWakeFile,
-    HorizontalTailFile, InflowChoice, SectionModelChoice, StrokeChoice, SymmetryChoice, TrimFile,
+    ActuatorChoice, CaseFile, CirculationChoice, CompressibilityChoice, ControlActuator,
+    ControllerChoice, EffortChoice, FreeWakeFile, HorizontalTailFile, InflowChoice,
+    SectionModelChoice, StrokeChoice, SymmetryChoice, TInflowChoice, TrimFile,
 };
 use crate::problem::Fault;
 use std::f64::consts::TAU;
@@ -43,32 +44,67 @@ fn check_flight(check: &mut Checker<'_>, file: &CaseFile) {
     if let InflowChoice::FreeWake(wake) = &file.inflow.model {
         check_wake(check, wake, file.rotor.blades);
         check_axial(check, wake, file.advance_ratio);
+        check_circulation(check, wake);
     }
 }
 
 fn check_wake(check: &mut Checker<'_>, wake: &FreeWakeFile, blades: usize) {
     let at = |key: &str| format!("inflow.model.{key}");
-    check.count(&at("azimuths"), wake.azimuths, (8, 144), "24 are steps of 15 deg");
+    check.count(&at("azimuths"), wake.azimuths, (8, 144), "36 are steps of 10 deg");
     let whole = wake.azimuths - wake.azimuths % blades.max(1);
     let remedy = "make it a multiple of the number of blades";
     check.count(&at("azimuths"), wake.azimuths, (whole, whole), remedy);
     check.count(&at("turns"), wake.turns, (1, 12), "4 are usual in forward flight");
     check.count(&at("far_turns"), wake.far_turns, (0, 20), "2 are usual, 6 in hover");
     check.count(&at("panels"), wake.panels, (6, 60), "20 are usual");
-    check.count(&at("updates"), wake.updates, (1, 200), "12 are usual");
+    check.count(&at("updates"), wake.updates, (1, 200), "30 are usual");
     for (key, value, low, high, unit, remedy) in [
         ("near_wake_deg", wake.near_wake_deg, 1.0, 1440.0, "deg", "360 is one revolution"),
         ("core_r", wake.core_r, 1e-3, 0.2, "R", "about a third of the chord is usual"),
-        ("near_core_r", wake.near_core_r, 1e-3, 0.2, "R", "about a third of the chord is usual"),
+        (
+            "near_core_r",
+            wake.near_core_r.unwrap_or(0.05),
+            1e-3,
+            0.2,
+            "R",
+            "leave it out for the chord of the blade",
+        ),
+        ("mutual_core_r", wake.mutual_core_r, 0.0, 0.2, "R", "0.05 is usual, 0.1 at low speed"),
         (
             "panel_share",
             wake.panel_share,
             0.01,
             1e6,
             "",
-            "0.3 is usual in hover; leave it out for no limit",
+            "0.3 is usual; a large number is no limit",
         ),
         ("tolerance", wake.tolerance, 1e-8, 1e-2, "", "2e-4 of the tip speed is usual"),
+        (
+            "displacement_tolerance_r",
+            wake.displacement_tolerance_r,
+            1e-8,
+            0.5,
+            "R",
+            "0.002 R is usual",
+        ),
+    ] {
+        check.within(number(&at(key), value, unit, remedy), low, high);
+    }
+}
+
+fn check_circulation(check: &mut Checker<'_>, wake: &FreeWakeFile) {
+    let CirculationChoice::Prescribed(given) = wake.circulation else { return };
+    let at = |key: &str| format!("inflow.model.circulation.{key}");
+    for (key, value, low, high, unit, remedy) in [
+        ("ct_sigma", given.ct_sigma, 1e-4, 0.3, "", "0.07 is usual"),
+        (
+            "shaft_tilt_deg",
+            given.shaft_tilt_deg,
+            -90.0,
+            90.0,
+            "deg",
+            "5 is usual, forward positive",
+        ),
     ] {
         check.within(number(&at(key), value, unit, remedy), low, high);
     }
@@ -362,6 +398,13 @@ fn check_control(check: &mut Checker<'_>, file: &CaseFile) {
         let remedy = "or write FromActuator";
         let field = "control.stroke_limit.amplitude_deg";
         check.within(number(field, amplitude_deg, "deg", remedy), 1e-3, 45.0);
+    }
+    if c.effort == EffortChoice::MeetStroke && c.controller != ControllerChoice::Global {
+        check.fault("control.controller", Fault::NeedsConstantT);
+    }
+    let has_wake = matches!(file.inflow.model, InflowChoice::FreeWake(_));
+    if c.t_inflow == TInflowChoice::Reconverged && !has_wake {
+        check.fault("control.t_inflow", Fault::NeedsFreeWake);
     }
     if let EffortChoice::Given { rho } = c.effort {
         let remedy = "or write MeetStroke";

@@ -108,9 +108,12 @@ fn check_tables(check: &mut Checker<'_>, file: &CaseFile) {
             if positive {
                 let remedy = "a mass, a stiffness or a radius of a section is positive";
                 check.positive(number(&at(i), value, "", remedy));
-            } else if !value.is_finite() || (key == "ka_r" && value < 0.0) {
-                let remedy = "give a finite number; a radius is not negative";
-                check.within(number(&at(i), value, "", remedy), 0.0, f64::MAX);
+            } else if key == "ka_r" {
+                let remedy = "a radius is not negative; 0.029 R is usual";
+                check.within(number(&at(i), value, "R", remedy), 0.0, 1.0);
+            } else {
+                let remedy = "a helicopter's blade turns by 8 to 16 deg from root to tip";
+                check.within(number(&at(i), value, "deg", remedy), -90.0, 90.0);
             }
         }
         let (Some(first), Some(last)) = (table.first(), table.last()) else { continue };

@@ -1,9 +1,10 @@
 //! Reading cases, from disk or from the files shipped inside the program.
 
 use super::convert::convert;
-use super::{ActuatorChoice, Case, CaseFile, ControlActuator};
+use super::{ActuatorChoice, Case, CaseFile, ControlActuator, StoredActuatorFile};
 use crate::files::{Folder, RonIndex, SHIPPED_CASES, Source, read_ron};
 use crate::problem::Problems;
+use crate::stored_actuator::read_actuator;
 use std::path::Path;
 
 /// Name of the shipped case that bare `hhc` runs.
@@ -46,12 +47,41 @@ pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problem
     problems.into_result(case.map(|case| LoadedCase { case, file, index: read.index }))
 }
 
-/// Reads and validates a case on disk.
+/// Reads and validates a case on disk. An actuator file stands for [`PAPER_CASE`] with that actuator.
 ///
 /// # Errors
 /// As [`read_case`], or that the file cannot be read.
 pub fn load_case(path: &Path) -> Result<LoadedCase, Problems> {
-    read_case(&Source::read(path)?, &Folder::of_file(path))
+    let (source, folder) = (Source::read(path)?, Folder::of_file(path));
+    if !is_actuator_file(&source) {
+        return read_case(&source, &folder);
+    }
+    read_actuator(&source)?;
+    let shipped = shipped_case(PAPER_CASE)?;
+    with_actuator_file(&shipped.file, &shipped.index, path, &folder)
+}
+
+/// Whether a text says that it is an actuator file.
+fn is_actuator_file(source: &Source) -> bool {
+    source.text.lines().any(|line| line.trim().trim_end_matches(',') == "kind: Actuator")
+}
+
+/// A case with the actuator of a file in the place of its own.
+///
+/// # Errors
+/// That the case and the actuator do not fit.
+pub fn with_actuator_file(
+    file: &CaseFile,
+    index: &RonIndex,
+    path: &Path,
+    folder: &Folder,
+) -> Result<LoadedCase, Problems> {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut file = file.clone();
+    file.title = format!("{}, actuator of {name}", file.title);
+    file.actuator.model = ActuatorChoice::File(StoredActuatorFile { path: name });
+    let case = convert(&file, folder, index)?;
+    Ok(LoadedCase { case, file, index: index.clone() })
 }
 
 /// Reads and validates a case shipped inside the program, such as [`PAPER_CASE`].

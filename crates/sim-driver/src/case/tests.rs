@@ -6,7 +6,7 @@ use super::{
 };
 use crate::files::{Folder, Source, ron_text};
 use approx::assert_relative_eq;
-use rotor_wake::{ControlPoint, FarTrailers, ReleasePoint, WakeMethod, WakeSymmetry};
+use rotor_wake::{ControlPoint, FarField, FarTrailers, ReleasePoint, WakeMethod, WakeSymmetry};
 
 fn read(text: &str) -> Result<LoadedCase, String> {
     let source = Source { name: "case.ron".into(), text: text.into() };
@@ -94,13 +94,14 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
     let of = |fields: &str| read(&format!("(inflow: (model: FreeWake({fields})))"));
     let loaded =
         of("rolled_up: TipRootAndSheet, release: Centroid, control_point: ThreeQuarterChord, \
-            method: Marched, panel_share: 0.3, far_turns: 6")
+            method: Marched, panel_share: 0.3, far_turns: 6, mutual_core_r: 0.1, far_field: Single")
         .unwrap();
     let InflowChoice::FreeWake(file) = loaded.case.inflow else { unreachable!() };
     let settings = loaded.case.wake_trim_settings(&file);
     assert_eq!(settings.method, WakeMethod::Marched);
     let wake = settings.wake;
     assert_eq!((wake.core.panel_share, wake.far_turns), (0.3, 6));
+    assert_eq!((wake.core.mutual_radius, wake.far_field), (0.1, FarField::Single));
     assert_eq!(wake.symmetry, WakeSymmetry::Periodic);
     let hover = "(advance_ratio: 0.0, inflow: (model: FreeWake(symmetry: Axial)))";
     let InflowChoice::FreeWake(axial) = read(hover).unwrap().case.inflow else { unreachable!() };
@@ -116,6 +117,8 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
         ("turns: 0", "inflow.model.turns: is 0"),
         ("near_wake_deg: 0.0", "inflow.model.near_wake_deg: is 0"),
         ("core_r: NaN", "inflow.model.core_r: is NaN"),
+        ("mutual_core_r: -0.01", "inflow.model.mutual_core_r: is -0.01"),
+        ("far_field: Float", "inflow.model.far_field: unknown choice"),
         ("symmetry: Axial", "a wake turns with its blades in hover only"),
         ("method: PC2B", "inflow.model.method: unknown choice"),
         ("panel_share: 0.0", "inflow.model.panel_share: is 0"),

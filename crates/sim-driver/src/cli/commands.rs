@@ -7,13 +7,13 @@ use super::args::{
 use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::blade_loads::blade_loads_csv;
-use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
+use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case, with_actuator_file};
 use crate::check::check_file;
 use crate::curve_identification::identify_curves;
 use crate::diagnose::{Findings, Question, Record, Records, Story, climb};
 use crate::figures::figure_files;
 use crate::files::{
-    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside,
+    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside, ron_text,
     write_atomic, write_new,
 };
 use crate::identification::{BenchIdentification, identify_bench, identify_loops};
@@ -22,14 +22,14 @@ use crate::modes::{AboutState, FAN_SPEEDS, ModesQuestion, fan_csv, rotating_mode
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::progress::Progress;
-use crate::recompute::{changed, compared_fields, compared_table, recomputed};
+use crate::recompute::{RESULT_FILE, STUDY_FILE, changed, compared_table, reproduced};
 use crate::report::{StudyReport, report_html};
 use crate::results::{RunResult, StoredResult};
 use crate::run::{RunOutcome, run_case, run_trimmed, steps_of};
 use crate::stored_actuator::{StoredActuator, read_actuator};
 use crate::study::{
-    Assumptions, PagePart, histories_csv, page_part, robustness_csv, robustness_maps,
-    sensitivities, sensitivity_csv, study_report,
+    Assumptions, histories_csv, page_part, robustness_csv, robustness_maps, sensitivities,
+    sensitivity_csv, study_report,
 };
 use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
 use crate::wake::wake_of_case;
@@ -39,8 +39,6 @@ use rotor_fem::GyroscopicTerms;
 use std::path::{Path, PathBuf};
 use trim::TrimSolution;
 
-/// Name of the numbers a report is made of.
-const STUDY_FILE: &str = "study.json";
 /// Name of the report.
 const REPORT_FILE: &str = "report.html";
 /// Name of the flap and voltage histories.
@@ -50,12 +48,12 @@ const BLADE_LOADS_FILE: &str = "blade_loads.csv";
 const SENSITIVITY_FILE: &str = "sensitivity.csv";
 /// Name of the robustness maps.
 const ROBUSTNESS_FILE: &str = "robustness.csv";
-/// Name of the result of a run.
-const RESULT_FILE: &str = "result.json";
 /// Name of the table over advance ratios.
 const SWEEP_FILE: &str = "sweep.csv";
 /// Name of the actuator a diagnosis extended.
 const EXTENDED_FILE: &str = "extended.ron";
+/// Name of the case given to a diagnosis, with that actuator.
+const EXTENDED_CASE_FILE: &str = "extended_case.ron";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, Some(args.inflow));
@@ -288,7 +286,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
 pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let RecordsArgs { output, cache, format, .. } = &args.records;
     refuse_input(&args.model, &output.join(EXTENDED_FILE))?;
-    let model = given_model(&args.model)?;
+    let (model, case) = given_model(&args.model)?;
     let (measured, reference) = both_records(&args.records)?;
     let progress = Progress::new(1);
     progress.doing(format!("diagnosing {} runs", measured.runs.len()));
@@ -301,6 +299,9 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
         SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
     })?;
     found.extended()?.write(&output.join(EXTENDED_FILE))?;
+    if let Some(case) = case {
+        write_extended_case(&case, output)?;
+    }
     for (name, text) in found.figures() {
         write_atomic(&output.join(name), text.as_bytes())?;
     }
@@ -334,17 +335,32 @@ fn both_records(args: &RecordsArgs) -> Result<(Records, Vec<Record>), SimError> 
     Ok((measured, reference))
 }
 
-/// The model of an actuator file, or of the actuator file a case names.
-fn given_model(path: &Path) -> Result<Option<ActuatorModel>, SimError> {
+/// The model of an actuator file; or the case.
+fn given_model(path: &Path) -> Result<(Option<ActuatorModel>, Option<LoadedCase>), SimError> {
     let source = Source::read(path)?;
     match read_actuator(&source) {
-        Ok(stored) => Ok(Some(stored.model)),
+        Ok(stored) => Ok((Some(stored.model), None)),
         Err(problems) if source.text.contains("kind: Actuator") => Err(problems.into()),
-        Err(_) => {
-            load_case(path)?;
-            Ok(None)
-        }
+        Err(_) => Ok((None, Some(load_case(path)?))),
     }
+}
+
+/// Writes a case with the extended actuator beside it, where no other file is named in it: their paths would
+/// lead elsewhere.
+fn write_extended_case(case: &LoadedCase, output: &Path) -> Result<(), SimError> {
+    let extended = output.join(EXTENDED_FILE);
+    let folder = Folder::of_file(&extended);
+    let Ok(own) = with_actuator_file(&case.file, &case.index, &extended, &folder) else {
+        eprintln!(
+            "warning: no {EXTENDED_CASE_FILE}: the case names files beside it; name {} as its actuator",
+            extended.display()
+        );
+        return Ok(());
+    };
+    let path = output.join(EXTENDED_CASE_FILE);
+    let text = ron_text(&own.file)
+        .map_err(|e| SimError::NotWritten { path: path.clone(), reason: e.to_string() })?;
+    write_atomic(&path, text.as_bytes())
 }
 
 fn records_of(folder: &Path) -> Result<Records, SimError> {
@@ -366,7 +382,8 @@ fn records_of(folder: &Path) -> Result<Records, SimError> {
     }
 }
 
-/// Reference runs: of the folder given, else those of the data, else of `../reference`.
+/// Reference runs: of the folder given, else those of the data, else of `../reference`. A folder in which no
+/// run has a role is one of reference runs.
 fn reference_runs(
     given: Option<&Path>,
     data: &Path,
@@ -380,7 +397,18 @@ fn reference_runs(
     if given.is_none() && !folder.join("dataset.ron").is_file() {
         return Ok(Vec::new());
     }
-    let mut runs = records_of(&folder)?.runs;
+    let found = records_of(&folder)?;
+    if found.content_hash == measured.content_hash {
+        let place = Place::file(format!("{}/dataset.ron", folder.display()));
+        let message = "these are the measured runs themselves: reference runs show the actuator with nothing missing; \
+             give their folder, or none"
+            .to_owned();
+        return Err(Problem::new(place, Fault::Refused { message }).into());
+    }
+    let mut runs = found.runs;
+    if runs.iter().any(|run| run.is_reference) {
+        runs.retain(|run| run.is_reference);
+    }
     for run in &mut runs {
         run.is_reference = true;
     }
@@ -460,6 +488,18 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
         Some(_) if args.speeds.is_empty() => FAN_SPEEDS.to_vec(),
         _ => args.speeds.clone(),
     };
+    if !(-90.0..=90.0).contains(&args.pitch_deg) {
+        let fault = Fault::OutOfRange {
+            value: args.pitch_deg,
+            low: -90.0,
+            high: 90.0,
+            unit: "deg",
+            remedy: "the collective at 0.75 R, a finite number",
+        };
+        let mut problems = Problems::default();
+        problems.push(Place::file("--pitch-deg"), fault);
+        return Err(problems.into());
+    }
     let pitch_rad = args.pitch_deg.to_radians();
     let question = ModesQuestion { terms, pitch_rad, about, speed_ratios };
     let result = rotating_modes(&loaded.case, &question)?;
@@ -524,30 +564,14 @@ fn starting_case() -> Result<String, Problem> {
 pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
     let shown: StudyReport = json_of(&args.dir.join(STUDY_FILE))?;
     let stored: StoredResult<RunResult> = json_of(&args.dir.join(RESULT_FILE))?;
-    let checked = recomputed(stored, RESULT_FILE)?;
-    let page = PagePart::of(&shown);
-    if let Some(key) = &checked.stored.page_key {
-        let found = page.key()?;
-        if *key != found {
-            let field = "title, setting, data_title, fits or loops".to_owned();
-            return Err(changed(
-                STUDY_FILE,
-                field,
-                format!("of key {found}"),
-                format!("key {key}"),
-            ));
-        }
+    let (checked, report) = reproduced(&shown, stored)?;
+    let key = checked.stored.blade_loads_key.clone().unwrap_or_default();
+    let table = Source::read(&args.dir.join(BLADE_LOADS_FILE))?;
+    let found = blade_loads_key(&checked.stored.result, &table.text)?;
+    if key != found {
+        let (stored, anew) = (format!("of key {found}"), format!("key {key}"));
+        return Err(changed(BLADE_LOADS_FILE, "table or blade_loads".to_owned(), stored, anew));
     }
-    if let Some(key) = &checked.stored.blade_loads_key {
-        let table = Source::read(&args.dir.join(BLADE_LOADS_FILE))?;
-        let found = blade_loads_key(&checked.stored.result, &table.text)?;
-        if *key != found {
-            let (stored, anew) = (format!("of key {found}"), format!("key {key}"));
-            return Err(changed(BLADE_LOADS_FILE, "table or blade_loads".to_owned(), stored, anew));
-        }
-    }
-    let report = study_report(&checked.stored, page);
-    compared_fields(&shown, &report, (STUDY_FILE, "report"))?;
     for (name, text) in tables(&checked.stored) {
         let found = Source::read(&args.dir.join(name))?;
         compared_table(&found.text, &text, name)?;

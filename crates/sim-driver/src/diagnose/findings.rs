@@ -1,7 +1,7 @@
 //! `findings.json`: the findings in the form other programs read.
 
 use super::Diagnosis;
-use model_gap::discovery::{Confidence, Verdict};
+use model_gap::discovery::{Confidence, FittedParameter, Verdict};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -14,12 +14,18 @@ pub struct Findings {
     pub causes: Vec<String>,
     /// How sure the verdict is.
     pub confidence: Confidence,
-    /// Parameters of the causes in the extended model.
+    /// Parameters of every cause of [`Self::causes`], were it the one; the extended model has those of the first.
     pub parameters: BTreeMap<String, BTreeMap<String, ParameterValue>>,
+    /// Whether the causes leave structure that they do not explain.
+    pub structure_remains: bool,
+    /// Measured runs that the base model misses by more than any surrogate there.
+    pub standing_out: Vec<String>,
     /// Error on held-out experiments.
     pub gain: GainValue,
     /// What to measure next.
     pub next_experiment: String,
+    /// What was fitted in the place of each cause found, and how far behind it stays.
+    pub compared: Vec<ComparedValue>,
     /// Causes these data could not show.
     pub not_observable: Vec<String>,
     /// The screening.
@@ -52,6 +58,19 @@ pub struct GainValue {
     pub unit: String,
 }
 
+/// Another cause in the place of one that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparedValue {
+    /// The cause found.
+    pub instead_of: String,
+    /// The other cause.
+    pub cause: String,
+    /// Misfit that it leaves beyond the one found, noise units.
+    pub behind: f64,
+    /// What it would have to be behind by to be told apart, noise units.
+    pub told_apart_beyond: f64,
+}
+
 /// One row of the screening.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScreenValue {
@@ -67,39 +86,52 @@ pub struct ScreenValue {
     pub cosine: f64,
 }
 
+/// Parameters that have a meaning of their own.
+fn values(parameters: &[FittedParameter]) -> BTreeMap<String, ParameterValue> {
+    let own = parameters.iter().filter(|p| !p.is_shape);
+    own.map(|p| {
+        (p.name.to_owned(), ParameterValue { value: p.value, unit: p.unit.into(), ci95: p.ci95 })
+    })
+    .collect()
+}
+
 impl From<&Diagnosis> for Findings {
     fn from(d: &Diagnosis) -> Self {
         let finding = &d.finding;
         let id = |c: usize| d.candidates[c].cause.id.to_owned();
         let mut causes: Vec<String> = finding.causes.iter().map(|f| id(f.candidate)).collect();
         for found in &finding.causes {
-            for &other in &found.alternatives {
-                if !causes.contains(&id(other)) {
-                    causes.push(id(other));
+            for other in &found.alternatives {
+                if !causes.contains(&id(other.candidate)) {
+                    causes.push(id(other.candidate));
                 }
             }
         }
-        let parameters = finding
-            .causes
-            .iter()
-            .map(|found| {
-                let values = found
-                    .parameters
-                    .iter()
-                    .filter(|p| !p.is_shape)
-                    .map(|p| {
-                        let value =
-                            ParameterValue { value: p.value, unit: p.unit.into(), ci95: p.ci95 };
-                        (p.name.to_owned(), value)
-                    })
-                    .collect();
-                (id(found.candidate), values)
-            })
-            .collect();
+        let mut parameters = BTreeMap::new();
+        for found in &finding.causes {
+            parameters.insert(id(found.candidate), values(&found.parameters));
+            for other in &found.alternatives {
+                let own = || values(&other.parameters);
+                parameters.entry(id(other.candidate)).or_insert_with(own);
+            }
+        }
         if matches!(finding.verdict, Verdict::Unknown) {
             causes.clear();
+            parameters.clear();
         }
         let gain = finding.gain;
+        let compared = finding
+            .causes
+            .iter()
+            .flat_map(|found| {
+                found.compared.iter().map(|other| ComparedValue {
+                    instead_of: id(found.candidate),
+                    cause: id(other.candidate),
+                    behind: other.behind,
+                    told_apart_beyond: other.told_apart_beyond,
+                })
+            })
+            .collect();
         let screen = finding
             .screen
             .iter()
@@ -112,11 +144,19 @@ impl From<&Diagnosis> for Findings {
                 cosine: s.most_confused.map_or(0.0, |m| m.1),
             })
             .collect();
+        let mut not_observable = d.not_observable();
+        not_observable.retain(|id| !causes.contains(id));
         Self {
             verdict: finding.verdict,
             causes,
             confidence: finding.confidence,
             parameters,
+            structure_remains: finding.structure_remains,
+            standing_out: finding
+                .standing_out
+                .iter()
+                .map(|run| d.run_ids[run.experiment].clone())
+                .collect(),
             gain: GainValue {
                 heldout_rms_before: gain.rms_before,
                 heldout_rms_after: gain.rms_after,
@@ -125,7 +165,8 @@ impl From<&Diagnosis> for Findings {
                 unit: d.output_unit.clone(),
             },
             next_experiment: d.next.id.clone(),
-            not_observable: d.not_observable(),
+            compared,
+            not_observable,
             screen,
         }
     }

@@ -174,7 +174,9 @@ fn asked_of_line(
     let lacks = finding
         .causes
         .iter()
-        .flat_map(|f| std::iter::once(f.candidate).chain(f.alternatives.iter().copied()))
+        .flat_map(|f| {
+            std::iter::once(f.candidate).chain(f.alternatives.iter().map(|a| a.candidate))
+        })
         .map(id)
         .collect();
     Ok(Asked {

@@ -107,14 +107,22 @@ pub struct Question<'a> {
     pub given: Option<&'a ActuatorModel>,
 }
 
+/// Share of its threshold from which on a cause may be there and hidden.
+const MAY_BE_HIDDEN: f64 = 0.5;
+
 impl Diagnosis {
-    /// Causes that these data could not have shown at usual strength.
+    /// Causes that these data could not have shown at usual strength; and, where nothing is named, those
+    /// that would explain a good part of the misfit and stay within what surrogates reach.
     pub fn not_observable(&self) -> Vec<String> {
+        let unnamed = self.finding.causes.is_empty();
         self.candidates
             .iter()
             .zip(&self.finding.screen)
             .filter(|(candidate, screened)| {
-                candidate.blocked.is_some() || screened.weak_signal < screened.threshold
+                let hidden = MAY_BE_HIDDEN * screened.threshold..screened.threshold;
+                candidate.blocked.is_some()
+                    || screened.weak_signal < screened.threshold
+                    || (unnamed && candidate.refuted.is_none() && hidden.contains(&screened.score))
             })
             .map(|(candidate, _)| candidate.cause.id.to_owned())
             .collect()

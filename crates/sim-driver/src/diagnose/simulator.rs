@@ -5,7 +5,7 @@ use super::causes::{BenchCause, Part};
 use super::record::Record;
 use super::response::{Plant, Response, line, slope};
 use super::traces::averaged;
-use model_gap::discovery::{Signal, Simulator};
+use model_gap::discovery::{Signal, Simulator, TraceRole};
 use model_gap::{Effect, GapError};
 
 /// Most samples of all traces together; longer sets are averaged in blocks.
@@ -21,6 +21,16 @@ pub(crate) enum ChannelKind {
     /// The output less what an ideal sensor read of the same motion: what the base model gets wrong
     /// cancels, what the sensor does is left.
     Comparison,
+}
+
+impl ChannelKind {
+    pub(crate) fn role(self) -> TraceRole {
+        match self {
+            Self::Output => TraceRole::Output,
+            Self::Amplifier | Self::Comparison => TraceRole::Witness,
+            Self::Temperature | Self::Load => TraceRole::Circumstance,
+        }
+    }
 }
 
 /// The measured runs with the base model and the causes.

@@ -82,8 +82,9 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
         ));
     }
     if !(LIKELY_SCALE[0]..=LIKELY_SCALE[1]).contains(&d.scale) {
+        let ask = if d.scale < 0.0 { "sign" } else { "unit" };
         sheet.line(format_args!(
-            "  The measured outputs move {} times as much as the base model expects: before anything else, see whether every column has the unit of its name.",
+            "  The measured outputs move {} times as much as the base model expects: before anything else, see whether every column has the {ask} of its name.",
             significant(d.scale, 2)
         ));
     }
@@ -118,6 +119,8 @@ fn screening(d: &Diagnosis, sheet: &mut Sheet) {
         if let Some(why) = &d.candidates[c].blocked {
             return vec![name, "-".into(), "-".into(), "-".into(), why.clone()];
         }
+        let name =
+            if d.candidates[c].refuted.is_some() { format!("{name} (refuted)") } else { name };
         let alike = s.most_confused.map_or_else(String::new, |(b, cosine)| {
             format!("{} {cosine:+.2}", d.candidates[b].cause.id)
         });
@@ -155,6 +158,18 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
         sheet.line(format_args!(
             "    signature: {}; explains {:.0} noise units, {:.0} where it is held out",
             cause.fingerprint, found.drop, found.held_out_drop
+        ));
+        for other in found.compared.iter().filter(|other| other.is_as_likely()) {
+            sheet.line(format_args!(
+                "    {} in its place explains {:.0} noise units less; {:.0} would tell them apart",
+                d.candidates[other.candidate].cause.id, other.behind, other.told_apart_beyond
+            ));
+        }
+    }
+    for run in &d.finding.standing_out {
+        sheet.line(format_args!(
+            "  run {} leaves {:.1} times what the worst surrogate leaves there",
+            d.run_ids[run.experiment], run.times
         ));
     }
     for reason in &d.finding.reasons {

@@ -80,7 +80,7 @@ impl BenchSimulator<'_> {
                     sigma: sigma.max(1e-12),
                     noise,
                     nuisance,
-                    is_output: kind == ChannelKind::Output,
+                    role: kind.role(),
                 }
             })
             .collect()

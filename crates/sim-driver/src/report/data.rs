@@ -1,6 +1,7 @@
 //! What a report shows: plain numbers, stored beside the report so that it can be written again.
 
 use crate::identification::fit_table;
+use crate::mean_loads::MeanLoads;
 use crate::output::table;
 use crate::results::{Residuals, TrimLine};
 use crate::stability::StabilityLine;
@@ -26,6 +27,9 @@ pub struct StudyReport {
     pub headline: Vec<HeadlineRow>,
     /// The trim.
     pub trim: TrimLine,
+    /// Mean loads on the hub and the power of the shaft; none in reports stored before they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_loads: Option<MeanLoads>,
     /// The three residuals.
     pub residuals: Residuals,
     /// Stability of the trimmed blade.

@@ -2,6 +2,7 @@
 
 use super::charts::{azimuth_chart, load_chart, loop_chart};
 use super::{HeadlineRow, StudyReport};
+use crate::mean_loads::MeanLoads;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plotly::Plot;
 
@@ -131,6 +132,9 @@ fn state(report: &StudyReport) -> Markup {
                     @for (_, value) in &residuals { td { (format!("{value:.1e}")) } }
                 } }
             } }
+            @if let Some([loads, shaft]) = report.mean_loads.as_ref().map(MeanLoads::text) {
+                p { "Mean loads on the hub " (loads) "; " (shaft) "." }
+            }
             @if let Some(stability) = report.stability.text() {
                 p { "Trimmed blade " (stability) ". All motions are in result.json." }
             }

@@ -69,6 +69,22 @@ impl FlapAuthority {
         })
     }
 
+    /// The same with the hub loads of one harmonic of one flap (load per deg, cosine and sine) found otherwise.
+    #[must_use]
+    pub(super) fn with_harmonic(
+        mut self,
+        (flap, harmonic): (usize, usize),
+        loads_per_deg: [[f64; 12]; 2],
+    ) -> Self {
+        if let Some(columns) = self.columns.get_mut(flap)
+            && harmonic > 0
+            && let Some(pair) = columns.get_mut(2 * harmonic - 1..=2 * harmonic)
+        {
+            pair.copy_from_slice(&loads_per_deg);
+        }
+        self
+    }
+
     /// Change of the hub loads for a small motion of one flap, deg. Harmonics beyond those kept have
     /// no part in it.
     pub fn loads(&self, flap: usize, motion_deg: &HarmonicSeries) -> [f64; 12] {

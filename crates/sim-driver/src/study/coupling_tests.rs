@@ -246,7 +246,12 @@ fn stiff_rotor() -> TrimmedRotor {
 fn the_plant_settles_on_the_closed_form_of_a_stiff_rotor() {
     let rotor = stiff_rotor();
     let model = rotor.rotor().model().clone();
-    let scale = FullScale { amplitude_volt: 85.0, stroke_deg: 8.5, reach_volt: 85.0 };
+    let scale = FullScale {
+        amplitude_volt: 85.0,
+        stroke_deg: 8.5,
+        reach_volt: 85.0,
+        motion_deg: [8.5, 0.0],
+    };
     let volts = [0.0, 0.0, 0.0, 40.0];
     let plant =
         |compliance| RotorPlant::new(rotor.clone(), soft(compliance), &[4], &[scale]).unwrap();
@@ -297,7 +302,12 @@ fn the_coupled_answer_depends_on_the_voltages_alone() {
     let source = Source { name: "case.ron".into(), text: "(title: \"coupled\")".into() };
     let loaded = read_case(&source, &Folder::Shipped("fixtures/cases".into())).unwrap();
     let rotor = TrimmedRotor::new(&loaded, None).unwrap();
-    let scale = FullScale { amplitude_volt: 85.0, stroke_deg: 8.5, reach_volt: 85.0 };
+    let scale = FullScale {
+        amplitude_volt: 85.0,
+        stroke_deg: 8.5,
+        reach_volt: 85.0,
+        motion_deg: [8.5, 0.0],
+    };
     let plant =
         |compliance| RotorPlant::new(rotor.clone(), soft(compliance), &[3], &[scale]).unwrap();
     let (first, second) = ([20.0, -10.0, 5.0, 30.0], [-15.0, 10.0, 25.0, 0.0]);

@@ -321,8 +321,7 @@ impl FlapDrive {
     ) -> Result<FullScale, PlantError> {
         let Self::Model { range_volt: range, .. } = self else {
             let motion = self.motion(&[(harmonic, cosine(amplitude_volt))])?;
-            let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
-            return Ok(FullScale { amplitude_volt, stroke_deg, reach_volt: amplitude_volt });
+            return Ok(FullScale::of(&motion, harmonic, amplitude_volt));
         };
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
         for _ in 0..FULL_SCALE_PASSES {
@@ -343,11 +342,11 @@ impl FlapDrive {
             amplitude = next;
         }
         let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
-        let stroke_deg = motion.flap_deg.harmonic(harmonic).amplitude();
-        Ok(FullScale { amplitude_volt: amplitude, stroke_deg, reach_volt: amplitude })
+        Ok(FullScale::of(&motion, harmonic, amplitude))
     }
 
-    /// Amplitude of one harmonic that gives a stroke below full scale, V: solved on the model, because the
+    /// Amplitude of one harmonic that gives a stroke below full scale, V, and the flap motion for a cosine of it,
+    /// `[cosine, sine]`, deg: solved on the model, because the
     /// gain of an actuator with memory grows with its amplitude.
     ///
     /// # Errors
@@ -357,7 +356,8 @@ impl FlapDrive {
         harmonic: usize,
         stroke_deg: f64,
         full: FullScale,
-    ) -> Result<f64, PlantError> {
+    ) -> Result<(f64, [f64; 2]), PlantError> {
+        let mut reached_deg = [0.0, 0.0];
         let (mut low, mut high) = ([0.0, 0.0], [full.amplitude_volt, full.stroke_deg]);
         for pass in 0..STROKE_PASSES {
             // a little below the chord, and the middle by turns, so that neither end can stay
@@ -365,15 +365,28 @@ impl FlapDrive {
             let part = if pass % 3 == 2 { 0.5 } else { (aim - low[1]) / (high[1] - low[1]) };
             let volt = low[0] + part * (high[0] - low[0]);
             let motion = self.motion(&[(harmonic, cosine(volt))])?;
-            let found = motion.flap_deg.harmonic(harmonic).amplitude();
-            let end = if found <= stroke_deg { &mut low } else { &mut high };
-            *end = [volt, found];
+            let Harmonic { cosine, sine } = motion.flap_deg.harmonic(harmonic);
+            let found = cosine.hypot(sine);
+            if found <= stroke_deg {
+                (low, reached_deg) = ([volt, found], [cosine, sine]);
+            } else {
+                high = [volt, found];
+            }
             let reached = low[1] >= stroke_deg * (1.0 - STROKE_TOLERANCE);
             if reached || high[0] - low[0] <= SMALLEST_STROKE_VOLT {
                 break;
             }
         }
-        Ok(low[0])
+        Ok((low[0], reached_deg))
+    }
+}
+
+impl FullScale {
+    /// That of a motion which a cosine of one harmonic makes, where the range of voltages ends.
+    fn of(motion: &FlapMotion, harmonic: usize, amplitude_volt: f64) -> Self {
+        let Harmonic { cosine, sine } = motion.flap_deg.harmonic(harmonic);
+        let (reach_volt, motion_deg) = (amplitude_volt, [cosine, sine]);
+        Self { amplitude_volt, stroke_deg: cosine.hypot(sine), reach_volt, motion_deg }
     }
 }
 
@@ -511,7 +524,7 @@ mod tests {
         let drive = hysteretic();
         let full = drive.full_scale(3, 85.0).unwrap();
         for stroke_deg in [0.1, 0.5, 1.0, 2.0, 0.999 * full.stroke_deg] {
-            let volt = drive.voltage_of_stroke(3, stroke_deg, full).unwrap();
+            let (volt, _) = drive.voltage_of_stroke(3, stroke_deg, full).unwrap();
             // at any phase
             let (sin, cos) = 0.7_f64.sin_cos();
             let turned = Harmonic { cosine: volt * cos, sine: volt * sin };

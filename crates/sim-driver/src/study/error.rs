@@ -90,7 +90,7 @@ pub enum StudyError {
         /// Harmonic, per rev.
         harmonic: usize,
         /// What went wrong.
-        source: PlantError,
+        source: Box<StudyError>,
     },
     /// The range of voltages of the case is none.
     #[error(transparent)]

@@ -1,13 +1,14 @@
 //! What the linearised rotor says of a set of harmonics before any control.
 
 use super::run::{ControlSet, LEAST_EFFORT};
-use super::{Drives, FlapDrive, PlantError, StudyError, TrimmedRotor};
-use crate::case::{Case, ControlActuator};
+use super::{Drives, FlapAuthority, FlapDrive, PlantError, StudyError, TrimmedRotor};
+use crate::case::{Case, ControlActuator, TInflowChoice};
 use crate::raw::{ForecastRecord, Setting};
 use crate::results::{Forecast, HubLoads};
 use hhc_control::{FeedbackLaw, LoadWeights, Plant, PlantCall, RunError, TMatrix, lag_deg};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_response::{InflowState, ResponseError};
 
 /// The forecasts of every set of the case; none where no identified actuator is controlled.
 ///
@@ -81,6 +82,13 @@ impl ControlSet<'_> {
         let limits = ideal.limits(&zero).map_err(plant_failed)?;
         let cone = law.optimum_within(rho, &zero, &baseline, &limits).map_err(control_failed)?;
 
+        let responded = |source: ResponseError| plant_failed(source.into());
+        let settled = self.rotor.linearised(InflowState::Settled).map_err(responded)?;
+        let frozen = self.rotor.linearised(InflowState::Frozen).map_err(responded)?;
+        let reconverged = match self.case.control.t_inflow {
+            TInflowChoice::Reconverged => self.rotor.reconverged().map_err(responded)?,
+            _ => None,
+        };
         let drive = self.drives.hysteretic.as_ref().unwrap_or(&self.drives.ideal);
         let gains = |amplitude: &dyn Fn(usize) -> f64| {
             let each = self.harmonics.iter().enumerate();
@@ -95,6 +103,13 @@ impl ControlSet<'_> {
             harmonics: self.harmonics.to_vec(),
             record: ForecastRecord {
                 t_per_volt: columns,
+                settled_t_per_volt: self.ideal_t(&settled),
+                frozen_t_per_volt: self.ideal_t(&frozen),
+                reconverged_t_per_volt: reconverged
+                    .map(|found| self.ideal_t(&found.authority))
+                    .unwrap_or_default(),
+                wake_updates: reconverged.map(|found| found.updates),
+                wake_change: reconverged.map(|found| found.change),
                 rho_per_volt2: rho,
                 cone_volt: cone.control_volt,
                 stroke_volt: self.limits.iter().map(|l| l.stroke_deg * per_deg).collect(),
@@ -109,6 +124,21 @@ impl ControlSet<'_> {
             ..Forecast::default()
         };
         Ok(forecast.refigured(&Setting::of_case(self.case, &HubLoads::from_parts(baseline))))
+    }
+
+    /// T of the ideal actuator from what the flaps do to the hub, column by column, load per V.
+    fn ideal_t(&self, authority: &FlapAuthority) -> Vec<Vec<f64>> {
+        let gain = self.case.actuator.ideal_amplitude_deg / self.case.control.amplitude_volt;
+        let flaps = self.rotor.rotor().model().flaps.len();
+        let pairs = (0..flaps).flat_map(|flap| self.harmonics.iter().map(move |&n| (flap, n)));
+        pairs
+            .flat_map(|(flap, n)| [(flap, n, gain, 0.0), (flap, n, 0.0, gain)])
+            .map(|(flap, n, cosine, sine)| {
+                let mut motion = HarmonicSeries::zero(n);
+                motion.set_harmonic(n, Harmonic { cosine, sine });
+                authority.loads(flap, &motion).to_vec()
+            })
+            .collect()
     }
 
     /// T of the linearised rotor with a harmonic gain for the actuator, load per V.

@@ -1,10 +1,11 @@
 //! The ideal actuator's flap motion made by the identified one, or the best motion within its range of voltages.
 
-use super::run::{ControlSet, LEAST_EFFORT};
+use super::model_plant::ModelPlant;
+use super::run::{ControlSet, least_effort};
 use super::{ControlStudy, FlapDrive, FlapMotion, PlantError, PlantState, RotorPlant, StudyError};
-use crate::case::ControlActuator;
+use crate::case::{ControlActuator, EffortChoice};
 use crate::raw::loads_cost;
-use hhc_control::{FeedbackLaw, LoadWeights, Plant, PlantCall, RunError, TMatrix};
+use hhc_control::{Controller, Plant, PlantCall, RunError};
 use preisach_dyn::PreisachError;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -65,9 +66,9 @@ impl ControlSet<'_> {
         })
     }
 
-    /// The motion of least cost that the range of voltages holds, from one that it holds: again and again the
-    /// cone program on the linearised rotor, with the range and the strokes as they are for the voltages that
-    /// the inverse gives, until the cost falls no more.
+    /// The motion of least cost that the range of voltages holds, or a motion that it holds if that is better:
+    /// the loop with T about the present control, run beforehand on the model of actuators and linearised rotor,
+    /// from rest and from the voltages of that motion. Its flap motion is what the inverse is asked for.
     fn best_in_reach(
         &self,
         plant: &RotorPlant,
@@ -75,43 +76,58 @@ impl ControlSet<'_> {
     ) -> Result<(Made, PlantState), PlantError> {
         let blades = self.case.blades;
         let weights = self.load_weights();
-        let diagonal = LoadWeights::Diagonal(weights.into_iter().flat_map(|w| [w, w]).collect());
         let cost = |state: &PlantState| loads_cost(&weights, &state.rotor.hub.harmonic(blades));
-        let start = loads_cost(&weights, &self.rotor.trim().rotor.hub.harmonic(blades));
-        for _ in 0..REACH_ROUNDS {
-            let control_volt = self.control_volt(&best.flaps);
-            let Ok(limits) = plant.clone().limits(&control_volt) else { break };
-            let gains = self.gains(&best.flaps);
-            let t = self.t_by_gains(&gains)?;
-            let law = FeedbackLaw::new(&t, &diagonal).map_err(PlantError::Bias)?;
-            let surplus = t.controls() > t.loads();
-            let scale = law.singular_values().first().map_or(0.0, |s| s * s);
-            let rho = if surplus { LEAST_EFFORT * scale } else { 0.0 };
-            let loads = state.rotor.hub.harmonic(blades);
-            let aim = law
-                .optimum_within(rho, &control_volt, &loads, &limits)
-                .map_err(PlantError::Bias)?;
-            let aimed = self.motion_of(&gains, &aim.control_volt);
-            let before = cost(&state);
-            for part in REACH_PARTS {
-                let wanted_deg: Vec<HarmonicSeries> = best
-                    .wanted_deg
-                    .iter()
-                    .zip(&aimed)
-                    .map(|(from, to)| self.between(from, to, part))
-                    .collect();
+        let model = ModelPlant::new(plant.settled(), blades);
+        let starts = [plant.layout().zero(), self.control_volt(&best.flaps)];
+        let planned: Vec<Result<Vec<FlapMotion>, RunError<PlantError>>> =
+            starts.into_par_iter().map(|start| self.planned(model.clone(), &start)).collect();
+        for flaps in planned {
+            // a plan that fails is no better than the motion at hand
+            let Ok(flaps) = flaps else { continue };
+            for part in PLAN_PARTS {
+                let wanted_deg: Vec<HarmonicSeries> =
+                    flaps.iter().map(|flap| self.up_to_the_highest(&flap.flap_deg, part)).collect();
                 let Ok(flaps) = made(plant, &wanted_deg) else { continue };
                 let tried = plant.state_of(flaps.clone())?;
-                if cost(&tried) < before {
+                if cost(&tried) < cost(&state) {
                     (best, state) = (Made { wanted_deg, flaps }, tried);
-                    break;
                 }
-            }
-            if before - cost(&state) <= REACH_FALL * start {
                 break;
             }
         }
         Ok((best, state))
+    }
+
+    /// Flap motions at the optimum of a model within its limits, from a control vector.
+    fn planned(
+        &self,
+        mut model: ModelPlant,
+        start_volt: &[f64],
+    ) -> Result<Vec<FlapMotion>, RunError<PlantError>> {
+        let failed = |source| {
+            let call = PlantCall::Linearise { control_volt: start_volt.to_vec() };
+            RunError::Plant { call, history: Vec::new(), source }
+        };
+        let t = model.linearised_t(start_volt).map_err(failed)?;
+        let t = t.ok_or_else(|| failed(PlantError::BiasSearch))?;
+        let step_volt = vec![self.step_volt(); model.layout().len()];
+        let way = Controller::Local { step_volt };
+        let controller = self.controller(&t, way, EffortChoice::Limits)?;
+        let rho = least_effort(&controller);
+        let run = controller.run_constrained_from(&mut model, rho, start_volt)?;
+        model.flap_motion(&run.last().control_volt).map_err(failed)
+    }
+
+    /// A motion up to the highest controlled harmonic, mean left to the bias, times a factor: lower harmonics
+    /// that the actuators add on the way are part of it.
+    fn up_to_the_highest(&self, motion: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+        let highest = self.harmonics.iter().copied().max().unwrap_or(1);
+        let mut cut = HarmonicSeries::zero(highest);
+        for n in 1..=highest {
+            let Harmonic { cosine, sine } = motion.harmonic(n);
+            cut.set_harmonic(n, Harmonic { cosine: factor * cosine, sine: factor * sine });
+        }
+        cut
     }
 
     /// A share of the controlled harmonics of the ideal actuator's flap motion.
@@ -140,58 +156,6 @@ impl ControlSet<'_> {
             .iter()
             .flat_map(|flap| self.harmonics.iter().map(|&n| flap.voltage_volt.harmonic(n)));
         each.flat_map(|h| [h.cosine, h.sine]).collect()
-    }
-
-    /// Motion over voltage of every pair as `[real, imaginary]`, deg/V, for `cosine + i sine`.
-    fn gains(&self, flaps: &[FlapMotion]) -> Vec<[f64; 2]> {
-        let each = flaps.iter().flat_map(|flap| self.harmonics.iter().map(move |&n| (flap, n)));
-        each.map(|(flap, n)| {
-            let (u, d) = (flap.voltage_volt.harmonic(n), flap.flap_deg.harmonic(n));
-            let square = (u.cosine * u.cosine + u.sine * u.sine).max(f64::MIN_POSITIVE);
-            [
-                (d.cosine * u.cosine + d.sine * u.sine) / square,
-                (d.sine * u.cosine - d.cosine * u.sine) / square,
-            ]
-        })
-        .collect()
-    }
-
-    /// The flap motions that gains give to a control vector, deg.
-    fn motion_of(&self, gains: &[[f64; 2]], control_volt: &[f64]) -> Vec<HarmonicSeries> {
-        let size = self.harmonics.len();
-        let pairs: Vec<Harmonic> = gains
-            .iter()
-            .zip(control_volt.chunks_exact(2))
-            .map(|([re, im], u)| Harmonic {
-                cosine: re * u[0] - im * u[1],
-                sine: im * u[0] + re * u[1],
-            })
-            .collect();
-        let flaps = pairs.chunks(size.max(1));
-        flaps
-            .map(|flap| {
-                let highest = self.harmonics.iter().copied().max().unwrap_or(1);
-                let mut motion = HarmonicSeries::zero(highest);
-                for (&n, &h) in self.harmonics.iter().zip(flap) {
-                    motion.set_harmonic(n, h);
-                }
-                motion
-            })
-            .collect()
-    }
-
-    /// T of the linearised rotor for gains of the pairs, load per V.
-    fn t_by_gains(&self, gains: &[[f64; 2]]) -> Result<TMatrix, PlantError> {
-        let authority = self.rotor.authority()?;
-        let mut columns = Vec::with_capacity(2 * gains.len());
-        for control in 0..2 * gains.len() {
-            let mut unit = vec![0.0; 2 * gains.len()];
-            unit[control] = 1.0;
-            let flap = control / (2 * self.harmonics.len());
-            let motions = self.motion_of(gains, &unit);
-            columns.push(authority.loads(flap, &motions[flap]).to_vec());
-        }
-        TMatrix::from_columns(&columns).map_err(PlantError::Bias)
     }
 }
 
@@ -226,9 +190,5 @@ pub(super) fn within_reach(error: &PlantError) -> Option<f64> {
 const INVERSE_TRIALS: usize = 6;
 /// Part of the reachable motion that is asked for.
 const INVERSE_MARGIN: f64 = 0.98;
-/// Cone programs on the way to the best motion in reach.
-const REACH_ROUNDS: usize = 12;
-/// Parts of the way to the aim of one that are tried.
-const REACH_PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
-/// Fall of J, as a part of the uncontrolled J, below which the motion is the best in reach.
-const REACH_FALL: f64 = 1e-3;
+/// Parts of a planned motion that are asked of the inverse, the first that it makes.
+const PLAN_PARTS: [f64; 4] = [1.0, 0.998, 0.99, 0.97];

@@ -2,26 +2,20 @@
 
 use super::ControlStudy;
 use crate::case::LoadedCase;
-use crate::raw::{CertificateLine, ControlRecord, FlapRecord, SeriesLine};
+use crate::raw::{CertificateLine, ControlRecord, EndLine, FlapRecord, RefusedLine, SeriesLine};
 use crate::results::{ControlLine, CouplingLine, HistoryLine, HubLoads, Residuals};
-use hhc_control::{ControlRun, ControlStep, Outcome, StepLeave};
+use hhc_control::{ControlRun, ControlStep, Outcome, RefusedStep, StepLeave};
 
-/// The raw numbers of one control study; its figures are those of [`ControlLine::refigured`].
+/// The raw numbers of one control study; its figures are those of `ControlLine::refigured`.
 pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
     let rotor = &study.state.rotor;
     ControlLine {
         harmonics: study.harmonics.clone(),
         actuator: study.actuator.name().to_owned(),
         hub_4_per_rev: HubLoads::from_parts(rotor.hub.harmonic(loaded.case.blades)),
-        controller: study.controller.unwrap_or("none").to_owned(),
         motion_share: study.motion_share,
         voltage_share: study.voltage_share,
-        within_reach: study.within_reach,
-        halvings: study.halvings(),
-        t_renewals: study.run.as_ref().map_or(0, |run| run.identifications),
-        outcome: outcome_name(study.outcome()).to_owned(),
         rho_per_volt2: study.rho,
-        stroke_limit_deg: study.stroke_limit_deg.clone(),
         residuals: Residuals {
             trim: study.trim_imbalance,
             periodicity: rotor.residuals.periodicity,
@@ -54,7 +48,28 @@ fn record(study: &ControlStudy) -> ControlRecord {
         t_per_volt: study.t.as_ref().map(hhc_control::TMatrix::columns).unwrap_or_default(),
         power_gains_per_volt: study.power_gains_per_volt.clone(),
         optimum: study.run.as_ref().and_then(|run| run.kkt.as_ref()).map(CertificateLine::from),
+        end: study.run.as_ref().map(|run| end_line(study, run)),
+        refused: study.run.iter().flat_map(|run| &run.refused).map(refused_line).collect(),
+        identified_after: study.run.iter().flat_map(|r| r.identified_after.clone()).collect(),
+        t_at_end_per_volt: study
+            .t_at_end
+            .as_ref()
+            .map(hhc_control::TMatrix::columns)
+            .unwrap_or_default(),
+        at_stroke_deg: study.at_stroke_deg.clone(),
+        reach_share: study.reach_share,
     }
+}
+
+fn end_line(study: &ControlStudy, run: &ControlRun) -> EndLine {
+    let tolerances = [study.step_tolerance, study.cost_tolerance];
+    let start_cost = run.start.cost.loads;
+    EndLine::new(&run.end, run.outcome, run.end.is_settled(tolerances, start_cost))
+}
+
+fn refused_line(step: &RefusedStep) -> RefusedLine {
+    let RefusedStep { after_steps, asked_volt, halvings } = *step;
+    RefusedLine { after_steps, asked_volt, halvings }
 }
 
 fn history_line(step: &ControlStep) -> HistoryLine {

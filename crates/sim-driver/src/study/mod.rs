@@ -8,10 +8,12 @@ mod forecast;
 mod hinge_power;
 mod inverted;
 mod lines;
+mod model_plant;
 mod pair_power;
 mod paper;
 mod plant;
 mod recent;
+mod reconverged;
 mod robustness;
 mod run;
 mod sensitivity;
@@ -26,12 +28,14 @@ pub use hinge_power::HingePower;
 pub use lines::control_line;
 pub use pair_power::given_watt_per_rad2;
 pub use plant::{PlantState, RotorPlant, TrimmedRotor, UnlikeSolver};
+pub use reconverged::ReconvergedAuthority;
 pub use robustness::{Disturbance, RobustnessCell, robustness, robustness_csv, robustness_maps};
+pub(crate) use run::cost_tolerance;
 pub use run::{ControlStudy, Drives, FullScale, control_all, control_set};
-pub(crate) use sensitivity::refigure_sensitivity;
 pub use sensitivity::{
     Assumptions, Sensitivity, SensitivityRecord, sensitivities, sensitivity_csv,
 };
+pub(crate) use sensitivity::{most_moved, refigure_sensitivity};
 pub use tables::{PagePart, histories_csv, page_part, study_report};
 
 #[cfg(test)]

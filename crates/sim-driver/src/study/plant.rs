@@ -1,12 +1,13 @@
 //! The trimmed rotor with its driven flaps as the plant of the controller.
 
+mod hinge;
 mod power;
 
 use self::power::PlantPower;
-use super::authority::{HARMONICS, added};
-use super::coupling::{coefficients, series};
+use super::authority::HARMONICS;
 use super::drive::scaled;
 use super::recent::Recent;
+use super::reconverged::{ReconvergedAuthority, Reconverging};
 use super::{
     CouplingResidual, FlapAuthority, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError,
 };
@@ -18,12 +19,12 @@ use hhc_control::{
     ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, RunError, TMatrix,
     VoltageRange,
 };
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
 use rotor_response::{
-    Condition, HingeMoment, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution,
-    RotorSolver, SixLoads, Stability, StationLoads, dissimilar_hub_loads,
+    Condition, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution, RotorSolver,
+    SectionLift, SixLoads, Stability, StationLoads, dissimilar_hub_loads,
 };
 use std::sync::{Arc, OnceLock};
 use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
@@ -36,7 +37,11 @@ pub struct TrimmedRotor {
     trim: TrimSolution,
     scales: RotorScales,
     /// Inflow in the T of the linearised rotor.
-    t_inflow: InflowState,
+    t_inflow: TInflowChoice,
+    /// What a wake converged anew takes: controlled harmonics, steps and settings.
+    reconverging: Reconverging,
+    /// Made when first asked for.
+    reconverged: Arc<OnceLock<ReconvergedAuthority>>,
     /// Change of the hinge moments with the flap motions, found when first asked for.
     hinge_response: Arc<OnceLock<DMatrix<f64>>>,
     /// Made when first asked for, the same whoever asks.
@@ -67,11 +72,20 @@ impl TrimmedRotor {
         let hinge_response = Arc::default();
         let authority = Arc::default();
         let SettledTrim { trim, inflow, wake } = settled;
-        let t_inflow = match case.control.t_inflow {
-            TInflowChoice::Settled => InflowState::Settled,
-            TInflowChoice::Frozen => InflowState::Frozen,
-        };
-        Ok(Self { solver, inflow, trim, scales, t_inflow, hinge_response, authority, wake })
+        let t_inflow = case.control.t_inflow;
+        let (reconverging, reconverged) = (Reconverging::of(case), Arc::default());
+        Ok(Self {
+            solver,
+            inflow,
+            trim,
+            scales,
+            t_inflow,
+            reconverging,
+            reconverged,
+            hinge_response,
+            authority,
+            wake,
+        })
     }
 
     /// Moment unit `m0 Omega^2 R^3`, N m.
@@ -102,8 +116,32 @@ impl TrimmedRotor {
         if let Some(known) = self.authority.get() {
             return Ok(known);
         }
-        let found = self.linearised(self.t_inflow)?;
+        let found = match self.t_inflow {
+            // a loop measures responses with the geometry of the wake held: the T that converges it anew is a
+            // forecast of what the hub would feel, not of what the loop measures
+            TInflowChoice::Settled | TInflowChoice::Reconverged => {
+                self.linearised(InflowState::Settled)
+            }
+            TInflowChoice::Frozen => self.linearised(InflowState::Frozen),
+        }?;
         Ok(self.authority.get_or_init(|| found))
+    }
+
+    /// The same with the geometry of the free wake converged anew at the harmonics that the case controls; none
+    /// without a free wake.
+    ///
+    /// # Errors
+    /// The errors of the response and of the wake.
+    pub fn reconverged(&self) -> Result<Option<&ReconvergedAuthority>, ResponseError> {
+        let Some(wake) = &self.wake else { return Ok(None) };
+        let Some(coupling) = &self.reconverging.coupling else { return Ok(None) };
+        if let Some(known) = self.reconverged.get() {
+            return Ok(Some(known));
+        }
+        let settled = self.linearised(InflowState::Settled)?;
+        let about = (wake.as_ref(), &self.solver, coupling);
+        let found = self.reconverging.authority(about, &self.flaps_at_rest(), settled)?;
+        Ok(Some(self.reconverged.get_or_init(|| found)))
     }
 
     /// The same with the inflow as asked for, made anew.
@@ -143,6 +181,27 @@ impl TrimmedRotor {
     /// As [`RotorSolver::stability`].
     pub fn stability(&self) -> Result<Stability, ResponseError> {
         self.solver.stability(&self.flaps_at_rest(), &self.trim.rotor)
+    }
+
+    /// The section of the trimmed rotor that lifts hardest.
+    pub fn largest_section_lift(&self) -> Option<SectionLift> {
+        self.solver.largest_section_lift(&self.trim.rotor)
+    }
+
+    /// Stability of an unlike blade, and its loads at stations of its span (R), flaps at rest.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn unlike_blade(
+        &self,
+        unlike: &UnlikeSolver,
+        stations: &[f64],
+    ) -> Result<(Stability, Vec<StationLoads>), ResponseError> {
+        let mut solver = unlike.solver.clone();
+        let condition = self.flaps_at_rest();
+        let found = solver.blade_response(&condition, &self.trim.rotor)?;
+        let loads = solver.station_loads(&condition, &found, stations)?;
+        Ok((solver.stability(&condition, &found)?, loads))
     }
 
     /// Loads of one blade at stations of its span (R), flaps at rest.
@@ -244,82 +303,6 @@ impl TrimmedRotor {
         };
         self.solver.clone().solve(&condition, &self.inflow, Some(start))
     }
-
-    /// Change of all hinge moments with all flap motions about the trim, N m per rad, in the order of
-    /// [`HingeCoupling::new`], made once for a rotor: of the linearised rotor, or by differences of
-    /// responses where that one does not answer (a rotor that stalls).
-    fn hinge_response(&self) -> Result<DMatrix<f64>, ResponseError> {
-        if let Some(known) = self.hinge_response.get() {
-            return Ok(known.clone());
-        }
-        let rest = &self.trim.rotor.hinge;
-        let count = rest.iter().map(|h| h.total().harmonics.len()).max().unwrap_or(0);
-        let columns = match self.linearised_to(InflowState::Settled, count) {
-            Ok(authority) => self.hinge_columns(count, |angles| {
-                let mut change = vec![HarmonicSeries::zero(0); angles.len()];
-                for (flap, angle) in angles.iter().enumerate() {
-                    let motion_deg = scaled(angle, 180.0 / std::f64::consts::PI);
-                    for (sum, part) in change.iter_mut().zip(authority.hinge(flap, &motion_deg)) {
-                        *sum = added(sum, &part, 1.0);
-                    }
-                }
-                Ok(change)
-            }),
-            Err(_) => self.hinge_columns(count, |angles| {
-                let moved =
-                    self.with_flaps(angles.iter().map(|a| scaled(a, RESPONSE_STEP_RAD)).collect())?;
-                let pairs = moved.hinge.iter().zip(rest);
-                let change = |(moved, rest): (&HingeMoment, &HingeMoment)| {
-                    scaled(&added(&moved.total(), &rest.total(), -1.0), 1.0 / RESPONSE_STEP_RAD)
-                };
-                Ok(pairs.map(change).collect())
-            }),
-        }?;
-        let found = DMatrix::from_columns(&columns);
-        Ok(self.hinge_response.get_or_init(|| found).clone())
-    }
-
-    /// The columns of the response matrix from the change of the hinge moments (rotor units) per rad of
-    /// a motion.
-    fn hinge_columns(
-        &self,
-        count: usize,
-        change: impl Fn(Vec<HarmonicSeries>) -> Result<Vec<HarmonicSeries>, ResponseError> + Sync,
-    ) -> Result<Vec<DVector<f64>>, ResponseError> {
-        let (flaps, size) = (self.trim.rotor.hinge.len(), 2 * count + 1);
-        (0..flaps * size)
-            .into_par_iter()
-            .map(|j| {
-                if j % size == 0 {
-                    // the mean angle is the bias's
-                    return Ok(DVector::zeros(flaps * size));
-                }
-                let mut angles = vec![HarmonicSeries::zero(0); flaps];
-                let mut unit = vec![0.0; size];
-                unit[j % size] = 1.0;
-                angles[j / size] = series(&unit);
-                let found = change(angles)?;
-                let all = found.iter().flat_map(|h| coefficients(h, count));
-                Ok(DVector::from_vec(all.map(|c| self.moment_newton_metre() * c).collect()))
-            })
-            .collect()
-    }
-
-    /// The coupling of flaps that give way by an angle per hinge moment, deg/(N m); none without give.
-    ///
-    /// # Errors
-    /// The errors of the response.
-    pub fn coupling(
-        &self,
-        give_deg_per_newton_metre: f64,
-    ) -> Result<Option<HingeCoupling>, ResponseError> {
-        if give_deg_per_newton_metre == 0.0 || self.trim.rotor.hinge.is_empty() {
-            return Ok(None);
-        }
-        let unit = self.moment_newton_metre();
-        let at_rest = self.trim.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect();
-        Ok(HingeCoupling::new(give_deg_per_newton_metre, at_rest, self.hinge_response()?))
-    }
 }
 
 /// The solver of a blade unlike the rest.
@@ -330,9 +313,8 @@ pub struct UnlikeSolver {
     solver: RotorSolver,
 }
 
-/// Step of the differences in a harmonic of a flap angle, rad: the response is nearly linear in it.
-const RESPONSE_STEP_RAD: f64 = 1e-3;
-/// Azimuths at which the range of the voltage is held.
+/// Azimuths at which the range of the voltage is held: a peak of the fifth harmonic between two of them may lie beyond by
+/// 2e-4 of its amplitude.
 const LIMIT_AZIMUTHS: usize = 720;
 /// Part of full scale from which the gain of an actuator is read off its motion.
 const LEAST_GAIN_PART: f64 = 0.2;
@@ -421,6 +403,19 @@ impl RotorPlant {
     /// The rotor in trim.
     pub fn rotor(&self) -> &TrimmedRotor {
         &self.rotor
+    }
+
+    /// The same plant with the inflow settled in the T of its linearised rotor, as in its answers.
+    pub(super) fn settled(&self) -> Self {
+        let rotor = match self.rotor.t_inflow {
+            TInflowChoice::Settled => self.rotor.clone(),
+            _ => TrimmedRotor {
+                t_inflow: TInflowChoice::Settled,
+                authority: Arc::default(),
+                ..self.rotor.clone()
+            },
+        };
+        Self { rotor, ..self.clone() }
     }
 
     /// What drives its flaps.
@@ -533,18 +528,28 @@ impl RotorPlant {
             .collect()
     }
 
-    fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        let state = self.state(control_volt)?;
-        let blades = self.rotor.rotor().model().blades;
-        let mut hub_loads = state.rotor.hub.harmonic(blades).to_vec();
+    /// What is measured of given hub loads and flap motions.
+    pub(super) fn measurement(
+        &self,
+        control_volt: &[f64],
+        hub_loads: &[f64; 12],
+        flaps: &[FlapMotion],
+    ) -> Measurement {
+        let mut hub_loads = hub_loads.to_vec();
         for (u, gain) in control_volt.chunks_exact(2).zip(self.power_gains()) {
             hub_loads.extend([gain * u[0], gain * u[1]]);
         }
-        Ok(Measurement {
+        Measurement {
             hub_loads,
-            flap_motion_deg: self.pair_motion(&state.flaps),
-            mean_flap_deg: state.flaps.iter().map(|f| f.flap_deg.mean).collect(),
-        })
+            flap_motion_deg: self.pair_motion(flaps),
+            mean_flap_deg: flaps.iter().map(|f| f.flap_deg.mean).collect(),
+        }
+    }
+
+    fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
+        let state = self.state(control_volt)?;
+        let loads = state.rotor.hub.harmonic(self.rotor.rotor().model().blades);
+        Ok(self.measurement(control_volt, &loads, &state.flaps))
     }
 }
 

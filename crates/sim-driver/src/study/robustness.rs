@@ -1,22 +1,23 @@
 //! How the controllers stand noise, a wrong T and an actuator that drifts.
 
+use super::drive::scaled;
 use super::lines::outcome_name;
+use super::model_plant::{Answered, Answers};
+use super::run::{ControlSet, close_loop};
 use super::{Drives, PlantError, RotorPlant, StudyError, TrimmedRotor};
 use crate::SimError;
-use crate::case::{Case, ControlActuator, LoadedCase};
+use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice, LoadedCase};
 use crate::raw::{Setting, loads_cost};
 use crate::results::HubLoads;
 use crate::run::RunOutcome;
 use hhc_control::{
-    AdaptiveSettings, ControlError, ControlLayout, ControlLimits, Controller, FeedbackController,
-    FeedbackSettings, LoadWeights, Measurement, Plant, RunError, TMatrix, identify_t,
-    reduction_percent,
+    AdaptiveSettings, ControlError, ControlRun, Controller, Measurement, RunError, TMatrix,
+    identify_t,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
-use rotor_base::{Harmonic, HarmonicSeries};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
@@ -27,7 +28,7 @@ pub struct Disturbance {
     pub noise_percent: f64,
     /// T0 handed to the controller over the identified one.
     pub t_gain: f64,
-    /// Phase error of that T0, deg of harmonic phase.
+    /// Phase error of that T0, deg of harmonic phase; the T that a local controller asks for is as wrong.
     pub t_phase_deg: f64,
     /// Loss of actuator gain with every measurement, percent.
     pub drift_percent: f64,
@@ -40,6 +41,9 @@ pub struct RobustnessCell {
     pub harmonic: usize,
     /// `global`, `local` or `adaptive`.
     pub controller: String,
+    /// How the control was weighted: `limits`, `meet-stroke` or `given`.
+    #[serde(default)]
+    pub effort: String,
     /// What was disturbed.
     pub disturbance: Disturbance,
     /// Fall of `J_Z` at the end, percent: of the loads without noise, with the actuator as it is by then.
@@ -47,7 +51,7 @@ pub struct RobustnessCell {
     /// The best any recorded control reached on the way.
     pub best_percent: f64,
     /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`; `diverged`: no first step
-    /// lowers the cost.
+    /// lowers the cost; `failed`: the stroke was not met or a cone program not solved.
     pub outcome: String,
     /// Control steps.
     pub steps: usize,
@@ -67,8 +71,9 @@ impl RobustnessCell {
     pub fn refigured(&self, setting: &Setting) -> Self {
         let weights = setting.load_weights();
         let before = loads_cost(&weights, &setting.baseline);
-        let fall =
-            |loads: &HubLoads| reduction_percent(before, loads_cost(&weights, &loads.parts()));
+        let fall = |loads: &HubLoads| {
+            setting.reduction_percent(before, loads_cost(&weights, &loads.parts()))
+        };
         Self { reduction_percent: fall(&self.end), best_percent: fall(&self.best), ..self.clone() }
     }
 }
@@ -77,89 +82,98 @@ const NOISE_PERCENT: [f64; 4] = [0.0, 1.0, 3.0, 10.0];
 const T_GAINS: [f64; 3] = [0.8, 1.0, 1.2];
 const T_PHASES_DEG: [f64; 3] = [-30.0, 0.0, 30.0];
 const DRIFT_PERCENT: [f64; 2] = [0.5, 2.0];
-/// Steps of a run: noise keeps it from ending by itself.
-const STEPS: usize = 15;
 /// First seed of the noise.
 const SEED: u64 = 20_260_101;
 
-/// The linearised rotor with the real actuators, disturbed.
+/// The rotor of the study with its real actuators, disturbed.
 ///
 /// Differs from a plant at rest on purpose: noise and drift make its answers depend on the calls made
 /// before.
 struct Disturbed {
-    plant: RotorPlant,
-    baseline: [f64; 12],
+    /// Standard deviation of a load.
     noise: f64,
+    /// Loss of actuator gain per answer, as a part.
     drift: f64,
+    t_gain: f64,
+    t_phase_rad: f64,
     answers: u32,
     random: ChaCha8Rng,
+    /// Controls that were measured and their loads without noise.
+    truth: Vec<(Vec<f64>, [f64; 12])>,
 }
 
 impl Disturbed {
-    /// Flap harmonics of the control, the gain of the actuators as it is now.
-    fn flaps(&self, control_volt: &[f64]) -> Result<Vec<HarmonicSeries>, PlantError> {
-        let left = (1.0 - self.drift).powf(f64::from(self.answers));
-        let motions = self.plant.flap_motion(control_volt)?;
-        Ok(motions.into_iter().map(|motion| scaled(&motion.flap_deg, left)).collect())
-    }
-
-    /// The loads without noise.
-    fn loads(&self, flaps: &[HarmonicSeries]) -> Result<[f64; 12], PlantError> {
-        let authority = self.plant.rotor().authority()?;
-        let mut loads = self.baseline;
-        for (flap, motion) in flaps.iter().enumerate() {
-            for (load, change) in loads.iter_mut().zip(authority.loads(flap, motion)) {
-                *load += change;
-            }
+    fn new(disturbance: Disturbance, rms: f64, seed: u64) -> Self {
+        Self {
+            noise: 0.01 * disturbance.noise_percent * rms,
+            drift: 0.01 * disturbance.drift_percent,
+            t_gain: disturbance.t_gain,
+            t_phase_rad: disturbance.t_phase_deg.to_radians(),
+            answers: 0,
+            random: ChaCha8Rng::seed_from_u64(seed),
+            truth: Vec::new(),
         }
-        Ok(loads)
+    }
+
+    /// Loads without noise and flap motions, the gain of the actuators as it is now.
+    fn answer(&self, plant: &RotorPlant, control_volt: &[f64]) -> Result<Measurement, PlantError> {
+        let left = (1.0 - self.drift).powf(f64::from(self.answers));
+        let mut state = plant.state(control_volt)?;
+        if self.drift > 0.0 && self.answers > 0 {
+            for flap in &mut state.flaps {
+                flap.flap_deg = scaled(&flap.flap_deg, left);
+            }
+            state = plant.state_of(state.flaps)?;
+        }
+        let loads = state.rotor.hub.harmonic(plant.rotor().rotor().model().blades);
+        Ok(plant.measurement(control_volt, &loads, &state.flaps))
+    }
+
+    /// The loads that a control had when it was measured last, without noise.
+    fn measured(&self, control_volt: &[f64]) -> Option<[f64; 12]> {
+        let mut latest = self.truth.iter().rev();
+        latest.find(|(u, _)| u == control_volt).map(|(_, loads)| *loads)
     }
 }
 
-fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
-    let harmonics = series
-        .harmonics
-        .iter()
-        .map(|h| Harmonic { cosine: factor * h.cosine, sine: factor * h.sine })
-        .collect();
-    HarmonicSeries { mean: factor * series.mean, harmonics }
-}
-
-impl Plant for Disturbed {
-    type Error = PlantError;
-
-    fn layout(&self) -> &ControlLayout {
-        self.plant.layout()
-    }
-
-    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        let flaps = self.flaps(control_volt)?;
-        let mut loads = self.loads(&flaps)?;
+impl Answers for Disturbed {
+    fn measure(
+        &mut self,
+        plant: &RotorPlant,
+        control_volt: &[f64],
+    ) -> Result<Measurement, PlantError> {
+        let mut measurement = self.answer(plant, control_volt)?;
+        self.truth.push((control_volt.to_vec(), hub_loads(&measurement)));
         self.answers += 1;
-        add_noise(&mut loads, self.noise, &mut self.random);
-        let pairs = (0..self.layout().pairs()).filter_map(|p| self.layout().flap_and_harmonic(p));
-        Ok(Measurement {
-            hub_loads: loads.to_vec(),
-            flap_motion_deg: pairs.map(|(f, n)| flaps[f].harmonic(n as usize)).collect(),
-            mean_flap_deg: flaps.iter().map(|f| f.mean).collect(),
-        })
+        // what follows the loads of the hub is the weight of the power, which is not measured
+        add_noise(&mut measurement.hub_loads[..LOADS], self.noise, &mut self.random);
+        Ok(measurement)
     }
 
-    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, PlantError> {
-        self.plant.strokes_deg(control_volt)
+    fn offered_t(&self, t: TMatrix) -> Result<TMatrix, PlantError> {
+        wrong_t(&t, self.t_gain, self.t_phase_rad).map_err(PlantError::Bias)
     }
+}
 
-    fn stroke_limits_deg(&self) -> Vec<f64> {
-        self.plant.stroke_limits_deg()
-    }
+/// Numbers of the hub loads.
+const LOADS: usize = 12;
 
-    fn admits(&self, control_volt: &[f64]) -> bool {
-        self.plant.admits(control_volt)
-    }
+fn hub_loads(measurement: &Measurement) -> [f64; LOADS] {
+    std::array::from_fn(|k| measurement.hub_loads[k])
+}
 
-    fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, PlantError> {
-        self.plant.limits(control_volt)
+/// T with the loads of the hub multiplied by a gain and turned by a phase; the weight of the power is known.
+fn wrong_t(t: &TMatrix, gain: f64, phase_rad: f64) -> Result<TMatrix, ControlError> {
+    if gain.to_bits() == 1.0_f64.to_bits() && phase_rad == 0.0 {
+        return Ok(t.clone());
     }
+    let mut columns = t.turned(gain, phase_rad)?.columns();
+    for (wrong, right) in columns.iter_mut().zip(t.columns()) {
+        for (wrong, right) in wrong.iter_mut().zip(right).skip(LOADS) {
+            *wrong = right;
+        }
+    }
+    TMatrix::from_columns(&columns)
 }
 
 /// Adds normal noise of a standard deviation to every load.
@@ -184,129 +198,169 @@ fn disturbances() -> Vec<Disturbance> {
     noise.into_iter().chain(wrong).chain(drift).chain([all]).collect()
 }
 
-/// The plant's own error of a control run.
-fn plant_error(error: RunError<PlantError>) -> PlantError {
-    match error {
-        RunError::Plant { source, .. } => source,
-        RunError::Control(error) => PlantError::Bias(error),
-        _ => PlantError::BiasSearch,
+/// The controllers of a map in their order, and how each weights the control: as the case does. A weight that is
+/// tuned to the stroke goes with a constant T; where T is learnt the limits take its place.
+fn ways(effort: EffortChoice) -> [(ControllerChoice, EffortChoice); 3] {
+    let learnt = if effort == EffortChoice::MeetStroke { EffortChoice::Limits } else { effort };
+    [
+        (ControllerChoice::Global, effort),
+        (ControllerChoice::Local, learnt),
+        (ControllerChoice::Adaptive, learnt),
+    ]
+}
+
+fn effort_name(effort: EffortChoice) -> &'static str {
+    match effort {
+        EffortChoice::MeetStroke => "meet-stroke",
+        EffortChoice::Limits => "limits",
+        EffortChoice::Given { .. } => "given",
     }
 }
 
-/// Runs every controller of one harmonic under every disturbance, within the limits of the actuators.
+/// Runs every controller of one harmonic under every disturbance: the loop of the study itself, with its plant,
+/// limits, laws, renewals and settings.
 ///
-/// The rotor is linearised about its trim, the actuators are the identified ones. Every run starts from
-/// zero control and a T0 identified without disturbance; the local controller measures its own T and
-/// suffers the noise there too.
+/// Every run starts from zero control and a T0 identified without disturbance, wrong by what the disturbance says; so
+/// is the T that the local controller asks the plant for. A filter is told the noise.
 ///
 /// # Errors
-/// [`PlantError`] of the actuators or of the linearised rotor; a run that diverges is a cell of the map.
+/// [`StudyError`] of the plant; a run that diverges or whose stroke is not met is a cell of the map.
 pub fn robustness(
     case: &Case,
     rotor: &TrimmedRotor,
     drives: &Drives,
     harmonic: usize,
-) -> Result<Vec<RobustnessCell>, PlantError> {
-    let (Some(drive), Some(limit)) = (&drives.hysteretic, drives.limit(harmonic)) else {
+) -> Result<Vec<RobustnessCell>, StudyError> {
+    under(case, (rotor, drives), harmonic, disturbances())
+}
+
+/// The cells of given disturbances.
+fn under(
+    case: &Case,
+    (rotor, drives): (&TrimmedRotor, &Drives),
+    harmonic: usize,
+    disturbances: Vec<Disturbance>,
+) -> Result<Vec<RobustnessCell>, StudyError> {
+    if drives.hysteretic.is_none() {
         return Ok(Vec::new());
-    };
-    let plant = RotorPlant::new(rotor.clone(), drive.clone(), &[harmonic], &[limit])
-        .map_err(plant_error)?;
+    }
+    let harmonics = [harmonic];
+    let set = ControlSet::new(case, rotor, drives, &harmonics)?;
+    let plant = set.plant(ControlActuator::Hysteretic)?;
+    let step_volt = set.step_volts(&plant);
+    let t0 = identify_t(&mut plant.clone(), &step_volt)
+        .map_err(|source| set.failed(ControlActuator::Hysteretic, source))?;
     let baseline = rotor.trim().rotor.hub.harmonic(case.blades);
-    let rms = (baseline.iter().map(|z| z * z).sum::<f64>() / 12.0).sqrt();
-    let undisturbed = |seed: u64| Disturbed {
-        plant: plant.clone(),
-        baseline,
-        noise: 0.0,
-        drift: 0.0,
-        answers: 0,
-        random: ChaCha8Rng::seed_from_u64(seed),
-    };
-    let control = &case.control;
-    let step = control.t_step_deg * control.amplitude_volt / case.actuator.ideal_amplitude_deg;
-    let step_volt = vec![step; plant.layout().len()];
-    let t0 = match identify_t(&mut undisturbed(0), &step_volt) {
-        Ok(t0) => t0,
-        Err(error) => return Err(plant_error(error)),
-    };
-    let setting = Setting::of_case(case, &HubLoads::from_parts(baseline));
-    let weights = setting.load_weights();
-    let each: Vec<(Disturbance, Controller)> = disturbances()
+    let each: Vec<(Disturbance, (ControllerChoice, EffortChoice))> = disturbances
         .into_iter()
-        .flat_map(|disturbance| {
-            let noise = 0.01 * disturbance.noise_percent * rms;
-            let full_scale = AdaptiveSettings::of_full_scale(control.amplitude_volt);
-            let ways = [
-                Controller::Global,
-                // wider than at rest: the noise of a difference falls with its step
-                Controller::Local { step_volt: vec![2.0 * step; plant.layout().len()] },
-                Controller::Adaptive(AdaptiveSettings { noise, ..full_scale }),
-            ];
-            ways.map(|way| (disturbance, way))
-        })
+        .flat_map(|disturbance| ways(case.control.effort).map(|way| (disturbance, way)))
         .collect();
+    let flight = Flight {
+        set: &set,
+        t0,
+        step_volt,
+        rms: (baseline.iter().map(|z| z * z).sum::<f64>() / baseline.len() as f64).sqrt(),
+        setting: Setting::of_case(case, &HubLoads::from_parts(baseline)),
+        plant,
+        baseline,
+    };
     each.into_par_iter()
         .enumerate()
         .map(|(index, (disturbance, way))| {
-            let mut disturbed = Disturbed {
-                noise: 0.01 * disturbance.noise_percent * rms,
-                drift: 0.01 * disturbance.drift_percent,
-                ..undisturbed(SEED + index as u64)
-            };
-            let controller = way.name();
-            let settings = FeedbackSettings {
-                max_steps: STEPS,
-                step_tolerance: control.step_tolerance,
-                ..FeedbackSettings::default()
-            };
-            let diagonal = weights.into_iter().flat_map(|w| [w, w]).collect();
-            let wrong = wrong_t(&t0, disturbance)?;
-            let made = FeedbackController::new(&wrong, &LoadWeights::Diagonal(diagonal), settings)
-                .and_then(|c| c.with_controller(way))
-                .map_err(PlantError::Bias)?;
-            let ended = made.run_constrained(&mut disturbed, 0.0);
-            let truth = |u: &[f64]| disturbed.loads(&disturbed.flaps(u)?);
-            // a run that diverges stays where it is
-            let at_rest = HubLoads::from_parts(baseline);
-            let cell = RobustnessCell {
-                harmonic,
-                controller: controller.to_owned(),
-                disturbance,
-                outcome: "diverged".to_owned(),
-                measurements: disturbed.answers as usize,
-                end: at_rest,
-                best: at_rest,
-                ..RobustnessCell::default()
-            };
-            let cell = match ended {
-                Ok(run) => {
-                    let mut best = baseline;
-                    for step in run.history() {
-                        let loads = truth(&step.control_volt)?;
-                        if loads_cost(&weights, &loads) < loads_cost(&weights, &best) {
-                            best = loads;
-                        }
-                    }
-                    RobustnessCell {
-                        end: HubLoads::from_parts(truth(&run.last().control_volt)?),
-                        best: HubLoads::from_parts(best),
-                        outcome: outcome_name(Some(run.outcome)).to_owned(),
-                        steps: run.steps.len(),
-                        halvings: run.halvings,
-                        measurements: run.measurements,
-                        ..cell
-                    }
-                }
-                Err(RunError::Plant { source, .. }) => return Err(source),
-                Err(RunError::Control(
-                    ControlError::Diverges { .. } | ControlError::NotAdmitted { .. },
-                )) => cell,
-                Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
-                Err(_) => return Err(PlantError::BiasSearch),
-            };
-            Ok(cell.refigured(&setting))
+            flight
+                .cell((disturbance, SEED + index as u64), way)
+                .map_err(|source| set.failed(ControlActuator::Hysteretic, source))
         })
         .collect()
+}
+
+/// What the cells of a map share.
+struct Flight<'a> {
+    set: &'a ControlSet<'a>,
+    plant: RotorPlant,
+    t0: TMatrix,
+    step_volt: Vec<f64>,
+    baseline: [f64; LOADS],
+    rms: f64,
+    setting: Setting,
+}
+
+impl Flight<'_> {
+    fn cell(
+        &self,
+        (disturbance, seed): (Disturbance, u64),
+        (choice, effort): (ControllerChoice, EffortChoice),
+    ) -> Result<RobustnessCell, RunError<PlantError>> {
+        let answers = Disturbed::new(disturbance, self.rms, seed);
+        let way = match self.set.way(choice, self.step_volt.clone()) {
+            Controller::Adaptive(settings) => {
+                Controller::Adaptive(AdaptiveSettings { noise: answers.noise, ..settings })
+            }
+            way => way,
+        };
+        let wrong = wrong_t(&self.t0, answers.t_gain, answers.t_phase_rad)?;
+        let controller = self.set.controller(&wrong, way, effort)?;
+        let mut plant = Answered { plant: self.plant.clone(), answers };
+        let ended = close_loop(&controller, &mut plant, effort);
+        let disturbed = &plant.answers;
+        // a run that diverges stays where it is
+        let at_rest = HubLoads::from_parts(self.baseline);
+        let cell = RobustnessCell {
+            harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
+            controller: choice_name(choice).to_owned(),
+            effort: effort_name(effort).to_owned(),
+            disturbance,
+            measurements: disturbed.answers as usize,
+            end: at_rest,
+            best: at_rest,
+            ..RobustnessCell::default()
+        };
+        let cell = match ended {
+            Ok((run, _)) => {
+                let control = &run.last().control_volt;
+                let end = match disturbed.measured(control) {
+                    Some(loads) if disturbed.drift == 0.0 => loads,
+                    _ => {
+                        let answer = disturbed.answer(&plant.plant, control);
+                        hub_loads(&answer.map_err(|source| unanswered(&run, source))?)
+                    }
+                };
+                RobustnessCell {
+                    end: HubLoads::from_parts(end),
+                    best: HubLoads::from_parts(self.best(&run, disturbed)),
+                    outcome: outcome_name(Some(run.outcome)).to_owned(),
+                    steps: run.steps.len(),
+                    halvings: run.halvings,
+                    ..cell
+                }
+            }
+            Err(RunError::Control(
+                ControlError::Diverges { .. } | ControlError::NotAdmitted { .. },
+            )) => RobustnessCell { outcome: "diverged".to_owned(), ..cell },
+            Err(RunError::Control(
+                ControlError::StrokeNotMet { .. } | ControlError::ConeProgram { .. },
+            )) => RobustnessCell { outcome: "failed".to_owned(), ..cell },
+            Err(error) => return Err(error),
+        };
+        Ok(cell.refigured(&self.setting))
+    }
+
+    /// The least loads of the record, each as it was when it was measured.
+    fn best(&self, run: &ControlRun, disturbed: &Disturbed) -> [f64; LOADS] {
+        let weights = self.setting.load_weights();
+        let all = run.history().filter_map(|step| disturbed.measured(&step.control_volt));
+        all.fold(self.baseline, |best, loads| {
+            if loads_cost(&weights, &loads) < loads_cost(&weights, &best) { loads } else { best }
+        })
+    }
+}
+
+fn choice_name(choice: ControllerChoice) -> &'static str {
+    match choice {
+        ControllerChoice::Global => "global",
+        ControllerChoice::Local => "local",
+        ControllerChoice::Adaptive => "adaptive",
+    }
 }
 
 /// The maps of every harmonic that a run controlled alone on the hysteretic actuator.
@@ -325,7 +379,7 @@ pub fn robustness_maps(
         .map(|study| {
             let harmonic = study.harmonics[0];
             robustness(case, &outcome.trimmed, &outcome.drives, harmonic).map_err(|source| {
-                let source = StudyError::Robustness { harmonic, source };
+                let source = StudyError::Robustness { harmonic, source: Box::new(source) };
                 SimError::Study { place: loaded.index.place("control"), source }
             })
         })
@@ -333,36 +387,20 @@ pub fn robustness_maps(
     Ok(maps.into_iter().flatten().collect())
 }
 
-/// T0 multiplied by a gain and turned by a phase, pair by pair.
-fn wrong_t(t0: &TMatrix, disturbance: Disturbance) -> Result<TMatrix, PlantError> {
-    let (sin, cos) = disturbance.t_phase_deg.to_radians().sin_cos();
-    let gain = disturbance.t_gain;
-    let columns: Vec<Vec<f64>> = t0
-        .columns()
-        .chunks_exact(2)
-        .flat_map(|pair| {
-            let mix = |a: f64, b: f64| -> Vec<f64> {
-                pair[0].iter().zip(&pair[1]).map(|(c, s)| gain * (a * c + b * s)).collect()
-            };
-            [mix(cos, sin), mix(-sin, cos)]
-        })
-        .collect();
-    TMatrix::from_columns(&columns).map_err(PlantError::Bias)
-}
-
 /// The cells as CSV text.
 pub fn robustness_csv(cells: &[RobustnessCell]) -> String {
     let mut text = String::from(
-        "per_rev,controller,noise_percent,t_gain,t_phase_deg,drift_percent,reduction_percent,best_percent,outcome,steps,halvings,measurements\n",
+        "per_rev,controller,effort,noise_percent,t_gain,t_phase_deg,drift_percent,reduction_percent,best_percent,outcome,steps,halvings,measurements\n",
     );
     for c in cells {
         let d = c.disturbance;
         // writing to a string cannot fail
         let _ = writeln!(
             text,
-            "{},{},{},{},{},{},{:.3},{:.3},{},{},{},{}",
+            "{},{},{},{},{},{},{},{:.3},{:.3},{},{},{},{}",
             c.harmonic,
             c.controller,
+            c.effort,
             d.noise_percent,
             d.t_gain,
             d.t_phase_deg,
@@ -376,6 +414,13 @@ pub fn robustness_csv(cells: &[RobustnessCell]) -> String {
         );
     }
     text
+}
+
+/// A plant that did not answer behind a loop that ended.
+fn unanswered(run: &ControlRun, source: PlantError) -> RunError<PlantError> {
+    let control_volt = run.last().control_volt.clone();
+    let call = hhc_control::PlantCall::Measure { control_volt };
+    RunError::Plant { call, history: run.history().cloned().collect(), source }
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! The disturbances of the maps on plants whose answer to them is known in closed form.
 
 use super::*;
-use hhc_control::LinearPlant;
-use hhc_control::Outcome;
+use hhc_control::{
+    ControlLayout, FeedbackController, FeedbackSettings, LinearPlant, LoadWeights, Outcome, Plant,
+};
 use nalgebra::{DMatrix, DVector};
 use std::convert::Infallible;
 
-const LOADS: usize = 12;
 const CONTROLS: usize = 4;
 
 fn matrix() -> DMatrix<f64> {
@@ -32,10 +32,6 @@ fn layout() -> ControlLayout {
     ControlLayout::new(2, vec![3]).unwrap()
 }
 
-fn wrong(gain: f64, phase_deg: f64) -> Disturbance {
-    Disturbance { noise_percent: 0.0, t_gain: gain, t_phase_deg: phase_deg, drift_percent: 0.0 }
-}
-
 fn settings(max_steps: usize) -> FeedbackSettings {
     FeedbackSettings {
         max_steps,
@@ -59,7 +55,7 @@ fn a_wrong_t_of_the_maps_contracts_as_theory_says() {
         T_GAINS.iter().flat_map(|g| T_PHASES_DEG.map(|phase| (*g, phase))).collect();
     cases.extend([(1.0, 50.0), (0.55, 10.0), (1.0, 70.0), (0.45, 0.0)]);
     for (gain, phase_deg) in cases {
-        let wrong_t = wrong_t(&as_t(&t), wrong(gain, phase_deg)).unwrap();
+        let wrong_t = wrong_t(&as_t(&t), gain, phase_deg.to_radians()).unwrap();
         let mut plant = LinearPlant::new(layout(), baseline(), as_t(&t)).unwrap();
         let controller =
             FeedbackController::new(&wrong_t, &LoadWeights::Identity, settings(4)).unwrap();
@@ -149,5 +145,38 @@ fn every_disturbance_stands_once_in_the_map() {
     assert_eq!(all.len(), NOISE_PERCENT.len() + T_GAINS.len() * T_PHASES_DEG.len() - 1 + 2 + 1);
     for (k, one) in all.iter().enumerate() {
         assert!(!all[..k].contains(one), "{one:?}");
+    }
+}
+
+/// Without a disturbance the cell of the case's own controller is the loop of the study, to the last bit; of a limit of
+/// the power it knows too.
+#[test]
+fn an_undisturbed_cell_is_the_loop_of_the_study() {
+    use crate::case::{CONTROLLERS_CASE, PAPER_CASE, shipped_case};
+    let shipped = [PAPER_CASE, CONTROLLERS_CASE].map(|name| shipped_case(name).unwrap());
+    let actuators = crate::actuator::case_actuators(&shipped[0]).unwrap();
+    let model = actuators.real.map(std::sync::Arc::new);
+    let rotor = TrimmedRotor::new(&shipped[0], None).unwrap();
+    let none =
+        Disturbance { noise_percent: 0.0, t_gain: 1.0, t_phase_deg: 0.0, drift_percent: 0.0 };
+    for mut loaded in shipped {
+        let control = &mut loaded.case.control;
+        control.harmonics = vec![vec![3]];
+        control.actuators = vec![ControlActuator::Hysteretic];
+        if control.effort == EffortChoice::Limits {
+            control.power_limit_watt = Some(0.3);
+        }
+        let choice = choice_name(control.controller);
+        let drives = Drives::new(&loaded.case, model.clone()).unwrap();
+        let done = || ();
+        let study = super::super::control_set(&loaded.case, &rotor, &drives, &[3], &done).unwrap();
+        let run = study[0].run.as_ref().unwrap();
+        let cells = under(&loaded.case, (&rotor, &drives), 3, vec![none]).unwrap();
+        let cell = cells.iter().find(|cell| cell.controller == choice).unwrap();
+        let loads = study[0].state.rotor.hub.harmonic(loaded.case.blades);
+        let bits = |loads: [f64; 12]| loads.map(f64::to_bits);
+        assert_eq!(bits(cell.end.parts()), bits(loads), "{choice}");
+        assert_eq!((cell.steps, cell.halvings), (run.steps.len(), run.halvings), "{choice}");
+        assert_eq!(cell.outcome, outcome_name(Some(run.outcome)), "{choice}");
     }
 }

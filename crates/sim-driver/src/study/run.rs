@@ -30,18 +30,24 @@ pub struct ControlStudy {
     pub t: Option<TMatrix>,
     /// Control weight `W_u = rho I` of that run, 1/V^2.
     pub rho: f64,
-    /// What the controller knew of T; none where voltages were taken over or inverted.
-    pub controller: Option<&'static str>,
+    /// T about the control at the end, load per V; of a loop with a constant T and a control weight.
+    pub t_at_end: Option<TMatrix>,
+    /// Tolerance of the step of the loop, relative.
+    pub step_tolerance: f64,
+    /// Tolerance of the cost of the loop, over that at the start; 0 for the test of the step alone.
+    pub cost_tolerance: f64,
     /// Motion asked of the inverse, flap by flap, deg; empty but for the inverse.
     pub wanted_deg: Vec<HarmonicSeries>,
     /// Its size over that of the ideal motion: below 1 where the range of voltages ends first.
     pub motion_share: Option<f64>,
-    /// Whether the identified actuator can make the motion; of the ideal one.
-    pub within_reach: Option<bool>,
+    /// Part of the motion that the identified actuator makes within its range of voltages; of the ideal one.
+    pub reach_share: Option<f64>,
     /// Part of the voltages that were taken over: below 1 where they leave no room for the bias.
     pub voltage_share: Option<f64>,
     /// Stroke limit of each controlled harmonic, deg.
     pub stroke_limit_deg: Vec<f64>,
+    /// Flap motion at each harmonic for a cosine of the voltage of its stroke limit, `[cosine, sine]`, deg.
+    pub at_stroke_deg: Vec<[f64; 2]>,
     /// Weight of each load in `J_Z`, order `FX FY FZ MX MY MZ`.
     pub load_weights: [f64; 6],
     /// `J_Z` without control.
@@ -92,6 +98,8 @@ pub struct FullScale {
     pub stroke_deg: f64,
     /// Largest amplitude that the range of voltages leaves to this harmonic alone, V.
     pub reach_volt: f64,
+    /// Flap motion for a cosine of the voltage amplitude, `[cosine, sine]`, deg.
+    pub motion_deg: [f64; 2],
 }
 
 /// The drives of a case and the stroke limits they set.
@@ -154,13 +162,11 @@ impl Drives {
             StrokeChoice::Given { amplitude_deg } if amplitude_deg >= full.stroke_deg => {
                 FullScale { stroke_deg: amplitude_deg, ..full }
             }
-            StrokeChoice::Given { amplitude_deg } => FullScale {
-                amplitude_volt: drive
-                    .voltage_of_stroke(harmonic, amplitude_deg, full)
-                    .map_err(failed)?,
-                stroke_deg: amplitude_deg,
-                ..full
-            },
+            StrokeChoice::Given { amplitude_deg } => {
+                let (amplitude_volt, motion_deg) =
+                    drive.voltage_of_stroke(harmonic, amplitude_deg, full).map_err(failed)?;
+                FullScale { amplitude_volt, stroke_deg: amplitude_deg, motion_deg, ..full }
+            }
         })
     }
 
@@ -172,6 +178,7 @@ impl Drives {
             limit.amplitude_volt *= factor;
             limit.stroke_deg *= factor;
             limit.reach_volt *= factor;
+            limit.motion_deg = limit.motion_deg.map(|deg| factor * deg);
         }
         scaled
     }
@@ -213,11 +220,11 @@ pub fn control_set(
     for &actuator in asked {
         studies.push(match (actuator, &ideal) {
             (ControlActuator::Ideal, Some(ideal)) => {
-                let within_reach = made.as_ref().and_then(|made| match made {
-                    Ok(_) => Some(true),
-                    Err(error) => within_reach(error).map(|_| false),
+                let reach_share = made.as_ref().and_then(|made| match made {
+                    Ok(_) => Some(1.0),
+                    Err(error) => within_reach(error).map(|share| share.min(LARGEST_SHARE_BEYOND)),
                 });
-                ControlStudy { within_reach, ..ideal.clone() }
+                ControlStudy { reach_share, ..ideal.clone() }
             }
             (ControlActuator::Ignored, Some(ideal)) => set.taken_over(ideal)?,
             (ControlActuator::Inverse, Some(ideal)) => set.inverted(ideal, made.clone())?,
@@ -346,23 +353,34 @@ impl ControlSet<'_> {
         control.t_step_deg * control.amplitude_volt / self.case.actuator.ideal_amplitude_deg
     }
 
-    /// T0 of a plant and the controller of the case, `way` of knowing T included.
-    fn controller(
+    /// The same for every control of a plant.
+    pub(super) fn step_volts(&self, plant: &RotorPlant) -> Vec<f64> {
+        vec![self.step_volt(); plant.layout().len()]
+    }
+
+    /// How a controller of the case knows T.
+    pub(super) fn way(&self, choice: ControllerChoice, step_volt: Vec<f64>) -> Controller {
+        match choice {
+            ControllerChoice::Global => Controller::Renewed { step_volt, renewals: RENEWALS },
+            ControllerChoice::Local => Controller::Local { step_volt },
+            ControllerChoice::Adaptive => Controller::Adaptive(AdaptiveSettings::of_full_scale(
+                self.case.control.amplitude_volt,
+            )),
+        }
+    }
+
+    /// T0 of a plant and the controller of the case, `way` of knowing T and of weighting the control included.
+    pub(super) fn controller(
         &self,
         t: &TMatrix,
         way: Controller,
+        effort: EffortChoice,
     ) -> Result<FeedbackController, RunError<PlantError>> {
         let control = &self.case.control;
         let settings = FeedbackSettings {
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
-            // a constant T promises what it cannot keep: its end is that of the paper's loop
-            cost_tolerance: match (&way, control.effort) {
-                // T of the ideal actuator is right wherever the loop ends, limits or not
-                (Controller::Global, EffortChoice::Limits) => COST_TOLERANCE,
-                (Controller::Global | Controller::Renewed { .. }, _) => 0.0,
-                _ => COST_TOLERANCE,
-            },
+            cost_tolerance: cost_tolerance(&way, effort),
             ..FeedbackSettings::default()
         };
         // the weight of the power is in its loads already
@@ -395,12 +413,15 @@ impl ControlSet<'_> {
             run: None,
             t: None,
             rho: 0.0,
-            controller: None,
+            t_at_end: None,
+            step_tolerance: self.case.control.step_tolerance,
+            cost_tolerance: 0.0,
             wanted_deg: Vec::new(),
             motion_share: None,
-            within_reach: None,
+            reach_share: None,
             voltage_share: None,
             stroke_limit_deg: self.limits.iter().map(|l| l.stroke_deg).collect(),
+            at_stroke_deg: self.limits.iter().map(|l| l.motion_deg).collect(),
             load_weights,
             j_before: loads_cost(&load_weights, &before),
             j_after: loads_cost(&load_weights, &after),
@@ -426,47 +447,31 @@ impl ControlSet<'_> {
         let mut plant = self.plant(actuator)?;
         let failed = |e| self.failed(actuator, e);
         let control = &self.case.control;
-        let step_volt = vec![self.step_volt(); plant.layout().len()];
+        let step_volt = self.step_volts(&plant);
         let t = identify_t(&mut plant, &step_volt).map_err(failed)?;
         // the ideal actuator has one T everywhere
-        let choice = match actuator {
-            ControlActuator::Ideal => ControllerChoice::Global,
-            _ => control.controller,
+        let way = match actuator {
+            ControlActuator::Ideal => Controller::Global,
+            _ => self.way(control.controller, step_volt),
         };
-        let way = match choice {
-            ControllerChoice::Global if actuator == ControlActuator::Ideal => Controller::Global,
-            ControllerChoice::Global => Controller::Renewed { step_volt, renewals: RENEWALS },
-            ControllerChoice::Local => Controller::Local { step_volt },
-            ControllerChoice::Adaptive => {
-                Controller::Adaptive(AdaptiveSettings::of_full_scale(control.amplitude_volt))
-            }
-        };
-        let name = match &way {
-            Controller::Renewed { .. } => Controller::Global.name(),
-            way => way.name(),
-        };
-        let controller = self.controller(&t, way).map_err(failed)?;
-        let (run, rho) = match control.effort {
-            EffortChoice::MeetStroke => {
-                let limited = controller.run_within_stroke(&mut plant).map_err(failed)?;
-                (limited.run, limited.rho)
-            }
-            EffortChoice::Limits => {
-                // with more controls than loads the optimum is one of many: the least voltage is taken
-                let surplus = t.controls() > t.loads();
-                let scale = controller.law().singular_values().first().map_or(0.0, |s| s * s);
-                let rho = if surplus { LEAST_EFFORT * scale } else { 0.0 };
-                (controller.run_constrained(&mut plant, rho).map_err(failed)?, rho)
-            }
-            EffortChoice::Given { rho } => (controller.run(&mut plant, rho).map_err(failed)?, rho),
-        };
+        let holds_t = matches!(way, Controller::Renewed { .. });
+        let cost_tolerance = cost_tolerance(&way, control.effort);
+        let controller = self.controller(&t, way, control.effort).map_err(failed)?;
+        let (run, rho) = close_loop(&controller, &mut plant, control.effort).map_err(failed)?;
         let volts = run.last().control_volt.clone();
         let state = self.state(actuator, &plant, &volts)?;
+        // whether whole steps settle there is a question of a constant T and a given weight
+        let t_at_end = if holds_t && control.effort != EffortChoice::Limits {
+            plant.linearised_t(&volts).ok().flatten()
+        } else {
+            None
+        };
         Ok(ControlStudy {
+            t: Some(run.t.clone()),
             run: Some(run),
-            t: Some(t),
             rho,
-            controller: Some(name),
+            t_at_end,
+            cost_tolerance,
             ..self.study(actuator, &plant, volts, state)?
         })
     }
@@ -499,17 +504,57 @@ impl ControlSet<'_> {
     }
 }
 
+/// Runs the loop from zero control as the case weights the control; with the weight found, 1/V^2.
+pub(super) fn close_loop<P: Plant>(
+    controller: &FeedbackController,
+    plant: &mut P,
+    effort: EffortChoice,
+) -> Result<(ControlRun, f64), RunError<P::Error>> {
+    Ok(match effort {
+        EffortChoice::MeetStroke => {
+            let limited = controller.run_within_stroke(plant)?;
+            (limited.run, limited.rho)
+        }
+        EffortChoice::Limits => {
+            let rho = least_effort(controller);
+            (controller.run_constrained(plant, rho)?, rho)
+        }
+        EffortChoice::Given { rho } => (controller.run(plant, rho)?, rho),
+    })
+}
+
 /// Times that a constant T which leads nowhere is identified again.
 const RENEWALS: u32 = 4;
 
 /// Accuracy of the part of a voltage that is taken over.
 const TAKEN_OVER_TOLERANCE: f64 = 1e-4;
 
-/// Fall of J, as a part of the uncontrolled J, below which a further step is not worth asking for.
+/// Fall of J that may be left to a loop that has converged, as a part of the uncontrolled J.
 const COST_TOLERANCE: f64 = 1e-5;
+
+/// Tolerance of the cost of a loop: a constant T promises what it cannot keep, its end is that of the paper's loop;
+/// that of the ideal actuator is right wherever the loop ends, limits or not.
+pub(crate) fn cost_tolerance(way: &Controller, effort: EffortChoice) -> f64 {
+    match (way, effort) {
+        (Controller::Global, EffortChoice::Limits) => COST_TOLERANCE,
+        (Controller::Global | Controller::Renewed { .. }, _) => 0.0,
+        _ => COST_TOLERANCE,
+    }
+}
+
+/// Share of a motion that is out of reach, should rounding call it whole.
+const LARGEST_SHARE_BEYOND: f64 = 1.0 - 1e-9;
 /// Weight of the control, over the largest singular value of T squared, that picks the least voltage
 /// where the optimum is not unique.
 pub(super) const LEAST_EFFORT: f64 = 1e-8;
+
+/// Control weight of a cone program, 1/V^2: with more controls than loads the optimum is one of many, and the least
+/// voltage is taken.
+pub(super) fn least_effort(controller: &FeedbackController) -> f64 {
+    let law = controller.law();
+    let scale = law.singular_values().first().map_or(0.0, |s| s * s);
+    if law.has_surplus_controls() { LEAST_EFFORT * scale } else { 0.0 }
+}
 
 /// Weight of each load of a case, for the hub loads without control.
 pub(super) fn load_weights(case: &Case, baseline: &[f64; 12]) -> [f64; 6] {

@@ -4,12 +4,11 @@ use super::run::ideal_control;
 use super::{Drives, FlapDrive, TrimmedRotor};
 use crate::SimError;
 use crate::case::{
-    BladeValues, EffortChoice, FreeWakeFile, InflowChoice, LoadScaleChoice, LoadedCase,
-    NearWakeChoice, SectionModelChoice, TrimValues,
+    BladeValues, ControllerChoice, EffortChoice, FreeWakeFile, InflowChoice, LoadScaleChoice,
+    LoadedCase, NearWakeChoice, SectionModelChoice, TrimValues,
 };
 use crate::raw::{Setting, loads_cost};
 use crate::results::HubLoads;
-use hhc_control::reduction_percent;
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -21,19 +20,24 @@ const TABLE_TRIM_TOLERANCE: f64 = 1e-7;
 const TABLE_PERIODICITY_TOLERANCE: f64 = 1e-9;
 const TABLE_INFLOW_TOLERANCE: f64 = 1e-8;
 
+/// The row of the case as it is.
+const AS_THE_CASE: &str = "case";
+/// The case in Drees's inflow.
+const DREES: &str = "inflow-drees";
 /// The change that weights each load by its own baseline.
-const BY_BASELINE: &str = "each load weighted by its own baseline";
-
-const FREE_WAKE: &str = "free wake";
-const NEAR_WAKES: [&str; 2] = [
-    "near wake convected, off the free wake",
-    "near wake of 30 deg in the blade plane, off the free wake",
-];
+const BY_BASELINE: &str = "weights-baseline";
+/// The case in a free wake.
+const FREE_WAKE: &str = "wake-free";
+/// How the id of a row about the near part of that wake begins.
+const NEAR_WAKE: &str = "wake-near";
 
 /// One assumption changed, and what becomes of the reductions.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sensitivity {
-    /// What was changed, with the value it has in the case.
+    /// Name that other rows are compared by, such as `twist-4`.
+    #[serde(default)]
+    pub id: String,
+    /// What was changed.
     pub assumption: String,
     /// Reduction of `J_Z` (percent) for each of the harmonics that the case controls alone, ideal actuator
     /// within the stroke of the real one; empty without an answer.
@@ -41,8 +45,9 @@ pub struct Sensitivity {
     /// Largest change of a reduction from the row it is compared with, percentage points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_change: Option<f64>,
-    /// The row it is compared with, counted from 0.
-    pub compared_with: usize,
+    /// The id of the row it is compared with.
+    #[serde(default)]
+    pub compared_with: String,
     /// Why there is no answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -61,27 +66,29 @@ pub struct SensitivityRecord {
 }
 
 impl Sensitivity {
-    fn new(assumption: &str, record: SensitivityRecord) -> Self {
-        Self { assumption: assumption.to_owned(), record: Some(record), ..Self::default() }
+    fn new((id, assumption): (&str, &str), record: SensitivityRecord) -> Self {
+        let (id, assumption) = (id.to_owned(), assumption.to_owned());
+        Self { id, assumption, record: Some(record), ..Self::default() }
     }
 
     /// A row without an answer.
-    fn failed(assumption: &str, error: &SimError) -> Self {
-        let (assumption, failure) = (assumption.to_owned(), Some(error.to_string()));
-        Self { assumption, failure, ..Self::default() }
+    fn failed((id, assumption): (&str, &str), error: &SimError) -> Self {
+        let (id, assumption, failure) =
+            (id.to_owned(), assumption.to_owned(), Some(error.to_string()));
+        Self { id, assumption, failure, ..Self::default() }
     }
 
     /// The reductions from the loads, with the weights as the row has them.
     fn reductions(&self, case: &Setting) -> Vec<f64> {
         let Some(record) = &self.record else { return Vec::new() };
         let mut setting = Setting { baseline: record.baseline.parts(), ..case.clone() };
-        if self.assumption == BY_BASELINE {
-            setting.scale = LoadScaleChoice::Baseline;
+        if self.id == BY_BASELINE {
+            setting.control.load_scale = LoadScaleChoice::Baseline;
         }
         let weights = setting.load_weights();
         let before = loads_cost(&weights, &setting.baseline);
         let after = record.hub_4_per_rev.iter().map(|loads| loads_cost(&weights, &loads.parts()));
-        after.map(|after| reduction_percent(before, after)).collect()
+        after.map(|after| setting.reduction_percent(before, after)).collect()
     }
 }
 
@@ -90,11 +97,18 @@ pub(crate) fn refigure_sensitivity(rows: &mut [Sensitivity], setting: &Setting) 
     for row in &mut *rows {
         row.reduction_percent = row.reductions(setting);
     }
-    let all: Vec<Vec<f64>> = rows.iter().map(|row| row.reduction_percent.clone()).collect();
+    let all: Vec<(String, Vec<f64>)> =
+        rows.iter().map(|row| (row.id.clone(), row.reduction_percent.clone())).collect();
     for row in rows {
-        let nominal = all.get(row.compared_with).map_or(&[][..], Vec::as_slice);
-        let changes = row.reduction_percent.iter().zip(nominal).map(|(a, b)| (a - b).abs());
-        row.largest_change = row.record.is_some().then(|| changes.fold(0.0, f64::max));
+        let nominal = all.iter().find(|(id, _)| *id == row.compared_with);
+        row.largest_change = match (&row.record, nominal) {
+            (Some(_), Some((_, nominal))) => {
+                let changes = row.reduction_percent.iter().zip(nominal).map(|(a, b)| (a - b).abs());
+                Some(changes.fold(0.0, f64::max))
+            }
+            // no answer, or nothing to compare it with
+            _ => None,
+        };
     }
 }
 
@@ -118,6 +132,7 @@ enum StrokeOf {
 
 /// A change of the case and of the stroke.
 struct Assumption {
+    id: &'static str,
     text: &'static str,
     stroke: StrokeOf,
     rotor: RotorOf,
@@ -125,17 +140,17 @@ struct Assumption {
 }
 
 fn assume(
-    text: &'static str,
+    (id, text): (&'static str, &'static str),
     change: impl Fn(&mut LoadedCase) + Sync + Send + 'static,
 ) -> Assumption {
     let change = Box::new(change);
     let stroke = StrokeOf::TheCase(1.0);
-    Assumption { text, stroke, rotor: RotorOf::TheChange, change }
+    Assumption { id, text, stroke, rotor: RotorOf::TheChange, change }
 }
 
 /// No change: rotor and stroke of the case.
-fn as_it_is(text: &'static str) -> Assumption {
-    Assumption { rotor: RotorOf::TheCase, ..assume(text, |_| {}) }
+fn as_it_is(name: (&'static str, &'static str)) -> Assumption {
+    Assumption { rotor: RotorOf::TheCase, ..assume(name, |_| {}) }
 }
 
 /// A linear twist in place of whatever the blade has.
@@ -169,14 +184,14 @@ fn free_wake(loaded: &LoadedCase) -> FreeWakeFile {
 
 /// The free wake instead of the case's inflow, and its near part in other ways.
 fn of_the_wake() -> Vec<Assumption> {
-    let of_rotor = |text, change: fn(&mut LoadedCase)| assume(text, change);
+    let of_rotor = |id, text, change: fn(&mut LoadedCase)| assume((id, text), change);
     vec![
-        of_rotor(FREE_WAKE, |c| c.case.inflow = InflowChoice::FreeWake(free_wake(c))),
-        of_rotor(NEAR_WAKES[0], |c| {
+        of_rotor(FREE_WAKE, "free wake", |c| c.case.inflow = InflowChoice::FreeWake(free_wake(c))),
+        of_rotor("wake-near-convected", "near wake convected", |c| {
             let near_wake = NearWakeChoice::Convected;
             c.case.inflow = InflowChoice::FreeWake(FreeWakeFile { near_wake, ..free_wake(c) });
         }),
-        of_rotor(NEAR_WAKES[1], |c| {
+        of_rotor("wake-near-plane-30", "near wake of 30 deg in the blade plane", |c| {
             let near_wake = NearWakeChoice::BladePlane;
             let file = FreeWakeFile { near_wake, near_wake_deg: 30.0, ..free_wake(c) };
             c.case.inflow = InflowChoice::FreeWake(file);
@@ -184,87 +199,125 @@ fn of_the_wake() -> Vec<Assumption> {
     ]
 }
 
-/// Compares another near wake with the free wake as it is, so that one thing is changed at a time.
-fn compare_near_wakes(table: &mut [Sensitivity]) {
-    let Some(place) = table.iter().position(|row| row.assumption == FREE_WAKE) else { return };
-    for row in table.iter_mut().filter(|row| NEAR_WAKES.contains(&row.assumption.as_str())) {
-        row.compared_with = place;
+impl Assumption {
+    /// Whether it changes anything of a case: not where the case has it so already, or makes no use of the field.
+    fn concerns(&self, loaded: &LoadedCase, has_model: bool) -> bool {
+        let mut varied = loaded.clone();
+        (self.change)(&mut varied);
+        let stroke = match self.stroke {
+            // that of an ideal actuator is the same at any speed
+            StrokeOf::TheChange => has_model,
+            StrokeOf::TheCase(factor) => factor.to_bits() != 1.0_f64.to_bits(),
+        };
+        // the polar of a section with tables is theirs
+        if loaded.case.section.airfoils.is_some() {
+            varied.case.section.drag_coefficient = loaded.case.section.drag_coefficient;
+        }
+        if self.stroke == StrokeOf::TheChange {
+            stroke
+        } else {
+            stroke || varied.case != loaded.case
+        }
     }
 }
 
 /// The changes, one at a time.
 fn assumptions() -> Vec<Assumption> {
-    let of_rotor = |text, change: fn(&mut LoadedCase)| assume(text, change);
-    let of_case = |text, change: fn(&mut LoadedCase)| Assumption {
+    let of_rotor = |id, text, change: fn(&mut LoadedCase)| assume((id, text), change);
+    let of_case = |id, text, change: fn(&mut LoadedCase)| Assumption {
         change: Box::new(change),
-        ..as_it_is(text)
+        ..as_it_is((id, text))
     };
-    let stroke =
-        |text, factor| Assumption { stroke: StrokeOf::TheCase(factor), ..of_case(text, |_| {}) };
+    let stroke = |id, text, factor| Assumption {
+        stroke: StrokeOf::TheCase(factor),
+        ..of_case(id, text, |_| {})
+    };
     vec![
-        of_rotor("flaps .05 R further in", |c| shift_flaps(c, -0.05)),
-        of_rotor("flaps .05 R further out", |c| shift_flaps(c, 0.05)),
-        of_rotor("flaps .02 R further out", |c| shift_flaps(c, 0.02)),
-        of_rotor("twist -4 deg", |c| twist(&mut c.case.blade, -4.0)),
-        of_rotor("twist -12 deg", |c| twist(&mut c.case.blade, -12.0)),
-        of_rotor("GJ -20 % (first torsion -10 %)", |c| {
+        of_rotor("flaps-in-05", "flaps .05 R further in", |c| shift_flaps(c, -0.05)),
+        of_rotor("flaps-out-05", "flaps .05 R further out", |c| shift_flaps(c, 0.05)),
+        of_rotor("flaps-out-02", "flaps .02 R further out", |c| shift_flaps(c, 0.02)),
+        of_rotor("twist-4", "twist -4 deg", |c| twist(&mut c.case.blade, -4.0)),
+        of_rotor("twist-12", "twist -12 deg", |c| twist(&mut c.case.blade, -12.0)),
+        of_rotor("gj-80", "GJ -20 % (first torsion -10 %)", |c| {
             let blade = &mut c.case.blade;
             times(&mut blade.gj, &mut blade.tables.gj, 0.8);
         }),
-        of_rotor("GJ +20 % (first torsion +9 %)", |c| {
+        of_rotor("gj-120", "GJ +20 % (first torsion +9 %)", |c| {
             let blade = &mut c.case.blade;
             times(&mut blade.gj, &mut blade.tables.gj, 1.2);
         }),
-        of_rotor("radii of gyration +10 % (first torsion -9 %)", |c| {
+        of_rotor("gyration-110", "radii of gyration +10 % (first torsion -9 %)", |c| {
             let blade = &mut c.case.blade;
             times(&mut blade.km1, &mut blade.tables.km1_r, 1.1);
             times(&mut blade.km2, &mut blade.tables.km2_r, 1.1);
         }),
-        of_rotor("modal damping .2 % of critical", |c| c.case.blade.modal_damping = 0.002),
-        of_rotor("modal damping 1 % of critical", |c| c.case.blade.modal_damping = 0.01),
-        of_rotor("precone 2.5 deg", |c| c.case.blade.precone_rad = 2.5_f64.to_radians()),
-        of_rotor("root cut-out .15 R", |c| c.case.blade.root_cutout = 0.15),
-        of_rotor("profile drag .008", |c| c.case.section.drag_coefficient = 0.008),
-        of_rotor("fuselage drag area -30 %", |c| {
+        of_rotor("damping-002", "modal damping .2 % of critical", |c| {
+            c.case.blade.modal_damping = 0.002;
+        }),
+        of_rotor("damping-010", "modal damping 1 % of critical", |c| {
+            c.case.blade.modal_damping = 0.01;
+        }),
+        of_rotor("precone-2.5", "precone 2.5 deg", |c| {
+            c.case.blade.precone_rad = 2.5_f64.to_radians();
+        }),
+        of_rotor("cutout-15", "root cut-out .15 R", |c| c.case.blade.root_cutout = 0.15),
+        of_rotor("drag-008", "profile drag .008", |c| c.case.section.drag_coefficient = 0.008),
+        of_rotor("fuselage-70", "fuselage drag area -30 %", |c| {
             if let TrimValues::Propulsive { drag_area, .. } = &mut c.case.trim {
                 *drag_area *= 0.7;
             }
         }),
-        of_rotor("uniform inflow", |c| c.case.inflow = InflowChoice::Uniform),
-        of_rotor("inflow of Pitt and Peters", |c| c.case.inflow = InflowChoice::PittPeters),
-        of_rotor("quasi-steady sections", |c| {
+        of_rotor("inflow-uniform", "uniform inflow", |c| c.case.inflow = InflowChoice::Uniform),
+        of_rotor("inflow-pitt-peters", "inflow of Pitt and Peters", |c| {
+            c.case.inflow = InflowChoice::PittPeters;
+        }),
+        of_rotor("sections-quasi-steady", "quasi-steady sections", |c| {
             c.case.section.model = SectionModelChoice::QuasiSteady;
         }),
-        of_rotor("flap lift 80 % of thin-aerofoil theory", |c| {
+        of_rotor("flap-lift-80", "flap lift 80 % of thin-aerofoil theory", |c| {
             for flap in &mut c.case.flaps {
                 flap.effectiveness[0] *= 0.8;
             }
         }),
         Assumption {
             rotor: RotorOf::TheCase,
-            ..assume(BY_BASELINE, |c| c.case.control.load_scale = LoadScaleChoice::Baseline)
+            ..assume((BY_BASELINE, "each load weighted by its own baseline"), |c| {
+                c.case.control.load_scale = LoadScaleChoice::Baseline;
+            })
         },
-        of_case("stroke met by a tuned weight for the cone program (or the reverse)", |c| {
-            let effort = &mut c.case.control.effort;
-            *effort = match effort {
-                EffortChoice::Limits => EffortChoice::MeetStroke,
-                _ => EffortChoice::Limits,
-            };
-        }),
-        stroke("half the stroke", 0.5),
-        stroke("stroke +25 %", 1.25),
+        of_case(
+            "effort",
+            "stroke met by a tuned weight for the cone program (or the reverse)",
+            |c| {
+                let effort = &mut c.case.control.effort;
+                *effort = match effort {
+                    EffortChoice::Limits => EffortChoice::MeetStroke,
+                    _ => EffortChoice::Limits,
+                };
+                if c.case.control.effort == EffortChoice::MeetStroke {
+                    c.case.control.controller = ControllerChoice::Global;
+                }
+            },
+        ),
+        stroke("stroke-50", "half the stroke", 0.5),
+        stroke("stroke-125", "stroke +25 %", 1.25),
         Assumption {
             stroke: StrokeOf::TheChange,
-            ..of_case("one bench second = 6.383 revolutions for 5 (or 5 for 6.383)", |c| {
-                let rev_hz = &mut c.case.actuator.bench_rev_hz;
-                *rev_hz = if *rev_hz < 5.7 { 6.383 } else { 5.0 };
-            })
+            ..of_case(
+                "bench-speed",
+                "one bench second = 6.383 revolutions for 5 (or 5 for 6.383)",
+                |c| {
+                    let rev_hz = &mut c.case.actuator.bench_rev_hz;
+                    *rev_hz = if *rev_hz < 5.7 { 6.383 } else { 5.0 };
+                },
+            )
         },
     ]
 }
 
 /// Trims and controls the case once for every assumption changed, in parallel. The case itself comes
-/// first, then the changes, the one that moves a reduction most leading; those without an answer end the table.
+/// first, then the changes, the one that moves a reduction most leading; those without an answer end the table, and
+/// those that change nothing of the case are not in it.
 ///
 /// With the ideal actuator, held to the stroke of the real one: feedback on the hysteretic actuator
 /// reaches nearly the same reductions, at several times the cost. Without the rows of the wake a case that flies
@@ -286,36 +339,59 @@ pub fn sensitivities(
         _ => None,
     };
     let bench = Bench { drives, model, sets: &sets, done };
-    let mut table = vec![bench.row(loaded, base, &as_it_is("as the case"))?];
+    let mut table = vec![bench.row(loaded, base, &as_it_is((AS_THE_CASE, "as the case")))?];
     if which.about_drees(loaded) {
         let mut drees = loaded.clone();
         drees.case.inflow = InflowChoice::Drees;
         let near = TrimmedRotor::new(&drees, Some(base.trim()))?;
-        let text = "inflow of Drees, as in the rows below";
-        table.push(bench.row(&drees, &near, &as_it_is(text))?);
-        table.extend(bench.changed(&drees, &near, assumptions(), 1));
+        let name = (DREES, "inflow of Drees, as in the rows below");
+        table.push(bench.row(&drees, &near, &as_it_is(name))?);
+        table.extend(bench.changed(&drees, &near, assumptions(), DREES));
     } else {
-        let mut changes = assumptions();
+        let rows = bench.changed(loaded, base, assumptions(), AS_THE_CASE);
+        table.extend(rows);
         if which == Assumptions::WithWake {
-            changes.extend(of_the_wake());
+            // another near wake with the free wake as it is, so that one thing is changed at a time
+            let mut in_wake = loaded.clone();
+            in_wake.case.inflow = InflowChoice::FreeWake(free_wake(loaded));
+            let of_wake = if in_wake.case == loaded.case { AS_THE_CASE } else { FREE_WAKE };
+            let (near, whole): (Vec<_>, Vec<_>) =
+                of_the_wake().into_iter().partition(|change| change.id.starts_with(NEAR_WAKE));
+            table.extend(bench.changed(loaded, base, whole, AS_THE_CASE));
+            table.extend(bench.changed(&in_wake, base, near, of_wake));
         }
-        table.extend(bench.changed(loaded, base, changes, 0));
     }
     let baseline = base.trim().rotor.hub.harmonic(loaded.case.blades);
     let setting = Setting::of_case(&loaded.case, &HubLoads::from_parts(baseline));
-    let changed = table.iter().filter(|row| row.compared_with > 0).count();
-    let first = if changed > 0 { 2 } else { 1 };
-    compare_near_wakes(&mut table);
+    for row in &mut table {
+        if row.compared_with.is_empty() {
+            AS_THE_CASE.clone_into(&mut row.compared_with);
+        }
+    }
     refigure_sensitivity(&mut table, &setting);
+    let first = if table.iter().any(|row| row.id == DREES) { 2 } else { 1 };
     if let Some(rows) = table.get_mut(first..) {
         rows.sort_by(|a, b| {
             let size = |row: &Sensitivity| row.largest_change.unwrap_or(-1.0);
             size(b).total_cmp(&size(a))
         });
     }
-    // the row they are compared with has moved
-    compare_near_wakes(&mut table);
     Ok(table)
+}
+
+/// For each of the reductions, the row that moves it most and by how much, percentage points; rows without an answer
+/// move nothing.
+pub(crate) fn most_moved(rows: &[Sensitivity]) -> Vec<(&Sensitivity, f64)> {
+    let count = rows.first().map_or(0, |row| row.reduction_percent.len());
+    let moved = |row: &Sensitivity, k: usize| -> Option<f64> {
+        let nominal = rows.iter().find(|other| other.id == row.compared_with)?;
+        Some(row.reduction_percent.get(k)? - nominal.reduction_percent.get(k)?)
+    };
+    let most = (0..count).filter_map(|k| {
+        let all = rows.iter().filter_map(|row| moved(row, k).map(|by| (row, by)));
+        all.max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()))
+    });
+    most.collect()
 }
 
 /// What every row of the table shares.
@@ -333,15 +409,22 @@ impl Bench<'_> {
         loaded: &LoadedCase,
         base: &TrimmedRotor,
         changes: Vec<Assumption>,
-        compared_with: usize,
+        compared_with: &str,
     ) -> Vec<Sensitivity> {
         changes
             .into_par_iter()
+            .filter(|change| {
+                let concerns = change.concerns(loaded, self.model.is_some());
+                if !concerns {
+                    (self.done)();
+                }
+                concerns
+            })
             .map(|change| {
                 let row = self
                     .row(loaded, base, &change)
-                    .unwrap_or_else(|error| Sensitivity::failed(change.text, &error));
-                Sensitivity { compared_with, ..row }
+                    .unwrap_or_else(|error| Sensitivity::failed((change.id, change.text), &error));
+                Sensitivity { compared_with: compared_with.to_owned(), ..row }
             })
             .collect()
     }
@@ -374,7 +457,8 @@ impl Bench<'_> {
         let loads = loads.collect::<Result<Vec<HubLoads>, SimError>>();
         (self.done)();
         let baseline = HubLoads::from_parts(rotor.trim().rotor.hub.harmonic(blades));
-        Ok(Sensitivity::new(assumption.text, SensitivityRecord { baseline, hub_4_per_rev: loads? }))
+        let name = (assumption.id, assumption.text);
+        Ok(Sensitivity::new(name, SensitivityRecord { baseline, hub_4_per_rev: loads? }))
     }
 }
 
@@ -383,14 +467,18 @@ pub fn sensitivity_csv(harmonics: &[Vec<usize>], rows: &[Sensitivity]) -> String
     let sets = harmonics.iter().filter(|set| set.len() == 1);
     let names: Vec<String> =
         sets.map(|set| format!("reduction_{}_per_rev_percent", set[0])).collect();
-    let mut text = format!("assumption,{},largest_change\n", names.join(","));
+    let mut text = format!("id,assumption,{},largest_change,compared_with\n", names.join(","));
     for row in rows {
         // an empty field has no answer
         let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.3}"));
         let numbers: Vec<String> =
             (0..names.len()).map(|k| number(row.reduction_percent.get(k).copied())).collect();
         let (numbers, change) = (numbers.join(","), number(row.largest_change));
-        let _ = writeln!(text, "\"{}\",{numbers},{change}", row.assumption);
+        let _ = writeln!(
+            text,
+            "{},\"{}\",{numbers},{change},{}",
+            row.id, row.assumption, row.compared_with
+        );
     }
     text
 }
@@ -410,11 +498,40 @@ impl Assumptions {
         self == Self::WithoutWake && matches!(loaded.case.inflow, InflowChoice::FreeWake(_))
     }
 
-    /// Number of rows [`sensitivities`] makes of a case, for a progress bar.
+    /// Number of rows [`sensitivities`] makes of a case or leaves out, for a progress bar.
     pub fn rows(self, loaded: &LoadedCase) -> usize {
         match self {
             Self::WithoutWake => 24 + usize::from(self.about_drees(loaded)),
             Self::WithWake => 27,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{CONTROLLERS_CASE, shipped_case};
+
+    fn left_out(loaded: &LoadedCase, has_model: bool) -> Vec<&'static str> {
+        let all = assumptions().into_iter().chain(of_the_wake());
+        all.filter(|change| !change.concerns(loaded, has_model)).map(|change| change.id).collect()
+    }
+
+    #[test]
+    fn what_the_case_has_already_or_does_not_use_is_no_row() {
+        let mut loaded = shipped_case(CONTROLLERS_CASE).unwrap();
+        assert!(left_out(&loaded, true).is_empty());
+        assert_eq!(left_out(&loaded, false), ["bench-speed"]);
+        loaded.case.inflow = InflowChoice::Uniform;
+        loaded.case.trim = TrimValues::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: 0.05 };
+        loaded.case.blade.modal_damping = 0.01;
+        let none = ["damping-010", "fuselage-70", "inflow-uniform"];
+        assert_eq!(left_out(&loaded, true), none);
+        // in a free wake the row of the wake is the case
+        let mut loaded = shipped_case(CONTROLLERS_CASE).unwrap();
+        let near_wake = NearWakeChoice::Convected;
+        loaded.case.inflow =
+            InflowChoice::FreeWake(FreeWakeFile { near_wake, ..FreeWakeFile::default() });
+        assert_eq!(left_out(&loaded, true), ["wake-free", "wake-near-convected"]);
     }
 }

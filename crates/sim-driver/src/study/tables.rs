@@ -1,6 +1,6 @@
 //! The report of a study: charts and tables from what was computed.
 
-use super::{RobustnessCell, Sensitivity, paper};
+use super::{RobustnessCell, Sensitivity, most_moved, paper};
 use crate::SimError;
 use crate::case::LoadedCase;
 use crate::raw::SeriesLine;
@@ -87,6 +87,7 @@ pub fn study_report(stored: &StoredResult<RunResult>, page: PagePart) -> StudyRe
         data_title: page.data_title,
         headline: if at_paper { paper::headline(result) } else { vec![] },
         trim: result.trim,
+        mean_loads: result.mean_loads,
         residuals: result.residuals,
         stability: result.stability.clone(),
         fits: page.fits,
@@ -170,6 +171,9 @@ fn sensitivity_section(harmonics: &[Vec<usize>], rows: &[Sensitivity]) -> Result
     let number =
         |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1}"));
     let mut text = "Reduction of J with one assumption changed at a time, the one that moves a reduction most first; ideal actuator, held to the stroke of the identified one.".to_owned();
+    for (set, (row, by)) in sets.iter().zip(most_moved(rows)) {
+        let _ = write!(text, " {set} moves most, by {by:+.1} points, with {}.", row.assumption);
+    }
     for row in rows {
         if let Some(why) = &row.failure {
             let _ = write!(text, " No answer with {}: {why}.", row.assumption);
@@ -178,16 +182,19 @@ fn sensitivity_section(harmonics: &[Vec<usize>], rows: &[Sensitivity]) -> Result
     ResultSection {
         title: "What the paper leaves open".to_owned(),
         text,
-        header: std::iter::once("assumption".to_owned())
+        header: ["id", "assumption"]
+            .map(str::to_owned)
+            .into_iter()
             .chain(sets)
-            .chain(std::iter::once("largest change".to_owned()))
+            .chain(["largest change", "from"].map(str::to_owned))
             .collect(),
         rows: rows
             .iter()
             .map(|row| {
-                std::iter::once(row.assumption.clone())
+                [row.id.clone(), row.assumption.clone()]
+                    .into_iter()
                     .chain((0..count).map(|k| number(row.reduction_percent.get(k).copied())))
-                    .chain(std::iter::once(number(row.largest_change)))
+                    .chain([number(row.largest_change), row.compared_with.clone()])
                     .collect()
             })
             .collect(),
@@ -216,7 +223,7 @@ fn robustness_section(cells: &[RobustnessCell]) -> ResultSection {
     let head = ["per rev", "noise %", "T0 error", "drift %"].map(str::to_owned);
     ResultSection {
         title: "What the controllers stand".to_owned(),
-        text: "Fall of J in percent, with steps and end of the loop, on the identified actuators and the linearised rotor: noise of a load over the baseline, T0 wrong by gain and phase, loss of actuator gain per measurement. The loads counted are those without noise.".to_owned(),
+        text: "Fall of J in percent, with steps and end of the loop, which is that of the study (a weight tuned to the stroke goes with the constant T, limits with the others): noise of a load over the baseline, T0 wrong by gain and phase, loss of actuator gain per measurement. The loads counted are those without noise.".to_owned(),
         header: head.into_iter().chain(controllers.map(str::to_owned)).collect(),
         rows,
     }

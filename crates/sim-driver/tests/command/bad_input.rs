@@ -213,6 +213,18 @@ fn a_blade_that_is_none() {
         &["rotor.tables.mass: is refused: the table reaches from 0.2 R to 1 R", "at both ends"],
     );
     bad_case(
+        "(\n  rotor: (tables: (\n    gj: [],\n    mass: [(1, 1)],\n  )),\n)",
+        &[
+            "case.ron:3:5: rotor.tables.gj: is refused: the table has no value",
+            "or leave the table out",
+            "case.ron:4:5: rotor.tables.mass: is refused: the table reaches from 1 R to 1 R",
+        ],
+    );
+    bad_case(
+        "(rotor: (tables: (ka_r: [(0, -0.01), (1, 0.02)], twist_deg: [(0, NaN), (1, 0)])))",
+        &["ka_r[0]: is -0.01 R, expected 0 to 1 R", "twist_deg[0]: is NaN deg, expected -90 to 90"],
+    );
+    bad_case(
         "(flaps: [(start_r: 0.9, end_r: 1.05)])",
         &["flaps[0].end_r: the flap spans 0.9 R to 1.05 R", "<= 1 R"],
     );

@@ -26,6 +26,48 @@ fn every_result_says_whether_the_blade_is_stable() {
     assert!(text.contains("Stability  stable, least damped"), "{text}");
 }
 
+/// Six mean loads in both units, torque and power; in hover the power is that of the air pushed down and profile drag.
+#[test]
+fn mean_loads_and_power_are_in_every_result() {
+    let place = Place::new();
+    let hover = QUICK_CASE
+        .replace("advance_ratio: 0.2", "advance_ratio: 0.0")
+        .replace("shaft_tilt_deg: 3.0", "shaft_tilt_deg: 0.0")
+        .replace("harmonics: [[3]]", "harmonics: []");
+    place.write("case.ron", &hover);
+    let result = place.hhc(&["run", "case.ron", "--format", "json"]).json();
+    let mean = &result["mean_loads"];
+    let omega = 383.0 * std::f64::consts::TAU / 60.0;
+    let force = 6.46 * (omega * 4.94_f64).powi(2);
+    let off = |a: f64, b: f64| (a / b - 1.0).abs();
+    for k in 0..3 {
+        let [f, m] = [&mean["hub_force_N"][k], &mean["hub_moment_N_m"][k]].map(number);
+        let [f0, m0] = [&mean["hub"][k], &mean["hub"][3 + k]].map(number);
+        assert!((f - f0 * force).abs() <= 1e-9 * force, "{mean}");
+        assert!((m - m0 * force * 4.94).abs() <= 1e-9 * force, "{mean}");
+    }
+    let [torque, power] = [&mean["shaft_torque_N_m"], &mean["shaft_power_W"]].map(number);
+    assert!(off(torque, -number(&mean["hub_moment_N_m"][2])) < 1e-12, "{mean}");
+    assert!(off(power, torque * omega) < 1e-12, "{mean}");
+    // C_Q = lambda C_T + sigma c_d (1 - x0^4) / 8
+    let trim = &result["trim"];
+    let induced = number(&trim["induced_inflow"]) * number(&trim["ct_sigma"]);
+    let expected = induced + 0.01 * (1.0 - 0.2_f64.powi(4)) / 8.0;
+    let found = number(&mean["cq_sigma"]);
+    assert!(off(found, expected) < 0.02, "{found} {expected}");
+    let text = place.hhc(&["run", "case.ron"]).done();
+    assert!(text.contains("Mean       FX, FY, FZ") && text.contains("shaft torque"), "{text}");
+    // Linear is no ordering for a power
+    let linear = hover.replace("torsion: 1)", "torsion: 1), couplings: Linear");
+    place.write("linear.ron", &linear);
+    let ran = place.hhc(&["run", "linear.ron"]);
+    assert!(
+        ran.err.contains("structure.couplings") && ran.err.contains("torque and power of Linear"),
+        "{}",
+        ran.err
+    );
+}
+
 /// A blade soft in torsion with its mass behind the elastic axis diverges in pitch; the same with its mass on
 /// the axis does not.
 #[test]
@@ -48,6 +90,7 @@ fn an_unstable_blade_is_warned_of() {
     assert_eq!(unstable["stable"], false);
     assert!(number(&unstable["least_damped"]["damping_ratio"]) < 0.0, "{unstable}");
     assert!(err.contains("warning: the trimmed blade is unstable"), "{err}");
+    assert!(err.contains("the mass centre farther forward (rotor.mass_centre_r"), "{err}");
     let (err, stable) = run(0.0);
     assert_eq!(stable["stable"], true);
     assert!(!err.contains("unstable"), "{err}");
@@ -104,6 +147,9 @@ fn unlike_blades_shake_the_hub_at_every_harmonic() {
     }
     let heavy = with("(blade: 3, mass: 1.01, flap_motion: 0.5)");
     let lines = heavy["unlike_blades"].as_array().unwrap();
+    // the mean loads are those of the blades that fly, unlike ones among them
+    assert_eq!(heavy["mean_loads"]["hub"], lines[0]["mean"]);
+    assert_ne!(heavy["mean_loads"]["hub"], same["mean_loads"]["hub"]);
     assert_eq!(lines.len(), 2, "at rest and under control");
     // the centrifugal force of 1 % of a blade, Delta m / 2, and what its motion adds
     let once = amplitude(&lines[0]["per_rev"][0]["fx"]);
@@ -155,7 +201,7 @@ fn loads_along_the_blade_are_given() {
     let tension = number(&inner["axial_force_N"]["mean"]);
     let unit = 6.46 * (383.0 * std::f64::consts::TAU / 60.0_f64).powi(2) * 4.94 * 4.94;
     assert!((tension / unit / 0.42 - 1.0).abs() < 0.02, "{tension}");
-    for method in ["force_summation", "equations", "curvature"] {
+    for method in ["force_summation", "deflected_statics", "curvature"] {
         assert!(number(&inner["flap_moment_N_m"][method]["peak_to_peak"]) > 1.0, "{method}");
         let at_tip = number(&tip["torsion_N_m"][method]["peak_to_peak"]);
         assert!(method == "curvature" || at_tip == 0.0, "{method}: {at_tip}");
@@ -189,7 +235,10 @@ fn doubtful_values_are_warned_of() {
         (
             "(rotor: (modal_damping: 1e-7, ei_lag: 0.078), trim: Prescribed(theta0_deg: 6.3),
               structure: (modes: (flap: 2, lag: 1, torsion: 1)))",
-            ["rotor.modal_damping", "lag 1 at 6.30 deg has 1.0075 per rev, near the harmonic 1"],
+            [
+                "rotor.modal_damping",
+                "lag 1 in still air, pitch 6.30 deg, has 1.0075 per rev, near the harmonic 1",
+            ],
         ),
     ] {
         place.write("case.ron", text);
@@ -220,7 +269,11 @@ fn a_short_case_with_the_ideal_actuator_runs() {
         ),
     );
     let ran = place.hhc(&["run", "case.ron", "--out", "o", "--format", "json"]);
-    assert!(ran.err.contains("rotor.modal_damping: lag 1 at"), "{}", ran.err);
+    assert!(
+        ran.err.contains("rotor.modal_damping: lag 1 about the mean deflection in flight"),
+        "{}",
+        ran.err
+    );
     let json = ran.json();
     assert!(json["control"].as_array().unwrap().is_empty());
     let stored: Value = serde_json::from_str(&place.read("o/result.json")).unwrap();
@@ -229,10 +282,70 @@ fn a_short_case_with_the_ideal_actuator_runs() {
         "case.ron",
         &format!(
             "(actuator: (model: Ideal), flaps: [], control: (harmonics: []), advance_ratio: 0.2,
-            trim: Prescribed(theta0_deg: 22, theta1s_deg: -4), {rest})"
+            trim: Prescribed(theta0_deg: 16, theta1s_deg: -4), {rest})"
         ),
     );
     let ran = place.hhc(&["run", "case.ron", "--format", "json"]);
     assert!(ran.err.contains("trim.theta0_deg: C_T/sigma"), "{}", ran.err);
     ran.json();
+}
+
+/// Each unlike blade has its stability and its loads; an unstable one is named.
+#[test]
+fn every_unlike_blade_has_its_stability_and_loads() {
+    let place = Place::new();
+    let text = "(title: \"unlike\", advance_ratio: 0.1, flaps: [],
+         rotor: (mass_centre_r: -0.012, gj: 0.0009, modal_damping: 0, unlike_blades: [(blade: 3, gj: 0.5)]),
+         structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1), couplings: Moderate),
+         aerodynamics: (model: QuasiSteady, compressibility: None),
+         inflow: (model: Prescribed(lambda_i: 0.02)), trim: Prescribed(theta0_deg: 3),
+         actuator: (model: Ideal), control: (harmonics: [], actuators: [Ideal]))";
+    place.write("unlike.ron", text);
+    let ran = place.hhc(&["run", "unlike.ron", "--format", "json"]);
+    let err = ran.err.clone();
+    let json = ran.json();
+    let each = json["each_unlike_blade"].as_array().unwrap();
+    assert_eq!((each.len(), &each[0]["blade"]), (1, &Value::from(3)));
+    assert_eq!(each[0]["stability"]["stable"], false);
+    let torsion = |loads: &Value| number(&loads[0]["torsion_N_m"]["force_summation"]["mean"]);
+    let (alike, unlike) = (torsion(&json["blade_loads"]), torsion(&each[0]["blade_loads"]));
+    assert!((alike - unlike).abs() > 1e-3 * alike.abs(), "{alike} {unlike}");
+    assert!(err.contains("blade 3, unlike the rest, is unstable"), "{err}");
+    let text = place.hhc(&["run", "unlike.ron"]).done();
+    assert!(text.contains("Moments of each like blade"), "{text}");
+    assert!(text.contains("Moments of blade 3, unlike the rest"), "{text}");
+}
+
+/// What a run doubts or refuses, each with its field.
+#[test]
+fn doubts_and_refusals_name_their_field() {
+    let place = Place::new();
+    let run = |name: &str, parts: &str| {
+        let text = format!("(control: (harmonics: []), actuator: (model: Ideal), {parts})");
+        place.write(name, &text);
+        place.hhc(&["run", name]).err
+    };
+    let near = run("near.ron", "trim: Propulsive(ct_sigma: 0.12)");
+    assert!(near.contains("aerodynamics: the section at") && near.contains("azimuth"), "{near}");
+    let beyond = run("beyond.ron", "advance_ratio: 0, trim: Prescribed(theta0_deg: 25)");
+    assert!(beyond.contains("trim.theta0_deg") && beyond.contains("stall near 1.5"), "{beyond}");
+    let stretch = run("stretch.ron", "rotor: (ea: 50)");
+    assert!(stretch.contains("rotor.ea: Linear and Full know no stretch"), "{stretch}");
+    let link = "structure: (couplings: Moderate), rotor: (root: (pitch: Spring(stiffness: 0.001)))";
+    let soft = run("soft.ron", link);
+    assert!(soft.contains("rotor.root.pitch.stiffness: a pitch spring of 0.001"), "{soft}");
+    let central = "rotor: (root: (flap: Free)), trim: WindTunnel(ct_sigma: 0.07)";
+    let tunnel = run("tunnel.ron", central);
+    assert!(tunnel.contains("trim: a free flap hinge at the rotor centre"), "{tunnel}");
+    let check = |cg_below_hub_r: f64| {
+        let flown = format!(
+            "(rotor: (root: (flap: Free)), trim: Propulsive(cg_below_hub_r: {cg_below_hub_r}))"
+        );
+        place.write("level.ron", &flown);
+        let ran = place.hhc(&["check", "level.ron"]);
+        [ran.out, ran.err].concat()
+    };
+    let level = check(0.001);
+    assert!(level.contains("trim.cg_below_hub_r: a free flap hinge at the rotor"), "{level}");
+    assert!(!check(0.2).contains("a free flap hinge"));
 }

@@ -25,8 +25,73 @@ fn the_wake_of_a_case_is_shown_and_written() {
     assert!(vtk.contains(&format!("LINES {} ", 4 * (1 + 9 + 6))), "{vtk}");
     let map = place.read("wake/inflow_map.csv");
     assert_eq!(map.lines().count(), 1 + 12 * 8, "{map}");
+    assert!(
+        vtk.contains("SCALARS circulation double 1") && vtk.contains("SCALARS core_r double 1")
+    );
     let geometry = place.read("wake/wake_geometry.csv");
-    assert!(geometry.lines().count() > 1 && !geometry.contains("NaN"), "{geometry}");
+    let head = "kind,filament,release_r,azimuth_deg,age_deg,x_r,y_r,z_r,circulation,core_r";
+    assert!(geometry.starts_with(head) && !geometry.contains("NaN"), "{geometry}");
+    // nine trailers of a revolution at every azimuth, then the rolled-up vortices for the turn that is left
+    let count = |kind: &str| geometry.lines().filter(|line| line.starts_with(kind)).count();
+    assert_eq!([count("near,"), count("rolled_up,")], [9 * 12 * 13, 6 * 12 * 13]);
+    let convergence = place.read("wake/convergence.csv");
+    assert!(convergence.starts_with("azimuths,displacement_r,inflow_change,part,theta0_deg\n"));
+}
+
+/// One row of the geometry file.
+fn row(line: &str) -> Vec<f64> {
+    line.split(',').skip(1).map(|field| field.parse().unwrap()).collect()
+}
+
+/// The wake alone: helices of given circulation, whose mean inflow over Glauert's is 1.21 at mu 0.30 (72 steps, tip vortex of
+/// strength `2 pi C_T / N_b` from blades that reach the centre).
+#[test]
+fn a_wake_of_prescribed_circulation_is_looked_at_alone() {
+    let place = Place::new();
+    let wake =
+        "FreeWake(circulation: Prescribed(shape: Constant, geometry: Undistorted, ct_sigma: 0.07,
+        shaft_tilt_deg: 5.0), azimuths: 72, turns: 3, far_turns: 0, near_wake_deg: 5.0, panels: 40,
+        near_core_r: 0.02, core_r: 0.02, panel_share: 1e6)";
+    let inflow = format!("(model: {wake}), rotor: (root_cutout_r: 0.0)");
+    place.write("case.ron", &QUICK_CASE.replace("(model: Uniform)", &inflow));
+    let args = ["wake", "case.ron", "--mu", "0.3", "--out", "wake", "--format", "json"];
+    let result = place.hhc(&args).json();
+    let ratio = result["mean_over_glauert"].as_f64().unwrap();
+    assert!((ratio / 1.21 - 1.0).abs() < 0.02, "{ratio}");
+    assert!(result["controls_deg"].is_null() && result["settled"].as_bool().unwrap());
+    // solidity 0.07: C_T of 0.0049
+    let solidity = 4.0 * 0.055 / std::f64::consts::PI;
+    let strength = std::f64::consts::TAU * 0.07 * solidity / 4.0;
+    let geometry = place.read("wake/wake_geometry.csv");
+    let old = geometry.lines().filter(|line| line.starts_with("rolled_up,"));
+    for fields in old.map(row) {
+        let (circulation, core) = (fields[7], fields[8]);
+        assert!((circulation / strength - 1.0).abs() < 1e-5, "{fields:?}");
+        assert!((0.02..0.03).contains(&core), "{fields:?}");
+    }
+    // a rotor is not trimmed with a circulation that is not its own
+    let refused = place.hhc(&["run", "case.ron", "--out", "run"]);
+    assert_ne!(refused.code, 0);
+    assert!(refused.err.contains("`hhc wake` looks at the wake alone"), "{}", refused.err);
+    // left free and smooth, it moves until it rests
+    let free = "FreeWake(circulation: Prescribed(), azimuths: 12, turns: 2, panels: 8)";
+    place.write("free.ron", &QUICK_CASE.replace("(model: Uniform)", &format!("(model: {free})")));
+    let text = place.hhc(&["wake", "free.ron", "--mu", "0.3"]).done();
+    assert!(text.contains("circulation prescribed, settled"), "{text}");
+}
+
+#[test]
+fn a_run_in_a_wake_that_has_not_settled_says_so() {
+    let place = Place::new();
+    let wake = SMALL_WAKE.replace("tolerance: 0.002", "tolerance: 1e-8, updates: 1");
+    let case = QUICK_CASE.replace("(model: Uniform)", &format!("(model: {wake})"));
+    place.write("case.ron", &case);
+    let run = place.hhc(&["run", "case.ron", "--out", "run"]);
+    for part in ["the free wake has not settled in 1 updates", "theta0 between", "Remedy:"] {
+        assert!(run.err.contains(part), "no `{part}` in\n{}", run.err);
+    }
+    assert!(place.read("run/result.json").contains("the free wake has not settled"));
+    assert_eq!(run.code, 0, "{}", run.err);
 }
 
 #[test]

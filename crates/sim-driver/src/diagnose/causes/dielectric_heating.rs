@@ -4,6 +4,10 @@ use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
 use model_gap::{Cause, Parameter, Side};
 use preisach_dyn::DielectricHeating;
 
+/// Longest run from which on warming may show where no thermometer was read, s: a third of the shortest
+/// time constant.
+const SHORTEST_S: f64 = 2.0;
+
 /// Warming by dielectric loss.
 pub(super) struct Heating;
 
@@ -36,7 +40,7 @@ impl BenchCause for Heating {
         if !design.is_bench {
             return Some("the loss of a dielectric belongs to a piezo actuator".into());
         }
-        (design.longest_s < 8.0 && !design.has_temperature).then(|| format!("the longest run lasts {:.1} s; heating needs records of about its time constant, 30 s and more", design.longest_s))
+        (design.longest_s < SHORTEST_S && !design.has_temperature).then(|| format!("the longest run lasts {:.1} s; heating needs records of a part of its time constant, {SHORTEST_S:.0} s and more", design.longest_s))
     }
 
     fn part(&self, values: &[f64]) -> Part {

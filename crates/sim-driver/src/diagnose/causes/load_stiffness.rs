@@ -4,6 +4,9 @@ use super::{BenchCause, Design, FORM_ERROR, Part, linear, singles};
 use model_gap::{Cause, Side};
 use preisach_dyn::{LinkageStage, LoadStiffness};
 
+/// Standard errors that the slope of a load cell must stand out by.
+const SHOWS: f64 = 5.0;
+
 /// Stiffness of the load.
 pub(super) struct Load;
 
@@ -28,6 +31,15 @@ impl BenchCause for Load {
     fn blocked(&self, design: &Design) -> Option<String> {
         (!design.has_reference).then(|| {
             "without reference runs a pure gain cannot be told from the actuator's own".to_owned()
+        })
+    }
+
+    fn refuted(&self, design: &Design) -> Option<String> {
+        let (slope, error) = design.load_per_um?;
+        (slope.abs() < SHOWS * error).then(|| {
+            format!(
+                "the load cell reads no load that follows the displacement: {slope:.1e} N/um, give or take {error:.1e}"
+            )
         })
     }
 

@@ -77,6 +77,10 @@ pub(crate) trait BenchCause: Sync + Send {
     fn starts(&self, design: &Design) -> Vec<Vec<f64>>;
     /// Why these data cannot show it, seen before any fit.
     fn blocked(&self, design: &Design) -> Option<String>;
+    /// Why these data show that it is not there, seen before any fit.
+    fn refuted(&self, _: &Design) -> Option<String> {
+        None
+    }
     /// What it switches on.
     fn part(&self, values: &[f64]) -> Part;
 }
@@ -100,6 +104,8 @@ pub(crate) struct Design {
     pub(crate) only_hz: Option<f64>,
     /// Whether a thermometer was read.
     pub(crate) has_temperature: bool,
+    /// Load over displacement as a load cell saw it, N/um, and its standard error; none without a load cell.
+    pub(crate) load_per_um: Option<(f64, f64)>,
     /// Whether it is an actuator bench, with volt and um.
     pub(crate) is_bench: bool,
     /// Whether reference runs fix the base model.
@@ -141,6 +147,7 @@ impl Design {
             fast_rate,
             only_hz,
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
+            load_per_um: load_per_um(runs),
             is_bench,
             has_reference,
         }
@@ -152,6 +159,28 @@ impl Design {
             format!("every run is a sine of {hz:.3} Hz: nothing that depends on rate shows at one frequency")
         })
     }
+}
+
+/// Slope of the load against the displacement over all runs with a load cell, each about its means, and its
+/// standard error.
+fn load_per_um(runs: &[&Record]) -> Option<(f64, f64)> {
+    let centred = |v: &[f64]| -> Vec<f64> {
+        let mean = v.iter().sum::<f64>() / v.len().max(1) as f64;
+        v.iter().map(|x| x - mean).collect()
+    };
+    let pairs: Vec<(f64, f64)> = runs
+        .iter()
+        .filter_map(|run| run.load.as_ref().map(|load| (centred(&run.output), centred(load))))
+        .flat_map(|(y, load)| y.into_iter().zip(load))
+        .collect();
+    let sum = |f: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(f).sum::<f64>();
+    let square = sum(&|p| p.0 * p.0);
+    if square <= 0.0 {
+        return None;
+    }
+    let slope = sum(&|p| p.0 * p.1) / square;
+    let left = sum(&|p| (p.1 - slope * p.0).powi(2));
+    Some((slope, (left / pairs.len() as f64 / square).sqrt()))
 }
 
 /// Every cause of the library.
@@ -182,14 +211,19 @@ pub(crate) fn candidates(library: &[Box<dyn BenchCause>], design: &Design) -> Ve
         .map(|cause| {
             let blocked = cause.blocked(design);
             let starts = if blocked.is_some() { Vec::new() } else { cause.starts(design) };
-            Candidate { cause: cause.cause(design), starts, blocked }
+            Candidate {
+                cause: cause.cause(design),
+                starts,
+                blocked,
+                refuted: cause.refuted(design),
+            }
         })
         .collect()
 }
 
 /// A parameter searched on a logarithmic scale.
 fn logarithmic(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter { name, unit, low, high, scale: Scale::Log, is_shape: false, needs: None, step: None }
+    Parameter { scale: Scale::Log, ..linear(name, unit, low, high) }
 }
 
 /// A parameter searched on a straight scale.
@@ -202,6 +236,7 @@ fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parame
         scale: Scale::Linear,
         is_shape: false,
         needs: None,
+        held: None,
         step: None,
     }
 }
@@ -209,6 +244,11 @@ fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parame
 /// A parameter that only shapes the effect.
 fn shape(parameter: Parameter) -> Parameter {
     Parameter { is_shape: true, ..parameter }
+}
+
+/// A parameter that is taken and not fitted, with its standard deviation.
+fn held(parameter: Parameter, std: f64) -> Parameter {
+    Parameter { held: Some(std), ..shape(parameter) }
 }
 
 /// Starts of a single parameter.
@@ -282,6 +322,29 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A load cell refutes a load only where it reads none: noise alone, not a spring of either sign.
+    #[test]
+    fn a_load_cell_that_reads_nothing_refutes_a_load() {
+        let output: Vec<f64> = (0..2000).map(|i| 80.0 * (0.03 * f64::from(i)).sin()).collect();
+        let refuted = |newton_per_um: f64| {
+            let noise = |i: usize| 0.4 * ((i * 7919 % 1013) as f64 / 506.0 - 1.0);
+            let load = output.iter().enumerate().map(|(i, y)| newton_per_um * y + noise(i));
+            let run = Record {
+                id: "a".into(),
+                is_reference: false,
+                step_s: 0.01,
+                input: output.clone(),
+                output: output.clone(),
+                amplifier: None,
+                temperature: None,
+                load: Some(load.collect()),
+            };
+            load_stiffness::Load.refuted(&Design::of(&[&run], true, true)).is_some()
+        };
+        assert_eq!([0.0, 0.002, -0.002].map(refuted), [true, false, false]);
+        assert!(load_stiffness::Load.refuted(&design()).is_none(), "no load cell says nothing");
     }
 
     #[test]

@@ -54,8 +54,8 @@ pub(super) fn proposal(bench: &Bench<'_>, finding: &Finding) -> Result<Proposal,
     let (low, high) = bench.design.input;
     let span = Span { middle: f64::midpoint(low, high), half: 0.5 * (high - low) };
     let menu = menu(span, bench.runs, bench.design.is_bench);
-    let open = finding.causes.iter().max_by_key(|found| found.alternatives.len());
-    let Some(open) = open.filter(|found| !found.alternatives.is_empty()) else {
+    let open = finding.causes.iter().max_by_key(|found| found.rivals.len());
+    let Some(open) = open.filter(|found| found.rivals.len() > 1) else {
         let usual = usual(finding, bench, &menu);
         let (id, what) = usual.map_or(("", ""), |e| (e.id, e.what));
         return Ok(Proposal { id: id.to_owned(), what: what.to_owned(), resolves: None });

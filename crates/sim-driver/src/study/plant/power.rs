@@ -13,6 +13,10 @@ use rotor_response::HingeMoment;
 /// below any control, so that the form of the power does not jump on the way.
 const LEAST_MOTION_PART: f64 = 1e-4;
 
+/// Part of the limit that a cone program aims at: the form moves with the control, and no end of a loop is to lie
+/// above the limit.
+const LIMIT_AIMED_AT: f64 = 0.999;
+
 /// What the power of the actuators has to do with the control.
 #[derive(Debug, Clone)]
 pub(super) struct PlantPower {
@@ -121,7 +125,7 @@ impl RotorPlant {
             quadratic: DMatrix::from_diagonal(&diagonal),
             linear: vec![0.0; control_volt.len()],
             constant: 0.0,
-            limit: *limit,
+            limit: LIMIT_AIMED_AT * limit,
         }))
     }
 }

@@ -1,0 +1,87 @@
+//! Whether a loop with a constant T contracts: the spectral radius of its iteration.
+
+use crate::{ControlError, FeedbackLaw, TMatrix, error};
+use nalgebra::{DMatrix, Schur};
+
+impl FeedbackLaw {
+    /// Largest factor by which an error of the control may be multiplied from step to step where the true
+    /// sensitivity is another than that of the law.
+    ///
+    /// ```text
+    /// u_(k+1) - u* = M (u_k - u*),    M = I - (T0' W_Z T0 + rho I)^-1 (T0' W_Z T + rho I)
+    /// ```
+    /// Whole steps converge, wherever they start from near `u*`, if the largest eigenvalue of `M` in size is below 1;
+    /// above it they do not, and only halving or a new T helps. With `T = g exp(i phi) T0` and `rho = 0` it is
+    /// `|1 - g exp(i phi)|`.
+    ///
+    /// | argument | symbol | unit | range |
+    /// |---|---|---|---|
+    /// | `rho` | `rho` | 1/V^2 | >= 0, held from step to step |
+    /// | `there` | `T` | 1/V | where the loop is, or ends |
+    ///
+    /// # Errors
+    /// A `T` of another shape; [`ControlError::SingularValues`] if the eigenvalues are not found.
+    ///
+    /// Source: eq. (10) as a fixed-point iteration.
+    pub fn iteration_spectral_radius(
+        &self,
+        rho: f64,
+        there: &TMatrix,
+    ) -> Result<f64, ControlError> {
+        error::check_not_negative("control weight rho (1/V^2)", rho)?;
+        let (loads, controls) = self.shape();
+        let (what, found) = ("controls of the true T", there.controls());
+        if found != controls {
+            return Err(ControlError::Length { what, found, expected: controls });
+        }
+        let (what, found) = ("loads of the true T", there.loads());
+        if found != loads {
+            return Err(ControlError::Length { what, found, expected: loads });
+        }
+        // column by column: where eq. (10) goes to from a unit error, less the unit
+        let zero = vec![0.0; controls];
+        let columns: Result<Vec<Vec<f64>>, ControlError> = there
+            .columns()
+            .iter()
+            .enumerate()
+            .map(|(j, change)| {
+                let mut unit = zero.clone();
+                unit[j] = 1.0;
+                self.optimum_volt(rho, &unit, change)
+            })
+            .collect();
+        let columns = columns?;
+        let iteration = DMatrix::from_fn(controls, controls, |i, j| columns[j][i]);
+        let (rows, iterations) = (controls, EIGENVALUE_ITERATIONS);
+        let schur = Schur::try_new(iteration, f64::EPSILON, iterations)
+            .ok_or(ControlError::SingularValues { rows, columns: controls, iterations })?;
+        let eigenvalues = schur.complex_eigenvalues();
+        Ok(eigenvalues.iter().map(|value| value.re.hypot(value.im)).fold(0.0, f64::max))
+    }
+}
+
+const EIGENVALUE_ITERATIONS: usize = 10_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::LoadWeights;
+
+    /// A T wrong by a complex factor: the radius is known.
+    #[test]
+    fn a_wrong_gain_and_phase_give_the_factor_of_theory() {
+        let column = |j: usize| -> Vec<f64> {
+            (0..6).map(|i| (0.8 * f64::from(i) + 1.3 * j as f64).sin() + 0.1 * j as f64).collect()
+        };
+        let columns: Vec<Vec<f64>> = (0..4).map(column).collect();
+        let t0 = TMatrix::from_columns(&columns).unwrap();
+        let law = FeedbackLaw::new(&t0, &LoadWeights::Identity).unwrap();
+        for (gain, phase_deg) in [(1.0, 0.0), (0.7, 0.0), (1.0, 40.0), (1.2, -75.0)] {
+            let (sin, cos) = f64::to_radians(phase_deg).sin_cos();
+            let there = t0.turned(gain, f64::to_radians(phase_deg)).unwrap();
+            let found = law.iteration_spectral_radius(0.0, &there).unwrap();
+            let exact = f64::hypot(1.0 - gain * cos, gain * sin);
+            assert!((found - exact).abs() < 1e-10, "{gain} {phase_deg}: {found} {exact}");
+        }
+    }
+}

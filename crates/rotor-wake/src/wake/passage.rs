@@ -1,0 +1,195 @@
+//! Where vortices pass the blades, and what the segments of the wake carry.
+
+use super::sources::SourceContext;
+use super::{CirculationMap, FreeWake};
+use crate::WakeError;
+use crate::vector::{Vec3, add, dot, norm, scale, sub};
+
+/// The nearest approach of a tip vortex or another rolled-up vortex to a blade that did not just release it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosestPassage {
+    /// Azimuth of the blade met, rad.
+    pub azimuth_rad: f64,
+    /// Station of the blade, unit `R`.
+    pub station: f64,
+    /// Age of the vortex, rad.
+    pub age_rad: f64,
+    /// Distance, unit `R`.
+    pub distance: f64,
+    /// Core radius there as the blade feels it, unit `R`: closer than that, the strength of the interaction is decided by
+    /// the core.
+    pub core_radius: f64,
+}
+
+impl ClosestPassage {
+    /// Whether the vortex passes the blade closer than its core.
+    pub fn within_core(&self) -> bool {
+        self.distance < self.core_radius
+    }
+}
+
+/// What a segment of the wake carries, as the blades feel it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SegmentState {
+    /// Circulation in the right-hand sense about the direction of growing age, `Omega R^2`.
+    pub circulation: f64,
+    /// Core radius, unit `R`.
+    pub core_radius: f64,
+}
+
+/// States of the segments of one filament, `[azimuth][age]`, one less than its nodes.
+pub type FilamentStates = Vec<Vec<SegmentState>>;
+
+impl FreeWake {
+    /// The nearest approach of a rolled-up vortex to a blade, between segments and panels, at the azimuths of the grid; on
+    /// the wake of the blade itself from an age of 45 deg on. What is younger than the near wake counts with the core of
+    /// its trailers.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn closest_passage(
+        &self,
+        circulation: &CirculationMap,
+    ) -> Result<Option<ClosestPassage>, WakeError> {
+        self.check(circulation)?;
+        Ok(self.with_context(circulation, |context| {
+            let phases = 0..self.phases_that_differ();
+            let met = phases.flat_map(|phase| {
+                let blades = self.blade_azimuths(phase).take(self.blades_that_differ());
+                blades.map(move |met| (phase, met))
+            });
+            met.flat_map(|(phase, met)| self.blade_azimuths(phase).map(move |from| (met, from)))
+                .filter_map(|(met, from)| self.closest_of(met, from, context))
+                .min_by(|a, b| a.distance.total_cmp(&b.distance))
+        }))
+    }
+
+    /// The same for the blade at one azimuth and the vortices of that at another.
+    fn closest_of(
+        &self,
+        met: usize,
+        from: usize,
+        context: &SourceContext<'_>,
+    ) -> Option<ClosestPassage> {
+        let step = self.settings.step_rad();
+        let first = if met == from { (self.settings.azimuths / 8).max(1) } else { 0 };
+        let near_steps = self.settings.near_steps();
+        let line = self.lines.at(met);
+        let mut least: Option<ClosestPassage> = None;
+        for (f, filament) in self.far.iter().enumerate() {
+            for (k, ends) in filament.at(from).windows(2).enumerate().skip(first) {
+                let ends = [ends[0], ends[1]];
+                for panel in line.windows(2) {
+                    let (distance, part, foot) = segment_distance(ends, [panel[0], panel[1]]);
+                    if least.is_none_or(|l| distance < l.distance) {
+                        let core_radius = if k < near_steps {
+                            context.trailer_radius(filament.node, from, k)
+                        } else {
+                            context.rolled_up_radius(f, from, k, &ends)
+                        };
+                        least = Some(ClosestPassage {
+                            azimuth_rad: met as f64 * step,
+                            station: norm(foot),
+                            age_rad: (k as f64 + part) * step,
+                            distance,
+                            core_radius,
+                        });
+                    }
+                }
+            }
+        }
+        least
+    }
+
+    /// Circulation and core radius of the segments of every rolled-up vortex, in the order of
+    /// [`vortices`](Self::vortices).
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn vortex_states(
+        &self,
+        circulation: &CirculationMap,
+    ) -> Result<Vec<FilamentStates>, WakeError> {
+        self.check(circulation)?;
+        Ok(self.with_context(circulation, |context| {
+            let of = |f: usize, i: usize| {
+                let ends = self.far[f].at(i).windows(2).enumerate();
+                ends.map(|(k, ends)| SegmentState {
+                    circulation: context.rolled_up_strength(f, i, k),
+                    core_radius: context.rolled_up_radius(f, i, k, &[ends[0], ends[1]]),
+                })
+                .collect()
+            };
+            let azimuths = 0..self.settings.azimuths;
+            (0..self.far.len()).map(|f| azimuths.clone().map(|i| of(f, i)).collect()).collect()
+        }))
+    }
+
+    /// The same of the trailers of the near wake, in the order of [`near_wake`](Self::near_wake).
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a circulation of another grid.
+    pub fn trailer_states(
+        &self,
+        circulation: &CirculationMap,
+    ) -> Result<Vec<FilamentStates>, WakeError> {
+        self.check(circulation)?;
+        Ok(self.with_context(circulation, |context| {
+            let of = |n: usize, i: usize, k: usize| SegmentState {
+                circulation: context.trailer_strength(n, i, k),
+                core_radius: context.trailer_radius(n, i, k),
+            };
+            let (azimuths, steps) = (self.settings.azimuths, self.settings.near_steps());
+            let row = |n: usize, i: usize| (0..steps).map(|k| of(n, i, k)).collect();
+            let filament = |n: usize| (0..azimuths).map(|i| row(n, i)).collect();
+            (0..self.near.len()).map(filament).collect()
+        }))
+    }
+}
+
+/// Distance of two straight segments, the part of the way along the first and the point of the second where it is.
+fn segment_distance([a0, a1]: [Vec3; 2], [b0, b1]: [Vec3; 2]) -> (f64, f64, Vec3) {
+    let (u, v, w) = (sub(a1, a0), sub(b1, b0), sub(a0, b0));
+    let (uu, uv, vv, uw, vw) = (dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w));
+    let part = |x: f64| if x.is_finite() { x.clamp(0.0, 1.0) } else { 0.0 };
+    let along_b = |s: f64| part((vw + s * uv) / vv);
+    // where the lines are nearest, the other end held to its segment, and back
+    let s = part((uv * vw - vv * uw) / (uu * vv - uv * uv));
+    let t = along_b(s);
+    let s = part((t * uv - uw) / uu);
+    let t = along_b(s);
+    let foot = add(b0, scale(v, t));
+    (norm(sub(add(a0, scale(u, s)), foot)), s, foot)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the least of many pairs of points.
+    #[test]
+    fn segments_are_as_far_as_their_nearest_points() {
+        let pairs: [([Vec3; 2], [Vec3; 2]); 6] = [
+            ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[0.3, -1.0, 0.2], [0.4, 1.0, 0.1]]),
+            ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[0.0, 0.5, 0.0], [1.0, 0.5, 0.0]]),
+            ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[1.5, 0.5, 0.0], [2.0, 3.0, 1.0]]),
+            ([[0.0, 0.0, 0.0], [1.0, 0.2, 0.1]], [[-1.0, -1.0, 0.0], [0.9, 0.1, 0.4]]),
+            ([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]], [[0.0, 1.0, -1.0], [0.0, 1.0, 1.0]]),
+            ([[0.2, 0.9, 0.3], [0.5, -0.3, 0.3]], [[2.0, -0.9, 0.0], [0.6, -0.8, 0.1]]),
+        ];
+        for (a, b) in pairs {
+            const N: usize = 400;
+            let at = |[from, to]: [Vec3; 2], k: usize| {
+                add(from, scale(sub(to, from), k as f64 / N as f64))
+            };
+            let mut least = f64::INFINITY;
+            for j in 0..=N {
+                for k in 0..=N {
+                    least = least.min(norm(sub(at(a, j), at(b, k))));
+                }
+            }
+            let (distance, ..) = segment_distance(a, b);
+            assert!((least - 4e-3..=least + 1e-12).contains(&distance), "{distance} {least}");
+        }
+    }
+}

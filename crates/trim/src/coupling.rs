@@ -1,0 +1,281 @@
+//! The updates of wake and trim that bring them together.
+
+use crate::{
+    TrimError, TrimSettings, TrimSolution, TrimTarget, WakeOutcome, WakeTrimSettings, WakeUpdate,
+    trim,
+};
+use rotor_response::{ResponseError, RotorSolution, RotorSolver};
+use rotor_wake::{
+    BladeLines, CirculationMap, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel,
+    WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
+};
+
+/// Halvings of the part of a sweep that is gone, at most.
+const MOST_HALVINGS: u32 = 3;
+/// A change above this share of the least so far halves the part.
+const PAYING: f64 = 0.9;
+/// Share of a change of circulation that moves the wake: near passages of vortices answer strongly.
+pub(crate) const MIXED: f64 = 0.5;
+/// Sweeps over those asked for where they go in part or the wake still moves.
+const MORE_SWEEPS: usize = 3;
+/// Updates without gain at the least part, after which a stage ends.
+const PATIENCE: usize = 10;
+/// Change of the inflow in one update, tip speed, that no rotor's wake makes: vortices and blades run away from each other.
+const RUNAWAY: f64 = 0.3;
+/// Change of the inflow, tip speed, above which a state is not kept as a good one.
+const TRUSTED: f64 = 0.1;
+/// Updates in turn that may fail, each with half of the part before.
+const FAILURES: usize = 3;
+
+pub(crate) fn wrong(source: WakeError) -> TrimError {
+    TrimError::from(ResponseError::from(source))
+}
+
+/// Lifting lines and circulation of a response on the grid of a wake; in an axial wake, those that turn with the
+/// blades.
+pub(crate) fn on_the_grid(
+    solver: &RotorSolver,
+    response: &RotorSolution,
+    panels: &WakeRotor,
+    settings: &FreeWakeSettings,
+) -> Result<(BladeLines, CirculationMap), ResponseError> {
+    let lines = solver.blade_lines(response, panels, settings.azimuths);
+    let circulation = solver.circulation(response, panels, settings.azimuths)?;
+    if settings.symmetry == WakeSymmetry::Periodic {
+        return Ok((lines, circulation));
+    }
+    let lines = lines.axial()?;
+    Ok((lines, circulation.axial()))
+}
+
+/// Wake and trim after an update.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    pub(crate) trim: TrimSolution,
+    pub(crate) wake: FreeWake,
+    pub(crate) frozen: FrozenWake,
+    /// Circulation that moved the wake.
+    pub(crate) moving: CirculationMap,
+    /// Largest change of the inflow that led here, tip speed.
+    pub(crate) inflow_change: f64,
+    /// RMS displacement of the last sweep before, unit `R`.
+    pub(crate) displacement: f64,
+}
+
+/// What all updates have in common.
+pub(crate) struct Coupling<'a> {
+    pub(crate) solver: RotorSolver,
+    pub(crate) settings: &'a WakeTrimSettings,
+    pub(crate) target: &'a TrimTarget,
+    pub(crate) trim_settings: TrimSettings,
+    pub(crate) updates: Vec<WakeUpdate>,
+}
+
+impl Coupling<'_> {
+    pub(crate) fn trimmed(
+        &mut self,
+        inflow: &dyn InflowModel,
+        advance_ratio: f64,
+        start: Option<&TrimSolution>,
+    ) -> Result<TrimSolution, TrimError> {
+        let (target, settings) = (self.target, &self.trim_settings);
+        trim(&mut self.solver, inflow, advance_ratio, target, settings, start)
+    }
+
+    /// The trim in a wake held still.
+    fn in_still_wake(
+        &mut self,
+        wake: FreeWake,
+        moving: CirculationMap,
+        start: &TrimSolution,
+    ) -> Result<State, TrimError> {
+        let chord = self.solver.rotor().model().chord;
+        let mu = start.flight.advance_ratio;
+        let induction = wake.line_induction(&moving).map_err(wrong)?;
+        let frozen = FrozenWake::new(induction, &moving, chord, mu).map_err(wrong)?;
+        let trim = self.trimmed(&frozen, mu, Some(start))?;
+        let (inflow_change, displacement) = (f64::INFINITY, f64::INFINITY);
+        Ok(State { trim, wake, frozen, moving, inflow_change, displacement })
+    }
+
+    /// The start of a stage: the wake of the stage before on a new grid, or undistorted helices.
+    pub(crate) fn begin(
+        &mut self,
+        azimuths: usize,
+        panels: &WakeRotor,
+        start: &TrimSolution,
+        before: Option<&FreeWake>,
+    ) -> Result<State, TrimError> {
+        let settings = self.settings.wake.with_azimuths(azimuths);
+        let (lines, circulation) = on_the_grid(&self.solver, &start.rotor, panels, &settings)?;
+        let wake = match before {
+            Some(wake) => wake.on_grid(azimuths, lines),
+            None => FreeWake::undistorted(
+                panels.clone(),
+                settings,
+                start.flight,
+                momentum_inflow(&start.flight, start.rotor.thrust_coefficient).map_err(wrong)?,
+                lines,
+            ),
+        }
+        .map_err(wrong)?;
+        self.in_still_wake(wake, circulation, start)
+    }
+
+    /// How far a state is from rest: what is left of inflow and geometry over what may be.
+    fn unrest(&self, state: &State) -> f64 {
+        let inflow = state.inflow_change / self.settings.inflow_tolerance;
+        inflow.max(state.displacement / self.settings.displacement_tolerance)
+    }
+
+    /// Updates on one grid until inflow and geometry stay, no more are allowed or nothing is gained any more.
+    pub(crate) fn stage(&mut self, start: State) -> (State, WakeOutcome) {
+        let azimuths = start.wake.settings().azimuths;
+        // a stage that only prepares the next one need not settle as well
+        let enough = if azimuths == self.settings.wake.azimuths { 1.0 } else { 10.0 };
+        let first = self.updates.len();
+        let mut best = start.clone();
+        let mut now = start;
+        let (mut halvings, mut least, mut idle, mut failures) = (0, f64::INFINITY, 0, 0);
+        let mut least_change = f64::INFINITY;
+        for _ in 0..self.settings.updates {
+            match self.update(&now, halvings) {
+                Ok(next) => {
+                    now = next;
+                    failures = 0;
+                    let unrest = self.unrest(&now);
+                    idle = if unrest > PAYING * least {
+                        halvings = MOST_HALVINGS.min(halvings + 1);
+                        idle + 1
+                    } else {
+                        0
+                    };
+                    least = least.min(unrest);
+                    least_change = least_change.min(now.inflow_change);
+                    if now.inflow_change < TRUSTED && unrest < self.unrest(&best) {
+                        best.clone_from(&now);
+                    }
+                    if unrest <= enough {
+                        return (now, WakeOutcome::Settled);
+                    }
+                    if idle >= PATIENCE && halvings == MOST_HALVINGS {
+                        break;
+                    }
+                }
+                Err(failure) => {
+                    failures += 1;
+                    halvings = MOST_HALVINGS.min(halvings + 1);
+                    if failures == FAILURES {
+                        let (updates, change) = (self.updates.len() - first, best.inflow_change);
+                        return (best, failure.outcome(updates, change));
+                    }
+                }
+            }
+        }
+        let done = &self.updates[first..];
+        if least_change > TRUSTED {
+            let (update, change) = (done.len(), least_change);
+            let error = WakeError::InflowRunsAway { update, change, largest: TRUSTED };
+            return (best, Failure::Wake(error).outcome(done.len(), f64::INFINITY));
+        }
+        // the state kept is one of those the band is of
+        let angles = done[done.len() / 2..].iter().map(|u| u.theta0_rad);
+        let band = angles
+            .chain([best.trim.controls.theta0_rad])
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], a| [low.min(a), high.max(a)]);
+        let outcome = WakeOutcome::NotSettled {
+            updates: done.len(),
+            inflow_change: best.inflow_change,
+            tolerance: enough * self.settings.inflow_tolerance,
+            displacement: best.displacement,
+            displacement_tolerance: enough * self.settings.displacement_tolerance,
+            theta0_band_rad: band,
+        };
+        (best, outcome)
+    }
+
+    /// One update: the wake moved with the circulation of the trim, and the trim in it.
+    fn update(&mut self, now: &State, halvings: u32) -> Result<State, Failure> {
+        let part = 0.5_f64.powf(f64::from(halvings));
+        let panels = now.wake.rotor();
+        let (lines, circulation) =
+            on_the_grid(&self.solver, &now.trim.rotor, panels, now.wake.settings())
+                .map_err(TrimError::from)?;
+        let share = MIXED * f64::max(part, 0.4);
+        let circulation = circulation.mixed(&now.moving, share)?;
+        let mean = momentum_inflow(&now.trim.flight, now.trim.rotor.thrust_coefficient)?;
+        let mut wake = now.wake.clone();
+        wake.set_condition(now.trim.flight, mean, lines)?;
+        let (displacement, gone) = self.carried_on(&mut wake, &circulation, part)?;
+        let mut next = self.in_still_wake(wake, circulation, &now.trim)?;
+        next.displacement = displacement;
+        next.inflow_change = largest_change(&next.trim.rotor.inflow, &now.trim.rotor.inflow) / gone;
+        if next.inflow_change > RUNAWAY {
+            let (update, change) = (self.updates.len() + 1, next.inflow_change);
+            return Err(WakeError::InflowRunsAway { update, change, largest: RUNAWAY }.into());
+        }
+        self.updates.push(WakeUpdate {
+            azimuths: next.wake.settings().azimuths,
+            displacement,
+            inflow_change: next.inflow_change,
+            part,
+            theta0_rad: next.trim.controls.theta0_rad,
+        });
+        Ok(next)
+    }
+
+    /// Moves the wake on by the sweeps or revolutions of an update, of which it goes a part; returns the last displacement
+    /// and the share of the whole way that was gone.
+    fn carried_on(
+        &self,
+        wake: &mut FreeWake,
+        circulation: &CirculationMap,
+        part: f64,
+    ) -> Result<(f64, f64), WakeError> {
+        let (method, count) = (self.settings.method, self.settings.sweeps);
+        let mut displacement = wake.carry_on_in_part(method, count, circulation, part)?;
+        if method == WakeMethod::Marched {
+            return Ok((displacement, part));
+        }
+        let mut done = count;
+        while done < MORE_SWEEPS * count
+            && (part < 1.0 || displacement > self.settings.displacement_tolerance)
+        {
+            displacement = wake.sweep_in_part(circulation, part)?;
+            done += 1;
+        }
+        Ok((displacement, 1.0 - (1.0 - part).powf(done as f64)))
+    }
+}
+
+/// Why an update failed.
+enum Failure {
+    Wake(WakeError),
+    Trim(TrimError),
+}
+
+impl From<WakeError> for Failure {
+    fn from(error: WakeError) -> Self {
+        Self::Wake(error)
+    }
+}
+
+impl From<TrimError> for Failure {
+    fn from(error: TrimError) -> Self {
+        Self::Trim(error)
+    }
+}
+
+impl Failure {
+    fn outcome(self, updates: usize, inflow_change: f64) -> WakeOutcome {
+        match self {
+            Self::Wake(error) => WakeOutcome::WakeFailed { updates, inflow_change, error },
+            Self::Trim(error) => WakeOutcome::TrimFailed { updates, inflow_change, error },
+        }
+    }
+}
+
+fn largest_change(a: &InducedInflow, b: &InducedInflow) -> f64 {
+    let (a, b) = (a.parameters(), b.parameters());
+    a.iter().zip(&b).fold(0.0, |m: f64, (x, y)| m.max((x - y).abs()))
+}

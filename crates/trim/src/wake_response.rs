@@ -1,0 +1,132 @@
+//! What moving flaps do to the hub once the free wake has changed its shape as well.
+
+use crate::coupling::{MIXED, on_the_grid};
+use crate::wake::{WakeTrim, WakeTrimSettings};
+use rotor_response::{Condition, ResponseError, RotorSolution, RotorSolver};
+use rotor_wake::{CirculationMap, FreeWake, FrozenWake, momentum_inflow};
+
+/// How far the wake is converged anew under a change of the flaps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WakeDifferenceSettings {
+    /// Updates of the geometry at most, 1 or more.
+    pub updates: usize,
+    /// Change of the difference of the hub loads in one update, over the difference, at which it has settled.
+    pub tolerance: f64,
+}
+
+impl Default for WakeDifferenceSettings {
+    fn default() -> Self {
+        Self { updates: 20, tolerance: 1e-3 }
+    }
+}
+
+/// Hub loads of two conditions, each in a wake of its own, one less the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WakeDifference {
+    /// Difference of the hub loads at the blade number per rev after every update; the first with the wake of the
+    /// trim held still, its circulation settled.
+    pub hub: Vec<[f64; 12]>,
+    /// Change of that difference in the last update, over its size.
+    pub change: f64,
+    /// Whether `change` meets the tolerance.
+    pub settled: bool,
+}
+
+impl WakeDifference {
+    /// The difference after the last update.
+    pub fn last(&self) -> [f64; 12] {
+        self.hub.last().copied().unwrap_or([0.0; 12])
+    }
+}
+
+/// A response of the rotor in a wake of its own.
+struct WakeResponse<'a> {
+    condition: &'a Condition,
+    rotor: RotorSolution,
+    wake: FreeWake,
+    moving: CirculationMap,
+}
+
+impl<'a> WakeResponse<'a> {
+    /// In the wake of a trim, held still.
+    fn new(
+        about: &WakeTrim,
+        solver: &RotorSolver,
+        condition: &'a Condition,
+    ) -> Result<Self, ResponseError> {
+        let start = Some(&about.trim.rotor);
+        let rotor = solver.clone().solve(condition, &about.frozen, start)?;
+        let (wake, moving) = (about.wake.clone(), about.moving.clone());
+        Ok(Self { condition, rotor, wake, moving })
+    }
+
+    /// The wake moved on under the present loading, and the response in it.
+    fn update(
+        &mut self,
+        solver: &RotorSolver,
+        settings: &WakeTrimSettings,
+    ) -> Result<(), ResponseError> {
+        let panels = self.wake.rotor().clone();
+        let (lines, circulation) = on_the_grid(solver, &self.rotor, &panels, self.wake.settings())?;
+        let circulation = circulation.mixed(&self.moving, MIXED)?;
+        let flight = self.condition.flight;
+        let mean = momentum_inflow(&flight, self.rotor.thrust_coefficient)?;
+        self.wake.set_condition(flight, mean, lines)?;
+        self.wake.carry_on(settings.method, settings.sweeps, &circulation)?;
+        let induction = self.wake.line_induction(&circulation)?;
+        let chord = solver.rotor().model().chord;
+        let frozen = FrozenWake::new(induction, &circulation, chord, flight.advance_ratio)?;
+        self.rotor = solver.clone().solve(self.condition, &frozen, Some(&self.rotor))?;
+        self.moving = circulation;
+        Ok(())
+    }
+}
+
+/// Difference of the hub loads of two conditions near a trim, the geometry of the free wake converged anew under
+/// each.
+///
+/// Both set out from the wake of the trim and are updated side by side, update for update in the same way, so that
+/// what the trim itself has left unsettled is in both and drops out. One update is that of
+/// [`crate::trim_in_free_wake`]: half of the change of the circulation, sweeps of the wake, a response in the wake
+/// held still whose inflow follows the circulation at once. Pilot controls are those of the conditions.
+///
+/// # Errors
+/// Those of the response and of the wake, which may run away; settings that are none.
+pub fn wake_difference(
+    about: &WakeTrim,
+    solver: &RotorSolver,
+    coupling: &WakeTrimSettings,
+    [plus, minus]: [&Condition; 2],
+    settings: WakeDifferenceSettings,
+) -> Result<WakeDifference, ResponseError> {
+    if settings.updates == 0 {
+        let (field, expected) = ("updates of the wake", "1 or more");
+        return Err(ResponseError::Parameter { field, value: 0.0, expected });
+    }
+    let blades = solver.rotor().model().blades;
+    let mut plus = WakeResponse::new(about, solver, plus)?;
+    let mut minus = WakeResponse::new(about, solver, minus)?;
+    let difference = |plus: &WakeResponse, minus: &WakeResponse| -> [f64; 12] {
+        let (a, b) = (plus.rotor.hub.harmonic(blades), minus.rotor.hub.harmonic(blades));
+        std::array::from_fn(|k| a[k] - b[k])
+    };
+    let size = |z: &[f64; 12]| z.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let mut found = WakeDifference {
+        hub: vec![difference(&plus, &minus)],
+        change: f64::INFINITY,
+        settled: false,
+    };
+    for _ in 0..settings.updates {
+        plus.update(solver, coupling)?;
+        minus.update(solver, coupling)?;
+        let (before, here) = (found.last(), difference(&plus, &minus));
+        let moved: [f64; 12] = std::array::from_fn(|k| here[k] - before[k]);
+        found.hub.push(here);
+        found.change = size(&moved) / size(&here).max(f64::MIN_POSITIVE);
+        found.settled = found.change <= settings.tolerance;
+        if found.settled {
+            break;
+        }
+    }
+    Ok(found)
+}

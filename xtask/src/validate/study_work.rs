@@ -1,0 +1,49 @@
+//! What the linearised T costs, counted: the same on every machine.
+
+use std::sync::Arc;
+
+use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_fem::{BladeProperties, BladeSpec};
+use rotor_response::{
+    Condition, Discretisation, InflowState, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+};
+use rotor_wake::LinearInflow;
+
+use super::CheckError;
+
+/// Evaluations for the linearised T over those of the differences.
+pub(super) fn work_of_t() -> Result<f64, CheckError> {
+    let blade = BladeProperties::new(BladeSpec::table_1())?;
+    let rotor = Rotor::new(RotorModel::paper_case(), &blade, Discretisation::paper())?;
+    let condition = Condition {
+        flap_angles_rad: vec![HarmonicSeries::zero(3); 2],
+        ..super::rotor::fixed_controls()
+    };
+    let mu = condition.flight.advance_ratio;
+    let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default())?;
+    let rest = solver.solve(&condition, &LinearInflow::Drees, None)?;
+    let directions: Vec<Vec<HarmonicSeries>> = (0..4)
+        .map(|control| {
+            let mut direction = vec![HarmonicSeries::zero(3); 2];
+            let (cosine, sine) = if control % 2 == 0 { (1.0, 0.0) } else { (0.0, 1.0) };
+            direction[control / 2].set_harmonic(3, Harmonic { cosine, sine });
+            direction
+        })
+        .collect();
+    let at = (&condition, &rest);
+    let linear =
+        solver.clone().linearised(at, &LinearInflow::Drees, &directions, InflowState::Settled)?;
+    let mut evaluations = 0;
+    for direction in &directions {
+        for by in [0.5_f64.to_radians(), -0.5_f64.to_radians()] {
+            let mut moved = condition.clone();
+            for (angle, along) in moved.flap_angles_rad.iter_mut().zip(direction) {
+                let h = along.harmonic(3);
+                angle.set_harmonic(3, Harmonic { cosine: by * h.cosine, sine: by * h.sine });
+            }
+            let found = solver.clone().solve(&moved, &LinearInflow::Drees, Some(&rest))?;
+            evaluations += found.residuals.response_iterations + found.residuals.inflow_iterations;
+        }
+    }
+    Ok((linear.evaluations + linear.factorisations) as f64 / evaluations as f64)
+}
