@@ -383,6 +383,21 @@ impl<S: Simulator> Search<'_, S> {
         (self.discovery.settings.structure_margin * worst).min(most)
     }
 
+    /// What the better of two fits leaves along the difference of both says of the difference of their misfits:
+    /// `separation (x^2 - 1)`, `x = <r_b, d> / |d|`, `d = r_a - r_b`.
+    ///
+    /// Whichever of them is right, structure of at least the size `x` lies there, where noise alone would leave 1.
+    /// With its variance beside that of the noise the difference of the misfits weighs `1 / (1 + x^2)` as much.
+    fn left_between(&self, a: &Fitted, b: &Fitted) -> f64 {
+        let apart = difference(&a.residual, &b.residual);
+        let apart = self.evidence.see(&apart);
+        let energy = self.evidence.inner(&apart, &apart);
+        // |r_a|^2 - |r_b|^2 = |d|^2 + 2 <r_b, d>
+        let along = 0.5 * (a.cost - b.cost - energy);
+        let squared = if energy > 0.0 { along * along / energy } else { 0.0 };
+        self.discovery.settings.separation * (squared - 1.0).max(0.0)
+    }
+
     /// The candidates that do about as well in the place of a chosen one, best first.
     pub(super) fn alternatives(
         &self,
@@ -406,7 +421,7 @@ impl<S: Simulator> Search<'_, S> {
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
             let behind = fit.cost - current.cost + penalty;
             let (_, error) = paired(self.evidence, fit, current);
-            let open = margin + self.swayed(fit, current);
+            let open = margin + self.swayed(fit, current).max(self.left_between(fit, current));
             let told_apart_beyond = open.max((2.0 * error).min(0.2 * drop));
             compared.push((Compared { candidate, behind, told_apart_beyond }, fit));
         }

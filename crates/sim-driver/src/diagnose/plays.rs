@@ -223,8 +223,7 @@ fn cells_of(room: f64) -> usize {
 
 /// Output of a first-order lag for an input straight between samples, at rest at first.
 pub(crate) fn lagged(input: &[f64], tau_s: f64, step_s: f64) -> Vec<f64> {
-    let x = step_s / tau_s;
-    let (decay, ramp) = ((-x).exp(), -(-x).exp_m1() / x);
+    let (decay, ramp) = decay_and_ramp(tau_s, step_s);
     let mut deviation = 0.0;
     let mut before = input.first().copied().unwrap_or_default();
     input
@@ -237,6 +236,45 @@ pub(crate) fn lagged(input: &[f64], tau_s: f64, step_s: f64) -> Vec<f64> {
         .collect()
 }
 
+/// A signal with shares of its lags' deviations, `u + sum_k share_k (x_k - u)`, each `x_k` as of [`lagged`]:
+/// time constant (s) and share of each. Four lags at a time, because each waits for its own last sample.
+pub(crate) fn behind_lags(
+    input: &[f64],
+    lags: impl Iterator<Item = (f64, f64)>,
+    step_s: f64,
+) -> Vec<f64> {
+    const SIDE_BY_SIDE: usize = 4;
+    let mut output = input.to_vec();
+    let lags: Vec<(f64, f64)> = lags.collect();
+    for some in lags.chunks(SIDE_BY_SIDE) {
+        // a lag that is not there has no share
+        let (mut decay, mut ramp, mut share) =
+            ([0.0; SIDE_BY_SIDE], [0.0; SIDE_BY_SIDE], [0.0; SIDE_BY_SIDE]);
+        for (k, &(tau_s, own)) in some.iter().enumerate() {
+            (decay[k], ramp[k]) = decay_and_ramp(tau_s, step_s);
+            share[k] = own;
+        }
+        let mut deviation = [0.0; SIDE_BY_SIDE];
+        let mut before = input.first().copied().unwrap_or_default();
+        for (y, &u) in output.iter_mut().zip(input) {
+            let rise = u - before;
+            before = u;
+            for k in 0..SIDE_BY_SIDE {
+                deviation[k] = decay[k] * deviation[k] - ramp[k] * rise;
+            }
+            let part = |k: usize| share[k] * deviation[k];
+            *y += (part(0) + part(1)) + (part(2) + part(3));
+        }
+    }
+    output
+}
+
+/// What is left of the deviation of a lag after a step, and what a unit of the input's rise adds to it.
+fn decay_and_ramp(tau_s: f64, step_s: f64) -> (f64, f64) {
+    let x = step_s / tau_s;
+    ((-x).exp(), -(-x).exp_m1() / x)
+}
+
 /// Solves for the coefficients of a Gaussian prior and Gaussian data: `(gram + precision) x = right`.
 pub(crate) fn solve(gram: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     gram.clone().cholesky().map(|c| c.solve(right))
@@ -246,6 +284,19 @@ pub(crate) fn solve(gram: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector
 mod tests {
     use super::*;
     use approx::assert_abs_diff_eq;
+
+    #[test]
+    fn lags_side_by_side_are_the_lags_one_by_one() {
+        let input: Vec<f64> = (0..300).map(|i| (0.2 * f64::from(i)).sin()).collect();
+        let lags: Vec<(f64, f64)> =
+            (0..6).map(|k| (3e-3 * f64::from(1 + 5 * k), 0.1 * f64::from(k - 2))).collect();
+        let together = behind_lags(&input, lags.iter().copied(), 1e-3);
+        for (i, y) in together.iter().enumerate() {
+            let own =
+                |&(tau, share): &(f64, f64)| share * (lagged(&input, tau, 1e-3)[i] - input[i]);
+            assert_abs_diff_eq!(input[i] + lags.iter().map(own).sum::<f64>(), *y, epsilon = 1e-14);
+        }
+    }
 
     #[test]
     fn rows_times_coefficients_are_the_output() {

@@ -10,7 +10,7 @@ use super::base::BaseModel;
 use super::causes::{BenchCause, Part, looped, rate_dependent};
 use super::memo::{Memo, key};
 use super::record::Record;
-use super::smooth::Smooth;
+use super::smooth::{Smooth, Weights};
 use model_gap::{Effect, GapError};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, DielectricHeating, Drive, Lag,
@@ -76,6 +76,9 @@ pub(super) struct Plant<'a> {
     /// Output of the base's static part, and behind its relaxation, on the plain command.
     pub(super) laws: Vec<Vec<f64>>,
     pub(super) plain: Arc<Vec<Vec<f64>>>,
+    /// How smooth commands and plain outputs are: most candidates act on one of them.
+    commands: Vec<Weights>,
+    plain_outputs: Vec<Weights>,
     /// The law at rest at 0 V, and in the middle of the range.
     neutral: (f64, f64),
     /// Stages that only see signals: any value may pass.
@@ -92,13 +95,28 @@ impl<'a> Plant<'a> {
         range: (f64, f64),
     ) -> Result<Self, GapError> {
         let laws: Vec<Vec<f64>> = runs.iter().map(|r| base.hysteresis(&r.input)).collect();
-        let plain = runs.iter().zip(&laws).map(|(r, law)| base.relaxed(law, r.step_s)).collect();
+        let plain: Vec<Vec<f64>> =
+            runs.iter().zip(&laws).map(|(r, law)| base.relaxed(law, r.step_s)).collect();
+        let commands = runs.iter().map(|r| Smooth::weights(&r.input)).collect();
+        let plain_outputs = plain.iter().map(|y| Smooth::weights(y)).collect();
         let at = |volt: f64| base.hysteresis(&[volt]).first().copied().unwrap_or_default();
         let neutral = (at(0.0), at(f64::midpoint(range.0, range.1)));
         let wide = VoltageRange::new(-1e9, 1e9).map_err(|e| failed("the range of signals", &e))?;
         let (fronts, behind) = (Memo::new(KEPT), Memo::new(KEPT));
         let plain = Arc::new(plain);
-        Ok(Self { base, runs, causes, laws, plain, neutral, wide, fronts, behind })
+        Ok(Self {
+            base,
+            runs,
+            causes,
+            laws,
+            plain,
+            commands,
+            plain_outputs,
+            neutral,
+            wide,
+            fronts,
+            behind,
+        })
     }
 
     /// All runs under effects. The phase of a hum is what the measured output asks for beside the other
@@ -137,7 +155,10 @@ impl<'a> Plant<'a> {
             for stage in &stages {
                 let input = terminal.as_deref().unwrap_or(&run.input);
                 terminal = Some(match stage {
-                    AmplifierStage::Lag(lag) => behind_lag(input, *lag, run.step_s),
+                    AmplifierStage::Lag(lag) => {
+                        let known = terminal.is_none().then(|| &self.commands[number]);
+                        behind_lag(&smooth(input, known), *lag, run.step_s)
+                    }
                     other => {
                         let model = self.through(std::slice::from_ref(other), &[], &[]);
                         let drive = Drive::new(input, run.step_s);
@@ -221,7 +242,9 @@ impl<'a> Plant<'a> {
             return Ok(Arc::clone(&front.outputs));
         }
         let mut outputs = Vec::with_capacity(self.runs.len());
-        for (run, output) in self.runs.iter().zip(front.outputs.iter()) {
+        let is_plain = Arc::ptr_eq(&front.outputs, &self.plain);
+        for (number, (run, output)) in self.runs.iter().zip(front.outputs.iter()).enumerate() {
+            let mut known = is_plain.then(|| &self.plain_outputs[number]);
             let sensor: &[SensorStage] = if run.has_ideal_sensor() { &[] } else { &sensor };
             let mut linkage = linkage.clone();
             if run.is_preloaded() {
@@ -233,19 +256,23 @@ impl<'a> Plant<'a> {
             }
             let mut signal = output.clone();
             for stage in &linkage {
+                let known = known.take();
                 signal = match stage {
-                    LinkageStage::Resonance(mode) if mode.damping_ratio < 1.0 => Smooth::new(
-                        &signal,
+                    LinkageStage::Resonance(mode) if mode.damping_ratio < 1.0 => smooth(
+                        &signal, known,
                     )
                     .through_mode(mode.frequency_hz, mode.damping_ratio, run.step_s),
                     other => self.pass(run, &signal, std::slice::from_ref(other), &[])?,
                 };
             }
             for stage in sensor {
+                let known = known.take();
                 signal = match stage {
-                    SensorStage::Filter(lag) => behind_lag(&signal, *lag, run.step_s),
+                    SensorStage::Filter(lag) => {
+                        behind_lag(&smooth(&signal, known), *lag, run.step_s)
+                    }
                     SensorStage::Delay(delay) => {
-                        Smooth::new(&signal).late_by(delay.delay_s / run.step_s)
+                        smooth(&signal, known).late_by(delay.delay_s / run.step_s)
                     }
                     other => self.pass(run, &signal, &[], std::slice::from_ref(other))?,
                 };
@@ -320,9 +347,14 @@ impl<'a> Plant<'a> {
     }
 }
 
+/// A signal as a smooth one, by its weights where they are known.
+fn smooth<'s>(signal: &'s [f64], known: Option<&'s Weights>) -> Smooth<'s> {
+    known.map_or_else(|| Smooth::new(signal), |weights| Smooth::known(signal, weights))
+}
+
 /// A signal behind a lag; one of no time constant changes nothing.
-fn behind_lag(signal: &[f64], lag: Lag, step_s: f64) -> Vec<f64> {
-    if lag.tau_s > 0.0 { Smooth::new(signal).lagged(lag.tau_s, step_s) } else { signal.to_vec() }
+fn behind_lag(signal: &Smooth<'_>, lag: Lag, step_s: f64) -> Vec<f64> {
+    if lag.tau_s > 0.0 { signal.lagged(lag.tau_s, step_s) } else { signal.samples().to_vec() }
 }
 
 /// Whether a part acts before or in the law.

@@ -6,6 +6,7 @@
 //! where they lie on a smooth curve, and the chord where they do not (corners, steps).
 
 use nalgebra::Complex;
+use std::borrow::Cow;
 
 /// Samples that a quintic goes through, from the second before an interval to the second after it.
 const POINTS: usize = 6;
@@ -26,13 +27,31 @@ const GAUSS: [(f64, f64); 5] = [
 pub(super) struct Smooth<'a> {
     samples: &'a [f64],
     /// Weight of the quintic over the chord, interval by interval.
-    weights: Vec<f64>,
+    weights: Cow<'a, [f64]>,
 }
+
+/// Weight of the quintic over the chord in every interval of a record.
+pub(super) type Weights = Vec<f64>;
 
 impl<'a> Smooth<'a> {
     /// Looks at fourth over second differences: those of a sine of seven samples a cycle and more lie below
     /// 1, those of a corner at 2 and above.
     pub(super) fn new(samples: &'a [f64]) -> Self {
+        Self { samples, weights: Cow::Owned(Self::weights(samples)) }
+    }
+
+    /// A record whose weights are known.
+    pub(super) fn known(samples: &'a [f64], weights: &'a Weights) -> Self {
+        Self { samples, weights: Cow::Borrowed(weights) }
+    }
+
+    /// The record itself.
+    pub(super) fn samples(&self) -> &'a [f64] {
+        self.samples
+    }
+
+    /// The weights of a record.
+    pub(super) fn weights(samples: &[f64]) -> Weights {
         let range = samples
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
@@ -41,7 +60,7 @@ impl<'a> Smooth<'a> {
         let second: Vec<f64> =
             (0..=last(samples).max(0)).map(|i| at(i - 1) - 2.0 * at(i) + at(i + 1)).collect();
         let about = |i: isize| second[i.clamp(0, last(&second)).unsigned_abs()];
-        let weights = (0..last(samples).max(0))
+        (0..last(samples).max(0))
             .map(|k| {
                 let bend = (k - 1..=k + 2).map(|i| about(i).abs()).fold(0.0, f64::max);
                 let fourth = |i: isize| (about(i - 1) - 2.0 * about(i) + about(i + 1)).abs();
@@ -51,8 +70,7 @@ impl<'a> Smooth<'a> {
                     0.0
                 }
             })
-            .collect();
-        Self { samples, weights }
+            .collect()
     }
 
     /// The six samples about an interval; the first and the last are held beyond the ends.

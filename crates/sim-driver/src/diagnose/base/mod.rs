@@ -6,7 +6,7 @@ mod errors;
 
 pub(crate) use errors::{ErrorModel, mean_square, variance, white_noise};
 
-use super::plays::{OutputMap, Plays, lagged};
+use super::plays::{OutputMap, Plays, behind_lags, lagged};
 use super::record::Record;
 use equations::{
     Equations, best_prior, covariance_root, equations, fit_held, fit_of, most_negative, precision,
@@ -225,13 +225,8 @@ impl BaseModel {
 
     /// Ordinary creep and relaxation behind the static part.
     pub(crate) fn relaxed(&self, law: &[f64], step_s: f64) -> Vec<f64> {
-        let mut output = law.to_vec();
-        for &(tau, share) in self.relaxation.iter().filter(|r| r.1 != 0.0) {
-            for ((y, x), u) in output.iter_mut().zip(lagged(law, tau, step_s)).zip(law) {
-                *y += share * (x - u);
-            }
-        }
-        output
+        let relaxing = self.relaxation.iter().filter(|r| r.1 != 0.0);
+        behind_lags(law, relaxing.copied(), step_s)
     }
 
     /// The whole base model.
