@@ -92,7 +92,8 @@ pub struct Residuals {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Baseline {
     /// Fixed-frame hub loads at the blade number per rev.
-    pub hub_4_per_rev: HubLoads,
+    #[serde(alias = "hub_4_per_rev")]
+    pub hub_nb_per_rev: HubLoads,
 }
 
 /// Six hub loads at one harmonic, `[cosine, sine]`.
@@ -154,7 +155,8 @@ pub struct ControlLine {
     #[serde(rename = "actuation_power_W", default)]
     pub actuation_power_watt: f64,
     /// Hub loads with control.
-    pub hub_4_per_rev: HubLoads,
+    #[serde(alias = "hub_4_per_rev")]
+    pub hub_nb_per_rev: HubLoads,
     /// One entry per flap, from root to tip; of a set of several harmonics, one after another.
     pub flaps: Vec<FlapLine>,
     /// What the controller knew of T: `global`, `local`, `adaptive`, or `none` for voltages taken over or
