@@ -502,3 +502,40 @@ impl StallState {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn section(mach: f64) -> StallSection {
+        let mach = Mach::new(mach).unwrap();
+        StallSection::new(mach, FlapChord::NONE, StallParameters::naca_0012(mach)).unwrap()
+    }
+
+    /// A march at a normal force that is held while the Mach number runs from one value to another: where the last
+    /// vortex is, semichords behind the leading edge.
+    fn travelled(normal: f64, [from, to]: [f64; 2], steps: u32) -> Option<f64> {
+        let at = |n: u32| from + (to - from) * f64::from(n) / f64::from(steps);
+        let attached = [normal, 0.0, 0.0];
+        let modes = [normal / section(from).slope, 0.0, 0.0, 0.0];
+        let mut state = StallState::settled(&section(from), normal, &modes);
+        for n in 1..=steps {
+            state.step(&section(at(n)), attached, &modes, 8.0 / f64::from(steps)).unwrap();
+        }
+        state.travel
+    }
+
+    /// The critical force falls with the Mach number: a vortex leaves when it passes a force that is held, at the same
+    /// place whatever the steps, and none leaves while the force stays beyond it.
+    #[test]
+    fn the_critical_force_passes_the_delayed_one_too() {
+        // Cn1 is 1.2 at Mach .4 and 1.05 at .5: it passes 1.125 half way
+        for steps in [3, 8, 31, 200] {
+            let behind = travelled(1.125, [0.4, 0.5], steps).unwrap();
+            assert!((behind - 4.0).abs() < 1e-9, "{steps} steps: {behind}");
+        }
+        // beyond all the way: the vortex is long gone and no other leaves
+        assert_eq!(travelled(1.3, [0.4, 0.5], 8), Some(18.0));
+        assert_eq!(travelled(1.0, [0.4, 0.5], 8), None);
+    }
+}

@@ -162,8 +162,7 @@ struct BeyondThrust {
 
 fn beyond_thrust(couplings: Couplings) -> Result<BeyondThrust, CheckError> {
     let reverse_flow = ReverseFlow::Abrupt;
-    let model =
-        RotorModel { reverse_flow, drag_coefficient: 0.0, ..paper_rotor(couplings, 0.2) };
+    let model = RotorModel { reverse_flow, drag_coefficient: 0.0, ..paper_rotor(couplings, 0.2) };
     let stiff = BladeSpec::uniform(100.0, 1e4, 1e3, 1e4);
     let spec = BladeSpec { root: FLAPPING, root_offset: HINGE, ..stiff };
     let (theta0_rad, lambda) = LOADINGS[0];
