@@ -492,6 +492,16 @@ mod tests {
     use super::*;
     use crate::case::{PAPER_CASE, shipped_case};
 
+    /// Loads at the blade number were once stored as those at 4/rev, of whatever number of blades.
+    #[test]
+    fn loads_under_their_old_name_are_read() {
+        let baseline = Baseline { hub_nb_per_rev: HubLoads::from_parts([0.5; 12]) };
+        let new = serde_json::to_string(&baseline).unwrap();
+        let old = new.replace("hub_nb_per_rev", "hub_4_per_rev");
+        assert!(old != new);
+        assert_eq!(serde_json::from_str::<Baseline>(&old).unwrap(), baseline);
+    }
+
     #[test]
     fn the_key_follows_case_and_inputs_but_not_layout() {
         let file = shipped_case(PAPER_CASE).unwrap().file;

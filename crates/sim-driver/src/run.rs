@@ -4,7 +4,7 @@ use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
 use crate::blade_loads::{moments_table, station_lines};
 use crate::case::LoadedCase;
-use crate::dissimilar::{UnlikeBladeLine, each_unlike_blade, unlike_lines};
+use crate::dissimilar::{each_unlike_blade, unlike_lines};
 use crate::inflow::wake_warnings;
 use crate::mean_loads::MeanLoads;
 use crate::output::{Printable, Sheet, table};
