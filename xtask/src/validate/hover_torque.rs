@@ -66,20 +66,6 @@ pub(super) const AREA: Area = Area {
             ("third order in the deflection", Criterion::AtMost(3.0)),
             || Ok(100.0 * hinge_torque_gap(MODERATE)?),
         ),
-        check(
-            "V-RESP-71",
-            "torque beyond lambda C_T of a stiff flapping blade in hover without drag, Moderate: what the sections' damping takes that turn about the blade by Omega w_x, error",
-            "%",
-            (TURNING, Criterion::AtMost(2.0)),
-            || Ok(100.0 * (beyond_thrust(MODERATE)?.of_closed_form - 1.0).abs()),
-        ),
-        check(
-            "V-RESP-72",
-            "the same of Full, whose couple stands along the straight blade and has no part of it, over lambda C_T",
-            "%",
-            (TURNING, Criterion::AtMost(1e-3)),
-            || Ok(100.0 * beyond_thrust(Couplings::Full)?.of_thrust.abs()),
-        ),
     ],
 };
 
@@ -91,8 +77,6 @@ const MODERATE: Couplings = Couplings::Moderate(TorsionTerms {
 const CLAMPED: RootSupport = RootSupport::CLAMPED;
 const FLAPPING: RootSupport = RootSupport { flap: Joint::FREE, ..CLAMPED };
 const ARTICULATED: RootSupport = RootSupport { lag: Joint::FREE, ..FLAPPING };
-
-const TURNING: &str = "N_b pi rho b^3 beta^2 (1 - x0^2) / 2: moment -pi rho b^3 U om of quasi-steady sections times om, om = Omega beta";
 
 /// Station of the hinges, R.
 const HINGE: f64 = 0.04;
@@ -150,43 +134,6 @@ fn hover_error(
         }
     }
     worst("ways to hold the blade", errors.len(), errors)
-}
-
-/// Torque of hover without drag beyond inflow times thrust.
-struct BeyondThrust {
-    /// Over what the pitch damping of the coned sections takes.
-    of_closed_form: f64,
-    /// Over inflow times thrust.
-    of_thrust: f64,
-}
-
-fn beyond_thrust(couplings: Couplings) -> Result<BeyondThrust, CheckError> {
-    let reverse_flow = ReverseFlow::Abrupt;
-    let model = RotorModel { reverse_flow, drag_coefficient: 0.0, ..paper_rotor(couplings, 0.2) };
-    let stiff = BladeSpec::uniform(100.0, 1e4, 1e3, 1e4);
-    let spec = BladeSpec { root: FLAPPING, root_offset: HINGE, ..stiff };
-    let (theta0_rad, lambda) = LOADINGS[0];
-    let condition = Condition {
-        bank_rad: 0.0,
-        flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
-        controls: Controls { theta0_rad, ..Controls::default() },
-        flap_angles_rad: vec![],
-    };
-    let inflow = LinearInflow::Prescribed { induced_inflow: lambda };
-    let (blades, chord, cutout) = (model.blades as f64, model.chord, model.root_cutout);
-    // rho b^3 over m0 R
-    let semichord_cubed = model.density_chord() * chord * chord / 8.0;
-    let blade = BladeProperties::new(spec)?;
-    let found = response(model, &blade, Discretisation::default(), &condition, &inflow)?;
-    let tip = found.modal.first().map_or(0.0, |flap| flap.mean);
-    let coning = tip / (1.0 - HINGE);
-    let mean = found.hub.mean();
-    let beyond = -mean[5] - lambda * mean[2];
-    let taken = blades * std::f64::consts::PI * semichord_cubed * coning * coning;
-    Ok(BeyondThrust {
-        of_closed_form: beyond / (taken * (1.0 - cutout * cutout) / 2.0),
-        of_thrust: beyond / (lambda * mean[2]),
-    })
 }
 
 /// Largest part of the torque that is not the lever of the hinge times the force in the plane.
