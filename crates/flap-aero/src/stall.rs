@@ -230,6 +230,8 @@ pub struct StallState {
     flap: [f64; 2],
     attached: f64,
     delayed: f64,
+    /// Delayed force beyond the critical one of its section, which follows the Mach number.
+    beyond: f64,
     quasi: f64,
     separation: f64,
     shed: f64,
@@ -324,6 +326,7 @@ impl StallState {
             flap: flap_of(modes),
             attached: attached_normal,
             delayed: attached_normal,
+            beyond: attached_normal.abs() - section.parameters.cn1,
             quasi: separation,
             separation,
             shed,
@@ -366,14 +369,13 @@ impl StallState {
         }
         self.downwash = downwash;
         self.flap = flap_of(modes);
-        let before = self.delayed;
-        self.delayed = lagged(before, [self.attached, attached[0]], z[2]);
+        self.delayed = lagged(self.delayed, [self.attached, attached[0]], z[2]);
         self.attached = attached[0];
         let quasi = p.separation(self.delayed / section.slope);
         self.separation = lagged(self.separation, [self.quasi, quasi], z[3]);
         self.quasi = quasi;
         let shed = self.effective(section) * (1.0 - StallParameters::kirchhoff(self.separation));
-        self.advance_vortex(section, before, shed, semichords);
+        self.advance_vortex(section, shed, semichords);
         Ok(self.loads(section, attached))
     }
 
@@ -415,15 +417,16 @@ impl StallState {
         turned * (section.on_flap[0] * alpha * left + section.on_flap[1] * turned)
     }
 
-    /// The vortex over a step in which its source runs straight to `shed` and the delayed force to
-    /// its value now. The step is parted where the force passes the critical one, where the vortex
+    /// The vortex over a step in which its source runs straight to `shed` and what the delayed force has beyond the
+    /// critical one to its value now. The step is parted where the force passes the critical one, where the vortex
     /// leaves the chord and where it is gone.
-    fn advance_vortex(&mut self, section: &StallSection, before: f64, shed: f64, ds: f64) {
+    fn advance_vortex(&mut self, section: &StallSection, shed: f64, ds: f64) {
         let p = &section.parameters;
         let feed = if ds > 0.0 { (shed - self.shed) / ds } else { 0.0 };
-        let (was, now) = (before.abs(), self.delayed.abs());
-        let crossing = ds * ((p.cn1 - was) / (now - was)).clamp(0.0, 1.0);
-        match (was > p.cn1, now > p.cn1) {
+        let (was, now) = (self.beyond, self.delayed.abs() - p.cn1);
+        self.beyond = now;
+        let crossing = ds * (was / (was - now)).clamp(0.0, 1.0);
+        match (was > 0.0, now > 0.0) {
             (true, true) => self.travel_on(p, (feed, true), ds),
             (true, false) => {
                 self.travel_on(p, (feed, true), crossing);
@@ -497,5 +500,42 @@ impl StallState {
             separation: f,
             vortex,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn section(mach: f64) -> StallSection {
+        let mach = Mach::new(mach).unwrap();
+        StallSection::new(mach, FlapChord::NONE, StallParameters::naca_0012(mach)).unwrap()
+    }
+
+    /// A march at a normal force that is held while the Mach number runs from one value to another: where the last
+    /// vortex is, semichords behind the leading edge.
+    fn travelled(normal: f64, [from, to]: [f64; 2], steps: u32) -> Option<f64> {
+        let at = |n: u32| from + (to - from) * f64::from(n) / f64::from(steps);
+        let attached = [normal, 0.0, 0.0];
+        let modes = [normal / section(from).slope, 0.0, 0.0, 0.0];
+        let mut state = StallState::settled(&section(from), normal, &modes);
+        for n in 1..=steps {
+            state.step(&section(at(n)), attached, &modes, 8.0 / f64::from(steps)).unwrap();
+        }
+        state.travel
+    }
+
+    /// The critical force falls with the Mach number: a vortex leaves when it passes a force that is held, at the same
+    /// place whatever the steps, and none leaves while the force stays beyond it.
+    #[test]
+    fn the_critical_force_passes_the_delayed_one_too() {
+        // Cn1 is 1.2 at Mach .4 and 1.05 at .5: it passes 1.125 half way
+        for steps in [3, 8, 31, 200] {
+            let behind = travelled(1.125, [0.4, 0.5], steps).unwrap();
+            assert!((behind - 4.0).abs() < 1e-9, "{steps} steps: {behind}");
+        }
+        // beyond all the way: the vortex is long gone and no other leaves
+        assert_eq!(travelled(1.3, [0.4, 0.5], 8), Some(18.0));
+        assert_eq!(travelled(1.0, [0.4, 0.5], 8), None);
     }
 }

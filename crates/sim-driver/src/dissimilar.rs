@@ -34,9 +34,10 @@ pub struct UnlikeBladeLine {
 }
 
 impl UnlikeBladeLine {
-    /// What a reader must know of every motion that does not die out.
-    pub(crate) fn warnings(&self) -> Vec<String> {
-        self.stability.warnings_of(&format!("blade {}, unlike the rest,", self.blade))
+    /// What a reader must know of every motion that does not die out, at an advance ratio.
+    pub(crate) fn warnings(&self, advance_ratio: f64) -> Vec<String> {
+        let name = format!("blade {}, unlike the rest,", self.blade);
+        self.stability.warnings_of(&name, advance_ratio)
     }
 }
 

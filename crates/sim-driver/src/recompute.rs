@@ -45,7 +45,7 @@ pub fn recomputed(stored: StoredResult<RunResult>, file: &str) -> Result<Recompu
         return Err(changed(file, field, stored.key, key));
     }
     let result = &stored.result;
-    let setting = Setting::of_file(&stored.case, &result.baseline.hub_4_per_rev)
+    let setting = Setting::of_file(&stored.case, &result.baseline.hub_nb_per_rev)
         .map_err(|e| changed(file, "case.rotor".to_owned(), e.to_string(), String::new()))?;
     let anew = result.refigured(&setting);
     let numbers = compared_fields(result, &anew, (file, "result"))?;

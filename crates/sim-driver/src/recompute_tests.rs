@@ -32,15 +32,15 @@ fn example() -> &'static StoredResult<RunResult> {
         let source = Source { name: "example.ron".to_owned(), text };
         let loaded = read_case(&source, &Folder::Shipped(String::new())).unwrap();
         let mut result = run_case(&loaded, &Progress::hidden()).unwrap().result;
-        let baseline = result.baseline.hub_4_per_rev;
-        let after = result.control[0].hub_4_per_rev;
+        let baseline = result.baseline.hub_nb_per_rev;
+        let after = result.control[0].hub_nb_per_rev;
         let named = |id: &str, record| Sensitivity {
             id: id.to_owned(),
             compared_with: "case".to_owned(),
             record,
             ..Sensitivity::default()
         };
-        let record = |hub| Some(SensitivityRecord { baseline, hub_4_per_rev: vec![hub] });
+        let record = |hub| Some(SensitivityRecord { baseline, hub_nb_per_rev: vec![hub] });
         result.sensitivity =
             vec![named("case", record(after)), named("wake-free", record(baseline))];
         result.robustness =
@@ -120,8 +120,8 @@ fn every_kind_of_figure_that_is_changed_is_named() {
 #[test]
 fn a_raw_number_that_is_changed_shows_in_its_figures() {
     let raw = [
-        ("/result/control/0/hub_4_per_rev/fz/0", "j_loads"),
-        ("/result/baseline/hub_4_per_rev/mx/1", "j_loads"),
+        ("/result/control/0/hub_nb_per_rev/fz/0", "j_loads"),
+        ("/result/baseline/hub_nb_per_rev/mx/1", "j_loads"),
         ("/result/control/0/record/flaps/0/flap_deg/5", "actuation_power_W"),
         ("/result/control/0/record/flaps/1/voltage_V/0", "flaps[1]"),
         ("/result/control/0/record/flaps/1/aerodynamic_moment/5", "actuation_power_W"),
@@ -310,11 +310,11 @@ fn no_figure_of_the_control_rests_on_the_key_alone() {
         "/history/",
         // raw numbers behind several figures, changed where none of these is rounded to them
         "/record/",
-        "/hub_4_per_rev/",
+        "/hub_nb_per_rev/",
     ];
     let passes = |value: Value| {
         let Ok(result) = serde_json::from_value::<RunResult>(value) else { return false };
-        let setting = Setting::of_file(&stored.case, &result.baseline.hub_4_per_rev).unwrap();
+        let setting = Setting::of_file(&stored.case, &result.baseline.hub_nb_per_rev).unwrap();
         compared_fields(&result, &result.refigured(&setting), ("a", "result")).is_ok()
     };
     let (_, free) = unnoticed(&serde_json::to_value(&stored.result).unwrap(), passes);
@@ -372,8 +372,8 @@ fn a_rotor_without_vibration_has_no_percentages() {
     let stored = example();
     let mut result = stored.result.clone();
     let still = crate::results::HubLoads::from_parts([4e-8; 12]);
-    result.baseline.hub_4_per_rev = still;
-    result.control[0].hub_4_per_rev = crate::results::HubLoads::from_parts([5e-8; 12]);
+    result.baseline.hub_nb_per_rev = still;
+    result.control[0].hub_nb_per_rev = crate::results::HubLoads::from_parts([5e-8; 12]);
     let setting = Setting::of_file(&stored.case, &still).unwrap();
     // weights over the baseline are not made of rounding either
     assert!(setting.load_weights().iter().all(|weight| *weight <= 1.0));

@@ -76,7 +76,7 @@ impl ControlLine {
     ) -> Self {
         let load_weights = setting.load_weights();
         let j_before = loads_cost(&load_weights, &setting.baseline);
-        let j_after = loads_cost(&load_weights, &self.hub_4_per_rev.parts());
+        let j_after = loads_cost(&load_weights, &self.hub_nb_per_rev.parts());
         let history = self.refigured_history(&load_weights);
         let record = self.refigured_record(actuator, setting, &history);
         let powers = record.flaps.iter().map(|flap| hinge_power(flap, &setting.scales).given_watt);
@@ -130,7 +130,7 @@ impl ControlLine {
     fn refigured_history(&self, load_weights: &[f64; 6]) -> Vec<HistoryLine> {
         let mut history: Vec<HistoryLine> = self.history.clone();
         if let Some(last) = history.last_mut() {
-            let (loads, flaps) = (self.hub_4_per_rev.parts(), &self.record.flaps);
+            let (loads, flaps) = (self.hub_nb_per_rev.parts(), &self.record.flaps);
             for (load, found) in last.loads.iter_mut().zip(loads) {
                 *load = found;
             }

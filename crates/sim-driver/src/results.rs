@@ -92,7 +92,8 @@ pub struct Residuals {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Baseline {
     /// Fixed-frame hub loads at the blade number per rev.
-    pub hub_4_per_rev: HubLoads,
+    #[serde(alias = "hub_4_per_rev")]
+    pub hub_nb_per_rev: HubLoads,
 }
 
 /// Six hub loads at one harmonic, `[cosine, sine]`.
@@ -154,7 +155,8 @@ pub struct ControlLine {
     #[serde(rename = "actuation_power_W", default)]
     pub actuation_power_watt: f64,
     /// Hub loads with control.
-    pub hub_4_per_rev: HubLoads,
+    #[serde(alias = "hub_4_per_rev")]
+    pub hub_nb_per_rev: HubLoads,
     /// One entry per flap, from root to tip; of a set of several harmonics, one after another.
     pub flaps: Vec<FlapLine>,
     /// What the controller knew of T: `global`, `local`, `adaptive`, or `none` for voltages taken over or
@@ -489,6 +491,16 @@ fn not_written(path: &Path, error: &dyn std::fmt::Display) -> SimError {
 mod tests {
     use super::*;
     use crate::case::{PAPER_CASE, shipped_case};
+
+    /// Loads at the blade number were once stored as those at 4/rev, of whatever number of blades.
+    #[test]
+    fn loads_under_their_old_name_are_read() {
+        let baseline = Baseline { hub_nb_per_rev: HubLoads::from_parts([0.5; 12]) };
+        let new = serde_json::to_string(&baseline).unwrap();
+        let old = new.replace("hub_nb_per_rev", "hub_4_per_rev");
+        assert!(old != new);
+        assert_eq!(serde_json::from_str::<Baseline>(&old).unwrap(), baseline);
+    }
 
     #[test]
     fn the_key_follows_case_and_inputs_but_not_layout() {

@@ -4,7 +4,7 @@ use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
 use crate::blade_loads::{moments_table, station_lines};
 use crate::case::LoadedCase;
-use crate::dissimilar::{UnlikeBladeLine, each_unlike_blade, unlike_lines};
+use crate::dissimilar::{each_unlike_blade, unlike_lines};
 use crate::inflow::wake_warnings;
 use crate::mean_loads::MeanLoads;
 use crate::output::{Printable, Sheet, table};
@@ -84,9 +84,10 @@ pub fn run_trimmed(
     let most = trimmed.largest_section_lift();
     warnings.extend(loaded.doubts_in_flight(trimmed.rotor(), about, most)?);
     warnings.extend(trimmed.wake().into_iter().flat_map(wake_warnings));
-    warnings.extend(stability.warnings());
+    let advance_ratio = found.flight.advance_ratio;
+    warnings.extend(stability.warnings(advance_ratio));
     let each_unlike = each_unlike_blade(loaded, &trimmed)?;
-    warnings.extend(each_unlike.iter().flat_map(UnlikeBladeLine::warnings));
+    warnings.extend(each_unlike.iter().flat_map(|line| line.warnings(advance_ratio)));
     let baseline = HubLoads::from_parts(trimmed.trim().rotor.hub.harmonic(loaded.case.blades));
     let setting = Setting::of_case(&loaded.case, &baseline);
     let unlike_blades = unlike_lines(loaded, &trimmed, &studies)?;
@@ -96,7 +97,7 @@ pub fn run_trimmed(
         mean_loads: Some(MeanLoads::new(mean, &setting)),
         trim: trim_line(loaded, trimmed.trim()),
         residuals: residuals(trimmed.trim()),
-        baseline: Baseline { hub_4_per_rev: baseline },
+        baseline: Baseline { hub_nb_per_rev: baseline },
         blade_loads: station_lines(&blade_loads, &loaded.case.scales),
         stability,
         unlike_blades,
@@ -168,7 +169,7 @@ impl Printable for RunResult {
             }
         }
         sheet.line(format_args!(""));
-        let baseline = self.baseline.hub_4_per_rev;
+        let baseline = self.baseline.hub_nb_per_rev;
         let parts = [baseline.fx, baseline.fy, baseline.fz, baseline.mx, baseline.my, baseline.mz];
         sheet.line(format_args!(
             "Hub loads at the blade number per rev, fixed frame, without control"
@@ -233,11 +234,11 @@ impl Printable for RunResult {
 impl RunResult {
     /// Whether there is nothing to reduce.
     fn is_still(&self) -> bool {
-        is_still(&self.baseline.hub_4_per_rev.parts())
+        is_still(&self.baseline.hub_nb_per_rev.parts())
     }
 
     fn control_table(&self) -> String {
-        let before = self.baseline.hub_4_per_rev.amplitudes();
+        let before = self.baseline.hub_nb_per_rev.amplitudes();
         let is_still = self.is_still();
         let share = |text: String| if is_still { "-".to_owned() } else { text };
         table(
@@ -254,7 +255,7 @@ impl RunResult {
                     share(format!("{:.4}", line.j_after / line.j_before)),
                     share(format!("{:.1}", line.reduction_percent)),
                 ];
-                let after = line.hub_4_per_rev.amplitudes();
+                let after = line.hub_nb_per_rev.amplitudes();
                 cells.extend(
                     after
                         .iter()

@@ -32,38 +32,45 @@ pub struct MotionLine {
 
 impl MotionLine {
     /// Whether the motion is the same from revolution to revolution but for its size: a multiplier that is real
-    /// and positive, the divergence of a blade in hover.
-    fn diverges(&self) -> bool {
+    /// and positive. Of a blade in hover that is divergence; in forward flight a motion locked to the rotor speed, at a whole
+    /// number per rev, has such a multiplier too.
+    fn repeats(&self) -> bool {
         let [real, imaginary] = self.multiplier;
         imaginary == 0.0 && real > 0.0
     }
 
     /// How it grows: a multiplier that is real locks the motion to whole or half numbers per rev.
-    fn growth_text(&self) -> String {
+    fn growth_text(&self, in_hover: bool) -> String {
         let [real, imaginary] = self.multiplier;
-        if self.diverges() {
-            "diverges: the same deflection from revolution to revolution grows".to_owned()
-        } else if imaginary == 0.0 && real < 0.0 {
-            format!(
-                "at {:.3} per rev, locked to half the rotor speed, grows",
-                self.frequency_per_rev
-            )
-        } else {
-            format!("at {:.3} per rev grows", self.frequency_per_rev)
+        let frequency = self.frequency_per_rev;
+        match (self.repeats(), in_hover) {
+            (true, true) => {
+                "diverges: the same deflection from revolution to revolution grows".to_owned()
+            }
+            (true, false) => format!(
+                "at {frequency:.3} per rev, locked to the rotor speed, or diverging (both repeat every revolution, and the multiplier does not tell them apart; hover does), grows"
+            ),
+            _ if imaginary == 0.0 && real < 0.0 => {
+                format!("at {frequency:.3} per rev, locked to half the rotor speed, grows")
+            }
+            _ => format!("at {frequency:.3} per rev grows"),
         }
     }
 
     /// What helps. Which mode has most of a motion says little of its cause: a blade that its mass or its lift turns nose
     /// up leaves in flap and lag as well, and torsion, with next to no inertia, seldom leads.
-    fn remedy(&self) -> &'static str {
-        match (self.mode.starts_with("lag"), self.diverges()) {
-            (_, true) => {
+    fn remedy(&self, in_hover: bool) -> &'static str {
+        match (self.mode.starts_with("lag"), self.repeats(), in_hover) {
+            (_, true, true) => {
                 "a stiffer pitch link (rotor.root.pitch) or blade (gj), the mass centre farther forward (rotor.mass_centre_r) or the quarter chord farther aft (rotor.aerodynamic_centre_r); of a blade soft in lag a stiffer spring (rotor.root.lag) or a hinge farther from the centre; damping does not help"
             }
-            (true, false) => {
+            (_, true, false) => {
+                "a stiffer pitch link (rotor.root.pitch) or blade (gj), the mass centre farther forward (rotor.mass_centre_r) or the quarter chord farther aft (rotor.aerodynamic_centre_r); of a blade soft in lag a stiffer spring (rotor.root.lag) or a hinge farther from the centre; a lower advance ratio and more damping where the motion is locked, which do not help against divergence"
+            }
+            (true, false, _) => {
                 "more damping in lag (rotor.modal_damping), a lower thrust or advance ratio; with a soft pitch link (rotor.root.pitch) a stiffer one"
             }
-            (false, false) => {
+            (false, false, _) => {
                 "the mass centre farther forward (rotor.mass_centre_r; at the quarter chord or ahead of it is usual), a stiffer pitch link (rotor.root.pitch) or blade (gj), more modal_damping, or a lower advance ratio"
             }
         }
@@ -106,13 +113,14 @@ impl StabilityLine {
         ))
     }
 
-    /// What a reader must know of every motion that does not die out.
-    pub fn warnings(&self) -> Vec<String> {
-        self.warnings_of("the trimmed blade")
+    /// What a reader must know of every motion that does not die out, at an advance ratio.
+    pub fn warnings(&self, advance_ratio: f64) -> Vec<String> {
+        self.warnings_of("the trimmed blade", advance_ratio)
     }
 
     /// The same of a blade with a name.
-    pub(crate) fn warnings_of(&self, blade: &str) -> Vec<String> {
+    pub(crate) fn warnings_of(&self, blade: &str, advance_ratio: f64) -> Vec<String> {
+        let in_hover = advance_ratio == 0.0;
         let mut named: Vec<&str> = Vec::new();
         let mut warnings = Vec::new();
         for m in self.motions.iter().filter(|m| m.growth_per_rad >= 0.0) {
@@ -124,10 +132,10 @@ impl StabilityLine {
             warnings.push(format!(
                 "{blade} is unstable: {} {} by {:.4} per rad (damping ratio {:.4}); the periodic response exists, but the blade will leave it. Remedy: {}",
                 m.mode,
-                m.growth_text(),
+                m.growth_text(in_hover),
                 m.growth_per_rad,
                 m.damping_ratio,
-                m.remedy()
+                m.remedy(in_hover)
             ));
         }
         warnings
@@ -156,13 +164,13 @@ mod tests {
         let motions =
             vec![motion(ModeKind::Lag, -0.007, 0.7), motion(ModeKind::Torsion, -0.023, 4.6)];
         let line = StabilityLine::from(&Stability { motions });
-        assert!(line.stable && line.warnings().is_empty());
+        assert!(line.stable && line.warnings(0.3).is_empty());
         let text = line.text().unwrap();
         assert!(text.starts_with("stable, least damped torsion 1 at 4.600 per rev"), "{text}");
         let motions =
             vec![motion(ModeKind::Lag, 0.01, 0.7), motion(ModeKind::Torsion, -0.023, 4.6)];
         let line = StabilityLine::from(&Stability { motions });
-        let warnings = line.warnings();
+        let warnings = line.warnings(0.3);
         assert!(!line.stable && warnings.len() == 1, "{warnings:?}");
         assert!(warnings[0].contains("lag 1 at 0.700 per rev grows by 0.0100"), "{warnings:?}");
         assert!(line.text().unwrap().starts_with("UNSTABLE, least damped lag 1"));
@@ -177,8 +185,10 @@ mod tests {
             multiplier: Complex::from(sign * (std::f64::consts::TAU * growth).exp()),
             ..motion(kind, growth, 1.5)
         };
-        let warnings_of =
-            |motions: Vec<BladeMotion>| StabilityLine::from(&Stability { motions }).warnings();
+        let at = |advance_ratio, motions: Vec<BladeMotion>| {
+            StabilityLine::from(&Stability { motions }).warnings(advance_ratio)
+        };
+        let warnings_of = |motions| at(0.3, motions);
         let flap = |growth| real(ModeKind::Flap, growth, -1.0);
         let locked = warnings_of(vec![flap(0.3), flap(0.1)]);
         assert_eq!(locked.len(), 1, "{locked:?}");
@@ -189,8 +199,15 @@ mod tests {
         assert!(
             locked[0].contains("rotor.mass_centre_r") && locked[0].contains("rotor.root.pitch")
         );
-        let diverging = warnings_of(vec![real(ModeKind::Torsion, 0.2, 1.0)]);
+        let nose_up = || vec![real(ModeKind::Torsion, 0.2, 1.0)];
+        let diverging = at(0.0, nose_up());
         assert!(diverging[0].contains("torsion 1 diverges"), "{diverging:?}");
         assert!(diverging[0].contains("damping does not help"), "{diverging:?}");
+        let in_flight = warnings_of(nose_up());
+        assert!(
+            in_flight[0].contains("locked to the rotor speed, or diverging (both repeat"),
+            "{in_flight:?}"
+        );
+        assert!(in_flight[0].contains("a lower advance ratio and more damping"), "{in_flight:?}");
     }
 }

@@ -86,7 +86,7 @@ impl SweepRow {
         cells.push(format!("{:.5}", t.induced_inflow));
         let power = r.mean_loads.map(|loads| format!("{:.2}", 1e-3 * loads.shaft_power_watt));
         cells.push(power.unwrap_or_default());
-        cells.extend(r.baseline.hub_4_per_rev.amplitudes().map(|a| format!("{a:.3e}")));
+        cells.extend(r.baseline.hub_nb_per_rev.amplitudes().map(|a| format!("{a:.3e}")));
         let least = r.stability.least_damped.as_ref();
         cells.push(least.map_or_else(String::new, |m| format!("{:.4}", m.damping_ratio)));
         let best = r.control.iter().map(|c| c.reduction_percent).fold(f64::NAN, f64::max);
@@ -129,7 +129,7 @@ pub fn sweep_csv(sweep: &SweepResult) -> String {
             t.induced_inflow,
         ]
         .into_iter()
-        .chain(row.result.baseline.hub_4_per_rev.amplitudes())
+        .chain(row.result.baseline.hub_nb_per_rev.amplitudes())
         .chain([least.map_or(f64::NAN, |m| m.damping_ratio)]);
         let power = row.result.mean_loads.map_or(f64::NAN, |loads| loads.shaft_power_watt);
         let cells: Vec<String> = numbers.map(|n| format!("{n:e}")).collect();

@@ -64,7 +64,7 @@ const LARGEST_LIFT_COEFFICIENT: f64 = 1.5;
 /// Share of the thrust asked for below which sections that were to give it have stalled.
 const STALLED_SHARE: f64 = 0.98;
 /// Iterations over which a search that gains next to nothing stands still, and what it gains.
-const STANDSTILL: (usize, f64) = (6, 0.02);
+const STANDSTILL: (usize, f64) = (4, 0.1);
 
 /// Mean lift coefficient of the blades at a thrust, `6 (C_T / sigma) / (1 + 3 mu^2 / 2)`.
 ///

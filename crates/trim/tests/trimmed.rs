@@ -3,9 +3,11 @@
 #![allow(clippy::print_stdout, reason = "the measured coefficients are worth seeing")]
 #![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
 
+use flap_aero::{AirfoilSpan, C81Airfoil};
 use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
-    Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+    Compressibility, Controls, Couplings, Discretisation, DynamicStall, NonlinearSections,
+    ResponseTolerances, Rotor, RotorModel, RotorSolver,
 };
 use rotor_wake::LinearInflow;
 use std::sync::Arc;
@@ -203,4 +205,37 @@ fn a_bad_tail_is_named() {
     let vehicle = Vehicle { horizontal_tail, ..Vehicle::default() };
     let error = solve(0.3, &TrimTarget::Propulsive { weight_ct_sigma: 0.07, vehicle }).unwrap_err();
     assert!(error.to_string().contains("horizontal_tail.area"), "{error}");
+}
+
+/// A rotor over the shipped table with dynamic stall.
+fn stalling(advance_ratio: f64) -> RotorSolver {
+    let path =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/airfoils/naca0012_synthetic.c81");
+    let airfoil = C81Airfoil::read(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let airfoils = Some(Arc::new(AirfoilSpan::new(vec![(0.2, airfoil)]).unwrap()));
+    let model = RotorModel {
+        nonlinear: NonlinearSections { airfoils, dynamic_stall: Some(DynamicStall::Naca0012) },
+        compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
+        ..RotorModel::paper_case()
+    };
+    let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
+    let rotor = Rotor::new(model, &blade, Discretisation::default()).unwrap();
+    RotorSolver::new(Arc::new(rotor), advance_ratio, ResponseTolerances::default()).unwrap()
+}
+
+fn stalled_trim(ct_sigma: f64) -> Result<TrimSolution, TrimError> {
+    let target = TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad: 5.0_f64.to_radians() };
+    trim(&mut stalling(0.25), &LinearInflow::Drees, 0.25, &target, &TrimSettings::default(), None)
+}
+
+/// Near the largest thrust vortices leave over much of the retreating side, and the motion is still periodic to the
+/// tolerance of any other; beyond it the search says so.
+#[test]
+fn dynamic_stall_is_trimmed_up_to_its_edge() {
+    let found = stalled_trim(0.12).unwrap();
+    assert!(found.residual <= 1e-9 && found.rotor.residuals.periodicity <= 1e-11);
+    let Err(TrimError::Stalled { reached, history, .. }) = stalled_trim(0.2) else {
+        panic!("twice the lift of the sections was trimmed");
+    };
+    assert!((0.1..0.19).contains(&reached) && !history.is_empty(), "{reached} {history:?}");
 }

@@ -44,7 +44,7 @@ fn s1_from_its_case_file() {
     }
 
     // what is printed is what was computed, and nothing is controlled
-    let hub = outcome.result.baseline.hub_4_per_rev;
+    let hub = outcome.result.baseline.hub_nb_per_rev;
     assert_eq!(hub.fz[0].to_bits(), solution.hub.harmonic(4)[4].to_bits());
     assert!(outcome.result.control.is_empty());
     let r = &outcome.result.residuals;

@@ -229,6 +229,16 @@ pub(super) const AREA: Area = Area {
             repeatability: Repeatability::Everywhere,
             measure: || s2_distance(|| Couplings::Moderate(TorsionTerms::default()), 4..6),
         },
+        Check {
+            id: "V-MOD-21",
+            quantity: "untwist of a twisted bar that is pulled, 0.05 to 0.5 of GJ / k_A^2: largest error (without \
+                       N k_A^2 th_x there is none)",
+            unit: "%",
+            source: "helical fibres that do not stretch: phi_x = -N k_A^2 th_x / (GJ + N k_A^2)",
+            criterion: Criterion::AtMost(0.1),
+            repeatability: Repeatability::Everywhere,
+            measure: || untwist(TorsionTerms::default()),
+        },
     ],
 };
 
@@ -255,6 +265,24 @@ fn planar_load() -> Result<f64, CheckError> {
         Ok((w / (load / 3.0) - 1.0).abs())
     });
     worst("loads", 5, errors)
+}
+
+/// Untwist of a bar of radius of gyration 0.1 and twist 0.2 rad, off that of its helical fibres, %.
+fn untwist(torsion: TorsionTerms) -> Result<f64, CheckError> {
+    let (gyration, rate_rad) = (0.1_f64, 0.2);
+    let errors = [0.05, 0.2, 0.5].map(|share| {
+        let blade = BladeSpec {
+            rotor_speed: 0.0,
+            twist: Twist::Linear { rate_rad },
+            area_gyration_radius: gyration.into(),
+            ..BladeSpec::uniform(1.0, 1.0, 0.01, 1e5)
+        };
+        let pull = share * 0.01 / gyration.powi(2);
+        let spec = ModerateSpec { torsion, ..blade.into() };
+        let [_, _, twist] = tip(spec, 4, [pull, 0.0, 0.0])?;
+        Ok(100.0 * (twist / (-rate_rad * share / (1.0 + share)) - 1.0).abs())
+    });
+    worst("pulls", 3, errors)
 }
 
 fn elastica_gap(load: f64) -> Result<f64, CheckError> {

@@ -272,7 +272,8 @@ pub struct ModesArgs {
     /// Further rotor speeds over the nominal one, such as 0,0.25,0.5,0.75,1: a fan plot.
     #[arg(long, value_name = "RATIOS", value_delimiter = ',')]
     pub speeds: Vec<f64>,
-    /// CSV file to write the fan plot to; without --speeds, from 0 to 1.2 in steps of 0.1.
+    /// CSV file to write the fan plot to; without --speeds, from 0 to 1.2 in steps of 0.1. Folders on the way are made, as
+    /// for every file that is written.
     #[arg(long, value_name = "FILE.csv")]
     pub fan: Option<PathBuf>,
     /// Form of the output.

@@ -12,7 +12,7 @@ pub fn control_line(loaded: &LoadedCase, study: &ControlStudy) -> ControlLine {
     ControlLine {
         harmonics: study.harmonics.clone(),
         actuator: study.actuator.name().to_owned(),
-        hub_4_per_rev: HubLoads::from_parts(rotor.hub.harmonic(loaded.case.blades)),
+        hub_nb_per_rev: HubLoads::from_parts(rotor.hub.harmonic(loaded.case.blades)),
         motion_share: study.motion_share,
         voltage_share: study.voltage_share,
         rho_per_volt2: study.rho,

@@ -95,13 +95,13 @@ pub(super) fn headline(result: &RunResult) -> Vec<HeadlineRow> {
             |l| each_flap(l, |f| f.flap_amplitude_deg),
         ));
     }
-    let before = result.baseline.hub_4_per_rev.amplitudes();
+    let before = result.baseline.hub_nb_per_rev.amplitudes();
     for (k, (name, paper)) in THREE_PER_REV_LOADS.iter().enumerate() {
         rows.push(row(
             format!("3/rev: reduction of 4/rev {name}, %"),
             paper,
             lines(result, 3),
-            |l| format!("{:.0}", 100.0 * (1.0 - l.hub_4_per_rev.amplitudes()[k] / before[k])),
+            |l| format!("{:.0}", 100.0 * (1.0 - l.hub_nb_per_rev.amplitudes()[k] / before[k])),
         ));
     }
     rows

@@ -62,7 +62,8 @@ pub struct SensitivityRecord {
     /// Hub loads without control.
     pub baseline: HubLoads,
     /// Hub loads with control, one entry per reduction.
-    pub hub_4_per_rev: Vec<HubLoads>,
+    #[serde(alias = "hub_4_per_rev")]
+    pub hub_nb_per_rev: Vec<HubLoads>,
 }
 
 impl Sensitivity {
@@ -87,7 +88,7 @@ impl Sensitivity {
         }
         let weights = setting.load_weights();
         let before = loads_cost(&weights, &setting.baseline);
-        let after = record.hub_4_per_rev.iter().map(|loads| loads_cost(&weights, &loads.parts()));
+        let after = record.hub_nb_per_rev.iter().map(|loads| loads_cost(&weights, &loads.parts()));
         after.map(|after| setting.reduction_percent(before, after)).collect()
     }
 }
@@ -458,7 +459,7 @@ impl Bench<'_> {
         (self.done)();
         let baseline = HubLoads::from_parts(rotor.trim().rotor.hub.harmonic(blades));
         let name = (assumption.id, assumption.text);
-        Ok(Sensitivity::new(name, SensitivityRecord { baseline, hub_4_per_rev: loads? }))
+        Ok(Sensitivity::new(name, SensitivityRecord { baseline, hub_nb_per_rev: loads? }))
     }
 }
 

@@ -147,12 +147,12 @@ fn azimuth_chart(line: &ControlLine) -> AzimuthChart {
 }
 
 fn load_bars(result: &RunResult) -> Vec<LoadBars> {
-    let before = result.baseline.hub_4_per_rev.amplitudes();
+    let before = result.baseline.hub_nb_per_rev.amplitudes();
     let mut bars: Vec<LoadBars> = Vec::new();
     for line in &result.control {
         let title = set_name(&line.harmonics);
         let after =
-            (line.actuator.clone(), line.hub_4_per_rev.amplitudes(), line.reduction_percent);
+            (line.actuator.clone(), line.hub_nb_per_rev.amplitudes(), line.reduction_percent);
         match bars.iter_mut().find(|b| b.title == title) {
             Some(bar) => bar.after.push(after),
             None => bars.push(LoadBars { title, before, after: vec![after] }),

@@ -253,7 +253,7 @@ fn a_rotor_with_two_tables_along_the_span() {
         place.write("case.ron", &case);
         place.hhc(&["run", "case.ron", "--out", "out"]).done();
         let json: Value = serde_json::from_str(&place.read("out/result.json")).unwrap();
-        let [cosine, sine] = pair(&json["result"]["baseline"]["hub_4_per_rev"]["fz"]);
+        let [cosine, sine] = pair(&json["result"]["baseline"]["hub_nb_per_rev"]["fz"]);
         f64::hypot(cosine, sine)
     };
     let inner = "(station_r: 0.2, table: \"shipped:naca0012_synthetic.c81\")";
@@ -398,7 +398,7 @@ fn run_prints_and_stores_the_same_result() {
         let residual = json["residuals"][key].as_f64().unwrap();
         assert!((0.0..=1e-8).contains(&residual), "{key} {residual:e}");
     }
-    let hub = &json["baseline"]["hub_4_per_rev"];
+    let hub = &json["baseline"]["hub_nb_per_rev"];
     for load in ["fx", "fy", "fz", "mx", "my", "mz"] {
         let [c, s] = pair(&hub[load]);
         assert!(c.hypot(s) > 0.0, "{load}");

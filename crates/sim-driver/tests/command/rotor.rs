@@ -139,7 +139,7 @@ fn unlike_blades_shake_the_hub_at_every_harmonic() {
     assert_eq!(rest["flaps"], "rest");
     for load in ["fx", "fy", "fz", "mx", "my", "mz"] {
         for k in 0..2 {
-            let baseline = number(&same["baseline"]["hub_4_per_rev"][load][k]);
+            let baseline = number(&same["baseline"]["hub_nb_per_rev"][load][k]);
             let apart = number(&rest["per_rev"][3][load][k]) - baseline;
             assert!(apart.abs() < 1e-12, "{load}: {apart:e}");
             assert!(number(&rest["per_rev"][0][load][k]).abs() < 1e-12, "{load}");
