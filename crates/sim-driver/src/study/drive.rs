@@ -1,7 +1,7 @@
 //! From voltage harmonics to flap motion: the ideal actuator and the identified one.
 
 use super::{FullScale, PlantError};
-use hhc_control::{BiasSolver, RunError};
+use hhc_control::{BiasSolver, ControlError, RunError};
 use preisach_dyn::{
     ActuatorModel, InverseSettings, LinkageStage, PeriodicResponse, PeriodicSettings,
     PreisachError, VoltageRange,
@@ -12,6 +12,11 @@ use std::sync::Arc;
 
 /// Largest mean flap angle the bias solution leaves, deg.
 pub const MEAN_FLAP_TOLERANCE_DEG: f64 = 0.005;
+
+/// What the search for the bias leaves of the mean flap angle where the range has room for it, deg. The bias is then a
+/// smooth function of the voltages: one accepted as soon as the mean is small stays where the search set out, jumps
+/// where the mean has become too large, and the loads with it.
+const BIAS_TOLERANCE_DEG: f64 = 1e-6;
 
 /// Largest change of the mean flap angle that a load leaves after the bias has met it, deg: tighter, so
 /// that motion and hinge moment can settle on each other.
@@ -27,6 +32,14 @@ pub struct FlapMotion {
 }
 
 impl FlapMotion {
+    /// `factor (self - other)`.
+    fn less(&self, other: &Self, factor: f64) -> Self {
+        Self {
+            voltage_volt: weighted(&self.voltage_volt, &other.voltage_volt, factor),
+            flap_deg: weighted(&self.flap_deg, &other.flap_deg, factor),
+        }
+    }
+
     /// Flap angle, rad.
     pub fn angle_rad(&self) -> HarmonicSeries {
         scaled(&self.flap_deg, 1.0_f64.to_radians())
@@ -92,7 +105,7 @@ impl FlapDrive {
                     range_volt: [range_volt.lowest_volt() - low, range_volt.highest_volt() - high],
                     guess_volt: *bias_volt,
                     slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
-                    tolerance_deg: MEAN_FLAP_TOLERANCE_DEG,
+                    tolerance_deg: BIAS_TOLERANCE_DEG,
                 };
                 let drive = PeriodicDrive { model, rev_hz: *rev_hz, load: None };
                 drive.biased(&solver, 0.0, voltage)
@@ -145,8 +158,8 @@ impl FlapDrive {
         })
     }
 
-    /// Change of the flap motion with each control of the flap (cosine, then sine voltage of every
-    /// harmonic), deg/V, the bias following: central differences of the closed orbit, one-sided where
+    /// Change of voltage (V/V, its mean the bias) and flap angle (deg/V) with each control of the flap (cosine, then sine
+    /// voltage of every harmonic), the bias following: central differences of the closed orbit, one-sided where
     /// the range of voltages ends.
     ///
     /// # Errors
@@ -155,13 +168,13 @@ impl FlapDrive {
         &self,
         voltages: &[(usize, Harmonic)],
         step_volt: f64,
-    ) -> Result<Vec<HarmonicSeries>, PlantError> {
+    ) -> Result<Vec<FlapMotion>, PlantError> {
         if let Self::Ideal { gain_deg_per_volt, .. } = self {
             let unit = |n: usize, cosine: f64, sine: f64| {
-                let mut series = HarmonicSeries::zero(0);
-                let (cosine, sine) = (gain_deg_per_volt * cosine, gain_deg_per_volt * sine);
-                series.set_harmonic(n, Harmonic { cosine, sine });
-                series
+                let mut voltage_volt = HarmonicSeries::zero(0);
+                voltage_volt.set_harmonic(n, Harmonic { cosine, sine });
+                let flap_deg = scaled(&voltage_volt, *gain_deg_per_volt);
+                FlapMotion { voltage_volt, flap_deg }
             };
             let each = voltages.iter().flat_map(|&(n, _)| [unit(n, 1.0, 0.0), unit(n, 0.0, 1.0)]);
             return Ok(each.collect());
@@ -186,8 +199,8 @@ impl FlapDrive {
         &self,
         voltages: &[(usize, Harmonic)],
         step_volt: f64,
-    ) -> Result<Vec<HarmonicSeries>, PlantError> {
-        let here = self.motion(voltages)?.flap_deg;
+    ) -> Result<Vec<FlapMotion>, PlantError> {
+        let here = self.motion(voltages)?;
         (0..2 * voltages.len())
             .into_par_iter()
             .map(|control| {
@@ -199,12 +212,12 @@ impl FlapDrive {
                     } else {
                         harmonic.sine += by_volt;
                     }
-                    self.motion(&voltages).map(|motion| motion.flap_deg)
+                    self.motion(&voltages)
                 };
                 match (moved(step_volt), moved(-step_volt)) {
-                    (Ok(up), Ok(down)) => Ok(weighted(&up, &down, 0.5 / step_volt)),
-                    (Ok(up), Err(_)) => Ok(weighted(&up, &here, 1.0 / step_volt)),
-                    (Err(_), Ok(down)) => Ok(weighted(&here, &down, 1.0 / step_volt)),
+                    (Ok(up), Ok(down)) => Ok(up.less(&down, 0.5 / step_volt)),
+                    (Ok(up), Err(_)) => Ok(up.less(&here, 1.0 / step_volt)),
+                    (Err(_), Ok(down)) => Ok(here.less(&down, 1.0 / step_volt)),
                     (Err(error), Err(_)) => Err(error),
                 }
             })
@@ -438,7 +451,9 @@ impl PeriodicDrive<'_> {
         let bias_volt = match solution {
             Ok(solution) => solution.bias_volt,
             Err(RunError::Plant { source, .. }) => return Err(source.into()),
-            Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
+            Err(RunError::Control(error)) => {
+                nearly_centred(&error).ok_or(PlantError::Bias(error))?
+            }
             Err(_) => return Err(PlantError::BiasSearch),
         };
         // the search may have ended on another trial than its last one
@@ -451,6 +466,22 @@ impl PeriodicDrive<'_> {
         };
         Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
     }
+}
+
+/// The bias at the end of its range, or beside a jump of the mean, where the mean flap angle is small all the same.
+fn nearly_centred(error: &ControlError) -> Option<f64> {
+    let sides = match *error {
+        ControlError::BiasOutOfRange { low_volt, high_volt, low_deg, high_deg } => {
+            [(low_volt, low_deg), (high_volt, high_deg)]
+        }
+        ControlError::BiasJump { bias_volt, below_deg, above_deg, .. } => {
+            [(bias_volt, below_deg), (bias_volt, above_deg)]
+        }
+        _ => return None,
+    };
+    let [first, second] = sides;
+    let (bias_volt, mean_deg) = if second.1.abs() < first.1.abs() { second } else { first };
+    (mean_deg.abs() <= MEAN_FLAP_TOLERANCE_DEG).then_some(bias_volt)
 }
 
 /// A series times a factor.
