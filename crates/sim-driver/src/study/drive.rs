@@ -337,6 +337,7 @@ impl FlapDrive {
             return Ok(FullScale::of(&motion, harmonic, amplitude_volt));
         };
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
+        let margin_volt = FULL_SCALE_MARGIN * range.span_volt();
         for _ in 0..FULL_SCALE_PASSES {
             let motion = match self.motion(&[(harmonic, cosine(amplitude))]) {
                 // no room for the bias that centres the flap: a smaller amplitude leaves more
@@ -348,8 +349,8 @@ impl FlapDrive {
             };
             let bias = motion.voltage_volt.mean;
             let room = (range.highest_volt() - bias).min(bias - range.lowest_volt());
-            let next = amplitude_volt.min(room - FULL_SCALE_MARGIN_VOLT);
-            if (next - amplitude).abs() <= 0.1 * FULL_SCALE_MARGIN_VOLT {
+            let next = amplitude_volt.min(room - margin_volt);
+            if (next - amplitude).abs() <= 0.1 * margin_volt {
                 break;
             }
             amplitude = next;
@@ -499,8 +500,8 @@ pub(super) fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
 const QUASI_STATIC_SLOPE_DEG_PER_VOLT: f64 = 20.0 / 170.0;
 /// Parts of a voltage at which its tangent is sought, the first that has one.
 const TANGENT_PARTS: [f64; 4] = [1.0, 0.97, 0.93, 0.85];
-/// Room left to the bias at full scale, V.
-const FULL_SCALE_MARGIN_VOLT: f64 = 0.1;
+/// Room left to the bias at full scale, as a part of the range of voltages: 0.1 V of 170 V.
+const FULL_SCALE_MARGIN: f64 = 0.1 / 170.0;
 const FULL_SCALE_PASSES: usize = 12;
 
 /// `factor (a - b)`.
@@ -570,5 +571,56 @@ mod tests {
         let short = drive.motion(&[(3, cosine(0.3 * full.amplitude_volt))]).unwrap();
         let part = short.flap_deg.harmonic(3).amplitude() / full.stroke_deg;
         assert!(part < 0.25, "the actuator of this test is too straight: {part}");
+    }
+
+    /// No hysteresis, a curve that bends: `delta = r (zeta + q zeta^2)`, `zeta = (V - 65 V) / 85 V`.
+    fn bent(quadratic: f64) -> FlapDrive {
+        let range = VoltageRange::new(-20.0, 150.0).unwrap();
+        let parameters = PrandtlParameters {
+            range_volt: range,
+            gain_deg_per_volt: 0.1,
+            plays: Vec::new(),
+            threshold_growth_s: 0.0,
+            envelope: preisach_dyn::Envelope { quadratic, ..preisach_dyn::Envelope::default() },
+        };
+        let law = ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).unwrap());
+        let model = ActuatorModel { law, ..ActuatorModel::linear(range, 8.5, 0.04) };
+        FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+    }
+
+    /// The mean of `r (zeta + q zeta^2)` over a swing of `a` about `z` is `r (z + q z^2 + q a^2 / 2)`: it vanishes at
+    /// `z = (sqrt(1 - 2 q^2 a^2) - 1) / (2 q)`, whose slope is `dz/da = -q a / sqrt(1 - 2 q^2 a^2)`.
+    #[test]
+    fn the_bias_and_its_slope_are_those_of_a_bent_curve() {
+        let q = 0.05;
+        let drive = bent(q);
+        for (volt, phase) in [(10.0, 0.3), (40.0, 2.0), (78.0, -1.1)] {
+            let (sin, cos) = f64::sin_cos(phase);
+            let a = volt / 85.0;
+            let root = f64::sqrt(1.0 - 2.0 * q * q * a * a);
+            let voltages = [(3, Harmonic { cosine: volt * cos, sine: volt * sin })];
+            let motion = drive.motion(&voltages).unwrap();
+            let bias = 65.0 + 85.0 * (root - 1.0) / (2.0 * q);
+            assert!((motion.voltage_volt.mean - bias).abs() <= 2e-5, "{volt} V: {motion:?}");
+            assert!(motion.flap_deg.mean.abs() <= BIAS_TOLERANCE_DEG);
+            let slope = -q * a / root;
+            let tangent = drive.tangent(&voltages, 1.0).unwrap();
+            for (along, exact) in tangent.iter().zip([slope * cos, slope * sin]) {
+                let found = along.voltage_volt.mean;
+                assert!((found - exact).abs() <= 5e-5, "{volt} V: {found} {exact}");
+            }
+        }
+    }
+
+    /// Where the centring bias lies beyond the range by a trifle, the end of the range leaves a small mean.
+    #[test]
+    fn at_the_end_of_the_range_the_bias_is_that_end() {
+        let drive = bent(1e-3);
+        let wave = |volt: f64| drive.motion(&[(2, cosine(volt))]);
+        // the bias wanted is 0.042 V below the middle
+        let held = wave(84.97).unwrap();
+        assert!((held.voltage_volt.mean - 64.97).abs() <= 1e-9, "{held:?}");
+        assert!((1e-4..MEAN_FLAP_TOLERANCE_DEG).contains(&held.flap_deg.mean), "{held:?}");
+        assert!(matches!(bent(0.05).motion(&[(2, cosine(84.9))]), Err(PlantError::Bias(_))));
     }
 }

@@ -13,9 +13,9 @@ use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{Condition, FlapDirection, ResponseError, RotorSolution};
 use std::sync::Arc;
 
-/// Voltage step of the tangent of an actuator, V: wide enough to see past the steps of its memory.
-const TANGENT_STEP_VOLT: f64 = 1.0;
-
+/// Voltage step of the tangent of an actuator as a part of its range, 1 V of 170 V: wide enough to see past the steps
+/// of its memory.
+const TANGENT_STEP: f64 = 1.0 / 170.0;
 /// Part of the range of voltages that the tangent of the bias has to leave free at zero control.
 const LEAST_ROOM_PART: f64 = 0.05;
 
@@ -63,7 +63,8 @@ impl RotorPlant {
 
     /// Change of the motion of a flap with its controls, per V.
     fn tangent(&self, voltages: &[(usize, Harmonic)]) -> Result<Vec<FlapMotion>, PlantError> {
-        let found = || self.drive.tangent(voltages, TANGENT_STEP_VOLT);
+        let step_volt = TANGENT_STEP * self.drive.range_volt().span_volt();
+        let found = || self.drive.tangent(voltages, step_volt);
         self.tangents.answer(bits(voltages), found)
     }
 
