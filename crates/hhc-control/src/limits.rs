@@ -8,13 +8,19 @@ use rotor_base::uniform_azimuths_rad;
 ///
 /// ```text
 /// V_min <= u_st + sum_N (u_Nc cos N psi + u_Ns sin N psi) <= V_max     at every azimuth sample
+/// u_st = b + s_1c u_1c + s_1s u_1s + ...                               of the flap's own controls
 /// ```
+/// The bias is solved for, and moves with the control: a range that holds it fast is left by the next step along
+/// its edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VoltageRange {
     /// Lowest and highest voltage the actuators may see, V.
     pub range_volt: [f64; 2],
-    /// Bias `u_st` of each flap, V, inside the range.
+    /// Bias `b` of each flap as the tangent continues it to zero control, V, inside the range.
     pub bias_volt: Vec<f64>,
+    /// Change `s` of the bias of a flap with each of its controls, V/V, in the order of the control vector; empty
+    /// for a bias that stays.
+    pub bias_slope: Vec<f64>,
     /// Number of uniform azimuth samples at which the range holds, 8 or more.
     pub azimuths: usize,
 }
@@ -103,6 +109,10 @@ impl ControlLimits {
     pub fn with_voltage_range(self, voltage: VoltageRange) -> Result<Self, ControlError> {
         error::check_vector("bias voltages (V)", &voltage.bias_volt, self.layout.flaps())?;
         error::check_vector("range of the voltage (V)", &voltage.range_volt, 2)?;
+        if !voltage.bias_slope.is_empty() {
+            let (what, controls) = ("slopes of the bias (V/V)", self.layout.len());
+            error::check_vector(what, &voltage.bias_slope, controls)?;
+        }
         let [low, high] = voltage.range_volt;
         for &bias in &voltage.bias_volt {
             error::check_positive(
@@ -195,9 +205,11 @@ impl ControlLimits {
         let Some((voltage, waves)) = &self.voltage else { return 0.0 };
         let per_flap = 2 * self.layout.harmonics().len();
         let [lowest, highest] = voltage.range_volt;
-        control_volt.chunks_exact(per_flap).zip(&voltage.bias_volt).fold(0.0, |most, (u, bias)| {
+        let flaps = control_volt.chunks_exact(per_flap).zip(&voltage.bias_volt).enumerate();
+        flaps.fold(0.0, |most, (flap, (u, bias))| {
+            let moved = along(voltage.slope_of(flap, per_flap), u);
             waves.chunks_exact(per_flap).fold(most, |most: f64, wave| {
-                let volt: f64 = wave.iter().zip(u).map(|(w, u)| w * u).sum();
+                let volt = moved + along(wave, u);
                 most.max(volt / (highest - bias)).max(volt / (lowest - bias))
             })
         })
@@ -210,10 +222,13 @@ impl ControlLimits {
         let per_flap = 2 * self.layout.harmonics().len();
         let mut rows = Vec::new();
         for (flap, bias) in voltage.bias_volt.iter().enumerate() {
+            let slope = voltage.slope_of(flap, per_flap);
             for wave in waves.chunks_exact(per_flap) {
                 let row = |sign: f64| -> Vec<(usize, f64)> {
                     let first = per_flap * flap;
-                    wave.iter().enumerate().map(|(k, value)| (first + k, sign * value)).collect()
+                    let moves = slope.iter().copied().chain(std::iter::repeat(0.0));
+                    let each = wave.iter().zip(moves).enumerate();
+                    each.map(|(k, (value, moves))| (first + k, sign * (value + moves))).collect()
                 };
                 rows.push((row(1.0), voltage.range_volt[1] - bias));
                 rows.push((row(-1.0), bias - voltage.range_volt[0]));
@@ -249,6 +264,18 @@ impl ControlLimits {
     }
 }
 
+impl VoltageRange {
+    /// Slopes of the bias of one flap; empty where it stays.
+    fn slope_of(&self, flap: usize, controls: usize) -> &[f64] {
+        self.bias_slope.get(flap * controls..(flap + 1) * controls).unwrap_or_default()
+    }
+}
+
+/// Sum of products; what has no partner is left out.
+fn along(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 impl PowerLimit {
     /// The inverse of the largest factor by which the control may be multiplied.
     fn usage(&self, control_volt: &[f64]) -> f64 {
@@ -272,8 +299,12 @@ mod tests {
 
     #[test]
     fn a_control_divided_by_its_usage_just_keeps_every_limit() {
-        let voltage =
-            VoltageRange { range_volt: [-20.0, 150.0], bias_volt: vec![60.0, 70.0], azimuths: 720 };
+        let voltage = VoltageRange {
+            range_volt: [-20.0, 150.0],
+            bias_volt: vec![60.0, 70.0],
+            bias_slope: (0..8).map(|i| 0.2 * f64::from(i).sin()).collect(),
+            azimuths: 720,
+        };
         let power = PowerLimit {
             quadratic: DMatrix::from_fn(8, 8, |i, j| if i == j { 0.5 + i as f64 } else { 0.1 }),
             linear: (0..8).map(|i| 0.3 * f64::from(i) - 1.0).collect(),
@@ -308,8 +339,11 @@ mod tests {
         let range = |bias: f64, azimuths| VoltageRange {
             range_volt: [-20.0, 150.0],
             bias_volt: vec![bias; 2],
+            bias_slope: Vec::new(),
             azimuths,
         };
+        let sloped = VoltageRange { bias_slope: vec![0.1; 7], ..range(65.0, 72) };
+        assert!(none().with_voltage_range(sloped).is_err());
         assert!(none().with_voltage_range(range(150.0, 72)).is_err());
         assert!(none().with_voltage_range(range(65.0, 7)).is_err());
         let circle = FlapCircle { gain_deg_per_volt: [[0.1, 0.0], [0.0, 0.1]], limit_deg: 1.0 };

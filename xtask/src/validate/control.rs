@@ -135,6 +135,7 @@ fn constrained(problem: u32) -> Result<[f64; 2], CheckError> {
         .with_voltage_range(VoltageRange {
             range_volt: [-0.9 * limit, 1.5 * limit],
             bias_volt: vec![0.1 * limit * random(); 2],
+            bias_slope: Vec::new(),
             azimuths: 360,
         })?;
     let t = t_matrix(1.0)?;

@@ -61,6 +61,7 @@ fn two_variables_meet_a_brute_force_grid() {
     let range = VoltageRange {
         range_volt: [-0.4 * free.norm(), 0.9 * free.norm()],
         bias_volt: vec![0.1 * free.norm()],
+        bias_slope: Vec::new(),
         azimuths: 720,
     };
     let skewed = FlapCircle {
@@ -110,7 +111,7 @@ fn where_no_limit_binds_it_is_the_fixed_point_of_the_law() {
     let (problem, layout) = one_flap();
     let free = problem.optimum(&[1.0; 12], 0.0);
     let roomy = ControlLimits::none(&layout).with_amplitudes_volt(vec![1.1 * free.norm()]).unwrap();
-    let mut plant = Limited { plant: problem.plant.clone(), limits: roomy };
+    let mut plant = limited(problem.plant.clone(), roomy);
     let settings = FeedbackSettings { step_tolerance: 1e-12, ..FeedbackSettings::default() };
     let controller =
         FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings).unwrap();
@@ -124,14 +125,14 @@ fn where_no_limit_binds_it_is_the_fixed_point_of_the_law() {
     assert!(constrained.kkt.as_ref().unwrap().residual().largest() <= 1e-12);
 }
 
-/// A plant with given limits.
+/// A linear plant whose limits move with the control, as a function gives them.
 #[derive(Clone)]
-struct Limited {
+struct Moving<L> {
     plant: LinearPlant,
-    limits: ControlLimits,
+    limits_at: L,
 }
 
-impl Plant for Limited {
+impl<L: Fn(&[f64]) -> ControlLimits> Plant for Moving<L> {
     type Error = Infallible;
 
     fn layout(&self) -> &ControlLayout {
@@ -150,9 +151,17 @@ impl Plant for Limited {
         self.plant.stroke_limits_deg()
     }
 
-    fn limits(&mut self, _: &[f64]) -> Result<ControlLimits, Infallible> {
-        Ok(self.limits.clone())
+    fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, Infallible> {
+        Ok((self.limits_at)(control_volt))
     }
+}
+
+/// The same with limits that stand.
+fn limited(
+    plant: LinearPlant,
+    limits: ControlLimits,
+) -> Moving<impl Fn(&[f64]) -> ControlLimits + Clone> {
+    Moving { plant, limits_at: move |_: &[f64]| limits.clone() }
 }
 
 /// Two flaps at 4/rev whose effects nearly cancel, the outboard one four times as strong: the free
@@ -188,6 +197,7 @@ fn compared(problem: &Problem, layout: &ControlLayout, limit_volt: [f64; 2]) -> 
             l.with_voltage_range(VoltageRange {
                 range_volt: [-room, 1.2 * room],
                 bias_volt: vec![0.05; 2],
+                bias_slope: Vec::new(),
                 azimuths: 720,
             })
         })
@@ -260,6 +270,7 @@ fn four_harmonics_together_keep_the_range_at_every_azimuth() {
             l.with_voltage_range(VoltageRange {
                 range_volt: [-2.0, 4.0],
                 bias_volt: vec![0.9, 1.2],
+                bias_slope: Vec::new(),
                 azimuths: 720,
             })
         })
@@ -304,7 +315,7 @@ proptest! {
             .with_amplitudes_volt(vec![limit, 2.0 * limit, f64::INFINITY, limit])
             .and_then(|l| l.with_flap_circle(2, circle))
             .and_then(|l| l.with_voltage_range(VoltageRange {
-                range_volt: [0.0, 2.0 * limit], bias_volt: vec![2.0 * bias * limit; 2], azimuths: 360,
+                range_volt: [0.0, 2.0 * limit], bias_volt: vec![2.0 * bias * limit; 2], bias_slope: Vec::new(), azimuths: 360,
             }))
             .unwrap();
         let found = law(&problem).optimum_within(0.0, &[0.0; 8], &z0, &limits).unwrap();
@@ -326,7 +337,7 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
     let limits = ControlLimits::none(&layout).with_amplitudes_volt(vec![2.0; 2]).unwrap();
     let z0: Vec<f64> = problem.z0.iter().copied().collect();
     let exact = law(&problem).optimum_within(0.0, &[0.0; 4], &z0, &limits).unwrap();
-    let mut plant = Limited { plant: problem.plant.clone(), limits };
+    let mut plant = limited(problem.plant.clone(), limits);
     let settings = FeedbackSettings { step_tolerance: 1e-6, ..FeedbackSettings::default() };
     for controller in [Controller::Local { step_volt: vec![0.1; 4] }, Controller::Global] {
         let t0 = problem.distorted_t(1.1, 8.0);
@@ -353,12 +364,12 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
 }
 
 /// A plant whose linearised solution is wrong by a gain and a phase, wherever it is asked for.
-struct Misjudged {
-    limited: Limited,
+struct Misjudged<L> {
+    limited: Moving<L>,
     t: TMatrix,
 }
 
-impl Plant for Misjudged {
+impl<L: Fn(&[f64]) -> ControlLimits> Plant for Misjudged<L> {
     type Error = Infallible;
 
     fn layout(&self) -> &ControlLayout {
@@ -400,7 +411,7 @@ fn a_local_t_that_is_wrong_everywhere_learns_from_rejected_steps() {
     let mut stalled = 0;
     for (gain, phase_deg) in [(1.05, 3.0), (1.1, 8.0), (0.85, -12.0), (1.0, 25.0)] {
         let t = problem.distorted_t(gain, phase_deg);
-        let limited = Limited { plant: problem.plant.clone(), limits: limits.clone() };
+        let limited = limited(problem.plant.clone(), limits.clone());
         let settings =
             FeedbackSettings { cost_tolerance: tolerance, ..FeedbackSettings::default() };
         let run = |way: Controller| {
@@ -436,7 +447,7 @@ fn a_local_t_that_is_wrong_everywhere_learns_from_rejected_steps() {
 fn limits_of_another_layout_are_refused() {
     let (problem, _) = one_flap();
     let other = ControlLimits::none(&ControlLayout::new(2, vec![3]).unwrap());
-    let mut plant = Limited { plant: problem.plant.clone(), limits: other };
+    let mut plant = limited(problem.plant.clone(), other);
     let controller = FeedbackController::new(
         &as_t(&problem.t),
         &LoadWeights::Identity,
@@ -449,33 +460,6 @@ fn limits_of_another_layout_are_refused() {
 
 /// Limits that give way by as much as they are left: each step to the optimum within them is a step out of
 /// them, and back, for ever, unless the loop looks between the two.
-struct Giving(LinearPlant);
-
-impl Plant for Giving {
-    type Error = Infallible;
-
-    fn layout(&self) -> &ControlLayout {
-        self.0.layout()
-    }
-
-    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
-        self.0.measure(control_volt)
-    }
-
-    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Infallible> {
-        self.0.strokes_deg(control_volt)
-    }
-
-    fn stroke_limits_deg(&self) -> Vec<f64> {
-        self.0.stroke_limits_deg()
-    }
-
-    fn limits(&mut self, u: &[f64]) -> Result<ControlLimits, Infallible> {
-        let limit = (4.0 - u[0].hypot(u[1])).clamp(1.5, 2.5);
-        Ok(ControlLimits::none(self.layout()).with_amplitudes_volt(vec![limit]).unwrap())
-    }
-}
-
 #[test]
 fn a_loop_that_goes_to_and_fro_over_its_limits_ends_between() {
     let t = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 1.0]);
@@ -486,7 +470,13 @@ fn a_loop_that_goes_to_and_fro_over_its_limits_ends_between() {
         FeedbackSettings::default(),
     )
     .unwrap();
-    let run = controller.run_constrained(&mut Giving(problem.plant), 0.0).unwrap();
+    let layout = problem.plant.layout().clone();
+    let limits_at = |u: &[f64]| {
+        let limit = (4.0 - u[0].hypot(u[1])).clamp(1.5, 2.5);
+        ControlLimits::none(&layout).with_amplitudes_volt(vec![limit]).unwrap()
+    };
+    let mut giving = Moving { plant: problem.plant, limits_at };
+    let run = controller.run_constrained(&mut giving, 0.0).unwrap();
     assert_eq!(run.outcome, Outcome::Converged);
     assert!(run.steps.len() <= 4, "{} steps", run.steps.len());
     let u = &run.last().control_volt;
@@ -496,35 +486,6 @@ fn a_loop_that_goes_to_and_fro_over_its_limits_ends_between() {
 
 /// Two flaps whose limits move with the control of the other one: the optimum within them turns by a quarter about
 /// one volt each, and a little farther out each time.
-struct Turning(LinearPlant);
-
-impl Plant for Turning {
-    type Error = Infallible;
-
-    fn layout(&self) -> &ControlLayout {
-        self.0.layout()
-    }
-
-    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
-        self.0.measure(control_volt)
-    }
-
-    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Infallible> {
-        self.0.strokes_deg(control_volt)
-    }
-
-    fn stroke_limits_deg(&self) -> Vec<f64> {
-        self.0.stroke_limits_deg()
-    }
-
-    fn limits(&mut self, u: &[f64]) -> Result<ControlLimits, Infallible> {
-        let [first, second] = [u[0].hypot(u[1]), u[2].hypot(u[3])];
-        let limits = [1.0 + 1.05 * (second - 1.0), 1.0 - 1.05 * (first - 1.0)];
-        let limits = limits.map(|limit| limit.clamp(0.5, 1.5)).to_vec();
-        Ok(ControlLimits::none(self.layout()).with_amplitudes_volt(limits).unwrap())
-    }
-}
-
 #[test]
 fn a_loop_that_runs_round_in_its_limits_ends_in_the_middle() {
     let t = DMatrix::identity(4, 4);
@@ -532,10 +493,113 @@ fn a_loop_that_runs_round_in_its_limits_ends_in_the_middle() {
     let settings = FeedbackSettings { max_steps: 60, ..FeedbackSettings::default() };
     let controller =
         FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings).unwrap();
-    let run = controller.run_constrained(&mut Turning(problem.plant), 0.0).unwrap();
+    let layout = problem.plant.layout().clone();
+    let limits_at = |u: &[f64]| {
+        let [first, second] = [u[0].hypot(u[1]), u[2].hypot(u[3])];
+        let limits = [1.0 + 1.05 * (second - 1.0), 1.0 - 1.05 * (first - 1.0)];
+        let limits = limits.map(|limit| limit.clamp(0.5, 1.5)).to_vec();
+        ControlLimits::none(&layout).with_amplitudes_volt(limits).unwrap()
+    };
+    let mut turning = Moving { plant: problem.plant, limits_at };
+    let run = controller.run_constrained(&mut turning, 0.0).unwrap();
     let u = &run.last().control_volt;
     println!("{:?} after {} steps: {u:?}", run.outcome, run.steps.len());
     // within a thousandth of limits that move a step back need not be
     assert_ne!(run.outcome, Outcome::StepLimit);
     assert!((u[0] - 1.0).abs() < 1e-3 && (u[2] - 1.0).abs() < 1e-3, "{u:?}");
+}
+
+/// A flap whose bias moves with its own control by a known slope, and a plant that refuses every voltage beyond its range, as
+/// an actuator does.
+struct Biased {
+    plant: LinearPlant,
+    slope: [f64; 2],
+    /// Whether the limits tell of it.
+    is_told: bool,
+}
+
+impl Biased {
+    const RANGE_VOLT: [f64; 2] = [-1.0, 1.0];
+
+    fn bias_volt(&self, u: &[f64]) -> f64 {
+        self.slope[0] * u[0] + self.slope[1] * u[1]
+    }
+
+    /// How far the voltage goes beyond its range, V; for one harmonic it swings by the amplitude.
+    fn beyond_volt(&self, u: &[f64]) -> f64 {
+        let [low, high] = Self::RANGE_VOLT;
+        let (bias, amplitude) = (self.bias_volt(u), u[0].hypot(u[1]));
+        (bias + amplitude - high).max(low - bias + amplitude)
+    }
+}
+
+impl Plant for Biased {
+    type Error = Infallible;
+
+    fn layout(&self) -> &ControlLayout {
+        self.plant.layout()
+    }
+
+    fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
+        self.plant.measure(control_volt)
+    }
+
+    fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, Infallible> {
+        self.plant.strokes_deg(control_volt)
+    }
+
+    fn stroke_limits_deg(&self) -> Vec<f64> {
+        self.plant.stroke_limits_deg()
+    }
+
+    fn admits(&self, control_volt: &[f64]) -> bool {
+        // a peak between two azimuths of the limits may lie beyond by the square of half their distance
+        self.beyond_volt(control_volt) <= 1e-5
+    }
+
+    fn limits(&mut self, u: &[f64]) -> Result<ControlLimits, Infallible> {
+        let (bias_volt, bias_slope) =
+            if self.is_told { (0.0, self.slope.to_vec()) } else { (self.bias_volt(u), Vec::new()) };
+        let voltage = VoltageRange {
+            range_volt: Self::RANGE_VOLT,
+            bias_volt: vec![bias_volt],
+            bias_slope,
+            azimuths: 720,
+        };
+        Ok(ControlLimits::none(self.layout()).with_voltage_range(voltage).unwrap())
+    }
+}
+
+/// The voltage of one harmonic swings by `|u|` about `s'u`: within `|V| <= 1` that is the ellipse `|u| + |s'u| <= 1`, whose
+/// best point for `|u - (2, 1)|` is enumerated along its edge.
+#[test]
+fn a_step_to_the_edge_of_the_range_takes_the_bias_with_it() {
+    let slope = [0.15, -0.25];
+    let problem = Problem::new(1, &[2], DMatrix::identity(2, 2), &[-2.0, -1.0]);
+    let edge = (0..200_000).map(|k| {
+        let (s, c) = (2.0 * PI * f64::from(k) / 200_000.0).sin_cos();
+        let size = 1.0 / (1.0 + (slope[0] * c + slope[1] * s).abs());
+        [size * c, size * s]
+    });
+    let best = edge.map(|u| loads_cost(&problem, &u)).fold(f64::INFINITY, f64::min);
+    let settings = FeedbackSettings { max_steps: 60, ..FeedbackSettings::default() };
+    let run = |is_told| {
+        FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings.clone())
+            .unwrap()
+            .run_constrained(&mut Biased { plant: problem.plant.clone(), slope, is_told }, 0.0)
+            .unwrap()
+    };
+    let (told, untold) = (run(true), run(false));
+    for (name, run) in [("told", &told), ("untold", &untold)] {
+        println!(
+            "{name}: {:?}, {} steps, {} halvings, J / J* - 1 = {:.1e}",
+            run.outcome,
+            run.steps.len(),
+            run.halvings,
+            run.last().cost.loads / best - 1.0
+        );
+    }
+    assert_eq!((told.outcome, told.steps.len(), told.halvings), (Outcome::Converged, 1, 0));
+    assert!((told.last().cost.loads / best - 1.0).abs() <= 1e-4);
+    assert!(untold.halvings > 0 && untold.steps.len() > 1, "the bias does not matter here");
 }

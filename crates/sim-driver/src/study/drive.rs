@@ -1,7 +1,7 @@
 //! From voltage harmonics to flap motion: the ideal actuator and the identified one.
 
 use super::{FullScale, PlantError};
-use hhc_control::{BiasSolver, RunError};
+use hhc_control::{BiasSolver, ControlError, RunError};
 use preisach_dyn::{
     ActuatorModel, InverseSettings, LinkageStage, PeriodicResponse, PeriodicSettings,
     PreisachError, VoltageRange,
@@ -12,6 +12,11 @@ use std::sync::Arc;
 
 /// Largest mean flap angle the bias solution leaves, deg.
 pub const MEAN_FLAP_TOLERANCE_DEG: f64 = 0.005;
+
+/// What the search for the bias leaves of the mean flap angle where the range has room for it, deg. The bias is then a
+/// smooth function of the voltages: one accepted as soon as the mean is small stays where the search set out, jumps
+/// where the mean has become too large, and the loads with it.
+const BIAS_TOLERANCE_DEG: f64 = 1e-6;
 
 /// Largest change of the mean flap angle that a load leaves after the bias has met it, deg: tighter, so
 /// that motion and hinge moment can settle on each other.
@@ -27,6 +32,14 @@ pub struct FlapMotion {
 }
 
 impl FlapMotion {
+    /// `factor (self - other)`.
+    fn less(&self, other: &Self, factor: f64) -> Self {
+        Self {
+            voltage_volt: weighted(&self.voltage_volt, &other.voltage_volt, factor),
+            flap_deg: weighted(&self.flap_deg, &other.flap_deg, factor),
+        }
+    }
+
     /// Flap angle, rad.
     pub fn angle_rad(&self) -> HarmonicSeries {
         scaled(&self.flap_deg, 1.0_f64.to_radians())
@@ -92,7 +105,7 @@ impl FlapDrive {
                     range_volt: [range_volt.lowest_volt() - low, range_volt.highest_volt() - high],
                     guess_volt: *bias_volt,
                     slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
-                    tolerance_deg: MEAN_FLAP_TOLERANCE_DEG,
+                    tolerance_deg: BIAS_TOLERANCE_DEG,
                 };
                 let drive = PeriodicDrive { model, rev_hz: *rev_hz, load: None };
                 drive.biased(&solver, 0.0, voltage)
@@ -145,8 +158,8 @@ impl FlapDrive {
         })
     }
 
-    /// Change of the flap motion with each control of the flap (cosine, then sine voltage of every
-    /// harmonic), deg/V, the bias following: central differences of the closed orbit, one-sided where
+    /// Change of voltage (V/V, its mean the bias) and flap angle (deg/V) with each control of the flap (cosine, then sine
+    /// voltage of every harmonic), the bias following: central differences of the closed orbit, one-sided where
     /// the range of voltages ends.
     ///
     /// # Errors
@@ -155,13 +168,13 @@ impl FlapDrive {
         &self,
         voltages: &[(usize, Harmonic)],
         step_volt: f64,
-    ) -> Result<Vec<HarmonicSeries>, PlantError> {
+    ) -> Result<Vec<FlapMotion>, PlantError> {
         if let Self::Ideal { gain_deg_per_volt, .. } = self {
             let unit = |n: usize, cosine: f64, sine: f64| {
-                let mut series = HarmonicSeries::zero(0);
-                let (cosine, sine) = (gain_deg_per_volt * cosine, gain_deg_per_volt * sine);
-                series.set_harmonic(n, Harmonic { cosine, sine });
-                series
+                let mut voltage_volt = HarmonicSeries::zero(0);
+                voltage_volt.set_harmonic(n, Harmonic { cosine, sine });
+                let flap_deg = scaled(&voltage_volt, *gain_deg_per_volt);
+                FlapMotion { voltage_volt, flap_deg }
             };
             let each = voltages.iter().flat_map(|&(n, _)| [unit(n, 1.0, 0.0), unit(n, 0.0, 1.0)]);
             return Ok(each.collect());
@@ -186,8 +199,8 @@ impl FlapDrive {
         &self,
         voltages: &[(usize, Harmonic)],
         step_volt: f64,
-    ) -> Result<Vec<HarmonicSeries>, PlantError> {
-        let here = self.motion(voltages)?.flap_deg;
+    ) -> Result<Vec<FlapMotion>, PlantError> {
+        let here = self.motion(voltages)?;
         (0..2 * voltages.len())
             .into_par_iter()
             .map(|control| {
@@ -199,12 +212,12 @@ impl FlapDrive {
                     } else {
                         harmonic.sine += by_volt;
                     }
-                    self.motion(&voltages).map(|motion| motion.flap_deg)
+                    self.motion(&voltages)
                 };
                 match (moved(step_volt), moved(-step_volt)) {
-                    (Ok(up), Ok(down)) => Ok(weighted(&up, &down, 0.5 / step_volt)),
-                    (Ok(up), Err(_)) => Ok(weighted(&up, &here, 1.0 / step_volt)),
-                    (Err(_), Ok(down)) => Ok(weighted(&here, &down, 1.0 / step_volt)),
+                    (Ok(up), Ok(down)) => Ok(up.less(&down, 0.5 / step_volt)),
+                    (Ok(up), Err(_)) => Ok(up.less(&here, 1.0 / step_volt)),
+                    (Err(_), Ok(down)) => Ok(here.less(&down, 1.0 / step_volt)),
                     (Err(error), Err(_)) => Err(error),
                 }
             })
@@ -324,6 +337,7 @@ impl FlapDrive {
             return Ok(FullScale::of(&motion, harmonic, amplitude_volt));
         };
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
+        let margin_volt = FULL_SCALE_MARGIN * range.span_volt();
         for _ in 0..FULL_SCALE_PASSES {
             let motion = match self.motion(&[(harmonic, cosine(amplitude))]) {
                 // no room for the bias that centres the flap: a smaller amplitude leaves more
@@ -335,8 +349,8 @@ impl FlapDrive {
             };
             let bias = motion.voltage_volt.mean;
             let room = (range.highest_volt() - bias).min(bias - range.lowest_volt());
-            let next = amplitude_volt.min(room - FULL_SCALE_MARGIN_VOLT);
-            if (next - amplitude).abs() <= 0.1 * FULL_SCALE_MARGIN_VOLT {
+            let next = amplitude_volt.min(room - margin_volt);
+            if (next - amplitude).abs() <= 0.1 * margin_volt {
                 break;
             }
             amplitude = next;
@@ -438,7 +452,9 @@ impl PeriodicDrive<'_> {
         let bias_volt = match solution {
             Ok(solution) => solution.bias_volt,
             Err(RunError::Plant { source, .. }) => return Err(source.into()),
-            Err(RunError::Control(error)) => return Err(PlantError::Bias(error)),
+            Err(RunError::Control(error)) => {
+                nearly_centred(&error).ok_or(PlantError::Bias(error))?
+            }
             Err(_) => return Err(PlantError::BiasSearch),
         };
         // the search may have ended on another trial than its last one
@@ -451,6 +467,22 @@ impl PeriodicDrive<'_> {
         };
         Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
     }
+}
+
+/// The bias at the end of its range, or beside a jump of the mean, where the mean flap angle is small all the same.
+fn nearly_centred(error: &ControlError) -> Option<f64> {
+    let sides = match *error {
+        ControlError::BiasOutOfRange { low_volt, high_volt, low_deg, high_deg } => {
+            [(low_volt, low_deg), (high_volt, high_deg)]
+        }
+        ControlError::BiasJump { bias_volt, below_deg, above_deg, .. } => {
+            [(bias_volt, below_deg), (bias_volt, above_deg)]
+        }
+        _ => return None,
+    };
+    let [first, second] = sides;
+    let (bias_volt, mean_deg) = if second.1.abs() < first.1.abs() { second } else { first };
+    (mean_deg.abs() <= MEAN_FLAP_TOLERANCE_DEG).then_some(bias_volt)
 }
 
 /// A series times a factor.
@@ -468,8 +500,8 @@ pub(super) fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
 const QUASI_STATIC_SLOPE_DEG_PER_VOLT: f64 = 20.0 / 170.0;
 /// Parts of a voltage at which its tangent is sought, the first that has one.
 const TANGENT_PARTS: [f64; 4] = [1.0, 0.97, 0.93, 0.85];
-/// Room left to the bias at full scale, V.
-const FULL_SCALE_MARGIN_VOLT: f64 = 0.1;
+/// Room left to the bias at full scale, as a part of the range of voltages: 0.1 V of 170 V.
+const FULL_SCALE_MARGIN: f64 = 0.1 / 170.0;
 const FULL_SCALE_PASSES: usize = 12;
 
 /// `factor (a - b)`.
@@ -539,5 +571,56 @@ mod tests {
         let short = drive.motion(&[(3, cosine(0.3 * full.amplitude_volt))]).unwrap();
         let part = short.flap_deg.harmonic(3).amplitude() / full.stroke_deg;
         assert!(part < 0.25, "the actuator of this test is too straight: {part}");
+    }
+
+    /// No hysteresis, a curve that bends: `delta = r (zeta + q zeta^2)`, `zeta = (V - 65 V) / 85 V`.
+    fn bent(quadratic: f64) -> FlapDrive {
+        let range = VoltageRange::new(-20.0, 150.0).unwrap();
+        let parameters = PrandtlParameters {
+            range_volt: range,
+            gain_deg_per_volt: 0.1,
+            plays: Vec::new(),
+            threshold_growth_s: 0.0,
+            envelope: preisach_dyn::Envelope { quadratic, ..preisach_dyn::Envelope::default() },
+        };
+        let law = ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).unwrap());
+        let model = ActuatorModel { law, ..ActuatorModel::linear(range, 8.5, 0.04) };
+        FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+    }
+
+    /// The mean of `r (zeta + q zeta^2)` over a swing of `a` about `z` is `r (z + q z^2 + q a^2 / 2)`: it vanishes at
+    /// `z = (sqrt(1 - 2 q^2 a^2) - 1) / (2 q)`, whose slope is `dz/da = -q a / sqrt(1 - 2 q^2 a^2)`.
+    #[test]
+    fn the_bias_and_its_slope_are_those_of_a_bent_curve() {
+        let q = 0.05;
+        let drive = bent(q);
+        for (volt, phase) in [(10.0, 0.3), (40.0, 2.0), (78.0, -1.1)] {
+            let (sin, cos) = f64::sin_cos(phase);
+            let a = volt / 85.0;
+            let root = f64::sqrt(1.0 - 2.0 * q * q * a * a);
+            let voltages = [(3, Harmonic { cosine: volt * cos, sine: volt * sin })];
+            let motion = drive.motion(&voltages).unwrap();
+            let bias = 65.0 + 85.0 * (root - 1.0) / (2.0 * q);
+            assert!((motion.voltage_volt.mean - bias).abs() <= 2e-5, "{volt} V: {motion:?}");
+            assert!(motion.flap_deg.mean.abs() <= BIAS_TOLERANCE_DEG);
+            let slope = -q * a / root;
+            let tangent = drive.tangent(&voltages, 1.0).unwrap();
+            for (along, exact) in tangent.iter().zip([slope * cos, slope * sin]) {
+                let found = along.voltage_volt.mean;
+                assert!((found - exact).abs() <= 5e-5, "{volt} V: {found} {exact}");
+            }
+        }
+    }
+
+    /// Where the centring bias lies beyond the range by a trifle, the end of the range leaves a small mean.
+    #[test]
+    fn at_the_end_of_the_range_the_bias_is_that_end() {
+        let drive = bent(1e-3);
+        let wave = |volt: f64| drive.motion(&[(2, cosine(volt))]);
+        // the bias wanted is 0.042 V below the middle
+        let held = wave(84.97).unwrap();
+        assert!((held.voltage_volt.mean - 64.97).abs() <= 1e-9, "{held:?}");
+        assert!((1e-4..MEAN_FLAP_TOLERANCE_DEG).contains(&held.flap_deg.mean), "{held:?}");
+        assert!(matches!(bent(0.05).motion(&[(2, cosine(84.9))]), Err(PlantError::Bias(_))));
     }
 }

@@ -65,9 +65,7 @@ impl ControlSet<'_> {
         let control_failed = |error| self.failed(ControlActuator::Ideal, RunError::Control(error));
         let mut ideal = self.plant(ControlActuator::Ideal)?;
         let zero = ideal.layout().zero();
-        let Some(t) = ideal.linearised_t(&zero).map_err(plant_failed)? else {
-            return Ok(Forecast { harmonics: self.harmonics.to_vec(), ..Forecast::default() });
-        };
+        let t = ideal.t_about_trim(&zero).map_err(plant_failed)?;
         let baseline = self.rotor.trim().rotor.hub.harmonic(self.case.blades);
         let weights: Vec<f64> = self.load_weights().into_iter().flat_map(|w| [w, w]).collect();
         // the loads alone: what weighs the power beside them is no load

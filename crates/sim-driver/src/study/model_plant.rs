@@ -15,13 +15,15 @@ pub(super) trait Answers {
         control_volt: &[f64],
     ) -> Result<Measurement, PlantError>;
 
-    /// What becomes of the T that the plant offers; itself by default.
+    /// T about a control vector, V.
     ///
     /// # Errors
     /// Whatever keeps it from an answer.
-    fn offered_t(&self, t: TMatrix) -> Result<TMatrix, PlantError> {
-        Ok(t)
-    }
+    fn offered_t(
+        &self,
+        plant: &mut RotorPlant,
+        control_volt: &[f64],
+    ) -> Result<Option<TMatrix>, PlantError>;
 }
 
 /// A [`RotorPlant`] that is measured in another way; layout, strokes and limits are its own.
@@ -59,8 +61,7 @@ impl<A: Answers> Plant for Answered<A> {
     }
 
     fn linearised_t(&mut self, control_volt: &[f64]) -> Result<Option<TMatrix>, PlantError> {
-        let offered = self.plant.linearised_t(control_volt)?;
-        offered.map(|t| self.answers.offered_t(t)).transpose()
+        self.answers.offered_t(&mut self.plant, control_volt)
     }
 }
 
@@ -103,5 +104,13 @@ impl Answers for Linearised {
             }
         }
         Ok(plant.measurement(control_volt, &hub_loads, &flaps))
+    }
+
+    fn offered_t(
+        &self,
+        plant: &mut RotorPlant,
+        control_volt: &[f64],
+    ) -> Result<Option<TMatrix>, PlantError> {
+        plant.t_about_trim(control_volt).map(Some)
     }
 }

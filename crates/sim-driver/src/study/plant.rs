@@ -2,6 +2,7 @@
 
 mod hinge;
 mod power;
+mod sensitivity;
 
 use self::power::PlantPower;
 use super::authority::HARMONICS;
@@ -17,7 +18,6 @@ use crate::inflow::{SettledInflow, SettledTrim, settled_trim};
 use crate::problem::Place;
 use hhc_control::{
     ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, PlantCall, RunError, TMatrix,
-    VoltageRange,
 };
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -116,14 +116,7 @@ impl TrimmedRotor {
         if let Some(known) = self.authority.get() {
             return Ok(known);
         }
-        let found = match self.t_inflow {
-            // a loop measures responses with the geometry of the wake held: the T that converges it anew is a
-            // forecast of what the hub would feel, not of what the loop measures
-            TInflowChoice::Settled | TInflowChoice::Reconverged => {
-                self.linearised(InflowState::Settled)
-            }
-            TInflowChoice::Frozen => self.linearised(InflowState::Frozen),
-        }?;
+        let found = self.linearised(self.state_in_t())?;
         Ok(self.authority.get_or_init(|| found))
     }
 
@@ -160,6 +153,15 @@ impl TrimmedRotor {
         let condition = self.flaps_at_rest();
         let about = (&condition, &self.trim.rotor);
         FlapAuthority::about(&mut self.solver.clone(), about, &self.inflow, (state, highest))
+    }
+
+    /// What the inflow does in T. A loop measures responses with the geometry of the wake held: the T that
+    /// converges it anew is a forecast of what the hub would feel, not of what the loop measures.
+    fn state_in_t(&self) -> InflowState {
+        match self.t_inflow {
+            TInflowChoice::Settled | TInflowChoice::Reconverged => InflowState::Settled,
+            TInflowChoice::Frozen => InflowState::Frozen,
+        }
     }
 
     /// What another response leaves unbalanced at the controls and attitude of this trim, over the
@@ -321,8 +323,6 @@ const LEAST_GAIN_PART: f64 = 0.2;
 /// Part of a given stroke limit that a cone program aims at: the gain moves with the control, and no end of a
 /// loop is to lie above the limit.
 const STROKE_AIMED_AT: f64 = 0.9985;
-/// Voltage step of the tangent of an actuator, V: wide enough to see past the steps of its memory.
-const TANGENT_STEP_VOLT: f64 = 1.0;
 
 /// Everything about one control vector.
 #[derive(Debug, Clone)]
@@ -352,8 +352,12 @@ pub struct RotorPlant {
     /// Amplitude at which each pair, alone on its flap, ends the range of voltages, V.
     reach_volt: Vec<f64>,
     power: Option<PlantPower>,
+    /// The control measured last and what was found there: T is mostly asked for about it.
+    measured: Option<(Vec<f64>, Arc<PlantState>)>,
     /// Motions of one flap without hinge moment, and of all flaps under it.
     free: Recent<FlapMotion>,
+    /// Their changes with the controls of the flap.
+    tangents: Recent<Vec<FlapMotion>>,
     coupled: Recent<Vec<FlapMotion>>,
 }
 
@@ -395,7 +399,9 @@ impl RotorPlant {
             drive,
             coupling,
             power: None,
+            measured: None,
             free: Recent::default(),
+            tangents: Recent::default(),
             coupled: Recent::default(),
         })
     }
@@ -439,10 +445,7 @@ impl RotorPlant {
     fn free_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
         self.voltages(control_volt)?
             .into_par_iter()
-            .map(|voltages| {
-                let bits = voltages.iter().flat_map(|&(n, h)| [(n, h.cosine), (n, h.sine)]);
-                self.free.answer(bits, || self.drive.motion(&voltages))
-            })
+            .map(|voltages| self.free.answer(bits(&voltages), || self.drive.motion(&voltages)))
             .collect()
     }
 
@@ -546,11 +549,16 @@ impl RotorPlant {
         }
     }
 
-    fn answer(&self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        let state = self.state(control_volt)?;
+    /// What is measured of a state.
+    fn seen(&self, control_volt: &[f64], state: &PlantState) -> Measurement {
         let loads = state.rotor.hub.harmonic(self.rotor.rotor().model().blades);
-        Ok(self.measurement(control_volt, &loads, &state.flaps))
+        self.measurement(control_volt, &loads, &state.flaps)
     }
+}
+
+/// Voltages with their harmonics, as answers are remembered by.
+fn bits(voltages: &[(usize, Harmonic)]) -> impl Iterator<Item = (usize, f64)> + '_ {
+    voltages.iter().flat_map(|&(n, h)| [(n, h.cosine), (n, h.sine)])
 }
 
 /// Flap angles as the rotor takes them, rad.
@@ -566,12 +574,16 @@ impl Plant for RotorPlant {
     }
 
     fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        self.answer(control_volt)
+        let state = self.state(control_volt)?;
+        let measurement = self.seen(control_volt, &state);
+        self.measured = Some((control_volt.to_vec(), Arc::new(state)));
+        Ok(measurement)
     }
 
     fn measure_many(&mut self, controls_volt: &[Vec<f64>]) -> Result<Vec<Measurement>, PlantError> {
         let plant = &*self;
-        controls_volt.par_iter().map(|control| plant.answer(control)).collect()
+        let answer = |u: &Vec<f64>| plant.state(u).map(|state| plant.seen(u, &state));
+        controls_volt.par_iter().map(answer).collect()
     }
 
     fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, PlantError> {
@@ -623,12 +635,7 @@ impl Plant for RotorPlant {
 
     fn limits(&mut self, control_volt: &[f64]) -> Result<ControlLimits, PlantError> {
         let flaps = self.flap_motion(control_volt)?;
-        let range = self.drive.range_volt();
-        let voltage = VoltageRange {
-            range_volt: [range.lowest_volt(), range.highest_volt()],
-            bias_volt: flaps.iter().map(|f| f.voltage_volt.mean).collect(),
-            azimuths: LIMIT_AZIMUTHS,
-        };
+        let voltage = self.voltage_range(control_volt, &flaps)?;
         let voltages = self.layout.voltages_volt(control_volt).map_err(PlantError::Bias)?;
         // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
         let known: Vec<bool> = voltages
@@ -660,23 +667,6 @@ impl Plant for RotorPlant {
     }
 
     fn linearised_t(&mut self, control_volt: &[f64]) -> Result<Option<TMatrix>, PlantError> {
-        let authority = self.rotor.authority()?;
-        let tangents = self
-            .voltages(control_volt)?
-            .par_iter()
-            .map(|voltages| self.drive.tangent(voltages, TANGENT_STEP_VOLT))
-            .collect::<Result<Vec<_>, PlantError>>()?;
-        let mut columns: Vec<Vec<f64>> = tangents
-            .iter()
-            .enumerate()
-            .flat_map(|(flap, tangent)| {
-                tangent.iter().map(move |along| authority.loads(flap, along).to_vec())
-            })
-            .collect();
-        let gains = self.power_gains();
-        for (j, column) in columns.iter_mut().enumerate() {
-            column.extend((0..2 * gains.len()).map(|k| if k == j { gains[k / 2] } else { 0.0 }));
-        }
-        TMatrix::from_columns(&columns).map(Some).map_err(PlantError::Bias)
+        self.t_about(control_volt).map(Some)
     }
 }

@@ -11,7 +11,7 @@ use crate::raw::{Setting, loads_cost};
 use crate::results::HubLoads;
 use crate::run::RunOutcome;
 use hhc_control::{
-    AdaptiveSettings, ControlError, ControlRun, Controller, Measurement, RunError, TMatrix,
+    AdaptiveSettings, ControlError, ControlRun, Controller, Measurement, Plant, RunError, TMatrix,
     identify_t,
 };
 use rand::SeedableRng;
@@ -150,8 +150,14 @@ impl Answers for Disturbed {
         Ok(measurement)
     }
 
-    fn offered_t(&self, t: TMatrix) -> Result<TMatrix, PlantError> {
-        wrong_t(&t, self.t_gain, self.t_phase_rad).map_err(PlantError::Bias)
+    fn offered_t(
+        &self,
+        plant: &mut RotorPlant,
+        control_volt: &[f64],
+    ) -> Result<Option<TMatrix>, PlantError> {
+        let offered = plant.linearised_t(control_volt)?;
+        let wrong = |t: TMatrix| wrong_t(&t, self.t_gain, self.t_phase_rad);
+        offered.map(wrong).transpose().map_err(PlantError::Bias)
     }
 }
 
