@@ -29,6 +29,7 @@ pub mod refinement;
 pub mod regress;
 pub mod tidy;
 pub mod validate;
+pub mod wake_inflow;
 pub mod wake_refinement;
 pub mod workspace;
 

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use xtask::{
     XtaskError, calibrate, ci, files, hidden_effects, layers, refinement, regress, tidy, validate,
-    wake_refinement, workspace,
+    wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -43,6 +43,8 @@ enum Chore {
     Refinement,
     /// Show what grid, near wake and core of the free wake do to the paper's rotor and to a reference rotor; minutes
     WakeRefinement,
+    /// Show where the mean inflow of the free wake at the blades comes from, step by step and part by part
+    WakeInflow,
     /// Compare a sweep of the whole program with its golden values
     Regress {
         /// Rewrite the goldens of the cases that differ
@@ -131,6 +133,10 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             wake_refinement::paper_table(|line| say(&mut std::io::stdout(), line));
             say(&mut std::io::stdout(), "\n");
             wake_refinement::table(|line| say(&mut std::io::stdout(), line));
+            Ok(ExitCode::SUCCESS)
+        }
+        Chore::WakeInflow => {
+            wake_inflow::tables(|line| say(&mut std::io::stdout(), line))?;
             Ok(ExitCode::SUCCESS)
         }
         Chore::Regress { bless, filter, golden } => {

@@ -19,13 +19,13 @@ use trim::{
 };
 
 /// A change of the wake of the paper's rotor and of the response in it.
-type PaperChange = fn(&mut WakeTrimSettings, &mut Discretisation);
+pub(crate) type PaperChange = fn(&mut WakeTrimSettings, &mut Discretisation);
 
 /// Core of the near wake of the paper's rotor, R: its chord.
 const PAPER_CHORD: f64 = 0.055;
 
 /// What is changed, and how, from the defaults of a case.
-const PAPER_ROWS: [(&str, PaperChange); 25] = [
+const PAPER_ROWS: [(&str, PaperChange); 28] = [
     ("none", |_, _| ()),
     ("steps of 30 deg", |s, _| s.wake.azimuths = 12),
     ("steps of 15 deg", |s, _| s.wake.azimuths = 24),
@@ -54,6 +54,9 @@ const PAPER_ROWS: [(&str, PaperChange); 25] = [
     ("14 panels", |s, _| s.panels = 14),
     ("30 panels, stations twice as dense", |s, d| panels(s, d, 30)),
     ("40 panels, stations twice as dense", |s, d| panels(s, d, 40)),
+    ("core of the rolled-up vortices x 0.5", |s, _| s.wake.core.radius *= 0.5),
+    ("core of the rolled-up vortices x 2", |s, _| s.wake.core.radius *= 2.0),
+    ("near wake convected", |s, _| s.wake.near_wake_motion = NearWakeMotion::Convected),
     ("mutual cores x 0.5", |s, _| s.wake.core.mutual_radius *= 0.5),
     ("mutual cores x 2", |s, _| s.wake.core.mutual_radius *= 2.0),
     ("corrected cores", |s, _| s.wake.core.model = CoreModel::RosenheadMoore),
@@ -68,18 +71,21 @@ fn panels(settings: &mut WakeTrimSettings, response: &mut Discretisation, count:
     response.span_points_per_piece *= 2;
 }
 
-fn paper_trimmed(change: PaperChange) -> Result<WakeTrim, TrimError> {
-    const ADVANCE_RATIO: f64 = 0.3;
+/// The paper's rotor trimmed in level flight at an advance ratio in a changed free wake.
+pub(crate) fn paper_trimmed(
+    advance_ratio: f64,
+    change: PaperChange,
+) -> Result<WakeTrim, TrimError> {
     let (mut settings, mut response) = (WakeTrimSettings::default(), Discretisation::default());
     settings.wake.core.near_radius = PAPER_CHORD;
     change(&mut settings, &mut response);
     let blade = BladeProperties::new(BladeSpec::table_1()).map_err(ResponseError::from)?;
     let rotor = Rotor::new(RotorModel::paper_case(), &blade, response)?;
     let tolerances = ResponseTolerances::default();
-    let mut solver = RotorSolver::new(Arc::new(rotor), ADVANCE_RATIO, tolerances)?;
+    let mut solver = RotorSolver::new(Arc::new(rotor), advance_ratio, tolerances)?;
     let target = TrimTarget::Propulsive { weight_ct_sigma: 0.07, vehicle: Vehicle::default() };
     let trim_settings = TrimSettings::default();
-    trim_in_free_wake(&mut solver, &settings, ADVANCE_RATIO, &target, &trim_settings)
+    trim_in_free_wake(&mut solver, &settings, advance_ratio, &target, &trim_settings)
 }
 
 /// Mean inflow over Glauert's, collective, and the 4/rev forces and moments of the hub.
@@ -106,7 +112,7 @@ pub fn paper_table(say: impl Fn(&str)) {
     );
     say("|---|---|---|---|---|\n");
     for (name, change) in PAPER_ROWS {
-        say(&match paper_trimmed(change) {
+        say(&match paper_trimmed(0.3, change) {
             Ok(wake) => format!("| {name} | {} |\n", paper_line(&wake)),
             Err(error) => format!("| {name} | {error} | | | |\n"),
         });

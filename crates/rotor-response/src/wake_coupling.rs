@@ -162,3 +162,34 @@ impl RotorSolver {
         .with_trailing_edge(0.75 * self.rotor().model().chord)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Largest amplitude that a unit harmonic `n` leaves at other harmonics up to `limit`, at the points of eight time
+    /// elements.
+    fn aliased(n: usize, limit: usize) -> f64 {
+        let time = TimeElements::new(8, 5, 8).unwrap();
+        let samples: Vec<f64> = time.points().iter().map(|psi| (n as f64 * psi).cos()).collect();
+        let series = HarmonicSeries::project(time.points(), &unit_weights(&time), &samples, limit);
+        let others = (1..=limit).filter(|k| *k != n).map(|k| series.harmonic(k).amplitude());
+        others.fold(series.mean.abs(), f64::max)
+    }
+
+    /// Harmonics that are passed on come out as themselves; what the points do not tell apart comes out as others, and
+    /// as large as it is.
+    #[test]
+    fn harmonics_beyond_the_time_elements_are_not_passed_on() {
+        let time = TimeElements::new(8, 5, 8).unwrap();
+        // what 72 azimuth steps of a wake could hold, and what 8 elements of 8 points resolve
+        let all = 35;
+        let limit = resolved_harmonics(&time, &unit_weights(&time), all);
+        assert_eq!(limit, 15);
+        assert_eq!(resolved_harmonics(&time, &unit_weights(&time), 11), 11);
+        let kept = (1..=limit).map(|n| aliased(n, limit)).fold(0.0, f64::max);
+        assert!(kept < 0.01, "{kept}");
+        let beyond = (1..=all).map(|n| aliased(n, all)).fold(0.0, f64::max);
+        assert!(beyond > 0.5, "{beyond}");
+    }
+}

@@ -92,7 +92,7 @@ impl Case {
             RolledUpChoice::TipRootAndSheet => FarTrailers::Stations(SHEET_STATIONS.to_vec()),
         };
         let wake = FreeWakeSettings {
-            azimuths: file.azimuths,
+            azimuths: file.azimuths_for(self.blades),
             turns: file.turns,
             far_turns: file.far_turns,
             near_wake_rad: file.near_wake_deg.to_radians(),
@@ -133,9 +133,12 @@ impl Case {
             },
             ..FreeWakeSettings::default()
         };
+        let usual = WakeTrimSettings::default();
         WakeTrimSettings {
             wake,
             panels: file.panels,
+            // of the coarse grid before, too, the blades get whole steps
+            stages: usual.stages.iter().map(|n| n.next_multiple_of(self.blades)).collect(),
             inflow_tolerance: file.tolerance,
             displacement_tolerance: file.displacement_tolerance_r,
             updates: file.updates,
@@ -143,7 +146,7 @@ impl Case {
                 WakeMethodChoice::Relaxed => WakeMethod::Relaxed,
                 WakeMethodChoice::Marched => WakeMethod::Marched,
             },
-            ..WakeTrimSettings::default()
+            ..usual
         }
     }
 }

@@ -142,8 +142,8 @@ pub enum CirculationChoice {
 pub struct FreeWakeFile {
     /// Where the circulation comes from.
     pub circulation: CirculationChoice,
-    /// Azimuth steps per revolution, a multiple of the number of blades.
-    pub azimuths: usize,
+    /// Azimuth steps per revolution, a multiple of the number of blades; none for 36 or the next multiple above.
+    pub azimuths: Option<usize>,
     /// Free turns of the rolled-up vortices.
     pub turns: usize,
     /// Turns that repeat the last free one behind it.
@@ -189,7 +189,7 @@ impl Default for FreeWakeFile {
     fn default() -> Self {
         Self {
             circulation: CirculationChoice::Trimmed,
-            azimuths: 36,
+            azimuths: None,
             turns: 4,
             far_turns: 2,
             panels: 20,
@@ -210,5 +210,16 @@ impl Default for FreeWakeFile {
             displacement_tolerance_r: 2e-3,
             updates: 30,
         }
+    }
+}
+
+/// Azimuth steps per revolution of a wake, where a case asks for none.
+const USUAL_AZIMUTHS: usize = 36;
+
+impl FreeWakeFile {
+    /// Azimuth steps per revolution for a number of blades: those asked for, or steps of 10 deg, or a little less where
+    /// 36 is no multiple of the blades (40 for five and eight blades, 42 for seven).
+    pub fn azimuths_for(&self, blades: usize) -> usize {
+        self.azimuths.unwrap_or_else(|| USUAL_AZIMUTHS.next_multiple_of(blades.max(1)))
     }
 }

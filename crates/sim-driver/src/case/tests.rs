@@ -130,6 +130,27 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
     }
 }
 
+/// Left out, the azimuth steps of both grids are the usual ones or the next multiples of the blades above.
+#[test]
+fn a_free_wake_has_whole_steps_for_any_number_of_blades() {
+    let of = |blades: usize| {
+        let text = format!("(rotor: (blades: {blades}), inflow: (model: FreeWake()))");
+        let loaded = read(&text).unwrap();
+        let InflowChoice::FreeWake(file) = loaded.case.inflow else { unreachable!() };
+        loaded.case.wake_trim_settings(&file)
+    };
+    for (blades, fine, coarse) in
+        [(1, 36, 12), (2, 36, 12), (3, 36, 12), (4, 36, 12), (5, 40, 15), (7, 42, 14), (8, 40, 16)]
+    {
+        let settings = of(blades);
+        assert_eq!((settings.wake.azimuths, settings.stages), (fine, vec![coarse]), "{blades}");
+        assert!(settings.wake.validate(blades).is_ok());
+    }
+    let asked = "(rotor: (blades: 5), inflow: (model: FreeWake(azimuths: 36)))";
+    let text = read(asked).unwrap_err();
+    assert!(text.contains("azimuths: is 36, expected 35 to 35"), "{text}");
+}
+
 /// One wrong value and a part of its message.
 #[test]
 fn single_problems_name_the_remedy() {
