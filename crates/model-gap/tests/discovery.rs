@@ -263,6 +263,39 @@ fn what_surrogates_could_do_to_a_difference_keeps_another_cause_open() {
     assert_eq!(named(&structure(0.2)), (Verdict::Named, Confidence::Tentative, 1, alone()));
 }
 
+/// Structure of the base model that leans from the true cause beyond the other: the better of both leaves as much
+/// along their difference as they differ by, so that its lead says little.
+#[test]
+fn what_the_better_of_two_leaves_between_them_keeps_the_other_in_the_set() {
+    let mut candidates = ["cubic", "lag", "cubic-twin", "fifth"].map(candidate);
+    candidates[2].blocked = Some("no".into());
+    // no second cause of the other sign may take the structure's place
+    candidates[3].cause.parameters[0].low = 0.0;
+    candidates[3].starts = vec![vec![0.05]];
+    let surrogate: Signal = vec![vec![0.0; SAMPLES]; EXPERIMENTS];
+    let alternatives = |share: f64, structures: &[Signal]| -> Vec<usize> {
+        let between = move |e, i| share * (added(0, 0.06, e, i) - added(3, 0.04, e, i));
+        let traces = traces(move |e, i| added(0, 0.06, e, i) + between(e, i), 6);
+        let discovery = Discovery {
+            traces: &traces,
+            simulator: &Toy,
+            candidates: &candidates,
+            generic: &[],
+            structures,
+            settings: Settings::default(),
+        };
+        let finding = discovery.find().unwrap();
+        let first = finding.causes.first();
+        assert_eq!(first.map(|f| f.candidate), Some(0), "{share}: {:?}", finding.reasons);
+        first.map_or_else(Vec::new, |f| f.alternatives.iter().map(|a| a.candidate).collect())
+    };
+    let granted = std::slice::from_ref(&surrogate);
+    assert!(alternatives(0.0, granted).is_empty());
+    assert_eq!(alternatives(0.7, granted), [3]);
+    // a base model that is taken at its word leaves nothing
+    assert!(alternatives(0.7, &[]).is_empty());
+}
+
 /// A lag whose range begins just below its value: from how far its interval reaches, it may be anything less.
 #[test]
 fn a_scale_that_is_open_to_one_end_of_its_range_makes_a_name_tentative() {

@@ -388,7 +388,11 @@ impl<S: Simulator> Search<'_, S> {
     ///
     /// Whichever of them is right, structure of at least the size `x` lies there, where noise alone would leave 1.
     /// With its variance beside that of the noise the difference of the misfits weighs `1 / (1 + x^2)` as much.
+    /// A base model without surrogates is taken at its word: nothing is granted to it.
     fn left_between(&self, a: &Fitted, b: &Fitted) -> f64 {
+        if self.structures.is_empty() {
+            return 0.0;
+        }
         let apart = difference(&a.residual, &b.residual);
         let apart = self.evidence.see(&apart);
         let energy = self.evidence.inner(&apart, &apart);

@@ -264,7 +264,7 @@ mod tests {
             assert!(left < 5e-4, "{left} for {delay}");
         }
         // chords lose a twentieth
-        let chords = Smooth { samples: &samples, weights: vec![0.0; samples.len() - 1] };
+        let chords = Smooth { samples: &samples, weights: vec![0.0; samples.len() - 1].into() };
         assert!(error(&chords.late_by(0.5), |t| wave(t - 0.5 * STEP_S)) > 0.04);
     }
 
@@ -298,7 +298,7 @@ mod tests {
             let left = error(&smooth.through_mode(hz, zeta, STEP_S), exact);
             assert!(left < most, "{left} for {hz} Hz");
         }
-        let chords = Smooth { samples: &samples, weights: vec![0.0; samples.len() - 1] };
+        let chords = Smooth { samples: &samples, weights: vec![0.0; samples.len() - 1].into() };
         let mode = chords.through_mode(206.0, 0.02, STEP_S);
         assert!(error(&mode, wave) > 0.03, "chords drive the mode by their images");
     }
