@@ -103,7 +103,7 @@ pub struct Compared {
 }
 
 /// Part of what tells two causes apart within which the other one is as likely.
-const AS_LIKELY: f64 = 0.6;
+const AS_LIKELY: f64 = 0.5;
 /// Times what tells two causes apart that the other one must be behind by for a sure name: what
 /// surrogates can do is known from five of them.
 const SURELY: f64 = 1.25;
