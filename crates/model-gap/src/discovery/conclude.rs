@@ -269,8 +269,10 @@ impl<S: Simulator> Search<'_, S> {
             ));
             return Verdict::Unknown;
         }
-        let visible = |s: &Screened| s.weak_signal > s.threshold;
-        if self.screened.iter().any(visible) {
+        // a cause that cannot be there, or has no name, would not be said either
+        let visible =
+            |(c, s): (usize, &Screened)| !self.is_refuted(c) && s.weak_signal > s.threshold;
+        if self.screened.iter().enumerate().any(visible) {
             Verdict::NothingMissing
         } else {
             reasons.push("no cause of usual strength would show in these data".into());

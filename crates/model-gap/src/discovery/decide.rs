@@ -159,7 +159,7 @@ impl<S: Simulator> Search<'_, S> {
         self.conclude(&chosen, &current, &singles, single_drops, notes)
     }
 
-    fn is_refuted(&self, candidate: usize) -> bool {
+    pub(super) fn is_refuted(&self, candidate: usize) -> bool {
         self.discovery.candidates[candidate].refuted.is_some()
     }
 

@@ -128,8 +128,8 @@ fn add(model: &mut ActuatorModel, part: Part) {
             let elements = vec![RelaxationElement { share: 1.0, time_constant_s: tau_s }];
             model.linkage.insert(0, LinkageStage::Relaxation(Relaxation { elements }));
         }
-        // the law of the file has its own loops
-        Part::Hysteresis { .. } => {}
+        // the law of the file has its own loops; a gain alone gets no name, and is not extended by
+        Part::Hysteresis { .. } | Part::Gain { .. } => {}
         Part::Hum { amplitude, frequency_hz } => {
             let hum = MainsHum { amplitude_um: amplitude, frequency_hz, phase_rad: 0.0 };
             model.sensor.push(SensorStage::MainsHum(hum));

@@ -29,7 +29,7 @@ use crate::SimError;
 use crate::problem::Place;
 use crate::stored_actuator::StoredChannels;
 use base::BaseModel;
-use causes::{BenchCause, Design};
+use causes::{BenchCause, Design, GainRise};
 use model_gap::discovery::{Discovery, Finding, Settings, Signal};
 use model_gap::{Candidate, GapError};
 use preisach_dyn::ActuatorModel;
@@ -118,6 +118,7 @@ impl Diagnosis {
         self.candidates
             .iter()
             .zip(&self.finding.screen)
+            .filter(|(candidate, _)| candidate.cause.id != GainRise::ID)
             .filter(|(candidate, screened)| {
                 let hidden = MAY_BE_HIDDEN * screened.threshold..screened.threshold;
                 candidate.blocked.is_some()
@@ -138,7 +139,9 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     let place = || Place::file(format!("{}/dataset.ron", measured.folder));
     let fail = |source| SimError::Misfit { place: place(), source };
     let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
-    let library: Vec<Box<dyn BenchCause>> = causes::library();
+    let mut library: Vec<Box<dyn BenchCause>> = causes::library();
+    let named = library.len();
+    library.push(Box::new(GainRise));
     let runs: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
     if runs.is_empty() {
         return Err(SimError::NothingMeasured { place: place(), runs: measured.runs.len() });
@@ -152,7 +155,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         .ok_or_else(|| fail(too_few("runs of the base model")))?;
     let design = Design::of(&runs, measured.is_bench, has_reference);
     let mut candidates = causes::candidates(&library, &design);
-    let given = restrict(&mut candidates, &question.only).map_err(fail)?;
+    let given = restrict(&mut candidates[..named], &question.only).map_err(fail)?;
     let simulator = BenchSimulator::new(&base, runs.clone(), &library, range).map_err(fail)?;
     let traces = simulator.traces();
     let structures: Vec<Signal> = kept_structures(&base, fitted, &runs, range, question.cache)
@@ -341,6 +344,7 @@ fn generic(simulator: &BenchSimulator<'_>, spread: f64) -> Vec<Signal> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use model_gap::discovery::Verdict;
 
     /// A line of gain 2.5 on a slow triangle and a sine, times a factor.
     fn runs(is_reference: bool, factor: f64) -> Vec<Record> {
@@ -391,6 +395,16 @@ mod tests {
             let text = crate::output::Printable::text(&Story::of(&found));
             assert_eq!(text.contains("has the unit of its name"), warned, "{text}");
         }
+    }
+
+    /// A characteristic of the sensor can bend its way to a larger gain; a gain alone is nothing it would be called by.
+    #[test]
+    fn a_larger_gain_alone_is_not_called_a_bent_sensor() {
+        let question = Question { reference: runs(true, 1.0), ..Question::default() };
+        let found = diagnose(&records(runs(false, 1.04)), &question).unwrap();
+        assert_eq!(found.finding.verdict, Verdict::Unknown, "{:?}", found.finding.reasons);
+        assert!(found.finding.reasons.iter().any(|r| r.contains("gain-rise")));
+        assert!(!found.not_observable().contains(&GainRise::ID.to_owned()));
     }
 
     #[test]

@@ -238,23 +238,24 @@ impl<'a> Plant<'a> {
             .iter()
             .flat_map(|p| if let Part::Sensor(stages) = p { stages.clone() } else { Vec::new() })
             .collect();
-        if linkage.is_empty() && sensor.is_empty() {
+        let gain: f64 = parts
+            .iter()
+            .map(|p| if let Part::Gain { rise } = p { 1.0 + rise } else { 1.0 })
+            .product();
+        let is_scaled = parts.iter().any(|p| matches!(p, Part::Gain { .. }));
+        if linkage.is_empty() && sensor.is_empty() && !is_scaled {
             return Ok(Arc::clone(&front.outputs));
         }
         let mut outputs = Vec::with_capacity(self.runs.len());
         let is_plain = Arc::ptr_eq(&front.outputs, &self.plain);
         for (number, (run, output)) in self.runs.iter().zip(front.outputs.iter()).enumerate() {
-            let mut known = is_plain.then(|| &self.plain_outputs[number]);
+            let mut known = (is_plain && !is_scaled).then(|| &self.plain_outputs[number]);
             let sensor: &[SensorStage] = if run.has_ideal_sensor() { &[] } else { &sensor };
             let mut linkage = linkage.clone();
             if run.is_preloaded() {
                 linkage.retain(|stage| !matches!(stage, LinkageStage::Backlash(_)));
             }
-            if linkage.is_empty() && sensor.is_empty() {
-                outputs.push(output.clone());
-                continue;
-            }
-            let mut signal = output.clone();
+            let mut signal: Vec<f64> = output.iter().map(|y| gain * y).collect();
             for stage in &linkage {
                 let known = known.take();
                 signal = match stage {

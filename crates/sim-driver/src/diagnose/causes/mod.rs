@@ -10,6 +10,7 @@ mod creep;
 mod depolarisation;
 mod dielectric_heating;
 mod electrical_lag;
+mod gain_rise;
 mod hysteresis;
 mod load_stiffness;
 mod mains_hum;
@@ -20,6 +21,7 @@ mod sensor_nonlinearity;
 mod transport_delay;
 mod voltage_saturation;
 
+pub(crate) use gain_rise::GainRise;
 pub(crate) use hysteresis::{StaticHysteresis, looped};
 pub(crate) use rate_dependence::rate_dependent;
 
@@ -59,6 +61,11 @@ pub(crate) enum Part {
         share: f64,
         /// Half-width of the widest, output's unit.
         widest: f64,
+    },
+    /// Every output larger by one factor.
+    Gain {
+        /// The factor less one.
+        rise: f64,
     },
     /// A line whose phase is that of each record.
     Hum {
