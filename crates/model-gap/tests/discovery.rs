@@ -106,6 +106,13 @@ fn traces(truth: impl Fn(usize, usize) -> f64, seed: u64) -> Vec<Trace> {
         .collect()
 }
 
+/// What is found beside surrogates that leave these structures.
+fn find_beside(traces: &[Trace], candidates: &[Candidate], structures: &[Signal]) -> Finding {
+    let settings = Settings::default();
+    let (simulator, generic) = (&Toy, &[]);
+    Discovery { traces, simulator, candidates, generic, structures, settings }.find().unwrap()
+}
+
 fn find(traces: &[Trace], candidates: &[Candidate]) -> Finding {
     let generic: Vec<Signal> = [4, 5]
         .map(|power| {
@@ -222,15 +229,7 @@ fn what_surrogates_leave_is_no_cause() {
     let traces = traces(|e, i| added(0, 0.06, e, i), 6);
     let structure: Signal =
         (0..EXPERIMENTS).map(|e| (0..SAMPLES).map(|i| added(0, 0.06, e, i)).collect()).collect();
-    let discovery = Discovery {
-        traces: &traces,
-        simulator: &Toy,
-        candidates: &candidates,
-        generic: &[],
-        structures: &[structure],
-        settings: Settings::default(),
-    };
-    let finding = discovery.find().unwrap();
+    let finding = find_beside(&traces, &candidates, &[structure]);
     assert!(finding.causes.is_empty(), "{:?}", finding.causes);
 }
 
@@ -241,15 +240,7 @@ fn what_surrogates_could_do_to_a_difference_keeps_another_cause_open() {
     candidates[2].blocked = Some("no".into());
     let traces = traces(|e, i| added(0, 0.06, e, i), 6);
     let named = |structures: &[Signal]| {
-        let discovery = Discovery {
-            traces: &traces,
-            simulator: &Toy,
-            candidates: &candidates,
-            generic: &[],
-            structures,
-            settings: Settings::default(),
-        };
-        let finding = discovery.find().unwrap();
+        let finding = find_beside(&traces, &candidates, structures);
         let first = finding.causes.first().map(|c| (c.candidate, c.alternatives.clone()));
         let open = finding.causes.first().map_or(0, |c| c.rivals.len() - 1);
         (finding.verdict, finding.confidence, open, first)
@@ -276,15 +267,7 @@ fn what_the_better_of_two_leaves_between_them_keeps_the_other_in_the_set() {
     let alternatives = |share: f64, structures: &[Signal]| -> Vec<usize> {
         let between = move |e, i| share * (added(0, 0.06, e, i) - added(3, 0.04, e, i));
         let traces = traces(move |e, i| added(0, 0.06, e, i) + between(e, i), 6);
-        let discovery = Discovery {
-            traces: &traces,
-            simulator: &Toy,
-            candidates: &candidates,
-            generic: &[],
-            structures,
-            settings: Settings::default(),
-        };
-        let finding = discovery.find().unwrap();
+        let finding = find_beside(&traces, &candidates, structures);
         let first = finding.causes.first();
         assert_eq!(first.map(|f| f.candidate), Some(0), "{share}: {:?}", finding.reasons);
         first.map_or_else(Vec::new, |f| f.alternatives.iter().map(|a| a.candidate).collect())

@@ -43,11 +43,7 @@ fn stability_with(
 /// pitch rate `Omega b` of a flapped section at its three-quarter chord, `(g/2) (c/2) int x^2 dx b`.
 #[test]
 fn hovering_blade_flaps_with_a_sixteenth_of_the_lock_number() {
-    let blade = BladeProperties::new(BladeSpec {
-        root: RootSupport::HINGED,
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
-    })
-    .unwrap();
+    let blade = hinged_blade();
     let model = RotorModel {
         root_cutout: 0.0,
         modal_damping: 0.0,
@@ -116,15 +112,20 @@ fn flapping_exponent(
     s
 }
 
+/// A flap-hinged uniform blade, stiff in torsion.
+fn hinged_blade() -> BladeProperties {
+    BladeProperties::new(BladeSpec {
+        root: RootSupport::HINGED,
+        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
+    })
+    .unwrap()
+}
+
 /// Structure and lags move together: the exponent is that of the characteristic equation with all lag states;
 /// with settled lags that of the equation without. The lags raise the frequency of the flapping blade.
 #[test]
 fn exponents_are_those_of_blade_and_lags_together() {
-    let blade = BladeProperties::new(BladeSpec {
-        root: RootSupport::HINGED,
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
-    })
-    .unwrap();
+    let blade = hinged_blade();
     let section_model = AttachedFlowModel::Incompressible;
     let model = RotorModel {
         root_cutout: 0.0,
@@ -311,11 +312,7 @@ impl FlyingBlade {
 #[test]
 fn multipliers_with_lags_in_flight_meet_direct_integration() {
     let mu = 0.3;
-    let blade = BladeProperties::new(BladeSpec {
-        root: RootSupport::HINGED,
-        ..BladeSpec::uniform(0.0108, 0.0268, 0.00615, 1000.0)
-    })
-    .unwrap();
+    let blade = hinged_blade();
     let section_model = AttachedFlowModel::Incompressible;
     let model = RotorModel {
         root_cutout: 0.4,

@@ -9,15 +9,10 @@ use model_gap::{Cause, Side};
 /// its way there, as a characteristic of the sensor can; a smaller gain is what a load spring does.
 pub(crate) struct GainRise;
 
-impl GainRise {
-    /// Its id.
-    pub(crate) const ID: &'static str = "gain-rise";
-}
-
 impl BenchCause for GainRise {
     fn cause(&self, _: &Design) -> Cause {
         Cause {
-            id: Self::ID,
+            id: "gain-rise",
             physics: "All outputs larger than those of the base model by one factor, y = (1 + rise) h.",
             side: Side::Output,
             parameters: vec![linear("rise", "1", 0.0, 2.0)],
