@@ -40,6 +40,8 @@ pub struct Parameter {
     /// Whether it only shapes the effect: fitted, but neither reported nor judged, because candidates of
     /// one cause may shape it differently.
     pub is_shape: bool,
+    /// Whether it is an amount of the effect: at zero there is none.
+    pub is_amount: bool,
     /// What must be measured besides before the value means anything; none if these data suffice. Without
     /// it only a product with something unknown is found, and the interval is the whole range.
     pub needs: Option<&'static str>,
@@ -88,6 +90,16 @@ impl Parameter {
         }
         let slack = 1e-2 * (self.high / self.low).ln();
         (interval[0] / self.low).ln() <= slack || (self.high / interval[1]).ln() <= slack
+    }
+
+    /// Whether an interval holds the whole range, to one part in a hundred of it, or of an amount none at all:
+    /// nothing is known of the value then.
+    pub(crate) fn says_nothing(&self, interval: [f64; 2]) -> bool {
+        let (low, high) = (self.coordinate(self.low), self.coordinate(self.high));
+        let slack = 1e-2 * (high - low);
+        let [a, b] = interval.map(|v| self.coordinate(v));
+        let is_whole = a <= low + slack && b >= high - slack;
+        is_whole || (self.is_amount && interval[0] <= 0.0 && interval[1] >= 0.0)
     }
 
     /// Whether a value lies at an end of the range, to one part in a thousand of it.

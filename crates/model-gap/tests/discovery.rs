@@ -63,6 +63,7 @@ fn candidate(id: &'static str) -> Candidate {
             high: 2.0,
             scale,
             is_shape: false,
+            is_amount: true,
             held: None,
             needs: None,
             step: None,
@@ -109,8 +110,10 @@ fn traces(truth: impl Fn(usize, usize) -> f64, seed: u64) -> Vec<Trace> {
 /// What is found beside surrogates that leave these structures.
 fn find_beside(traces: &[Trace], candidates: &[Candidate], structures: &[Signal]) -> Finding {
     let settings = Settings::default();
-    let (simulator, generic) = (&Toy, &[]);
-    Discovery { traces, simulator, candidates, generic, structures, settings }.find().unwrap()
+    let (simulator, generic, trends) = (&Toy, &[], &[]);
+    Discovery { traces, simulator, candidates, generic, trends, structures, settings }
+        .find()
+        .unwrap()
 }
 
 fn find(traces: &[Trace], candidates: &[Candidate]) -> Finding {
@@ -127,6 +130,7 @@ fn find(traces: &[Trace], candidates: &[Candidate]) -> Finding {
         simulator: &Toy,
         candidates,
         generic: &generic,
+        trends: &[],
         structures: &[],
         settings: Settings { resamplings: 200, ..Settings::default() },
     };
@@ -297,6 +301,24 @@ fn a_scale_that_is_open_to_one_end_of_its_range_makes_a_name_tentative() {
 }
 
 #[test]
+fn a_cause_none_of_whose_parameters_is_known_gives_no_name() {
+    // surrogates leave the effect itself, in half the size of what the data show: it is past the floor, but one
+    // surrogate says so little of their spread that the size may be none
+    let traces = traces(|e, i| added(0, 0.06, e, i), 5);
+    let left: Signal =
+        (0..EXPERIMENTS).map(|e| (0..SAMPLES).map(|i| added(0, 0.03, e, i)).collect()).collect();
+    let candidates = [candidate("cubic")];
+    let finding = find_beside(&traces, &candidates, std::slice::from_ref(&left));
+    assert_eq!(finding.verdict, Verdict::Unknown, "{:?}", finding.reasons);
+    assert!(finding.reasons.iter().any(|r| r.contains("the name says nothing")));
+    // a size that cannot be none is known
+    let mut place = candidate("cubic");
+    place.cause.parameters[0].is_amount = false;
+    let finding = find_beside(&traces, &[place], std::slice::from_ref(&left));
+    assert_ne!(finding.verdict, Verdict::Unknown, "{:?}", finding.reasons);
+}
+
+#[test]
 fn without_reference_runs_nothing_is_confident() {
     let candidates = [candidate("cubic"), candidate("lag")];
     let traces = traces(|e, i| added(1, 0.06, e, i), 2);
@@ -305,6 +327,7 @@ fn without_reference_runs_nothing_is_confident() {
         simulator: &Toy,
         candidates: &candidates,
         generic: &[],
+        trends: &[],
         structures: &[],
         settings: Settings { has_reference: false, ..Settings::default() },
     };
@@ -367,6 +390,7 @@ fn found_beside_meters(ramp_read: f64, lag: f64, role: TraceRole) -> Finding {
         simulator: &Metered,
         candidates: &[candidate("cubic"), candidate("lag")],
         generic: &[],
+        trends: &[],
         structures: &[],
         settings: Settings { resamplings: 200, ..Settings::default() },
     };
@@ -415,6 +439,76 @@ fn one_run_far_out_is_not_lost_among_the_others() {
     let out: Vec<usize> = finding.standing_out.iter().map(|run| run.experiment).collect();
     assert_eq!((finding.verdict, out), (Verdict::Unknown, vec![2]), "{:?}", finding.reasons);
     assert!((finding.standing_out[0].times > 2.0), "{:?}", finding.standing_out);
+}
+
+/// Four traces of the toy whose base may move the level of each run and the gain of all by much.
+fn loose_traces(truth: impl Fn(usize, usize) -> f64, seed: u64) -> Vec<Trace> {
+    let mut all = traces(truth, seed);
+    for (e, trace) in all.iter_mut().enumerate() {
+        trace.nuisance = DMatrix::from_fn(SAMPLES, 2, |i, k| {
+            if k == 0 { 0.1 * input(e, i) } else { 0.1 * input(e, i).powi(3) }
+        });
+    }
+    all
+}
+
+#[test]
+fn the_run_that_the_base_model_moved_to_meet_is_the_one_that_stands_out() {
+    // the largest run alone has a gain of its own: the base model follows it and misses the three others
+    let one = |e: usize, i: usize| if e == 2 { 0.3 * input(e, i) } else { 0.0 };
+    let traces = loose_traces(one, 8);
+    let finding = find(&traces, &[candidate("fifth power")]);
+    let out: Vec<usize> = finding.standing_out.iter().map(|run| run.experiment).collect();
+    assert_eq!(out, [2], "{:?}", finding.standing_out);
+    // a gain that all share is no run's own
+    let finding = find(&loose_traces(|e, i| 0.3 * input(e, i), 8), &[candidate("fifth power")]);
+    assert!(finding.standing_out.is_empty(), "{:?}", finding.standing_out);
+}
+
+/// What is found where these trends are looked at, beside many directions without a name that surrogates fill.
+fn found_with_trends(drift: f64, trends: &[Signal]) -> Finding {
+    let slow = |i: usize| i as f64 / SAMPLES as f64 - 0.5;
+    let traces = traces(|_, i| drift * slow(i), 11);
+    let generic: Vec<Signal> = (2..6)
+        .map(|power| {
+            (0..EXPERIMENTS)
+                .map(|e| (0..SAMPLES).map(|i| input(e, i).powi(power)).collect())
+                .collect()
+        })
+        .chain(std::iter::once(vec![(0..SAMPLES).map(slow).collect(); EXPERIMENTS]))
+        .collect();
+    // a surrogate leaves a square, eight times the noise and more than any drift here
+    let left: Signal = (0..EXPERIMENTS)
+        .map(|e| (0..SAMPLES).map(|i| 8.0 * NOISE * input(e, i).powi(2)).collect())
+        .collect();
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let discovery = Discovery {
+        traces: &traces,
+        simulator: &Toy,
+        candidates: &candidates,
+        generic: &generic,
+        trends,
+        structures: &[left],
+        settings: Settings { resamplings: 200, ..Settings::default() },
+    };
+    discovery.find().unwrap()
+}
+
+#[test]
+fn a_zero_that_wanders_in_all_runs_alike_is_not_nothing() {
+    let slow = |i: usize| i as f64 / SAMPLES as f64 - 0.5;
+    let trends = [vec![(0..SAMPLES).map(slow).collect(); EXPERIMENTS]];
+    let finding = found_with_trends(1.5 * NOISE, &trends);
+    assert_eq!(finding.verdict, Verdict::Unknown, "{:?}", finding.reasons);
+    assert!(
+        finding.reasons.iter().any(|r| r.contains("changes steadily")),
+        "{:?}",
+        finding.reasons
+    );
+    // among all directions without a name it is lost
+    assert_eq!(found_with_trends(1.5 * NOISE, &[]).verdict, Verdict::NothingMissing);
+    // and where nothing wanders, nothing is missing
+    assert_eq!(found_with_trends(0.0, &trends).verdict, Verdict::NothingMissing);
 }
 
 /// A line of one frequency whose phase is fitted in every experiment.
@@ -473,6 +567,7 @@ fn an_effect_that_adapts_may_adapt_to_surrogates_too() {
             simulator: &simulator,
             candidates: &[candidate("hum")],
             generic: &[],
+            trends: &[],
             structures: std::slice::from_ref(&structure),
             settings: Settings::default(),
         };

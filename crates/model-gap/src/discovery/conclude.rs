@@ -70,8 +70,14 @@ impl<S: Simulator> Search<'_, S> {
         } else if !gains_surely {
             reasons.push("held out it may gain nothing: the name is tentative".into());
         }
-        let wrong_name =
-            !gains || explained < 0.5 || whole < LEAST_SHARE || worst_drift > WRONG_NAME;
+        let undetermined = causes.iter().find_map(|found| self.undetermined(found));
+        let is_undetermined = undetermined.is_some();
+        reasons.extend(undetermined);
+        let wrong_name = !gains
+            || is_undetermined
+            || explained < 0.5
+            || whole < LEAST_SHARE
+            || worst_drift > WRONG_NAME;
         if wrong_name && !chosen.is_empty() && before <= self.generic.threshold {
             reasons.push("what is left is within the floor: the name is dropped".into());
             let base = self.base.clone();
@@ -208,6 +214,18 @@ impl<S: Simulator> Search<'_, S> {
         })
     }
 
+    /// What is said of a cause none of whose parameters is known: each interval holds no effect at all, or the
+    /// whole range. Such a cause mends the misfit without saying anything.
+    fn undetermined(&self, found: &Found) -> Option<String> {
+        let cause = &self.discovery.candidates[found.candidate].cause;
+        let own = found.parameters.iter().zip(&cause.parameters);
+        let mut judged = own.filter(|(v, p)| !v.is_shape && p.needs.is_none()).peekable();
+        judged.peek()?;
+        judged
+            .all(|(value, parameter)| parameter.says_nothing(value.ci95))
+            .then(|| format!("no parameter of {} is determined: the name says nothing", cause.id))
+    }
+
     /// What is said of a parameter whose interval reaches an end of its range: an effect of such a kind was
     /// seen by one of its sides, as a mode far above the runs by its tail.
     fn open_ended(&self, found: &Found) -> Option<String> {
@@ -235,9 +253,49 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     /// Experiments whose own misfit lies above their own floor: one run far out is lost among many.
+    ///
+    /// The base model moves to meet a run far out, and misses others for it. So the run without which the others
+    /// are met best is set aside, the base model moves back, and so on until no other stands out. Where that
+    /// sets aside half of them, what is missing is in all: then it is those that stand out together.
     fn standing_out(&self) -> Vec<StandsOut> {
-        let left = self.base.cleaned(self.evidence);
-        let excess = self.evidence.excess_by_experiment(&left);
+        let together = self.above_floor(&[]);
+        let mut aside = Vec::new();
+        let mut left = together.clone();
+        while !left.is_empty() && 2 * (aside.len() + 1) < self.evidence.experiments {
+            let others_without = |one: usize| {
+                let mut without = aside.clone();
+                without.push(one);
+                let met = self.evidence.by_experiment(&self.base_without(&without));
+                let others = met.iter().enumerate().filter(|(e, _)| !without.contains(e));
+                others.map(|(_, energy)| energy).sum::<f64>() - met[one]
+            };
+            let remaining = (0..self.evidence.experiments).filter(|e| !aside.contains(e));
+            let next = remaining.map(|e| (e, others_without(e))).min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((next, _)) = next else { break };
+            aside.push(next);
+            left = self.above_floor(&aside);
+            left.retain(|run| !aside.contains(&run.experiment));
+        }
+        if !left.is_empty() || aside.is_empty() {
+            return together;
+        }
+        let mut alone = self.above_floor(&aside);
+        alone.retain(|run| aside.contains(&run.experiment));
+        if alone.is_empty() { together } else { alone }
+    }
+
+    /// What the base model leaves when it moves to meet all experiments but some.
+    fn base_without(&self, aside: &[usize]) -> Vec<Vec<f64>> {
+        let nuisance = self.evidence.nuisance_without(&self.base.residual, aside);
+        nuisance.map_or_else(
+            || self.base.cleaned(self.evidence),
+            |nuisance| self.evidence.cleaned(&self.base.residual, &nuisance),
+        )
+    }
+
+    /// Experiments above their own floors while the base model meets all but some.
+    fn above_floor(&self, aside: &[usize]) -> Vec<StandsOut> {
+        let excess = self.evidence.excess_by_experiment(&self.base_without(aside));
         let floors: Vec<Vec<f64>> =
             self.discovery.structures.iter().map(|s| self.evidence.by_experiment(s)).collect();
         let own = |(experiment, (excess, error)): (usize, (f64, f64))| {
@@ -259,6 +317,14 @@ impl<S: Simulator> Search<'_, S> {
         if excess > threshold {
             reasons.push(format!(
                 "{excess:.0} noise units of structure are missing, {threshold:.0} would be the floor, and no known cause explains them"
+            ));
+            return Verdict::Unknown;
+        }
+        let trend = self.trends.along(self.evidence, &self.base.residual);
+        if trend > self.trends.threshold {
+            reasons.push(format!(
+                "the output changes steadily in all runs alike: {trend:.0} noise units along trends, {:.0} would be the floor, and no known cause explains them",
+                self.trends.threshold
             ));
             return Verdict::Unknown;
         }

@@ -57,7 +57,8 @@ impl<'a, S: Simulator> Search<'a, S> {
             Fitter { simulator: discovery.simulator, evidence, candidates: discovery.candidates };
         let base = fitter.refine(Vec::new())?;
         let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
-        let generic = Generic::new(discovery, evidence);
+        let generic = Generic::new(discovery, evidence, discovery.generic);
+        let trends = Generic::new(discovery, evidence, discovery.trends);
         let kept = Mutex::new(Vec::new());
         let columns: Vec<&[Vec<f64>]> = discovery.structures.iter().map(Vec::as_slice).collect();
         let structures = evidence.seen(&columns);
@@ -69,6 +70,7 @@ impl<'a, S: Simulator> Search<'a, S> {
             fitter,
             screened,
             generic,
+            trends,
             base,
             structures,
             structure_energy,
@@ -113,6 +115,7 @@ pub(super) struct Search<'a, S> {
     fitter: Fitter<'a, S>,
     pub(super) screened: Vec<Screened>,
     pub(super) generic: Generic<'a>,
+    pub(super) trends: Generic<'a>,
     pub(super) base: Fitted,
     /// What the base model leaves of the surrogates.
     structures: Vec<Seen<'a>>,

@@ -316,6 +316,25 @@ impl<'a> Evidence<'a> {
         Cholesky::new(own + DMatrix::identity(own.nrows(), own.ncols()))
     }
 
+    /// The nuisance that a residual asks for where some experiments are set aside; none if it cannot be told.
+    pub(crate) fn nuisance_without(
+        &self,
+        residual: &[Vec<f64>],
+        aside: &[usize],
+    ) -> Option<DVector<f64>> {
+        let mut normal = DMatrix::identity(self.width(), self.width());
+        for (_, own) in self.nuisance.iter().enumerate().filter(|(e, _)| !aside.contains(e)) {
+            normal += own;
+        }
+        let mut crosses = DMatrix::zeros(self.width(), 1);
+        for number in 0..self.traces.len() {
+            if !aside.contains(&self.traces[number].experiment) {
+                self.add_crosses(&mut crosses, &[residual], number);
+            }
+        }
+        Some(Cholesky::new(normal)?.solve(&crosses.column(0).clone_owned()))
+    }
+
     /// The nuisance that a residual asks for, the residual being `column + rest shift`.
     pub(crate) fn nuisance_of(
         &self,

@@ -20,8 +20,12 @@ pub(crate) struct Generic<'a> {
 }
 
 impl<'a> Generic<'a> {
-    pub(crate) fn new<S>(discovery: &Discovery<'a, S>, evidence: &Evidence<'_>) -> Self {
-        let columns: Vec<&[Vec<f64>]> = discovery.generic.iter().map(Vec::as_slice).collect();
+    pub(crate) fn new<S>(
+        discovery: &Discovery<'a, S>,
+        evidence: &Evidence<'_>,
+        directions: &'a [Signal],
+    ) -> Self {
+        let columns: Vec<&[Vec<f64>]> = directions.iter().map(Vec::as_slice).collect();
         let directions = evidence.seen(&columns);
         let gram = evidence.inners(&directions.iter().collect::<Vec<_>>());
         let (inverse, rank) = pseudo_inverse(&gram);

@@ -37,6 +37,9 @@ pub struct Discovery<'a, S> {
     /// Directions without a name: what is left along them after the best fit is structure that no
     /// candidate explains.
     pub generic: &'a [Signal],
+    /// Directions that stand for a slow change of the measurement itself, such as a zero that wanders: looked
+    /// at apart, because among all directions without a name one that is certain is lost.
+    pub trends: &'a [Signal],
     /// What the base model leaves of surrogate systems of other kinds with nothing missing.
     pub structures: &'a [Signal],
     /// Bounds of the decisions.

@@ -6,11 +6,13 @@
 //! | 1 | static hysteresis of the slow runs | all reference runs with their creep and relaxation, then the faster measured ones: a diagnosis |
 //! | 2 | the extended actuator | |
 
-use super::base::{BaseModel, mean_square, variance};
+use super::base::{BaseModel, variance};
 use super::causes::{self, Design, StaticHysteresis};
 use super::extended::{LawOfFile, USUAL_DEG_PER_UM};
 use super::simulator::BenchSimulator;
-use super::{Diagnosis, Findings, Question, Record, Records, diagnose, generic, range_of};
+use super::{
+    Diagnosis, Findings, Question, Record, Records, diagnose, directions, range_of, surrogate,
+};
 use crate::SimError;
 use crate::actuator::CaseActuators;
 use crate::case::{ControlActuator, LoadedCase};
@@ -89,7 +91,7 @@ pub fn climb(
     let failed = |source| SimError::Actuator { place: place(), source };
     let all: Vec<&Record> =
         reference.iter().chain(measured.runs.iter().filter(|r| r.is_reference)).collect();
-    let slow: Vec<&Record> = all.iter().copied().filter(|r| frequency_hz(r) <= SLOW_HZ).collect();
+    let slow: Vec<&Record> = all.iter().copied().filter(|r| r.frequency_hz() <= SLOW_HZ).collect();
     if slow.is_empty() {
         let what = format!("reference runs no faster than {SLOW_HZ} Hz");
         return Err(misfit(GapError::TooShort { what, samples: 0, needed: 1 }));
@@ -138,13 +140,6 @@ pub fn climb(
     Ok((Ladder { title: measured.title.clone(), rungs }, found))
 }
 
-/// Frequency of an input, Hz.
-fn frequency_hz(run: &Record) -> f64 {
-    let rates: Vec<f64> = run.input.windows(2).map(|w| (w[1] - w[0]) / run.step_s).collect();
-    let rms = variance(&run.input).sqrt();
-    if rms > 0.0 { mean_square(&rates).sqrt() / rms / std::f64::consts::TAU } else { 0.0 }
-}
-
 /// What a straight line lacks on slow runs.
 fn asked_of_line(
     line: &BaseModel,
@@ -158,7 +153,9 @@ fn asked_of_line(
     let candidates = causes::candidates(&library, &design);
     let simulator = BenchSimulator::new(line, slow.to_vec(), &library, range)?;
     let traces = simulator.traces();
-    let generic = generic(&simulator, line.spread);
+    let generic = directions(&simulator, |input, plain, step_s| {
+        surrogate::generic(input, plain, line.spread, step_s)
+    });
     // one cause at a time: a second would mend the form of the first
     let settings = Settings { most_causes: 1, ..Settings::default() };
     let discovery = Discovery {
@@ -166,6 +163,7 @@ fn asked_of_line(
         simulator: &simulator,
         candidates: &candidates,
         generic: &generic,
+        trends: &[],
         structures: &[],
         settings,
     };

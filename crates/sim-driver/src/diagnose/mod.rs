@@ -163,13 +163,18 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         .iter()
         .map(|s| simulator.on_traces(s))
         .collect();
-    let generic = generic(&simulator, base.spread);
+    let generic = directions(&simulator, |input, plain, step_s| {
+        surrogate::generic(input, plain, base.spread, step_s)
+    });
+    let trends =
+        directions(&simulator, |_, plain, step_s| surrogate::trends(plain, base.spread, step_s));
     let settings = Settings { has_reference, ..Settings::default() };
     let discovery = Discovery {
         traces: &traces,
         simulator: &simulator,
         candidates: &candidates,
         generic: &generic,
+        trends: &trends,
         structures: &structures,
         settings,
     };
@@ -325,12 +330,15 @@ fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
         .fold(given, |(low, high), &u| (low.min(u), high.max(u)))
 }
 
-/// The directions without a name on all traces.
-fn generic(simulator: &BenchSimulator<'_>, spread: f64) -> Vec<Signal> {
+/// Directions on all traces, from input, output of the base model and step of every run.
+fn directions(
+    simulator: &BenchSimulator<'_>,
+    of_run: impl Fn(&[f64], &[f64], f64) -> Vec<Vec<f64>>,
+) -> Vec<Signal> {
     let per_run: Vec<Vec<Vec<f64>>> = (0..simulator.runs.len())
         .map(|number| {
             let (input, plain) = simulator.plain(number);
-            surrogate::generic(input, plain, spread, simulator.runs[number].step_s)
+            of_run(input, plain, simulator.runs[number].step_s)
         })
         .collect();
     let count = per_run.first().map_or(0, Vec::len);

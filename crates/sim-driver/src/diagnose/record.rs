@@ -1,5 +1,6 @@
 //! The records of a diagnosis, in the units of the bench.
 
+use super::base::{mean_square, variance};
 use crate::files::{BenchData, LoopData, RunRole, RunUse};
 
 /// One record: input, output and what else was measured.
@@ -37,6 +38,13 @@ impl Record {
     /// Length, s.
     pub fn duration_s(&self) -> f64 {
         self.step_s * self.input.len() as f64
+    }
+
+    /// Frequency of a sine that moves as fast as the input, for its size, Hz: RMS of the rate over the spread.
+    pub(crate) fn frequency_hz(&self) -> f64 {
+        let rates: Vec<f64> = self.input.windows(2).map(|w| (w[1] - w[0]) / self.step_s).collect();
+        let spread = variance(&self.input).sqrt();
+        if spread > 0.0 { mean_square(&rates).sqrt() / spread / std::f64::consts::TAU } else { 0.0 }
     }
 }
 

@@ -280,6 +280,15 @@ impl Noise {
     }
 }
 
+/// Slow changes of the measurement itself, alike in all runs: a zero and a gain that change at a steady rate.
+pub(crate) fn trends(law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
+    let middle = law.first().copied().unwrap_or_default();
+    let half_s = 0.5 * step_s * law.len() as f64;
+    let since_middle_s: Vec<f64> = (0..law.len()).map(|i| i as f64 * step_s - half_s).collect();
+    let gain = law.iter().zip(&since_middle_s).map(|(h, t)| t * (h - middle) / spread).collect();
+    vec![since_middle_s, gain]
+}
+
 /// Directions without a name, along which structure may be left that no cause explains: powers of
 /// output, rate and their products, lags of them, trends.
 pub(crate) fn generic(inputs: &[f64], law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {

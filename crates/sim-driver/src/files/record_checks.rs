@@ -29,6 +29,8 @@ const UNIT_EXCESS: f64 = 20.0;
 /// Lead of the output from which it cannot be an actuator's, deg.
 const LEAST_LEAD_DEG: f64 = 2.0;
 
+/// Step of the input between two samples that is a jump, as a share of the range.
+const JUMP: f64 = 0.2;
 /// Half-width of the play that tells the path of an input from its noise, as a share of the range.
 const PATH_GAP: f64 = 0.01;
 
@@ -145,6 +147,8 @@ pub(crate) fn check_lag(record: &Record<'_>, problems: &mut Problems) {
 /// ```
 /// The straight line takes off what an open path would add; a loop's area does not feel it. The path is that
 /// of a play of [`PATH_GAP`] of the range: the noise of a finely sampled record would make it long.
+/// Jumps of the input are left out of both: where everything happens between two samples, a recorder that is
+/// one sample late on one channel decides who seems to lead.
 fn lead_deg(input: &[f64], output: &[f64]) -> f64 {
     let n = input.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
@@ -163,10 +167,15 @@ fn lead_deg(input: &[f64], output: &[f64]) -> f64 {
     let (mut area, mut path) = (0.0, 0.0);
     for (i, pair) in input.windows(2).enumerate() {
         let step = pair[1] - pair[0];
-        area += 0.5 * (rest(i) + rest(i + 1)) * step;
         let last = followed;
         followed = followed.min(pair[1] + half_gap).max(pair[1] - half_gap);
-        path += (followed - last).abs();
+        if step.abs() < JUMP * (high - low) {
+            area += 0.5 * (rest(i) + rest(i + 1)) * step;
+            path += (followed - last).abs();
+        }
+    }
+    if path <= 0.0 {
+        return 0.0;
     }
     let share = area * gain.signum() / (path * (yy / n).sqrt());
     let sine = share / (std::f64::consts::SQRT_2 * std::f64::consts::FRAC_PI_4);
@@ -205,6 +214,21 @@ mod tests {
     }
 
     /// A displacement with its noise in place of the command, sampled finely: as clear as without noise.
+    #[test]
+    fn jumps_do_not_tell_who_leads() {
+        // held steps with a creeping answer, the recorder of the command one sample late
+        let level = |i: usize| [0.0, 0.6, -0.4, 1.0, -0.8][(i / 100) % 5];
+        let u: Vec<f64> = (0..1000).map(level).collect();
+        let y: Vec<f64> =
+            (0..1000).map(|i| level(i + 1) * (1.0 + 0.0004 * (i % 100) as f64)).collect();
+        assert!(lead_deg(&u, &y).abs() < 0.5, "{}", lead_deg(&u, &y));
+        // the same of a triangle is a lead: it moves all the time
+        let ramp = |i: usize| (((i % 40) as f64) - 20.0).abs();
+        let u: Vec<f64> = (0..1000).map(ramp).collect();
+        let y: Vec<f64> = (0..1000).map(|i| ramp(i + 1)).collect();
+        assert!(lead_deg(&u, &y) > 5.0, "{}", lead_deg(&u, &y));
+    }
+
     #[test]
     fn noise_does_not_hide_swapped_columns() {
         let (u, y) = sine(8.0, 0.0);

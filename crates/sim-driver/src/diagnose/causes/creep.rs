@@ -1,6 +1,6 @@
 //! Creep beyond that of the reference runs.
 
-use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, amount, logarithmic, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::{LinkageStage, LogCreep};
 
@@ -14,7 +14,7 @@ impl BenchCause for Creep {
             physics: "Slow growth after a move, y = U [1 + rate log10(t / 0.1 s)], beyond the creep of the reference runs.",
             side: Side::Output,
             parameters: vec![
-                linear("rate_per_decade", "1", 0.0, 0.3),
+                amount("rate_per_decade", "1", 0.0, 0.3),
                 shape(logarithmic("from", "s", 1e-3, 3.0)),
             ],
             form_error: FORM_ERROR,

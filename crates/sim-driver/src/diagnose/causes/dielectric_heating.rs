@@ -1,6 +1,6 @@
 //! Warming by dielectric loss.
 
-use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, amount, linear, logarithmic, shape};
 use model_gap::{Cause, Parameter, Side};
 use preisach_dyn::DielectricHeating;
 
@@ -21,7 +21,7 @@ impl BenchCause for Heating {
             side: Side::State,
             parameters: vec![
                 logarithmic("time_constant", "s", 5.0, 3000.0),
-                Parameter { needs, ..linear("coefficient", "1/K", -0.05, 0.5) },
+                Parameter { needs, ..amount("coefficient", "1/K", -0.05, 0.5) },
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
             form_error: FORM_ERROR,

@@ -1,6 +1,6 @@
 //! A larger gain, which no cause of the library brings about.
 
-use super::{BenchCause, Design, FORM_ERROR, Part, linear, singles};
+use super::{BenchCause, Design, FORM_ERROR, Part, amount, singles};
 use model_gap::{Cause, Side};
 
 /// Every output larger by one factor: a sensor set anew, another support, another scale.
@@ -15,7 +15,7 @@ impl BenchCause for GainRise {
             id: "gain-rise",
             physics: "All outputs larger than those of the base model by one factor, y = (1 + rise) h.",
             side: Side::Output,
-            parameters: vec![linear("rise", "1", 0.0, 2.0)],
+            parameters: vec![amount("rise", "1", 0.0, 2.0)],
             form_error: FORM_ERROR,
             fingerprint: "pure gain, no harmonics",
             confused_with: &["sensor-nonlinearity", "load-stiffness"],

@@ -1,6 +1,6 @@
 //! Hysteresis itself: what a model without memory lacks.
 
-use super::{BenchCause, Design, FORM_ERROR, Part, linear, logarithmic, shape};
+use super::{BenchCause, Design, FORM_ERROR, Part, amount, logarithmic, shape};
 use model_gap::{Cause, Side};
 
 /// Static hysteresis, a candidate where the base model has none.
@@ -16,7 +16,7 @@ impl BenchCause for StaticHysteresis {
             physics: "The output depends on where the input turned, at any speed: y = h - share (h - mean of plays of h).",
             side: Side::State,
             parameters: vec![
-                linear("share", "1", 0.0, 1.5),
+                amount("share", "1", 0.0, 1.5),
                 shape(logarithmic(
                     "widest",
                     "um",

@@ -1,6 +1,6 @@
 //! Stiffness of the load.
 
-use super::{BenchCause, Design, FORM_ERROR, Part, linear, singles};
+use super::{BenchCause, Design, FORM_ERROR, Part, amount, singles};
 use model_gap::{Cause, Side};
 use preisach_dyn::{LinkageStage, LoadStiffness};
 
@@ -16,7 +16,7 @@ impl BenchCause for Load {
             id: "load-stiffness",
             physics: "A load spring takes part of the stroke, y = h k_a / (k_a + k_load).",
             side: Side::Output,
-            parameters: vec![linear("stiffness_ratio", "1", 0.0, 2.0)],
+            parameters: vec![amount("stiffness_ratio", "1", 0.0, 2.0)],
             form_error: FORM_ERROR,
             fingerprint: "pure gain, no harmonics",
             confused_with: &["dielectric-heating", "creep", "sensor-nonlinearity"],

@@ -242,10 +242,16 @@ fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parame
         high,
         scale: Scale::Linear,
         is_shape: false,
+        is_amount: false,
         needs: None,
         held: None,
         step: None,
     }
+}
+
+/// An amount of an effect, which is none at zero.
+fn amount(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
+    Parameter { is_amount: true, ..linear(name, unit, low, high) }
 }
 
 /// A parameter that only shapes the effect.

@@ -1,6 +1,6 @@
 //! Characteristic of the sensor.
 
-use super::{BenchCause, Design, Part, linear, shape};
+use super::{BenchCause, Design, Part, amount, linear, shape};
 use model_gap::{Cause, Side};
 use preisach_dyn::{Nonlinearity, NonlinearityShape, SensorStage};
 
@@ -24,7 +24,7 @@ impl BenchCause for SensorNonlinearity {
             physics: "Error of the sensor's characteristic, y = x + amplitude (x^3 - c x) over the largest of that, within +-250 um.",
             side: Side::Sensor,
             parameters: vec![
-                linear("amplitude", "um", -0.2 * HALF_RANGE_UM, 0.2 * HALF_RANGE_UM),
+                amount("amplitude", "um", -0.2 * HALF_RANGE_UM, 0.2 * HALF_RANGE_UM),
                 shape(linear("straight", "1", 0.0, 1.0)),
             ],
             form_error: CHARACTERISTIC,

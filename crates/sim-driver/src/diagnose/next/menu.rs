@@ -125,9 +125,13 @@ fn slow_and_small(span: Span) -> Vec<Experiment> {
         ),
         one(
             "zero-input-record",
-            "8 s without input",
+            "8 s at a constant input, then a pulse of a quarter of the half range for 0.1 s",
             1e-3,
-            span.path(&[(0.0, 0.0), (8.0, 0.0)], 1e-3),
+            // the pulse shows that the columns are the right ones: a record that never moves is refused
+            span.path(
+                &[(0.0, 0.0), (8.0, 0.0), (8.005, 0.24), (8.1, 0.24), (8.105, 0.0), (8.2, 0.0)],
+                1e-3,
+            ),
         ),
     ]
 }

@@ -238,6 +238,19 @@ fn warmth(bench: &Bench<'_>, rivals: &[Rival], record: &Record) -> Result<Vec<f6
     simulator.rise_k(heat)
 }
 
+/// Frequency from which a run carries what the multisines of 5 to 181 Hz would, Hz: they move as a sine of
+/// 106 Hz does.
+const WIDE_HZ: f64 = 50.0;
+
+/// Whether a run carries high frequencies all along: each quarter of it, because the edges of a single step
+/// are fast too.
+fn is_wide(run: &Record) -> bool {
+    let quarter = (run.input.len() / 4).max(1);
+    run.input
+        .chunks_exact(quarter)
+        .all(|part| Record { input: part.to_vec(), ..run.clone() }.frequency_hz() > WIDE_HZ)
+}
+
 /// What is usual where no explanations are to be told apart.
 fn usual<'m>(
     finding: &Finding,
@@ -256,6 +269,9 @@ fn usual<'m>(
             "amplitude-sweep"
         } else if bench.design.only_hz.is_some() {
             "frequency-sweep"
+        } else if bench.runs.iter().any(|run| is_wide(run)) {
+            // high frequencies were measured already: what is left to see is slow
+            "hold-steps-100s"
         } else {
             "multisine-5-181Hz"
         })
@@ -290,6 +306,27 @@ mod tests {
                 assert!(menu.iter().any(|e| e.id == *id), "{}: {id}", cause.id);
             }
         }
+    }
+
+    #[test]
+    fn a_band_is_wide_and_a_fast_edge_is_not() {
+        let span = Span { middle: 0.0, half: 80.0 };
+        let run = |input: Vec<f64>| Record {
+            id: "a".into(),
+            is_reference: false,
+            step_s: 5e-4,
+            output: input.clone(),
+            input,
+            amplifier: None,
+            temperature: None,
+            load: None,
+        };
+        // RMS of equal lines from 5 to 181 Hz: ((5^2 + 5 181 + 181^2) / 3)^(1/2) = 106 Hz
+        let band = run(span.multisine((5.0, 181.0), 2.0, 0.35, 2.0, 5e-4));
+        assert!((band.frequency_hz() - 106.0).abs() < 3.0, "{}", band.frequency_hz());
+        assert!(is_wide(&band));
+        assert!(!is_wide(&run(span.multisine((1.0, 35.0), 0.5, 0.7, 3.0, 5e-4))));
+        assert!(!is_wide(&run(span.steps(&[0.5], 0.5, 5e-4))));
     }
 
     #[test]
