@@ -143,7 +143,17 @@ struct Walk {
     went_back: bool,
     /// Part of a step that is gone: halved wherever it would close a circle.
     share: f64,
+    /// What was asked for at the last states in a row that neither brought nor promised a fall worth the name, V.
+    quiet_volt: Vec<f64>,
+    /// Steps taken when a state was last looked at for that.
+    looked_at: Option<usize>,
 }
+
+/// Steps that have to bring nothing, one after the other, for a loop that wanders along a flat to end.
+pub const FLAT_STEPS: usize = 5;
+/// Part of the first of these steps that the last one asks for: below it they become shorter, and the loop will
+/// converge.
+const WANDERING: f64 = 0.5;
 
 impl Walk {
     fn from(start: &ControlStep, taken: Taken) -> Self {
@@ -162,7 +172,27 @@ impl Walk {
             hill: None,
             went_back: false,
             share: 1.0,
+            quiet_volt: Vec::new(),
+            looked_at: None,
         }
+    }
+
+    /// Takes note of a state newly reached; whether the loop wanders along a flat: several steps in a row have brought
+    /// no more than `fall`, none is promised, and what they ask for does not become less.
+    fn wanders(&mut self, fall: f64) -> bool {
+        let cost = |step: &ControlStep| step.cost.total();
+        let brought = match self.steps.as_slice() {
+            [.., before, here] => cost(before) - cost(here),
+            _ => f64::INFINITY,
+        };
+        if brought > fall || self.end.promise > fall {
+            self.quiet_volt.clear();
+            return false;
+        }
+        self.quiet_volt.push(self.end.asked_volt);
+        let quiet = self.quiet_volt.len();
+        quiet >= FLAT_STEPS
+            && self.quiet_volt[quiet - 1] > WANDERING * self.quiet_volt[quiet - FLAT_STEPS]
     }
 
     fn take(&mut self, step: ControlStep) {
@@ -329,6 +359,11 @@ impl FeedbackController {
             }
             if walk.steps.len() - walk.before >= self.settings.max_steps {
                 return Ok(Outcome::StepLimit);
+            }
+            let is_new = known.is_local() && walk.looked_at != Some(walk.steps.len());
+            walk.looked_at = Some(walk.steps.len());
+            if is_new && walk.wanders(self.settings.cost_tolerance * start_cost) {
+                return Ok(Outcome::Flat);
             }
             if limits.is_some() && walk.turns_back(&step) {
                 // out of limits that move with the control and back again: what is sought lies between

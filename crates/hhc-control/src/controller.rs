@@ -208,6 +208,11 @@ impl<'a> Knowledge<'a> {
         matches!(self.how, How::Global | How::Renewed { .. })
     }
 
+    /// Whether T is that of the present control, found anew at every step.
+    pub(crate) fn is_local(&self) -> bool {
+        matches!(self.how, How::Local { .. })
+    }
+
     /// Identifies a constant T again about a state that it does not lead away from; false where it may not, or
     /// where the range leaves no room.
     pub(crate) fn renew<P: Plant>(

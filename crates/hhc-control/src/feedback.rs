@@ -184,6 +184,9 @@ pub enum Outcome {
     OutOfRange,
     /// The allowed number of steps was taken, still moving.
     StepLimit,
+    /// Five steps in a row have brought no fall of the cost worth the name, none is promised, and what they ask for
+    /// does not become less: the control wanders along a flat of the cost. With a T that is found anew at every step.
+    Flat,
 }
 
 /// A recorded control run.

@@ -65,6 +65,7 @@ mod t_matrix;
 pub use adaptive::AdaptiveSettings;
 pub use bias::{BiasSolution, BiasSolver};
 pub use cone::{CertifiedCone, ConeStatus, ConstrainedOptimum, KktCertificate, KktResidual};
+pub use control_loop::FLAT_STEPS;
 pub use controller::Controller;
 pub use cost::{Cost, HUB_LOAD_NAMES, LoadWeights, load_harmonics, reduction_percent};
 pub use error::{ControlError, PlantCall, RunError};

@@ -105,7 +105,8 @@ pub struct EndLine {
     pub size_volt: f64,
     /// Fall of the cost that the whole step promises.
     pub promise: f64,
-    /// Why a loop that is not converged came to its end: `step-limit`, `stalled`, `out-of-range`; `unverified`, its
+    /// Why a loop that is not converged came to its end: `step-limit`, `stalled`, `out-of-range`; `flat`, steps promise and
+    /// bring nothing any more, but do not become shorter; `unverified`, its
     /// step is small but nothing was left to look at T with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
@@ -159,6 +160,7 @@ impl EndLine {
             (Outcome::Stalled, _) => Some("stalled"),
             (Outcome::OutOfRange, _) => Some("out-of-range"),
             (Outcome::StepLimit, _) => Some("step-limit"),
+            (Outcome::Flat, _) => Some("flat"),
         };
         Self {
             seen_loads: end.seen_loads.clone(),

@@ -11,7 +11,7 @@ use crate::raw::{CertificateLine, ControlRecord, EndLine, FlapRecord, Setting, l
 use crate::results::{ControlLine, FlapLine, Forecast, HistoryLine, RunResult};
 use crate::study::{HingePower, cost_tolerance};
 use hhc_control::{
-    Controller, Cost, FeedbackLaw, LoadWeights, LoopEnd, TMatrix, lag_deg, lag_loss,
+    Controller, Cost, FLAT_STEPS, FeedbackLaw, LoadWeights, LoopEnd, TMatrix, lag_deg, lag_loss,
 };
 use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
 use rotor_response::HingeMoment;
@@ -244,8 +244,8 @@ impl ControlLine {
 fn controller_name(actuator: ControlActuator, choice: ControllerChoice) -> &'static str {
     match (actuator, choice) {
         (ControlActuator::Ignored | ControlActuator::Inverse, _) => "none",
-        (ControlActuator::Ideal, _) | (_, ControllerChoice::Global) => "global",
         (_, ControllerChoice::Local) => "local",
+        (ControlActuator::Ideal, _) | (_, ControllerChoice::Global) => "global",
         (_, ControllerChoice::Adaptive) => "adaptive",
     }
 }
@@ -260,6 +260,7 @@ fn ended(
     let control = &setting.control;
     let step_volt = Vec::new();
     let way = match (actuator, control.controller) {
+        (_, ControllerChoice::Local) => Controller::Local { step_volt },
         (ControlActuator::Ideal, _) => Controller::Global,
         (_, ControllerChoice::Global) => Controller::Renewed { step_volt, renewals: 0 },
         _ => Controller::Local { step_volt },
@@ -271,10 +272,20 @@ fn ended(
         (true, None) => "converged",
         (false, Some("step-limit")) if history.len() > control.max_steps => "step-limit",
         (false, Some("out-of-range")) => "out-of-range",
+        (false, Some("flat")) if is_flat(end, history, tolerances[1] * start_cost) => "flat",
         (true, Some(_)) | (false, Some("stalled")) => "stalled",
         (false, _) => "not converged",
     }
     .to_owned()
+}
+
+/// Whether what a loop promises at its end and what its last steps brought are both within a fall of the cost.
+fn is_flat(end: &EndLine, history: &[HistoryLine], fall: f64) -> bool {
+    let costs: Vec<f64> = history.iter().map(|step| step.j_loads + step.j_control).collect();
+    let last = costs.len().saturating_sub(FLAT_STEPS + 1);
+    end.promise <= fall
+        && costs.len() > FLAT_STEPS
+        && costs[last..].windows(2).all(|pair| pair[0] - pair[1] <= fall)
 }
 
 /// Stroke limit of each harmonic, deg: as given, or what the actuator makes of the voltage that belongs to it.
@@ -504,4 +515,33 @@ fn clipped(control_volt: &[f64], stroke_volt: &[f64]) -> Vec<f64> {
             [part * u[0], part * u[1]]
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FLAT_STEPS, is_flat};
+    use crate::raw::EndLine;
+    use crate::results::HistoryLine;
+
+    #[test]
+    fn a_flat_end_is_told_from_the_last_costs_and_the_promise() {
+        let history = |falls: &[f64]| -> Vec<HistoryLine> {
+            let mut j_loads = 1.0;
+            let mut lines = vec![HistoryLine { j_loads, ..HistoryLine::default() }];
+            for fall in falls {
+                j_loads -= fall;
+                lines.push(HistoryLine { j_loads, ..HistoryLine::default() });
+            }
+            lines
+        };
+        let end = |promise: f64| EndLine { promise, ..EndLine::default() };
+        let mut falls = vec![0.5];
+        falls.extend([1e-6; FLAT_STEPS]);
+        assert!(is_flat(&end(1e-6), &history(&falls), 1e-5));
+        // a promise, or a fall among the last steps, says that it goes on
+        assert!(!is_flat(&end(1e-4), &history(&falls), 1e-5));
+        falls[2] = 1e-3;
+        assert!(!is_flat(&end(1e-6), &history(&falls), 1e-5));
+        assert!(!is_flat(&end(1e-6), &history(&[1e-6; 2]), 1e-5));
+    }
 }

@@ -103,3 +103,65 @@ fn a_loop_that_halves_learns_how_far_to_trust_its_t() {
         }
     }
 }
+
+/// `Z = (u_c - 1, rest)`: the cost does not depend on `u_s`, but the T that is offered says it does, one way and then the
+/// other, as differences over the steps of a memory may.
+struct Level {
+    layout: ControlLayout,
+    rest: f64,
+    asked: u32,
+}
+
+impl Plant for Level {
+    type Error = Infallible;
+
+    fn layout(&self) -> &ControlLayout {
+        &self.layout
+    }
+
+    fn measure(&mut self, u: &[f64]) -> Result<Measurement, Infallible> {
+        Ok(Measurement {
+            hub_loads: vec![u[0] - 1.0, self.rest],
+            flap_motion_deg: vec![Harmonic { cosine: u[0], sine: u[1] }],
+            mean_flap_deg: vec![0.0],
+        })
+    }
+
+    fn strokes_deg(&mut self, u: &[f64]) -> Result<Vec<f64>, Infallible> {
+        Ok(vec![u[0].hypot(u[1])])
+    }
+
+    fn stroke_limits_deg(&self) -> Vec<f64> {
+        vec![f64::INFINITY]
+    }
+
+    fn linearised_t(&mut self, _: &[f64]) -> Result<Option<TMatrix>, Infallible> {
+        self.asked += 1;
+        let slope = if self.asked.is_multiple_of(3) { 1e-2 } else { -1e-2 };
+        Ok(Some(TMatrix::from_columns(&[vec![1.0, 0.0], vec![0.0, slope]]).unwrap()))
+    }
+}
+
+#[test]
+fn a_loop_that_wanders_along_a_flat_says_so() {
+    let settings = FeedbackSettings { cost_tolerance: 1e-5, ..FeedbackSettings::default() };
+    let run = |rest: f64| {
+        let layout = ControlLayout::new(1, vec![2]).unwrap();
+        let mut plant = Level { layout, rest, asked: 0 };
+        let t0 = plant.linearised_t(&[0.0, 0.0]).unwrap().unwrap();
+        FeedbackController::new(&t0, &LoadWeights::Identity, settings.clone())
+            .unwrap()
+            .with_controller(Controller::Local { step_volt: vec![0.01; 2] })
+            .unwrap()
+            .run(&mut plant, 0.0)
+            .unwrap()
+    };
+    // 1e-6 of the starting cost is promised at every step, and 0.1 V asked for
+    let flat = run(1e-3);
+    assert_eq!((flat.outcome, flat.halvings), (Outcome::Flat, 0));
+    assert!((5..=8).contains(&flat.steps.len()), "{}", flat.steps.len());
+    assert!((flat.last().control_volt[0] - 1.0).abs() < 1e-12);
+    assert!(flat.end.asked_volt > 0.05, "{}", flat.end.asked_volt);
+    // what promises more is followed
+    assert_ne!(run(1e-2).outcome, Outcome::Flat);
+}

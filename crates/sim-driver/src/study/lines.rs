@@ -97,5 +97,6 @@ pub(super) fn outcome_name(outcome: Option<Outcome>) -> &'static str {
         Some(Outcome::Stalled) => "stalled",
         Some(Outcome::OutOfRange) => "out-of-range",
         Some(Outcome::StepLimit) => "step-limit",
+        Some(Outcome::Flat) => "flat",
     }
 }

@@ -7,7 +7,7 @@ use crate::raw::{Setting, loads_cost};
 use crate::results::HubLoads;
 use hhc_control::{
     AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackSettings, LoadWeights,
-    Outcome, Plant, RunError, TMatrix, identify_t, reduction_percent,
+    Outcome, Plant, PlantCall, RunError, TMatrix, identify_t, reduction_percent,
 };
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
@@ -259,9 +259,7 @@ pub fn control_all(
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<ControlStudy>, StudyError> {
     let control = &case.control;
-    let learns = control.controller == ControllerChoice::Local
-        && control.actuators.contains(&ControlActuator::Hysteretic);
-    if learns && !control.harmonics.is_empty() {
+    if control.controller == ControllerChoice::Local && !control.harmonics.is_empty() {
         // made once before the sets run side by side; a failure is that of the set that needs it
         let _ = rotor.authority();
     }
@@ -336,7 +334,7 @@ impl ControlSet<'_> {
         let control = &self.case.control;
         plant.with_power(control.power_limit_watt, control.power_weight_per_watt).map_err(
             |source| {
-                let call = hhc_control::PlantCall::Linearise { control_volt: Vec::new() };
+                let call = PlantCall::Linearise { control_volt: Vec::new() };
                 self.failed(actuator, RunError::Plant { call, history: Vec::new(), source })
             },
         )
@@ -448,11 +446,20 @@ impl ControlSet<'_> {
         let failed = |e| self.failed(actuator, e);
         let control = &self.case.control;
         let step_volt = self.step_volts(&plant);
-        let t = identify_t(&mut plant, &step_volt).map_err(failed)?;
-        // the ideal actuator has one T everywhere
-        let way = match actuator {
-            ControlActuator::Ideal => Controller::Global,
-            _ => self.way(control.controller, step_volt),
+        let way = match (actuator, control.controller) {
+            // the ideal actuator has nearly one T everywhere: at limits that bind even the rotor's own bend shows
+            (ControlActuator::Ideal, ControllerChoice::Global | ControllerChoice::Adaptive) => {
+                Controller::Global
+            }
+            (_, choice) => self.way(choice, step_volt.clone()),
+        };
+        let t = match way {
+            // T of this controller is that of the linearised rotor at every control, and at none
+            Controller::Local { .. } => plant.t_at_rest(self.step_volt()).map_err(|source| {
+                let call = PlantCall::Linearise { control_volt: plant.layout().zero() };
+                failed(RunError::Plant { call, history: Vec::new(), source })
+            })?,
+            _ => identify_t(&mut plant, &step_volt).map_err(failed)?,
         };
         let holds_t = matches!(way, Controller::Renewed { .. });
         let cost_tolerance = cost_tolerance(&way, control.effort);

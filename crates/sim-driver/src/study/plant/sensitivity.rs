@@ -58,7 +58,13 @@ impl RotorPlant {
         let loads = |motions: &[Vec<HarmonicSeries>]| {
             Ok(self.rotor.loads_along(angles_rad(&state.flaps), &state.rotor, motions)?)
         };
-        self.t_of_motions(loads, control_volt)
+        self.t_of_motions(loads, &self.tangents_at(control_volt)?)
+    }
+
+    /// Change of the motion of every flap with its controls, per V.
+    fn tangents_at(&self, control_volt: &[f64]) -> Result<Vec<Vec<FlapMotion>>, PlantError> {
+        let each = self.voltages(control_volt)?;
+        each.par_iter().map(|voltages| self.tangent(voltages)).collect()
     }
 
     /// Change of the motion of a flap with its controls, per V.
@@ -106,27 +112,22 @@ impl RotorPlant {
         })
     }
 
-    /// T about a control vector from what its controls make of the flaps: load per V of each motion, with the loads
-    /// that stand for the power.
+    /// T from what the controls of every flap make of its motion, per V: load per V of each, with the loads that
+    /// stand for the power.
     fn t_of_motions(
         &self,
         loads: impl FnOnce(&[Vec<HarmonicSeries>]) -> Result<Vec<[f64; 12]>, PlantError>,
-        control_volt: &[f64],
+        tangents: &[Vec<FlapMotion>],
     ) -> Result<TMatrix, PlantError> {
-        let tangents = self
-            .voltages(control_volt)?
-            .par_iter()
-            .map(|voltages| self.tangent(voltages))
-            .collect::<Result<Vec<_>, PlantError>>()?;
         let rest = vec![HarmonicSeries::zero(0); tangents.len()];
         let motions: Vec<Vec<HarmonicSeries>> = tangents
-            .into_iter()
+            .iter()
             .enumerate()
             .flat_map(|(flap, tangent)| {
                 let rest = &rest;
-                tangent.into_iter().map(move |along| {
+                tangent.iter().map(move |along| {
                     let mut motion = rest.clone();
-                    motion[flap] = along.flap_deg;
+                    motion[flap] = along.flap_deg.clone();
                     motion
                 })
             })
@@ -145,6 +146,25 @@ impl RotorPlant {
         &self,
         control_volt: &[f64],
     ) -> Result<TMatrix, PlantError> {
+        self.t_of_linear_rotor(&self.tangents_at(control_volt)?)
+    }
+
+    /// T about zero control of the rotor linearised there, the actuators by central differences of the step that
+    /// eq. (8) takes: at rest the tangent of a hysteretic actuator is not what it does at that step.
+    ///
+    /// # Errors
+    /// As [`Self::t_about_trim`].
+    pub(in crate::study) fn t_at_rest(&self, step_volt: f64) -> Result<TMatrix, PlantError> {
+        let at_rest = self.voltages(&self.layout.zero())?;
+        let tangents: Vec<Vec<FlapMotion>> = at_rest
+            .par_iter()
+            .map(|voltages| self.drive.tangent(voltages, step_volt))
+            .collect::<Result<_, _>>()?;
+        self.t_of_linear_rotor(&tangents)
+    }
+
+    /// T of the rotor linearised about its trim.
+    fn t_of_linear_rotor(&self, tangents: &[Vec<FlapMotion>]) -> Result<TMatrix, PlantError> {
         let authority = self.rotor.authority()?;
         let loads = |motions: &[Vec<HarmonicSeries>]| {
             let each = motions.iter().map(|flaps| {
@@ -157,6 +177,6 @@ impl RotorPlant {
             });
             Ok(each.collect())
         };
-        self.t_of_motions(loads, control_volt)
+        self.t_of_motions(loads, tangents)
     }
 }
