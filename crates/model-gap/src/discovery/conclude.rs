@@ -70,14 +70,8 @@ impl<S: Simulator> Search<'_, S> {
         } else if !gains_surely {
             reasons.push("held out it may gain nothing: the name is tentative".into());
         }
-        let undetermined = causes.iter().find_map(|found| self.undetermined(found));
-        let is_undetermined = undetermined.is_some();
-        reasons.extend(undetermined);
-        let wrong_name = !gains
-            || is_undetermined
-            || explained < 0.5
-            || whole < LEAST_SHARE
-            || worst_drift > WRONG_NAME;
+        let wrong_name =
+            !gains || explained < 0.5 || whole < LEAST_SHARE || worst_drift > WRONG_NAME;
         if wrong_name && !chosen.is_empty() && before <= self.generic.threshold {
             reasons.push("what is left is within the floor: the name is dropped".into());
             let base = self.base.clone();
@@ -159,7 +153,8 @@ impl<S: Simulator> Search<'_, S> {
             guessed.map(|needs| format!("without {needs} a name that needs it is tentative"));
         let not_excluded = causes.iter().find_map(|found| self.not_excluded(found));
         let open_ended = causes.iter().find_map(|found| self.open_ended(found));
-        [guessed, not_excluded, open_ended].into_iter().flatten().collect()
+        let undetermined = causes.iter().find_map(|found| self.undetermined(found));
+        [guessed, not_excluded, open_ended, undetermined].into_iter().flatten().collect()
     }
 
     /// What speaks against the parameters of fitted effects: ends of ranges, drift from experiment to
@@ -215,7 +210,7 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     /// What is said of a cause none of whose parameters is known: each interval holds no effect at all, or the
-    /// whole range. Such a cause mends the misfit without saying anything.
+    /// whole range. Such a cause mends the misfit, but what it says of the system may be nothing.
     fn undetermined(&self, found: &Found) -> Option<String> {
         let cause = &self.discovery.candidates[found.candidate].cause;
         let own = found.parameters.iter().zip(&cause.parameters);
@@ -223,7 +218,7 @@ impl<S: Simulator> Search<'_, S> {
         judged.peek()?;
         judged
             .all(|(value, parameter)| parameter.says_nothing(value.ci95))
-            .then(|| format!("no parameter of {} is determined: the name says nothing", cause.id))
+            .then(|| format!("no parameter of {} is determined: the name is tentative", cause.id))
     }
 
     /// What is said of a parameter whose interval reaches an end of its range: an effect of such a kind was

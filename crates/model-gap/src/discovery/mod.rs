@@ -82,7 +82,7 @@ impl Default for Settings {
             parameter_penalty: 3.0,
             separation: 12.0,
             has_reference: true,
-            weak_effect: 0.015,
+            weak_effect: 0.01,
             resamplings: 1000,
         }
     }

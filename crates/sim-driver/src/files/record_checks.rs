@@ -31,6 +31,8 @@ const LEAST_LEAD_DEG: f64 = 2.0;
 
 /// Step of the input between two samples that is a jump, as a share of the range.
 const JUMP: f64 = 0.2;
+/// Part of the path of the input that has to lie outside its jumps, for it to tell who leads.
+const LEAST_PATH: f64 = 0.5;
 /// Half-width of the play that tells the path of an input from its noise, as a share of the range.
 const PATH_GAP: f64 = 0.01;
 
@@ -148,7 +150,7 @@ pub(crate) fn check_lag(record: &Record<'_>, problems: &mut Problems) {
 /// The straight line takes off what an open path would add; a loop's area does not feel it. The path is that
 /// of a play of [`PATH_GAP`] of the range: the noise of a finely sampled record would make it long.
 /// Jumps of the input are left out of both: where everything happens between two samples, a recorder that is
-/// one sample late on one channel decides who seems to lead.
+/// one sample late on one channel decides who seems to lead. What is left of an input that is mostly jumps tells nothing.
 fn lead_deg(input: &[f64], output: &[f64]) -> f64 {
     let n = input.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
@@ -164,17 +166,18 @@ fn lead_deg(input: &[f64], output: &[f64]) -> f64 {
     let (low, high) = limits(input);
     let half_gap = PATH_GAP * (high - low);
     let mut followed = input.first().copied().unwrap_or_default();
-    let (mut area, mut path) = (0.0, 0.0);
+    let (mut area, mut path, mut whole) = (0.0, 0.0, 0.0);
     for (i, pair) in input.windows(2).enumerate() {
         let step = pair[1] - pair[0];
         let last = followed;
         followed = followed.min(pair[1] + half_gap).max(pair[1] - half_gap);
+        whole += (followed - last).abs();
         if step.abs() < JUMP * (high - low) {
             area += 0.5 * (rest(i) + rest(i + 1)) * step;
             path += (followed - last).abs();
         }
     }
-    if path <= 0.0 {
+    if path <= LEAST_PATH * whole {
         return 0.0;
     }
     let share = area * gain.signum() / (path * (yy / n).sqrt());

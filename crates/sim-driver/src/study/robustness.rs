@@ -254,8 +254,9 @@ fn under(
     let set = ControlSet::new(case, rotor, drives, &harmonics)?;
     let plant = set.plant(ControlActuator::Hysteretic)?;
     let step_volt = set.step_volts(&plant);
-    let t0 = identify_t(&mut plant.clone(), &step_volt)
-        .map_err(|source| set.failed(ControlActuator::Hysteretic, source))?;
+    let failed = |source| set.failed(ControlActuator::Hysteretic, source);
+    let t0 = identify_t(&mut plant.clone(), &step_volt).map_err(failed)?;
+    let t_at_rest = set.t_at_rest(&plant).map_err(failed)?;
     let baseline = rotor.trim().rotor.hub.harmonic(case.blades);
     let each: Vec<(Disturbance, (ControllerChoice, EffortChoice))> = disturbances
         .into_iter()
@@ -264,6 +265,7 @@ fn under(
     let flight = Flight {
         set: &set,
         t0,
+        t_at_rest,
         step_volt,
         rms: (baseline.iter().map(|z| z * z).sum::<f64>() / baseline.len() as f64).sqrt(),
         setting: Setting::of_case(case, &HubLoads::from_parts(baseline)),
@@ -284,7 +286,9 @@ fn under(
 struct Flight<'a> {
     set: &'a ControlSet<'a>,
     plant: RotorPlant,
+    /// By differences, and of the linearised rotor.
     t0: TMatrix,
+    t_at_rest: TMatrix,
     step_volt: Vec<f64>,
     baseline: [f64; LOADS],
     rms: f64,
@@ -304,7 +308,11 @@ impl Flight<'_> {
             }
             way => way,
         };
-        let wrong = wrong_t(&self.t0, answers.t_gain, answers.t_phase_rad)?;
+        let t0 = match choice {
+            ControllerChoice::Local => &self.t_at_rest,
+            ControllerChoice::Global | ControllerChoice::Adaptive => &self.t0,
+        };
+        let wrong = wrong_t(t0, answers.t_gain, answers.t_phase_rad)?;
         let controller = self.set.controller(&wrong, way, effort)?;
         let mut plant = Answered { plant: self.plant.clone(), answers };
         let ended = close_loop(&controller, &mut plant, effort);

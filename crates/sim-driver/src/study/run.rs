@@ -356,6 +356,14 @@ impl ControlSet<'_> {
         vec![self.step_volt(); plant.layout().len()]
     }
 
+    /// T0 of the local controller: its T is that of the linearised rotor at every control, and so at none.
+    pub(super) fn t_at_rest(&self, plant: &RotorPlant) -> Result<TMatrix, RunError<PlantError>> {
+        plant.t_at_rest(self.step_volt()).map_err(|source| {
+            let call = PlantCall::Linearise { control_volt: plant.layout().zero() };
+            RunError::Plant { call, history: Vec::new(), source }
+        })
+    }
+
     /// How a controller of the case knows T.
     pub(super) fn way(&self, choice: ControllerChoice, step_volt: Vec<f64>) -> Controller {
         match choice {
@@ -454,11 +462,7 @@ impl ControlSet<'_> {
             (_, choice) => self.way(choice, step_volt.clone()),
         };
         let t = match way {
-            // T of this controller is that of the linearised rotor at every control, and at none
-            Controller::Local { .. } => plant.t_at_rest(self.step_volt()).map_err(|source| {
-                let call = PlantCall::Linearise { control_volt: plant.layout().zero() };
-                failed(RunError::Plant { call, history: Vec::new(), source })
-            })?,
+            Controller::Local { .. } => self.t_at_rest(&plant).map_err(failed)?,
             _ => identify_t(&mut plant, &step_volt).map_err(failed)?,
         };
         let holds_t = matches!(way, Controller::Renewed { .. });
