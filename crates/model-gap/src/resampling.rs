@@ -39,13 +39,24 @@ impl NoiseDraw {
 
     /// Noise drawn again in blocks from anywhere in a record (moving-block bootstrap: H. R. Kuensch,
     /// Annals of Statistics 17 (1989)); the same for the same seed.
+    ///
+    /// The mean that noise was taken about has taken a part of the mean of every block with it: of `L` samples drawn
+    /// together from a window of `W`, the variance of their mean is `1 - L/W` of what it was. It is given back, or what
+    /// feels the slow part of noise alone, as creep does, would be called better known than it is.
     pub fn again(self, noise: &[f64], seed: u64) -> Vec<f64> {
         let n = noise.len();
+        let together = self.together.max(1).min(n.max(1));
+        let window = (2 * self.half_window + 1) as f64;
+        let kept = 1.0 - together as f64 / window;
+        // what is smoother than a window narrower than the block stays out on purpose
+        let lost = if kept > 0.0 { 1.0 / kept.sqrt() - 1.0 } else { 0.0 };
         let mut random = SplitMix(seed);
-        let mut drawn = Vec::with_capacity(n + self.together);
+        let mut drawn = Vec::with_capacity(n + together);
         while drawn.len() < n {
-            let first = random.below(n.saturating_sub(self.together) + 1);
-            drawn.extend(noise[first..].iter().take(self.together.max(1)));
+            let first = random.below(n.saturating_sub(together) + 1);
+            let block = &noise[first..first + together];
+            let mean = block.iter().sum::<f64>() / together as f64;
+            drawn.extend(block.iter().map(|v| v + lost * mean));
         }
         drawn.truncate(n);
         drawn
@@ -110,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_broad_window_keeps_the_slow_part_of_noise() {
-        for rho in [0.0, 0.9] {
+        for (rho, least) in [(0.0, 0.93), (0.9, 0.7)] {
             let noise = noise(40_000, rho);
             let broad = NoiseDraw::BROAD;
             let drawn = broad.again(&broad.noise_of(&noise), 3);
@@ -119,7 +130,8 @@ mod tests {
                     v.chunks_exact(span).map(|c| c.iter().sum::<f64>().powi(2)).sum::<f64>()
                 };
                 let ratio = energy(&drawn) / energy(&noise);
-                assert!((0.55..1.15).contains(&ratio), "{ratio} over {span} at {rho}");
+                println!("{ratio} over {span} at {rho}");
+                assert!((least..1.15).contains(&ratio), "{ratio} over {span} at {rho}");
             }
         }
     }
