@@ -253,14 +253,16 @@ impl<S: Simulator> Search<'_, S> {
     /// are met best is set aside, the base model moves back, and so on until no other stands out. Where that
     /// sets aside half of them, what is missing is in all: then it is those that stand out together.
     fn standing_out(&self) -> Vec<StandsOut> {
-        let together = self.above_floor(&[]);
+        let products = self.evidence.output_products(&self.base.residual);
+        let left_without = |aside: &[usize]| self.evidence.left_without(&products, aside);
+        let together = self.above_floor(&left_without(&[]));
         let mut aside = Vec::new();
         let mut left = together.clone();
         while !left.is_empty() && 2 * (aside.len() + 1) < self.evidence.experiments {
             let others_without = |one: usize| {
                 let mut without = aside.clone();
                 without.push(one);
-                let met = self.evidence.by_experiment(&self.base_without(&without));
+                let met = left_without(&without);
                 let others = met.iter().enumerate().filter(|(e, _)| !without.contains(e));
                 others.map(|(_, energy)| energy).sum::<f64>() - met[one]
             };
@@ -268,29 +270,20 @@ impl<S: Simulator> Search<'_, S> {
             let next = remaining.map(|e| (e, others_without(e))).min_by(|a, b| a.1.total_cmp(&b.1));
             let Some((next, _)) = next else { break };
             aside.push(next);
-            left = self.above_floor(&aside);
+            left = self.above_floor(&left_without(&aside));
             left.retain(|run| !aside.contains(&run.experiment));
         }
         if !left.is_empty() || aside.is_empty() {
             return together;
         }
-        let mut alone = self.above_floor(&aside);
+        let mut alone = self.above_floor(&left_without(&aside));
         alone.retain(|run| aside.contains(&run.experiment));
         if alone.is_empty() { together } else { alone }
     }
 
-    /// What the base model leaves when it moves to meet all experiments but some.
-    fn base_without(&self, aside: &[usize]) -> Vec<Vec<f64>> {
-        let nuisance = self.evidence.nuisance_without(&self.base.residual, aside);
-        nuisance.map_or_else(
-            || self.base.cleaned(self.evidence),
-            |nuisance| self.evidence.cleaned(&self.base.residual, &nuisance),
-        )
-    }
-
-    /// Experiments above their own floors while the base model meets all but some.
-    fn above_floor(&self, aside: &[usize]) -> Vec<StandsOut> {
-        let excess = self.evidence.excess_by_experiment(&self.base_without(aside));
+    /// Experiments above their own floors, from what is left of each.
+    fn above_floor(&self, left: &[f64]) -> Vec<StandsOut> {
+        let excess = self.evidence.excess_by_experiment(left);
         let floors: Vec<Vec<f64>> =
             self.discovery.structures.iter().map(|s| self.evidence.by_experiment(s)).collect();
         let own = |(experiment, (excess, error)): (usize, (f64, f64))| {

@@ -220,10 +220,9 @@ impl<'a> Evidence<'a> {
         all
     }
 
-    /// The same of a residual less what noise alone would leave, with the standard error of that.
-    pub(crate) fn excess_by_experiment(&self, residual: &[Vec<f64>]) -> Vec<(f64, f64)> {
-        let mut all: Vec<(f64, f64)> =
-            self.by_experiment(residual).into_iter().map(|energy| (energy, 0.0)).collect();
+    /// Such sums of a residual less what noise alone would leave, with the standard error of that.
+    pub(crate) fn excess_by_experiment(&self, energies: &[f64]) -> Vec<(f64, f64)> {
+        let mut all: Vec<(f64, f64)> = energies.iter().map(|energy| (*energy, 0.0)).collect();
         for t in self.traces.iter().filter(|t| t.role == TraceRole::Output) {
             let (share, n) = ((t.noise / t.sigma).powi(2), t.measured.len() as f64);
             let own = &mut all[t.experiment];
@@ -316,23 +315,29 @@ impl<'a> Evidence<'a> {
         Cholesky::new(own + DMatrix::identity(own.nrows(), own.ncols()))
     }
 
-    /// The nuisance that a residual asks for where some experiments are set aside; none if it cannot be told.
-    pub(crate) fn nuisance_without(
-        &self,
-        residual: &[Vec<f64>],
-        aside: &[usize],
-    ) -> Option<DVector<f64>> {
+    /// What the nuisance leaves of a signal on the outputs of every experiment where it meets all of them but some:
+    /// sums of squares over what they weigh with. The signal is given by its products with itself.
+    pub(crate) fn left_without(&self, products: &[Products], aside: &[usize]) -> Vec<f64> {
         let mut normal = DMatrix::identity(self.width(), self.width());
-        for (_, own) in self.nuisance.iter().enumerate().filter(|(e, _)| !aside.contains(e)) {
-            normal += own;
+        let mut cross = DVector::zeros(self.width());
+        for (e, own) in products.iter().enumerate().filter(|(e, _)| !aside.contains(e)) {
+            normal += &self.nuisance[e];
+            cross += own.with_nuisance.column(0);
         }
-        let mut crosses = DMatrix::zeros(self.width(), 1);
-        for number in 0..self.traces.len() {
-            if !aside.contains(&self.traces[number].experiment) {
-                self.add_crosses(&mut crosses, &[residual], number);
-            }
+        // without a factor there is no nuisance that could move
+        let nuisance = Cholesky::new(normal).map_or_else(|| &cross * 0.0, |c| c.solve(&cross));
+        let shift = DVector::from_element(1, 1.0);
+        let left = |(e, own): (usize, &Products)| self.left_of(own, &shift, &nuisance, e);
+        products.iter().enumerate().map(left).collect()
+    }
+
+    /// Products of a signal with itself on the outputs.
+    pub(crate) fn output_products(&self, signal: &[Vec<f64>]) -> Vec<Products> {
+        let mut all = self.products(&[signal]);
+        for (own, energy) in all.iter_mut().zip(self.by_experiment(signal)) {
+            own.own.fill(energy);
         }
-        Some(Cholesky::new(normal)?.solve(&crosses.column(0).clone_owned()))
+        all
     }
 
     /// The nuisance that a residual asks for, the residual being `column + rest shift`.
