@@ -146,6 +146,9 @@ pub struct Candidate {
     /// Why it cannot be there, found before any fit: a measurement of its agent reads none. It is fitted all
     /// the same: what looks most like it has no name.
     pub refuted: Option<String>,
+    /// What it would be, where it is not one of the causes that may be named: it stands among the candidates so
+    /// that data which show it are not given the name of a cause that does about the same.
+    pub nameless: Option<&'static str>,
 }
 
 /// A cause switched on, with values of its parameters.

@@ -391,6 +391,16 @@ pub enum Fault {
         /// The value.
         value: f64,
     },
+    /// A number beyond anything that is measured.
+    #[error(
+        "the value is {value:e}, expected no more than {most:e} in size: no channel of a bench reads so much; remove the record's bad samples at the source, they are not interpolated here"
+    )]
+    TooLarge {
+        /// The number.
+        value: f64,
+        /// Largest size.
+        most: f64,
+    },
     /// Time does not increase.
     #[error(
         "time {time_s} s follows {before_s} s, expected increasing time; sort the rows or split the record"

@@ -1,6 +1,6 @@
 //! What is said of the causes that a search has found: verdict, confidence, doubts.
 
-use super::decide::{Notes, Search};
+use super::decide::{Notes, STRONG, Search};
 use super::fit::Fitted;
 use super::gain::gain;
 use super::judge::{drift, parameters};
@@ -9,8 +9,6 @@ use crate::{GapError, Scale};
 
 /// Relative spread from which on the name is wrong.
 const WRONG_NAME: f64 = 0.5;
-/// Times its threshold that a cause must explain to be named with confidence.
-const STRONG: f64 = 2.0;
 /// Relative spread of a parameter over the experiments from which on it drifts.
 const DRIFTING: f64 = 0.25;
 /// Share of the drop that values of its own for every experiment must add before a drift speaks
@@ -18,11 +16,16 @@ const DRIFTING: f64 = 0.25;
 const DRIFT_COSTS: [f64; 2] = [0.06, 0.15];
 /// Share of the misfit above the floor below which something else than the names is missing too.
 const LEAST_SHARE: f64 = 0.6;
-/// Times the energy that the worst surrogate leaves on an experiment, beyond which that experiment stands
-/// out alone.
-const RUN_MARGIN: f64 = 4.0;
-/// Misfit over the floor, in floors, from which that share means anything.
-const STANDS_OUT: f64 = 0.5;
+/// The same for the runs that stand out alone, where an error of form of a cause weighs most.
+const LEAST_SHARE_OF_RUNS: f64 = 0.3;
+
+/// What the causes found leave open.
+#[derive(Default)]
+struct Shortcomings {
+    reasons: Vec<String>,
+    /// Whether they cannot be what is missing.
+    is_wrong: bool,
+}
 
 impl<S: Simulator> Search<'_, S> {
     pub(super) fn conclude(
@@ -34,34 +37,18 @@ impl<S: Simulator> Search<'_, S> {
         notes: Notes,
     ) -> Result<Finding, GapError> {
         let settings = self.discovery.settings;
-        let Notes { mut reasons, is_alike_to_refuted } = notes;
+        let Notes { mut reasons, looks_like, in_some_runs } = notes;
         let before = self.generic.along(self.evidence, &self.base.residual);
         let after = self.generic.along(self.evidence, &current.residual);
         let mut causes = self.found(chosen, current, singles)?;
-        let drop = self.base.cost - current.cost;
-        let lack = (after - self.generic.threshold).max(0.0);
-        let explained = if drop > 0.0 { drop / (drop + lack) } else { 0.0 };
         let ambiguous = causes.iter().any(|c| !c.alternatives.is_empty());
-        let (found, worst_drift) = self.doubts(current);
-        let mut doubts = !found.is_empty() || is_alike_to_refuted;
+        let Shortcomings { reasons: found, is_wrong } = if chosen.is_empty() {
+            Shortcomings::default()
+        } else {
+            self.shortcomings(current, after)
+        };
+        let doubts = !chosen.is_empty() && (!found.is_empty() || looks_like.is_some());
         reasons.extend(found);
-        if chosen.is_empty() {
-            doubts = false;
-        } else if explained < settings.explained {
-            doubts = true;
-            reasons.push(format!(
-                "{:.0} % of the excess is explained; structure is left along directions without a name: {after:.0} noise units, {:.0} at the floor",
-                100.0 * explained, self.generic.threshold
-            ));
-        }
-        let whole = self.share_of_excess(current);
-        if !chosen.is_empty() && whole < LEAST_SHARE {
-            doubts = true;
-            reasons.push(format!(
-                "{:.0} % of what the base model leaves above its floor is explained: most of it is something else",
-                100.0 * whole
-            ));
-        }
         let gain = gain(self.evidence, &self.base, current, settings.resamplings);
         let [least, most] = if chosen.is_empty() { [1.0; 2] } else { gain.drop_ci95 };
         let (gains, gains_surely) = (most > 0.0, least > 0.0);
@@ -70,21 +57,20 @@ impl<S: Simulator> Search<'_, S> {
         } else if !gains_surely {
             reasons.push("held out it may gain nothing: the name is tentative".into());
         }
-        let wrong_name =
-            !gains || explained < 0.5 || whole < LEAST_SHARE || worst_drift > WRONG_NAME;
+        let wrong_name = !gains || is_wrong;
         if wrong_name && !chosen.is_empty() && before <= self.generic.threshold {
             reasons.push("what is left is within the floor: the name is dropped".into());
             let base = self.base.clone();
-            let notes = Notes { reasons, is_alike_to_refuted };
+            let notes = Notes { reasons, looks_like, in_some_runs };
             let mut finding = self.conclude(&[], &base, singles, single_drops, notes)?;
             finding.confidence = Confidence::Tentative;
             return Ok(finding);
         }
         let standing_out = self.standing_out();
-        let verdict = if chosen.is_empty() && is_alike_to_refuted {
+        let verdict = if chosen.is_empty() && looks_like.is_some() {
             Verdict::Unknown
         } else if chosen.is_empty() {
-            self.nothing_named(before, &standing_out, &mut reasons)
+            self.nothing_named(before, &standing_out, in_some_runs, &mut reasons)
         } else if wrong_name {
             Verdict::Unknown
         } else if ambiguous {
@@ -94,6 +80,7 @@ impl<S: Simulator> Search<'_, S> {
         } else {
             Verdict::Named
         };
+        let is_slow = chosen.is_empty() && self.trend().is_some();
         let strong = causes.iter().all(|c| c.drop > STRONG * self.screened[c.candidate].threshold);
         let tentative = self.tentative(&causes);
         let named_surely = strong && tentative.is_empty() && gains_surely;
@@ -116,10 +103,52 @@ impl<S: Simulator> Search<'_, S> {
             excess: [before, after],
             gain,
             structure_remains: doubts,
+            looks_like,
+            is_slow,
             standing_out,
             residual_before: self.base.cleaned(self.evidence),
             residual_after: current.cleaned(self.evidence),
         })
+    }
+
+    /// What causes as fitted together leave open; `after` is what they leave along the directions without a name.
+    fn shortcomings(&self, current: &Fitted, after: f64) -> Shortcomings {
+        let (mut reasons, worst_drift) = self.doubts(current);
+        let drop = self.base.cost - current.cost;
+        let lack = (after - self.generic.threshold).max(0.0);
+        let explained = if drop > 0.0 { drop / (drop + lack) } else { 0.0 };
+        if explained < self.discovery.settings.explained {
+            reasons.push(format!(
+                "{:.0} % of the excess is explained; structure is left along directions without a name: {after:.0} noise units, {:.0} at the floor",
+                100.0 * explained, self.generic.threshold
+            ));
+        }
+        let whole = self.share_of_excess(current);
+        if whole < LEAST_SHARE {
+            reasons.push(format!(
+                "{:.0} % of what the base model leaves above its floor is explained: most of it is something else",
+                100.0 * whole
+            ));
+        }
+        let of_runs = self.share_of_runs(current);
+        if of_runs < LEAST_SHARE_OF_RUNS {
+            reasons.push(format!(
+                "{:.0} % of what stands out run by run is explained: most of it is something else",
+                100.0 * of_runs
+            ));
+        }
+        let left = self.standing_out_after(current);
+        reasons.extend(left.iter().max_by(|a, b| a.times.total_cmp(&b.times)).map(|worst| {
+            format!(
+                "{} of the runs are missed beside the names too, the worst by {:.1} times what the worst surrogate leaves there",
+                left.len(), worst.times
+            )
+        }));
+        let is_wrong = explained < 0.5
+            || whole < LEAST_SHARE
+            || of_runs < LEAST_SHARE_OF_RUNS
+            || worst_drift > WRONG_NAME;
+        Shortcomings { reasons, is_wrong }
     }
 
     /// Every chosen cause with what was found about it.
@@ -199,10 +228,11 @@ impl<S: Simulator> Search<'_, S> {
         let mut near = found.compared.iter().filter(|c| c.is_near() && !listed(c));
         near.next().map(|other| {
             let how = if other.is_open() { "is not excluded" } else { "is excluded by little" };
+            let less = if other.behind < 0.0 { "more" } else { "less" };
             format!(
-                "{} explains {:.0} noise units less than {} and {how}: {:.0} would exclude it",
+                "{} explains {:.0} noise units {less} than {} and {how}: to stay {:.0} behind would exclude it",
                 self.id(other.candidate),
-                other.behind,
+                other.behind.abs(),
                 self.id(found.candidate),
                 other.told_apart_beyond
             )
@@ -237,68 +267,17 @@ impl<S: Simulator> Search<'_, S> {
             .next()
     }
 
-    /// Share of the misfit above the floor that a fit takes away; 1 where nothing stands out. The floor
-    /// is what noise and the worst surrogate leave.
-    fn share_of_excess(&self, current: &Fitted) -> f64 {
-        let energy = |f: &Fitted| f.cost - self.evidence.beside_output(&f.residual);
-        let floor = self.evidence.noise_energy() + self.structure_energy;
-        let before = energy(&self.base) - floor;
-        let drop = self.output_drop(&self.base, current);
-        if before > STANDS_OUT * floor { (drop / before).min(1.0) } else { 1.0 }
-    }
-
-    /// Experiments whose own misfit lies above their own floor: one run far out is lost among many.
-    ///
-    /// The base model moves to meet a run far out, and misses others for it. So the run without which the others
-    /// are met best is set aside, the base model moves back, and so on until no other stands out. Where that
-    /// sets aside half of them, what is missing is in all: then it is those that stand out together.
-    fn standing_out(&self) -> Vec<StandsOut> {
-        let products = self.evidence.output_products(&self.base.residual);
-        let left_without = |aside: &[usize]| self.evidence.left_without(&products, aside);
-        let together = self.above_floor(&left_without(&[]));
-        let mut aside = Vec::new();
-        let mut left = together.clone();
-        while !left.is_empty() && 2 * (aside.len() + 1) < self.evidence.experiments {
-            let others_without = |one: usize| {
-                let mut without = aside.clone();
-                without.push(one);
-                let met = left_without(&without);
-                let others = met.iter().enumerate().filter(|(e, _)| !without.contains(e));
-                others.map(|(_, energy)| energy).sum::<f64>() - met[one]
-            };
-            let remaining = (0..self.evidence.experiments).filter(|e| !aside.contains(e));
-            let next = remaining.map(|e| (e, others_without(e))).min_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((next, _)) = next else { break };
-            aside.push(next);
-            left = self.above_floor(&left_without(&aside));
-            left.retain(|run| !aside.contains(&run.experiment));
-        }
-        if !left.is_empty() || aside.is_empty() {
-            return together;
-        }
-        let mut alone = self.above_floor(&left_without(&aside));
-        alone.retain(|run| aside.contains(&run.experiment));
-        if alone.is_empty() { together } else { alone }
-    }
-
-    /// Experiments above their own floors, from what is left of each.
-    fn above_floor(&self, left: &[f64]) -> Vec<StandsOut> {
-        let excess = self.evidence.excess_by_experiment(left);
-        let floors: Vec<Vec<f64>> =
-            self.discovery.structures.iter().map(|s| self.evidence.by_experiment(s)).collect();
-        let own = |(experiment, (excess, error)): (usize, (f64, f64))| {
-            let floor = floors.iter().map(|f| f[experiment]).fold(0.0, f64::max);
-            let most = RUN_MARGIN * floor + self.discovery.settings.noise_deviations * error;
-            let times = (excess / floor.max(error)).max(0.0).sqrt();
-            (excess > most).then_some(StandsOut { experiment, times })
-        };
-        excess.into_iter().enumerate().filter_map(own).collect()
+    /// What the base model leaves along the slow changes, where it is more than the floor.
+    fn trend(&self) -> Option<f64> {
+        let trend = self.trends.along(self.evidence, &self.base.residual);
+        (trend > self.trends.threshold).then_some(trend)
     }
 
     fn nothing_named(
         &self,
         excess: f64,
         alone: &[StandsOut],
+        in_some_runs: bool,
         reasons: &mut Vec<String>,
     ) -> Verdict {
         let threshold = self.generic.threshold;
@@ -308,10 +287,9 @@ impl<S: Simulator> Search<'_, S> {
             ));
             return Verdict::Unknown;
         }
-        let trend = self.trends.along(self.evidence, &self.base.residual);
-        if trend > self.trends.threshold {
+        if let Some(trend) = self.trend() {
             reasons.push(format!(
-                "the output changes steadily in all runs alike: {trend:.0} noise units along trends, {:.0} would be the floor, and no known cause explains them",
+                "the output changes slowly in all runs alike: {trend:.0} noise units along a zero, a gain and a return to zero that are steady, {:.0} would be the floor, and no known cause explains them",
                 self.trends.threshold
             ));
             return Verdict::Unknown;
@@ -323,9 +301,13 @@ impl<S: Simulator> Search<'_, S> {
             ));
             return Verdict::Unknown;
         }
+        if in_some_runs {
+            reasons.push("what it explains is in some of the runs alone: no cause acts so".into());
+            return Verdict::Unknown;
+        }
         // a cause that cannot be there, or has no name, would not be said either
         let visible =
-            |(c, s): (usize, &Screened)| !self.is_refuted(c) && s.weak_signal > s.threshold;
+            |(c, s): (usize, &Screened)| self.may_be_named(c) && s.weak_signal > s.threshold;
         if self.screened.iter().enumerate().any(visible) {
             Verdict::NothingMissing
         } else {

@@ -16,6 +16,11 @@ const PROMISE: f64 = 0.3;
 const RIVAL_PROMISE: f64 = 0.1;
 /// Share of the drop by the causes before that the next one must add: below it, it mends their form.
 const NEXT_SHARE: f64 = 0.04;
+/// The same for a candidate that is easily taken for one of the causes before: an error of their form is most of
+/// all like it.
+const CONFUSED_SHARE: f64 = 0.2;
+/// Times its threshold that a cause must explain to be named with confidence.
+pub(super) const STRONG: f64 = 2.0;
 /// Share of a drop that must show where experiments are held out.
 const HELD_OUT_SHARE: f64 = 0.3;
 /// Share of the drop beyond which structure of the base model does not make two causes change places.
@@ -84,8 +89,23 @@ impl<'a, S: Simulator> Search<'a, S> {
 pub(super) struct Notes {
     /// Why it took each decision.
     pub(super) reasons: Vec<String>,
-    /// Whether what is missing looks most like a cause that cannot be there.
-    pub(super) is_alike_to_refuted: bool,
+    /// The cause that what is missing looks most like, and which cannot be there.
+    pub(super) looks_like: Option<usize>,
+    /// Whether a cause explains much where it is fitted and little where it is held out.
+    pub(super) in_some_runs: bool,
+}
+
+/// Why a candidate does not enter.
+struct Refusal {
+    reason: String,
+    /// Whether it explains much where it is fitted and little where it is held out.
+    in_some_runs: bool,
+}
+
+impl From<String> for Refusal {
+    fn from(reason: String) -> Self {
+        Self { reason, in_some_runs: false }
+    }
 }
 
 /// One of the causes found, taken out and looked at again.
@@ -112,7 +132,7 @@ type Kept = Vec<((Vec<Effect>, usize), Arc<TakenOut>)>;
 pub(super) struct Search<'a, S> {
     pub(super) discovery: &'a Discovery<'a, S>,
     pub(super) evidence: &'a Evidence<'a>,
-    fitter: Fitter<'a, S>,
+    pub(super) fitter: Fitter<'a, S>,
     pub(super) screened: Vec<Screened>,
     pub(super) generic: Generic<'a>,
     pub(super) trends: Generic<'a>,
@@ -134,18 +154,26 @@ impl<S: Simulator> Search<'_, S> {
         let mut chosen: Vec<usize> = Vec::new();
         let mut fits = singles.clone();
         while chosen.len() < self.discovery.settings.most_causes {
-            let (candidate, next) = match self.next(&current, &fits) {
+            let (mut candidate, mut next) = match self.next(&current, &fits) {
                 None => break,
-                Some(Err(reason)) => {
-                    notes.reasons.push(reason);
+                Some(Err(refusal)) => {
+                    notes.reasons.push(refusal.reason);
+                    notes.in_some_runs = refusal.in_some_runs;
                     break;
                 }
                 Some(Ok(next)) => next,
             };
-            if let Some(why) = &self.discovery.candidates[candidate].refuted {
+            let mut why = self.cannot_be(candidate, &next)?;
+            if let Some(what) = self.discovery.candidates[candidate].nameless {
+                match self.named_as_well(&current, (candidate, &next), &fits)? {
+                    Some(named) => (candidate, next) = named,
+                    None => why = Some(format!("no cause of the library does that: {what} would")),
+                }
+            }
+            if let Some(why) = why {
                 let id = self.id(candidate);
                 notes.reasons.push(format!("what is missing looks most like {id}, but {why}"));
-                notes.is_alike_to_refuted = true;
+                notes.looks_like = Some(candidate);
                 break;
             }
             chosen.push(candidate);
@@ -162,8 +190,36 @@ impl<S: Simulator> Search<'_, S> {
         self.conclude(&chosen, &current, &singles, single_drops, notes)
     }
 
-    pub(super) fn is_refuted(&self, candidate: usize) -> bool {
-        self.discovery.candidates[candidate].refuted.is_some()
+    /// Whether a candidate is a cause that may be there.
+    pub(super) fn may_be_named(&self, candidate: usize) -> bool {
+        let own = &self.discovery.candidates[candidate];
+        own.refuted.is_none() && own.nameless.is_none()
+    }
+
+    /// The cause with a name that explains as much as what has none, but for what one parameter costs.
+    fn named_as_well(
+        &self,
+        rest: &Fitted,
+        (nameless, fit): (usize, &Fitted),
+        fits: &[Option<Fitted>],
+    ) -> Result<Option<(usize, Fitted)>, GapError> {
+        let drop = |f: &Fitted| rest.cost - f.cost;
+        let Some((candidate, found)) = self.best_by(fits, drop, |c, _| self.may_be_named(c)) else {
+            return Ok(None);
+        };
+        let behind = found.cost - fit.cost + self.penalty(candidate) - self.penalty(nameless);
+        let is_as_good = behind < self.discovery.settings.parameter_penalty
+            && self.enters(rest, candidate, &found).is_ok()
+            && self.contradicted(&found)?.is_none();
+        Ok(is_as_good.then_some((candidate, found)))
+    }
+
+    /// Why the data show that a candidate, fitted last, is not there.
+    fn cannot_be(&self, candidate: usize, fit: &Fitted) -> Result<Option<String>, GapError> {
+        match &self.discovery.candidates[candidate].refuted {
+            Some(why) => Ok(Some(why.clone())),
+            None => self.contradicted(fit),
+        }
     }
 
     fn allowed(&self, candidate: usize) -> bool {
@@ -215,13 +271,23 @@ impl<S: Simulator> Search<'_, S> {
             .map(|(c, f)| (c, f.clone()))
     }
 
+    /// Share of the drop by given effects that a candidate beside them must add.
+    fn share_beside(&self, candidate: usize, effects: &[Effect]) -> f64 {
+        let cause = |c: usize| &self.discovery.candidates[c].cause;
+        let own = cause(candidate);
+        let is_confused = effects.iter().map(|e| cause(e.candidate)).any(|other| {
+            own.confused_with.contains(&other.id) || other.confused_with.contains(&own.id)
+        });
+        if is_confused { CONFUSED_SHARE } else { NEXT_SHARE }
+    }
+
     /// The candidate that enters next. Whether one does is decided within the chain alone; which one it is,
     /// by everything that was measured.
     fn next(
         &self,
         current: &Fitted,
         fits: &[Option<Fitted>],
-    ) -> Option<Result<(usize, Fitted), String>> {
+    ) -> Option<Result<(usize, Fitted), Refusal>> {
         let shown = self.best_by(fits, |f| self.proven_drop(current, f), |_, _| true)?;
         let next = self.enters(current, shown.0, &shown.1).and_then(|_| {
             let shows = |c: usize, f: &Fitted| {
@@ -238,35 +304,51 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     /// Both keys: the drop exceeds what surrogates reach, and most of it shows where it is held out.
-    fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, String> {
+    fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, Refusal> {
         let drop = self.proven_drop(current, next) - self.penalty(candidate);
         let threshold = self.threshold_after(current, candidate);
         let id = self.id(candidate);
+        if let Some(shown) = self.hardly_shown(candidate, current, next) {
+            return Err(format!("{id} beside the causes before would explain {shown}").into());
+        }
         if drop < threshold {
             return Err(format!(
-                "{id} would explain most, {drop:.0} noise units in the chain, within the {threshold:.0} that surrogates with nothing missing can reach"
-            ));
+                "{id} would explain most, {:.0} noise units in the chain, within the {threshold:.0} that surrogates with nothing missing can reach",
+                drop.max(0.0)
+            )
+            .into());
         }
         let held_out = self.held_out_drop(current, next);
         let needed = HELD_OUT_SHARE * drop;
         if held_out < needed {
-            return Err(format!(
+            let reason = format!(
                 "{id} explains {drop:.0} noise units where it is fitted and {held_out:.0} where it is held out, less than the {needed:.0} asked for"
-            ));
+            );
+            return Err(Refusal { reason, in_some_runs: drop > STRONG * threshold });
         }
         // one more cause must stand on its own feet: what drifts mends the form of those before it
         if !current.effects.is_empty()
             && let Some(doubt) = self.doubts(next).0.into_iter().next()
         {
-            return Err(format!("{id} beside the causes before is refused: {doubt}"));
+            return Err(format!("{id} beside the causes before is refused: {doubt}").into());
         }
         Ok(held_out)
+    }
+
+    /// What is said of one more cause that hardly shows on the outputs: further channels alone show an error of
+    /// the form of those before.
+    fn hardly_shown(&self, candidate: usize, before: &Fitted, after: &Fitted) -> Option<String> {
+        let (by_others, own) =
+            (self.output_drop(&self.base, before), self.output_drop(before, after));
+        let asked = self.share_beside(candidate, &before.effects) * by_others;
+        (own < asked)
+            .then(|| format!("{own:.0} noise units of the outputs, less than the {asked:.0} that errors of form of those can leave"))
     }
 
     /// What a candidate after those of `current` must take off the misfit.
     fn threshold_after(&self, current: &Fitted, candidate: usize) -> f64 {
         let before = self.output_drop(&self.base, current);
-        self.screened[candidate].threshold + NEXT_SHARE * before
+        self.screened[candidate].threshold + self.share_beside(candidate, &current.effects) * before
     }
 
     /// What a fit takes off the misfit within the chain. A thermometer that warms or a load cell that feels
@@ -332,8 +414,10 @@ impl<S: Simulator> Search<'_, S> {
         for at in 0..chosen.len() {
             let place = self.taken_out(chosen, at, current)?;
             let drop = |f: &Fitted| place.rest.cost - f.cost;
-            let may_be = |c: usize, _: &Fitted| !self.is_refuted(c);
-            if let Some((candidate, found)) = self.best_by(&place.fits, drop, may_be) {
+            let may_be = |c: usize, _: &Fitted| self.may_be_named(c);
+            if let Some((candidate, found)) = self.best_by(&place.fits, drop, may_be)
+                && self.contradicted(&found)?.is_none()
+            {
                 let better = current.cost - found.cost
                     > self.discovery.settings.separation + self.penalty(candidate)
                         - self.penalty(chosen[at]);
@@ -361,9 +445,12 @@ impl<S: Simulator> Search<'_, S> {
             let rest = self.fitter.refine(Self::without(&current.effects, at))?;
             let drop = rest.cost - current.cost - self.penalty(chosen[at]);
             // the same two keys that it entered by, now that the others know of it
-            let others = self.output_drop(&self.base, &rest);
-            let needed = self.screened[chosen[at]].threshold + NEXT_SHARE * others;
-            if drop < needed || self.held_out_drop(&rest, current) < HELD_OUT_SHARE * drop {
+            let needed = self.threshold_after(&rest, chosen[at]);
+            let is_shown = self.hardly_shown(chosen[at], &rest, current).is_none();
+            if !is_shown
+                || drop < needed
+                || self.held_out_drop(&rest, current) < HELD_OUT_SHARE * drop
+            {
                 chosen.remove(at);
                 *current = rest;
                 at = 0;
@@ -430,10 +517,15 @@ impl<S: Simulator> Search<'_, S> {
             let (_, error) = paired(self.evidence, fit, current);
             let open = margin + self.swayed(fit, current).max(self.left_between(fit, current));
             let told_apart_beyond = open.max((2.0 * error).min(0.2 * drop));
-            compared.push((Compared { candidate, behind, told_apart_beyond }, fit));
+            let compared_with = Compared { candidate, behind, told_apart_beyond };
+            // what is far behind need not be asked why it cannot be
+            if compared_with.is_near() && self.contradicted(fit)?.is_some() {
+                continue;
+            }
+            compared.push((compared_with, fit));
         }
         compared.sort_by(|a, b| a.0.behind.total_cmp(&b.0.behind));
-        let may_be = |c: &&(Compared, &Fitted)| !self.is_refuted(c.0.candidate);
+        let may_be = |c: &&(Compared, &Fitted)| self.may_be_named(c.0.candidate);
         let open = compared.iter().filter(|c| c.0.is_open()).filter(may_be);
         let own = std::iter::once((current, chosen[at]));
         let rivals = own

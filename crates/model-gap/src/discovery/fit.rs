@@ -76,18 +76,21 @@ impl<S: Simulator> Fitter<'_, S> {
                 (self.evidence.inner(&own, &with), self.evidence.inner(&with, &with));
             let along = before.cost - both;
             let size = before.cost - 2.0 * both + cost;
-            if along > 0.0 && size > 0.0 {
-                promise = promise.max(along * along / size);
-            }
-            tried.push((cost, effects));
+            let own_promise = if along > 0.0 && size > 0.0 { along * along / size } else { 0.0 };
+            promise = promise.max(own_promise);
+            tried.push((cost, own_promise, effects));
         }
         if promise < least {
             return Ok(None);
         }
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // the effect of a start may be right in form and too large: it promises much and costs more than none
+        let promising = tried.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let third = promising.map(|(place, _)| place).filter(|place| *place > 1);
         let mut best: Option<Fitted> = None;
-        for (_, effects) in tried.into_iter().take(2) {
-            let mut found = self.refine(effects)?;
+        let places = [Some(0), Some(1), third];
+        for (_, _, effects) in places.into_iter().flatten().filter_map(|place| tried.get(place)) {
+            let mut found = self.refine(effects.clone())?;
             found.trust = TRUSTED * (before.cost - found.cost).max(0.0);
             if best.as_ref().is_none_or(|b| found.cost < b.cost) {
                 best = Some(found);

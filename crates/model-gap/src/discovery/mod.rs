@@ -4,12 +4,14 @@ mod conclude;
 mod decide;
 mod evidence;
 mod fit;
+mod floors;
 mod gain;
 mod judge;
 mod rival;
 mod screen;
 mod trace;
 mod verdict;
+mod witness;
 
 pub use gain::Gain;
 pub use rival::{Rival, Separation, separations};

@@ -138,6 +138,10 @@ pub struct Finding {
     pub effects: Vec<Effect>,
     /// Whether the causes named leave structure that they do not explain.
     pub structure_remains: bool,
+    /// The candidate that what is missing looks most like, where the data show that it is not there.
+    pub looks_like: Option<usize>,
+    /// Whether nothing is named and the output changes slowly in all runs alike.
+    pub is_slow: bool,
     /// Experiments whose own misfit to the base model lies above their own floor.
     pub standing_out: Vec<StandsOut>,
     /// Why the verdict is what it is, in order of the decisions.

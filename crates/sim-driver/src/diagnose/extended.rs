@@ -129,7 +129,8 @@ fn add(model: &mut ActuatorModel, part: Part) {
             model.linkage.insert(0, LinkageStage::Relaxation(Relaxation { elements }));
         }
         // the law of the file has its own loops; a gain alone gets no name, and is not extended by
-        Part::Hysteresis { .. } | Part::Gain { .. } => {}
+        // nothing of these is ever named
+        Part::Hysteresis { .. } | Part::Gain { .. } | Part::Command { .. } | Part::Reading(_) => {}
         Part::Hum { amplitude, frequency_hz } => {
             let hum = MainsHum { amplitude_um: amplitude, frequency_hz, phase_rad: 0.0 };
             model.sensor.push(SensorStage::MainsHum(hum));

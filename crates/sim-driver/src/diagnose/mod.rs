@@ -29,8 +29,8 @@ use crate::SimError;
 use crate::problem::Place;
 use crate::stored_actuator::StoredChannels;
 use base::BaseModel;
-use causes::{BenchCause, Design, GainRise};
-use model_gap::discovery::{Discovery, Finding, Settings, Signal};
+use causes::{BenchCause, Design};
+use model_gap::discovery::{Confidence, Discovery, Finding, Settings, Signal, Verdict};
 use model_gap::{Candidate, GapError};
 use preisach_dyn::ActuatorModel;
 use simulator::BenchSimulator;
@@ -107,6 +107,8 @@ pub struct Question<'a> {
     pub given: Option<&'a ActuatorModel>,
 }
 
+/// Times the noise of the reference runs from which a reading is another.
+const NOISIER: f64 = 2.0;
 /// Share of its threshold from which on a cause may be there and hidden.
 const MAY_BE_HIDDEN: f64 = 0.5;
 
@@ -118,8 +120,8 @@ impl Diagnosis {
         self.candidates
             .iter()
             .zip(&self.finding.screen)
-            // what the data refute they have shown
-            .filter(|(candidate, _)| candidate.refuted.is_none())
+            // what the data refute they have shown; what has no name is not asked for
+            .filter(|(candidate, _)| candidate.refuted.is_none() && candidate.nameless.is_none())
             .filter(|(candidate, screened)| {
                 let hidden = MAY_BE_HIDDEN * screened.threshold..screened.threshold;
                 candidate.blocked.is_some()
@@ -142,7 +144,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
     let mut library: Vec<Box<dyn BenchCause>> = causes::library();
     let named = library.len();
-    library.push(Box::new(GainRise));
+    library.extend(causes::nameless());
     let runs: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
     if runs.is_empty() {
         return Err(SimError::NothingMeasured { place: place(), runs: measured.runs.len() });
@@ -178,11 +180,17 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         structures: &structures,
         settings,
     };
-    let finding = match given {
+    let mut finding = match given {
         Some(given) => discovery.refit(&given),
         None => discovery.find(),
     }
     .map_err(fail)?;
+    if finding.verdict == Verdict::NothingMissing
+        && let Some(reason) = noisier(&runs, &base)
+    {
+        finding.confidence = Confidence::Tentative;
+        finding.reasons.push(reason);
+    }
     let bench = next::Bench {
         base: &base,
         library: &library,
@@ -292,6 +300,21 @@ fn energy(runs: &[&Record], base: &BaseModel) -> Vec<RunEnergy> {
         .collect()
 }
 
+/// What is said of the measured run whose reading is noisier than that of the reference runs by most. No cause of a
+/// simulation adds noise, but a sensor or an amplifier that has become noisy is no longer what it was.
+fn noisier(runs: &[&Record], base: &BaseModel) -> Option<String> {
+    let times = |run: &&Record| base::white_noise(&base.residual(run)) / base.noise;
+    let (run, times) = runs
+        .iter()
+        .map(|run| (run, times(run)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, times)| *times > NOISIER)?;
+    Some(format!(
+        "the reading of run {} has {times:.1} times the noise of the reference runs: look at sensor and amplifier",
+        run.id
+    ))
+}
+
 /// RMS over spread of a given model on the measured runs, zero displacement left free, percent.
 fn given_error(model: &ActuatorModel, runs: &[&Record]) -> Option<f64> {
     let (mut left, mut all) = (0.0, 0.0);
@@ -353,7 +376,6 @@ fn directions(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use model_gap::discovery::Verdict;
 
     /// A line of gain 2.5 on a slow triangle and a sine, times a factor.
     fn runs(is_reference: bool, factor: f64) -> Vec<Record> {
@@ -414,6 +436,75 @@ mod tests {
         assert_eq!(found.finding.verdict, Verdict::Unknown, "{:?}", found.finding.reasons);
         assert!(found.finding.reasons.iter().any(|r| r.contains("gain-rise")));
         assert!(!found.not_observable().iter().any(|id| id == "gain-rise"));
+    }
+
+    /// What is found of measured runs that were changed.
+    fn found(change: impl Fn(&mut Record)) -> Diagnosis {
+        let question = Question { reference: runs(true, 1.0), ..Question::default() };
+        let mut measured = runs(false, 1.0);
+        measured.iter_mut().for_each(change);
+        diagnose(&records(measured), &question).unwrap()
+    }
+
+    fn looks_like(found: &Diagnosis) -> Option<&'static str> {
+        found.finding.looks_like.map(|candidate| found.candidates[candidate].cause.id)
+    }
+
+    #[test]
+    fn flat_tops_of_the_reading_are_no_voltage_limit_where_the_terminals_follow() {
+        let cut = |run: &mut Record| run.output.iter_mut().for_each(|y| *y = y.min(240.0));
+        let watched = found(|run| {
+            cut(run);
+            run.amplifier = Some(run.input.clone());
+        });
+        assert_eq!(watched.finding.verdict, Verdict::Unknown, "{:?}", watched.finding.reasons);
+        assert_eq!(looks_like(&watched), Some("reading-range"));
+        // a line behind a limit of the voltage is cut about alike
+        let alone = found(cut);
+        assert_eq!(alone.finding.confidence, Confidence::Tentative, "{:?}", alone.finding.reasons);
+        assert!(alone.finding.reasons.iter().any(|r| r.contains("reading-range")));
+    }
+
+    #[test]
+    fn an_amplifier_of_another_gain_is_seen_at_the_terminals() {
+        let found = found(|run| {
+            let terminals: Vec<f64> = run.input.iter().map(|u| 1.04 * u - 2.6).collect();
+            run.output.iter_mut().zip(&run.input).for_each(|(y, u)| *y += 2.5 * (0.04 * u - 2.6));
+            run.amplifier = Some(terminals);
+        });
+        assert_eq!(found.finding.verdict, Verdict::Unknown, "{:?}", found.finding.reasons);
+        assert_eq!(looks_like(&found), Some("amplifier-gain"), "{:?}", found.finding.reasons);
+    }
+
+    #[test]
+    fn a_noisier_reading_is_no_confident_nothing() {
+        let jitter = |i: usize| ((i * i * i + 7 * i) % 101) as f64 / 50.0 - 1.0;
+        for (size, confidence) in [(0.0, Confidence::Confident), (0.2, Confidence::Tentative)] {
+            let found = found(|run| {
+                run.output.iter_mut().enumerate().for_each(|(i, y)| *y += size * jitter(i));
+            });
+            let finding = &found.finding;
+            assert_eq!(
+                (finding.verdict, finding.confidence),
+                (Verdict::NothingMissing, confidence)
+            );
+            let is_said = finding.reasons.iter().any(|r| r.contains("the noise of the reference"));
+            assert_eq!(is_said, confidence == Confidence::Tentative, "{:?}", finding.reasons);
+        }
+    }
+
+    #[test]
+    fn a_reading_that_returns_to_zero_is_not_nothing() {
+        let found = found(|run| {
+            let (first, mut sum) = (run.output[0], 0.0);
+            for y in &mut run.output {
+                sum += run.step_s * (*y - first) / 40.0;
+                *y -= sum;
+            }
+        });
+        assert_eq!(found.finding.verdict, Verdict::Unknown, "{:?}", found.finding.reasons);
+        assert!(found.finding.is_slow, "{:?}", found.finding.reasons);
+        assert_eq!(found.next.id, "hold-steps-100s");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! stage alone. Hum is added to the output of all others.
 
 use super::base::BaseModel;
-use super::causes::{BenchCause, Part, looped, rate_dependent};
+use super::causes::{BenchCause, Part, Reading, looped, rate_dependent};
 use super::memo::{Memo, key};
 use super::record::Record;
 use super::smooth::{Smooth, Weights};
@@ -152,6 +152,12 @@ impl<'a> Plant<'a> {
         for number in 0..count {
             let run = self.runs[number];
             let mut terminal: Option<Vec<f64>> = None;
+            for part in parts {
+                if let Part::Command { gain, zero_volt } = part {
+                    let input = terminal.as_deref().unwrap_or(&run.input);
+                    terminal = Some(input.iter().map(|u| gain * u + zero_volt).collect());
+                }
+            }
             for stage in &stages {
                 let input = terminal.as_deref().unwrap_or(&run.input);
                 terminal = Some(match stage {
@@ -238,12 +244,16 @@ impl<'a> Plant<'a> {
             .iter()
             .flat_map(|p| if let Part::Sensor(stages) = p { stages.clone() } else { Vec::new() })
             .collect();
+        let readings: Vec<Reading> = parts
+            .iter()
+            .filter_map(|p| if let Part::Reading(reading) = p { Some(*reading) } else { None })
+            .collect();
         let gain: f64 = parts
             .iter()
             .map(|p| if let Part::Gain { rise } = p { 1.0 + rise } else { 1.0 })
             .product();
         let is_scaled = parts.iter().any(|p| matches!(p, Part::Gain { .. }));
-        if linkage.is_empty() && sensor.is_empty() && !is_scaled {
+        if linkage.is_empty() && sensor.is_empty() && readings.is_empty() && !is_scaled {
             return Ok(Arc::clone(&front.outputs));
         }
         let mut outputs = Vec::with_capacity(self.runs.len());
@@ -277,6 +287,9 @@ impl<'a> Plant<'a> {
                     }
                     other => self.pass(run, &signal, &[], std::slice::from_ref(other))?,
                 };
+            }
+            for reading in readings.iter().filter(|_| !run.has_ideal_sensor()) {
+                signal = reading.of(&signal, run.step_s);
             }
             outputs.push(signal);
         }
@@ -367,6 +380,7 @@ fn is_in_front(part: &Part) -> bool {
             | Part::Depolarisation(..)
             | Part::RateDependence { .. }
             | Part::Hysteresis { .. }
+            | Part::Command { .. }
     )
 }
 

@@ -4,7 +4,8 @@
 use super::{Diagnosis, Findings};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, table};
-use model_gap::discovery::{Confidence, Verdict};
+use model_gap::Candidate;
+use model_gap::discovery::{Confidence, Found, Verdict};
 use serde::Serialize;
 
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
@@ -42,7 +43,7 @@ fn text(d: &Diagnosis, findings: &Findings) -> String {
     base(d, &mut sheet);
     energies(d, &mut sheet);
     screening(d, &mut sheet);
-    sheet.line(format_args!("\n{}", verdict_line(findings)));
+    sheet.line(format_args!("\n{}", verdict_line(d, findings)));
     causes(d, &mut sheet);
     gain(d, findings, &mut sheet);
     if !findings.not_observable.is_empty() {
@@ -119,8 +120,11 @@ fn screening(d: &Diagnosis, sheet: &mut Sheet) {
         if let Some(why) = &d.candidates[c].blocked {
             return vec![name, "-".into(), "-".into(), "-".into(), why.clone()];
         }
-        let name =
-            if d.candidates[c].refuted.is_some() { format!("{name} (refuted)") } else { name };
+        let name = match &d.candidates[c] {
+            Candidate { refuted: Some(_), .. } => format!("{name} (refuted)"),
+            Candidate { nameless: Some(_), .. } => format!("{name} (not of the library)"),
+            _ => name,
+        };
         let alike = s.most_confused.map_or_else(String::new, |(b, cosine)| {
             format!("{} {cosine:+.2}", d.candidates[b].cause.id)
         });
@@ -209,7 +213,18 @@ fn next(d: &Diagnosis, sheet: &mut Sheet) {
     }
 }
 
-fn verdict_line(findings: &Findings) -> String {
+/// The causes found, each with those that could stand in its place.
+fn places(d: &Diagnosis) -> String {
+    let id = |candidate: usize| d.candidates[candidate].cause.id;
+    let one = |found: &Found| {
+        let mut ids = vec![id(found.candidate)];
+        ids.extend(found.alternatives.iter().map(|other| id(other.candidate)));
+        if ids.len() == 1 { ids[0].to_owned() } else { format!("one of {}", ids.join(", ")) }
+    };
+    d.finding.causes.iter().map(one).collect::<Vec<_>>().join(" + ")
+}
+
+fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
     let names = findings.causes.join(" + ");
     let sure = match findings.confidence {
         Confidence::Confident => "confident",
@@ -223,10 +238,9 @@ fn verdict_line(findings: &Findings) -> String {
         Verdict::NamedStructureRemains => {
             format!("Missing ({sure}): {names}; structure remains that it does not explain")
         }
-        Verdict::Ambiguous => format!(
-            "Missing: one of {}; these data do not tell them apart",
-            findings.causes.join(", ")
-        ),
+        Verdict::Ambiguous => {
+            format!("Missing: {}; these data do not tell them apart", places(d))
+        }
         Verdict::Unknown => {
             "Something is missing, and no known cause explains it: no name is given.".to_owned()
         }

@@ -280,13 +280,19 @@ impl Noise {
     }
 }
 
-/// Slow changes of the measurement itself, alike in all runs: a zero and a gain that change at a steady rate.
+/// Slow changes of the measurement itself, alike in all runs: a zero and a gain that change at a steady rate, and a
+/// reading that returns to zero, as one that is coupled by a capacitor does.
 pub(crate) fn trends(law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
     let middle = law.first().copied().unwrap_or_default();
     let half_s = 0.5 * step_s * law.len() as f64;
     let since_middle_s: Vec<f64> = (0..law.len()).map(|i| i as f64 * step_s - half_s).collect();
     let gain = law.iter().zip(&since_middle_s).map(|(h, t)| t * (h - middle) / spread).collect();
-    vec![since_middle_s, gain]
+    let mut sum = 0.0;
+    let returned = law.iter().map(|h| {
+        sum += step_s * (h - middle) / spread;
+        sum
+    });
+    vec![since_middle_s, gain, returned.collect()]
 }
 
 /// Directions without a name, along which structure may be left that no cause explains: powers of

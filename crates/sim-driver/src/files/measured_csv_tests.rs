@@ -77,6 +77,15 @@ fn bad_numbers_have_line_and_column() {
 }
 
 #[test]
+fn a_number_that_cannot_have_been_measured_is_refused() {
+    let text = error("time_s,command_V,displacement_um\n0.0,1,2\n0.1,2,1e300\n0.2,2,3\n");
+    assert!(
+        text.contains("r.csv:3:7: displacement_um: the value is 1e300, expected no more"),
+        "{text}"
+    );
+}
+
+#[test]
 fn many_alike_are_counted() {
     let rows: Vec<String> = (0..20).map(|i| format!("{i},NaN,1")).collect();
     let text = error(&format!("time_s,command_V,displacement_um\n{}\n", rows.join("\n")));

@@ -58,6 +58,9 @@ pub(super) fn other_separator(header: &str) -> Option<RecordFault> {
     Some(RecordFault::OtherSeparator { separator })
 }
 
+/// Largest size of a number that can have been measured, in the units of any channel.
+const LARGEST: f64 = 1e12;
+
 /// The numbers of a table while it is read.
 pub(super) struct Rows {
     /// The columns.
@@ -101,7 +104,11 @@ impl Rows {
                 let place = || Place::at(&source.name, line.number, *at).field(*label);
                 let value = text.parse::<f64>();
                 match value {
-                    Ok(value) if value.is_finite() => {}
+                    Ok(value) if value.abs() <= LARGEST => {}
+                    Ok(value) if value.is_finite() => {
+                        let fault = Fault::TooLarge { value, most: LARGEST };
+                        infinities.push(problems, place(), fault);
+                    }
                     Ok(value) => infinities.push(problems, place(), Fault::NotFinite { value }),
                     Err(_) => {
                         let fault = Fault::NotANumber { text: (*text).to_owned() };

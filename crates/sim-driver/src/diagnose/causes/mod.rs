@@ -4,6 +4,7 @@
 //! must contain before it can be seen, and where a search for its parameters should begin.
 
 mod amplifier_current_limit;
+mod amplifier_gain;
 mod backlash;
 mod coulomb_friction;
 mod creep;
@@ -16,14 +17,16 @@ mod load_stiffness;
 mod mains_hum;
 mod mechanical_resonance;
 mod rate_dependence;
+mod reading_range;
+mod reading_rate;
 mod sensor_filter;
 mod sensor_nonlinearity;
 mod transport_delay;
 mod voltage_saturation;
 
-pub(crate) use gain_rise::GainRise;
 pub(crate) use hysteresis::{StaticHysteresis, looped};
 pub(crate) use rate_dependence::rate_dependent;
+pub(crate) use reading_range::Reading;
 
 use super::base::variance;
 use super::record::Record;
@@ -62,6 +65,15 @@ pub(crate) enum Part {
         /// Half-width of the widest, output's unit.
         widest: f64,
     },
+    /// A command that reaches the terminals by another gain.
+    Command {
+        /// The gain.
+        gain: f64,
+        /// Terminal voltage of no command, V.
+        zero_volt: f64,
+    },
+    /// What the sensor can read.
+    Reading(Reading),
     /// Every output larger by one factor.
     Gain {
         /// The factor less one.
@@ -88,6 +100,10 @@ pub(crate) trait BenchCause: Sync + Send {
     fn refuted(&self, _: &Design) -> Option<String> {
         None
     }
+    /// What it would be, where no cause of the library does it.
+    fn nameless(&self) -> Option<&'static str> {
+        None
+    }
     /// What it switches on.
     fn part(&self, values: &[f64]) -> Part;
 }
@@ -99,6 +115,8 @@ pub(crate) struct Design {
     pub(crate) input: (f64, f64),
     /// Spread of the output over the measured runs.
     pub(crate) spread: f64,
+    /// Lowest and highest output of the measured runs.
+    pub(crate) output: (f64, f64),
     /// Half the range of the output over the measured runs.
     pub(crate) half_stroke: f64,
     /// Longest measured run, s.
@@ -109,6 +127,8 @@ pub(crate) struct Design {
     pub(crate) fast_rate: f64,
     /// The only frequency of all measured runs, if they are sines of one frequency.
     pub(crate) only_hz: Option<f64>,
+    /// Whether the terminal voltage was measured.
+    pub(crate) has_monitor: bool,
     /// Whether a thermometer was read.
     pub(crate) has_temperature: bool,
     /// Load over displacement as a load cell saw it, N/um, and its standard error; none without a load cell.
@@ -148,11 +168,13 @@ impl Design {
         Self {
             input,
             spread: (spread2 / count.max(1) as f64).sqrt(),
+            output,
             half_stroke: 0.5 * (output.1 - output.0),
             longest_s: runs.iter().map(|r| r.duration_s()).fold(0.0, f64::max),
             nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(0.0, f64::max),
             fast_rate,
             only_hz,
+            has_monitor: runs.iter().any(|r| r.amplifier.is_some()),
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
             load_per_um: load_per_um(runs),
             is_bench,
@@ -211,6 +233,17 @@ pub(crate) fn library() -> Vec<Box<dyn BenchCause>> {
     ]
 }
 
+/// What can be wrong on a bench without being a cause of the library: it stands among the candidates, so that data
+/// which show it are not given the name of a cause that does about the same.
+pub(crate) fn nameless() -> Vec<Box<dyn BenchCause>> {
+    vec![
+        Box::new(gain_rise::GainRise),
+        Box::new(amplifier_gain::AmplifierGain),
+        Box::new(reading_range::ReadingRange),
+        Box::new(reading_rate::ReadingRate),
+    ]
+}
+
 /// The library made ready for one data set.
 pub(crate) fn candidates(library: &[Box<dyn BenchCause>], design: &Design) -> Vec<Candidate> {
     library
@@ -223,6 +256,7 @@ pub(crate) fn candidates(library: &[Box<dyn BenchCause>], design: &Design) -> Ve
                 starts,
                 blocked,
                 refuted: cause.refuted(design),
+                nameless: cause.nameless(),
             }
         })
         .collect()

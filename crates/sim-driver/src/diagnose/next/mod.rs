@@ -258,7 +258,8 @@ fn usual<'m>(
     menu: &'m [Experiment],
 ) -> Option<&'m Experiment> {
     let of = |id: &str| menu.iter().find(|experiment| experiment.id == id);
-    let named = finding.causes.first().map(|found| &bench.candidates[found.candidate].cause);
+    let first = finding.causes.first().map(|found| found.candidate).or(finding.looks_like);
+    let named = first.map(|candidate| &bench.candidates[candidate].cause);
     // what was measured already is no longer on the menu
     let separating = named.and_then(|cause| cause.separating.iter().find_map(|id| of(id)));
     separating.or_else(|| {
@@ -269,7 +270,7 @@ fn usual<'m>(
             "amplitude-sweep"
         } else if bench.design.only_hz.is_some() {
             "frequency-sweep"
-        } else if bench.runs.iter().any(|run| is_wide(run)) {
+        } else if finding.is_slow || bench.runs.iter().any(|run| is_wide(run)) {
             // high frequencies were measured already: what is left to see is slow
             "hold-steps-100s"
         } else {
