@@ -20,6 +20,8 @@ use super::CheckError;
 use super::reference::{Table, worst};
 
 const LIFT_SLOPE: f64 = 5.73;
+/// Errors over 2 % or 0.1 deg. The advance ratio taken for the flight speed would leave 0.94.
+pub(super) const BOUND: f64 = 0.5;
 const NU: f64 = 1.125_789_21;
 
 /// Incidence counted from the nearer edge of the section, rad.
@@ -45,7 +47,14 @@ fn airfoil() -> Result<C81Airfoil, CheckError> {
     })
 }
 
-/// The rotor of the reference with its blades split `split` ways.
+/// The rotor of the reference with its blades split `split` ways, trimmed at a flight speed over the tip speed: the
+/// advance ratio of the program is the component of it in the plane of the disk, by its own tilt.
+fn trimmed_at_speed(speed: f64, split: usize) -> Result<TrimSolution, CheckError> {
+    let level = trimmed(speed, split)?;
+    trimmed(speed * level.attitude.shaft_tilt_rad.cos(), split)
+}
+
+/// The same at an advance ratio.
 fn trimmed(mu: f64, split: usize) -> Result<TrimSolution, CheckError> {
     let blade = BladeProperties::new(BladeSpec {
         twist: Twist::Linear { rate_rad: (-8.0_f64).to_radians() },
@@ -90,11 +99,12 @@ pub(super) fn largest_error() -> Result<f64, CheckError> {
         ["theta75_deg", "theta1c_deg", "theta1s_deg", "alpha_s_deg(fwd+)", "phi_s_deg(right+)"];
     let mut errors = Vec::new();
     for row in table.rows() {
-        let mu = row.number("mu")?;
-        if mu < 0.09 {
+        let speed = row.number("mu")?;
+        if speed < 0.09 {
             continue;
         }
-        let (whole, quarter) = (angles_deg(&trimmed(mu, 1)?), angles_deg(&trimmed(mu, 4)?));
+        let whole = angles_deg(&trimmed_at_speed(speed, 1)?);
+        let quarter = angles_deg(&trimmed_at_speed(speed, 4)?);
         for (k, column) in columns.into_iter().enumerate() {
             let wanted = row.number(column)?;
             let got = quarter[k] - (whole[k] - quarter[k]) / 3.0;
@@ -111,6 +121,6 @@ mod tests {
     #[test]
     fn propulsive_trim_meets_the_rigid_blade_reference() {
         let error = largest_error().unwrap();
-        assert!(error <= 1.0, "{error}");
+        assert!(error <= BOUND, "{error}");
     }
 }

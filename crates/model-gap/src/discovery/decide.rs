@@ -165,6 +165,11 @@ impl<S: Simulator> Search<'_, S> {
             };
             let mut why = self.cannot_be(candidate, &next)?;
             if let Some(what) = self.discovery.candidates[candidate].nameless {
+                if why.is_some() {
+                    // it bears no name that could be wrong: the others are asked
+                    fits[candidate] = None;
+                    continue;
+                }
                 match self.named_as_well(&current, (candidate, &next), &fits)? {
                     Some(named) => (candidate, next) = named,
                     None => why = Some(format!("no cause of the library does that: {what} would")),

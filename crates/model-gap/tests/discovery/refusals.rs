@@ -1,6 +1,9 @@
 //! What speaks against a name: channels beside the output, what is left, what has no name.
 
-use crate::toy::{SAMPLES, added, candidate, find, found_beside_meters, traces};
+use crate::toy::{
+    Metered, SAMPLES, added, candidate, find, find_by, found_beside_meters, traces,
+    traces_beside_meters,
+};
 use model_gap::discovery::{Confidence, Finding, TraceRole, Verdict};
 use std::f64::consts::TAU;
 
@@ -102,8 +105,8 @@ fn a_run_that_is_missed_beside_the_name_makes_it_tentative() {
         beside.reasons
     );
     assert!(beside.reasons.iter().any(|r| r.contains("missed beside the names")));
-    // a line many times as large is what is missing, and the lag beside it no answer
-    let most = lag_and_line(0.06, 0.5);
+    // where the lag is the smaller part of what stands out, it is no answer
+    let most = lag_and_line(0.0055, 0.03);
     assert_eq!(most.verdict, Verdict::Unknown, "{:?}", most.reasons);
 }
 
@@ -155,4 +158,29 @@ fn what_has_no_name_is_not_called_by_one_that_does_less_well() {
     let names: Vec<usize> =
         found.causes[0].alternatives.iter().map(|other| other.candidate).collect();
     assert!(names.is_empty(), "what has no name is no alternative: {names:?}");
+}
+
+/// A lag beside meters that show none of it, and a cause without a name in its place that shows nowhere beside the
+/// outputs, or a cubic that is there.
+#[test]
+fn what_has_no_name_and_is_not_there_stands_in_nobodys_way() {
+    let mut candidates = [candidate("cubic"), candidate("lag")];
+    candidates[1].nameless = Some("a spring");
+    let found = |cubic: f64, lag: f64| {
+        let traces = traces_beside_meters(
+            |e, i| added(0, cubic, e, i) + added(1, lag, e, i),
+            0.0,
+            TraceRole::Witness,
+            10.0,
+        );
+        find_by(&Metered, &traces, &candidates)
+    };
+    let both = found(0.06, 0.1);
+    assert_eq!(
+        both.causes.iter().map(|c| c.candidate).collect::<Vec<_>>(),
+        [0],
+        "{:?}",
+        both.reasons
+    );
+    assert_eq!(found(0.06, 0.0).verdict, Verdict::Named);
 }

@@ -160,15 +160,15 @@ impl Simulator for Metered {
     }
 }
 
-/// What is found where the meters read a ramp of a size, and a lag of another acts on the outputs; the meters weigh
-/// as if so many times as noisy as they are.
-pub(crate) fn found_beside_meters(
+/// Traces of the toy with something added, and meters that read a ramp of a size; the meters weigh as if so many
+/// times as noisy as they are.
+pub(crate) fn traces_beside_meters(
+    truth: impl Fn(usize, usize) -> f64,
     ramp_read: f64,
-    lag: f64,
     role: TraceRole,
     doubt: f64,
-) -> Finding {
-    let mut traces = traces(|e, i| added(1, lag, e, i), 11);
+) -> Vec<Trace> {
+    let mut traces = traces(truth, 11);
     let mut state = 3;
     for e in 0..EXPERIMENTS {
         let reads = |i| ramp_read * ramp(i) + NOISE * noise(&mut state);
@@ -177,14 +177,29 @@ pub(crate) fn found_beside_meters(
         let sigma = doubt * NOISE;
         traces.push(Trace { measured, nuisance, role, sigma, ..traces[e].clone() });
     }
-    let discovery = Discovery {
-        traces: &traces,
-        simulator: &Metered,
-        candidates: &[candidate("cubic"), candidate("lag")],
-        generic: &[],
-        trends: &[],
-        structures: &[],
-        settings: Settings { resamplings: 200, ..Settings::default() },
-    };
-    discovery.find().unwrap()
+    traces
+}
+
+/// What a simulator finds, with no directions and surrogates.
+pub(crate) fn find_by(
+    simulator: &impl Simulator,
+    traces: &[Trace],
+    candidates: &[Candidate],
+) -> Finding {
+    let settings = Settings { resamplings: 200, ..Settings::default() };
+    let (generic, trends, structures) = (&[], &[], &[]);
+    Discovery { traces, simulator, candidates, generic, trends, structures, settings }
+        .find()
+        .unwrap()
+}
+
+/// What is found where the meters read a ramp of a size, and a lag of another acts on the outputs.
+pub(crate) fn found_beside_meters(
+    ramp_read: f64,
+    lag: f64,
+    role: TraceRole,
+    doubt: f64,
+) -> Finding {
+    let traces = traces_beside_meters(|e, i| added(1, lag, e, i), ramp_read, role, doubt);
+    find_by(&Metered, &traces, &[candidate("cubic"), candidate("lag")])
 }
