@@ -135,6 +135,16 @@ pub enum SimError {
         /// What follows from the rest.
         recomputed: String,
     },
+    /// One advance ratio of several.
+    #[error("advance ratio {advance_ratio}: {source}{}", found_before(.found))]
+    SweepEnded {
+        /// The advance ratio.
+        advance_ratio: f64,
+        /// Advance ratios before it, whose results are stored.
+        found: Vec<f64>,
+        /// What went wrong there.
+        source: Box<SimError>,
+    },
     /// The control study.
     #[error("{place}: {source}")]
     Study {
@@ -143,6 +153,16 @@ pub enum SimError {
         /// What went wrong.
         source: StudyError,
     },
+}
+
+/// What is said of the advance ratios before the one that failed.
+fn found_before(found: &[f64]) -> String {
+    let given: Vec<String> = found.iter().map(f64::to_string).collect();
+    match given.len() {
+        0 => String::new(),
+        1 => format!("\nthe result at {} before it is stored", given[0]),
+        _ => format!("\nthe results at {} before it are stored", given.join(", ")),
+    }
 }
 
 /// The families of errors.
@@ -179,6 +199,7 @@ impl SimError {
             | Self::NothingMeasured { .. }
             | Self::Misfit { .. } => Family::RejectedInput,
             Self::NotReproduced { .. } => Family::DataMismatch,
+            Self::SweepEnded { source, .. } => source.family(),
             Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),

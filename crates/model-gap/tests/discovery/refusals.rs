@@ -160,27 +160,21 @@ fn what_has_no_name_is_not_called_by_one_that_does_less_well() {
     assert!(names.is_empty(), "what has no name is no alternative: {names:?}");
 }
 
-/// A lag beside meters that show none of it, and a cause without a name in its place that shows nowhere beside the
-/// outputs, or a cubic that is there.
+/// A fifth power that meters do not show, as what has no name would on them: it is not that, and the cubic that is
+/// like it is asked.
 #[test]
 fn what_has_no_name_and_is_not_there_stands_in_nobodys_way() {
-    let mut candidates = [candidate("cubic"), candidate("lag")];
-    candidates[1].nameless = Some("a spring");
-    let found = |cubic: f64, lag: f64| {
-        let traces = traces_beside_meters(
-            |e, i| added(0, cubic, e, i) + added(1, lag, e, i),
-            0.0,
-            TraceRole::Witness,
-            10.0,
-        );
+    let mut candidates =
+        [candidate("cubic"), candidate("lag"), candidate("cubic again"), candidate("fifth power")];
+    candidates[2].blocked = Some("not asked for".into());
+    candidates[3].nameless = Some("a spring");
+    let found = |ramp_read: f64| {
+        let fifth = |e: usize, i: usize| added(3, 0.06, e, i);
+        let traces = traces_beside_meters(fifth, ramp_read, TraceRole::Witness, 10.0);
         find_by(&Metered, &traces, &candidates)
     };
-    let both = found(0.06, 0.1);
-    assert_eq!(
-        both.causes.iter().map(|c| c.candidate).collect::<Vec<_>>(),
-        [0],
-        "{:?}",
-        both.reasons
-    );
-    assert_eq!(found(0.06, 0.0).verdict, Verdict::Named);
+    let (unseen, seen) = (found(0.0), found(0.06));
+    let first = |finding: &Finding| finding.causes.first().map(|cause| cause.candidate);
+    assert_eq!((first(&unseen), unseen.looks_like), (Some(0), None), "{:?}", unseen.reasons);
+    assert_eq!((first(&seen), seen.looks_like), (None, Some(3)), "{:?}", seen.reasons);
 }

@@ -143,7 +143,7 @@ pub(crate) fn find(traces: &[Trace], candidates: &[Candidate]) -> Finding {
     discovery.find().unwrap()
 }
 
-/// The toy with a meter beside every output, which reads a ramp of the size of a lag.
+/// The toy with a meter beside every output, which reads a ramp of the size of a lag or of a fifth power.
 pub(crate) struct Metered;
 
 pub(crate) fn ramp(i: usize) -> f64 {
@@ -153,9 +153,9 @@ pub(crate) fn ramp(i: usize) -> f64 {
 impl Simulator for Metered {
     fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
         let mut all = Toy.predict(effects)?;
-        let lags = effects.iter().filter(|x| x.candidate == 1);
-        let lag: f64 = lags.map(|x| x.values[0]).sum();
-        all.extend((0..EXPERIMENTS).map(|_| (0..SAMPLES).map(|i| lag * ramp(i)).collect()));
+        let shown = effects.iter().filter(|x| [1, 3].contains(&x.candidate));
+        let size: f64 = shown.map(|x| x.values[0]).sum();
+        all.extend((0..EXPERIMENTS).map(|_| (0..SAMPLES).map(|i| size * ramp(i)).collect()));
         Ok(all)
     }
 }

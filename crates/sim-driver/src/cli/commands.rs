@@ -109,9 +109,34 @@ fn run_sweep(
         }
     }
     problems.into_result(Some(()))?;
+    let mut rows = Vec::new();
+    let ended = sweep_into(&mut rows, loaded, advance_ratios, out, scope);
+    // what was found before an advance ratio that fails is of use
+    if !rows.is_empty() {
+        let sweep = SweepResult { rows };
+        write_atomic(&out.join(SWEEP_FILE), sweep_csv(&sweep).as_bytes())?;
+        match format {
+            Format::Json => print(&sweep.render(format)?)?,
+            Format::Text => print(&format!(
+                "{}\nResults in {}, a folder for each advance ratio\n",
+                sweep.render(format)?,
+                out.display()
+            ))?,
+        }
+    }
+    ended
+}
+
+/// Runs the advance ratios, each from the one before, up to the first that fails.
+fn sweep_into(
+    rows: &mut Vec<SweepRow>,
+    loaded: &LoadedCase,
+    advance_ratios: &[f64],
+    out: &Path,
+    scope: Scope,
+) -> Result<(), SimError> {
     let actuators = case_actuators(loaded)?;
     let mut start: Option<TrimSolution> = None;
-    let mut rows = Vec::new();
     for &mu in advance_ratios {
         let here = at_advance_ratio(loaded, mu);
         let more = scope.sensitivity.map_or(0, |which| which.rows(&here));
@@ -122,21 +147,16 @@ fn run_sweep(
                 .and_then(|outcome| with_scope(&here, outcome, scope, &progress))
         });
         progress.finish();
-        let outcome = computed?;
+        let outcome = computed.map_err(|source| SimError::SweepEnded {
+            advance_ratio: mu,
+            found: rows.iter().map(|row| row.advance_ratio).collect(),
+            source: Box::new(source),
+        })?;
         start = Some(outcome.trimmed.trim().clone());
         store(&here, &out.join(sweep_folder(mu)), &outcome)?;
         rows.push(SweepRow { advance_ratio: mu, result: outcome.result });
     }
-    let sweep = SweepResult { rows };
-    write_atomic(&out.join(SWEEP_FILE), sweep_csv(&sweep).as_bytes())?;
-    match format {
-        Format::Json => print(&sweep.render(format)?),
-        Format::Text => print(&format!(
-            "{}\nResults in {}, a folder for each advance ratio\n",
-            sweep.render(format)?,
-            out.display()
-        )),
-    }
+    Ok(())
 }
 
 /// What is computed beside the case.
@@ -500,6 +520,13 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
         problems.push(Place::file("--pitch-deg"), fault);
         return Err(problems.into());
     }
+    let mut problems = Problems::default();
+    for value in speed_ratios.iter().copied().filter(|ratio| !(0.0..=10.0).contains(ratio)) {
+        let remedy = "rotor speeds over the nominal one; 0 is a blade at rest";
+        let fault = Fault::OutOfRange { value, low: 0.0, high: 10.0, unit: "", remedy };
+        problems.push(Place::file("--speeds"), fault);
+    }
+    problems.into_result(Some(()))?;
     let pitch_rad = args.pitch_deg.to_radians();
     let question = ModesQuestion { terms, pitch_rad, about, speed_ratios };
     let result = rotating_modes(&loaded.case, &question)?;

@@ -48,6 +48,10 @@ fn modes_of_the_table_1_blade() {
         close(mode["per_rev"].as_f64().unwrap(), per_rev, 6e-5);
         close(mode["hz"].as_f64().unwrap(), per_rev * 383.0 / 60.0, 6e-5);
     }
+    for speeds in ["nan", "0,-1", "1e300"] {
+        let arguments = ["modes", "case.ron", "--speeds", speeds];
+        place.hhc(&arguments).rejected(&["--speeds", "expected 0 to 10"]);
+    }
     let fan = json["fan"].as_array().unwrap();
     assert_eq!(fan.len(), 3);
     assert!(fan[0]["modes"][0]["per_rev"].is_null(), "no per rev at rest");

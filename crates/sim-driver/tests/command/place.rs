@@ -99,8 +99,14 @@ impl Ran {
     /// Asserts exit code 2, nothing on standard output, and that the message holds every part.
     #[track_caller]
     pub(crate) fn rejected(self, parts: &[&str]) -> String {
-        assert_eq!(self.code, 2, "hhc {}\n{}\n{}", self.args, self.out, self.err);
         assert!(self.out.is_empty(), "hhc {} printed\n{}", self.args, self.out);
+        self.failed(2, parts)
+    }
+
+    /// Asserts an exit code and that the message holds every part.
+    #[track_caller]
+    pub(crate) fn failed(self, code: i32, parts: &[&str]) -> String {
+        assert_eq!(self.code, code, "hhc {}\n{}\n{}", self.args, self.out, self.err);
         assert!(!self.err.contains("panicked") && !self.err.contains("bug"), "{}", self.err);
         for part in parts {
             assert!(self.err.contains(part), "hhc {}: no `{part}` in\n{}", self.args, self.err);

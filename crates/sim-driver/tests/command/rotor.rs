@@ -125,6 +125,30 @@ fn advance_ratios_are_run_one_from_the_other() {
     place.hhc(&["run", "case.ron", "--mu", "0.1,0.1"]).rejected(&["0.1 is given twice"]);
 }
 
+/// A sweep that fails on its way says where, and what was found before is kept whole.
+#[test]
+fn a_sweep_that_fails_names_its_advance_ratio_and_keeps_the_others() {
+    let place = Place::new();
+    let tables = "compressibility: None, airfoils: [(station_r: 0.2, table: \"shipped:naca0012_synthetic.c81\")]";
+    let case = QUICK_CASE
+        .replace("compressibility: None", tables)
+        .replace("ct_sigma: 0.07", "ct_sigma: 0.14")
+        .replace("harmonics: [[3]]", "harmonics: []");
+    place.write("case.ron", &case);
+    place.hhc(&["run", "case.ron", "--mu", "0.1,0.5", "--out", "s"]).failed(
+        2,
+        &["advance ratio 0.5: case.ron", "Remedy", "the result at 0.1 before it is stored"],
+    );
+    assert_eq!(place.read("s/sweep.csv").lines().count(), 2);
+    assert!(place.listing().iter().any(|name| name == "s/mu_0.1/result.json"));
+    assert!(!place.listing().iter().any(|name| name.starts_with("s/mu_0.5")));
+    // where the first fails nothing is left
+    place
+        .hhc(&["run", "case.ron", "--mu", "0.5,0.1", "--out", "t"])
+        .failed(2, &["advance ratio 0.5"]);
+    assert!(!place.listing().iter().any(|name| name.starts_with("t/")));
+}
+
 /// Blades that are called unlike and are not change nothing; a heavy one shakes the hub once per revolution.
 #[test]
 fn unlike_blades_shake_the_hub_at_every_harmonic() {
