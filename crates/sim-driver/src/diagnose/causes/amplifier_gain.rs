@@ -34,7 +34,7 @@ impl BenchCause for AmplifierGain {
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
-        (!design.has_monitor)
+        (design.monitored_runs == 0)
             .then(|| "without the terminal voltage nothing tells it from a load".to_owned())
     }
 

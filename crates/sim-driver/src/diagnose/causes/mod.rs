@@ -127,8 +127,8 @@ pub(crate) struct Design {
     pub(crate) fast_rate: f64,
     /// The only frequency of all measured runs, if they are sines of one frequency.
     pub(crate) only_hz: Option<f64>,
-    /// Whether the terminal voltage was measured.
-    pub(crate) has_monitor: bool,
+    /// Number of measured runs with the terminal voltage beside them.
+    pub(crate) monitored_runs: usize,
     /// Whether a thermometer was read.
     pub(crate) has_temperature: bool,
     /// Load over displacement as a load cell saw it, N/um, and its standard error; none without a load cell.
@@ -174,7 +174,7 @@ impl Design {
             nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(0.0, f64::max),
             fast_rate,
             only_hz,
-            has_monitor: runs.iter().any(|r| r.amplifier.is_some()),
+            monitored_runs: runs.iter().filter(|r| r.amplifier.is_some()).count(),
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
             load_per_um: load_per_um(runs),
             is_bench,
