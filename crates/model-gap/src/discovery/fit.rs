@@ -84,17 +84,26 @@ impl<S: Simulator> Fitter<'_, S> {
             return Ok(None);
         }
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // the effect of a start may be right in form and too large: it promises much and costs more than none
         let promising = tried.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
-        let third = promising.map(|(place, _)| place).filter(|place| *place > 1);
+        let third = promising.map(|(place, (_, promise, _))| (place, *promise));
         let mut best: Option<Fitted> = None;
-        let places = [Some(0), Some(1), third];
-        for (_, _, effects) in places.into_iter().flatten().filter_map(|place| tried.get(place)) {
+        let mut refined = |place: usize| -> Result<f64, GapError> {
+            let Some((_, _, effects)) = tried.get(place) else { return Ok(f64::INFINITY) };
             let mut found = self.refine(effects.clone())?;
-            found.trust = TRUSTED * (before.cost - found.cost).max(0.0);
+            let drop = before.cost - found.cost;
+            found.trust = TRUSTED * drop.max(0.0);
             if best.as_ref().is_none_or(|b| found.cost < b.cost) {
                 best = Some(found);
             }
+            Ok(drop)
+        };
+        let drop = refined(0)?.max(refined(1)?);
+        // the effect of a start may be right in form and too large: it costs more than none and promises much
+        if let Some((place, promise)) = third
+            && place > 1
+            && promise > drop
+        {
+            refined(place)?;
         }
         Ok(best)
     }

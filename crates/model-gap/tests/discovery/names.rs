@@ -1,7 +1,7 @@
 //! Which names are given, and how surely.
 
 use crate::toy::{
-    EXPERIMENTS, NOISE, SAMPLES, Toy, added, candidate, find, find_beside, input, traces,
+    EXPERIMENTS, NOISE, SAMPLES, Toy, added, candidate, find, find_beside, find_by, input, traces,
 };
 use model_gap::discovery::{
     Confidence, Discovery, Finding, Settings, Signal, Simulator, Trace, Verdict, separations,
@@ -406,4 +406,32 @@ fn an_experiment_parts_what_differs_and_not_what_is_the_same() {
                     + 2.0 * (found.energy[0] * found.energy[1]).sqrt()
         );
     }
+}
+
+/// A cubic whose size is a narrow peak over its parameter, as that of a mode is over its frequency.
+struct Peaked;
+
+fn peaked(value: f64, experiment: usize, i: usize) -> f64 {
+    0.5 * (-((value - 1.0) / 0.1).powi(2)).exp() * input(experiment, i).powi(3)
+}
+
+impl Simulator for Peaked {
+    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
+        let sum =
+            |e: usize, i: usize| effects.iter().map(|x| peaked(x.values[0], e, i)).sum::<f64>();
+        let own = |e: usize| (0..SAMPLES).map(|i| input(e, i) + sum(e, i)).collect();
+        Ok((0..EXPERIMENTS).map(own).collect())
+    }
+}
+
+/// Two starts without any effect cost less than one that is right in form and eight times too large.
+#[test]
+fn a_start_that_promises_much_and_costs_more_than_none_is_tried() {
+    let traces = traces(|e, i| peaked(1.146, e, i), 12);
+    let mut own = candidate("peaked");
+    own.starts = vec![vec![-1.0], vec![-0.5], vec![1.03]];
+    own.cause.parameters[0].is_amount = false;
+    let finding = find_by(&Peaked, &traces, &[own]);
+    let value = finding.causes.first().map(|cause| cause.parameters[0].value);
+    assert!(value.is_some_and(|v| (v - 1.146).abs() < 0.01), "{value:?} {:?}", finding.reasons);
 }

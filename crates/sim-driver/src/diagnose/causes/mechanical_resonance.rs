@@ -39,7 +39,7 @@ impl BenchCause for MechanicalResonance {
         while hz < HIGHEST_HZ {
             starts.push(vec![hz, 0.03]);
             // peaks are narrow, tails are not
-            hz *= if hz < ringing { 1.07 } else { 1.3 };
+            hz *= if hz < ringing { 1.07 } else { 1.5 };
         }
         starts
     }

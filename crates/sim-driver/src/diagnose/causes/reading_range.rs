@@ -36,11 +36,8 @@ impl BenchCause for ReadingRange {
         vec![
             // measured readings that are cut end where they are cut
             cut(0.0, none),
-            cut(0.02, none),
             cut(none, 0.0),
-            cut(none, 0.02),
-            cut(0.0, 0.0),
-            cut(0.02, 0.02),
+            cut(0.01, 0.01),
         ]
     }
 

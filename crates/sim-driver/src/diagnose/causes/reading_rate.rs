@@ -33,7 +33,7 @@ impl BenchCause for ReadingRate {
 
     fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
         let usual = usual(design);
-        [1.8, 1.2, 0.9, 0.6, 0.4, 0.25].iter().map(|part| vec![part * usual]).collect()
+        [1.5, 0.9, 0.5, 0.25].iter().map(|part| vec![part * usual]).collect()
     }
 
     fn blocked(&self, design: &Design) -> Option<String> {
