@@ -24,6 +24,14 @@ pub(crate) struct Fitted {
     pub(crate) trust: f64,
 }
 
+/// Where a descent has come to.
+struct Descent {
+    effects: Vec<Effect>,
+    free: Vec<(usize, usize)>,
+    residual: Vec<Vec<f64>>,
+    cost: f64,
+}
+
 /// Fits effects.
 pub(crate) struct Fitter<'a, S> {
     pub(crate) simulator: &'a S,
@@ -36,6 +44,10 @@ const TRUSTED: f64 = 0.1;
 /// Weight of the whole set in the fit of a fold.
 const KEPT: f64 = 0.02;
 const ITERATIONS: usize = 12;
+/// Iterations that a start which costs much and promises much is given to show it.
+const TRIAL_ITERATIONS: usize = 4;
+/// Part of the drop found from other starts that it must have reached by then.
+const TRIAL_SHARE: f64 = 0.5;
 /// Change of the cost below which a fit has settled.
 const SETTLED: f64 = 0.02;
 /// Largest step of a logarithmic coordinate.
@@ -87,9 +99,8 @@ impl<S: Simulator> Fitter<'_, S> {
         let promising = tried.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
         let third = promising.map(|(place, (_, promise, _))| (place, *promise));
         let mut best: Option<Fitted> = None;
-        let mut refined = |place: usize| -> Result<f64, GapError> {
-            let Some((_, _, effects)) = tried.get(place) else { return Ok(f64::INFINITY) };
-            let mut found = self.refine(effects.clone())?;
+        let mut refined = |effects: &[Effect]| -> Result<f64, GapError> {
+            let mut found = self.refine(effects.to_vec())?;
             let drop = before.cost - found.cost;
             found.trust = TRUSTED * drop.max(0.0);
             if best.as_ref().is_none_or(|b| found.cost < b.cost) {
@@ -97,19 +108,35 @@ impl<S: Simulator> Fitter<'_, S> {
             }
             Ok(drop)
         };
-        let drop = refined(0)?.max(refined(1)?);
+        let mut drop = 0.0_f64;
+        for (_, _, effects) in tried.iter().take(2) {
+            drop = drop.max(refined(effects)?);
+        }
         // the effect of a start may be right in form and too large: it costs more than none and promises much
         if let Some((place, promise)) = third
             && place > 1
             && promise > drop
         {
-            refined(place)?;
+            let on_trial = self.descend(tried[place].2.clone(), TRIAL_ITERATIONS)?;
+            if before.cost - on_trial.cost > TRIAL_SHARE * drop {
+                refined(&on_trial.effects)?;
+            }
         }
         Ok(best)
     }
 
+    /// Levenberg-Marquardt from given effects, with what folds and intervals need.
+    pub(crate) fn refine(&self, effects: Vec<Effect>) -> Result<Fitted, GapError> {
+        let Descent { effects, free, residual, cost } = self.descend(effects, ITERATIONS)?;
+        let slopes = self.slopes(&effects, &residual, &free)?;
+        let columns: Vec<&[Vec<f64>]> =
+            std::iter::once(residual.as_slice()).chain(slopes.iter().map(Vec::as_slice)).collect();
+        let products = self.evidence.products(&columns);
+        Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
+    }
+
     /// Levenberg-Marquardt from given effects.
-    pub(crate) fn refine(&self, mut effects: Vec<Effect>) -> Result<Fitted, GapError> {
+    fn descend(&self, mut effects: Vec<Effect>, iterations: usize) -> Result<Descent, GapError> {
         let free: Vec<(usize, usize)> = effects
             .iter()
             .enumerate()
@@ -119,7 +146,7 @@ impl<S: Simulator> Fitter<'_, S> {
         let mut residual = self.residual(&effects)?;
         let mut cost = self.cost_of(&residual);
         let mut damping = 1e-3;
-        for _ in 0..ITERATIONS {
+        for _ in 0..iterations {
             let slopes = self.slopes(&effects, &residual, &free)?;
             let columns: Vec<&[Vec<f64>]> = std::iter::once(residual.as_slice())
                 .chain(slopes.iter().map(Vec::as_slice))
@@ -156,11 +183,7 @@ impl<S: Simulator> Fitter<'_, S> {
                 break;
             }
         }
-        let slopes = self.slopes(&effects, &residual, &free)?;
-        let columns: Vec<&[Vec<f64>]> =
-            std::iter::once(residual.as_slice()).chain(slopes.iter().map(Vec::as_slice)).collect();
-        let products = self.evidence.products(&columns);
-        Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
+        Ok(Descent { effects, free, residual, cost })
     }
 
     /// Slopes of the residual by one-sided differences, turned inward at the upper bound.

@@ -67,7 +67,8 @@ impl LogCreep {
         Ok(())
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> CreepStep {
+    /// The lags that stand for the logarithm: weight, as a fraction of the input, and time constant (s) of each.
+    pub fn lags(&self) -> Vec<(f64, f64)> {
         let decades = (self.to_s / self.from_s).log10();
         let count = (LAGS_PER_DECADE * decades).ceil();
         let spacing = decades / count;
@@ -79,10 +80,15 @@ impl LogCreep {
         let mut place = 0.5;
         while place < count {
             let tau_s = first_s * 10.0_f64.powf(place * spacing);
-            terms.push((weight, LagStep::new(tau_s, step_s)));
+            terms.push((weight, tau_s));
             place += 1.0;
         }
-        CreepStep::new(terms)
+        terms
+    }
+
+    pub(super) fn prepared(&self, step_s: f64) -> CreepStep {
+        let term = |(weight, tau_s)| (weight, LagStep::new(tau_s, step_s));
+        CreepStep::new(self.lags().into_iter().map(term).collect())
     }
 }
 

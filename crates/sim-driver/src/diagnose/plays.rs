@@ -8,6 +8,12 @@ const PLAYS: usize = 20;
 const GROWTH: f64 = 1.4;
 /// Cells of the output map of the narrowest play.
 const CELLS: f64 = 12.0;
+/// 1.5 times 2 to the 52: a sum with it ends in the digits of the nearest whole number.
+const DIGITS: f64 = 6_755_399_441_055_744.0;
+/// The digits of a cell's number; more than a map has cells.
+const CELL: u64 = MAP as u64 - 1;
+/// Places for the cells of a map.
+const MAP: usize = 16;
 
 /// Plays of fixed half-widths over an input range, each with a quadratic spline of its state.
 ///
@@ -43,7 +49,7 @@ type Quadratic = [f64; 3];
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OutputMap {
     offset: f64,
-    cells: Vec<Vec<Quadratic>>,
+    cells: [[Quadratic; MAP]; PLAYS],
 }
 
 impl Plays {
@@ -108,17 +114,34 @@ impl Plays {
     }
 
     /// The output for a history of inputs that begins at rest.
+    ///
+    /// The most called loop of a diagnosis: the plays stand in columns of a fixed length, and the cell
+    /// of a state is read from the last digits of a sum with [`DIGITS`]. A state on the border of two
+    /// cells may be given to either: the maps are continuous there.
     pub(crate) fn outputs(&self, map: &OutputMap, inputs: &[f64]) -> Vec<f64> {
         let Some(&first) = inputs.first() else { return Vec::new() };
-        let mut states = self.rest(first);
+        let column = |of: fn(&Play) -> f64| std::array::from_fn(|k| of(&self.all[k]));
+        let half_width: [f64; PLAYS] = column(|play| play.half_width);
+        let per_unit: [f64; PLAYS] = column(|play| play.per_unit);
+        let last: [f64; PLAYS] = column(|play| DIGITS + (play.cells - 1) as f64);
+        let mut states: [f64; PLAYS] = [0.0; PLAYS];
+        states.copy_from_slice(&self.rest(first));
         inputs
             .iter()
             .map(|&input| {
-                self.advance(&mut states, input);
+                let x = self.coordinate(input);
+                let (mut cells, mut places) = ([0_u64; PLAYS], [0.0; PLAYS]);
+                for k in 0..PLAYS {
+                    let state = above(below(states[k], x + half_width[k]), x - half_width[k]);
+                    states[k] = state;
+                    let from_end = above((state + 1.0 - half_width[k]) * per_unit[k], 0.0);
+                    let cell = below((from_end - 0.5) + DIGITS, last[k]);
+                    cells[k] = cell.to_bits();
+                    places[k] = from_end - (cell - DIGITS);
+                }
                 let mut sum = map.offset;
-                for ((play, &state), cells) in self.all.iter().zip(&states).zip(&map.cells) {
-                    let (cell, t) = play.place(state);
-                    let [a, b, c] = cells[cell];
+                for ((maps, cell), t) in map.cells.iter().zip(cells).zip(places) {
+                    let [a, b, c] = maps[(cell & CELL) as usize];
                     sum += a + t * (b + t * c);
                 }
                 sum
@@ -128,18 +151,13 @@ impl Plays {
 
     /// The output maps of given coefficients.
     pub(crate) fn map(&self, offset: f64, coefficients: &[f64]) -> OutputMap {
-        let cells = self
-            .all
-            .iter()
-            .map(|play| {
-                (0..play.cells)
-                    .map(|k| {
-                        let c = &coefficients[play.first + k..play.first + k + 3];
-                        [0.5 * (c[0] + c[1]), c[1] - c[0], 0.5 * (c[0] - 2.0 * c[1] + c[2])]
-                    })
-                    .collect()
-            })
-            .collect();
+        let mut cells = [[[0.0; 3]; MAP]; PLAYS];
+        for (play, map) in self.all.iter().zip(&mut cells) {
+            for (k, cell) in map.iter_mut().enumerate().take(play.cells) {
+                let c = &coefficients[play.first + k..play.first + k + 3];
+                *cell = [0.5 * (c[0] + c[1]), c[1] - c[0], 0.5 * (c[0] - 2.0 * c[1] + c[2])];
+            }
+        }
         OutputMap { offset, cells }
     }
 
@@ -210,6 +228,18 @@ impl Play {
         let cell = (x.max(0.0) as u32 as usize).min(self.cells - 1);
         (cell, x - cell as f64)
     }
+}
+
+/// The smaller of two numbers that are there.
+#[inline]
+fn below(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers that are there.
+#[inline]
+fn above(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 #[expect(

@@ -9,12 +9,13 @@
 use super::base::BaseModel;
 use super::causes::{BenchCause, Part, Reading, looped, rate_dependent};
 use super::memo::{Memo, key};
+use super::plays::behind_lags;
 use super::record::Record;
 use super::smooth::{Smooth, Weights};
 use model_gap::{Effect, GapError};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, DielectricHeating, Drive, Lag,
-    LinearGain, LinkageStage, SensorStage, VoltageRange,
+    LinearGain, LinkageStage, LogCreep, SensorStage, VoltageRange,
 };
 use std::sync::Arc;
 
@@ -273,6 +274,7 @@ impl<'a> Plant<'a> {
                         &signal, known,
                     )
                     .through_mode(mode.frequency_hz, mode.damping_ratio, run.step_s),
+                    LinkageStage::LogCreep(creep) => crept(&signal, creep, run.step_s),
                     other => self.pass(run, &signal, std::slice::from_ref(other), &[])?,
                 };
             }
@@ -366,6 +368,19 @@ fn smooth<'s>(signal: &'s [f64], known: Option<&'s Weights>) -> Smooth<'s> {
     known.map_or_else(|| Smooth::new(signal), |weights| Smooth::known(signal, weights))
 }
 
+/// A signal with its creep, `u + sum_i w_i (lag_i[u] - u_start)`.
+fn crept(signal: &[f64], creep: &LogCreep, step_s: f64) -> Vec<f64> {
+    let lags = creep.lags();
+    let whole: f64 = lags.iter().map(|(weight, _)| weight).sum();
+    let start = signal.first().copied().unwrap_or_default();
+    let mut output =
+        behind_lags(signal, lags.into_iter().map(|(weight, tau_s)| (tau_s, weight)), step_s);
+    for (y, u) in output.iter_mut().zip(signal) {
+        *y += whole * (u - start);
+    }
+    output
+}
+
 /// A signal behind a lag; one of no time constant changes nothing.
 fn behind_lag(signal: &Smooth<'_>, lag: Lag, step_s: f64) -> Vec<f64> {
     if lag.tau_s > 0.0 { signal.lagged(lag.tau_s, step_s) } else { signal.samples().to_vec() }
@@ -453,6 +468,22 @@ mod tests {
         let found = line(0.7, 0.31 / std::f64::consts::TAU, &residual);
         for (i, y) in (0..).zip(&found) {
             assert_abs_diff_eq!(*y, 0.7 * wave(i), epsilon = 1e-3);
+        }
+    }
+
+    #[test]
+    fn the_creep_in_lags_side_by_side_is_that_of_the_stage() {
+        let input: Vec<f64> =
+            (0..3000).map(|i| 3.0 + (0.01 * f64::from(i)).sin() + f64::from(i / 1000)).collect();
+        let creep = LogCreep { rate_per_decade: 0.03, from_s: 0.02, to_s: 1000.0 };
+        let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 1.0, bias_volt: 0.0 });
+        let wide = VoltageRange::new(-10.0, 10.0).expect("a range");
+        let unit = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+        let mut model = ActuatorModel::new(law, wide, unit);
+        model.linkage = vec![LinkageStage::LogCreep(creep)];
+        let staged = model.simulate_bench(&Drive::new(&input, 2e-3)).expect("in range");
+        for (own, y) in crept(&input, &creep, 2e-3).iter().zip(&staged.measured_deg) {
+            assert_abs_diff_eq!(*own, *y, epsilon = 1e-12);
         }
     }
 }

@@ -56,16 +56,25 @@ impl<'a> Smooth<'a> {
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
         let least = 1e-9 * (range.1 - range.0);
-        let at = |i: isize| samples[i.clamp(0, last(samples)).unsigned_abs()];
-        let second: Vec<f64> =
-            (0..=last(samples).max(0)).map(|i| at(i - 1) - 2.0 * at(i) + at(i + 1)).collect();
-        let about = |i: isize| second[i.clamp(0, last(&second)).unsigned_abs()];
-        (0..last(samples).max(0))
-            .map(|k| {
-                let bend = (k - 1..=k + 2).map(|i| about(i).abs()).fold(0.0, f64::max);
-                let fourth = |i: isize| (about(i - 1) - 2.0 * about(i) + about(i + 1)).abs();
+        let count = samples.len();
+        if count < 2 {
+            return Vec::new();
+        }
+        // the second difference at every sample, held beyond either end
+        let mut second = vec![0.0; count + 2];
+        for (own, u) in second[2..].iter_mut().zip(samples.windows(3)) {
+            *own = u[0] - 2.0 * u[1] + u[2];
+        }
+        second[..2].fill(samples[1] - samples[0]);
+        second[count..].fill(samples[count - 2] - samples[count - 1]);
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        second
+            .windows(4)
+            .map(|s| {
+                let bend = larger(larger(s[0].abs(), s[1].abs()), larger(s[2].abs(), s[3].abs()));
+                let fourth = |i: usize| (s[i - 1] - 2.0 * s[i] + s[i + 1]).abs();
                 if bend > least {
-                    (2.0 - fourth(k).max(fourth(k + 1)) / bend).clamp(0.0, 1.0)
+                    (2.0 - larger(fourth(1), fourth(2)) / bend).clamp(0.0, 1.0)
                 } else {
                     0.0
                 }
@@ -173,10 +182,6 @@ impl<'a> Smooth<'a> {
             z
         })
     }
-}
-
-fn last(values: &[f64]) -> isize {
-    isize::try_from(values.len()).unwrap_or(isize::MAX) - 1
 }
 
 /// The sample a whole number before; none before the first.

@@ -19,12 +19,22 @@ const ZERO_ERROR: f64 = 2e-3;
 impl BenchSimulator<'_> {
     /// The traces with their noise and the covariance of the base model.
     pub(crate) fn traces(&self) -> Vec<Trace> {
+        self.traces_of(&self.channels)
+    }
+
+    /// The traces of some channels: run and kind of each.
+    pub(crate) fn traces_of(&self, channels: &[(usize, ChannelKind)]) -> Vec<Trace> {
         let errors: Vec<_> = self.runs.iter().map(|r| self.base.errors(r)).collect();
         let sigmas: Vec<f64> = errors.iter().map(ErrorModel::effective).collect();
-        let moving = self.base.nuisance(&self.runs, &sigmas, MOST_DIRECTIONS);
+        let moving = if channels.iter().any(|channel| channel.1 == ChannelKind::Output) {
+            self.base.nuisance(&self.runs, &sigmas, MOST_DIRECTIONS)
+        } else {
+            // the base model moves the output alone
+            Vec::new()
+        };
         let directions = moving.first().map_or(0, DMatrix::ncols);
         let width = directions + self.runs.len();
-        self.channels
+        channels
             .iter()
             .map(|&(number, kind)| {
                 let run = self.runs[number];

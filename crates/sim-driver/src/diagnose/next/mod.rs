@@ -17,9 +17,7 @@ use super::simulator::{BenchSimulator, ChannelKind};
 use super::surrogate::Noise;
 use excitation::Span;
 use menu::{Experiment, Measured, Planned, menu};
-use model_gap::discovery::{
-    Finding, Found, Rival, Separation, Simulator, Trace, Verdict, separations,
-};
+use model_gap::discovery::{Finding, Found, Rival, Separation, Simulator, Verdict, separations};
 use model_gap::{Candidate, Effect, GapError};
 use rayon::prelude::*;
 
@@ -183,8 +181,8 @@ fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<P
     let whole = BenchSimulator::new(bench.base, runs, bench.library, bench.range)?;
     let places: Vec<usize> =
         (0..whole.channels.len()).filter(|&t| shown.contains(&whole.channels[t].1)).collect();
-    let traces = whole.traces();
-    let traces: Vec<Trace> = places.iter().map(|&t| traces[t].clone()).collect();
+    let channels: Vec<_> = places.iter().map(|&t| whole.channels[t]).collect();
+    let traces = whole.traces_of(&channels);
     let simulator = Shown { whole: &whole, places };
     let found = separations(&simulator, &traces, bench.candidates, &open.rivals)?;
     Ok(Parting::of(&found, open.output_drop))
