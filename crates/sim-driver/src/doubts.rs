@@ -10,6 +10,10 @@ use trim::mean_lift_coefficient;
 /// softest articulated blades.
 const LEAST_STIFFNESS: f64 = 2e-5;
 
+/// Stiffness above which a blade does not bend, over `m0 Omega^2 R^4`: a hundred times that of blades stiff in
+/// their plane.
+const MOST_STIFFNESS: f64 = 10.0;
+
 /// Mean lift coefficient above which rotors stall: `C_T/sigma` of 0.15 in hover, and 0.17 at an advance ratio
 /// of 0.3, which is beyond the limits of thrust measured in wind tunnels.
 ///
@@ -87,12 +91,19 @@ impl LoadedCase {
     }
 
     /// Stiffness and radii of a section that no blade has.
-    fn value_doubts(&self) -> Vec<String> {
+    pub(crate) fn value_doubts(&self) -> Vec<String> {
         let file = &self.file.rotor;
         let mut doubts = Vec::new();
         let soft = |value: f64| {
             format!(
                 "the stiffness {value:e} m0 Omega^2 R^4 is less than {LEAST_STIFFNESS:e}, a hundredth of the softest blade's: the blade is a rope that rotation alone holds, and its curvature at the root is not resolved. Is the value over m0 Omega^2 R^4? The paper's blade has 0.0108 in flap, 0.0268 in lag, 0.00615 in torsion"
+            )
+        };
+        let unit_n_m2 = self.case.scales.stiffness_newton_metre2();
+        let stiff = |value: f64| {
+            format!(
+                "the stiffness {value:e} m0 Omega^2 R^4 is more than {MOST_STIFFNESS}, a hundred times that of blades: this one does not bend. Was it given in N m^2? Divide by m0 Omega^2 R^4, here {unit_n_m2:.4e} N m^2: {:.4e}",
+                value / unit_n_m2
             )
         };
         for (key, value, table) in [
@@ -101,12 +112,15 @@ impl LoadedCase {
             ("gj", file.gj, &file.tables.gj),
         ] {
             // a table takes the place of the uniform value
-            if table.is_empty() && value < LEAST_STIFFNESS {
-                doubts.push(self.doubt(&format!("rotor.{key}"), soft(value)));
+            let uniform = table.is_empty().then(|| (format!("rotor.{key}"), value));
+            let listed = table.iter().enumerate();
+            let listed = listed.map(|(i, own)| (format!("rotor.tables.{key}[{i}]"), own.1));
+            let all: Vec<(String, f64)> = uniform.into_iter().chain(listed).collect();
+            if let Some((field, value)) = all.iter().find(|own| own.1 < LEAST_STIFFNESS) {
+                doubts.push(self.doubt(field, soft(*value)));
             }
-            let below = table.iter().position(|(_, value)| *value < LEAST_STIFFNESS);
-            if let Some(i) = below {
-                doubts.push(self.doubt(&format!("rotor.tables.{key}[{i}]"), soft(table[i].1)));
+            if let Some((field, value)) = all.iter().find(|own| own.1 > MOST_STIFFNESS) {
+                doubts.push(self.doubt(field, stiff(*value)));
             }
         }
         doubts.extend(self.moment_trim_doubt());

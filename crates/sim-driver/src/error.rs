@@ -107,6 +107,14 @@ pub enum SimError {
         /// What went wrong.
         source: TrimError,
     },
+    /// A failure of a case that asks for what hardly is meant, or of a blade that is unstable.
+    #[error("{source}\nDoubts about the case, one of which may be the cause:{}", listed(.doubts))]
+    InDoubt {
+        /// What went wrong.
+        source: Box<SimError>,
+        /// The doubts, each with its place.
+        doubts: Vec<String>,
+    },
     /// The trim of a blade whose pitch link is so soft that it holds no pitch.
     #[error(
         "{place}: a pitch spring of {stiffness} leaves the blade a pitch frequency of about {frequency_per_rev:.1} per rev, too soft for the loads it holds: {source}. Remedy: a stiffer spring (a pitch link gives 3 per rev and more), or Locked"
@@ -187,7 +195,29 @@ impl Family {
     }
 }
 
+fn listed(doubts: &[String]) -> String {
+    format!("\n- {}", doubts.join("\n- "))
+}
+
 impl SimError {
+    /// The error with doubts about the case that may be its cause; without any, itself.
+    pub(crate) fn in_doubt(self, doubts: Vec<String>) -> Self {
+        if doubts.is_empty() { self } else { Self::InDoubt { source: Box::new(self), doubts } }
+    }
+
+    /// Whether a start from a nearby flight may mend a trim: it lost its way, and nothing said that there is none.
+    pub(crate) fn is_lost(&self) -> bool {
+        let Self::Trim { source, .. } = self else { return false };
+        matches!(
+            source,
+            TrimError::OutOfReach { .. }
+                | TrimError::NoDescent { .. }
+                | TrimError::NotConverged { .. }
+                | TrimError::Singular { .. }
+                | TrimError::Response(_)
+        )
+    }
+
     /// Family of the error.
     pub fn family(&self) -> Family {
         match self {
@@ -199,7 +229,7 @@ impl SimError {
             | Self::NothingMeasured { .. }
             | Self::Misfit { .. } => Family::RejectedInput,
             Self::NotReproduced { .. } => Family::DataMismatch,
-            Self::SweepEnded { source, .. } => source.family(),
+            Self::SweepEnded { source, .. } | Self::InDoubt { source, .. } => source.family(),
             Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),
             Self::Blade { source, .. } => blade_family(source),
             Self::Response { source, .. } => response_family(source),

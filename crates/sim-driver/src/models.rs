@@ -3,13 +3,14 @@
 use crate::SimError;
 use crate::case::{
     BasisChoice, Case, CompressibilityChoice, CouplingsChoice, DynamicStallChoice, FlapMassChoice,
-    GravityChoice, JointChoice, ReverseFlowChoice, SectionModelChoice, TrimValues, UnlikeBladeFile,
+    GravityChoice, JointChoice, ReverseFlowChoice, SectionModelChoice, TrimValues,
+    TwistAngleChoice, UnlikeBladeFile, UntwistChoice,
 };
 use crate::problem::Place;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{
     BladeProperties, BladeSpec, Distribution, Joint, ModalBasis, ModeCount, RootSupport,
-    TorsionTerms, Twist,
+    TorsionTerms, Twist, TwistAngle, Untwist,
 };
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, DynamicStall, FlapMass,
@@ -88,6 +89,20 @@ impl Case {
         }
     }
 
+    /// Terms of torsion that the couplings `Moderate` keep.
+    fn torsion_terms(&self) -> TorsionTerms {
+        TorsionTerms {
+            untwist: match self.blade.untwist {
+                UntwistChoice::Included => Untwist::Included,
+                UntwistChoice::Neglected => Untwist::Neglected,
+            },
+            angle: match self.blade.twist_angle {
+                TwistAngleChoice::Rotation => TwistAngle::Rotation,
+                TwistAngleChoice::Elastic => TwistAngle::Elastic,
+            },
+        }
+    }
+
     /// The same with the mass of flaps that it does not contain.
     ///
     /// # Errors
@@ -125,7 +140,7 @@ impl Case {
             couplings: match self.blade.couplings {
                 CouplingsChoice::Linear => Couplings::Linear,
                 CouplingsChoice::Full => Couplings::Full,
-                CouplingsChoice::Moderate => Couplings::Moderate(TorsionTerms::default()),
+                CouplingsChoice::Moderate => Couplings::Moderate(self.torsion_terms()),
             },
             section_model: self.section_model(),
             compressibility: match self.section.compressibility {

@@ -174,6 +174,18 @@ pub enum Fault {
         /// What to do.
         remedy: &'static str,
     },
+    /// A number is larger than anything it can stand for.
+    #[error("is {value:e}{}, expected at most {most:e}; {remedy}", suffix(.unit))]
+    Beyond {
+        /// The number found.
+        value: f64,
+        /// The largest that is taken.
+        most: f64,
+        /// Unit, empty for a pure number.
+        unit: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// A count lies outside its range.
     #[error("is {value}, expected {low} to {high}; {remedy}")]
     CountOutOfRange {

@@ -14,6 +14,7 @@ use crate::refigure::WHOLE;
 use crate::results::{Baseline, ControlLine, HubLoads, Residuals, RunResult, TrimLine, flap_name};
 use crate::stability::StabilityLine;
 use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line, forecasts};
+use crate::sweep::continued_trim;
 use rotor_response::StationLoads;
 use std::sync::Arc;
 use trim::TrimSolution;
@@ -50,7 +51,7 @@ pub fn run_case(loaded: &LoadedCase, progress: &Progress) -> Result<RunOutcome, 
     let actuators = case_actuators(loaded)?;
     progress.step();
     progress.doing("trim");
-    let trimmed = TrimmedRotor::new(loaded, None)?;
+    let trimmed = continued_trim(loaded, None)?;
     progress.step();
     run_trimmed(loaded, actuators, trimmed, progress)
 }
@@ -68,12 +69,12 @@ pub fn run_trimmed(
     progress.doing("control");
     let failed = |source| SimError::Study { place: loaded.index.place("control"), source };
     let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new)).map_err(failed)?;
-    let studies =
-        control_all(&loaded.case, &trimmed, &drives, &|| progress.step()).map_err(failed)?;
     let stability = StabilityLine::from(&trimmed.stability().map_err(|source| {
         let place = loaded.index.place("rotor");
         SimError::Response { place, source }
     })?);
+    let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
+        .map_err(|source| failed(source).in_doubt(unstable(&stability, &trimmed)))?;
     let blade_loads = trimmed.station_loads(&loaded.case.load_stations_r()).map_err(|source| {
         let place = loaded.index.place("response.load_stations_r");
         SimError::Response { place, source }
@@ -85,7 +86,7 @@ pub fn run_trimmed(
     warnings.extend(loaded.doubts_in_flight(trimmed.rotor(), about, most)?);
     warnings.extend(trimmed.wake().into_iter().flat_map(wake_warnings));
     let advance_ratio = found.flight.advance_ratio;
-    warnings.extend(stability.warnings(advance_ratio));
+    warnings.extend(unstable(&stability, &trimmed));
     let each_unlike = each_unlike_blade(loaded, &trimmed)?;
     warnings.extend(each_unlike.iter().flat_map(|line| line.warnings(advance_ratio)));
     let baseline = HubLoads::from_parts(trimmed.trim().rotor.hub.harmonic(loaded.case.blades));
@@ -109,6 +110,11 @@ pub fn run_trimmed(
     };
     let result = result.refigured(&setting);
     Ok(RunOutcome { result, actuators, trimmed, blade_loads, drives, studies })
+}
+
+/// What the stability of the trimmed rotor warns of.
+fn unstable(stability: &StabilityLine, trimmed: &TrimmedRotor) -> Vec<String> {
+    stability.warnings(trimmed.trim().flight.advance_ratio)
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {

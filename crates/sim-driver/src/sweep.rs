@@ -1,7 +1,7 @@
 //! A case at several advance ratios, each trim started from the last.
 
 use crate::SimError;
-use crate::case::LoadedCase;
+use crate::case::{InflowChoice, LoadedCase};
 use crate::output::{Printable, Sheet, table};
 use crate::results::RunResult;
 use crate::study::TrimmedRotor;
@@ -20,22 +20,40 @@ pub fn at_advance_ratio(loaded: &LoadedCase, advance_ratio: f64) -> LoadedCase {
     moved
 }
 
-/// Trims a case from a nearby trim. Where that does not converge the way in advance ratio is halved, up to
-/// four times: continuation.
+/// Advance ratio of the flight from which a trim that loses its way is led to its own: the wake of hover
+/// has gone, and the retreating side is far from stall.
+const EASY_ADVANCE_RATIO: f64 = 0.15;
+
+/// Trims a case, from a nearby trim if there is one. Where that does not converge the way in advance ratio is
+/// halved, up to four times: continuation. Without a start, a trim that loses its way is started from that at an
+/// advance ratio of 0.15; a free wake is not, its own relaxation being what fails.
 ///
 /// # Errors
-/// As [`TrimmedRotor::new`]: what stopped the shortest step, or the case itself without a start.
+/// As [`TrimmedRotor::new`]: what stopped the shortest step, or the case itself without a start, with the
+/// doubts about the case.
 pub fn continued_trim(
     loaded: &LoadedCase,
     start: Option<&TrimSolution>,
 ) -> Result<TrimmedRotor, SimError> {
-    let Some(start) = start else { return TrimmedRotor::new(loaded, None) };
+    let goal = loaded.case.advance_ratio;
     let take = |mu: f64, from: &TrimSolution| {
         let trimmed = TrimmedRotor::new(&at_advance_ratio(loaded, mu), Some(from))?;
         Ok((trimmed.trim().clone(), trimmed))
     };
-    let goal = loaded.case.advance_ratio;
-    continuation(start.flight.advance_ratio, goal, start.clone(), take)
+    let from =
+        |start: &TrimSolution| continuation(start.flight.advance_ratio, goal, start.clone(), take);
+    let trimmed = match start {
+        Some(start) => from(start),
+        None => TrimmedRotor::new(loaded, None).or_else(|error| {
+            let has_wake = matches!(loaded.case.inflow, InflowChoice::FreeWake(_));
+            if !error.is_lost() || has_wake || (goal - EASY_ADVANCE_RATIO).abs() < 0.01 {
+                return Err(error);
+            }
+            let easy = TrimmedRotor::new(&at_advance_ratio(loaded, EASY_ADVANCE_RATIO), None);
+            easy.and_then(|easy| from(easy.trim())).map_err(|_| error)
+        }),
+    };
+    trimmed.map_err(|error| error.in_doubt(loaded.value_doubts()))
 }
 
 /// Follows a solution from one value of a parameter to another: the whole way at once if that goes, else
@@ -145,6 +163,15 @@ mod tests {
     use crate::case::{PAPER_CASE, SectionModelChoice, shipped_case};
     use std::cell::RefCell;
 
+    fn small_paper_rotor() -> LoadedCase {
+        let mut loaded = shipped_case(PAPER_CASE).unwrap();
+        loaded.case.blade.elements = 4;
+        loaded.case.blade.modes = [1, 1, 1];
+        loaded.case.section.model = SectionModelChoice::QuasiSteady;
+        loaded.case.response.span_points_per_piece = 2;
+        loaded
+    }
+
     /// A method that takes no step longer than 0.06 is carried from 0.1 to 0.3 in steps of an eighth... of
     /// a quarter of the way, and one that takes none gives up with its error.
     #[test]
@@ -170,11 +197,7 @@ mod tests {
     /// continuation arrives at the same trim.
     #[test]
     fn a_rotor_that_cannot_be_trimmed_at_once_is_continued() {
-        let mut loaded = shipped_case(PAPER_CASE).unwrap();
-        loaded.case.blade.elements = 4;
-        loaded.case.blade.modes = [1, 1, 1];
-        loaded.case.section.model = SectionModelChoice::QuasiSteady;
-        loaded.case.response.span_points_per_piece = 2;
+        let loaded = small_paper_rotor();
         let start = TrimmedRotor::new(&at_advance_ratio(&loaded, 0.05), None).unwrap();
         let mut far = at_advance_ratio(&loaded, 0.40);
         let at_once = TrimmedRotor::new(&far, Some(start.trim())).unwrap();
@@ -186,5 +209,23 @@ mod tests {
         let off = (got.controls.theta0_rad - expected.controls.theta0_rad).abs();
         assert!(off < 1e-6, "{off:e} rad");
         assert!(got.iterations < steps);
+    }
+
+    /// Without a start, the way begins at an advance ratio where the trim is easy.
+    #[test]
+    fn a_rotor_that_cannot_be_trimmed_from_nothing_is_led_to_its_flight() {
+        let mut loaded = small_paper_rotor();
+        loaded.case.advance_ratio = 0.40;
+        let at_once = TrimmedRotor::new(&loaded, None).unwrap();
+        let steps = at_once.trim().iterations;
+        loaded.case.tolerances.trim_iterations = steps - 1;
+        assert!(TrimmedRotor::new(&loaded, None).is_err(), "{steps} steps");
+        let led = continued_trim(&loaded, None).unwrap();
+        let off = (led.trim().controls.theta0_rad - at_once.trim().controls.theta0_rad).abs();
+        assert!(off < 1e-6, "{off:e} rad");
+        // and where no way leads there, the error is that of the case itself, not of the way
+        loaded.case.tolerances.trim_iterations = 1;
+        let text = continued_trim(&loaded, None).err().unwrap().to_string();
+        assert!(text.contains("stopped after 1 iterations"), "{text}");
     }
 }

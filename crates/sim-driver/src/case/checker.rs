@@ -48,6 +48,14 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// A number no larger than `most`; what is no number is for [`Self::positive`] to refuse.
+    pub(super) fn no_more(&mut self, number: Number<'_>, most: f64) {
+        let Number { field, value, unit, remedy } = number;
+        if value.is_finite() && value > most {
+            self.fault(field, Fault::Beyond { value, most, unit, remedy });
+        }
+    }
+
     /// A count from `low` to `high`.
     pub(super) fn count(
         &mut self,

@@ -79,6 +79,8 @@ fn build(
             modes: [modes.flap, modes.lag, modes.torsion],
             basis: structure.basis,
             couplings: structure.couplings,
+            untwist: structure.untwist,
+            twist_angle: structure.twist_angle,
             root_offset: rotor.root_offset_r,
             root: rotor.root,
             mass_centre: rotor.mass_centre_r,

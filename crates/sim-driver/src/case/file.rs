@@ -268,6 +268,26 @@ pub enum CouplingsChoice {
     Moderate,
 }
 
+/// Whether tension turns a twisted blade back; `couplings: Moderate` alone knows it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum UntwistChoice {
+    /// The moment `N k_A^2 th_x` acts.
+    #[default]
+    Included,
+    /// Tension stiffens the elastic twist only.
+    Neglected,
+}
+
+/// What the twist of the blade is; `couplings: Moderate` alone knows it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum TwistAngleChoice {
+    /// The section's pitch, which bending in two planes changes too: `kappa_x = phi_x + w_x v_xx`.
+    #[default]
+    Rotation,
+    /// Elastic twist alone: `kappa_x = phi_x`.
+    Elastic,
+}
+
 /// The shapes behind the modes of the response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum BasisChoice {
@@ -291,6 +311,12 @@ pub struct StructureFile {
     pub basis: BasisChoice,
     /// Terms of the equations.
     pub couplings: CouplingsChoice,
+    /// Tension on the built-in twist.
+    #[serde(skip_serializing_if = "is_default")]
+    pub untwist: UntwistChoice,
+    /// The twist angle.
+    #[serde(skip_serializing_if = "is_default")]
+    pub twist_angle: TwistAngleChoice,
 }
 
 impl Default for StructureFile {
@@ -300,6 +326,8 @@ impl Default for StructureFile {
             modes: ModesFile::default(),
             basis: BasisChoice::Natural,
             couplings: CouplingsChoice::Full,
+            untwist: UntwistChoice::Included,
+            twist_angle: TwistAngleChoice::Rotation,
         }
     }
 }

@@ -21,7 +21,7 @@ pub use file::{
     AerodynamicsFile, AirfoilFile, BasisChoice, CaseFile, CompressibilityChoice, CouplingsChoice,
     DynamicStallChoice, EffectivenessFile, FlapFile, FlapMassChoice, InflowChoice, InflowFile,
     ModesFile, ResponseFile, ReverseFlowChoice, RotorFile, SectionModelChoice, StructureFile,
-    TolerancesFile,
+    TolerancesFile, TwistAngleChoice, UntwistChoice,
 };
 pub use file_blade::{BladeTablesFile, GravityChoice, JointChoice, RootFile, UnlikeBladeFile};
 pub use file_control::{

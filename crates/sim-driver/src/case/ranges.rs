@@ -119,6 +119,14 @@ fn check_axial(check: &mut Checker<'_>, wake: &FreeWakeFile, advance_ratio: f64)
     }
 }
 
+/// Largest bending and torsion stiffness, over `m0 Omega^2 R^4`: beyond it the frequencies of a blade leave no
+/// digits for those of the others.
+pub(super) const RIGID: f64 = 1e6;
+/// Largest axial stiffness, over `m0 Omega^2 R^2`.
+pub(super) const RIGID_ALONG: f64 = 1e9;
+/// Largest radius (m), speed (rpm), mass (kg/m) and radius of gyration (R): beyond that of anything that turns.
+const LARGEST: f64 = 1e6;
+
 fn check_rotor(check: &mut Checker<'_>, file: &CaseFile) {
     let r = &file.rotor;
     check.count("rotor.blades", r.blades, (1, 16), "the paper's rotor has 4");
@@ -126,14 +134,25 @@ fn check_rotor(check: &mut Checker<'_>, file: &CaseFile) {
         ("rotor.radius_m", r.radius_m, "m", "the paper's rotor has 4.94 m"),
         ("rotor.omega_rpm", r.omega_rpm, "rpm", "the paper's rotor turns at 383 rpm"),
         ("rotor.mass_kg_m", r.mass_kg_m, "kg/m", "the paper's blade has 6.46 kg/m"),
-        ("rotor.ei_flap", r.ei_flap, "", "a stiffness is positive (paper: 0.0108 m0 Omega^2 R^4)"),
-        ("rotor.ei_lag", r.ei_lag, "", "a stiffness is positive (paper: 0.0268 m0 Omega^2 R^4)"),
-        ("rotor.gj", r.gj, "", "a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)"),
-        ("rotor.ea", r.ea, "", "a stiffness is positive (1000 m0 Omega^2 R^2 is usual)"),
         ("rotor.km1_r", r.km1_r, "R", "a radius of gyration is positive (0.0132 R is usual)"),
         ("rotor.km2_r", r.km2_r, "R", "a radius of gyration is positive (0.0247 R is usual)"),
     ] {
         check.positive(number(field, value, unit, remedy));
+        check.no_more(number(field, value, unit, remedy), LARGEST);
+    }
+    for (field, value, most, remedy) in [
+        (
+            "rotor.ei_flap",
+            r.ei_flap,
+            RIGID,
+            "a stiffness is positive (paper: 0.0108 m0 Omega^2 R^4)",
+        ),
+        ("rotor.ei_lag", r.ei_lag, RIGID, "a stiffness is positive (paper: 0.0268 m0 Omega^2 R^4)"),
+        ("rotor.gj", r.gj, RIGID, "a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)"),
+        ("rotor.ea", r.ea, RIGID_ALONG, "a stiffness is positive (1000 m0 Omega^2 R^2 is usual)"),
+    ] {
+        check.positive(number(field, value, "", remedy));
+        check.no_more(number(field, value, "", remedy), most);
     }
     check_rotor_ranges(check, file);
     check_blade(check, file);

@@ -1,8 +1,8 @@
 //! Ranges of the blade in detail: root, offsets, tables along the span, blades unlike the rest.
 
 use super::checker::Checker;
-use super::ranges::number;
-use super::{CaseFile, CouplingsChoice, JointChoice};
+use super::ranges::{RIGID, RIGID_ALONG, number};
+use super::{CaseFile, CouplingsChoice, JointChoice, TwistAngleChoice, UntwistChoice};
 use crate::problem::Fault;
 
 /// Softest springs of flap and lag hinges and of the pitch link, over `m0 Omega^2 R^3`.
@@ -60,6 +60,7 @@ pub(super) fn check_blade(check: &mut Checker<'_>, file: &CaseFile) {
             "Moderate knows no torque offset: choose structure.couplings: Full, or give 0";
         check.fault(field, Fault::Refused { message: message.to_owned() });
     }
+    check_torsion_terms(check, file);
     check_tables(check, file);
     for (i, unlike) in r.unlike_blades.iter().enumerate() {
         let at = |key: &str| format!("rotor.unlike_blades[{i}].{key}");
@@ -80,6 +81,23 @@ pub(super) fn check_blade(check: &mut Checker<'_>, file: &CaseFile) {
         }
         let remedy = "1 moves its flaps like the others', 0 not at all";
         check.within(number(&at("flap_motion"), unlike.flap_motion, "", remedy), -2.0, 2.0);
+    }
+}
+
+/// Terms that the chosen couplings know.
+fn check_torsion_terms(check: &mut Checker<'_>, file: &CaseFile) {
+    let chosen = &file.structure;
+    if chosen.couplings == CouplingsChoice::Moderate {
+        return;
+    }
+    for (field, is_default) in [
+        ("structure.untwist", chosen.untwist == UntwistChoice::default()),
+        ("structure.twist_angle", chosen.twist_angle == TwistAngleChoice::default()),
+    ] {
+        if !is_default {
+            let message = "Linear and Full have no such term: choose structure.couplings: Moderate, or leave it out";
+            check.fault(field, Fault::Refused { message: message.to_owned() });
+        }
     }
 }
 
@@ -107,7 +125,9 @@ fn check_tables(check: &mut Checker<'_>, file: &CaseFile) {
             }
             if positive {
                 let remedy = "a mass, a stiffness or a radius of a section is positive";
+                let most = if key == "ea" { RIGID_ALONG } else { RIGID };
                 check.positive(number(&at(i), value, "", remedy));
+                check.no_more(number(&at(i), value, "", remedy), most);
             } else if key == "ka_r" {
                 let remedy = "a radius is not negative; 0.029 R is usual";
                 check.within(number(&at(i), value, "R", remedy), 0.0, 1.0);

@@ -268,6 +268,22 @@ fn problems_of_the_blade_name_the_remedy() {
             "(rotor: (mass_centre_r: 0.005))",
             "rotor.mass_centre_r: is refused: Linear and Full know no offsets: choose structure.couplings: Moderate",
         ),
+        (
+            "(structure: (untwist: Neglected))",
+            "structure.untwist: is refused: Linear and Full have no such term: choose structure.couplings: Moderate",
+        ),
+        (
+            "(structure: (couplings: Linear, twist_angle: Elastic))",
+            "structure.twist_angle: is refused: Linear and Full have no such term",
+        ),
+        (
+            "(rotor: (ei_flap: 1e300))",
+            "rotor.ei_flap: is 1e300, expected at most 1e6; a stiffness is positive",
+        ),
+        (
+            "(rotor: (tables: (gj: [(0, 1e7), (1, 0.006)])))",
+            "rotor.tables.gj[0]: is 1e7, expected at most 1e6",
+        ),
         ("(rotor: (gravity: Moon))", "unknown choice `Moon`"),
         ("(aerodynamics: (tip_loss: 1.2))", "aerodynamics.tip_loss: is 1.2 R, expected 0.5"),
         ("(rotor: (ei_flap: 0))", "rotor.ei_flap: is 0, expected a positive finite number"),

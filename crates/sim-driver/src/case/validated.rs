@@ -5,7 +5,7 @@ use super::{
     CouplingsChoice, DynamicStallChoice, EffortChoice, FlapMassChoice, GravityChoice,
     HorizontalTailFile, InflowChoice, LoadScaleChoice, LoadWeightsFile, ResponseFile,
     ReverseFlowChoice, RootFile, SectionModelChoice, StrokeChoice, TInflowChoice, TolerancesFile,
-    UnlikeBladeFile,
+    TwistAngleChoice, UnlikeBladeFile, UntwistChoice,
 };
 use crate::files::Folder;
 use flap_aero::AirfoilSpan;
@@ -92,6 +92,10 @@ pub struct BladeValues {
     pub basis: BasisChoice,
     /// Terms of the equations.
     pub couplings: CouplingsChoice,
+    /// Tension on the built-in twist, of `Moderate`.
+    pub untwist: UntwistChoice,
+    /// The twist angle, of `Moderate`.
+    pub twist_angle: TwistAngleChoice,
     /// Radial station of the root.
     pub root_offset: f64,
     /// How the root is held.

@@ -43,6 +43,7 @@ shipped![
     "fixtures/bench/apa500l_synthetic/sine_5hz_85v.csv",
     "fixtures/cases/controllers_mu030.ron",
     "fixtures/cases/crosscheck_s1.ron",
+    "fixtures/cases/crosscheck_s2.ron",
     "fixtures/cases/paper_mu030.ron",
     "fixtures/cases/paper_mu030_6p383hz.ron",
     "fixtures/cases/stalled_mu030.ron",

@@ -157,8 +157,8 @@ impl StudyReport {
                     [row.quantity.clone(), row.paper.clone()].into_iter().chain(ours).collect()
                 }),
             );
+            text += "\nReduction counts J_Z alone. The hysteretic actuator can beat the ideal one at the same stroke: its flap\nmotion holds harmonics of its own, and they shake the hub too.\n";
         }
-        text += "\nReduction counts J_Z alone. The hysteretic actuator can beat the ideal one at the same stroke: its flap\nmotion holds harmonics of its own, and they shake the hub too.\n";
         for section in &self.sections {
             let header: Vec<&str> = section.header.iter().map(String::as_str).collect();
             text.push_str(&["\n", &section.title, ". ", &section.text, "\n"].concat());
