@@ -57,6 +57,8 @@ pub struct PeriodicSolution {
     pub orbit: Orbit,
     /// The orbit at all Gauss points.
     pub samples: OrbitSamples,
+    /// `f` of the system there, shape `dof x points`.
+    pub force: DMatrix<f64>,
     /// Largest weak residual over its test function's integral: the generalised force left over.
     pub residual_norm: f64,
     /// Residual norm at the start and after every step.
@@ -158,6 +160,19 @@ impl PeriodicSolver {
         system: &S,
         start: &Orbit,
     ) -> Result<PeriodicSolution, PeriodicError<S::Error>> {
+        self.solve_to(self.settings.tolerance, system, start)
+    }
+
+    /// The same with a residual bound of its own, for an orbit that is on the way to another one.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_to<S: PeriodicSystem>(
+        &mut self,
+        tolerance: f64,
+        system: &S,
+        start: &Orbit,
+    ) -> Result<PeriodicSolution, PeriodicError<S::Error>> {
         self.check(system, start)?;
         let mut state = self.evaluate(system, start.clone(), 0, start)?;
         let mut history = vec![state.norm];
@@ -168,13 +183,13 @@ impl PeriodicSolver {
         });
         let mut renewal = Renewal::new(self.settings.refresh_contraction);
         let mut careful_from = None;
-        while state.norm > self.settings.tolerance {
+        while state.norm > tolerance {
             let iteration = history.len();
             if iteration > self.settings.max_iterations || stands_still(&history, careful_from) {
                 return Err(PeriodicError::NotConverged {
                     iterations: iteration - 1,
                     residual: state.norm,
-                    tolerance: self.settings.tolerance,
+                    tolerance,
                     history,
                     best: Box::new(best.1),
                 });
@@ -225,6 +240,7 @@ impl PeriodicSolver {
         Ok(PeriodicSolution {
             orbit: state.orbit,
             samples: state.samples,
+            force: state.force,
             residual_norm: state.norm,
             iterations: history.len() - 1,
             residual_history: history,

@@ -1,7 +1,7 @@
 //! Hub loads of a rotor whose blades are not all alike.
 
 use crate::loads::{SixLoads, hub_loads};
-use crate::revolution::RevolutionLoads;
+use crate::revolution::{RevolutionLoads, SETTLED};
 use crate::{Condition, ResponseError, ResponseResiduals, RotorSolution, RotorSolver};
 use rotor_fem::PeriodicSolution;
 
@@ -77,7 +77,7 @@ impl RotorSolver {
         let system = rotor.system(&air, self.point_inputs(condition, &about.inflow));
         let solved = self.solver.solve(&system, &about.orbit);
         let solution = solved.map_err(Self::orbit_error(&rotor))?;
-        let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
+        let loads = RevolutionLoads::new(&rotor, &self.solver, &system, (&solution, SETTLED))?;
         Ok((solution, loads))
     }
 }

@@ -93,16 +93,22 @@ impl PeriodicLag {
     /// The periodic state at all points for the drive `r`, written to `out`.
     pub(crate) fn periodic_state(&self, drive: &[f64], out: &mut Vec<f64>) {
         let g = self.points_per_element;
-        let elements = || self.table.chunks_exact((g + 1) * (g + 1)).zip(drive.chunks_exact(g));
-        let end = |x0: f64, (table, r): (&[f64], &[f64])| {
-            let [e, f @ ..] = &table[g * (g + 1)..] else { return x0 };
-            e * x0 + f.iter().zip(r).map(|(f, r)| f * r).sum::<f64>()
-        };
-        let mut x0 = elements().fold(0.0, end) / self.closing;
         out.clear();
         out.resize(drive.len(), 0.0);
+        let elements = || self.table.chunks_exact((g + 1) * (g + 1)).zip(drive.chunks_exact(g));
+        // what the drive leaves at the end of every element waits in the element's first place
+        let mut around = 0.0;
+        for (state, (table, r)) in out.chunks_exact_mut(g).zip(elements()) {
+            let (Some(left), [e, f @ ..]) = (state.first_mut(), &table[g * (g + 1)..]) else {
+                return;
+            };
+            *left = f.iter().zip(r).map(|(f, r)| f * r).sum();
+            around = e * around + *left;
+        }
+        let mut x0 = around / self.closing;
         for (state, (table, r)) in out.chunks_exact_mut(g).zip(elements()) {
             let (alpha, columns) = table[..g * (g + 1)].split_at(g);
+            let end = table[g * (g + 1)] * x0 + state[0];
             for (x, alpha) in state.iter_mut().zip(alpha) {
                 *x = alpha * x0;
             }
@@ -111,7 +117,7 @@ impl PeriodicLag {
                     *x += b * r;
                 }
             }
-            x0 = end(x0, (table, r));
+            x0 = end;
         }
     }
 

@@ -12,9 +12,14 @@ use crate::{ResponseError, Rotor};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{OrbitSamples, PeriodicSolver, PeriodicSystem, TimeElements};
+use rotor_fem::{OrbitSamples, PeriodicSolution, PeriodicSolver, TimeElements};
 use std::f64::consts::TAU;
 
+/// Move of the accelerations at which they have settled.
+pub(crate) const SETTLED: f64 = 1e-14;
+/// What a move of the accelerations by the kept Newton matrix leaves to move, at most: 1e-14 where the apparent
+/// mass is that of the matrix, more where it turns with the blade.
+const KEPT_LEAVES: f64 = 1e-5;
 /// Iterations of the accelerations.
 const ACCELERATION_ITERATIONS: usize = 30;
 
@@ -70,16 +75,16 @@ impl PointLoads {
 }
 
 impl RevolutionLoads {
-    /// Force summation with accelerations that satisfy the equations of motion at each azimuth.
+    /// Force summation with accelerations that satisfy the equations of motion at each azimuth, settled
+    /// until they move by no more than `absolute`.
     pub(crate) fn new(
         rotor: &Rotor,
         orbits: &PeriodicSolver,
         system: &ResponseSystem<'_>,
-        samples: &OrbitSamples,
+        (orbit, absolute): (&PeriodicSolution, f64),
     ) -> Result<Self, ResponseError> {
-        let mut samples = samples.clone();
-        settle_accelerations(rotor, orbits, system, (&mut samples, 1e-14))?;
-        Self::summed(rotor, orbits.time(), system, &samples)
+        let (samples, revolution) = settled_motion(rotor, orbits, system, (orbit, absolute))?;
+        Ok(Self::of(rotor, orbits.time(), system, (&samples, &revolution)))
     }
 
     /// Force summation of a motion as it is.
@@ -89,12 +94,20 @@ impl RevolutionLoads {
         system: &ResponseSystem<'_>,
         samples: &OrbitSamples,
     ) -> Result<Self, ResponseError> {
-        let revolution = system.revolution(samples)?;
+        Ok(Self::of(rotor, time, system, (samples, &system.revolution(samples)?)))
+    }
+
+    fn of(
+        rotor: &Rotor,
+        time: &TimeElements,
+        system: &ResponseSystem<'_>,
+        (samples, revolution): (&OrbitSamples, &Revolution),
+    ) -> Self {
         let points: Vec<PointLoads> = (0..revolution.motions.len())
             .into_par_iter()
             .with_min_len(POINTS_TOGETHER)
             .map_init(SpanLoads::default, |loads, p| {
-                PointLoads::new(rotor, system, (samples, &revolution), (p, loads))
+                PointLoads::new(rotor, system, (samples, revolution), (p, loads))
             })
             .collect();
         let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model().flaps.len()];
@@ -110,7 +123,7 @@ impl RevolutionLoads {
         let accelerations = samples.qdd.clone();
         let root = points.iter().map(|at| at.root).collect();
         let lifting = points.into_iter().map(|at| at.lifting).collect();
-        Ok(Self { lifting, root, hinge, power: balance, accelerations })
+        Self { lifting, root, hinge, power: balance, accelerations }
     }
 
     fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {
@@ -152,34 +165,46 @@ impl RevolutionLoads {
     }
 }
 
-/// Accelerations that satisfy the equations of motion at each azimuth, and the evaluations they took.
+/// The motion with accelerations that satisfy the equations of motion at each azimuth, and its air loads.
 ///
 /// The orbit gives positions and rates; the accelerations follow from
 /// `M q'' + f(q, q', q'', psi) = 0`, iterated because apparent mass makes `f` depend weakly on them: with
 /// the apparent mass of the Newton matrix that is kept, or with none, until they move by no more than
-/// `absolute` and 1e-13 of the largest.
-fn settle_accelerations(
+/// `absolute` and 1e-13 of the largest, or with the kept matrix would.
+fn settled_motion(
     rotor: &Rotor,
     orbits: &PeriodicSolver,
     system: &ResponseSystem<'_>,
-    (samples, absolute): (&mut OrbitSamples, f64),
-) -> Result<usize, ResponseError> {
+    (orbit, absolute): (&PeriodicSolution, f64),
+) -> Result<(OrbitSamples, Revolution), ResponseError> {
     let mass = rotor.mass();
     let inverse =
         mass.clone().cholesky().ok_or(ResponseError::MassMatrix { modes: mass.nrows() })?;
-    let mut forces = DMatrix::zeros(system.dof(), orbits.time().points().len());
-    for evaluation in 1..=ACCELERATION_ITERATIONS {
-        system.residual(samples, &mut forces)?;
+    let (mut samples, mut forces) = (orbit.samples.clone(), orbit.force.clone());
+    let mut last = None;
+    for _ in 0..ACCELERATION_ITERATIONS {
         let unbalanced = &forces + mass * &samples.qdd;
-        let moves = orbits
-            .lacking_accelerations(&unbalanced)
-            .unwrap_or_else(|| -inverse.solve(&unbalanced));
-        samples.qdd += &moves;
-        if moves.amax() <= absolute + 1e-13 * samples.qdd.amax() {
-            return Ok(evaluation);
+        let (moves, left) = match orbits.lacking_accelerations(&unbalanced) {
+            Some(moves) => (moves, KEPT_LEAVES),
+            None => (-inverse.solve(&unbalanced), 1.0),
+        };
+        let enough = absolute + 1e-13 * samples.qdd.amax();
+        if moves.amax() <= enough {
+            break;
         }
+        samples.qdd += &moves;
+        let revolution = system.revolution(&samples)?;
+        if left * moves.amax() <= enough {
+            return Ok((samples, revolution));
+        }
+        system.residual_of(&revolution, &samples, &mut forces);
+        last = Some(revolution);
     }
-    Ok(ACCELERATION_ITERATIONS)
+    let revolution = match last {
+        Some(revolution) => revolution,
+        None => system.revolution(&samples)?,
+    };
+    Ok((samples, revolution))
 }
 
 /// Aerodynamic forces alone at all stations.

@@ -7,7 +7,7 @@ use crate::flight_air::FlightAir;
 use crate::hinge::HingeMoment;
 use crate::loads::SixLoads;
 use crate::power::PowerBalance;
-use crate::revolution::{RevolutionLoads, unit_weights};
+use crate::revolution::{RevolutionLoads, SETTLED, unit_weights};
 use crate::system::{PointInput, ResponseSystem};
 use crate::wake_coupling::Lifting;
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
@@ -26,6 +26,13 @@ const REFRESH_CONTRACTION: f64 = 0.8;
 
 /// Steps of the inflow that Anderson's acceleration remembers.
 const INFLOW_STEPS_KEPT: usize = 16;
+/// Residual of the orbit over the last change of the inflow, to which it is solved while the inflow is still on its
+/// way: a thrust that is off by as much moves the inflow by a tenth of it.
+const ORBIT_SHARE: f64 = 0.01;
+/// Residual to which it is solved before any change of the inflow is known.
+const FIRST_ORBIT: f64 = 1e-6;
+/// Change of the inflow over its tolerance from which the next orbit is likely to be the last.
+const NEARLY_SETTLED: f64 = 1e3;
 /// Iterations of the orbit allowed to sections that may stall, whose loads have kinks.
 const STALL_ITERATIONS: usize = 200;
 
@@ -286,15 +293,25 @@ impl RotorSolver {
         let mut previous: Option<(Vec<f64>, f64)> = None;
         let mut anderson = Anderson::new(INFLOW_STEPS_KEPT);
         let mut last = (f64::INFINITY, 0.0);
+        // sections that stall may have more than one orbit, and a wake that meets blades more than one course:
+        // their way is left alone
+        let may_be_rough = inflow_model.follows_loading()
+            && inflow_model.circulation_grid().is_none()
+            && self.rotor.model.nonlinear.is_linear();
+        let exact = self.solver.settings().tolerance;
+        let mut orbit_tolerance = if may_be_rough { FIRST_ORBIT.max(exact) } else { exact };
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
             let rotor = Arc::clone(&self.rotor);
             let air = Arc::clone(&self.air);
             let system = rotor.system(&air, self.point_inputs(condition, &inflow));
-            let solved = self.solver.solve(&system, &orbit);
+            let solved = self.solver.solve_to(orbit_tolerance, &system, &orbit);
             let solution = solved.map_err(Self::orbit_error(&rotor))?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;
-            let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution.samples)?;
+            let is_exact = solution.residual_norm <= exact;
+            let absolute = if is_exact { SETTLED } else { orbit_tolerance };
+            let at = (&solution, absolute);
+            let loads = RevolutionLoads::new(&rotor, &self.solver, &system, at)?;
             let hub = loads.hub(&rotor, &self.time);
             let ct = rotor.model.thrust_coefficient(
                 hub.components[2].mean + rotor.blades_weight() * up(condition)[2],
@@ -306,7 +323,7 @@ impl RotorSolver {
                 wanted.parameters().iter().zip(&used).map(|(a, b)| a - b).collect();
             let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
 
-            if size <= self.tolerances.inflow {
+            if size <= self.tolerances.inflow && is_exact {
                 let root = loads.root(&self.time, rotor.discretisation.load_harmonics);
                 return Ok(RotorSolution {
                     lifting: loads.lifting.clone(),
@@ -330,6 +347,11 @@ impl RotorSolver {
             }
             last = (size, ct);
             orbit = solution.orbit;
+            orbit_tolerance = if may_be_rough && size > NEARLY_SETTLED * self.tolerances.inflow {
+                (ORBIT_SHARE * size).clamp(exact, FIRST_ORBIT.max(exact))
+            } else {
+                exact
+            };
             let next = if let Some(step) = inflow_model.improved_step(&change) {
                 let column = |v: &[f64]| DMatrix::from_column_slice(v.len(), 1, v);
                 anderson.propose(&column(&used), &column(&step)).as_slice().to_vec()

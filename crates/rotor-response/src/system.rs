@@ -97,6 +97,23 @@ impl ResponseSystem<'_> {
         Ok(Revolution { motions, sections })
     }
 
+    /// The residual at every point of a revolution whose motion and air loads are known.
+    pub(crate) fn residual_of(
+        &self,
+        revolution: &Revolution,
+        samples: &OrbitSamples,
+        out: &mut DMatrix<f64>,
+    ) {
+        let columns = out.as_mut_slice().par_chunks_mut(self.dof()).with_min_len(POINTS_TOGETHER);
+        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, column)| {
+            let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
+            self.span_loads(p, motion, sections, &mut scratch.loads);
+            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
+            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
+            self.project(p, (motion, [&q, &qd, &qdd]), scratch, column);
+        });
+    }
+
     /// Motion of the blade at one point.
     pub(crate) fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
         let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
@@ -261,15 +278,7 @@ impl PeriodicSystem for ResponseSystem<'_> {
     }
 
     fn residual(&self, samples: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Self::Error> {
-        let revolution = self.revolution(samples)?;
-        let columns = out.as_mut_slice().par_chunks_mut(self.dof()).with_min_len(POINTS_TOGETHER);
-        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, column)| {
-            let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
-            self.span_loads(p, motion, sections, &mut scratch.loads);
-            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
-            self.project(p, (motion, [&q, &qd, &qdd]), scratch, column);
-        });
+        self.residual_of(&self.revolution(samples)?, samples, out);
         Ok(())
     }
 

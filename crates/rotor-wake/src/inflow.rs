@@ -184,6 +184,11 @@ pub trait InflowModel: Send + Sync {
         loading: &RotorLoading,
     ) -> Result<InducedInflow, WakeError>;
 
+    /// Whether the inflow depends on the loading; what is given does not.
+    fn follows_loading(&self) -> bool {
+        true
+    }
+
     /// Panels and number of azimuths on which the model wants the circulation in
     /// [`RotorLoading::circulation`]; none if it asks for none.
     fn circulation_grid(&self) -> Option<(&WakeRotor, usize)> {

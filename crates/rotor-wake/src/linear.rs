@@ -60,6 +60,10 @@ impl InflowModel for LinearInflow {
         }
     }
 
+    fn follows_loading(&self) -> bool {
+        !matches!(self, Self::Prescribed { .. })
+    }
+
     fn induced(
         &self,
         flight: &FlightState,

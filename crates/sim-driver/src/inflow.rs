@@ -51,6 +51,10 @@ impl InflowModel for SettledInflow {
         self.model().name()
     }
 
+    fn follows_loading(&self) -> bool {
+        self.model().follows_loading()
+    }
+
     fn induced(
         &self,
         flight: &FlightState,

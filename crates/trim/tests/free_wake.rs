@@ -140,26 +140,34 @@ fn a_marched_wake_ends_near_the_relaxed_one() {
     assert_ne!(hover.outcome, WakeOutcome::Settled);
 }
 
-/// Many thin vortices that meet the blades in hover drive inflow and circulation apart: it ends, says so and keeps
-/// numbers.
+/// Many thin vortices that meet the blades in hover drive inflow and circulation apart, or keep on wandering: which of
+/// both hangs on the last digits, so that several thrusts are tried. Every one ends, says how and keeps numbers.
 #[test]
 fn a_coupling_that_runs_away_keeps_its_last_good_state() {
     let mut settings = few_steps(2);
     settings.wake.symmetry = WakeSymmetry::Axial;
     settings.wake.far = FarTrailers::Stations(vec![0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92]);
     settings.wake.near_wake_rad = 0.25 * std::f64::consts::TAU;
-    (settings.wake.core.radius, settings.wake.core.mutual_radius) = (2e-3, 0.0);
-    (settings.wake.core.near_radius, settings.wake.core.panel_share) = (5e-3, f64::INFINITY);
-    let lost = coupled(0.0, &settings, 0.1).unwrap();
-    assert!(is_finite(&lost));
-    match &lost.outcome {
-        WakeOutcome::WakeFailed {
-            error: WakeError::InflowRunsAway { change, largest, .. },
-            ..
-        } => {
-            assert!(change > largest);
+    (settings.wake.core.radius, settings.wake.core.mutual_radius) = (5e-4, 0.0);
+    (settings.wake.core.near_radius, settings.wake.core.panel_share) = (1e-3, f64::INFINITY);
+    let mut runaways = 0;
+    for ct_sigma in [0.10, 0.11, 0.12, 0.13] {
+        let lost = coupled(0.0, &settings, ct_sigma).unwrap();
+        assert!(is_finite(&lost));
+        match &lost.outcome {
+            WakeOutcome::WakeFailed {
+                error: WakeError::InflowRunsAway { change, largest, .. },
+                ..
+            } => {
+                assert!(change > largest);
+                runaways += 1;
+            }
+            WakeOutcome::TrimFailed { error, .. } => assert!(!error.to_string().is_empty()),
+            WakeOutcome::NotSettled { inflow_change, tolerance, .. } => {
+                assert!(inflow_change > tolerance);
+            }
+            other => unreachable!("{other:?}"),
         }
-        WakeOutcome::TrimFailed { error, .. } => assert!(!error.to_string().is_empty()),
-        other => unreachable!("{other:?}"),
     }
+    assert!(runaways > 0);
 }
