@@ -222,7 +222,6 @@ pub fn blade_loads_csv(loads: &[StationLoads], scales: &RotorScales) -> String {
 }
 
 #[cfg(test)]
-#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
     use crate::case::{BasisChoice, shipped_case};
