@@ -71,6 +71,8 @@ pub struct BladeSpec {
     pub thickness_gyration_radius: Distribution,
     /// Mass radius of gyration `k_m2` of the chordwise distribution: about the section's normal.
     pub chord_gyration_radius: Distribution,
+    /// Mass per length on the elastic axis beside that of the sections, over m0: it adds to no radius of gyration.
+    pub axis_mass: Distribution,
     /// Polar radius of gyration `k_A` of the load-carrying area.
     pub area_gyration_radius: Distribution,
     /// Built-in twist.
@@ -118,6 +120,7 @@ impl BladeSpec {
             mass: 1.0.into(),
             thickness_gyration_radius: 0.0132.into(),
             chord_gyration_radius: 0.0247.into(),
+            axis_mass: 0.0.into(),
             area_gyration_radius: 0.029.into(),
             twist: Twist::NONE,
             pitch_rad: 0.0,
@@ -168,6 +171,7 @@ impl BladeProperties {
             ("thickness_gyration_radius", &spec.thickness_gyration_radius, Allowed::NotNegative),
             ("chord_gyration_radius", &spec.chord_gyration_radius, Allowed::Positive),
             ("area_gyration_radius", &spec.area_gyration_radius, Allowed::NotNegative),
+            ("axis_mass", &spec.axis_mass, Allowed::NotNegative),
         ];
         for (field, distribution, allowed) in fields {
             distribution.check(field, root, allowed)?;
@@ -249,14 +253,24 @@ impl BladeProperties {
         self.spec.axial_stiffness.value(station)
     }
 
-    /// Mass per length, over m0.
+    /// Mass per length, over m0: of the sections and on the elastic axis.
     pub fn mass(&self, station: f64) -> f64 {
+        self.section_mass(station) + self.spec.axis_mass.value(station)
+    }
+
+    /// Mass per length of the sections alone, over m0.
+    pub fn section_mass(&self, station: f64) -> f64 {
         self.spec.mass.value(station)
     }
 
-    /// Squares of the mass radii of gyration, `[k_m1^2, k_m2^2]`, over R^2.
+    /// Squares of the mass radii of gyration, `[k_m1^2, k_m2^2]`, over R^2: `m k^2` is that of the sections, whatever
+    /// weighs on the axis.
     pub fn squared_mass_radii(&self, station: f64) -> [f64; 2] {
-        let square = |d: &Distribution| d.value(station).powi(2);
+        let share = match self.spec.axis_mass.value(station) {
+            0.0 => 1.0,
+            _ => self.section_mass(station) / self.mass(station),
+        };
+        let square = |d: &Distribution| share * d.value(station).powi(2);
         [square(&self.spec.thickness_gyration_radius), square(&self.spec.chord_gyration_radius)]
     }
 

@@ -162,6 +162,8 @@ pub struct ResponseBlade {
     pub(crate) modes: ModeSet,
     pub(crate) properties: BladeProperties,
     pub(crate) mass: Vec<f64>,
+    /// Mass without that on the elastic axis.
+    pub(crate) section_mass: Vec<f64>,
     pub(crate) ei_flap: Vec<f64>,
     pub(crate) ei_lag: Vec<f64>,
     pub(crate) gj: Vec<f64>,
@@ -239,6 +241,7 @@ impl ResponseBlade {
             root_spring: root_springs(properties, &modes)?,
             root_rotation: root_rotations(&modes, root)?,
             mass: along(&|x| properties.mass(x)),
+            section_mass: along(&|x| properties.section_mass(x)),
             ei_flap: along(&|x| properties.flap_stiffness(x)),
             ei_lag: along(&|x| properties.lag_stiffness(x)),
             gj: along(&|x| properties.torsion_stiffness(x)),

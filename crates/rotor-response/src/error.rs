@@ -64,14 +64,6 @@ pub enum ResponseError {
         /// Aerodynamic root cut-out, radius R.
         cutout: f64,
     },
-    /// A flap of its own mass cannot be added to a blade whose mass varies linearly.
-    #[error(
-        "{field} varies linearly along the blade, where a flap with AddedToBlade adds a step: give uniform sections, or count the flap into the blade with PartOfBlade"
-    )]
-    MassTable {
-        /// The distribution of the blade.
-        field: &'static str,
-    },
     /// The flap motions given do not match the flaps of the blade.
     #[error("{given} flap motions were given for {expected} flaps")]
     FlapMotions {

@@ -7,14 +7,14 @@ use rotor_fem::{BladeProperties, BladeSpec, Distribution};
 /// is if there are none.
 ///
 /// ```text
-/// m -> m + m_f,   k_m -> k_m sqrt( m / (m + m_f) )      over the span of each flap
+/// m -> m + m_f   over the span of each flap
 /// ```
-/// The polar inertia of the blade stays what it was: that of the flap, and its distance from the axis,
-/// are loads of their own in the response.
+/// The polar inertia of the blade and the first moment about its mass centre stay what they were: those of
+/// the flap, by its distance from the axis, are loads of their own in the response. Mass that the blade has
+/// on its axis already is kept; where that varies linearly, its mean between edges is.
 ///
 /// # Errors
-/// [`ResponseError::MassTable`] if mass or radii of gyration vary linearly, and what the finite elements
-/// refuse.
+/// What the finite elements refuse.
 pub fn with_flap_masses(
     blade: &BladeProperties,
     flaps: &[TrailingEdgeFlap],
@@ -25,39 +25,21 @@ pub fn with_flap_masses(
         return Ok(blade.clone());
     }
     let spec = blade.spec();
-    let tables = [
-        ("mass", &spec.mass),
-        ("thickness_gyration_radius", &spec.thickness_gyration_radius),
-        ("chord_gyration_radius", &spec.chord_gyration_radius),
-    ];
-    for (field, table) in tables {
-        if matches!(table, Distribution::PiecewiseLinear { .. }) {
-            return Err(ResponseError::MassTable { field });
-        }
-    }
     let root = spec.root_offset;
-    let mut edges: Vec<f64> = tables
+    let mut edges: Vec<f64> = heavy
         .iter()
-        .flat_map(|(_, table)| table.breaks().iter().copied())
-        .chain(heavy.iter().flat_map(|f| [f.start, f.end]))
+        .flat_map(|f| [f.start, f.end])
+        .chain(spec.axis_mass.breaks().iter().copied())
         .filter(|x| *x > root && *x < 1.0)
         .chain([root, 1.0])
         .collect();
     edges.sort_by(f64::total_cmp);
     edges.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let middles: Vec<f64> = edges.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let flap_mass = |x: f64| -> f64 {
         heavy.iter().filter(|f| (f.start..f.end).contains(&x)).map(|f| f.mass_fraction).sum()
     };
-    let stepped = |value: &dyn Fn(f64) -> f64| Distribution::PiecewiseConstant {
-        edges: edges.clone(),
-        values: middles.iter().map(|x| value(*x)).collect(),
-    };
-    let share = |x: f64| (blade.mass(x) / (blade.mass(x) + flap_mass(x))).sqrt();
-    Ok(BladeProperties::new(BladeSpec {
-        mass: stepped(&|x| blade.mass(x) + flap_mass(x)),
-        thickness_gyration_radius: stepped(&|x| spec.thickness_gyration_radius.value(x) * share(x)),
-        chord_gyration_radius: stepped(&|x| spec.chord_gyration_radius.value(x) * share(x)),
-        ..spec.clone()
-    })?)
+    let on_axis = |x: f64| spec.axis_mass.value(x) + flap_mass(x);
+    let values = edges.windows(2).map(|pair| on_axis(0.5 * (pair[0] + pair[1]))).collect();
+    let axis_mass = Distribution::PiecewiseConstant { edges, values };
+    Ok(BladeProperties::new(BladeSpec { axis_mass, ..spec.clone() })?)
 }

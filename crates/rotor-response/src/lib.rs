@@ -4,6 +4,7 @@ mod air;
 mod blade;
 mod coupled_modes;
 mod dissimilar;
+mod divergence;
 mod error;
 mod fine_azimuth;
 mod flap_inertia;

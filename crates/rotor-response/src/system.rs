@@ -179,7 +179,7 @@ impl ResponseSystem<'_> {
             for i in 0..self.blade.grid.len() {
                 let twist = self.points[point].air.pitch.angle + self.blade.twist[i];
                 let (sin, cos) = (twist + motion.phi.value[i]).sin_cos();
-                let arm = self.blade.mass[i] * self.blade.offsets.mass_centre;
+                let arm = self.blade.section_mass[i] * self.blade.offsets.mass_centre;
                 out.moment[i] += arm * (cos * z - sin * y);
             }
         }

@@ -10,7 +10,7 @@ use rotor_base::gauss_legendre;
 use rotor_fem::{BladeProperties, BladeSpec, Joint, ModeKind, RootSupport, TorsionTerms};
 use rotor_response::{
     Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
-    RotorSolver, SectionLags, Stability,
+    RotorSolver, SectionLags, SectionOffsets, Stability,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::sync::Arc;
@@ -25,16 +25,26 @@ fn stability_with(
     (modes, mu): ([usize; 3], f64),
     lags: SectionLags,
 ) -> Stability {
+    let lifting = Controls { theta0_rad: 0.14, theta1c_rad: 0.01, theta1s_rad: -0.2 * mu };
+    stability_at(model, blade, (modes, mu), (lags, lifting, 0.05))
+}
+
+fn stability_at(
+    model: RotorModel,
+    blade: &BladeProperties,
+    (modes, mu): ([usize; 3], f64),
+    (lags, controls, induced_inflow): (SectionLags, Controls, f64),
+) -> Stability {
     let discretisation = Discretisation { modes, ..Discretisation::default() };
     let rotor = Rotor::new(model, blade, discretisation).unwrap();
     let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
     let condition = Condition {
         bank_rad: 0.0,
         flight: FlightState { advance_ratio: mu, shaft_tilt_rad: 0.1 * mu },
-        controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.01, theta1s_rad: -0.2 * mu },
+        controls,
         flap_angles_rad: vec![],
     };
-    let inflow = LinearInflow::Prescribed { induced_inflow: 0.05 };
+    let inflow = LinearInflow::Prescribed { induced_inflow };
     let solution = solver.solve(&condition, &inflow, None).unwrap();
     solver.stability_with(&condition, &solution, lags).unwrap()
 }
@@ -196,6 +206,52 @@ fn lags_of_unsteady_sections_change_the_damping_in_flight() {
     }
     let damping = |s: &Stability| s.motions.iter().map(|m| m.growth_per_rad).collect::<Vec<_>>();
     assert!(moving.is_stable() && damping(&moving) != damping(&settled));
+}
+
+fn divergence_ratio(model: RotorModel, spec: BladeSpec, modes: [usize; 3], mu: f64) -> f64 {
+    let blade = BladeProperties::new(spec).unwrap();
+    let discretisation = Discretisation { modes, ..Discretisation::default() };
+    Rotor::new(model, &blade, discretisation).unwrap().torsional_divergence_ratio(mu)
+}
+
+/// A stiff blade in a stream much faster than its rotation is a straight wing: it diverges at
+/// `GJ (pi/2)^2 = (rho c / 2) 2 pi e mu^2 / 2`, the classical strip-theory result.
+#[test]
+fn a_wing_diverges_at_the_classical_dynamic_pressure() {
+    let offsets = SectionOffsets { aerodynamic_centre: 0.01, ..SectionOffsets::default() };
+    let model = RotorModel { root_cutout: 0.0, offsets, ..paper_model(Couplings::Linear) };
+    let (mu, gj) = (300.0_f64, 1e5_f64);
+    let lift = 0.5 * model.density_chord() * std::f64::consts::TAU * 0.5 * mu * mu;
+    let expected = lift * 0.01 / (gj * std::f64::consts::FRAC_PI_2.powi(2));
+    let stiff = BladeSpec { torsion_stiffness: gj.into(), ..common::paper_spec() };
+    let found = divergence_ratio(model.clone(), stiff.clone(), [1, 1, 2], mu);
+    assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+    let behind = SectionOffsets { aerodynamic_centre: -0.01, ..SectionOffsets::default() };
+    assert!(divergence_ratio(RotorModel { offsets: behind, ..model }, stiff, [1, 1, 2], mu) == 0.0);
+}
+
+/// Where the ratio passes 1 a motion of a hovering blade at flat pitch that does not bend passes from dying out to growing
+/// without a turn.
+#[test]
+fn a_hovering_blade_diverges_where_the_ratio_is_one() {
+    let offsets = SectionOffsets { aerodynamic_centre: 0.01, ..SectionOffsets::default() };
+    let model = RotorModel { offsets, modal_damping: 0.005, ..paper_model(Couplings::Linear) };
+    let modes = [1, 1, 2];
+    let of = |gj: f64| BladeSpec::uniform(1e3, 1e3, gj, 1e6);
+    let ratio = |gj| divergence_ratio(model.clone(), of(gj), modes, 0.0);
+    let (mut soft, mut stiff) = (1e-4, 0.00615);
+    assert!(ratio(soft) > 1.0 && ratio(stiff) < 1.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (soft + stiff);
+        if ratio(middle) > 1.0 { soft = middle } else { stiff = middle }
+    }
+    for (gj, diverges) in [(0.97 * soft, true), (1.03 * soft, false)] {
+        let blade = BladeProperties::new(of(gj)).unwrap();
+        let still = (SectionLags::Moving, Controls::default(), 0.0);
+        let motions = stability_at(model.clone(), &blade, (modes, 0.0), still).motions;
+        let grows = motions.iter().any(|m| m.growth_per_rad > 0.0 && m.multiplier.im == 0.0);
+        assert_eq!(grows, diverges, "gj {gj}, ratio {}: {motions:?}", ratio(gj));
+    }
 }
 
 /// What damps is the air and the modal damping: without both nothing is left.

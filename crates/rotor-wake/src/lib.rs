@@ -47,7 +47,10 @@ pub use kernel::{
     CoreModel, SegmentSet, arc_velocity, induced_velocities, induced_velocities_serial,
 };
 pub use linear::{LinearInflow, drees_factors};
-pub use momentum::{VORTEX_RING_TRANSPORT, momentum_inflow, momentum_residual, wake_skew_rad};
+pub use momentum::{
+    VORTEX_RING_TRANSPORT, WAKE_BREAKDOWN_TRANSPORT, descent_transport, momentum_inflow,
+    momentum_residual, wake_skew_rad,
+};
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{

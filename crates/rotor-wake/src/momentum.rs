@@ -13,6 +13,12 @@ use crate::{FlightState, WakeError};
 /// nothing. It is an engineering bound of this project, not a measured boundary.
 pub const VORTEX_RING_TRANSPORT: f64 = 0.75;
 
+/// Wake transport speed, [`descent_transport`], below which a descending wake breaks down.
+pub const WAKE_BREAKDOWN_TRANSPORT: f64 = 0.74;
+
+/// Share of the stream along the disk that carries the wake away.
+const EDGEWISE_SHARE: f64 = 0.65;
+
 /// Relative residual at which the momentum equation counts as solved.
 const TOLERANCE: f64 = 2e-15;
 
@@ -86,6 +92,28 @@ pub fn momentum_inflow(flight: &FlightState, thrust_coefficient: f64) -> Result<
         });
     }
     Ok(sign * induced)
+}
+
+/// Speed with which a wake is carried away in descent, over the hover induced velocity; none in level flight and in
+/// climb, without thrust, and where momentum theory has no inflow. Below [`WAKE_BREAKDOWN_TRANSPORT`] the wake breaks
+/// down into the vortex-ring state.
+///
+/// ```text
+/// sqrt((k mu)^2 + lambda^2) / sqrt(C_T / 2),      k = 0.65
+/// ```
+/// The stream along the disk carries the wake away less well than that through it. A warning: nothing is refused by it,
+/// as below [`VORTEX_RING_TRANSPORT`].
+///
+/// Source: S. Newman, R. Brown, J. Perry, S. Lewis, M. Orchard, A. Modha, Journal of the American Helicopter Society
+/// 48 (2003), boundary of wake breakdown in descending flight.
+pub fn descent_transport(flight: &FlightState, thrust_coefficient: f64) -> Option<f64> {
+    let sign = thrust_coefficient.signum();
+    if sign * flight.normal_inflow() >= 0.0 || thrust_coefficient == 0.0 {
+        return None;
+    }
+    let lambda = flight.normal_inflow() + momentum_inflow(flight, thrust_coefficient).ok()?;
+    let along = EDGEWISE_SHARE * flight.advance_ratio;
+    Some(along.hypot(lambda) / (0.5 * thrust_coefficient.abs()).sqrt())
 }
 
 /// Angle of the wake behind the disk normal, rad: 0 in hover, near `pi/2` in fast forward flight,
@@ -202,6 +230,23 @@ mod tests {
             let got = momentum_inflow(&flight, 2.0 * hover * hover).unwrap();
             assert_relative_eq!(got, exact, max_relative = 1e-7);
         }
+    }
+
+    /// Down a slope of 45 deg the wake is carried away least at the speed of the inflow, and well by both slower and
+    /// faster flight.
+    #[test]
+    fn descending_wakes_are_carried_away_least_at_the_speed_of_the_inflow() {
+        let ct = 2.0 * 0.05 * 0.05;
+        let at = |mu: f64| descent_transport(&flight(mu * 0.05, -45.0), ct);
+        assert!(at(0.2).unwrap() > 0.9, "{:?}", at(0.2));
+        assert!(at(0.7).unwrap() < WAKE_BREAKDOWN_TRANSPORT, "{:?}", at(0.7));
+        assert!(at(1.0).unwrap() < WAKE_BREAKDOWN_TRANSPORT, "{:?}", at(1.0));
+        assert!(at(1.6).unwrap() > WAKE_BREAKDOWN_TRANSPORT, "{:?}", at(1.6));
+        // lambda = 0 where the descent is the induced inflow: x mu = 1 with n = -x, x = mu
+        assert_relative_eq!(at(1.0).unwrap(), EDGEWISE_SHARE, max_relative = 1e-9);
+        assert_eq!(descent_transport(&flight(0.05, 0.0), ct), None);
+        assert_eq!(descent_transport(&flight(0.05, 45.0), ct), None);
+        assert_eq!(descent_transport(&flight(0.05, -45.0), 0.0), None);
     }
 
     #[test]

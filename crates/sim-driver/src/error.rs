@@ -107,6 +107,14 @@ pub enum SimError {
         /// What went wrong.
         source: TrimError,
     },
+    /// A free wake that parted from its rotor: what is given is a state on the way, no solution.
+    #[error(
+        "{place}: wake and trim have parted, there is no solution: what is given is the last good state, without control; the warning says where and what may help"
+    )]
+    WakeParted {
+        /// The wake of the case.
+        place: Place,
+    },
     /// A failure of a case that asks for what hardly is meant, or of a blade that is unstable.
     #[error("{source}\nDoubts about the case, one of which may be the cause:{}", listed(.doubts))]
     InDoubt {
@@ -200,9 +208,14 @@ fn listed(doubts: &[String]) -> String {
 }
 
 impl SimError {
-    /// The error with doubts about the case that may be its cause; without any, itself.
+    /// The error with doubts about the case that may be its cause; without any, or if the input is rejected, itself.
     pub(crate) fn in_doubt(self, doubts: Vec<String>) -> Self {
-        if doubts.is_empty() { self } else { Self::InDoubt { source: Box::new(self), doubts } }
+        match self {
+            // what is rejected says itself what is wrong
+            Self::Rejected(_) => self,
+            _ if doubts.is_empty() => self,
+            _ => Self::InDoubt { source: Box::new(self), doubts },
+        }
     }
 
     /// Whether a start from a nearby flight may mend a trim: it lost its way, and nothing said that there is none.
@@ -228,6 +241,7 @@ impl SimError {
             | Self::Section(_)
             | Self::NothingMeasured { .. }
             | Self::Misfit { .. } => Family::RejectedInput,
+            Self::WakeParted { .. } => Family::NumericalFailure,
             Self::NotReproduced { .. } => Family::DataMismatch,
             Self::SweepEnded { source, .. } | Self::InDoubt { source, .. } => source.family(),
             Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),

@@ -1,15 +1,19 @@
 //! The inflow of a case: a linear model, or a free wake settled with the trim.
 
+use crate::SimError;
 use crate::case::{
     Case, CirculationChoice, ControlPointChoice, CoreChoice, FarFieldChoice, FreeWakeFile,
     InflowChoice, LoadedCase, NearWakeChoice, ReleaseChoice, RolledUpChoice, SymmetryChoice,
     WakeMethodChoice,
 };
+use crate::problem::{Fault, Problem};
+use crate::results::WAKE_PARTED;
 use rotor_response::{ResponseTolerances, RotorSolver};
 use rotor_wake::{
-    ControlPoint, CoreModel, CoreSettings, FarField, FarTrailers, FlightState, FreeWakeSettings,
-    FrozenWake, InducedInflow, InflowModel, LinearInflow, NearWakeMotion, PittPeters, ReleasePoint,
-    RotorLoading, WakeError, WakeMethod, WakeRotor, WakeSymmetry,
+    ClosestPassage, ControlPoint, CoreModel, CoreSettings, FarField, FarTrailers, FlightState,
+    FreeWakeSettings, FrozenWake, InducedInflow, InflowModel, LinearInflow, NearWakeMotion,
+    PittPeters, ReleasePoint, RotorLoading, WAKE_BREAKDOWN_TRANSPORT, WakeError, WakeMethod,
+    WakeRotor, WakeSymmetry, descent_transport,
 };
 use std::sync::Arc;
 use trim::{
@@ -83,6 +87,25 @@ pub struct SettledTrim {
     pub wake: Option<Arc<WakeTrim>>,
 }
 
+impl LoadedCase {
+    /// Refuses to trim a rotor in the wake of a circulation that is not its own.
+    ///
+    /// # Errors
+    /// [`SimError::Rejected`].
+    pub(crate) fn refuse_prescribed_circulation(&self) -> Result<(), SimError> {
+        let InflowChoice::FreeWake(FreeWakeFile {
+            circulation: CirculationChoice::Prescribed(_),
+            ..
+        }) = self.case.inflow
+        else {
+            return Ok(());
+        };
+        let message = "a rotor is trimmed with the circulation it has: leave it out, or look at the wake alone with `hhc wake`";
+        let place = self.index.place("inflow.model.circulation");
+        Err(Problem::new(place, Fault::Refused { message: message.to_owned() }).into())
+    }
+}
+
 impl Case {
     /// The coupling with a free wake.
     pub fn wake_trim_settings(&self, file: &FreeWakeFile) -> WakeTrimSettings {
@@ -98,7 +121,7 @@ impl Case {
         let wake = FreeWakeSettings {
             azimuths: file.azimuths_for(self.blades),
             turns: file.turns,
-            far_turns: file.far_turns,
+            far_turns: file.far_turns_at(self.advance_ratio),
             near_wake_rad: file.near_wake_deg.to_radians(),
             near_wake_motion: match file.near_wake {
                 NearWakeChoice::BladePlane => NearWakeMotion::BladePlane,
@@ -174,13 +197,6 @@ pub fn settled_trim(
             SettledInflow::Linear(LinearInflow::Prescribed { induced_inflow: lambda_i })
         }
         InflowChoice::FreeWake(file) => {
-            if let CirculationChoice::Prescribed(given) = file.circulation {
-                return Err(TrimError::Parameter {
-                    field: "C_T/sigma of the prescribed circulation of the free wake",
-                    value: given.ct_sigma,
-                    expected: "none: a rotor is trimmed with the circulation it has; `hhc wake` looks at the wake alone",
-                });
-            }
             let coupling = case.wake_trim_settings(&file);
             let tolerances = solver.tolerances();
             let inflow_iterations = tolerances.inflow_iterations.max(WAKE_ITERATIONS);
@@ -221,6 +237,15 @@ fn kept(
     format!("wake and trim part after {updates} updates: {error}; {state}. {WAKE_REMEDY}")
 }
 
+/// How the coupling with a wake ended, in a word.
+pub fn wake_word(wake: &WakeTrim) -> &'static str {
+    match wake.outcome {
+        WakeOutcome::Settled => "settled",
+        WakeOutcome::NotSettled { .. } => "not-settled",
+        _ => WAKE_PARTED,
+    }
+}
+
 /// What a user should know about a wake; empty if there is nothing.
 pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -247,15 +272,30 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
         }
         _ => {}
     }
-    if let Some(passage) = wake.closest_passage.filter(rotor_wake::ClosestPassage::within_core) {
-        warnings.push(format!(
+    let flight = &wake.trim.flight;
+    if let Some(transport) = descent_transport(flight, wake.trim.rotor.thrust_coefficient) {
+        let breaks_down = transport < WAKE_BREAKDOWN_TRANSPORT;
+        if breaks_down || (transport < 1.0 && wake.outcome != WakeOutcome::Settled) {
+            let state = if breaks_down { "in the" } else { "near the" };
+            warnings.push(format!(
+                "{state} vortex-ring state: in this descent the wake is carried away with {transport:.2} of the hover induced velocity, and below {WAKE_BREAKDOWN_TRANSPORT} wakes break down and the flow is unsteady: a periodic wake stands for its mean at best. Fly faster, or descend less or much more steeply"
+            ));
+        }
+    }
+    warnings.extend(wake.closest_passage.and_then(passage_warning));
+    warnings
+}
+
+/// What a user should know about a vortex that passes a blade closely.
+pub(crate) fn passage_warning(passage: ClosestPassage) -> Option<String> {
+    passage.within_core().then(|| {
+        format!(
             "a tip vortex of age {:.0} deg passes the blade at azimuth {:.0} deg, {:.2} R, at {:.4} R, closer than its core ({:.4} R): the core radius decides the load there",
             passage.age_rad.to_degrees(),
             passage.azimuth_rad.to_degrees(),
             passage.station,
             passage.distance,
             passage.core_radius
-        ));
-    }
-    warnings
+        )
+    })
 }

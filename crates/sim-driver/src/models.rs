@@ -42,6 +42,7 @@ impl Case {
             mass: distribution(&t.mass, 1.0),
             thickness_gyration_radius: distribution(&t.km1_r, b.km1),
             chord_gyration_radius: distribution(&t.km2_r, b.km2),
+            axis_mass: 0.0.into(),
             area_gyration_radius: distribution(&t.ka_r, b.ka),
             twist: if t.twist_deg.is_empty() {
                 Twist::Linear { rate_rad: b.twist_rad }
@@ -89,8 +90,9 @@ impl Case {
         }
     }
 
-    /// Terms of torsion that the couplings `Moderate` keep.
-    fn torsion_terms(&self) -> TorsionTerms {
+    /// Terms of torsion that the equations of moderate deflection keep: in flight with the couplings `Moderate`, in
+    /// modes about the deflected blade always.
+    pub(crate) fn torsion_terms(&self) -> TorsionTerms {
         TorsionTerms {
             untwist: match self.blade.untwist {
                 UntwistChoice::Included => Untwist::Included,

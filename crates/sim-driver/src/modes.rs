@@ -1,7 +1,7 @@
 //! `hhc modes`: rotating frequencies and the data of a fan plot.
 
 use crate::SimError;
-use crate::case::Case;
+use crate::case::{Case, LoadedCase};
 use crate::output::{Printable, Sheet, table};
 use crate::problem::Place;
 use nalgebra::DVector;
@@ -82,11 +82,23 @@ pub struct ModesResult {
     pub fan: Vec<ModesResult>,
 }
 
-/// Rotating modes of a case's blade, twist included, at its pitch and at further rotor speeds.
+/// Rotating modes of a case's blade, twist included, at its pitch and at further rotor speeds, with doubts about
+/// the blade.
 ///
 /// # Errors
 /// [`SimError::Blade`].
-pub fn rotating_modes(case: &Case, question: &ModesQuestion) -> Result<ModesResult, SimError> {
+pub fn rotating_modes(
+    loaded: &LoadedCase,
+    question: &ModesQuestion,
+) -> Result<ModesResult, SimError> {
+    let case = &loaded.case;
+    let doubts = || loaded.blade_doubts();
+    let found = modes_of(case, question).map_err(|error| error.in_doubt(doubts()))?;
+    let warnings = doubts().into_iter().chain(found.warnings).collect();
+    Ok(ModesResult { warnings, ..found })
+}
+
+fn modes_of(case: &Case, question: &ModesQuestion) -> Result<ModesResult, SimError> {
     let fail = |source: FemError| SimError::Blade { place: Place::file("modes"), source };
     let blade = case.blade_with_flaps()?.with_pitch_rad(question.pitch_rad).map_err(fail)?;
     let at = |ratio: f64| modes_at(case, question, &blade, ratio).map_err(fail);
@@ -132,6 +144,7 @@ fn modes_at(
             let spec = ModerateSpec {
                 mass_centre: case.blade.mass_centre.into(),
                 tension_centre: case.blade.tension_centre.into(),
+                torsion: case.torsion_terms(),
                 ..ModerateSpec::from(blade.spec().clone())
             };
             let model = ModerateModel::new(ModerateBlade::new(spec)?, elements)?;

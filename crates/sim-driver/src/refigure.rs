@@ -22,7 +22,9 @@ impl RunResult {
     pub fn refigured(&self, setting: &Setting) -> Self {
         let mut result = self.clone();
         let said = result.own_warnings(setting).len();
-        let asked = setting.control.harmonics.iter().flat_map(|set| {
+        // a rotor whose wake has parted is not controlled, whatever the case asks for
+        let harmonics: &[_] = if self.wake_parted() { &[] } else { &setting.control.harmonics };
+        let asked = harmonics.iter().flat_map(|set| {
             setting.control.actuators.iter().map(move |actuator| (set.clone(), *actuator))
         });
         let stored = self.control.iter().map(Some).chain(std::iter::repeat(None));

@@ -21,6 +21,9 @@ pub struct RunResult {
     pub trim: TrimLine,
     /// How well the equations are satisfied; no vibration number without them.
     pub residuals: Residuals,
+    /// How wake and trim ended: `settled`, `not-settled` or `parted`; none without a free wake.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wake: Option<String>,
     /// Mean loads on the hub and the power of the shaft; none in results stored before they were.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_loads: Option<MeanLoads>,
@@ -53,6 +56,16 @@ pub struct RunResult {
     #[serde(default)]
     pub warnings: Vec<String>,
 }
+
+impl RunResult {
+    /// Whether a free wake has parted from the rotor: a state on the way, no solution, and not controlled.
+    pub fn wake_parted(&self) -> bool {
+        self.wake.as_deref() == Some(WAKE_PARTED)
+    }
+}
+
+/// What [`RunResult::wake`] says of a wake that has parted from the rotor.
+pub(crate) const WAKE_PARTED: &str = "parted";
 
 /// Controls and attitude. Angles in deg.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -5,13 +5,15 @@ use crate::actuator::{CaseActuators, case_actuators};
 use crate::blade_loads::{moments_table, station_lines};
 use crate::case::LoadedCase;
 use crate::dissimilar::{each_unlike_blade, unlike_lines};
-use crate::inflow::wake_warnings;
+use crate::inflow::{wake_warnings, wake_word};
 use crate::mean_loads::MeanLoads;
 use crate::output::{Printable, Sheet, table};
 use crate::progress::Progress;
 use crate::raw::{Setting, is_still};
 use crate::refigure::WHOLE;
-use crate::results::{Baseline, ControlLine, HubLoads, Residuals, RunResult, TrimLine, flap_name};
+use crate::results::{
+    Baseline, ControlLine, HubLoads, Residuals, RunResult, TrimLine, WAKE_PARTED, flap_name,
+};
 use crate::stability::StabilityLine;
 use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line, forecasts};
 use crate::sweep::continued_trim;
@@ -73,8 +75,19 @@ pub fn run_trimmed(
         let place = loaded.index.place("rotor");
         SimError::Response { place, source }
     })?);
-    let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
-        .map_err(|source| failed(source).in_doubt(unstable(&stability, &trimmed)))?;
+    // a rotor whose wake has parted from it is nowhere: nothing is controlled there
+    let controlled = !trimmed.wake_parted();
+    let studies = if controlled {
+        control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
+            .map_err(|source| failed(source).in_doubt(unstable(&stability, &trimmed)))?
+    } else {
+        Vec::new()
+    };
+    let forecasts = if controlled {
+        forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?
+    } else {
+        Vec::new()
+    };
     let blade_loads = trimmed.station_loads(&loaded.case.load_stations_r()).map_err(|source| {
         let place = loaded.index.place("response.load_stations_r");
         SimError::Response { place, source }
@@ -97,6 +110,7 @@ pub fn run_trimmed(
     let result = RunResult {
         mean_loads: Some(MeanLoads::new(mean, &setting)),
         trim: trim_line(loaded, trimmed.trim()),
+        wake: trimmed.wake().map(|wake| wake_word(wake).to_owned()),
         residuals: residuals(trimmed.trim()),
         baseline: Baseline { hub_nb_per_rev: baseline },
         blade_loads: station_lines(&blade_loads, &loaded.case.scales),
@@ -104,7 +118,7 @@ pub fn run_trimmed(
         unlike_blades,
         each_unlike_blade: each_unlike,
         control: studies.iter().map(|study| control_line(loaded, study)).collect(),
-        forecasts: forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?,
+        forecasts,
         warnings,
         ..RunResult::default()
     };
@@ -154,6 +168,15 @@ impl Printable for RunResult {
             "           C_T/sigma {:.5}, induced inflow {:.5}, {} iterations",
             t.ct_sigma, t.induced_inflow, t.iterations
         ));
+        match self.wake.as_deref() {
+            Some("not-settled") => sheet.line(format_args!(
+                "Wake       NOT SETTLED: the state nearest to rest; see the warning"
+            )),
+            Some(WAKE_PARTED) => sheet.line(format_args!(
+                "Wake       PARTED from the rotor: no solution, the last good state; see the warning"
+            )),
+            _ => {}
+        }
         if let Some([loads, shaft]) = self.mean_loads.as_ref().map(MeanLoads::text) {
             sheet.line(format_args!("Mean       {loads}"));
             sheet.line(format_args!("           {shaft}"));

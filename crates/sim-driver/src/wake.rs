@@ -5,7 +5,7 @@ use crate::case::{
     CirculationChoice, CirculationShape, FreeWakeFile, GeometryChoice, InflowChoice, LoadedCase,
     PrescribedCirculation,
 };
-use crate::inflow::wake_warnings;
+use crate::inflow::{passage_warning, wake_warnings};
 use crate::output::{Printable, Sheet, table};
 use crate::study::TrimmedRotor;
 use rotor_wake::{
@@ -65,6 +65,8 @@ pub struct WakeResult {
     pub advance_ratio: f64,
     /// Whether inflow, geometry and trim agree to the tolerances.
     pub settled: bool,
+    /// Whether wake and trim have parted: what is given is the last good state, no solution.
+    pub parted: bool,
     /// Collective, lateral and longitudinal cyclic, shaft tilt, deg; none for a prescribed circulation.
     pub controls_deg: Option<[f64; 4]>,
     /// Thrust coefficient over solidity.
@@ -101,6 +103,13 @@ pub type WakeFiles = Vec<(&'static str, String)>;
 /// # Errors
 /// The errors of the rotor, of the trim and of the wake.
 pub fn wake_of_case(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimError> {
+    let doubts = || loaded.value_doubts();
+    let (mut result, files) = found_wake(loaded).map_err(|error| error.in_doubt(doubts()))?;
+    result.warnings.splice(0..0, doubts());
+    Ok((result, files))
+}
+
+fn found_wake(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimError> {
     let mut loaded = loaded.clone();
     let file = match loaded.case.inflow {
         InflowChoice::FreeWake(file) => file,
@@ -132,6 +141,7 @@ impl Default for WakeResult {
         Self {
             advance_ratio: 0.0,
             settled: false,
+            parted: false,
             controls_deg: None,
             ct_sigma: 0.0,
             mean_inflow: 0.0,
@@ -174,6 +184,7 @@ fn result_of(loaded: &LoadedCase, wake: &WakeTrim) -> WakeResult {
     }
     WakeResult {
         settled: wake.outcome == WakeOutcome::Settled,
+        parted: wake.outcome.ran_away(),
         controls_deg: Some(angles.map(f64::to_degrees)),
         ct_sigma: ct / loaded.case.rotor_model().solidity(),
         mean_inflow: mean,
@@ -243,6 +254,8 @@ fn prescribed(
             updates.len()
         ));
     }
+    let passage = wake.closest_passage(&circulation)?;
+    warnings.extend(passage.and_then(passage_warning));
     let map = InducedInflow::Map(inflow);
     let files = files_of(&wake, &circulation, &map, &updates)?;
     let result = WakeResult {
@@ -250,7 +263,7 @@ fn prescribed(
         ct_sigma: given.ct_sigma,
         mean_inflow: map.mean(),
         mean_over_glauert: map.mean() / glauert,
-        closest_passage: wake.closest_passage(&circulation)?.map(PassageLine::from),
+        closest_passage: passage.map(PassageLine::from),
         updates,
         warnings,
         ..settings_of(&wake)

@@ -2,7 +2,7 @@
 
 use crate::coupling::{Coupling, State, wrong};
 use crate::{TrimError, TrimSettings, TrimSolution, TrimTarget, trim};
-use rotor_response::{ResponseTolerances, RotorSolver};
+use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
     CirculationMap, ClosestPassage, FreeWake, FreeWakeSettings, FrozenWake, LinearInflow,
     WakeError, WakeMethod, WakeRotor, WakeSymmetry,
@@ -112,6 +112,13 @@ pub enum WakeOutcome {
     },
 }
 
+impl WakeOutcome {
+    /// Whether wake and trim have parted: what is given is a state on the way, no solution.
+    pub fn ran_away(&self) -> bool {
+        matches!(self, Self::WakeFailed { .. } | Self::TrimFailed { .. })
+    }
+}
+
 /// A trimmed rotor in its free wake.
 #[derive(Debug, Clone)]
 pub struct WakeTrim {
@@ -133,7 +140,7 @@ pub struct WakeTrim {
 
 /// Trims a rotor in its free wake, flaps at rest.
 ///
-/// First a trim with Drees's inflow; then, stage by stage on finer grids, in turn: some sweeps of the wake
+/// First a trim with Drees's inflow, with uniform inflow in a windmill-brake descent; then, stage by stage on finer grids, in turn: some sweeps of the wake
 /// with the circulation and the blade motion of the trim, and a trim in the wake held still, whose inflow
 /// follows the circulation at once ([`FrozenWake`]). Two metrics say that it has settled: the largest change of the inflow
 /// anywhere on the disk between two updates, and the displacement of the wake in its last sweep.
@@ -142,7 +149,7 @@ pub struct WakeTrim {
 /// blades closely goes back and forth otherwise.
 ///
 /// # Errors
-/// Those of [`trim()`] in Drees's inflow and in the undistorted wake, and of the wake for settings or a flight state that
+/// Those of [`trim()`] in that inflow and in the undistorted wake, and of the wake for settings or a flight state that
 /// are none (vortex-ring state). A wake that runs away, one that does not settle and one in which the rotor finds no
 /// trim are no errors: [`WakeOutcome`] says so and the last good state is given.
 pub fn trim_in_free_wake(
@@ -173,7 +180,15 @@ pub fn trim_in_free_wake(
         },
         updates: Vec::new(),
     };
-    let mut start = coupling.trimmed(&LinearInflow::Drees, advance_ratio, None)?;
+    let mut start = coupling.trimmed(&LinearInflow::Drees, advance_ratio, None).or_else(
+        |error| match error {
+            // the wake leaves upward: momentum theory knows its mean alone
+            TrimError::Response(ResponseError::Wake(WakeError::WakeAboveDisk { .. })) => {
+                coupling.trimmed(&LinearInflow::Uniform, advance_ratio, None)
+            }
+            error => Err(error),
+        },
+    )?;
     let mut stages = settings.stages.clone();
     // an axial wake costs little, and its vortices pass the blades too closely for coarse steps
     let periodic = settings.wake.symmetry == WakeSymmetry::Periodic;
@@ -206,7 +221,7 @@ pub fn trim_in_free_wake(
     match trim(&mut fine, &state.frozen, advance_ratio, target, trim_settings, last) {
         Ok(trimmed) => state.trim = trimmed,
         // the reason why it has not settled comes first
-        Err(_) if !matches!(outcome, WakeOutcome::Settled | WakeOutcome::NotSettled { .. }) => {}
+        Err(_) if outcome.ran_away() => {}
         Err(error) => {
             let (updates, inflow_change) = (coupling.updates.len(), state.inflow_change);
             outcome = WakeOutcome::TrimFailed { updates, inflow_change, error };

@@ -110,7 +110,7 @@ impl ModerateBlade {
         for pair in this.breaks.windows(2) {
             let inset = 1e-9 * (pair[1] - pair[0]);
             for station in [pair[0] + inset, pair[1] - inset] {
-                let value = this.properties.squared_mass_radii(station)[1].sqrt();
+                let value = this.spec.blade.chord_gyration_radius.value(station);
                 if value < this.spec.mass_centre.value(station).abs() * (1.0 - 1e-12) {
                     return Err(FemError::Property {
                         field: "chord_gyration_radius",
@@ -205,12 +205,41 @@ impl ModerateBlade {
     pub(crate) fn mass(&self, station: f64) -> SectionMass {
         let m = self.properties.mass(station);
         let offset = self.spec.mass_centre.value(station);
+        let first = self.properties.section_mass(station) * offset;
         let [thickness, chord] = self.properties.squared_mass_radii(station).map(|k| m * k);
-        let centre = m * offset * offset;
+        let centre = first * offset;
         let [chord, thickness, flat_chord, flat_thickness] = match self.spec.rotary_inertia {
             RotaryInertia::Neglected => [centre, 0.0, (chord - centre).max(0.0), thickness],
             RotaryInertia::Included => [chord, thickness, 0.0, 0.0],
         };
-        SectionMass { mass: m, first: m * offset, chord, thickness, flat_chord, flat_thickness }
+        SectionMass { mass: m, first, chord, thickness, flat_chord, flat_thickness }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What weighs on the axis is mass alone: moments about the axis are those of the sections.
+    #[test]
+    fn mass_on_the_axis_has_no_moment_about_it() {
+        let line =
+            Distribution::PiecewiseLinear { stations: vec![0.0, 1.0], values: vec![1.2, 0.8] };
+        let of = |axis_mass: f64| {
+            let blade = BladeSpec {
+                mass: line.clone(),
+                axis_mass: axis_mass.into(),
+                ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 200.0)
+            };
+            let spec = ModerateSpec { mass_centre: (-0.01).into(), ..blade.into() };
+            ModerateBlade::new(spec).unwrap().mass(0.3)
+        };
+        let (bare, laden) = (of(0.0), of(0.25));
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-15;
+        assert!(near(laden.mass, bare.mass + 0.25) && near(bare.mass, 1.08));
+        assert!(near(laden.first, bare.first) && near(bare.first, -0.0108));
+        assert!(near(laden.chord, bare.chord) && near(bare.chord, 1.08e-4));
+        assert!(near(laden.flat_chord, bare.flat_chord) && bare.flat_chord > 0.0);
+        assert!(near(laden.flat_thickness, bare.flat_thickness) && bare.flat_thickness > 0.0);
     }
 }

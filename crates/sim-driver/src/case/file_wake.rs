@@ -146,8 +146,8 @@ pub struct FreeWakeFile {
     pub azimuths: Option<usize>,
     /// Free turns of the rolled-up vortices.
     pub turns: usize,
-    /// Turns that repeat the last free one behind it.
-    pub far_turns: usize,
+    /// Turns that repeat the last free one behind it; none for 2, in hover 6.
+    pub far_turns: Option<usize>,
     /// Spanwise panels of a blade.
     pub panels: usize,
     /// Age up to which all trailers are kept, deg.
@@ -191,7 +191,7 @@ impl Default for FreeWakeFile {
             circulation: CirculationChoice::Trimmed,
             azimuths: None,
             turns: 4,
-            far_turns: 2,
+            far_turns: None,
             panels: 20,
             near_wake_deg: 360.0,
             near_wake: NearWakeChoice::FollowsTip,
@@ -213,6 +213,10 @@ impl Default for FreeWakeFile {
     }
 }
 
+/// Turns that repeat the last free one in forward flight, and in hover.
+const USUAL_FAR_TURNS: usize = 2;
+const HOVER_FAR_TURNS: usize = 6;
+
 /// Azimuth steps per revolution of a wake, where a case asks for none.
 const USUAL_AZIMUTHS: usize = 36;
 
@@ -221,5 +225,11 @@ impl FreeWakeFile {
     /// 36 is no multiple of the blades (40 for five and eight blades, 42 for seven).
     pub fn azimuths_for(&self, blades: usize) -> usize {
         self.azimuths.unwrap_or_else(|| USUAL_AZIMUTHS.next_multiple_of(blades.max(1)))
+    }
+
+    /// Turns that repeat the last free one: those asked for, or 2, or 6 in hover, where the wake stays below the disk.
+    pub fn far_turns_at(&self, advance_ratio: f64) -> usize {
+        let usual = if advance_ratio == 0.0 { HOVER_FAR_TURNS } else { USUAL_FAR_TURNS };
+        self.far_turns.unwrap_or(usual)
     }
 }

@@ -52,11 +52,16 @@ fn check_wake(check: &mut Checker<'_>, wake: &FreeWakeFile, blades: usize) {
     let at = |key: &str| format!("inflow.model.{key}");
     let azimuths = wake.azimuths_for(blades);
     check.count(&at("azimuths"), azimuths, (8, 144), "36 are steps of 10 deg");
-    let whole = azimuths - azimuths % blades.max(1);
-    let remedy = "make it a multiple of the number of blades, or leave it out";
-    check.count(&at("azimuths"), azimuths, (whole, whole), remedy);
+    if !azimuths.is_multiple_of(blades.max(1)) {
+        let (below, above) = (azimuths - azimuths % blades, azimuths.next_multiple_of(blades));
+        let message = format!(
+            "{azimuths} steps per revolution do not give each of {blades} blades a whole number of them; give {below} or {above}, or leave it out"
+        );
+        check.fault(&at("azimuths"), Fault::Refused { message });
+    }
     check.count(&at("turns"), wake.turns, (1, 12), "4 are usual in forward flight");
-    check.count(&at("far_turns"), wake.far_turns, (0, 20), "2 are usual, 6 in hover");
+    let far_turns = wake.far_turns.unwrap_or_default();
+    check.count(&at("far_turns"), far_turns, (0, 20), "2 are usual, 6 in hover");
     check.count(&at("panels"), wake.panels, (6, 60), "20 are usual");
     check.count(&at("updates"), wake.updates, (1, 200), "30 are usual");
     for (key, value, low, high, unit, remedy) in [
@@ -145,11 +150,26 @@ fn check_rotor(check: &mut Checker<'_>, file: &CaseFile) {
             "rotor.ei_flap",
             r.ei_flap,
             RIGID,
-            "a stiffness is positive (paper: 0.0108 m0 Omega^2 R^4)",
+            "a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0108)",
         ),
-        ("rotor.ei_lag", r.ei_lag, RIGID, "a stiffness is positive (paper: 0.0268 m0 Omega^2 R^4)"),
-        ("rotor.gj", r.gj, RIGID, "a stiffness is positive (paper: 0.00615 m0 Omega^2 R^4)"),
-        ("rotor.ea", r.ea, RIGID_ALONG, "a stiffness is positive (1000 m0 Omega^2 R^2 is usual)"),
+        (
+            "rotor.ei_lag",
+            r.ei_lag,
+            RIGID,
+            "a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0268)",
+        ),
+        (
+            "rotor.gj",
+            r.gj,
+            RIGID,
+            "a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.00615)",
+        ),
+        (
+            "rotor.ea",
+            r.ea,
+            RIGID_ALONG,
+            "a stiffness is positive and over m0 Omega^2 R^2, not in N (1000 is usual)",
+        ),
     ] {
         check.positive(number(field, value, "", remedy));
         check.no_more(number(field, value, "", remedy), most);
@@ -183,6 +203,9 @@ fn check_structure(check: &mut Checker<'_>, file: &CaseFile) {
     check.count("structure.modes.lag", s.modes.lag, (1, most), remedy);
     check.count("structure.modes.torsion", s.modes.torsion, (1, most), remedy);
 }
+
+/// Slowest tip for which the sections take a Mach number.
+const LEAST_TIP_MACH: f64 = 1e-3;
 
 /// What a flap effectiveness is.
 const EFFECTIVE: &str = "1 is thin-aerofoil theory; a real flap makes about 0.8 of its lift";
@@ -245,6 +268,14 @@ fn check_section(check: &mut Checker<'_>, file: &CaseFile) {
     let tip_speed = file.rotor.omega_rpm * TAU / 60.0 * file.rotor.radius_m;
     let lowest = if tip_speed.is_finite() { (tip_speed / 0.95).max(1.0) } else { 1.0 };
     check.within(number(field, a.speed_of_sound_m_s, "m/s", remedy), lowest, 2000.0);
+    let is_slow = tip_speed > 0.0 && tip_speed < LEAST_TIP_MACH * a.speed_of_sound_m_s;
+    if is_slow && a.compressibility == CompressibilityChoice::LocalMach {
+        let message = format!(
+            "the tip moves at {tip_speed:.3e} m/s, Mach {:.1e}: below Mach {LEAST_TIP_MACH} compressibility means nothing; give the speed in rpm (the paper's rotor turns at 383), or set aerodynamics.compressibility: None",
+            tip_speed / a.speed_of_sound_m_s
+        );
+        check.fault("rotor.omega_rpm", Fault::Refused { message });
+    }
     if a.model == SectionModelChoice::Incompressible
         && a.compressibility != CompressibilityChoice::None
     {

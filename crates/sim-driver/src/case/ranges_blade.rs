@@ -47,6 +47,7 @@ pub(super) fn check_blade(check: &mut Checker<'_>, file: &CaseFile) {
             check.fault(field, Fault::Refused { message: message.to_owned() });
         }
     }
+    check_mass_centre(check, file);
     let field = "rotor.aerodynamic_centre_r";
     let remedy =
         "quarter chord ahead of the elastic axis is positive; the axis lies inside the chord";
@@ -81,6 +82,20 @@ pub(super) fn check_blade(check: &mut Checker<'_>, file: &CaseFile) {
         }
         let remedy = "1 moves its flaps like the others', 0 not at all";
         check.within(number(&at("flap_motion"), unlike.flap_motion, "", remedy), -2.0, 2.0);
+    }
+}
+
+/// A mass centre farther from the elastic axis than the radius of gyration about that axis.
+fn check_mass_centre(check: &mut Checker<'_>, file: &CaseFile) {
+    let r = &file.rotor;
+    let listed = r.tables.km2_r.iter().map(|own| own.1).reduce(f64::min);
+    let (key, least) = listed.map_or(("km2_r", r.km2_r), |least| ("tables.km2_r", least));
+    let offset = r.mass_centre_r;
+    if least > 0.0 && offset.abs() > least {
+        let message = format!(
+            "{offset} R is farther from the elastic axis than rotor.{key}, {least} R, the radius of gyration about that axis: give a radius of at least sqrt(k^2 + mass_centre_r^2), with k that about the mass centre"
+        );
+        check.fault("rotor.mass_centre_r", Fault::Refused { message });
     }
 }
 

@@ -91,7 +91,7 @@ pub struct StudyArgs {
     #[arg(long, value_name = "DIR", default_value = "out/paper")]
     pub out: PathBuf,
     /// Inflow model: the paper's free wake unless another is asked for.
-    #[arg(long, value_enum, alias = "wake", default_value = "free")]
+    #[arg(long, value_enum, visible_alias = "wake", default_value = "free")]
     pub inflow: InflowOverride,
     /// Form of the output.
     #[command(flatten)]
@@ -108,7 +108,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Inflow model instead of the case's.
-    #[arg(long, value_enum, alias = "wake")]
+    #[arg(long, value_enum, visible_alias = "wake")]
     pub inflow: Option<InflowOverride>,
     /// Advance ratios instead of the case's, each trim started from the last: a table, sweep.csv, and a
     /// folder of results for each.
@@ -249,6 +249,9 @@ pub struct LadderArgs {
     /// Case that says what a step is worth; the paper's if left out.
     #[arg(long, value_name = "CASE.ron")]
     pub case: Option<PathBuf>,
+    /// Inflow model instead of the case's.
+    #[arg(long, value_enum, visible_alias = "wake")]
+    pub inflow: Option<InflowOverride>,
     /// Records, and where the ladder goes.
     #[command(flatten)]
     pub records: RecordsArgs,

@@ -13,8 +13,8 @@ use crate::curve_identification::identify_curves;
 use crate::diagnose::{Findings, Question, Record, Records, Story, climb};
 use crate::figures::figure_files;
 use crate::files::{
-    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside, ron_text,
-    write_atomic, write_new,
+    DataSet, Folder, SHIPPED_CASES, Source, read_dataset, refuse_input, refuse_inside,
+    refuse_unwritable, ron_text, write_atomic, write_new,
 };
 use crate::identification::{BenchIdentification, identify_bench, identify_loops};
 use crate::import::{ColumnOptions, ImportRequest, default_folder};
@@ -109,6 +109,7 @@ fn run_sweep(
         }
     }
     problems.into_result(Some(()))?;
+    refuse_unwritable(out)?;
     let mut rows = Vec::new();
     let ended = sweep_into(&mut rows, loaded, advance_ratios, out, scope);
     // what was found before an advance ratio that fails is of use
@@ -137,6 +138,8 @@ fn sweep_into(
 ) -> Result<(), SimError> {
     let actuators = case_actuators(loaded)?;
     let mut start: Option<TrimSolution> = None;
+    // a wake that parted does not keep the others from being found
+    let mut ended = Ok(());
     for &mu in advance_ratios {
         let here = at_advance_ratio(loaded, mu);
         let more = scope.sensitivity.map_or(0, |which| which.rows(&here));
@@ -147,6 +150,7 @@ fn sweep_into(
                 .and_then(|outcome| with_scope(&here, outcome, scope, &progress))
         });
         progress.finish();
+        let computed = computed.inspect_err(|_| note_earlier(&out.join(sweep_folder(mu))));
         let outcome = computed.map_err(|source| SimError::SweepEnded {
             advance_ratio: mu,
             found: rows.iter().map(|row| row.advance_ratio).collect(),
@@ -154,9 +158,16 @@ fn sweep_into(
         })?;
         start = Some(outcome.trimmed.trim().clone());
         store(&here, &out.join(sweep_folder(mu)), &outcome)?;
+        if outcome.trimmed.wake_parted() && ended.is_ok() {
+            ended = refuse_parted(&here, true).map_err(|source| SimError::SweepEnded {
+                advance_ratio: mu,
+                found: Vec::new(),
+                source: Box::new(source),
+            });
+        }
         rows.push(SweepRow { advance_ratio: mu, result: outcome.result });
     }
-    Ok(())
+    ended
 }
 
 /// What is computed beside the case.
@@ -240,12 +251,13 @@ fn run_and_store(
     format: Format,
     scope: Scope,
 ) -> Result<(), SimError> {
+    refuse_unwritable(out)?;
     let more = scope.sensitivity.map_or(0, |which| which.rows(loaded));
     let progress = Progress::new(steps_of(loaded) + more);
     let computed = run_case(loaded, &progress)
         .and_then(|outcome| with_scope(loaded, outcome, scope, &progress));
     progress.finish();
-    let outcome = computed?;
+    let outcome = computed.inspect_err(|_| note_earlier(out))?;
     let report = store(loaded, out, &outcome)?;
     let result = &outcome.result;
     match format {
@@ -254,6 +266,22 @@ fn run_and_store(
             let text = result.render(format)? + &report.text();
             print(&format!("{text}\nResults, histories and report in {}\n", out.display()))
         }
+    }?;
+    refuse_parted(loaded, outcome.trimmed.wake_parted())
+}
+
+/// Ends a command in failure, after what it found is stored and shown, if that is no solution.
+fn refuse_parted(loaded: &LoadedCase, parted: bool) -> Result<(), SimError> {
+    if parted {
+        return Err(SimError::WakeParted { place: loaded.index.place("inflow.model") });
+    }
+    Ok(())
+}
+
+/// Says of a run that failed that the results in its folder are not its own.
+fn note_earlier(out: &Path) {
+    if out.join(RESULT_FILE).is_file() {
+        eprintln!("note: the results in {} are of an earlier run", out.display());
     }
 }
 
@@ -336,6 +364,7 @@ pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
         Some(path) => load_case(path)?,
         None => shipped_case(PAPER_CASE)?,
     };
+    let loaded = overridden(loaded, args.inflow);
     let progress = Progress::new(1);
     progress.doing(format!("climbing on {} runs", measured.runs.len()));
     let climbed = climb(&measured, &reference, &loaded, Some(cache));
@@ -529,7 +558,7 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     problems.into_result(Some(()))?;
     let pitch_rad = args.pitch_deg.to_radians();
     let question = ModesQuestion { terms, pitch_rad, about, speed_ratios };
-    let result = rotating_modes(&loaded.case, &question)?;
+    let result = rotating_modes(&loaded, &question)?;
     let text = result.render(args.format.format)?;
     if let Some(path) = &args.fan {
         write_atomic(path, fan_csv(&result).as_bytes())?;
@@ -549,6 +578,9 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
         loaded.case.advance_ratio = mu;
         loaded.file.advance_ratio = mu;
     }
+    if let Some(folder) = &args.out {
+        refuse_unwritable(folder)?;
+    }
     let progress = Progress::new(1);
     progress.doing("free wake and trim");
     let outcome = wake_of_case(&loaded);
@@ -562,7 +594,8 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
             write_atomic(&folder.join(name), text.as_bytes())?;
         }
     }
-    print(&result.render(args.format.format)?)
+    print(&result.render(args.format.format)?)?;
+    refuse_parted(&loaded, result.parted)
 }
 
 pub(super) fn check(args: &CheckArgs) -> Result<(), SimError> {

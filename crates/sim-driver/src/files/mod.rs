@@ -36,4 +36,6 @@ pub use shipped::{SHIPPED_BENCH, SHIPPED_CASES, shipped_file, shipped_files};
 pub(crate) use table_text::{Listing, increases_evenly, resampled};
 pub use table_text::{RESAMPLED_JITTER, ROUNDING_JITTER, Sampling, resample};
 pub use units::{Channel, Dimension, UNITS, Unit, significant};
-pub use write::{refuse_input, refuse_inside, write_atomic, write_folder, write_new};
+pub use write::{
+    refuse_input, refuse_inside, refuse_unwritable, write_atomic, write_folder, write_new,
+};

@@ -81,6 +81,24 @@ pub fn refuse_input(input: &Path, output: &Path) -> Result<(), SimError> {
     }
 }
 
+/// Refuses a folder that no file can be written to, before what is to be written is computed. Leaves nothing behind: of a
+/// folder that is not there yet, the nearest one above is tried.
+///
+/// # Errors
+/// [`SimError::NotWritten`].
+pub fn refuse_unwritable(folder: &Path) -> Result<(), SimError> {
+    let there = folder.ancestors().find(|above| above.exists());
+    let tried = match there {
+        Some(above) if !above.as_os_str().is_empty() => above,
+        _ => Path::new("."),
+    };
+    tempfile::Builder::new()
+        .prefix(".hhc-")
+        .tempfile_in(tried)
+        .map(|_| ())
+        .map_err(|e| not_written(folder, &e))
+}
+
 /// Like [`write_atomic`], but refuses to replace a file.
 ///
 /// # Errors
@@ -286,5 +304,12 @@ mod tests {
         write_atomic(&folder.path().join("file"), b"x").unwrap();
         let error = write_atomic(&folder.path().join("file/below"), b"x").unwrap_err();
         assert!(matches!(error, SimError::NotWritten { .. }));
+        for place in ["file", "file/below", "file/far/below"] {
+            let error = refuse_unwritable(&folder.path().join(place)).unwrap_err();
+            assert!(matches!(error, SimError::NotWritten { .. }), "{place}");
+        }
+        refuse_unwritable(&folder.path().join("new/folder")).unwrap();
+        let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+        assert_eq!(left.len(), 1, "nothing is left behind: {left:?}");
     }
 }

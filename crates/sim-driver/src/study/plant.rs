@@ -58,6 +58,7 @@ impl TrimmedRotor {
     /// that asked for it.
     pub fn new(loaded: &LoadedCase, start: Option<&TrimSolution>) -> Result<Self, SimError> {
         let case = &loaded.case;
+        loaded.refuse_prescribed_circulation()?;
         let at_rotor = |source| SimError::Response { place: loaded.index.place("rotor"), source };
         let blade = case.blade_properties()?;
         let rotor =
@@ -101,6 +102,11 @@ impl TrimmedRotor {
     /// The free wake the trim settled with, if the case asks for one.
     pub fn wake(&self) -> Option<&WakeTrim> {
         self.wake.as_deref()
+    }
+
+    /// Whether a free wake has parted from the rotor: this is a state on the way to a trim, none.
+    pub fn wake_parted(&self) -> bool {
+        self.wake().is_some_and(|wake| wake.outcome.ran_away())
     }
 
     /// The rotor.

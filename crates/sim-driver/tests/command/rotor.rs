@@ -373,3 +373,106 @@ fn doubts_and_refusals_name_their_field() {
     assert!(level.contains("trim.cg_below_hub_r: a free flap hinge at the rotor"), "{level}");
     assert!(!check(0.2).contains("a free flap hinge"));
 }
+
+/// What a check doubts or refuses of blade, flight and wake, each with its field and what else may have been meant.
+#[test]
+fn values_of_another_unit_and_blades_near_divergence_are_doubted() {
+    let place = Place::new();
+    let said = |parts: &str| {
+        place.write("doubt.ron", &format!("({parts})"));
+        let ran = place.hhc(&["check", "doubt.ron"]);
+        [ran.out, ran.err].concat()
+    };
+    for (parts, expected) in [
+        ("rotor: (ei_flap: 5)", "rotor.ei_flap: the stiffness 5e0 m0 Omega^2 R^4 is more than 2"),
+        ("rotor: (ei_flap: 2e6)", "over m0 Omega^2 R^4, not in N m^2 (paper: 0.0108)"),
+        (
+            "rotor: (tables: (mass: [(0, 7), (1, 5.92)]))",
+            "rotor.tables.mass: the mean of the table is 6.460 of mass_kg_m",
+        ),
+        ("rotor: (chord_r: 0.27)", "rotor.chord_r: the chord is 0.27 R, a blade's is 0.03 to 0.12"),
+        (
+            "rotor: (tables: (km2_r: [(0, 0.122), (1, 0.122)]))",
+            "rotor.tables.km2_r: the radius of gyration 0.122 R is more than the chord",
+        ),
+        (
+            "rotor: (gj: 0.0012, aerodynamic_centre_r: 0.006)",
+            "rotor.aerodynamic_centre_r: the lift, 0.006 R ahead of the elastic axis, takes 0.8",
+        ),
+        (
+            "rotor: (gj: 0.0008, aerodynamic_centre_r: 0.006)",
+            "more than all: it diverges in torsion",
+        ),
+        (
+            "rotor: (mass_centre_r: 0.03), structure: (couplings: Moderate)",
+            "rotor.mass_centre_r: is refused: 0.03 R is farther from the elastic axis than rotor.km2_r, 0.0247 R",
+        ),
+        (
+            "rotor: (mass_centre_r: -0.01, tables: (km2_r: [(0, 0.02), (1, 0.008)])), structure: (couplings: Moderate)",
+            "rotor.mass_centre_r: is refused: -0.01 R is farther from the elastic axis than rotor.tables.km2_r, 0.008 R",
+        ),
+        ("rotor: (omega_rpm: 0.001)", "rotor.omega_rpm: is refused: the tip moves at"),
+        (
+            "advance_ratio: 0.5, trim: Propulsive(drag_area: 0.05)",
+            "trim.drag_area: the drag at this advance ratio is 1.2",
+        ),
+        (
+            "inflow: (model: FreeWake(near_wake: BladePlane))",
+            "inflow.model.near_wake: a near wake of 360 deg held in the plane of its blade",
+        ),
+        (
+            "inflow: (model: FreeWake(azimuths: 72))",
+            "inflow.model.azimuths: 72 steps per revolution are more than three quarters of the 64 points",
+        ),
+    ] {
+        let text = said(parts);
+        assert!(text.contains(expected), "{parts}: {text}");
+    }
+    for fine in [
+        "",
+        "flaps: [(start_r: 0.7, end_r: 0.8, mass: AddedToBlade)], rotor: (tables: (mass: [(0, 1.2), (1, 0.8)]))",
+    ] {
+        assert!(!said(fine).contains("warning"), "{fine}");
+    }
+    // modes are of a blade that is doubted as much
+    place.write("stiff.ron", "(rotor: (ei_flap: 66800))");
+    assert!(place.hhc(&["modes", "stiff.ron"]).err.is_empty());
+    let modes = place.hhc(&["modes", "stiff.ron"]).done();
+    assert!(modes.contains("rotor.ei_flap: the stiffness 6.68e4"), "{modes}");
+}
+
+/// Modes about the deflected blade keep the terms of torsion that the case keeps: without tension on the built-in twist
+/// the paper's blade is not untwisted.
+#[test]
+fn modes_know_the_torsion_terms_of_the_case() {
+    let place = Place::new();
+    let twist = |structure: &str| {
+        place.write("torsion.ron", &format!("(structure: (couplings: Moderate{structure}))"));
+        let json = place.hhc(&["modes", "torsion.ron", "--format", "json"]).json();
+        number(&json["steady_tip"]["twist_deg"])
+    };
+    let (included, neglected) = (twist(""), twist(", untwist: Neglected"));
+    assert!(included > 0.25, "{included}");
+    assert!(neglected < 0.0 && neglected > -0.05, "{neglected}");
+}
+
+/// A folder that cannot be written to is found before anything is computed, and a run that fails says whose results are
+/// in its folder.
+#[test]
+fn places_of_results_are_looked_at_first() {
+    let place = Place::new();
+    place.write("file", "");
+    for args in [["run", "case.ron"], ["wake", "case.ron"]] {
+        place.write("case.ron", QUICK_CASE);
+        let ran = place.hhc(&[args[0], args[1], "--out", "file/below"]);
+        assert_eq!(ran.code, 2);
+        assert!(ran.err.contains("file/below cannot be written"), "{}", ran.err);
+    }
+    place.hhc(&["run", "case.ron", "--out", "o"]).done();
+    let lost = QUICK_CASE.replace("ct_sigma: 0.07", "ct_sigma: 0.4");
+    assert_ne!(lost, QUICK_CASE);
+    place.write("case.ron", &lost);
+    let ran = place.hhc(&["run", "case.ron", "--out", "o"]);
+    assert_ne!(ran.code, 0);
+    assert!(ran.err.contains("note: the results in o are of an earlier run"), "{}", ran.err);
+}

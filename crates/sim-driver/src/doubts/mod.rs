@@ -1,18 +1,15 @@
 //! What a case asks for that can be, but hardly is meant: warnings of `hhc check` and `hhc run`.
 
+mod blade;
+
 use crate::SimError;
-use crate::case::{CouplingsChoice, JointChoice, LoadedCase, RotorFile, TrimValues};
+use crate::case::{
+    CirculationChoice, CouplingsChoice, InflowChoice, JointChoice, LoadedCase, NearWakeChoice,
+    RotorFile, TrimValues,
+};
 use crate::problem::{Fault, Problem};
 use rotor_response::{CoupledBladeMode, Rotor, RotorSolution, SectionLift};
 use trim::mean_lift_coefficient;
-
-/// Bending and torsion stiffness below which a blade is a rope, over `m0 Omega^2 R^4`: a hundredth of the
-/// softest articulated blades.
-const LEAST_STIFFNESS: f64 = 2e-5;
-
-/// Stiffness above which a blade does not bend, over `m0 Omega^2 R^4`: a hundred times that of blades stiff in
-/// their plane.
-const MOST_STIFFNESS: f64 = 10.0;
 
 /// Mean lift coefficient above which rotors stall: `C_T/sigma` of 0.15 in hover, and 0.17 at an advance ratio
 /// of 0.3, which is beyond the limits of thrust measured in wind tunnels.
@@ -25,6 +22,12 @@ const STALLING_LIFT_COEFFICIENT: f64 = 0.9;
 const NEAR_STALL_LIFT_COEFFICIENT: f64 = 0.69;
 /// Lift coefficient of a section above which aerofoils stall: held still they do at 1.2 to 1.4.
 const SECTION_STALL: f64 = 1.4;
+/// Longest near wake, deg, that may lie in the plane of its blade: that of a four-bladed rotor's next blade.
+const LONGEST_IN_PLANE_DEG: f64 = 90.0;
+
+/// Drag over weight above which no helicopter flies level.
+const MOST_DRAG: f64 = 0.27;
+
 /// Axial stiffness below which a blade stretches by more than half a percent, `m0 Omega^2 R^2`.
 const LEAST_AXIAL_STIFFNESS: f64 = 100.0;
 
@@ -90,56 +93,54 @@ impl LoadedCase {
         Problem::new(self.index.place(field), Fault::Doubtful { message }).to_string()
     }
 
-    /// Stiffness and radii of a section that no blade has.
+    /// Values of a case that hardly are meant, flight or no flight.
     pub(crate) fn value_doubts(&self) -> Vec<String> {
-        let file = &self.file.rotor;
+        let flight = [self.moment_trim_doubt(), self.drag_doubt(), self.axial_doubt()];
+        let wake = self.wake_doubts();
+        self.blade_doubts().into_iter().chain(flight.into_iter().flatten()).chain(wake).collect()
+    }
+
+    /// A near wake that meets the other blades, and more azimuth steps than the response resolves.
+    fn wake_doubts(&self) -> Vec<String> {
+        let InflowChoice::FreeWake(wake) = self.case.inflow else { return vec![] };
         let mut doubts = Vec::new();
-        let soft = |value: f64| {
-            format!(
-                "the stiffness {value:e} m0 Omega^2 R^4 is less than {LEAST_STIFFNESS:e}, a hundredth of the softest blade's: the blade is a rope that rotation alone holds, and its curvature at the root is not resolved. Is the value over m0 Omega^2 R^4? The paper's blade has 0.0108 in flap, 0.0268 in lag, 0.00615 in torsion"
-            )
-        };
-        let unit_n_m2 = self.case.scales.stiffness_newton_metre2();
-        let stiff = |value: f64| {
-            format!(
-                "the stiffness {value:e} m0 Omega^2 R^4 is more than {MOST_STIFFNESS}, a hundred times that of blades: this one does not bend. Was it given in N m^2? Divide by m0 Omega^2 R^4, here {unit_n_m2:.4e} N m^2: {:.4e}",
-                value / unit_n_m2
-            )
-        };
-        for (key, value, table) in [
-            ("ei_flap", file.ei_flap, &file.tables.ei_flap),
-            ("ei_lag", file.ei_lag, &file.tables.ei_lag),
-            ("gj", file.gj, &file.tables.gj),
-        ] {
-            // a table takes the place of the uniform value
-            let uniform = table.is_empty().then(|| (format!("rotor.{key}"), value));
-            let listed = table.iter().enumerate();
-            let listed = listed.map(|(i, own)| (format!("rotor.tables.{key}[{i}]"), own.1));
-            let all: Vec<(String, f64)> = uniform.into_iter().chain(listed).collect();
-            if let Some((field, value)) = all.iter().find(|own| own.1 < LEAST_STIFFNESS) {
-                doubts.push(self.doubt(field, soft(*value)));
-            }
-            if let Some((field, value)) = all.iter().find(|own| own.1 > MOST_STIFFNESS) {
-                doubts.push(self.doubt(field, stiff(*value)));
-            }
-        }
-        doubts.extend(self.moment_trim_doubt());
-        doubts.extend(self.axial_doubt());
-        if let Some((stiffness, frequency)) = self.soft_pitch() {
+        if wake.near_wake == NearWakeChoice::BladePlane && wake.near_wake_deg > LONGEST_IN_PLANE_DEG
+        {
             let message = format!(
-                "a pitch spring of {stiffness} m0 Omega^2 R^3 leaves the blade a pitch frequency of about {frequency:.1} per rev: the loads turn it by many degrees. A pitch link gives 3 per rev and more"
+                "a near wake of {} deg held in the plane of its blade lies in that of the blades behind: they fly in its sheet, and the mean inflow is several times Glauert's. Give near_wake_deg of at most {LONGEST_IN_PLANE_DEG}, or near_wake: FollowsTip",
+                wake.near_wake_deg
             );
-            doubts.push(self.doubt("rotor.root.pitch.stiffness", message));
+            doubts.push(self.doubt("inflow.model.near_wake", message));
         }
-        let tables = !file.tables.km1_r.is_empty() || !file.tables.km2_r.is_empty();
-        if !tables && file.km1_r > file.km2_r {
+        let r = &self.case.response;
+        let points = r.time_elements * r.time_gauss_points;
+        let azimuths = wake.azimuths_for(self.case.blades);
+        let is_trimmed = wake.circulation == CirculationChoice::Trimmed;
+        if is_trimmed && 4 * azimuths > 3 * points {
             let message = format!(
-                "the mass radius about the chord line, {} R, is larger than that about its normal, km2_r {} R: the section would be thicker than it is deep, and its propeller moment would turn it out of flat pitch. Are the two exchanged?",
-                file.km1_r, file.km2_r
+                "{azimuths} steps per revolution are more than three quarters of the {points} points in time of the response (response.time_elements times time_gauss_points): inflow and circulation do not answer each other on every step. Give time_gauss_points of {} or more",
+                (4 * azimuths).div_ceil(3 * r.time_elements)
             );
-            doubts.push(self.doubt("rotor.km1_r", message));
+            doubts.push(self.doubt("inflow.model.azimuths", message));
         }
         doubts
+    }
+
+    /// A drag that asks for a tilt no helicopter flies at.
+    fn drag_doubt(&self) -> Option<String> {
+        let TrimValues::Propulsive { ct_sigma, drag_area, .. } = self.case.trim else {
+            return None;
+        };
+        let weight = ct_sigma * self.case.rotor_model().solidity();
+        let drag = 0.5 * drag_area * self.case.advance_ratio.powi(2);
+        (drag > MOST_DRAG * weight).then(|| {
+            let message = format!(
+                "the drag at this advance ratio is {:.2} of the weight: the rotor would fly tilted by {:.0} deg, a helicopter at its fastest by 10 to 15. Lower drag_area (0.01 disk areas is usual; here {drag_area}) or the advance ratio",
+                drag / weight,
+                (drag / weight).atan().to_degrees()
+            );
+            self.doubt("trim.drag_area", message)
+        })
     }
 
     /// A moment trim of a hub that the flapping puts no moment on.
