@@ -42,21 +42,45 @@ impl Lanes {
 /// Makes the quotient 0/0 of a target at the end of a segment zero; far below any `|r1| |r2| D`.
 const GUARD: f64 = 1e-60;
 
-/// How the core enters.
+/// What the laws of the core are made of, at one target.
+pub(super) struct Relative {
+    /// From both ends of the segment to the target.
+    r1: Vec3,
+    r2: Vec3,
+    /// `|l x r1|^2`.
+    cross: f64,
+}
+
+#[inline(always)]
+fn inner(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// How the core enters: `(l.r1 / |r1| - l.r2 / |r2|) / D`.
 pub(super) trait Law {
-    /// `1/|r1|`, `1/|r2|` and `1/D` in one quotient: `(l.r1 |r2| - l.r2 |r1|) / (|r1| |r2| D)`.
-    fn factor(lr: [f64; 2], squares: [f64; 2], cross: f64, segment: &Prepared) -> f64;
+    fn factor(at: &Relative, segment: &Prepared) -> f64;
 }
 
 /// Vatistas's profile with n = 2.
 pub(super) struct Vatistas;
 
 impl Law for Vatistas {
+    /// With `p = |r1| |r2|` and `q = r1.r2` two roots and a quotient:
+    ///
+    /// ```text
+    /// (l.r1 / |r1| - l.r2 / |r2|) / D = (p - q) sqrt( (r1^2 + r2^2 + 2 p) / (r1^2 r2^2 D^2) ),   l = r1 - r2
+    /// ```
+    /// where `p - q = |l x r1|^2 / (p + q)` keeps the digits of a segment seen under a sharp angle.
     #[inline(always)]
-    fn factor(lr: [f64; 2], squares: [f64; 2], cross: f64, segment: &Prepared) -> f64 {
-        let (a, b) = (squares[0].sqrt(), squares[1].sqrt());
-        let d = (cross * cross + segment.core).sqrt();
-        (lr[0] * b - lr[1] * a) / (a * b * d + GUARD)
+    fn factor(at: &Relative, segment: &Prepared) -> f64 {
+        let (s1, s2, q) = (inner(at.r1, at.r1), inner(at.r2, at.r2), inner(at.r1, at.r2));
+        let product = s1 * s2;
+        let p = product.sqrt();
+        let sharp = q > 0.0;
+        let above = if sharp { at.cross } else { p - q };
+        let below = if sharp { p + q } else { 1.0 };
+        let d = at.cross * at.cross + segment.core;
+        above * ((s1 + s2 + 2.0 * p) / (product * d * (below * below) + GUARD * GUARD)).sqrt()
     }
 }
 
@@ -64,10 +88,13 @@ impl Law for Vatistas {
 pub(super) struct RosenheadMoore;
 
 impl Law for RosenheadMoore {
+    /// `1/|r1|`, `1/|r2|` and `1/D` in one quotient: `(l.r1 |r2| - l.r2 |r1|) / (|r1| |r2| D)`.
     #[inline(always)]
-    fn factor(lr: [f64; 2], squares: [f64; 2], cross: f64, segment: &Prepared) -> f64 {
-        let (a, b) = ((squares[0] + segment.cut_off).sqrt(), (squares[1] + segment.cut_off).sqrt());
-        (lr[0] * b - lr[1] * a) / (a * b * (cross + segment.core) + GUARD)
+    fn factor(at: &Relative, segment: &Prepared) -> f64 {
+        let (lr1, lr2) = (inner(segment.along, at.r1), inner(segment.along, at.r2));
+        let a = (inner(at.r1, at.r1) + segment.cut_off).sqrt();
+        let b = (inner(at.r2, at.r2) + segment.cut_off).sqrt();
+        (lr1 * b - lr2 * a) / (a * b * (at.cross + segment.core) + GUARD)
     }
 }
 
@@ -77,12 +104,10 @@ pub(super) fn add_velocity<L: Law>(at: &Lanes, segment: &Prepared, sum: &mut Lan
     let ([sx, sy, sz], [lx, ly, lz]) = (segment.start, segment.along);
     for k in 0..LANES {
         let (x, y, z) = (at.x[k] - sx, at.y[k] - sy, at.z[k] - sz);
-        let (x2, y2, z2) = (x - lx, y - ly, z - lz);
         let (cx, cy, cz) = (ly * z - lz * y, lz * x - lx * z, lx * y - ly * x);
-        let lr = [lx * x + ly * y + lz * z, lx * x2 + ly * y2 + lz * z2];
-        let squares = [x * x + y * y + z * z, x2 * x2 + y2 * y2 + z2 * z2];
         let cross = cx * cx + cy * cy + cz * cz;
-        let factor = segment.strength * L::factor(lr, squares, cross, segment);
+        let relative = Relative { r1: [x, y, z], r2: [x - lx, y - ly, z - lz], cross };
+        let factor = segment.strength * L::factor(&relative, segment);
         sum.x[k] += factor * cx;
         sum.y[k] += factor * cy;
         sum.z[k] += factor * cz;

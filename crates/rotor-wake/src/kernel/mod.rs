@@ -14,6 +14,8 @@
 //! (1991) 73, for the profile; Moore, Proc. R. Soc. A 345 (1975), and Saffman, Vortex Dynamics (1992),
 //! section 11.2, for the cut-off.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 mod lanes;
 mod segment;
 mod single;
@@ -22,7 +24,7 @@ pub use segment::{CoreModel, SegmentSet, arc_velocity};
 
 use crate::vector::Vec3;
 use lanes::{LANES, Lanes, Law, RosenheadMoore, Vatistas};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use single::{SINGLE_LANES, add_single};
 
@@ -47,39 +49,10 @@ pub fn induced_velocities(targets: &[Vec3], segments: &SegmentSet) -> Vec<Vec3> 
 /// left alone).
 pub fn induced_velocities_serial(targets: &[Vec3], segments: &SegmentSet, out: &mut [Vec3]) {
     let arch = Arch::new();
-    for (out, at) in out.chunks_mut(LANES).zip(targets.chunks(LANES)) {
-        let block = Lanes::gather(at);
-        let sum = arch.dispatch(
-            #[inline(always)]
-            || match segments.core() {
-                CoreModel::Vatistas => sum_over::<Vatistas>(&block, segments),
-                CoreModel::RosenheadMoore => sum_over::<RosenheadMoore>(&block, segments),
-            },
-        );
-        sum.scatter(out);
+    arch.dispatch(InDouble { targets, segments, out: &mut *out });
+    if !segments.single().is_empty() {
+        arch.dispatch(InSingle { targets, segments, out });
     }
-    if segments.single().is_empty() {
-        return;
-    }
-    for (out, at) in out.chunks_mut(SINGLE_LANES).zip(targets.chunks(SINGLE_LANES)) {
-        arch.dispatch(
-            #[inline(always)]
-            || match segments.core() {
-                CoreModel::Vatistas => add_single::<false>(at, segments.single(), out),
-                CoreModel::RosenheadMoore => add_single::<true>(at, segments.single(), out),
-            },
-        );
-    }
-}
-
-#[expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
-#[inline(always)]
-fn sum_over<L: Law>(block: &Lanes, segments: &SegmentSet) -> Lanes {
-    let mut sum = Lanes::default();
-    for segment in segments.prepared() {
-        lanes::add_velocity::<L>(block, segment, &mut sum);
-    }
-    sum
 }
 
 /// Velocity at up to [`LANES`] targets by each segment in turn, handed to `take` component by component with
@@ -87,27 +60,95 @@ fn sum_over<L: Law>(block: &Lanes, segments: &SegmentSet) -> Lanes {
 pub(crate) fn for_each_velocity(
     targets: &[Vec3],
     segments: &SegmentSet,
-    mut take: impl FnMut(usize, [&[f64; LANES]; 3]),
+    take: impl FnMut(usize, [&[f64; LANES]; 3]),
 ) {
-    let block = Lanes::gather(targets);
-    let arch = Arch::new();
-    arch.dispatch(
-        #[inline(always)]
-        || {
-            for (index, segment) in segments.prepared().iter().enumerate() {
-                let mut one = Lanes::default();
-                match segments.core() {
-                    CoreModel::Vatistas => {
-                        lanes::add_velocity::<Vatistas>(&block, segment, &mut one);
-                    }
-                    CoreModel::RosenheadMoore => {
-                        lanes::add_velocity::<RosenheadMoore>(&block, segment, &mut one);
-                    }
-                }
-                take(index, one.components());
+    Arch::new().dispatch(Each { block: Lanes::gather(targets), segments, take });
+}
+
+/// Sums of the segments in double precision. A type of its own: a closure would be called, not inlined, by the function
+/// that is compiled for the vector unit, and be compiled for none.
+struct InDouble<'a> {
+    targets: &'a [Vec3],
+    segments: &'a SegmentSet,
+    out: &'a mut [Vec3],
+}
+
+impl InDouble<'_> {
+    #[inline(always)]
+    fn sums<L: Law>(self) {
+        for (out, at) in self.out.chunks_mut(LANES).zip(self.targets.chunks(LANES)) {
+            let block = Lanes::gather(at);
+            let mut sum = Lanes::default();
+            for segment in self.segments.prepared() {
+                lanes::add_velocity::<L>(&block, segment, &mut sum);
             }
-        },
-    );
+            sum.scatter(out);
+        }
+    }
+}
+
+impl WithSimd for InDouble<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        match self.segments.core() {
+            CoreModel::Vatistas => self.sums::<Vatistas>(),
+            CoreModel::RosenheadMoore => self.sums::<RosenheadMoore>(),
+        }
+    }
+}
+
+/// Sums of the segments in single precision, added to those in double.
+struct InSingle<'a> {
+    targets: &'a [Vec3],
+    segments: &'a SegmentSet,
+    out: &'a mut [Vec3],
+}
+
+impl WithSimd for InSingle<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let single = self.segments.single();
+        for (out, at) in self.out.chunks_mut(SINGLE_LANES).zip(self.targets.chunks(SINGLE_LANES)) {
+            match self.segments.core() {
+                CoreModel::Vatistas => add_single::<false>(at, single, out),
+                CoreModel::RosenheadMoore => add_single::<true>(at, single, out),
+            }
+        }
+    }
+}
+
+/// The velocities by every segment, one after the other.
+struct Each<'a, F> {
+    block: Lanes,
+    segments: &'a SegmentSet,
+    take: F,
+}
+
+impl<F: FnMut(usize, [&[f64; LANES]; 3])> Each<'_, F> {
+    #[inline(always)]
+    fn velocities<L: Law>(mut self) {
+        for (index, segment) in self.segments.prepared().iter().enumerate() {
+            let mut one = Lanes::default();
+            lanes::add_velocity::<L>(&self.block, segment, &mut one);
+            (self.take)(index, one.components());
+        }
+    }
+}
+
+impl<F: FnMut(usize, [&[f64; LANES]; 3])> WithSimd for Each<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        match self.segments.core() {
+            CoreModel::Vatistas => self.velocities::<Vatistas>(),
+            CoreModel::RosenheadMoore => self.velocities::<RosenheadMoore>(),
+        }
+    }
 }
 
 /// Width of a block of targets of [`for_each_velocity`].
