@@ -25,7 +25,7 @@ pub(crate) type PaperChange = fn(&mut WakeTrimSettings, &mut Discretisation);
 const PAPER_CHORD: f64 = 0.055;
 
 /// What is changed, and how, from the defaults of a case.
-const PAPER_ROWS: [(&str, PaperChange); 28] = [
+const PAPER_ROWS: [(&str, PaperChange); 30] = [
     ("none", |_, _| ()),
     ("steps of 30 deg", |s, _| s.wake.azimuths = 12),
     ("steps of 15 deg", |s, _| s.wake.azimuths = 24),
@@ -38,6 +38,8 @@ const PAPER_ROWS: [(&str, PaperChange); 28] = [
     ("near wake 90 deg", |s, _| s.wake.near_wake_rad = TAU / 4.0),
     ("near wake 180 deg", |s, _| s.wake.near_wake_rad = TAU / 2.0),
     ("near wake 270 deg", |s, _| s.wake.near_wake_rad = 0.75 * TAU),
+    ("near wake 720 deg", |s, _| s.wake.near_wake_rad = 2.0 * TAU),
+    ("near wake 1440 deg", |s, _| s.wake.near_wake_rad = 4.0 * TAU),
     ("near core x 0.5", |s, _| s.wake.core.near_radius *= 0.5),
     ("near core x 0.5, steps of 7.5 deg", |s, d| {
         s.wake.core.near_radius *= 0.5;
