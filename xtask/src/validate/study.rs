@@ -241,7 +241,7 @@ pub(super) const AREA: Area = Area {
         },
         Check {
             id: "V-STUDY-21",
-            quantity: "T of two flaps at 3/rev, inflow settled: evaluations of the equations over a revolution for the linearised \
+            quantity: "T of two flaps at 2 to 5/rev, inflow settled: evaluations of the equations over a revolution for the linearised \
                        one, over those of central differences of .5 deg (each iteration and each inflow once)",
             unit: "-",
             source: "counts of the solver; its time, a fifth at most, is in the bench `linearised` of rotor-response",

@@ -22,11 +22,12 @@ pub(super) fn work_of_t() -> Result<f64, CheckError> {
     let mu = condition.flight.advance_ratio;
     let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default())?;
     let rest = solver.solve(&condition, &LinearInflow::Drees, None)?;
-    let directions: Vec<Vec<HarmonicSeries>> = (0..4)
-        .map(|control| {
-            let mut direction = vec![HarmonicSeries::zero(3); 2];
+    let directions: Vec<Vec<HarmonicSeries>> = (0..16)
+        .map(|column| {
+            let (harmonic, control) = (2 + column / 4, column % 4);
+            let mut direction = vec![HarmonicSeries::zero(harmonic); 2];
             let (cosine, sine) = if control % 2 == 0 { (1.0, 0.0) } else { (0.0, 1.0) };
-            direction[control / 2].set_harmonic(3, Harmonic { cosine, sine });
+            direction[control / 2].set_harmonic(harmonic, Harmonic { cosine, sine });
             direction
         })
         .collect();
@@ -38,8 +39,10 @@ pub(super) fn work_of_t() -> Result<f64, CheckError> {
         for by in [0.5_f64.to_radians(), -0.5_f64.to_radians()] {
             let mut moved = condition.clone();
             for (angle, along) in moved.flap_angles_rad.iter_mut().zip(direction) {
-                let h = along.harmonic(3);
-                angle.set_harmonic(3, Harmonic { cosine: by * h.cosine, sine: by * h.sine });
+                for n in 2..=along.harmonics.len() {
+                    let Harmonic { cosine, sine } = along.harmonic(n);
+                    angle.set_harmonic(n, Harmonic { cosine: by * cosine, sine: by * sine });
+                }
             }
             let found = solver.clone().solve(&moved, &LinearInflow::Drees, Some(&rest))?;
             evaluations += found.residuals.response_iterations + found.residuals.inflow_iterations;
