@@ -7,7 +7,7 @@ use crate::case::{
     WakeMethodChoice,
 };
 use crate::problem::{Fault, Problem};
-use crate::results::WAKE_PARTED;
+use crate::results::{WAKE_NOT_SETTLED, WAKE_PARTED};
 use rotor_response::{ResponseTolerances, RotorSolver};
 use rotor_wake::{
     ClosestPassage, ControlPoint, CoreModel, CoreSettings, FarField, FarTrailers, FlightState,
@@ -241,7 +241,7 @@ fn kept(
 pub fn wake_word(wake: &WakeTrim) -> &'static str {
     match wake.outcome {
         WakeOutcome::Settled => "settled",
-        WakeOutcome::NotSettled { .. } => "not-settled",
+        WakeOutcome::NotSettled { .. } => WAKE_NOT_SETTLED,
         _ => WAKE_PARTED,
     }
 }

@@ -66,6 +66,8 @@ impl RunResult {
 
 /// What [`RunResult::wake`] says of a wake that has parted from the rotor.
 pub(crate) const WAKE_PARTED: &str = "parted";
+/// What it says of one that has not come to rest.
+pub(crate) const WAKE_NOT_SETTLED: &str = "not-settled";
 
 /// Controls and attitude. Angles in deg.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -12,7 +12,8 @@ use crate::progress::Progress;
 use crate::raw::{Setting, is_still};
 use crate::refigure::WHOLE;
 use crate::results::{
-    Baseline, ControlLine, HubLoads, Residuals, RunResult, TrimLine, WAKE_PARTED, flap_name,
+    Baseline, ControlLine, HubLoads, Residuals, RunResult, TrimLine, WAKE_NOT_SETTLED, WAKE_PARTED,
+    flap_name,
 };
 use crate::stability::StabilityLine;
 use crate::study::{ControlStudy, Drives, TrimmedRotor, control_all, control_line, forecasts};
@@ -169,7 +170,7 @@ impl Printable for RunResult {
             t.ct_sigma, t.induced_inflow, t.iterations
         ));
         match self.wake.as_deref() {
-            Some("not-settled") => sheet.line(format_args!(
+            Some(WAKE_NOT_SETTLED) => sheet.line(format_args!(
                 "Wake       NOT SETTLED: the state nearest to rest; see the warning"
             )),
             Some(WAKE_PARTED) => sheet.line(format_args!(

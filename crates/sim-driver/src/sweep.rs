@@ -3,7 +3,7 @@
 use crate::SimError;
 use crate::case::{InflowChoice, LoadedCase};
 use crate::output::{Printable, Sheet, table};
-use crate::results::RunResult;
+use crate::results::{RunResult, WAKE_NOT_SETTLED, WAKE_PARTED};
 use crate::study::TrimmedRotor;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -96,9 +96,23 @@ pub struct SweepResult {
 }
 
 impl SweepRow {
+    /// The mark of a free wake that is not at rest, and what it means.
+    fn mark(&self) -> Option<(&'static str, &'static str)> {
+        match self.result.wake.as_deref() {
+            Some(WAKE_PARTED) => {
+                Some(("**", "** wake and trim have parted: no solution, the last good state"))
+            }
+            Some(WAKE_NOT_SETTLED) => {
+                Some(("*", "*  the wake has not settled: the state nearest to rest"))
+            }
+            _ => None,
+        }
+    }
+
     fn cells(&self) -> Vec<String> {
         let (t, r) = (&self.result.trim, &self.result);
-        let mut cells = vec![format!("{:.3}", self.advance_ratio)];
+        let mark = self.mark().map_or("", |(mark, _)| mark);
+        let mut cells = vec![format!("{:.3}{mark}", self.advance_ratio)];
         let angles = [t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg];
         cells.extend(angles.map(|a| format!("{a:.3}")));
         cells.push(format!("{:.5}", t.induced_inflow));
@@ -125,14 +139,20 @@ impl Printable for SweepResult {
             "Trim (deg), power of the shaft, hub loads at the blade number per rev without control, least damping ratio, best reduction of J"
         ));
         sheet.block(&table(&HEADER, self.rows.iter().map(SweepRow::cells)));
+        let mut notes: Vec<&str> = self.rows.iter().filter_map(|row| Some(row.mark()?.1)).collect();
+        notes.sort_unstable();
+        notes.dedup();
+        for note in notes {
+            sheet.line(format_args!("{note}"));
+        }
         sheet.finish()
     }
 }
 
-/// The same as CSV, every digit kept.
+/// The same as CSV, every digit kept; `wake` says how a free wake ended.
 pub fn sweep_csv(sweep: &SweepResult) -> String {
     let mut text = String::from(
-        "advance_ratio,theta0_deg,theta1c_deg,theta1s_deg,alpha_s_deg,phi_s_deg,induced_inflow,fx,fy,fz,mx,my,mz,least_damping_ratio,iterations,shaft_power_W\n",
+        "advance_ratio,theta0_deg,theta1c_deg,theta1s_deg,alpha_s_deg,phi_s_deg,induced_inflow,fx,fy,fz,mx,my,mz,least_damping_ratio,iterations,shaft_power_W,wake\n",
     );
     for row in &sweep.rows {
         let t = &row.result.trim;
@@ -150,9 +170,10 @@ pub fn sweep_csv(sweep: &SweepResult) -> String {
         .chain(row.result.baseline.hub_nb_per_rev.amplitudes())
         .chain([least.map_or(f64::NAN, |m| m.damping_ratio)]);
         let power = row.result.mean_loads.map_or(f64::NAN, |loads| loads.shaft_power_watt);
+        let wake = row.result.wake.as_deref().unwrap_or_default();
         let cells: Vec<String> = numbers.map(|n| format!("{n:e}")).collect();
         // writing to a string cannot fail
-        let _ = writeln!(text, "{},{},{power:e}", cells.join(","), t.iterations);
+        let _ = writeln!(text, "{},{},{power:e},{wake}", cells.join(","), t.iterations);
     }
     text
 }

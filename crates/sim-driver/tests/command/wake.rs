@@ -129,6 +129,14 @@ fn a_wake_that_parts_from_its_rotor_is_no_solution() {
     place.write("case.ron", &case.replace("THRUST", thrust));
     let looked_at = place.hhc(&["wake", "case.ron"]);
     assert_eq!(looked_at.code, 1);
+    // among other advance ratios it is marked, and the others are found
+    let swept = place.hhc(&["run", "case.ron", "--mu", "0.03,0.25", "--out", "s"]);
+    assert_eq!(swept.code, 1);
+    assert!(swept.out.contains("0.030**") && swept.out.contains("** wake and trim have parted"));
+    assert!(swept.err.contains("advance ratio 0.03: case.ron"), "{}", swept.err);
+    let csv = place.read("s/sweep.csv");
+    let ends: Vec<&str> = csv.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
+    assert!(ends.len() == 3 && ends[..2] == ["wake", "parted"] && ends[2] != "parted", "{csv}");
     assert!(looked_at.out.contains("not settled"), "{}", looked_at.out);
 }
 
