@@ -147,7 +147,15 @@ impl BladeElementRotor<'_> {
             let azimuth = TAU * i as f64 / azimuths as f64;
             [nodes[n] * RigidMotion::series(self.motion.flap_rad, azimuth)[0], 0.0]
         })
-        .with_trailing_edge(0.75 * self.chord)
+        .with_trailing_edge(0.75 * self.chord, |i, n| {
+            self.pitch_rad(TAU * i as f64 / azimuths as f64, nodes[n])
+        })
+    }
+
+    /// Pitch of the section at a station, rad.
+    fn pitch_rad(&self, azimuth: f64, r: f64) -> f64 {
+        let [pitch, _] = RigidMotion::series(self.motion.pitch_rad, azimuth);
+        pitch + self.twist_rad * (r - 0.75)
     }
 
     /// Loads of one panel for an induced inflow.
@@ -158,9 +166,8 @@ impl BladeElementRotor<'_> {
         [induced, in_plane]: [f64; 2],
     ) -> Element {
         let mu = flight.advance_ratio;
-        let [pitch, _] = RigidMotion::series(self.motion.pitch_rad, azimuth);
         let [flap, flap_rate] = RigidMotion::series(self.motion.flap_rad, azimuth);
-        let theta = pitch + self.twist_rad * (r - 0.75);
+        let theta = self.pitch_rad(azimuth, r);
         let u_t = r + mu * azimuth.sin() + in_plane;
         let u_p = flight.normal_inflow() + induced + r * flap_rate + flap * mu * azimuth.cos();
         let speed = u_t.hypot(u_p);
@@ -190,40 +197,44 @@ impl BladeElementRotor<'_> {
         let place = |k: usize| (TAU * (k / panels) as f64 / azimuths as f64, stations[k % panels]);
         let gamma =
             |k: usize, induced: [f64; 2]| self.element(flight, place(k), induced).circulation;
-        let mut inflow = start.to_vec();
-        let mut in_plane = vec![0.0; start.len()];
+        let mut inflow = DVector::from_column_slice(start);
+        let mut in_plane = DVector::zeros(start.len());
         let mut change = f64::INFINITY;
         let mut newton = None;
         for iteration in 0..NEWTON_STEPS {
-            let values = (0..inflow.len()).map(|k| gamma(k, [inflow[k], in_plane[k]])).collect();
+            let induced = |k: usize| [inflow[k], in_plane[k]];
+            let values = (0..start.len()).map(|k| gamma(k, induced(k))).collect();
             let circulation = CirculationMap::new(panels, values)?;
             let wanted = induction.inflow(&circulation)?;
             let wanted_in_plane = induction.in_plane(&circulation)?;
-            let residual: Vec<f64> =
-                wanted.values().iter().zip(&inflow).map(|(w, l)| w - l).collect();
-            let moved = wanted_in_plane.values().iter().zip(&in_plane).map(|(w, l)| w - l);
-            let size = residual.iter().copied().chain(moved).fold(0.0_f64, |m, r| m.max(r.abs()));
+            let moved = wanted.values().iter().zip(&inflow);
+            let moved_in_plane = wanted_in_plane.values().iter().zip(&in_plane);
+            let size = moved.chain(moved_in_plane).fold(0.0_f64, |m, (w, l)| m.max((w - l).abs()));
             if size <= NEWTON_TOLERANCE {
                 return Ok(StillWake { circulation, inflow: wanted, in_plane: wanted_in_plane });
             }
-            in_plane = wanted_in_plane.values().to_vec();
             if iteration == 0 || size > 0.3 * change {
-                let slope: Vec<f64> = (0..inflow.len())
+                let slopes = (0..start.len())
                     .map(|k| {
-                        let (l, u) = (inflow[k], in_plane[k]);
-                        (gamma(k, [l, u]) - gamma(k, [l + SLOPE_STEP, u])) / SLOPE_STEP
+                        let ([l, u], here) = (induced(k), circulation.values()[k]);
+                        let down = gamma(k, [l + SLOPE_STEP, u]) - here;
+                        let along = gamma(k, [l, u + SLOPE_STEP]) - here;
+                        [down / SLOPE_STEP, along / SLOPE_STEP]
                     })
                     .collect();
-                newton = Some(induction.newton_matrix(&slope));
+                newton = Some(induction.linearised(slopes));
             }
             change = size;
-            let step = newton.as_ref().and_then(|n| n.solve(&DVector::from_vec(residual)));
-            let Some(step) = step else { break };
-            let largest = step.amax();
-            let part = (0.05 / largest).min(1.0);
-            for (l, s) in inflow.iter_mut().zip(step.iter()) {
-                *l += part * s;
-            }
+            let state = [&inflow, &in_plane];
+            let Some(agreed) = newton.as_ref().and_then(|n| n.agreed(circulation.values(), state))
+            else {
+                break;
+            };
+            let [down, along] = induction.induced(&agreed);
+            let (down, along) = (down - &inflow, along - &in_plane);
+            let part = (0.05 / down.amax().max(along.amax())).min(1.0);
+            inflow += down * part;
+            in_plane += along * part;
         }
         Err(WakeError::CirculationNotConverged {
             iterations: NEWTON_STEPS,

@@ -158,6 +158,7 @@ impl Case {
                 FarFieldChoice::Double => FarField::Double,
                 FarFieldChoice::Single => FarField::Single,
             },
+            velocity_stride: file.velocity_stride,
             ..FreeWakeSettings::default()
         };
         let usual = WakeTrimSettings::default();

@@ -44,16 +44,19 @@ impl BladeLines {
         Self { nodes, points, edges }
     }
 
-    /// The same blades with the wake leaving at a distance (unit `R`) behind the lifting line, against the
-    /// sense of rotation: `0.75 c` is the trailing edge. Between line and edge the circulation is that of the
-    /// blade. Without it the wake leaves at the line.
+    /// The same blades with the wake leaving at a distance (unit `R`) behind the lifting line along the chord, which is turned
+    /// up from the plane of rotation by `pitch` (rad) at an azimuth, counted in steps, and node: `0.75 c` is the trailing
+    /// edge, below the line by `0.75 c sin(pitch)`. Between line and edge the circulation is that of the blade. Without it
+    /// the wake leaves at the line.
     #[must_use]
-    pub fn with_trailing_edge(self, distance: f64) -> Self {
+    pub fn with_trailing_edge(self, distance: f64, pitch: impl Fn(usize, usize) -> f64) -> Self {
         let azimuths = self.azimuths();
         let mut edges = self.points.clone();
         for (k, edge) in edges.iter_mut().enumerate() {
             let (sin, cos) = (TAU * (k / self.nodes) as f64 / azimuths as f64).sin_cos();
-            *edge = [edge[0] + distance * sin, edge[1] - distance * cos, edge[2]];
+            let (below, behind) = pitch(k / self.nodes, k % self.nodes).sin_cos();
+            let (below, behind) = (distance * below, distance * behind);
+            *edge = [edge[0] + behind * sin, edge[1] - behind * cos, edge[2] - below];
         }
         Self { edges, ..self }
     }

@@ -177,6 +177,8 @@ pub struct FreeWakeFile {
     pub symmetry: SymmetryChoice,
     /// Precision of the velocities that old vortices induce on the wake.
     pub far_field: FarFieldChoice,
+    /// Velocities of the relaxed wake are computed at every so-manyth age and interpolated between; 1 for all.
+    pub velocity_stride: usize,
     /// Largest change of the inflow between two updates of the wake, tip speed.
     pub tolerance: f64,
     /// RMS displacement of the wake in the last sweep of an update, radius R.
@@ -206,6 +208,7 @@ impl Default for FreeWakeFile {
             method: WakeMethodChoice::Relaxed,
             symmetry: SymmetryChoice::Periodic,
             far_field: FarFieldChoice::Double,
+            velocity_stride: 1,
             tolerance: 2e-4,
             displacement_tolerance_r: 2e-3,
             updates: 30,

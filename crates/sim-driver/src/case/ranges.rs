@@ -5,7 +5,7 @@ use super::ranges_blade::check_blade;
 use super::{
     ActuatorChoice, CaseFile, CirculationChoice, CompressibilityChoice, ControlActuator,
     ControllerChoice, EffortChoice, FreeWakeFile, HorizontalTailFile, InflowChoice,
-    SectionModelChoice, StrokeChoice, SymmetryChoice, TInflowChoice, TrimFile,
+    SectionModelChoice, StrokeChoice, SymmetryChoice, TInflowChoice, TrimFile, WakeMethodChoice,
 };
 use crate::problem::Fault;
 use std::f64::consts::TAU;
@@ -64,6 +64,11 @@ fn check_wake(check: &mut Checker<'_>, wake: &FreeWakeFile, blades: usize) {
     check.count(&at("far_turns"), far_turns, (0, 20), "2 are usual, 6 in hover");
     check.count(&at("panels"), wake.panels, (6, 60), "20 are usual");
     check.count(&at("updates"), wake.updates, (1, 200), "30 are usual");
+    check.count(&at("velocity_stride"), wake.velocity_stride, (1, 3), "1 computes every age");
+    if wake.velocity_stride > 1 && wake.method == WakeMethodChoice::Marched {
+        let message = "a march in time computes every age: leave it out, or give method: Relaxed";
+        check.fault(&at("velocity_stride"), Fault::Refused { message: message.to_owned() });
+    }
     for (key, value, low, high, unit, remedy) in [
         ("near_wake_deg", wake.near_wake_deg, 1.0, 1440.0, "deg", "360 is one revolution"),
         ("core_r", wake.core_r, 1e-3, 0.2, "R", "about a third of the chord is usual"),

@@ -103,6 +103,9 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
     assert_eq!((wake.core.panel_share, wake.far_turns), (0.3, 6));
     assert_eq!((wake.core.mutual_radius, wake.far_field), (0.1, FarField::Single));
     assert_eq!(wake.symmetry, WakeSymmetry::Periodic);
+    let strided = of("velocity_stride: 2").unwrap().case;
+    let InflowChoice::FreeWake(file) = strided.inflow else { unreachable!() };
+    assert_eq!(strided.wake_trim_settings(&file).wake.velocity_stride, 2);
     let hover = "(advance_ratio: 0.0, inflow: (model: FreeWake(symmetry: Axial)))";
     let hover = read(hover).unwrap().case;
     let InflowChoice::FreeWake(axial) = hover.inflow else { unreachable!() };
@@ -123,6 +126,11 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
         ("core_r: NaN", "inflow.model.core_r: is NaN"),
         ("mutual_core_r: -0.01", "inflow.model.mutual_core_r: is -0.01"),
         ("far_field: Float", "inflow.model.far_field: unknown choice"),
+        ("velocity_stride: 4", "inflow.model.velocity_stride: is 4"),
+        (
+            "velocity_stride: 2, method: Marched",
+            "inflow.model.velocity_stride: is refused: a march in time computes every age",
+        ),
         ("symmetry: Axial", "a wake turns with its blades in hover only"),
         ("method: PC2B", "inflow.model.method: unknown choice"),
         ("panel_share: 0.0", "inflow.model.panel_share: is 0"),
