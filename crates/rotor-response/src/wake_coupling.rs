@@ -2,7 +2,8 @@
 
 use crate::air::SectionLoads;
 use crate::revolution::{RevolutionLoads, unit_weights};
-use crate::{ResponseError, Rotor, RotorSolution, RotorSolver};
+use crate::system::ResponseSystem;
+use crate::{Controls, ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use rotor_fem::TimeElements;
 use rotor_wake::{BladeLines, CirculationMap, RotorLoading, WakeRotor};
@@ -132,34 +133,38 @@ impl RotorSolver {
         circulation(self.rotor(), self.time(), &solution.lifting, (wake_rotor, azimuths))
     }
 
-    /// The lifting lines of the deflected blades: quarter chord of the coned blade, displaced by flap and
-    /// lag bending; the wake leaves at the trailing edge.
+    /// The lifting lines of the deflected blades under pitch controls: quarter chord of the coned blade, displaced by flap
+    /// and lag bending; the wake leaves at the trailing edge of the pitched, twisted section.
     pub fn blade_lines(
         &self,
         solution: &RotorSolution,
+        controls: &Controls,
         wake_rotor: &WakeRotor,
         azimuths: usize,
     ) -> BladeLines {
         let blade = self.rotor().blade();
         let x = blade.grid().x();
-        let shapes = blade.flap.value.iter().chain(&blade.lag.value);
-        let at_nodes: Vec<Vec<f64>> = shapes
-            .map(|shape| wake_rotor.nodes().iter().map(|&r| between(x, shape, r)).collect())
-            .collect();
-        let flaps = blade.flap.value.len();
-        let motion = uniform_azimuths_rad(azimuths)
-            .into_iter()
-            .map(|psi| solution.modal.iter().map(|m| m.value(psi)).collect::<Vec<f64>>())
-            .collect::<Vec<_>>();
+        let at_nodes = |values: &[f64]| -> Vec<f64> {
+            wake_rotor.nodes().iter().map(|&r| between(x, values, r)).collect()
+        };
+        let of_modes = |modes: &[Vec<f64>]| modes.iter().map(|m| at_nodes(m)).collect::<Vec<_>>();
+        let (flap, lag) = (of_modes(&blade.flap.value), of_modes(&blade.lag.value));
+        let (torsion, twist) = (of_modes(&blade.torsion.value), at_nodes(&blade.twist));
+        let psi = uniform_azimuths_rad(azimuths);
+        let motion: Vec<Vec<f64>> =
+            psi.iter().map(|&psi| solution.modal.iter().map(|m| m.value(psi)).collect()).collect();
+        let sum = |shapes: &[Vec<f64>], q: &[f64], n: usize| -> f64 {
+            shapes.iter().zip(q).map(|(shape, q)| q * shape[n]).sum()
+        };
+        let (bending, twisting) = (flap.len(), flap.len() + lag.len());
         BladeLines::deflected(wake_rotor, azimuths, |i, n| {
-            let q = &motion[i];
-            let mut out = [blade.precone * wake_rotor.nodes()[n], blade.offsets.torque];
-            for (j, shape) in at_nodes.iter().enumerate() {
-                out[usize::from(j >= flaps)] += q[j] * shape[n];
-            }
-            out
+            let up = blade.precone * wake_rotor.nodes()[n] + sum(&flap, &motion[i], n);
+            [up, blade.offsets.torque + sum(&lag, &motion[i][bending..], n)]
         })
-        .with_trailing_edge(0.75 * self.rotor().model().chord)
+        .with_trailing_edge(0.75 * self.rotor().model().chord, |i, n| {
+            let root = ResponseSystem::root_pitch(controls, psi[i]).angle;
+            root + twist[n] + sum(&torsion, &motion[i][twisting..], n)
+        })
     }
 }
 

@@ -136,6 +136,12 @@ impl Default for CouplingSettings {
 const NEWTON_STEPS: usize = 100;
 /// Change of the inflow at which they end, tip speed.
 const NEWTON_TOLERANCE: f64 = 1e-10;
+/// A change of the inflow above this share of the least so far is no gain.
+const PAYING: f64 = 0.9;
+/// Updates in turn without gain that halve the way of a sweep.
+const PATIENCE: usize = 3;
+/// Least part of the way.
+const LEAST_PART: f64 = 0.125;
 /// Step of the angle of attack for slopes, tip speed of inflow.
 const SLOPE_STEP: f64 = 1e-6;
 
@@ -311,21 +317,27 @@ impl BladeElementRotor<'_> {
         let mut inflow = vec![wake.carrying_inflow(); size];
         let mut history = Vec::new();
         let mut change = f64::INFINITY;
+        let (mut part, mut idle, mut least) = (1.0, 0, f64::INFINITY);
         for update in 1..=coupling.updates {
             let still = self.circulation_of(wake, &induction, &inflow)?;
             let pairs = still.inflow.values().iter().zip(&inflow);
-            change = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+            change = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / part;
             inflow = still.inflow.values().to_vec();
             if update > 1 && change <= coupling.inflow_tolerance {
                 return Ok(self.finish(wake.flight(), still, (update, change, history)));
             }
+            idle = if change > PAYING * least { idle + 1 } else { 0 };
+            if idle == PATIENCE {
+                (part, idle) = (f64::max(0.5 * part, LEAST_PART), 0);
+            }
+            least = least.min(change);
             // half of a change at once: near passages of vortices answer strongly
             let circulation = match &moving {
                 Some(before) => still.circulation.mixed(before, 0.5)?,
                 None => still.circulation,
             };
             for _ in 0..coupling.sweeps {
-                history.push(wake.sweep(&circulation)?);
+                history.push(wake.sweep_in_part(&circulation, part)?);
             }
             induction = wake.line_induction(&circulation)?;
             moving = Some(circulation);

@@ -4,6 +4,7 @@ use crate::{
     AttachedPolar, BladeElementRotor, CoreSettings, FarTrailers, FlightState, FreeWakeSettings,
     RigidMotion, SectionPolar, ShedVorticity, WakeError, WakeRotor,
 };
+use nalgebra::{DVector, MatrixXx2};
 use std::f64::consts::{PI, TAU};
 
 const HOVER_POLAR: AttachedPolar = AttachedPolar { zero_lift_drag: 0.008, drag_growth: 0.1 };
@@ -74,6 +75,19 @@ impl Landgrebe {
     /// Radius at an age (rad), unit `R`.
     pub fn radius(&self, age_rad: f64) -> f64 {
         0.78 + 0.22 * (-(0.145 + 27.0 * self.thrust_coefficient) * age_rad).exp()
+    }
+
+    /// Heights (unit `R`) at ages in steps (rad) from the release on, by least squares in this form: `[k1, k2]`, per rad. None
+    /// if all are on one side of the first passage.
+    pub fn fitted(heights: &[f64], step_rad: f64, passage_rad: f64) -> Option<[f64; 2]> {
+        let ages = |k: usize| {
+            let age = k as f64 * step_rad;
+            [age.min(passage_rad), (age - passage_rad).max(0.0)]
+        };
+        let columns = MatrixXx2::from_fn(heights.len(), |k, column| ages(k)[column]);
+        let normal = columns.tr_mul(&columns).try_inverse()?;
+        let slopes = normal * columns.tr_mul(&DVector::from_column_slice(heights));
+        Some([slopes[0], slopes[1]])
     }
 
     /// Height per rad of age before the first passage, unit `R`; negative.

@@ -7,7 +7,7 @@ use rotor_wake::reference::{CARADONNA_TUNG_THRUST, Landgrebe, caradonna_tung, sl
 use rotor_wake::{
     BladeElementRotor, BladeElementSolution, BladeLines, CirculationMap, ControlPoint, CoreModel,
     CoreSettings, CouplingSettings, FarTrailers, FlightState, FreeWake, FreeWakeSettings,
-    WakeError, WakeMarch, WakeRotor, WakeSymmetry, contraction_drift,
+    NearWakeMotion, WakeError, WakeMarch, WakeRotor, WakeSymmetry, contraction_drift,
 };
 use std::f64::consts::TAU;
 
@@ -60,30 +60,57 @@ fn neither_sheet_nor_control_point_can_be_left_out() {
     }
 }
 
+/// Landgrebe's fit of the four slender blades at the thrust reached, and by age the tip vortex over it: radius, and `k1`
+/// and `k2` by the height at the first passage and a turn behind it.
+fn over_landgrebe(settings: &FreeWakeSettings) -> (Vec<f64>, [f64; 2], f64) {
+    let rotor = slender().unwrap();
+    let (solution, wake) = hover(&rotor, settings).unwrap();
+    let landgrebe = Landgrebe::of(&rotor, solution.thrust_coefficient);
+    let (tip, turn) = (contraction_drift(&wake), settings.azimuths);
+    let passage = turn / 4;
+    let radius = (1..=2 * turn)
+        .map(|k| tip[k][0] / landgrebe.radius(k as f64 * settings.step_rad()))
+        .collect();
+    let k1 = tip[passage][1] / (0.25 * TAU) / landgrebe.k1();
+    let k2 = (tip[passage + turn][1] - tip[passage][1]) / TAU / landgrebe.k2();
+    (radius, [k1, k2], solution.figure_of_merit())
+}
+
 /// Four slender blades with -8 deg of twist, of the kind Landgrebe's fit is for: radius `0.78 + 0.22 exp(-(0.145 + 27
-/// C_T) zeta)`, pitch behind the first passage `-(1.41 + 0.0141 twist) sqrt(C_T/2)` per rad, `J. Am. Helicopter Soc.`
-/// 17 (1972). Before the first passage the vortex descends less than his; it stays within half a core of it.
+/// C_T) zeta)`, descent `k1` per rad up to the first passage and `k2` behind it, `J. Am. Helicopter Soc.` 17 (1972).
 #[test]
 fn the_tip_vortex_of_a_hovering_rotor_is_landgrebes() {
-    let settings = FreeWakeSettings::hover(CoreModel::RosenheadMoore);
-    let rotor = slender().unwrap();
-    let (solution, wake) = hover(&rotor, &settings).unwrap();
-    let ct = solution.thrust_coefficient;
-    let landgrebe = Landgrebe::of(&rotor, ct);
-    let tip = contraction_drift(&wake);
-    for age in [6, 12, 18, 24, 36, 48] {
-        let zeta = age as f64 * TAU / 24.0;
-        let (got, radius) = (tip[age][0], landgrebe.radius(zeta));
-        assert!((got / radius - 1.0).abs() < 0.03, "age {zeta}: radius {got}, Landgrebe {radius}");
-    }
-    let pitch = (tip[30][1] - tip[6][1]) / TAU / landgrebe.k2();
-    assert!((pitch - 1.0).abs() < 0.10, "pitch over Landgrebe's {pitch}");
-    let first = 0.25 * TAU * landgrebe.k1();
-    assert!((tip[6][1] - first).abs() < 0.015, "height {}, Landgrebe {first}", tip[6][1]);
+    let settings = FreeWakeSettings::hover_rolling_up(CoreModel::RosenheadMoore);
+    let (radius, [k1, k2], merit) = over_landgrebe(&settings);
+    assert!(radius.iter().all(|r| (r - 1.0).abs() < 0.04), "{radius:?}");
+    assert!((k1 - 1.0).abs() < 0.10 && (k2 - 1.0).abs() < 0.10, "k1 {k1}, k2 {k2}");
     // momentum theory is the least power there is; the drag of the sections takes some more
-    let merit = solution.figure_of_merit();
     assert!((0.6..0.85).contains(&merit), "figure of merit {merit}");
-    println!("C_T {ct}, FM {merit}, radius {:?}, pitch {pitch}", tip[24]);
+}
+
+/// A sheet that follows the tip vortex, as in forward flight, does not take it down before the first passage.
+#[test]
+fn the_sheet_that_rolls_up_takes_the_tip_vortex_down() {
+    let follows = FreeWakeSettings {
+        near_wake_motion: NearWakeMotion::FollowsTip,
+        ..FreeWakeSettings::hover_rolling_up(CoreModel::RosenheadMoore)
+    };
+    let (_, [k1, _], _) = over_landgrebe(&follows);
+    assert!((0.2..0.75).contains(&k1), "{k1}");
+}
+
+/// Slopes on either side of the first passage come back from heights made with them.
+#[test]
+fn two_slopes_are_fitted_as_landgrebe_did() {
+    let heights: Vec<f64> = (0..30)
+        .map(|k| {
+            let age = 0.1 * f64::from(k);
+            -0.02 * age.min(1.57) - 0.06 * (age - 1.57).max(0.0)
+        })
+        .collect();
+    let [k1, k2] = Landgrebe::fitted(&heights, 0.1, 1.57).unwrap();
+    assert!((k1 + 0.02).abs() < 1e-12 && (k2 + 0.06).abs() < 1e-12, "{k1} {k2}");
+    assert_eq!(Landgrebe::fitted(&heights[..10], 0.1, 1.57), None);
 }
 
 /// What turns with the rotor comes to rest: two hundred sweeps later nothing has moved.

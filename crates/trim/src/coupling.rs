@@ -4,7 +4,7 @@ use crate::{
     TrimError, TrimSettings, TrimSolution, TrimTarget, WakeOutcome, WakeTrimSettings, WakeUpdate,
     trim,
 };
-use rotor_response::{ResponseError, RotorSolution, RotorSolver};
+use rotor_response::{Controls, ResponseError, RotorSolution, RotorSolver};
 use rotor_wake::{
     BladeLines, CirculationMap, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel,
     WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
@@ -35,11 +35,11 @@ pub(crate) fn wrong(source: WakeError) -> TrimError {
 /// blades.
 pub(crate) fn on_the_grid(
     solver: &RotorSolver,
-    response: &RotorSolution,
+    (response, controls): (&RotorSolution, &Controls),
     panels: &WakeRotor,
     settings: &FreeWakeSettings,
 ) -> Result<(BladeLines, CirculationMap), ResponseError> {
-    let lines = solver.blade_lines(response, panels, settings.azimuths);
+    let lines = solver.blade_lines(response, controls, panels, settings.azimuths);
     let circulation = solver.circulation(response, panels, settings.azimuths)?;
     if settings.symmetry == WakeSymmetry::Periodic {
         return Ok((lines, circulation));
@@ -107,7 +107,8 @@ impl Coupling<'_> {
         before: Option<&FreeWake>,
     ) -> Result<State, TrimError> {
         let settings = self.settings.wake.with_azimuths(azimuths);
-        let (lines, circulation) = on_the_grid(&self.solver, &start.rotor, panels, &settings)?;
+        let (lines, circulation) =
+            on_the_grid(&self.solver, (&start.rotor, &start.controls), panels, &settings)?;
         let wake = match before {
             Some(wake) => wake.on_grid(azimuths, lines),
             None => FreeWake::undistorted(
@@ -198,9 +199,9 @@ impl Coupling<'_> {
     fn update(&mut self, now: &State, halvings: u32) -> Result<State, Failure> {
         let part = 0.5_f64.powf(f64::from(halvings));
         let panels = now.wake.rotor();
-        let (lines, circulation) =
-            on_the_grid(&self.solver, &now.trim.rotor, panels, now.wake.settings())
-                .map_err(TrimError::from)?;
+        let trimmed = (&now.trim.rotor, &now.trim.controls);
+        let (lines, circulation) = on_the_grid(&self.solver, trimmed, panels, now.wake.settings())
+            .map_err(TrimError::from)?;
         let share = MIXED * f64::max(part, 0.4);
         let circulation = circulation.mixed(&now.moving, share)?;
         let mean = momentum_inflow(&now.trim.flight, now.trim.rotor.thrust_coefficient)?;

@@ -67,7 +67,8 @@ impl<'a> WakeResponse<'a> {
         settings: &WakeTrimSettings,
     ) -> Result<(), ResponseError> {
         let panels = self.wake.rotor().clone();
-        let (lines, circulation) = on_the_grid(solver, &self.rotor, &panels, self.wake.settings())?;
+        let flown = (&self.rotor, &self.condition.controls);
+        let (lines, circulation) = on_the_grid(solver, flown, &panels, self.wake.settings())?;
         let circulation = circulation.mixed(&self.moving, MIXED)?;
         let flight = self.condition.flight;
         let mean = momentum_inflow(&flight, self.rotor.thrust_coefficient)?;

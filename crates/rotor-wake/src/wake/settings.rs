@@ -257,6 +257,21 @@ impl FreeWakeSettings {
         }
     }
 
+    /// The same with slender blades, whose sheet rolls up by itself in the quarter of a revolution before the next blade
+    /// passes: trailers and vortices move freely, each with the mutual cores of the default, and sections feel the wake on
+    /// the lifting line.
+    pub fn hover_rolling_up(model: CoreModel) -> Self {
+        let hover = Self::hover(model);
+        let mutual_radius = CoreSettings::default().mutual_radius;
+        Self {
+            azimuths: 36,
+            near_wake_motion: NearWakeMotion::Free,
+            control_point: ControlPoint::LiftingLine,
+            core: CoreSettings { mutual_radius, ..hover.core },
+            ..hover
+        }
+    }
+
     /// Azimuth step, rad.
     pub fn step_rad(&self) -> f64 {
         std::f64::consts::TAU / self.azimuths as f64
