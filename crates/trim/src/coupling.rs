@@ -18,7 +18,7 @@ const PAYING: f64 = 0.9;
 pub(crate) const MIXED: f64 = 0.5;
 /// Sweeps over those asked for where they go in part or the wake still moves.
 const MORE_SWEEPS: usize = 3;
-/// Updates without gain at the least part, after which a stage ends.
+/// Updates without gain at the least part, after which a stage ends, unless the last one still fell from that before.
 const PATIENCE: usize = 10;
 /// Change of the inflow in one update, tip speed, that no rotor's wake makes: vortices and blades run away from each other.
 const RUNAWAY: f64 = 0.3;
@@ -142,9 +142,11 @@ impl Coupling<'_> {
         for _ in 0..self.settings.updates {
             match self.update(&now, halvings) {
                 Ok(next) => {
+                    let before = self.unrest(&now);
                     now = next;
                     failures = 0;
                     let unrest = self.unrest(&now);
+                    let falls = unrest < PAYING * before;
                     idle = if unrest > PAYING * least {
                         halvings = MOST_HALVINGS.min(halvings + 1);
                         idle + 1
@@ -159,7 +161,7 @@ impl Coupling<'_> {
                     if unrest <= enough {
                         return (now, WakeOutcome::Settled);
                     }
-                    if idle >= PATIENCE && halvings == MOST_HALVINGS {
+                    if idle >= PATIENCE && halvings == MOST_HALVINGS && !falls {
                         break;
                     }
                 }
