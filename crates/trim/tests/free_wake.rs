@@ -95,10 +95,10 @@ fn a_wake_that_moves_has_not_settled() {
 /// at every azimuth.
 #[test]
 fn an_axial_wake_settles_in_hover() {
-    let mut wake =
-        FreeWakeSettings { azimuths: 12, ..FreeWakeSettings::hover(CoreModel::Vatistas) };
+    let mut wake = FreeWakeSettings::hover(CoreModel::Vatistas);
     wake.core.mutual_radius = 0.05;
-    let settings = WakeTrimSettings { wake, panels: 10, ..WakeTrimSettings::default() };
+    let settings =
+        WakeTrimSettings { wake, panels: 10, stages: Vec::new(), ..WakeTrimSettings::default() };
     let hover = coupled(0.0, &settings, 0.07).unwrap();
     assert_eq!(hover.outcome, WakeOutcome::Settled);
     let inflow = &hover.trim.rotor.inflow;
