@@ -1,0 +1,293 @@
+//! The second-order cone program and its interior-point solver.
+
+use super::{CertifiedCone, ConeStatus, KktCertificate, KktResidual, largest};
+use crate::ControlError;
+use crate::limits::ControlLimits;
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT,
+    SolverStatus, SupportedConeT,
+};
+use nalgebra::{DMatrix, DVector};
+
+/// Accuracy asked of the interior-point method.
+const SOLVER_TOLERANCE: f64 = 1e-12;
+/// KKT residual below which no other regularisation of the linear systems is tried.
+pub(super) const GOOD_KKT: f64 = 1e-9;
+/// KKT residual with which the usual regularisations are enough, and how many these are.
+const FAIR_KKT: f64 = 1e-7;
+const USUAL: usize = 4;
+/// Regularisations tried, the solver's own first, each with the scaling of rows and columns or without.
+const REGULARISATIONS: [(f64, bool); 10] = [
+    (1e-8, true),
+    (1e-11, true),
+    (1e-6, true),
+    (1e-13, true),
+    (1e-8, false),
+    (1e-10, false),
+    (1e-12, false),
+    (1e-9, true),
+    (1e-7, true),
+    (1e-7, false),
+];
+/// Refinements of a linear solution.
+const REFINEMENTS: u32 = 50;
+/// Accuracy of a linear solution.
+const REFINED_TO: f64 = 1e-14;
+/// Largest multiplier of a limit that does not bind, scaled as the stationarity.
+pub(super) const NO_MULTIPLIER: f64 = 1e-13;
+
+pub(super) fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// What a cone is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// `s >= 0`, one row.
+    Linear,
+    /// `s_0 >= |(s_1, s_2, ...)|`.
+    SecondOrder,
+}
+
+/// One cone: `s = bound - row x` by row, each row sparse.
+#[derive(Debug, Clone)]
+pub(super) struct Cone {
+    pub(super) kind: Kind,
+    pub(super) rows: Vec<(Vec<(usize, f64)>, f64)>,
+}
+
+impl Cone {
+    /// The slack at a point.
+    pub(super) fn slack(&self, x: &DVector<f64>) -> Vec<f64> {
+        let along =
+            |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(column, a)| a * x[column]).sum() };
+        self.rows.iter().map(|(row, bound)| bound - along(row)).collect()
+    }
+
+    /// How far a vector lies outside the cone, which is its own dual.
+    fn outside(&self, s: &[f64]) -> f64 {
+        let rest = norm(&s[1..]);
+        match self.kind {
+            Kind::Linear => (-s[0]).max(0.0),
+            Kind::SecondOrder => (rest - s[0]).max(0.0),
+        }
+    }
+}
+
+/// `min x' P x / 2 + q' x` subject to cones; `x` is the control over a typical voltage.
+#[derive(Debug, Clone)]
+pub(super) struct Program {
+    pub(super) hessian: DMatrix<f64>,
+    pub(super) linear: DVector<f64>,
+    pub(super) cones: Vec<Cone>,
+}
+
+impl Program {
+    pub(super) fn add_circles(&mut self, limits: &ControlLimits, volt: f64) {
+        for (pair, &amplitude) in limits.amplitudes_volt().iter().enumerate() {
+            if amplitude.is_finite() {
+                let share = volt / amplitude;
+                self.add_circle(pair, [[share, 0.0], [0.0, share]]);
+            }
+        }
+        for (pair, circle) in limits.flap_circles().iter().enumerate() {
+            if let Some(circle) = circle {
+                let share = volt / circle.limit_deg;
+                self.add_circle(pair, circle.gain_deg_per_volt.map(|row| row.map(|g| g * share)));
+            }
+        }
+    }
+
+    /// `|gain [x_c, x_s]'| <= 1`.
+    fn add_circle(&mut self, pair: usize, gain: [[f64; 2]; 2]) {
+        let mut rows = vec![(Vec::new(), 1.0)];
+        rows.extend(gain.map(|[c, s]| (vec![(2 * pair, -c), (2 * pair + 1, -s)], 0.0)));
+        self.cones.push(Cone { kind: Kind::SecondOrder, rows });
+    }
+
+    /// `u' P u / room <= t = 1 - p' u / room` as `|(2 F u / sqrt(room), 1 - t)| <= 1 + t`.
+    pub(super) fn add_power(&mut self, limits: &ControlLimits, volt: f64) {
+        let Some((power, root)) = limits.power() else { return };
+        let room = power.limit - power.constant;
+        let linear: Vec<(usize, f64)> =
+            power.linear.iter().map(|p| p * volt / room).enumerate().collect();
+        let opposite = linear.iter().map(|&(column, p)| (column, -p)).collect();
+        let mut rows = vec![(linear, 2.0)];
+        let factor = -2.0 * volt / room.sqrt();
+        rows.extend(
+            root.row_iter().map(|row| (row.iter().map(|f| factor * f).enumerate().collect(), 0.0)),
+        );
+        rows.push((opposite, 0.0));
+        self.cones.push(Cone { kind: Kind::SecondOrder, rows });
+    }
+
+    /// [`Self::solve`] with one regularisation after the other, until the conditions hold as they should: the
+    /// best of them.
+    pub(super) fn solve_best(&self) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+        let mut best: Option<(f64, DVector<f64>, Vec<f64>)> = None;
+        let mut failure = None;
+        let mut iterations = 0;
+        for (tried, regularisation) in REGULARISATIONS.into_iter().enumerate() {
+            let fair = best.as_ref().is_some_and(|(least, ..)| *least <= FAIR_KKT);
+            if tried >= USUAL && fair {
+                break;
+            }
+            match self.solve(regularisation) {
+                Ok((x, z, used)) => {
+                    iterations += used;
+                    let (x, z) = self.polished(x, z);
+                    let kkt = self.kkt(&x, &z).largest();
+                    if best.as_ref().is_none_or(|(least, ..)| kkt < *least) {
+                        best = Some((kkt, x, z));
+                    }
+                    if kkt <= GOOD_KKT {
+                        break;
+                    }
+                }
+                Err(error) => failure = failure.or(Some(error)),
+            }
+        }
+        match (best, failure) {
+            (Some((_, x, z)), _) => Ok((x, z, iterations)),
+            (None, Some(error)) => Err(error),
+            (None, None) => {
+                let (status, kkt) = (ConeStatus::Refused, f64::NAN);
+                Err(ControlError::ConeProgram { status, iterations, kkt })
+            }
+        }
+    }
+
+    /// Minimum, multipliers by row, iterations.
+    fn solve(
+        &self,
+        (regularisation, is_scaled): (f64, bool),
+    ) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
+        let n = self.linear.len();
+        let refused = |status| ControlError::ConeProgram { status, iterations: 0, kkt: f64::NAN };
+        let upper: Vec<(usize, usize, f64)> = (0..n)
+            .flat_map(|column| (0..=column).map(move |row| (row, column)))
+            .map(|(row, column)| (row, column, self.hessian[(row, column)]))
+            .collect();
+        let hessian = sparse(n, n, &upper);
+        let rows: Vec<_> = self.cones.iter().flat_map(|cone| &cone.rows).collect();
+        let entries: Vec<(usize, usize, f64)> = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(k, (row, _))| row.iter().map(move |&(column, a)| (k, column, a)))
+            .collect();
+        let matrix = sparse(rows.len(), n, &entries);
+        let bounds: Vec<f64> = rows.iter().map(|(_, bound)| *bound).collect();
+        let cones: Vec<SupportedConeT<f64>> = self
+            .cones
+            .iter()
+            .map(|cone| match cone.kind {
+                Kind::Linear => NonnegativeConeT(1),
+                Kind::SecondOrder => SecondOrderConeT(cone.rows.len()),
+            })
+            .collect();
+        let settings = DefaultSettingsBuilder::default()
+            .verbose(false)
+            .tol_gap_abs(SOLVER_TOLERANCE)
+            .tol_gap_rel(SOLVER_TOLERANCE)
+            .tol_feas(SOLVER_TOLERANCE)
+            .tol_ktratio(SOLVER_TOLERANCE)
+            .static_regularization_constant(regularisation)
+            .equilibrate_enable(is_scaled)
+            .iterative_refinement_max_iter(REFINEMENTS)
+            .iterative_refinement_reltol(REFINED_TO)
+            .iterative_refinement_abstol(REFINED_TO)
+            .build()
+            .map_err(|_| refused(ConeStatus::Refused))?;
+        let linear: Vec<f64> = self.linear.iter().copied().collect();
+        let mut solver = DefaultSolver::new(&hessian, &linear, &matrix, &bounds, &cones, settings)
+            .map_err(|_| refused(ConeStatus::Refused))?;
+        solver.solve();
+        let found = solver.solution;
+        match found.status {
+            // an early stop is judged by the KKT residual
+            SolverStatus::Solved
+            | SolverStatus::AlmostSolved
+            | SolverStatus::InsufficientProgress
+            | SolverStatus::MaxIterations => {
+                Ok((DVector::from_vec(found.x), found.z, found.iterations))
+            }
+            _ => Err(refused(ConeStatus::Inaccurate)),
+        }
+    }
+
+    /// The numbers that show a point to be the optimum.
+    pub(super) fn certificate(&self, x: &DVector<f64>, z: &[f64], volt: f64) -> KktCertificate {
+        let n = self.linear.len();
+        let mut cones = Vec::new();
+        let mut at = 0;
+        for cone in &self.cones {
+            let Some(multipliers) = z.get(at..at + cone.rows.len()) else { break };
+            at += multipliers.len();
+            if largest(multipliers) <= NO_MULTIPLIER {
+                continue;
+            }
+            let dense = |row: &[(usize, f64)]| {
+                let mut values = vec![0.0; n];
+                for &(column, value) in row {
+                    values[column] += value;
+                }
+                values
+            };
+            cones.push(CertifiedCone {
+                rows: cone.rows.iter().map(|(row, _)| dense(row)).collect(),
+                bounds: cone.rows.iter().map(|(_, bound)| *bound).collect(),
+                multipliers: multipliers.to_vec(),
+            });
+        }
+        KktCertificate {
+            hessian: self.hessian.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            linear: self.linear.iter().copied().collect(),
+            point: x.iter().copied().collect(),
+            volt,
+            cones,
+        }
+    }
+
+    /// The KKT conditions at a point; without multipliers, those of no cone.
+    pub(super) fn kkt(&self, x: &DVector<f64>, z: &[f64]) -> KktResidual {
+        let mut gradient = &self.hessian * x + &self.linear;
+        let mut residual = KktResidual::default();
+        let mut product = 0.0;
+        let mut at = 0;
+        for cone in &self.cones {
+            let slack = cone.slack(x);
+            residual.primal = residual.primal.max(cone.outside(&slack));
+            let Some(z) = z.get(at..at + slack.len()) else { break };
+            at += slack.len();
+            residual.dual = residual.dual.max(cone.outside(z));
+            product += slack.iter().zip(z).map(|(s, z)| s * z).sum::<f64>();
+            for ((row, _), multiplier) in cone.rows.iter().zip(z) {
+                for &(column, a) in row {
+                    gradient[column] += a * multiplier;
+                }
+            }
+        }
+        residual.stationarity = gradient.amax();
+        residual.complementarity = product.abs();
+        residual
+    }
+}
+
+/// A sparse matrix from `(row, column, value)` with rows ascending inside a column.
+fn sparse(rows: usize, columns: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64> {
+    let mut starts = vec![0];
+    let (mut row_numbers, mut values) = (Vec::new(), Vec::new());
+    let mut by_column: Vec<Vec<(usize, f64)>> = vec![Vec::new(); columns];
+    for &(row, column, value) in entries {
+        by_column[column].push((row, value));
+    }
+    for column in by_column {
+        for (row, value) in column {
+            row_numbers.push(row);
+            values.push(value);
+        }
+        starts.push(row_numbers.len());
+    }
+    CscMatrix::new(rows, columns, starts, row_numbers, values)
+}
