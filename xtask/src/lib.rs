@@ -24,6 +24,7 @@ pub mod ci;
 mod error;
 pub mod files;
 pub mod hidden_effects;
+pub mod hover_refinement;
 pub mod layers;
 pub mod refinement;
 pub mod regress;

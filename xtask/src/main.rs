@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use xtask::{
-    XtaskError, calibrate, ci, files, hidden_effects, layers, refinement, regress, tidy, validate,
-    wake_inflow, wake_refinement, workspace,
+    XtaskError, calibrate, ci, files, hidden_effects, hover_refinement, layers, refinement,
+    regress, tidy, validate, wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -41,7 +41,8 @@ enum Chore {
     },
     /// Show what refining the paper's case does to its 4/rev hub loads
     Refinement,
-    /// Show what grid, near wake and core of the free wake do to the paper's rotor and to a reference rotor; minutes
+    /// Show what grid, near wake and core of the free wake do to the paper's rotor, to a reference rotor and to a hovering tip
+    /// vortex; minutes
     WakeRefinement,
     /// Show where the mean inflow of the free wake at the blades comes from, step by step and part by part
     WakeInflow,
@@ -133,6 +134,8 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             wake_refinement::paper_table(|line| say(&mut std::io::stdout(), line));
             say(&mut std::io::stdout(), "\n");
             wake_refinement::table(|line| say(&mut std::io::stdout(), line));
+            say(&mut std::io::stdout(), "\n");
+            hover_refinement::table(|line| say(&mut std::io::stdout(), line));
             Ok(ExitCode::SUCCESS)
         }
         Chore::WakeInflow => {
