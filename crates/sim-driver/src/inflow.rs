@@ -13,7 +13,7 @@ use rotor_wake::{
     ClosestPassage, ControlPoint, CoreModel, CoreSettings, FarField, FarTrailers, FlightState,
     FreeWakeSettings, FrozenWake, InducedInflow, InflowModel, LinearInflow, NearWakeMotion,
     PittPeters, ReleasePoint, RotorLoading, WAKE_BREAKDOWN_TRANSPORT, WakeError, WakeMethod,
-    WakeRotor, WakeSymmetry, descent_transport,
+    WakeRotor, WakeSymmetry, descent_transport, momentum_inflow,
 };
 use std::sync::Arc;
 use trim::{
@@ -216,8 +216,10 @@ pub fn settled_trim(
 }
 
 /// What may help a wake that does not settle.
-const WAKE_REMEDY: &str =
-    "Remedy: more `updates`, `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`";
+const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`, more `updates` if all were used";
+
+/// Mean inflow over that of momentum theory, least and most, that a rotor in its wake has.
+const MOMENTUM: [f64; 2] = [0.5, 2.5];
 
 /// Where a coupling that failed has stopped, on a grid of so many steps per revolution.
 fn kept(
@@ -273,18 +275,42 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
         }
         _ => {}
     }
-    let flight = &wake.trim.flight;
-    if let Some(transport) = descent_transport(flight, wake.trim.rotor.thrust_coefficient) {
-        let breaks_down = transport < WAKE_BREAKDOWN_TRANSPORT;
-        if breaks_down || (transport < 1.0 && wake.outcome != WakeOutcome::Settled) {
-            let state = if breaks_down { "in the" } else { "near the" };
-            warnings.push(format!(
-                "{state} vortex-ring state: in this descent the wake is carried away with {transport:.2} of the hover induced velocity, and below {WAKE_BREAKDOWN_TRANSPORT} wakes break down and the flow is unsteady: a periodic wake stands for its mean at best. Fly faster, or descend less or much more steeply"
-            ));
-        }
-    }
+    let (flight, thrust) = (&wake.trim.flight, wake.trim.rotor.thrust_coefficient);
+    let settled = wake.outcome == WakeOutcome::Settled;
+    warnings.extend(descent_warning(flight, thrust, settled));
+    warnings.extend(momentum_warning(flight, thrust, wake.trim.rotor.inflow.mean()));
     warnings.extend(wake.closest_passage.and_then(passage_warning));
     warnings
+}
+
+/// What a user should know about the wake of a descent.
+pub(crate) fn descent_warning(
+    flight: &FlightState,
+    thrust_coefficient: f64,
+    settled: bool,
+) -> Option<String> {
+    let transport = descent_transport(flight, thrust_coefficient)?;
+    let breaks_down = transport < WAKE_BREAKDOWN_TRANSPORT;
+    let state = if breaks_down { "in the" } else { "near the" };
+    (breaks_down || (transport < 1.0 && !settled)).then(|| {
+        format!(
+            "{state} vortex-ring state: in this descent the wake is carried away with {transport:.2} of the hover induced velocity, and below {WAKE_BREAKDOWN_TRANSPORT} wakes break down and the flow is unsteady: a periodic wake stands for its mean at best. Fly faster, or descend less or much more steeply"
+        )
+    })
+}
+
+/// What a user should know about an inflow that does not go with the thrust.
+fn momentum_warning(flight: &FlightState, thrust_coefficient: f64, mean: f64) -> Option<String> {
+    if descent_transport(flight, thrust_coefficient).is_some() {
+        return None;
+    }
+    let ratio = mean / momentum_inflow(flight, thrust_coefficient).ok()?;
+    let [least, most] = MOMENTUM;
+    (!(least..=most).contains(&ratio)).then(|| {
+        format!(
+            "the mean inflow is {ratio:.2} of momentum theory's for this thrust, {least} to {most} are usual: lightly loaded blades carry lift of both senses along the span, the wake has more than one state, and neither trim nor power can be trusted. Remedy: more thrust, or compare with inflow.model: Uniform"
+        )
+    })
 }
 
 /// What a user should know about a vortex that passes a blade closely.

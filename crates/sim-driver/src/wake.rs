@@ -5,7 +5,7 @@ use crate::case::{
     CirculationChoice, CirculationShape, FreeWakeFile, GeometryChoice, InflowChoice, LoadedCase,
     PrescribedCirculation,
 };
-use crate::inflow::{passage_warning, wake_warnings};
+use crate::inflow::{descent_warning, passage_warning, wake_warnings};
 use crate::output::{Printable, Sheet, table};
 use crate::study::TrimmedRotor;
 use rotor_wake::{
@@ -254,6 +254,7 @@ fn prescribed(
             updates.len()
         ));
     }
+    warnings.extend(descent_warning(&flight, ct, settled));
     let passage = wake.closest_passage(&circulation)?;
     warnings.extend(passage.and_then(passage_warning));
     let map = InducedInflow::Map(inflow);
@@ -423,6 +424,7 @@ impl Printable for WakeResult {
             match (self.controls_deg, self.settled) {
                 (Some(_), true) => "settled with the trim",
                 (None, true) => "circulation prescribed, settled",
+                (Some(_), false) if self.parted => "parted, the last good state",
                 (Some(_), false) => "not settled",
                 (None, false) => "circulation prescribed, not settled",
             }

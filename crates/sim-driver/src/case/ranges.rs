@@ -111,8 +111,8 @@ fn check_circulation(check: &mut Checker<'_>, wake: &FreeWakeFile) {
         (
             "shaft_tilt_deg",
             given.shaft_tilt_deg,
-            -90.0,
-            90.0,
+            -85.0,
+            85.0,
             "deg",
             "5 is usual, forward positive",
         ),

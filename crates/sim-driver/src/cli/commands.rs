@@ -7,7 +7,9 @@ use super::args::{
 use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::blade_loads::blade_loads_csv;
-use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case, with_actuator_file};
+use crate::case::{
+    InflowChoice, LoadedCase, PAPER_CASE, load_case, shipped_case, with_actuator_file,
+};
 use crate::check::check_file;
 use crate::curve_identification::identify_curves;
 use crate::diagnose::{Findings, Question, Record, Records, Story, climb};
@@ -285,8 +287,10 @@ fn note_earlier(out: &Path) {
     }
 }
 
+/// The case in another inflow; a case with a free wake keeps its own where one is asked for.
 fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> LoadedCase {
-    if let Some(inflow) = inflow {
+    let has_one = matches!(loaded.case.inflow, InflowChoice::FreeWake(_));
+    if let Some(inflow) = inflow.filter(|i| !(has_one && *i == InflowOverride::Free)) {
         loaded.case.inflow = inflow.into();
         loaded.file.inflow.model = inflow.into();
     }

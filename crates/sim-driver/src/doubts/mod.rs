@@ -24,6 +24,8 @@ const NEAR_STALL_LIFT_COEFFICIENT: f64 = 0.69;
 const SECTION_STALL: f64 = 1.4;
 /// Longest near wake, deg, that may lie in the plane of its blade: that of a four-bladed rotor's next blade.
 const LONGEST_IN_PLANE_DEG: f64 = 90.0;
+/// Shortest near wake that forward flight does not see, deg: the refinement of the free wake.
+const SHORTEST_IN_FLIGHT_DEG: f64 = 270.0;
 
 /// Drag over weight above which no helicopter flies level.
 const MOST_DRAG: f64 = 0.27;
@@ -116,6 +118,18 @@ impl LoadedCase {
         let points = r.time_elements * r.time_gauss_points;
         let azimuths = wake.azimuths_for(self.case.blades);
         let is_trimmed = wake.circulation == CirculationChoice::Trimmed;
+        let in_plane = wake.near_wake == NearWakeChoice::BladePlane;
+        if is_trimmed
+            && !in_plane
+            && self.case.advance_ratio > 0.0
+            && wake.near_wake_deg < SHORTEST_IN_FLIGHT_DEG
+        {
+            let message = format!(
+                "a near wake of {} deg is short in forward flight: with 90 deg the mean inflow is a tenth too large and the phase of the vibratory thrust 80 deg off, from {SHORTEST_IN_FLIGHT_DEG} deg on both stay. Leave it out for 360",
+                wake.near_wake_deg
+            );
+            doubts.push(self.doubt("inflow.model.near_wake_deg", message));
+        }
         if is_trimmed && 4 * azimuths > 3 * points {
             let message = format!(
                 "{azimuths} steps per revolution are more than three quarters of the {points} points in time of the response (response.time_elements times time_gauss_points): inflow and circulation do not answer each other on every step. Give time_gauss_points of {} or more",

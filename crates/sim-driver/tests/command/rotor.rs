@@ -421,6 +421,10 @@ fn values_of_another_unit_and_blades_near_divergence_are_doubted() {
             "inflow.model.near_wake: a near wake of 360 deg held in the plane of its blade",
         ),
         (
+            "advance_ratio: 0.2, inflow: (model: FreeWake(near_wake_deg: 90))",
+            "inflow.model.near_wake_deg: a near wake of 90 deg is short in forward flight",
+        ),
+        (
             "inflow: (model: FreeWake(azimuths: 72))",
             "inflow.model.azimuths: 72 steps per revolution are more than three quarters of the 64 points",
         ),

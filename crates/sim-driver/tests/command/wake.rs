@@ -137,7 +137,7 @@ fn a_wake_that_parts_from_its_rotor_is_no_solution() {
     let csv = place.read("s/sweep.csv");
     let ends: Vec<&str> = csv.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
     assert!(ends.len() == 3 && ends[..2] == ["wake", "parted"] && ends[2] != "parted", "{csv}");
-    assert!(looked_at.out.contains("not settled"), "{}", looked_at.out);
+    assert!(looked_at.out.contains("mu 0.030: parted"), "{}", looked_at.out);
 }
 
 /// Down a steep slope the wake leaves upward, where the linear model of the start knows no answer.
@@ -159,4 +159,57 @@ fn an_advance_ratio_no_rotor_has_is_refused() {
         let parts = ["--mu: is", "expected 0 to 0.5", "0 is hover"];
         place.hhc(&["wake", "case.ron", "--mu", mu]).rejected(&parts);
     }
+}
+
+/// A rotor with hardly any thrust: lift of both senses along the span, which momentum theory does not have.
+#[test]
+fn an_inflow_that_does_not_go_with_the_thrust_is_warned_of() {
+    let place = Place::new();
+    let case = |theta0: f64| {
+        format!(
+            "(advance_ratio: 0, structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
+            aerodynamics: (model: QuasiSteady, compressibility: None),
+            inflow: (model: FreeWake(azimuths: 24)), trim: Prescribed(theta0_deg: {theta0},
+            theta1c_deg: 0, theta1s_deg: 0, shaft_tilt_deg: 0), actuator: (model: Ideal))"
+        )
+    };
+    for (theta0, warned) in [(0.0, true), (9.0, false)] {
+        place.write("case.ron", &case(theta0));
+        let ran = place.hhc(&["wake", "case.ron"]);
+        assert_eq!(ran.err.contains("of momentum theory's for this thrust"), warned, "{}", ran.err);
+    }
+    // a given circulation in the same descent as a trimmed one
+    place.write(
+        "case.ron",
+        "(advance_ratio: 0.05, inflow: (model: FreeWake(azimuths: 12, updates: 3, circulation:
+            Prescribed(shape: Elliptic, ct_sigma: 0.07, shaft_tilt_deg: -45, geometry: Free))))",
+    );
+    let ran = place.hhc(&["wake", "case.ron"]);
+    assert!(ran.err.contains("in the vortex-ring state"), "{}", ran.err);
+}
+
+/// A case that has a free wake keeps it where one is asked for.
+#[test]
+fn asking_for_the_free_wake_keeps_that_of_the_case() {
+    let place = Place::new();
+    place.write(
+        "case.ron",
+        "(advance_ratio: 0.25, structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
+        aerodynamics: (model: QuasiSteady, compressibility: None),
+        inflow: (model: FreeWake(azimuths: 12, turns: 2, panels: 10)), actuator: (model: Ideal),
+        control: (harmonics: [[4]], actuators: [Ideal]))",
+    );
+    let mut trims = [
+        &["run", "case.ron", "--out", "a"][..],
+        &["run", "case.ron", "--wake", "free", "--out", "b"],
+    ]
+    .map(|args| {
+        let ran = place.hhc(args);
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        let stored = place.read(&format!("{}/result.json", args[args.len() - 1]));
+        let stored: serde_json::Value = serde_json::from_str(&stored).unwrap();
+        stored["result"]["trim"].clone()
+    })
+    .into_iter();
+    assert_eq!(trims.next(), trims.next());
 }
