@@ -95,9 +95,19 @@ pub enum XtaskError {
         /// Why.
         source: exact_section::ExactError,
     },
-    /// The errors of the section models could not be computed.
-    #[error(transparent)]
-    Check(#[from] crate::validate::CheckError),
+    /// A study could not be computed.
+    #[error("{0}")]
+    Study(String),
+    /// A row of the validation page could not be read.
+    #[error("row {id} in {}: {said}", folder.display())]
+    Row {
+        /// Id of the row.
+        id: &'static str,
+        /// Where it was looked for.
+        folder: PathBuf,
+        /// Why it could not be read.
+        said: String,
+    },
     /// The program to sweep could not be set up.
     #[error(transparent)]
     Program(#[from] sim_driver::SimError),
@@ -108,7 +118,7 @@ impl XtaskError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Program(error) => error.exit_code(),
-            Self::Exact { .. } | Self::Check(_) => 1,
+            Self::Exact { .. } | Self::Study(_) => 1,
             _ => 2,
         }
     }

@@ -2,10 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rotor_wake::reference::{Landgrebe, slender};
+use reference_rotors::CouplingSettings;
+use reference_rotors::{Landgrebe, slender};
 use rotor_wake::{
-    ControlPoint, CoreModel, CouplingSettings, FarTrailers, FlightState, FreeWakeSettings,
-    NearWakeMotion, WakeError, WakeRotor, contraction_drift,
+    ControlPoint, CoreModel, FarTrailers, FlightState, FreeWakeSettings, NearWakeMotion, WakeError,
+    WakeRotor, contraction_drift,
 };
 
 /// A hovering rotor and its wake.

@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// The floors there are: 0 to 4 are the product, 9 holds the tools that look at all of it.
-pub const FLOORS: [u32; 6] = [0, 1, 2, 3, 4, TOOLS_FLOOR];
+/// The floors there are: 0 to 6 are the product, 9 holds the tools that look at all of it.
+pub const FLOORS: [u32; 7] = [0, 1, 2, 3, 4, 6, TOOLS_FLOOR];
 
 /// The floor of `xtask` and of the end-to-end tests.
 pub const TOOLS_FLOOR: u32 = 9;
@@ -32,7 +32,19 @@ pub const RESERVED_CRATES: [&str; 10] = [
 ];
 
 /// The members that may use [`RESERVED_CRATES`] in what they ship; tests may use them anywhere.
-pub const RESERVED_FOR: [&str; 5] = ["sim-driver", "xtask", TRUTH, SCORE, "e2e"];
+pub const RESERVED_FOR: [&str; 7] =
+    ["measured-data", "sim-driver", "xtask", TRUTH, SCORE, "validation", "e2e"];
+
+/// The member whose studies take values and give values.
+pub const STUDY: &str = "rotor-study";
+
+/// External crates that no crate below [`STUDY`] may bring into it either, tests included.
+pub const FREE_OF: [&str; 7] = ["clap", "plotly", "csv", "ron", "comfy-table", "indicatif", "maud"];
+
+/// Those of [`FREE_OF`] among the crates that [`STUDY`] is built with.
+pub fn brought_in(crates: &[String]) -> Vec<&str> {
+    crates.iter().map(String::as_str).filter(|name| FREE_OF.contains(name)).collect()
+}
 
 /// What a dependency is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -88,7 +100,7 @@ pub enum LayerFault {
         member: String,
     },
     /// A member stands on a floor the house does not have.
-    #[error("{member} stands on floor {floor}: the house has floors 0 to 4 and 9 (tools)")]
+    #[error("{member} stands on floor {floor}: the house has floors 0 to 4, 6 and 9 (tools)")]
     UnknownFloor {
         /// The member.
         member: String,

@@ -2,9 +2,10 @@
 //!
 //! | chore | does | module |
 //! |---|---|---|
-//! | `layers` | checks that crates depend on strictly lower floors only | [`layers`] |
+//! | `layers` | checks that crates depend on strictly lower floors only, and rooms inside them | [`layers`], [`rooms`] |
 //! | `tidy` | checks the rules of the house that a text can break | [`tidy`] |
 //! | `validate` | runs every check against theory and published data, writes the page of the book | [`validate`] |
+//! | `dependencies` | checks that every dependency is used, and under a licence that is allowed | [`dependencies`] |
 //! | `calibrate` | fits the calibrated section model to exact theory and writes its table | [`calibrate`] |
 //! | `refinement` | shows what refining the paper's case does to its 4/rev hub loads | [`refinement`] |
 //! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
@@ -21,6 +22,7 @@
 
 pub mod calibrate;
 pub mod ci;
+pub mod dependencies;
 mod error;
 pub mod files;
 pub mod hidden_effects;
@@ -28,6 +30,7 @@ pub mod hover_refinement;
 pub mod layers;
 pub mod refinement;
 pub mod regress;
+pub mod rooms;
 pub mod tidy;
 pub mod validate;
 pub mod wake_inflow;

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use xtask::{
-    XtaskError, calibrate, ci, files, hidden_effects, hover_refinement, layers, refinement,
-    regress, tidy, validate, wake_inflow, wake_refinement, workspace,
+    XtaskError, calibrate, ci, dependencies, files, hidden_effects, hover_refinement, layers,
+    refinement, regress, rooms, tidy, validate, wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -20,20 +20,17 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Chore {
-    /// Check that crates depend on strictly lower floors only
+    /// Check that crates depend on strictly lower floors only, and modules inside them in no circle
     Layers,
+    /// Check that every dependency is used and comes under an allowed licence
+    Dependencies,
     /// Check the rules of the house that a text can break
     Tidy,
     /// Run every check against theory and published data, and write docs/src/validation.md
-    Validate {
-        /// Only the checks with this text in id or area; the page is left alone
-        #[arg(long, default_value = "", conflicts_with = "check")]
-        filter: String,
-        /// Write nothing; fail if the page does not say what the checks say
-        #[arg(long)]
-        check: bool,
-    },
-    /// Fit the calibrated section model to exact theory, write its table, show the errors of all models
+    Validate(Validation),
+    /// Write the tables of the case fields in docs/src/case-format.md
+    CaseFormat,
+    /// Fit the calibrated section model to exact theory and write its table
     Calibrate {
         /// Write nothing; fail if the stored table is not what the fit gives
         #[arg(long)]
@@ -86,6 +83,22 @@ enum Chore {
     Ci,
 }
 
+#[derive(clap::Args)]
+struct Validation {
+    /// Only the rows with this text in id or heading; the page is left alone
+    #[arg(long, default_value = "", conflicts_with = "check")]
+    filter: String,
+    /// Write nothing; fail if the page does not say what the rows say
+    #[arg(long)]
+    check: bool,
+    /// Run no test: take the rows that tests have written to this folder (`VALIDATION_ROWS`)
+    #[arg(long, value_name = "DIR")]
+    rows: Option<PathBuf>,
+    /// Profile the tests are built with; the rows are the same in all of them
+    #[arg(long, default_value = "release", value_name = "PROFILE")]
+    profile: String,
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let root = workspace::root();
@@ -102,17 +115,42 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
     match chore {
         Chore::Layers => {
             let members = workspace::members(root)?;
-            let faults = layers::check(&members);
+            let mut faults: Vec<String> =
+                layers::check(&members).iter().map(ToString::to_string).collect();
+            let tree = tidy::Tree::load(root)?;
+            faults.extend(rooms::check(&tree).iter().map(ToString::to_string));
             let summary = format!("{} members, {} faults\n", members.len(), faults.len());
             Ok(verdict(&faults, &summary))
         }
+        Chore::Dependencies => {
+            let unused = dependencies::unused(&workspace::members(root)?, &tidy::Tree::load(root)?);
+            let (packages, unlicensed) = dependencies::licences(root)?;
+            let faults: Vec<String> = unused
+                .iter()
+                .map(ToString::to_string)
+                .chain(unlicensed.iter().map(ToString::to_string))
+                .collect();
+            Ok(verdict(&faults, &format!("{packages} packages, {} faults\n", faults.len())))
+        }
         Chore::Tidy => {
             let tree = tidy::Tree::load(root)?;
-            let findings = tidy::check(&tree, &workspace::members(root)?, &validate::ids());
+            let findings = tidy::check(&tree, &workspace::members(root)?);
             let summary = format!("{} texts, {} faults\n", tree.texts.len(), findings.len());
             Ok(verdict(&findings, &summary))
         }
-        Chore::Validate { filter, check } => validation(root, &filter, check),
+        Chore::Validate(options) => validation(root, &options),
+        Chore::CaseFormat => {
+            let path = root.join("docs/src/case-format.md");
+            let fresh = sim_driver::case::case_format_page(&files::read(&path)?);
+            let said = if let Some(page) = &fresh {
+                files::write_atomically(&path, page)?;
+                "written"
+            } else {
+                "not written, as the marks of the fields are missing"
+            };
+            say(&mut std::io::stdout(), &format!("{}: {said}\n", path.display()));
+            Ok(ExitCode::from(if fresh.is_some() { 0 } else { 3 }))
+        }
         Chore::Calibrate { check: true } => {
             let differences = calibrate::check(root)?;
             let lines: Vec<String> = differences.iter().map(|line| format!("{line}\n")).collect();
@@ -123,7 +161,6 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
         Chore::Calibrate { check: false } => {
             calibrate::write(root)?;
             say(&mut std::io::stdout(), &format!("written: {}\n", calibrate::TABLE));
-            say(&mut std::io::stdout(), &calibrate::error_tables()?);
             Ok(ExitCode::SUCCESS)
         }
         Chore::Refinement => {
@@ -139,7 +176,8 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(ExitCode::SUCCESS)
         }
         Chore::WakeInflow => {
-            wake_inflow::tables(|line| say(&mut std::io::stdout(), line))?;
+            wake_inflow::tables(|line| say(&mut std::io::stdout(), line))
+                .map_err(|error| XtaskError::Study(error.to_string()))?;
             Ok(ExitCode::SUCCESS)
         }
         Chore::Regress { bless, filter, golden } => {
@@ -170,17 +208,21 @@ fn verdict<F: std::fmt::Display>(faults: &[F], summary: &str) -> ExitCode {
     if faults.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) }
 }
 
-fn validation(root: &Path, filter: &str, check: bool) -> Result<ExitCode, XtaskError> {
-    let rows = validate::run(filter)?;
-    let mut text = validate::text(&rows);
+fn validation(root: &Path, options: &Validation) -> Result<ExitCode, XtaskError> {
+    let folder = match &options.rows {
+        Some(folder) => folder.clone(),
+        None => validate::run_tests(root, &options.filter, &options.profile)?,
+    };
+    let collected = validate::collect(&folder, &options.filter)?;
+    let mut text = validate::text(&collected);
     let page = root.join("docs/src/validation.md");
-    let mut failed = rows.iter().any(|row| !row.passes());
-    if check {
-        let stale = validate::stale_lines(&files::read(&page)?, &rows);
+    let mut failed = !collected.passes();
+    if options.check {
+        let stale = validate::stale_lines(&files::read(&page)?, &collected.rows);
         text.extend(stale.iter().map(|line| format!("stale page, {line}\n")));
         failed |= !stale.is_empty();
-    } else if filter.is_empty() {
-        files::write_atomically(&page, &validate::render(&rows))?;
+    } else if options.filter.is_empty() && collected.missing.is_empty() {
+        files::write_atomically(&page, &validate::render(&collected.rows))?;
         text.extend(["written: ", &page.display().to_string(), "\n"]);
     }
     say(&mut std::io::stdout(), &text);

@@ -1,9 +1,9 @@
 //! Refinement of the paper's case: 4/rev hub loads over elements, modes, stations and time elements.
 
 use rotor_response::Discretisation;
+use rotor_study::TrimmedRotor;
 use sim_driver::SimError;
 use sim_driver::case::{LoadedCase, PAPER_CASE, shipped_case};
-use sim_driver::study::TrimmedRotor;
 
 /// A change of the discretisation.
 pub(crate) type Change = fn(&mut LoadedCase);
@@ -18,8 +18,8 @@ const ROWS: [Row; 15] = [
     ("48 time elements", default_mesh, |c| c.case.response.time_elements = 48),
     ("12 time points per element", default_mesh, |c| c.case.response.time_gauss_points = 12),
     ("8 stations per piece", default_mesh, |c| c.case.response.span_points_per_piece = 8),
-    ("20 beam elements", default_mesh, |c| c.case.blade.elements = 20),
-    ("40 beam elements", default_mesh, |c| c.case.blade.elements = 40),
+    ("20 beam elements", default_mesh, |c| c.case.structure.elements = 20),
+    ("40 beam elements", default_mesh, |c| c.case.structure.elements = 40),
     ("8, 8, 6 modes, 20 beam elements", default_mesh, more_modes),
     ("12, 12, 10 modes, 40 beam elements", default_mesh, most_modes),
     ("8 stations, 24 time elements", default_mesh, finer_mesh),
@@ -30,8 +30,8 @@ const ROWS: [Row; 15] = [
 ];
 
 fn modes(loaded: &mut LoadedCase, elements: usize, modes: [usize; 3]) {
-    loaded.case.blade.elements = elements;
-    loaded.case.blade.modes = modes;
+    loaded.case.structure.elements = elements;
+    loaded.case.structure.modes = modes.into();
 }
 
 /// The default discretisation.
@@ -39,7 +39,7 @@ pub(crate) fn default_mesh(_: &mut LoadedCase) {}
 
 /// The modes the paper keeps.
 pub(crate) fn paper_modes(loaded: &mut LoadedCase) {
-    loaded.case.blade.modes = Discretisation::paper().modes;
+    loaded.case.structure.modes = Discretisation::paper().modes.into();
 }
 
 /// Stations and time elements refined.
@@ -72,10 +72,10 @@ pub(crate) fn all_finer(loaded: &mut LoadedCase) {
 /// 4/rev.
 pub(crate) fn loads_after(change: Change) -> Result<[f64; 12], SimError> {
     let mut refined = shipped_case(PAPER_CASE)?;
-    refined.case.blade.modes = Discretisation::default().modes;
+    refined.case.structure.modes = Discretisation::default().modes.into();
     change(&mut refined);
-    let rotor = TrimmedRotor::new(&refined, None)?;
-    Ok(rotor.trim().rotor.hub.harmonic(refined.case.blades))
+    let rotor = TrimmedRotor::new(&refined.case, None)?;
+    Ok(rotor.trim().rotor.hub.harmonic(refined.case.rotor.blades))
 }
 
 /// Distance of each load from a refined one over its amplitude there, and of all over their norm, %.

@@ -12,8 +12,8 @@ use rotor_wake::{
     SegmentSet, SegmentState, Vec3, WakeRotor, induced_velocities, momentum_inflow,
 };
 use trim::WakeTrim;
+use validation::Failure;
 
-use crate::validate::CheckError;
 use crate::wake_refinement::paper_trimmed;
 
 /// Rings of the whole disk, as in the reference of the undistorted helices.
@@ -118,7 +118,7 @@ struct Step {
 }
 
 /// A wake as it is: at the blades as they feel it, and over time.
-fn of_wake(wake: &FreeWake, circulation: &CirculationMap) -> Result<Means, CheckError> {
+fn of_wake(wake: &FreeWake, circulation: &CirculationMap) -> Result<Means, Failure> {
     let disk = Disk { rotor: wake.rotor(), lines: wake.lines() };
     let at_blades = wake.line_induction(circulation)?.inflow(circulation)?.mean();
     let points: Vec<Vec3> = (0..wake.lines().azimuths()).flat_map(|i| disk.passed(i)).collect();
@@ -139,7 +139,7 @@ const STEPS: [&str; 7] = [
     "moved freely: the trimmed rotor",
 ];
 
-fn steps(trimmed: &WakeTrim) -> Result<Vec<Step>, CheckError> {
+fn steps(trimmed: &WakeTrim) -> Result<Vec<Step>, Failure> {
     let (wake, circulation) = (&trimmed.wake, &trimmed.moving);
     let (rotor, settings, flight) = (wake.rotor(), wake.settings(), *wake.flight());
     let (blades, azimuths, mu) = (rotor.blades() as f64, settings.azimuths, flight.advance_ratio);
@@ -196,7 +196,7 @@ fn parts_of(
     wake: &FreeWake,
     circulation: &CirculationMap,
     at: usize,
-) -> Result<Vec<SegmentSet>, CheckError> {
+) -> Result<Vec<SegmentSet>, Failure> {
     let mut parts = vec![SegmentSet::new(wake.settings().core.model); PARTS.len()];
     let mut push = |part: usize, ends: [Vec3; 2], state: SegmentState| {
         parts[part].push(ends[0], ends[1], state.circulation, state.core_radius);
@@ -235,7 +235,7 @@ fn parts_of(
 }
 
 /// Share of each part at the blades, of the own blade and of the others, and over time; Glauert's inflow is 1.
-fn shares(trimmed: &WakeTrim) -> Result<Vec<[f64; 3]>, CheckError> {
+fn shares(trimmed: &WakeTrim) -> Result<Vec<[f64; 3]>, Failure> {
     let (wake, circulation) = (&trimmed.wake, &trimmed.moving);
     let (blades, azimuths) = (wake.rotor().blades(), wake.settings().azimuths);
     let flight = wake.flight();
@@ -275,7 +275,7 @@ fn shares(trimmed: &WakeTrim) -> Result<Vec<[f64; 3]>, CheckError> {
 const BANDS: [f64; 5] = [0.2, 0.6, 0.88, 0.96, 1.0];
 
 /// Share of the area, and mean inflow at the blades and over time over Glauert's, of every band of span.
-fn bands(trimmed: &WakeTrim) -> Result<Vec<[f64; 3]>, CheckError> {
+fn bands(trimmed: &WakeTrim) -> Result<Vec<[f64; 3]>, Failure> {
     let (wake, circulation) = (&trimmed.wake, &trimmed.moving);
     let rotor = wake.rotor();
     let ct = circulation.thrust_coefficient(rotor, wake.flight().advance_ratio);
@@ -302,7 +302,7 @@ fn bands(trimmed: &WakeTrim) -> Result<Vec<[f64; 3]>, CheckError> {
 }
 
 /// The undistorted wake of the trim shared by other numbers of blades: the same circulation in all.
-fn shared_by(trimmed: &WakeTrim, blades: usize) -> Result<Means, CheckError> {
+fn shared_by(trimmed: &WakeTrim, blades: usize) -> Result<Means, Failure> {
     let (wake, circulation) = (&trimmed.wake, &trimmed.moving);
     let flight = *wake.flight();
     let rotor = wake.rotor();
@@ -320,7 +320,7 @@ fn shared_by(trimmed: &WakeTrim, blades: usize) -> Result<Means, CheckError> {
 }
 
 /// Undistorted tip helices of constant circulation at an advance ratio, felt over the whole disk with a core.
-fn thin(advance_ratio: f64, core: f64) -> Result<Means, CheckError> {
+fn thin(advance_ratio: f64, core: f64) -> Result<Means, Failure> {
     const AZIMUTHS: usize = 144;
     const THRUST: f64 = 0.0049;
     let flight = FlightState { advance_ratio, shaft_tilt_rad: 5.0_f64.to_radians() };
@@ -342,7 +342,7 @@ const ADVANCE_RATIOS: [f64; 5] = [0.15, 0.2, 0.25, 0.3, 0.35];
 ///
 /// # Errors
 /// Those of the trims and the wakes.
-pub fn tables(say: impl Fn(&str)) -> Result<(), CheckError> {
+pub fn tables(say: impl Fn(&str)) -> Result<(), Failure> {
     let trims: Vec<WakeTrim> = ADVANCE_RATIOS
         .iter()
         // without copies of the last turn every segment of the wake is known here

@@ -4,14 +4,14 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use reference_rotors::{BladeElementSolution, CouplingSettings};
+use reference_rotors::{olaf, olaf_flight, olaf_settings, olaf_thrust_newton};
 use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
     Discretisation, ResponseError, ResponseTolerances, Rotor, RotorModel, RotorSolver,
 };
-use rotor_wake::reference::{olaf, olaf_flight, olaf_settings, olaf_thrust_newton};
 use rotor_wake::{
-    BladeElementSolution, CoreModel, CouplingSettings, FreeWakeSettings, NearWakeMotion,
-    ShedVorticity, WakeError, momentum_inflow,
+    CoreModel, FreeWakeSettings, NearWakeMotion, ShedVorticity, WakeError, momentum_inflow,
 };
 use trim::{
     TrimError, TrimSettings, TrimTarget, Vehicle, WakeOutcome, WakeTrim, WakeTrimSettings,

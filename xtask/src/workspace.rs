@@ -35,6 +35,32 @@ pub fn members(root: &Path) -> Result<Vec<Member>, XtaskError> {
     members_of(&output.stdout)
 }
 
+/// Names of all crates that a member is built and tested with, itself included, as `cargo tree` lists them.
+///
+/// # Errors
+/// [`XtaskError`] if cargo cannot be run or refuses.
+pub fn tree(root: &Path, member: &str) -> Result<Vec<String>, XtaskError> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(&cargo)
+        .args(["tree", "--package", member, "--edges", "all", "--prefix", "none", "--offline"])
+        .current_dir(root)
+        .output()
+        .map_err(|source| XtaskError::Start {
+            program: cargo.to_string_lossy().into_owned(),
+            source,
+        })?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+        return Err(XtaskError::Metadata { said });
+    }
+    let lines = String::from_utf8_lossy(&output.stdout).into_owned();
+    let mut names: Vec<String> =
+        lines.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect();
+    names.sort();
+    names.dedup();
+    Ok(names)
+}
+
 /// The members in an answer of `cargo metadata`.
 ///
 /// # Errors

@@ -1,9 +1,9 @@
 //! The rules of the house hold in this tree, and each is seen to fail on a planted breach.
 #![expect(clippy::unwrap_used, reason = "a helper that fails is a test that fails")]
 
-use xtask::layers::{Dependency, DependencyKind, LayerFault, Member, check};
+use xtask::layers::{Dependency, DependencyKind, LayerFault, Member, STUDY, brought_in, check};
 use xtask::tidy::{self, Finding, Tree};
-use xtask::{validate, workspace};
+use xtask::workspace;
 
 fn member(name: &str, floor: u32, dependencies: &[(&str, DependencyKind)]) -> Member {
     Member {
@@ -24,7 +24,8 @@ fn sound_house() -> Vec<Member> {
         member("rotor-fem", 1, &[("rotor-base", Normal), ("csv", Development)]),
         member("flap-aero", 1, &[("rotor-base", Normal)]),
         member("rotor-response", 2, &[("rotor-fem", Normal), ("flap-aero", Normal)]),
-        member("sim-driver", 4, &[("rotor-response", Normal), ("clap", Normal), ("ron", Normal)]),
+        member("rotor-study", 4, &[("rotor-response", Normal)]),
+        member("sim-driver", 6, &[("rotor-study", Normal), ("clap", Normal), ("ron", Normal)]),
         member("truth", 0, &[("clap", Normal)]),
         member("score", 1, &[("truth", Normal), ("serde_json", Normal)]),
         member("xtask", 9, &[("sim-driver", Normal), ("score", Normal), ("csv", Normal)]),
@@ -50,9 +51,21 @@ fn this_workspace_keeps_the_layer_rule() {
     let members = workspace::members(&workspace::root()).unwrap();
     let faults: Vec<String> = check(&members).iter().map(ToString::to_string).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    for name in ["rotor-base", "trim", "sim-driver", "truth", "score", "xtask", "e2e"] {
+    for name in
+        ["rotor-base", "trim", "rotor-study", "sim-driver", "truth", "score", "xtask", "e2e"]
+    {
         assert!(members.iter().any(|member| member.name == name), "{name} is no member");
     }
+}
+
+/// The studies know no file and no terminal, by whatever way.
+#[test]
+fn the_studies_are_built_without_files_and_terminal() {
+    let found = workspace::tree(&workspace::root(), STUDY).unwrap();
+    assert!(found.iter().any(|name| name == "hhc-control"), "{found:?}");
+    assert_eq!(brought_in(&found), Vec::<&str>::new());
+    let planted = [found, vec!["csv".to_owned(), "clap".to_owned()]].concat();
+    assert_eq!(brought_in(&planted), ["csv", "clap"]);
 }
 
 #[test]
@@ -145,7 +158,7 @@ fn this_tree_is_tidy() {
     let tree = Tree::load(&root).unwrap();
     let members = workspace::members(&root).unwrap();
     let findings: Vec<String> =
-        tidy::check(&tree, &members, &validate::ids()).iter().map(ToString::to_string).collect();
+        tidy::check(&tree, &members).iter().map(ToString::to_string).collect();
     assert!(findings.is_empty(), "{}", findings.join("\n"));
     assert!(tree.texts.len() > 100, "only {} texts were read", tree.texts.len());
 }
@@ -176,11 +189,16 @@ fn breaches_in_sources_are_found() {
 }
 
 #[test]
-fn crates_below_the_driver_know_no_files() {
+fn only_measured_data_and_the_driver_know_files() {
     let using = "//! A.\nuse std::fs::File;\n";
     let rust = |path: &str| tidy::rust(&Tree::of(&[(path, using)]));
     one(&rust("crates/trim/src/solve.rs"), "std::fs");
-    for allowed in ["crates/sim-driver/src/a.rs", "crates/trim/tests/a.rs", "xtask/src/a.rs"] {
+    for allowed in [
+        "crates/sim-driver/src/a.rs",
+        "crates/measured-data/src/a.rs",
+        "crates/trim/tests/a.rs",
+        "xtask/src/a.rs",
+    ] {
         assert_eq!(rust(allowed), [], "{allowed}");
     }
     let documented = Tree::of(&[("crates/trim/src/a.rs", "//! A.\n/// No `std::time` here.\n")]);
@@ -249,23 +267,28 @@ fn the_code_map_must_agree_with_the_manifests() {
 }
 
 #[test]
-fn validation_ids_belong_to_checks_and_stand_on_the_page() {
+fn validation_ids_belong_to_one_test_and_stand_on_the_page() {
     // put together here, so that this file mentions no id itself
     let id = |number: &str| format!("V-QQ-{number}");
     let (first, second) = (id("01"), id("02"));
     let page = format!("| id |\n|---|\n| {first} | a |\n| {second} | b |\n");
-    let ids = |page: &str, source: &str, known: &[&str]| {
-        tidy::validation_ids(
-            &Tree::of(&[("docs/src/validation.md", page), ("a.rs", source)]),
-            known,
-        )
+    let test = format!("row(\"{first}\", ..), row(\"{second}\", ..)");
+    let found = |page: &str, texts: &[(&str, &str)], known: &[&str]| {
+        let mut tree = vec![("docs/src/validation.md", page), ("tests/a.rs", test.as_str())];
+        tree.extend(texts);
+        tidy::validation_ids(&Tree::of(&tree), known)
     };
+    let ids = |page: &str, source: &str, known: &[&str]| found(page, &[("b.rs", source)], known);
     let known = [first.as_str(), second.as_str()];
     assert_eq!(ids(&page, &format!("//! Test: {first}.\n"), &known), []);
     one(&ids(&page, "//! A.\n", &[known[0], known[1], known[1]]), "share");
-    one(&ids(&page, &format!("//! {}\n", id("77")), &known), "no validation check");
-    one(&ids(&page, "//! A.\n", &known[..1]), "no validation check");
+    one(&ids(&page, &format!("//! {}\n", id("77")), &known), "no validation row");
     one(&ids(&format!("| {first} | a |\n"), "//! A.\n", &known), "has no row");
+    // a row stated twice, and one that no test states
+    one(&ids(&page, &format!("row(\"{first}\", ..)"), &known), "2 tests");
+    let third = id("03");
+    let longer = format!("{page}| {third} | c |\n");
+    one(&ids(&longer, "//! A.\n", &[known[0], known[1], &third]), "0 tests");
     let odd = ids(&page, "//! A.\n", &[known[0], known[1], "V-qq-1"]);
     assert!(odd.iter().any(|finding| finding.fault.contains("V-AREA-NN")), "{odd:?}");
 }

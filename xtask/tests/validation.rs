@@ -1,40 +1,18 @@
 //! The validation page: every check has its row, failures are seen, staleness is noticed.
 #![expect(clippy::disallowed_methods, reason = "tests read the shipped page")]
 
-use xtask::validate::{
-    AREAS, Check, CheckError, Criterion, Repeatability, Row, ids, render, run, stale_lines, text,
-};
+use validation::{AREAS, Row, heading_of, ids, row};
+use xtask::validate::{collect, render, run_tests, stale_lines, text};
 use xtask::workspace;
 
-const HEADING: &str = "Area";
-
-fn check(id: &'static str, measure: fn() -> Result<f64, CheckError>) -> Check {
-    Check {
-        id,
-        quantity: "quantity",
-        unit: "deg",
-        source: "theory",
-        criterion: Criterion::AtMost(1e-3),
-        repeatability: Repeatability::Everywhere,
-        measure,
-    }
-}
-
+/// Three rows of two areas.
 fn rows() -> Vec<Row> {
-    let time = Check {
-        repeatability: Repeatability::MachineDependent,
-        criterion: Criterion::AtMost(20.0),
-        unit: "s",
-        ..check("time", || Ok(3.25))
-    };
-    let near = Check {
-        criterion: Criterion::Near { expected: 2.0, within: 0.1 },
-        ..check("near", || Ok(2.05))
-    };
+    let [error, near, time] = [AREAS[0].ids[0], AREAS[0].ids[1], AREAS[1].ids[0]];
+    let draft = |id, unit| row(id, "quantity", unit).against("theory");
     vec![
-        Row::of(HEADING, check("error", || Ok(4e-4))),
-        Row::of(HEADING, near),
-        Row::of("Times", time),
+        Row::of(&draft(error, "deg").at_most(1e-3, || Ok(4e-4))),
+        Row::of(&draft(near, "deg").near(2.0, 0.1, || Ok(2.05))),
+        Row::of(&draft(time, "s").at_most(20.0, || Ok(3.25)).machine_dependent()),
     ]
 }
 
@@ -58,7 +36,7 @@ fn a_page_is_fresh_until_a_figure_moves_by_more_than_the_scatter_of_machines() {
         ("quantity", "quality"),
         ("2.05", "not computed"),
         ("3 of 3", "2 of 3"),
-        ("## Times", "## Clocks"),
+        ("## Blade with", "## Clock of"),
     ] {
         assert!(!fresh(from, to).is_empty(), "{from} -> {to} passed unseen");
     }
@@ -67,36 +45,47 @@ fn a_page_is_fresh_until_a_figure_moves_by_more_than_the_scatter_of_machines() {
 }
 
 #[test]
-fn a_check_that_fails_or_cannot_be_computed_shows() {
-    let too_large = Row::of(HEADING, check("large", || Ok(2e-3)));
-    let no_number = Row::of(HEADING, check("nan", || Ok(f64::NAN)));
-    let broken = Row::of(
-        HEADING,
-        check("broken", || Err(CheckError::TooFew { what: "modes", found: 1, needed: 8 })),
-    );
-    let rows = [too_large, no_number, broken];
-    assert!(!rows.iter().any(Row::passes));
-    let page = render(&rows);
+fn a_row_that_fails_cannot_be_computed_or_is_missing_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    let area = &AREAS[2];
+    let draft = |n: usize| row(area.ids[n], "quantity", "deg").against("theory");
+    let bad = [
+        draft(0).at_most(1e-3, || Ok(2e-3)),
+        draft(1).at_most(1e-3, || Ok(f64::NAN)),
+        draft(2).at_most(1e-3, || Err("no modes".into())),
+    ];
+    for check in &bad {
+        Row::of(check).write(folder.path()).unwrap();
+    }
+    let collected = collect(folder.path(), area.heading).unwrap();
+    assert!(!collected.passes() && !collected.rows.iter().any(Row::passes));
+    assert_eq!(collected.missing, area.ids[3..]);
+    let page = render(&collected.rows);
     assert_eq!(page.matches("**no**").count(), 3, "{page}");
     assert!(page.contains("0 of 3 checks passed") && page.contains("not computed"), "{page}");
-    assert!(text(&rows).contains("broken: only 1 values of modes"), "{}", text(&rows));
+    let text = text(&collected);
+    assert!(text.contains(&format!("{}: no modes", area.ids[2])), "{text}");
+    assert!(text.contains(&format!("{}: no test has written it", area.ids[3])), "{text}");
+    std::fs::write(folder.path().join(format!("{}.ron", area.ids[3])), "no row").unwrap();
+    let message = collect(folder.path(), "").unwrap_err().to_string();
+    assert!(message.contains(area.ids[3]), "{message}");
 }
 
 #[test]
 fn ids_are_unique_and_follow_the_pattern() {
-    let ids = ids();
+    let ids: Vec<&str> = ids().collect();
     for (index, id) in ids.iter().enumerate() {
         assert_eq!(xtask::tidy::ids_in(id), [*id], "not V-AREA-NN");
         assert!(!ids[..index].contains(id), "{id} twice");
+        assert!(heading_of(id).is_some());
     }
-    assert!(AREAS.iter().all(|area| !area.checks.is_empty()));
+    assert!(AREAS.iter().all(|area| !area.ids.is_empty()));
 }
 
 #[test]
-fn a_filter_chooses_and_refuses_with_the_choice() {
-    let rows = run("rotor-wake").unwrap();
-    assert!(!rows.is_empty() && rows.iter().all(|row| row.check.id.starts_with("V-WAKE-")));
-    let message = run("no such check").unwrap_err().to_string();
+fn a_filter_that_matches_nothing_is_refused_with_the_choice() {
+    let refused = run_tests(&workspace::root(), "no such check", "dev");
+    let message = refused.unwrap_err().to_string();
     assert!(message.contains("rotor-fem"), "{message}");
 }
 
@@ -107,6 +96,6 @@ fn the_shipped_page_has_no_failed_row() {
     let page = workspace::root().join("docs/src/validation.md");
     let page = std::fs::read_to_string(page).unwrap();
     assert!(!page.contains("**no**"), "a row of the page fails");
-    let count = ids().len();
+    let count = ids().count();
     assert!(page.contains(&format!("{count} of {count} checks passed")));
 }

@@ -38,48 +38,34 @@
 //! `theodorsen` the flap functions; `quasi_steady`, `incompressible`, `hariharan_leishman`,
 //! `calibrated` the models; `section` the structure they share; `response`, `march`, `free_stream` its uses.
 
-mod c81;
-mod calibrated;
-mod decay;
-mod effectiveness;
+mod airfoil;
+mod attached;
 mod error;
-mod free_stream;
-mod hariharan_leishman;
-mod incompressible;
-mod known_error;
-mod layout;
-mod linearise;
-mod march;
-mod periodic;
-mod quasi_steady;
-mod response;
-mod section;
+mod motion;
 mod stall;
-mod steady_flow;
-mod theodorsen;
-mod values;
 
-pub use c81::{AirfoilSpan, C81Airfoil, C81Table, SteadyCoefficients, SteadyPoint};
-pub use calibrated::CalibratedSection;
-pub use effectiveness::FlapEffectiveness;
+pub use airfoil::c81::{AirfoilSpan, C81Airfoil, C81Table, SteadyCoefficients, SteadyPoint};
+pub use airfoil::steady_flow::{LinearisedForces, SectionFlow, SectionForces, TabulatedSection};
+pub use attached::calibrated::CalibratedSection;
+pub use attached::coefficients::{LagChannel, Load, Mode, ModelRemarks, SectionCoefficients};
+pub use attached::effectiveness::FlapEffectiveness;
+pub use attached::hariharan_leishman::{initial_slopes, piston_start};
+pub use attached::model::{AttachedFlowModel, FlappedModel};
+pub use attached::theodorsen::TheodorsenFunctions;
+pub use attached::values::{FlapChord, HingePosition, MIN_NONCIRCULATORY_MACH, Mach};
 pub use error::AeroError;
-pub use free_stream::{FreeStream, SectionLoads, lag_rates, loads_of_outputs, section_loads};
-pub use hariharan_leishman::{MIN_NONCIRCULATORY_MACH, initial_slopes, piston_start};
-pub use known_error::{
+pub use motion::free_stream::{
+    FreeStream, SectionLoads, lag_rates, loads_of_outputs, section_loads,
+};
+pub use motion::known_error::{
     KNOWN_ERROR_BANDS, KNOWN_ERROR_FLAP_CHORDS, KNOWN_ERROR_MACHS, known_error_percent,
 };
-pub use layout::{MarchingSection, SectionInputs, StepFactors};
-pub use linearise::{LagRateSlopes, LoadSlopes, lag_rate_slopes, load_slopes};
-pub use march::SectionState;
-pub use periodic::{CycleStep, periodic_state};
-pub use response::{Motion, harmonic_response, indicial_response, steady_response};
-pub use section::{
-    AttachedFlowModel, FlappedModel, LagChannel, Load, Mode, ModelRemarks, SectionCoefficients,
-};
+pub use motion::layout::{MarchingSection, SectionInputs, StepFactors};
+pub use motion::linearise::{LagRateSlopes, LoadSlopes, lag_rate_slopes, load_slopes};
+pub use motion::march::SectionState;
+pub use motion::periodic::{CycleStep, periodic_state};
+pub use motion::response::{Motion, harmonic_response, indicial_response, steady_response};
 pub use stall::{StallParameters, StallSection, StallState, StalledLoads};
-pub use steady_flow::{LinearisedForces, SectionFlow, SectionForces, TabulatedSection};
-pub use theodorsen::TheodorsenFunctions;
-pub use values::{FlapChord, HingePosition, Mach};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -1,6 +1,6 @@
 //! Dynamic stall after Leishman and Beddoes, on top of any attached-flow model. Off unless it is used.
 
-use crate::decay::{LANES, decay};
+use crate::motion::decay::{LANES, decay};
 use crate::{AeroError, FlapChord, FlapEffectiveness, Load, Mach, Mode, TheodorsenFunctions};
 use std::f64::consts::{PI, TAU};
 
@@ -427,17 +427,17 @@ impl StallState {
         self.beyond = now;
         let crossing = ds * (was / (was - now)).clamp(0.0, 1.0);
         match (was > 0.0, now > 0.0) {
-            (true, true) => self.travel_on(p, (feed, true), ds),
+            (true, true) => self.travel_on(p, feed, true, ds),
             (true, false) => {
-                self.travel_on(p, (feed, true), crossing);
-                self.travel_on(p, (feed, false), ds - crossing);
+                self.travel_on(p, feed, true, crossing);
+                self.travel_on(p, feed, false, ds - crossing);
             }
             (false, true) => {
-                self.travel_on(p, (feed, false), crossing);
+                self.travel_on(p, feed, false, crossing);
                 self.release(p);
-                self.travel_on(p, (feed, true), ds - crossing);
+                self.travel_on(p, feed, true, ds - crossing);
             }
-            (false, false) => self.travel_on(p, (feed, false), ds),
+            (false, false) => self.travel_on(p, feed, false, ds),
         }
         self.shed = shed;
     }
@@ -460,7 +460,7 @@ impl StallState {
     /// A distance with the delayed force above the critical one or not: a vortex on its way is fed
     /// over the chord, then decays over another chord; when it is gone and the force is not critical,
     /// the next one gathers.
-    fn travel_on(&mut self, p: &StallParameters, (feed, critical): (f64, bool), distance: f64) {
+    fn travel_on(&mut self, p: &StallParameters, feed: f64, critical: bool, distance: f64) {
         let Some(travelled) = self.travel else {
             self.grow(p, feed, distance);
             return;

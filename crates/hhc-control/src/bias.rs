@@ -1,7 +1,7 @@
 //! The bias voltage that keeps the mean flap angle zero.
 
 use crate::root::{Bracketed, Trial, root_between};
-use crate::{ControlError, PlantCall, RunError, error};
+use crate::{ControlError, RunError, error};
 
 /// Finds the steady voltage `u_st` of one actuator for which the mean flap angle vanishes.
 ///
@@ -52,11 +52,8 @@ impl BiasSolver {
         let mut evaluations = 0;
         let mut ask = |bias_volt: f64| -> Result<(f64, ()), RunError<E>> {
             evaluations += 1;
-            let angle = mean_flap_deg(bias_volt).map_err(|source| RunError::Plant {
-                call: PlantCall::MeanFlap { bias_volt },
-                history: Vec::new(),
-                source,
-            })?;
+            let angle = mean_flap_deg(bias_volt)
+                .map_err(RunError::plant("asked for its mean flap angle", &[bias_volt]))?;
             error::check_vector("mean flap angle (deg)", &[angle], 1)?;
             Ok((angle, ()))
         };

@@ -1,10 +1,6 @@
 //! The quadratic cost, eq. (7).
 
-use crate::{ControlError, error, layout::as_harmonics};
-use rotor_base::Harmonic;
-
-/// Names of the six hub loads, in the order of the load vector.
-pub const HUB_LOAD_NAMES: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
+use crate::{ControlError, error};
 
 /// The load weights `W_Z`.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,11 +80,6 @@ pub fn reduction_percent(loads_cost_before: f64, loads_cost_after: f64) -> f64 {
     } else {
         100.0 * (1.0 - loads_cost_after / loads_cost_before)
     }
-}
-
-/// The load vector as harmonics: one per load, in the order of [`HUB_LOAD_NAMES`] for hub loads.
-pub fn load_harmonics(hub_loads: &[f64]) -> Vec<Harmonic> {
-    as_harmonics(hub_loads)
 }
 
 #[cfg(test)]

@@ -6,27 +6,6 @@ use crate::{ConeStatus, ControlStep, Cost};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ControlError {
-    /// No flap or no harmonic to control.
-    #[error(
-        "a control layout needs a flap and a harmonic, found {flaps} flaps, {harmonics} harmonics"
-    )]
-    EmptyLayout {
-        /// Flaps given.
-        flaps: usize,
-        /// Number of harmonics given.
-        harmonics: usize,
-    },
-    /// A harmonic that cannot be controlled.
-    #[error(
-        "controlled harmonic {index} (from 0) is {harmonic}/rev: expected 1/rev or more, each once \
-         (the steady bias is solved for, it is not a control)"
-    )]
-    BadHarmonic {
-        /// Position in the list.
-        index: usize,
-        /// The harmonic, per revolution.
-        harmonic: u32,
-    },
     /// A vector of the wrong length.
     #[error("{what}: found {found} numbers, expected {expected}")]
     Length {
@@ -177,73 +156,20 @@ pub enum ControlError {
     },
 }
 
-/// What was asked of the plant when it failed.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum PlantCall {
-    /// One measurement at this control vector.
-    Measure {
-        /// Control vector, volt.
-        control_volt: Vec<f64>,
-    },
-    /// A batch of measurements for the T matrix.
-    MeasureMany {
-        /// Number of control vectors.
-        count: usize,
-    },
-    /// The strokes at this control vector.
-    Strokes {
-        /// Control vector, volt.
-        control_volt: Vec<f64>,
-    },
-    /// The linearised T at this control vector.
-    Linearise {
-        /// Control vector, volt.
-        control_volt: Vec<f64>,
-    },
-    /// The limits at this control vector.
-    Limits {
-        /// Control vector, volt.
-        control_volt: Vec<f64>,
-    },
-    /// The mean flap angle at this bias.
-    MeanFlap {
-        /// Bias, volt.
-        bias_volt: f64,
-    },
-}
-
-impl std::fmt::Display for PlantCall {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Measure { control_volt } => write!(f, "measured at u = {control_volt:.4?} V"),
-            Self::MeasureMany { count } => write!(f, "measured at {count} controls for T"),
-            Self::Strokes { control_volt } => {
-                write!(f, "asked for its strokes at u = {control_volt:.4?} V")
-            }
-            Self::Linearise { control_volt } => write!(f, "linearised at u = {control_volt:.4?} V"),
-            Self::Limits { control_volt } => {
-                write!(f, "asked for its limits at u = {control_volt:.4?} V")
-            }
-            Self::MeanFlap { bias_volt } => {
-                write!(f, "asked for its mean flap angle at a bias of {bias_volt} V")
-            }
-        }
-    }
-}
-
 /// A control run that failed: by the plant, or by the control.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError<E: std::error::Error + 'static> {
     /// The plant did not answer.
     #[error(
-        "the plant failed when {call}, after {} recorded control steps: {source}",
+        "the plant failed when {call} at {at_volt:.4?} V, after {} recorded control steps: {source}",
         history.len()
     )]
     Plant {
-        /// What it was asked.
-        call: PlantCall,
+        /// What it was asked, such as `measured` or `linearised`.
+        call: &'static str,
+        /// The control vector it was asked at, or the bias, V.
+        at_volt: Vec<f64>,
         /// What had been recorded: start and accepted steps.
         history: Vec<ControlStep>,
         /// Its own error.
@@ -252,6 +178,14 @@ pub enum RunError<E: std::error::Error + 'static> {
     /// The control failed.
     #[error(transparent)]
     Control(#[from] ControlError),
+}
+
+impl<E: std::error::Error + 'static> RunError<E> {
+    /// Makes the error of a plant that did not answer a call, such as `measured`, at a control vector (V); without a
+    /// history.
+    pub fn plant(call: &'static str, at_volt: &[f64]) -> impl FnOnce(E) -> Self {
+        move |source| Self::Plant { call, at_volt: at_volt.to_vec(), history: Vec::new(), source }
+    }
 }
 
 /// Accepts a vector of the expected length whose elements are finite.

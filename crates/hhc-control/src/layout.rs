@@ -22,15 +22,20 @@ impl ControlLayout {
     /// A layout of `flaps` flaps, each driven at every harmonic (per revolution) of `harmonics`.
     ///
     /// # Errors
-    /// [`ControlError::EmptyLayout`] without flap or harmonic, [`ControlError::BadHarmonic`] for
-    /// harmonic 0 (that is the bias, which is solved for) or one given twice.
+    /// [`ControlError::OutOfRange`] without flap or harmonic, for harmonic 0 (that is the bias, which is solved
+    /// for) or one given twice.
     pub fn new(flaps: usize, harmonics: Vec<u32>) -> Result<Self, ControlError> {
         if flaps == 0 || harmonics.is_empty() {
-            return Err(ControlError::EmptyLayout { flaps, harmonics: harmonics.len() });
+            let (what, value) = ("pairs of a control layout", 0.0);
+            let expected = "a flap and a harmonic at least";
+            return Err(ControlError::OutOfRange { what, value, expected });
         }
         for (index, &harmonic) in harmonics.iter().enumerate() {
             if harmonic == 0 || harmonics[..index].contains(&harmonic) {
-                return Err(ControlError::BadHarmonic { index, harmonic });
+                let (what, value) = ("controlled harmonic (per rev)", f64::from(harmonic));
+                let expected =
+                    "1/rev or more, each once (the steady bias is solved for, it is not a control)";
+                return Err(ControlError::OutOfRange { what, value, expected });
             }
         }
         Ok(Self { flaps, harmonics })
@@ -120,6 +125,16 @@ impl ControlLayout {
 /// Consecutive cosine and sine coefficients as harmonics.
 pub(crate) fn as_harmonics(coefficients: &[f64]) -> Vec<Harmonic> {
     coefficients.chunks_exact(2).map(|pair| Harmonic { cosine: pair[0], sine: pair[1] }).collect()
+}
+
+/// Largest amplitude of the harmonics of a control vector, volt.
+pub(crate) fn largest_amplitude(control_volt: &[f64]) -> f64 {
+    as_harmonics(control_volt).iter().map(Harmonic::amplitude).fold(0.0, f64::max)
+}
+
+/// One control vector less another.
+pub(crate) fn difference(to: &[f64], from: &[f64]) -> Vec<f64> {
+    to.iter().zip(from).map(|(a, b)| a - b).collect()
 }
 
 /// Lag of one harmonic behind another of the same frequency, in degrees of harmonic phase.

@@ -2,7 +2,7 @@
 //!
 //! The plant takes the cosine and sine voltages of each flap and answers with the steady vibratory
 //! hub loads ([`Plant`], [`Measurement`]); nothing else is known here of rotor or actuator. The
-//! controller identifies the sensitivity of the loads to the voltages about zero control, and walks
+//! controller identifies the sensitivity of the loads to the voltages about zero control, and iterates
 //! to the voltages that minimise a quadratic cost:
 //!
 //! ```text
@@ -12,7 +12,8 @@
 //! ```
 //!
 //! Every step is *measured* on the plant, so the loop is a feedback one: it corrects what a constant
-//! T0 gets wrong; other [`Controller`]s renew T on the way. A step that raises the cost is halved. A stroke limit is met by weighting the
+//! T0 gets wrong; other [`Controller`]s renew T on the way. A step that raises the
+//! cost is halved (backtracking). A stroke limit is met by weighting the
 //! control (`rho`) or as part of the optimum, never by clipping a step: see
 //! [`FeedbackController::run_within_stroke`] and [`FeedbackController::run_constrained`].
 //!
@@ -42,46 +43,39 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod adaptive;
 mod bias;
 mod cone;
-mod control_loop;
-mod controller;
 mod cost;
+mod effort;
 mod error;
 mod feedback;
 mod identify;
-mod lag;
+mod iteration;
 mod law;
 mod layout;
 mod limits;
-mod linear_plant;
 mod plant;
+mod record;
 mod root;
-mod spectrum;
+mod sensitivity;
+mod settings;
 mod stroke;
-mod t_matrix;
 
-pub use adaptive::AdaptiveSettings;
 pub use bias::{BiasSolution, BiasSolver};
-pub use cone::{CertifiedCone, ConeStatus, ConstrainedOptimum, KktCertificate, KktResidual};
-pub use control_loop::FLAT_STEPS;
-pub use controller::Controller;
-pub use cost::{Cost, HUB_LOAD_NAMES, LoadWeights, load_harmonics, reduction_percent};
-pub use error::{ControlError, PlantCall, RunError};
-pub use feedback::{
-    ControlRun, ControlStep, FeedbackController, FeedbackSettings, LoopEnd, Outcome, RefusedStep,
-    StepLeave,
-};
-pub use identify::{StepSensitivity, identify_t, identify_t_about, step_sensitivity};
-pub use lag::{LagLoss, lag_loss};
-pub use law::FeedbackLaw;
+pub use cone::{ConeStatus, ConstrainedOptimum, KktResidual};
+pub use cost::{Cost, LoadWeights, reduction_percent};
+pub use effort::StrokeStatus;
+pub use error::{ControlError, RunError};
+pub use feedback::FeedbackController;
+pub use identify::{identify_t, identify_t_about};
+pub use law::{FeedbackLaw, LagLoss, OperatingPoint, TMatrix, lag_loss};
 pub use layout::{ControlLayout, lag_deg};
 pub use limits::{ControlLimits, FlapCircle, PowerLimit, VoltageRange};
-pub use linear_plant::LinearPlant;
-pub use plant::{Measurement, Plant};
-pub use stroke::{EffortTrial, StrokeLimitedRun, StrokeStatus};
-pub use t_matrix::TMatrix;
+pub use plant::{LinearPlant, Measurement, Plant};
+pub use record::{AllowedIncrease, ControlRun, ControlStep, LoopEnd, StopReason, Tolerances};
+pub use sensitivity::{AdaptiveSettings, Controller};
+pub use settings::FeedbackSettings;
+pub use stroke::{EffortTrial, StrokeLimitedRun};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

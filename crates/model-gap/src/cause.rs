@@ -1,20 +1,5 @@
 //! What could be missing: causes as values.
 
-use serde::{Deserialize, Serialize};
-
-/// Where a cause acts on the way from input to reading.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Side {
-    /// Before the system: it changes what the system is driven with.
-    Input,
-    /// Inside: it changes the state or the gain.
-    State,
-    /// Behind the system.
-    Output,
-    /// In the reading alone.
-    Sensor,
-}
-
 /// How a parameter is searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
@@ -118,8 +103,6 @@ pub struct Cause {
     pub id: &'static str,
     /// The physics, one or two sentences with the equation.
     pub physics: &'static str,
-    /// Where it acts.
-    pub side: Side,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
     /// Part of its effect by which this model of the cause is wrong along the effect itself, `>= 0`, such
@@ -129,7 +112,7 @@ pub struct Cause {
     pub fingerprint: &'static str,
     /// Causes that look alike on ordinary data.
     pub confused_with: &'static [&'static str],
-    /// Experiments that tell it from those.
+    /// Experiments that distinguish it from those.
     pub separating: &'static [&'static str],
 }
 
@@ -144,11 +127,11 @@ pub struct Candidate {
     /// Why these data cannot show it, found before any fit; none if they may.
     pub blocked: Option<String>,
     /// Why it cannot be there, found before any fit: a measurement of its agent reads none. It is fitted all
-    /// the same: what looks most like it has no name.
+    /// the same: the finding that resembles it most has no name.
     pub refuted: Option<String>,
-    /// What it would be, where it is not one of the causes that may be named: it stands among the candidates so
-    /// that data which show it are not given the name of a cause that does about the same.
-    pub nameless: Option<&'static str>,
+    /// What it would be, where it is a decoy: an unnamed alternative that is fitted like a cause, so that data
+    /// which show it are not given the name of a similar cause. None for a cause that may be named.
+    pub decoy: Option<&'static str>,
 }
 
 /// A cause switched on, with values of its parameters.

@@ -88,9 +88,9 @@ pub enum GapError {
         /// Cycles tried.
         tried: usize,
     },
-    /// The harmonics cannot be told apart in this record.
+    /// The harmonics cannot be separated in this record.
     #[error(
-        "{harmonics} harmonics cannot be told apart in {cycles:.3} cycles sampled {samples} times: the \
+        "{harmonics} harmonics cannot be separated in {cycles:.3} cycles sampled {samples} times: the \
          highest lies too close to half the sampling rate; ask for fewer harmonics"
     )]
     NotSeparable {
@@ -100,30 +100,6 @@ pub enum GapError {
         cycles: f64,
         /// Samples in the record.
         samples: usize,
-    },
-    /// Two experiments with the same id.
-    #[error("experiment id {id:?} occurs twice; ids name the rows of every table")]
-    DuplicateId {
-        /// The id.
-        id: String,
-    },
-    /// An experiment that a split by stated use finds without one.
-    #[error(
-        "experiment {id:?} states no use, expected Train or HeldOut; state it, or split by another rule"
-    )]
-    NoStatedUse {
-        /// The id.
-        id: String,
-    },
-    /// A split that leaves nothing to train on.
-    #[error(
-        "the rule {rule:?} leaves none of {experiments} experiments to train on; state their use"
-    )]
-    NothingToTrain {
-        /// The rule, as it prints itself.
-        rule: String,
-        /// Number of experiments.
-        experiments: usize,
     },
     /// The simulator could not simulate.
     #[error("simulation of {what} failed: {message}")]

@@ -1,6 +1,5 @@
-//! Harmonics of records, and of what a simulation leaves.
+//! Harmonics of records, and the error of the first one.
 
-use crate::misfit::residual;
 use crate::{GapError, error};
 use nalgebra::{DMatrix, DVector};
 use rotor_base::{Harmonic, wrap_degrees};
@@ -158,62 +157,4 @@ fn harmonics_below_nyquist(time_step_s: f64, frequency_hz: f64, wanted: usize) -
         .rev()
         .find(|&n| n as f64 * frequency_hz < 0.5 / time_step_s * (1.0 - 1e-9))
         .unwrap_or(1)
-}
-
-/// One harmonic of a residual, relative to the measured first harmonic.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ResidualHarmonic {
-    /// The harmonic, 1, 2, 3...
-    pub number: usize,
-    /// Amplitude, in the output's unit.
-    pub amplitude: f64,
-    /// Amplitude over that of the measured first harmonic.
-    pub relative_amplitude: f64,
-    /// Phase relative to the measured first harmonic, degrees in (-180, 180]:
-    /// `phase_n - n phase_1`. It does not depend on where the record starts.
-    pub relative_phase_deg: f64,
-}
-
-/// What a simulation leaves at each harmonic of a periodic record.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ResidualHarmonics {
-    /// The fundamental frequency, Hz.
-    pub frequency_hz: f64,
-    /// The measured first harmonic, in the output's unit.
-    pub measured: Harmonic,
-    /// Mean of the residual, in the output's unit.
-    pub mean: f64,
-    /// Harmonics 1, 2, 3... of measured minus simulated.
-    pub rows: Vec<ResidualHarmonic>,
-}
-
-impl ResidualHarmonics {
-    /// Harmonics 1 to `count` of the residual (customarily 9); time step in s, frequency in Hz.
-    ///
-    /// # Errors
-    /// As [`FirstHarmonicError::of`].
-    pub fn of(
-        measured: &[f64],
-        simulated: &[f64],
-        time_step_s: f64,
-        frequency_hz: f64,
-        count: usize,
-    ) -> Result<Self, GapError> {
-        let first =
-            FirstHarmonicError::of(measured, simulated, time_step_s, frequency_hz)?.measured;
-        let left = residual(measured, simulated);
-        let fit = HarmonicFit::of(&left, time_step_s, frequency_hz, count)?;
-        let rows = (1..)
-            .zip(&fit.harmonics)
-            .map(|(number, harmonic)| ResidualHarmonic {
-                number,
-                amplitude: harmonic.amplitude(),
-                relative_amplitude: harmonic.amplitude() / first.amplitude(),
-                relative_phase_deg: wrap_degrees(
-                    harmonic.phase_deg() - number as f64 * first.phase_deg(),
-                ),
-            })
-            .collect();
-        Ok(Self { frequency_hz, measured: first, mean: fit.mean, rows })
-    }
 }

@@ -1,17 +1,15 @@
-//! Measured against simulated: experiments, splits by experiment and measures of misfit.
+//! Measured against simulated: measures of misfit, and the causes of a misfit.
 //!
-//! An [`Experiment`] holds one record of an input and an output; a simulation of the same input is
-//! compared with the measured output. This crate knows neither actuator nor rotor: it is handed
+//! A record of an output is compared with a simulation of the same input. This crate knows neither actuator nor rotor: it is handed
 //! numbers with their unit and gives numbers back.
 //!
 //! - [`Misfit`]: NRMSE, rms, bias and largest error of one record;
-//! - [`FirstHarmonicError`], [`ResidualHarmonics`]: how far amplitude and phase are off, and what the
-//!   simulation leaves at harmonics 1, 2, 3...;
+//! - [`HarmonicFit`], [`FirstHarmonicError`]: mean and harmonics of a record, and how far amplitude and
+//!   phase of the first one are off;
 //! - [`NoiseEstimate`]: measurement noise from repeated cycles, never from the residual;
 //! - [`EnergySplit`]: which part of the measured energy is explained, which is noise, and which is
 //!   structure that the simulation misses;
-//! - [`SplitRule`], [`Summary`]: which experiments train and which are held out, and the errors of
-//!   both sets apart.
+//! - [`discovery`]: which of given causes explain a misfit, if any does.
 //!
 //! Residuals are measured minus simulated throughout.
 //!
@@ -37,26 +35,24 @@ mod cause;
 pub mod discovery;
 mod energy;
 mod error;
-mod experiment;
 mod harmonics;
+mod memo;
 mod misfit;
 mod noise;
 mod resampling;
-mod split;
+mod run_error;
 mod stimulus;
-mod summary;
 
-pub use cause::{Candidate, Cause, Effect, Parameter, Scale, Side};
+pub use cause::{Candidate, Cause, Effect, Parameter, Scale};
 pub use energy::EnergySplit;
 pub use error::GapError;
-pub use experiment::{Channel, Experiment, Role, Use};
-pub use harmonics::{FirstHarmonicError, HarmonicFit, ResidualHarmonic, ResidualHarmonics};
+pub use harmonics::{FirstHarmonicError, HarmonicFit};
+pub use memo::Memo;
 pub use misfit::Misfit;
 pub use noise::NoiseEstimate;
 pub use resampling::NoiseDraw;
-pub use split::SplitRule;
+pub use run_error::{RunError, Use};
 pub use stimulus::Stimulus;
-pub use summary::{RunError, Summary, WorstRun};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

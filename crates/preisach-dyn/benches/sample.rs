@@ -9,11 +9,10 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen, BoucWenParameters, Calibration,
-    CurrentLimit, Drive, DynamicParameters, DynamicPreisach, Envelope, EverettStaircase, Lag,
-    LinkageStage, LogCreep, OutputHistory, PlayMap, PlayMemory, PrandtlIshlinskii,
-    PrandtlParameters, PrandtlStop, PreisachError, PreisachGrid, RateForm, RelayGrid, Resonance,
-    StartState, StaticPreisach, StepCounts, StopParameters, TimeOrder, VoltageRange, WeightedPlay,
-    WeightedStop,
+    CurrentLimit, Drive, DynamicParameters, DynamicPreisach, Envelope, Lag, LinkageStage, LogCreep,
+    OutputHistory, PlayMap, PlayMemory, PrandtlIshlinskii, PrandtlParameters, PrandtlStop,
+    PreisachError, PreisachGrid, RateForm, Resonance, StartState, StaticPreisach, StepCounts,
+    StopParameters, TimeOrder, VoltageRange, WeightedPlay, WeightedStop,
 };
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -85,8 +84,7 @@ fn actuators(c: &mut Criterion) {
         return;
     };
     let volts = voltages();
-    let (grid, g0_deg) = (*fixed.grid(), fixed.map().clone());
-    let range_volt = grid.range();
+    let range_volt = fixed.grid().range();
     let plain = |law| {
         let calibration = Calibration { deg_per_um: 0.04, zero_um: 0.0 };
         ActuatorModel::new(law, range_volt, calibration)
@@ -132,11 +130,6 @@ fn actuators(c: &mut Criterion) {
     let (Ok(prandtl), Ok(bouc_wen), Ok(stops)) = (prandtl, bouc_wen, stops) else {
         return;
     };
-    let (Ok(everett), Ok(relays)) =
-        (EverettStaircase::new(grid, g0_deg.clone()), RelayGrid::new(grid, g0_deg, 2))
-    else {
-        return;
-    };
     let fixed = ActuatorLaw::StaticPreisach(fixed);
     let dynamic = ActuatorLaw::DynamicPreisach(dynamic);
     let creep = ActuatorModel {
@@ -147,8 +140,6 @@ fn actuators(c: &mut Criterion) {
         ("actuator: static", plain(fixed.clone()), STATIC_BAR_NS),
         ("actuator: static, four stages", stages(fixed), STATIC_BAR_NS),
         ("actuator: static, creep of 8 lags", creep, STATIC_BAR_NS),
-        ("actuator: Everett", plain(ActuatorLaw::Everett(everett)), STATIC_BAR_NS),
-        ("actuator: relays", plain(ActuatorLaw::RelayGrid(relays)), STATIC_BAR_NS),
         ("actuator: Prandtl", plain(ActuatorLaw::PrandtlIshlinskii(prandtl)), STATIC_BAR_NS),
         ("actuator: stops", plain(ActuatorLaw::PrandtlStop(stops)), STATIC_BAR_NS),
         ("actuator: Bouc-Wen", plain(ActuatorLaw::BoucWen(bouc_wen)), STATIC_BAR_NS),

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | memory: plays on the Preisach triangle | [`PreisachGrid`], [`PlayMemory`], [`PlayMap`] |
 //! | any law between voltage and free flap angle | [`HysteresisLaw`], [`ActuatorLaw`] |
-//! | static model, paper eq. (2) | [`StaticPreisach`], [`EverettStaircase`], [`RelayGrid`] |
+//! | static model, paper eq. (2) | [`StaticPreisach`] |
 //! | dynamic model, paper eq. (5) | [`DynamicPreisach`], [`output_rate`] |
 //! | other families | [`PrandtlIshlinskii`], [`BoucWen`]; output ahead of the input: [`PrandtlStop`] |
 //! | what stands around the law | [`AmplifierStage`], [`LinkageStage`], [`SensorStage`] |
@@ -23,56 +23,44 @@
 //! Transactions on Magnetics 24 (1988).
 
 mod actuator;
-mod bouc_wen;
-mod chain;
+mod calibration;
+mod check;
 mod doubts;
-mod dynamics;
-mod envelope;
 mod error;
-mod everett;
 pub mod forc;
-mod grid;
 pub mod identify;
 mod inverse;
-mod law;
-mod memory;
-mod periodic;
-mod play_map;
-mod prandtl;
-mod relays;
-mod simulate;
+mod laws;
 mod stages;
-mod statics;
-mod stop;
 
-pub use actuator::{ActuatorModel, Calibration, TrainedRange};
-pub use bouc_wen::{BoucWen, BoucWenMemory, BoucWenParameters};
-pub use chain::{ActuatorMemory, Stepper};
+pub use actuator::chain::{ActuatorMemory, Stepper};
+pub use actuator::model::{ActuatorModel, TrainedRange};
+pub use actuator::periodic::{PeriodicResponse, PeriodicSettings};
+pub use actuator::simulate::{BenchSimulation, Drive, Simulation};
+pub use calibration::Calibration;
 pub use doubts::{Doubt, Weight};
-pub use dynamics::{
-    DynamicMemory, DynamicParameters, DynamicPreisach, OutputHistory, OutputRate, RateForm,
-    StepCounts, TimeOrder, output_rate,
-};
-pub use envelope::Envelope;
 pub use error::PreisachError;
-pub use everett::{EverettStaircase, StaircaseMemory};
-pub use grid::{PreisachGrid, VoltageRange};
 pub use inverse::{InverseSettings, PeriodicInverse};
-pub use law::{ActuatorLaw, HysteresisLaw, LawMemory, LinearGain};
-pub use memory::{PlayMemory, StartState};
-pub use periodic::{PeriodicResponse, PeriodicSettings};
-pub use play_map::PlayMap;
-pub use prandtl::{PrandtlIshlinskii, PrandtlMemory, PrandtlParameters, WeightedPlay};
-pub use relays::{RelayGrid, RelayMemory};
-pub use simulate::{BenchSimulation, Drive, Simulation};
+pub use laws::bouc_wen::{BoucWen, BoucWenMemory, BoucWenParameters};
+pub use laws::dynamics::{
+    DynamicMemory, DynamicParameters, DynamicPreisach, OutputHistory, OutputRate, RateForm,
+    TimeOrder, output_rate,
+};
+pub use laws::envelope::Envelope;
+pub use laws::grid::{PreisachGrid, VoltageRange};
+pub use laws::hysteresis::{HysteresisLaw, LinearGain, StepCounts};
+pub use laws::law::{ActuatorLaw, LawMemory};
+pub use laws::memory::{PlayMemory, StartState};
+pub use laws::play_map::PlayMap;
+pub use laws::prandtl::{PrandtlIshlinskii, PrandtlMemory, PrandtlParameters, WeightedPlay};
+pub use laws::statics::StaticPreisach;
+pub use laws::stop::{PrandtlStop, StopMemory, StopParameters, WeightedStop};
 pub use stages::{
     Accommodation, AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
     DielectricHeating, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep,
     MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Relaxation, RelaxationElement,
     Resonance, Saturation, SensorStage,
 };
-pub use statics::StaticPreisach;
-pub use stop::{PrandtlStop, StopMemory, StopParameters, WeightedStop};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

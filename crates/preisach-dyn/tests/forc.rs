@@ -2,13 +2,15 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 #![expect(clippy::disallowed_methods, reason = "tests read fixtures")]
 
+mod oracles;
+
 use approx::assert_abs_diff_eq;
+use oracles::everett::EverettStaircase;
 use preisach_dyn::forc::{
     CalibrationPoint, DriftKind, ForcCurve, ForcData, ForcSettings, diagram, fit, held_out,
 };
 use preisach_dyn::{
-    EverettStaircase, PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach,
-    VoltageRange,
+    PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach, VoltageRange,
 };
 use std::path::PathBuf;
 
@@ -94,7 +96,7 @@ fn a_density_on_the_grid_is_found_from_its_curves() {
         assert!(curve.largest_percent < 1e-2, "{curve:?}");
     }
     // the Everett values are those of the classical form, at nodes and between them
-    let classical = EverettStaircase::new(*truth.grid(), truth.map().clone()).unwrap();
+    let classical = EverettStaircase::of(&truth);
     let span = data.output_span();
     for i in 0..40 {
         let (upper, lower) = (-4.0 + 0.26 * f64::from(i), -4.0 + 0.17 * f64::from(i));
@@ -108,8 +110,7 @@ fn between_nodes_everett_values_and_plays_agree_exactly() {
     let data = family(&truth(9), 0.31);
     let settings = ForcSettings { levels: 7, ..ForcSettings::default() };
     let found = fit(&data, &settings).unwrap();
-    let classical =
-        EverettStaircase::new(*found.everett.grid(), found.model.map().clone()).unwrap();
+    let classical = EverettStaircase::of(&found.model);
     for i in 0..60 {
         let upper = -3.9 + 0.16 * f64::from(i);
         let lower = -3.9 + 0.09 * f64::from(i);

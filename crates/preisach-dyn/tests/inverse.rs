@@ -7,8 +7,8 @@ use common::Wavy;
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Calibration, CoulombFriction,
     DynamicParameters, DynamicPreisach, InverseSettings, LinkageStage, LoadStiffness,
-    PeriodicInverse, PeriodicSettings, PlayMap, PlayMemory, PreisachError, RateForm, RelayGrid,
-    Resonance, Saturation, StartState, StaticPreisach, TimeOrder, VoltageRange,
+    PeriodicInverse, PeriodicSettings, PlayMap, PlayMemory, PreisachError, RateForm, Resonance,
+    Saturation, StartState, StaticPreisach, TimeOrder, VoltageRange,
 };
 use proptest::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -324,26 +324,4 @@ fn an_amplifier_that_saturates_ends_the_reach() {
     };
     assert_eq!((lowest_volt, highest_volt), (0.0, 130.0));
     assert!(reachable_deg > 3.0, "{reachable_deg}");
-}
-
-/// A relay output has steps: the voltage of the plays moves it as close as the relays are fine.
-#[test]
-fn relays_are_moved_by_the_voltage_of_their_plays() {
-    let statics = static_model(24);
-    let settings = InverseSettings { voltage_harmonics: 24, ..InverseSettings::default() };
-    let off = |relays_per_cell| {
-        let relays = RelayGrid::new(*statics.grid(), statics.map().clone(), relays_per_cell);
-        let model = actuator(ActuatorLaw::RelayGrid(relays.unwrap()));
-        let found = model.periodic_inverse(&target(5.0), REV_HZ, &settings).unwrap();
-        let again = model.periodic_response(
-            &found.response.voltage_volt,
-            REV_HZ,
-            &PeriodicSettings { harmonics: 24, ..settings.periodic },
-        );
-        assert_eq!(again.unwrap().samples_deg, found.response.samples_deg);
-        low_error_deg(&found, &target(5.0))
-    };
-    let (coarse, fine) = (off(2), off(32));
-    println!("relays: {coarse:e} deg with 2 per cell, {fine:e} with 32");
-    assert!(fine < 0.01 && fine < 0.2 * coarse, "{coarse} {fine}");
 }

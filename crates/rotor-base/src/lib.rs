@@ -15,12 +15,14 @@ mod frames;
 mod harmonics;
 mod quadrature;
 mod scales;
+mod stats;
 
 pub use error::BaseError;
 pub use frames::rotating_to_fixed;
 pub use harmonics::{Harmonic, HarmonicSeries, uniform_azimuths_rad, wrap_degrees};
 pub use quadrature::{LagrangeBasis, QuadratureRule, gauss_legendre, gauss_lobatto_nodes};
 pub use scales::RotorScales;
+pub use stats::{mean_square, variance};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

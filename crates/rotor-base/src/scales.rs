@@ -31,6 +31,12 @@ impl RotorScales {
         Ok(Self { omega_rad_s, radius_m, mass_kg_m })
     }
 
+    /// The same of values that are positive and finite already, as those of a checked case; of others the units
+    /// are of no use.
+    pub fn of_checked(omega_rad_s: f64, radius_m: f64, mass_kg_m: f64) -> Self {
+        Self { omega_rad_s, radius_m, mass_kg_m }
+    }
+
     /// Rotor speed, rad/s.
     pub fn omega_rad_s(&self) -> f64 {
         self.omega_rad_s

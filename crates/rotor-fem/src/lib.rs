@@ -31,57 +31,40 @@
 //! # Ok::<(), rotor_fem::FemError>(())
 //! ```
 
-mod acceleration;
-mod assembly;
-mod distribution;
-mod eigen;
-mod element;
+mod beam;
 mod error;
-mod floquet;
-mod floquet_lag;
-mod linear_periodic;
-mod linear_response;
-mod mode_kind;
-mod mode_set;
 mod moderate;
 mod modes;
-mod newton_matrix;
-mod orbit_memory;
-mod oscillations;
 mod periodic;
-mod periodic_error;
-mod periodic_system;
-mod properties;
-mod renewal;
-mod root_support;
-mod shape;
-mod time_elements;
+mod stability;
 
-pub use acceleration::Anderson;
-pub use assembly::{BladeModel, SectionMotion};
-pub use distribution::Distribution;
+pub use beam::assembly::{BladeModel, SectionMotion};
+pub use beam::distribution::Distribution;
+pub use beam::mode_kind::ModeKind;
+pub use beam::properties::{BladeProperties, BladeSpec, Twist};
+pub use beam::root_support::{Joint, RootSupport};
 pub use error::FemError;
-pub use floquet::{Floquet, FloquetMode};
-pub use floquet_lag::{LagChannel, LagPlace};
-pub use linear_periodic::{LinearCoefficients, LinearPeriodic};
-pub use linear_response::LinearResponse;
-pub use mode_kind::ModeKind;
-pub use mode_set::{ModalBasis, ModeCount, ModeSet, UncoupledMode, modal_basis, uncoupled_modes};
 pub use moderate::{
     AxialMotion, FreeMotion, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape,
     ModalTangent, ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion,
     PitchMotion, RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, TorsionTerms,
     TwistAngle, Untwist, deflected_fan, deflected_modes,
 };
-pub use modes::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
-pub use orbit_memory::OrbitMemory;
-pub use oscillations::{Oscillation, oscillations};
-pub use periodic::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
-pub use periodic_error::PeriodicError;
-pub use periodic_system::{LocalTangent, PeriodicSystem};
-pub use properties::{BladeProperties, BladeSpec, Twist};
-pub use root_support::{Joint, RootSupport};
-pub use time_elements::{Orbit, OrbitSamples, TimeElements};
+pub use modes::coupled::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
+pub use modes::mode_set::{
+    ModalBasis, ModeCount, ModeSet, UncoupledMode, modal_basis, uncoupled_modes,
+};
+pub use periodic::acceleration::Anderson;
+pub use periodic::error::PeriodicError;
+pub use periodic::linear::{LinearCoefficients, LinearPeriodic};
+pub use periodic::linear_response::LinearResponse;
+pub use periodic::orbit_memory::OrbitMemory;
+pub use periodic::solver::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
+pub use periodic::system::{LocalTangent, PeriodicSystem};
+pub use periodic::time_elements::{Orbit, OrbitSamples, TimeElements};
+pub use stability::floquet::{Floquet, FloquetMode};
+pub use stability::floquet_lag::{LagChannel, LagPlace};
+pub use stability::oscillations::{Oscillation, oscillations};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -123,12 +123,11 @@ fn forces_known_beforehand_save_an_evaluation_and_change_nothing() {
     let mut force = DMatrix::zeros(DOF, solver.time().points().len());
     system.residual(&orbit.sample(solver.time()), &mut force).unwrap();
     let found = solver.linear_response(&system, &orbit, &loads, 1e-9).unwrap();
-    let known = (&orbit, &force);
-    let mut from = solver.linear_response_from(&system, known, &loads, 1e-9).unwrap();
+    let mut from = solver.linear_response_from(&system, &orbit, &force, &loads, 1e-9).unwrap();
     from.evaluations += 1;
     assert_eq!(found, from);
     let wrong = DMatrix::zeros(DOF, 3);
-    let refused = solver.linear_response_from(&system, (&orbit, &wrong), &loads, 1e-9);
+    let refused = solver.linear_response_from(&system, &orbit, &wrong, &loads, 1e-9);
     assert!(matches!(refused, Err(PeriodicError::Shape { .. })));
 }
 

@@ -5,7 +5,7 @@ mod blades;
 
 use std::f64::consts::FRAC_PI_2;
 
-use blades::{EPPS_CHANDRA_RPM, TM_4760_RPM, epps_chandra_strip, number, table, tm_4760_blade};
+use blades::{TM_4760_RPM, number, table, tm_4760_blade};
 use nalgebra::{DMatrix, DVector};
 use rotor_fem::{
     AxialMotion, BladeSpec, CoupledMode, FemError, GyroscopicTerms, ModalBlade, ModalMotion,
@@ -36,20 +36,6 @@ fn frequencies(spec: ModerateSpec, elements: usize, kind: ModeKind, count: usize
 
 fn table_1() -> BladeSpec {
     BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 1e6)
-}
-
-/// Turning in the plane takes 1 from the square of the same beam's flapping frequency.
-#[test]
-fn lag_and_flap_of_equal_stiffness_differ_by_one_in_the_square() {
-    let lag = frequencies(table_1().into(), 40, ModeKind::Lag, 4);
-    let stiff = BladeSpec { flap_stiffness: 0.0268.into(), ..table_1() };
-    let flap = frequencies(stiff.into(), 40, ModeKind::Flap, 4);
-    for (l, f) in lag.iter().zip(&flap) {
-        let gap = (l * l - (f * f - 1.0)).abs() / (l * l);
-        println!("L {l:.9}  F {f:.9}  {gap:.2e}");
-        assert!(gap < 1e-6);
-    }
-    assert!((lag[0] - 0.701_362_786).abs() < 2e-6);
 }
 
 #[test]
@@ -139,35 +125,6 @@ fn hinged_nonuniform_blade_meets_its_published_frequencies() {
             assert!(gap.abs() <= bound, "{name} at {} rpm: {gap} %", row[0]);
         }
     }
-}
-
-/// Measured frequencies of the rotating strip: the nominal beam is low by several per cent.
-#[test]
-fn measured_strip_is_stiffer_than_its_nominal_beam() {
-    let rows = table("epps_chandra_frequencies_hz.csv");
-    let blade = ModerateBlade::new(epps_chandra_strip()).unwrap();
-    let rpm = [0.0, 500.0, 750.0];
-    let count = ModeCount { flap: 3, lag: 0, torsion: 0, axial: 0 };
-    let speeds = rpm.map(|r| r / EPPS_CHANDRA_RPM);
-    let fan = deflected_fan(&blade, 20, &speeds, GyroscopicTerms::Included, count).unwrap();
-    let mut squares = Vec::new();
-    println!("mode  rpm   here  measured  gap %");
-    for row in rows.iter().filter(|row| row[1] == "0" && row[0].starts_with('B')) {
-        let mode: usize = row[0][1..].parse().unwrap();
-        for (k, point) in fan.iter().enumerate() {
-            let got = point.modes[mode - 1].frequency * EPPS_CHANDRA_RPM / 60.0;
-            let measured = number(row, 2 + k);
-            let gap = 100.0 * (got / measured - 1.0);
-            println!("{}  {:4} {got:7.2} {measured:7.1} {gap:7.1}", row[0], rpm[k]);
-            if mode > 1 {
-                squares.push(gap * gap);
-                assert!((-11.0..-3.0).contains(&gap), "{gap}");
-            }
-        }
-    }
-    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-    println!("rms of B2 and B3: {rms:.2} %");
-    assert!((rms - 6.4).abs() < 0.2);
 }
 
 /// A blade bent by a lift-like load, with every property that couples motions.

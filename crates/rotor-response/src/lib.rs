@@ -1,60 +1,34 @@
 //! Aeroelastic coupling: periodic blade response, force-summation blade loads, hub loads.
 
-mod air;
-mod blade;
-mod coupled_modes;
-mod dissimilar;
-mod divergence;
+mod answers;
 mod error;
-mod fine_azimuth;
-mod flap_inertia;
-mod flap_mass;
-mod flight_air;
-mod hinge;
-mod lag;
-mod lag_memory;
-mod linearised;
-mod load_station;
 mod loads;
 mod model;
-mod motion;
-mod nonlinear;
-mod power;
-mod revolution;
-mod rigid;
-mod root_reaction;
-mod rotor;
-mod section_lift;
-mod section_moments;
-mod settling;
-mod span;
-mod stability;
-mod stall_history;
-mod station_loads;
+mod response;
+mod sections;
 mod structure;
-mod system;
-mod wake_coupling;
 
-pub use blade::{Couplings, FlapMass, ResponseBlade, TrailingEdgeFlap};
-pub use coupled_modes::{CoupledBladeMode, HARDLY_DAMPED, RESONANCE_PER_REV};
-pub use dissimilar::{OtherBlade, dissimilar_hub_loads};
+pub use answers::coupled_modes::{CoupledBladeMode, HARDLY_DAMPED, RESONANCE_PER_REV};
+pub use answers::dissimilar::{OtherBlade, dissimilar_hub_loads};
+pub use answers::linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
+pub use answers::section_lift::SectionLift;
+pub use answers::stability::{BladeMotion, SectionLags, Stability};
+pub use answers::station_loads::{LoadHistory, StationLoads};
 pub use error::ResponseError;
-pub use flap_mass::with_flap_masses;
-pub use hinge::HingeMoment;
-pub use linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
-pub use loads::{SixLoads, hub_loads};
-pub use model::{
-    Compressibility, Controls, Discretisation, ReverseFlow, RotorModel, SectionOffsets,
+pub use loads::power::PowerBalance;
+pub use loads::wrenches::{SixLoads, hub_loads};
+pub use model::flap::{FlapMass, TrailingEdgeFlap};
+pub use model::flap_mass::with_flap_masses;
+pub use model::rotor_model::{
+    Compressibility, Controls, Couplings, Discretisation, Planform, ReverseFlow, RotorModel,
+    SectionOffsets,
 };
-pub use nonlinear::{DynamicStall, NonlinearSections};
-pub use power::PowerBalance;
-pub use rotor::{
-    Condition, ResponseResiduals, ResponseTolerances, Rotor, RotorSolution, RotorSolver,
-};
-pub use section_lift::SectionLift;
-pub use span::SpanGrid;
-pub use stability::{BladeMotion, SectionLags, Stability};
-pub use station_loads::{LoadHistory, StationLoads};
+pub use model::section_settings::{DynamicStall, NonlinearSections};
+pub use model::span::SpanGrid;
+pub use response::hinge::HingeMoment;
+pub use response::rotor::{Condition, Rotor};
+pub use response::solver::{ResponseResiduals, ResponseTolerances, RotorSolution, RotorSolver};
+pub use structure::blade::ResponseBlade;
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -5,10 +5,10 @@
 mod common;
 
 use common::{paper_blade, paper_model, paper_spec};
-use rotor_fem::{BladeProperties, BladeSpec, Joint, RootSupport, TorsionTerms};
+use rotor_fem::{BladeProperties, BladeSpec, Distribution, Joint, RootSupport, TorsionTerms};
 use rotor_response::{
-    Condition, Controls, Couplings, Discretisation, OtherBlade, ResponseTolerances, Rotor,
-    RotorModel, RotorSolution, RotorSolver, SectionOffsets, dissimilar_hub_loads,
+    Condition, Controls, Couplings, Discretisation, OtherBlade, Planform, ResponseTolerances,
+    Rotor, RotorModel, RotorSolution, RotorSolver, SectionOffsets, dissimilar_hub_loads,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::sync::Arc;
@@ -108,7 +108,7 @@ fn a_lag_hinge_turns_toward_the_torque_offset() {
     let (e, torque) = (0.06, 0.004);
     for (couplings, allowed) in [(Couplings::Linear, 1e-5), (Couplings::Full, 3e-3)] {
         for stiffness in [0.0, 0.02] {
-            let lag = if stiffness == 0.0 { Joint::FREE } else { spring(stiffness) };
+            let lag = if stiffness == 0.0 { Joint::Free } else { spring(stiffness) };
             let model = RotorModel {
                 lock_number: 1e-9,
                 modal_damping: 0.0,
@@ -299,4 +299,21 @@ fn unlike_blades_pass_every_harmonic() {
         }
     }
     assert!(paper_blade().spec() == &paper_spec());
+}
+
+/// A table that says everywhere what the reference chord says changes no bit.
+#[test]
+fn a_chord_table_of_the_reference_chord_is_no_change() {
+    let of = |chord: Option<Distribution>| {
+        let model = RotorModel { planform: Planform { chord }, ..RotorModel::paper_case() };
+        let rotor = Rotor::new(model, &paper_blade(), Discretisation::default()).unwrap();
+        let solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default());
+        solver.unwrap().solve(&common::condition(), &INFLOW, None).unwrap()
+    };
+    let chord = RotorModel::paper_case().chord;
+    let table = Distribution::PiecewiseLinear { stations: vec![0.0, 1.0], values: vec![chord; 2] };
+    let (with, without) = (of(Some(table)), of(None));
+    assert_eq!(with.hub, without.hub);
+    assert_eq!(with.hinge, without.hinge);
+    assert_eq!(with.thrust_coefficient.to_bits(), without.thrust_coefficient.to_bits());
 }

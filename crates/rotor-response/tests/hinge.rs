@@ -5,7 +5,6 @@ mod common;
 
 use approx::assert_relative_eq;
 use common::{paper_blade, paper_flaps, paper_model, paper_spec};
-use flap_aero::{FlapChord, TheodorsenFunctions};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Distribution};
 use rotor_response::{
@@ -74,24 +73,6 @@ fn inertial_hinge_moment_of_a_driven_flap_on_a_stiff_blade() {
         assert_relative_eq!(got.sine, stiffness * 0.02, max_relative = 2e-4);
         println!("{gyration_fraction:?}: {:e}", got.cosine / (stiffness * 0.01) - 1.0);
     }
-}
-
-/// Steady aerodynamic hinge moment of a deflected flap: `int (1/2) rho U^2 c^2 C_h,delta delta`, with
-/// Theodorsen's `C_h,delta = -(T18 + T12 T10) / (2 pi)`.
-#[test]
-fn steady_aerodynamic_hinge_moment_of_a_stiff_blade() {
-    let delta = 0.05;
-    let angle = HarmonicSeries { mean: delta, ..HarmonicSeries::zero(1) };
-    let (flap, moment) = outboard();
-    let model = RotorModel { flaps: paper_flaps(), ..paper_model(Couplings::Full) };
-    let pressure = 0.5 * model.density_chord() * CHORD;
-    let t = TheodorsenFunctions::new(FlapChord::new(flap.chord_fraction).unwrap().hinge());
-    let slope = -(t.t::<18>() + t.t::<12>() * t.t::<10>()) / std::f64::consts::TAU;
-    let expected = pressure * slope * delta * moment(2);
-    let got = solved(model, angle).hinge[1].aerodynamic.mean;
-    println!("{:e}", got / expected - 1.0);
-    assert_relative_eq!(got, expected, max_relative = 1e-7);
-    assert_relative_eq!(slope, -0.036_915, max_relative = 1e-4);
 }
 
 fn forward(angles: Vec<HarmonicSeries>) -> Condition {

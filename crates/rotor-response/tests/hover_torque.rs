@@ -23,8 +23,8 @@ use rotor_wake::{FlightState, LinearInflow};
 use std::sync::Arc;
 
 const CLAMPED: RootSupport = RootSupport::CLAMPED;
-const FLAPPING: RootSupport = RootSupport { flap: Joint::FREE, ..CLAMPED };
-const ARTICULATED: RootSupport = RootSupport { flap: Joint::FREE, lag: Joint::FREE, ..CLAMPED };
+const FLAPPING: RootSupport = RootSupport { flap: Joint::Free, ..CLAMPED };
+const ARTICULATED: RootSupport = RootSupport { flap: Joint::Free, lag: Joint::Free, ..CLAMPED };
 
 /// Collective and inflow of a blade loading of 0.07 and 0.10 of the blade without precone.
 const LOADINGS: [(f64, f64); 2] = [(0.147, 0.055), (0.19, 0.065)];

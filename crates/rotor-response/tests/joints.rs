@@ -63,7 +63,7 @@ fn supported(root: RootSupport, root_offset: f64) -> BladeSpec {
 fn a_free_flap_hinge_carries_no_moment() {
     for couplings in BOTH {
         for damping in [0.0, 0.005] {
-            let root = RootSupport { flap: Joint::FREE, ..RootSupport::CLAMPED };
+            let root = RootSupport { flap: Joint::Free, ..RootSupport::CLAMPED };
             let (_, found, at) = flown(couplings, supported(root, 0.0), (damping, [5, 4, 2]));
             let [hinge, middle] = [&at[0], &at[1]];
             let largest = size(parts(&middle.moments.harmonics[0]));

@@ -18,6 +18,7 @@ use rotor_wake::{
 const BLADES: usize = 4;
 
 /// The inflow of another solution, whatever the thrust.
+#[derive(Debug)]
 struct Frozen(InducedInflow);
 
 impl InflowModel for Frozen {

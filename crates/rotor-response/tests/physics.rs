@@ -3,15 +3,15 @@
 
 mod common;
 
-use common::{paper_blade, paper_flaps, paper_model, paper_spec};
+use common::{paper_blade, paper_flaps, paper_model};
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_fem::{BladeProperties, BladeSpec, Twist};
+use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
-    ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap, hub_loads,
+    ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
 };
-use rotor_wake::{FlightState, InducedInflow, LinearInflow};
+use rotor_wake::{FlightState, LinearInflow};
 use std::sync::Arc;
 
 fn controls_deg(theta0: f64, theta1c: f64, theta1s: f64) -> Controls {
@@ -42,75 +42,6 @@ fn solve(
     let mu = condition.flight.advance_ratio;
     let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
     solver.solve(condition, inflow, None).unwrap()
-}
-
-/// Content of the hub loads off 0, 4, 8 per rev over the 4/rev level.
-fn leak(hub: &rotor_response::SixLoads) -> f64 {
-    let level = hub.harmonic(4).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let off = [1, 2, 3, 5, 6, 7, 9, 10, 11]
-        .iter()
-        .flat_map(|&n| hub.harmonic(n))
-        .fold(0.0_f64, |m, v| m.max(v.abs()));
-    off / level
-}
-
-#[test]
-fn identical_blades_shake_the_hub_at_multiples_of_four_only() {
-    let condition = forward(controls_deg(8.0, 1.0, -4.5));
-    let model = || paper_model(Couplings::Full);
-    let d = Discretisation::default();
-    let inflow = LinearInflow::Prescribed { induced_inflow: 0.008 };
-    let equal = solve(model(), &paper_blade(), d, &condition, &inflow);
-    let blade = equal.root.clone();
-    let four = |last| [blade.clone(), blade.clone(), blade.clone(), last];
-    let alike = leak(&hub_loads(&four(blade.clone()), 12));
-    assert!(alike <= 1e-10, "{alike:e}");
-    assert!(leak(&equal.hub) <= 1e-10);
-    // one blade with 1 % more mass must break the symmetry
-    let heavy = BladeProperties::new(BladeSpec { mass: 1.01.into(), ..paper_spec() }).unwrap();
-    let other = solve(model(), &heavy, d, &condition, &inflow);
-    let unlike = leak(&hub_loads(&four(other.root), 12));
-    assert!(unlike > 1e-2, "{unlike:e}");
-}
-
-/// Blade-element momentum thrust of a rigid rotor in hover, uniform inflow:
-/// `C_T = (sigma a / 2) int_{x0}^1 (theta x^2 - lambda x) dx`, `lambda = sqrt(C_T / 2)`.
-fn hover_thrust(model: &RotorModel, theta0: f64, twist: f64) -> f64 {
-    let x0 = model.root_cutout;
-    let moment = |n: i32| (1.0 - x0.powi(n + 1)) / f64::from(n + 1);
-    let pitch = (theta0 - 0.75 * twist) * moment(2) + twist * moment(3);
-    let half = 0.5 * model.solidity() * std::f64::consts::TAU;
-    // C_T = half (pitch - sqrt(C_T/2) moment(1)): a quadratic in sqrt(C_T)
-    let (b, c) = (half * moment(1) / 2.0_f64.sqrt(), -half * pitch);
-    let root = 0.5 * (-b + (b * b - 4.0 * c).sqrt());
-    root * root
-}
-
-#[test]
-fn hover_thrust_of_a_stiff_blade() {
-    let twist = (-8.0_f64).to_radians();
-    let stiff = BladeProperties::new(BladeSpec {
-        twist: Twist::Linear { rate_rad: twist },
-        ..BladeSpec::uniform(10.8, 26.8, 6.15, 1000.0)
-    })
-    .unwrap();
-    for theta0 in [6.0_f64, 10.0] {
-        let condition = Condition {
-            bank_rad: 0.0,
-            flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
-            controls: controls_deg(theta0, 0.0, 0.0),
-            flap_angles_rad: vec![],
-        };
-        let model = paper_model(Couplings::Full);
-        let expected = hover_thrust(&model, theta0.to_radians(), twist);
-        let got =
-            solve(model, &stiff, Discretisation::default(), &condition, &LinearInflow::Uniform);
-        let ct = got.thrust_coefficient;
-        assert!((ct / expected - 1.0).abs() <= 5e-3, "C_T {ct} against {expected}");
-        // the inflow the rotor settled on is the momentum inflow of that thrust
-        let InducedInflow::Linear { mean, .. } = got.inflow else { panic!("uniform inflow") };
-        assert!((mean - (0.5 * ct).sqrt()).abs() <= 1e-9);
-    }
 }
 
 /// Thrust of a stiff coned blade in hover. The part of the rotation along the blade, `Omega sin bp`,

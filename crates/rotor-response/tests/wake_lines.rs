@@ -3,9 +3,13 @@
 
 mod common;
 
-use rotor_response::Controls;
+use rotor_fem::Distribution;
+use rotor_response::{
+    Controls, Discretisation, Planform, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+};
 use rotor_wake::{LinearInflow, WakeRotor};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 const AZIMUTHS: usize = 24;
 
@@ -48,5 +52,31 @@ fn the_wake_leaves_at_the_edge_of_the_pitched_section() {
     let raised = Controls { theta0_rad: controls.theta0_rad + 0.02, ..controls };
     for (a, b) in below(&raised).iter().flatten().zip(below(&controls).iter().flatten()) {
         assert!((a - b - 0.02).abs() < 1e-12, "{a} {b}");
+    }
+}
+
+/// The edge of a tapered blade is three quarters of its own chord away at every node.
+#[test]
+fn the_edge_of_a_tapered_blade_follows_its_chord() {
+    let table = Distribution::PiecewiseLinear {
+        stations: vec![0.0, 0.8, 1.0],
+        values: vec![0.055, 0.055, 0.03],
+    };
+    let model = RotorModel {
+        planform: Planform { chord: Some(table.clone()) },
+        ..RotorModel::paper_case()
+    };
+    let rotor = Rotor::new(model, &common::paper_blade(), Discretisation::default()).unwrap();
+    let solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default());
+    let (mut solver, condition) = (solver.unwrap(), common::condition());
+    let solution = solver.solve(&condition, &LinearInflow::Drees, None).unwrap();
+    let panels = WakeRotor::cosine(4, 0.2, 10).unwrap();
+    let lines = solver.blade_lines(&solution, &condition.controls, &panels, AZIMUTHS);
+    for i in 0..AZIMUTHS {
+        let ends = lines.at(i).iter().zip(lines.edge_at(i));
+        for ((line, edge), &r) in ends.zip(panels.nodes()) {
+            let distance = (0..3).map(|c| (edge[c] - line[c]).powi(2)).sum::<f64>().sqrt();
+            assert!((distance / (0.75 * table.value(r)) - 1.0).abs() < 1e-12, "{r}: {distance}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What every inflow model shares: its inputs, its answer and the trait.
 
 use crate::WakeError;
-use crate::wake::{CirculationMap, InflowMap, WakeRotor};
+use crate::{CirculationMap, InflowMap, WakeRotor};
 
 /// State of flight of the rotor's hub in still air, in the shaft frame.
 ///
@@ -169,7 +169,7 @@ impl InducedInflow {
 ///
 /// A model is a value without memory: the same question has the same answer. A caller that couples
 /// it with blade motion iterates on [`InducedInflow::parameters`].
-pub trait InflowModel: Send + Sync {
+pub trait InflowModel: std::fmt::Debug + Send + Sync {
     /// Short name, as case files spell it.
     fn name(&self) -> &'static str;
 

@@ -1,8 +1,14 @@
 //! Rotor inflow models behind one trait.
 //!
 //! Every model maps the state of flight and the loading of the rotor to the induced part of the
-//! inflow over the disk. What is here is linear over the disk: prescribed, uniform (Glauert's
-//! momentum theory) and Drees.
+//! inflow over the disk.
+//!
+//! | model | items |
+//! |---|---|
+//! | linear over the disk: prescribed, uniform (Glauert's momentum theory), Drees | [`LinearInflow`] |
+//! | mean and gradients from thrust and its first harmonics | [`PittPeters`] |
+//! | free wake: converged geometry, march in time, wake held still | [`FreeWake`], [`WakeMarch`], [`FrozenWake`] |
+//! | vortex kernel | [`SegmentSet`], [`induced_velocities`] |
 //!
 //! ```text
 //! lambda(psi, r) = mu tan(alpha_s) + lambda_i(psi, r),       positive down through the disk
@@ -26,21 +32,20 @@
 //! Velocities are divided by the tip speed `Omega R`, radial stations by `R`; azimuth is zero with
 //! the blade over the tail and grows with rotation, counter-clockwise seen from above.
 
-mod blade_element;
+mod disk;
 mod error;
 mod inflow;
 mod kernel;
 mod linear;
 mod momentum;
 mod pitt_peters;
-pub mod reference;
 mod vector;
 mod wake;
 
-pub use blade_element::{
-    AttachedPolar, BladeElementRotor, BladeElementSolution, CouplingSettings, RigidMotion,
-    SectionPolar, StillWake,
-};
+pub use disk::blades::BladeLines;
+pub use disk::circulation::CirculationMap;
+pub use disk::inflow_map::InflowMap;
+pub use disk::rotor::WakeRotor;
 pub use error::WakeError;
 pub use inflow::{FlightState, InducedInflow, InflowModel, RotorLoading};
 pub use kernel::{
@@ -54,10 +59,10 @@ pub use momentum::{
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
-    BladeLines, CirculationMap, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers,
-    FilamentStates, FreeWake, FreeWakeSettings, FrozenWake, InflowMap, LineInduction,
-    NearWakeMotion, ReleasePoint, SegmentState, ShedVorticity, StrainEffect, WakeConvergence,
-    WakeFilament, WakeMarch, WakeMethod, WakeRotor, WakeSymmetry, contraction_drift,
+    ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers, FilamentStates, FreeWake,
+    FreeWakeSettings, FrozenWake, LineInduction, NearWakeMotion, ReleasePoint, SegmentState,
+    ShedVorticity, WakeConvergence, WakeFilament, WakeMarch, WakeMethod, WakeSymmetry,
+    contraction_drift,
 };
 
 /// The example of the crate's README, run as a documentation test.

@@ -4,22 +4,23 @@
 //! Budgets: 20 s with Drees inflow, 120 s in the free wake.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use rotor_study::{Assumptions, sensitivities, sensitivity_lines};
 use sim_driver::SimError;
-use sim_driver::case::{CONTROLLERS_CASE, FreeWakeFile, InflowChoice, shipped_case};
+use sim_driver::case::{CONTROLLERS_CASE, FreeWakeValues, InflowChoice, shipped_case};
 use sim_driver::progress::Progress;
 use sim_driver::run::run_case;
-use sim_driver::study::{Assumptions, sensitivities};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 fn whole_study(inflow: InflowChoice) -> Result<f64, SimError> {
     let mut loaded = shipped_case(CONTROLLERS_CASE)?;
-    loaded.case.inflow = inflow;
-    loaded.file.inflow.model = inflow;
+    loaded.case.inflow.model = inflow;
     let outcome = run_case(&loaded, &Progress::hidden())?;
     let rotor = (&outcome.trimmed, &outcome.drives);
-    let rows = sensitivities(&loaded, rotor, Assumptions::WithoutWake, &|| ())?;
-    let controlled = outcome.result.control.iter().map(|line| line.reduction_percent);
+    let rows = sensitivities(&loaded.case, rotor, Assumptions::WithoutWake, &|| ())?;
+    let figures = outcome.figures();
+    let controlled = figures.control.iter().map(|line| line.reduction_percent);
+    let rows = sensitivity_lines(&rows, &outcome.setting);
     Ok(controlled.sum::<f64>() + rows.iter().flat_map(|row| &row.reduction_percent).sum::<f64>())
 }
 
@@ -29,7 +30,7 @@ fn whole_study(inflow: InflowChoice) -> Result<f64, SimError> {
     reason = "a bench reads the clock and reports"
 )]
 fn study(criterion: &mut Criterion) {
-    let free = InflowChoice::FreeWake(FreeWakeFile::default());
+    let free = InflowChoice::FreeWake(FreeWakeValues::default());
     for (name, inflow, budget_s) in
         [("study, Drees", InflowChoice::Drees, 20.0), ("study, free wake", free, 120.0)]
     {

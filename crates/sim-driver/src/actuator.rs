@@ -5,7 +5,7 @@ use crate::case::{ActuatorSource, LoadedCase};
 use crate::files::{BenchData, RonIndex, Source, read_bench};
 use crate::identification::{BenchIdentification, identify_bench};
 use crate::problem::{Fault, Place, Problem};
-use crate::stored_actuator::{StoredActuator, StoredFit, read_actuator};
+use crate::stored_actuator::{StoredActuator, StoredFit, actuator_warnings, read_actuator};
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -53,7 +53,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         inputs: vec![],
         warnings: vec![],
     };
-    match &values.source {
+    match &loaded.actuator_source() {
         ActuatorSource::Ideal => {}
         ActuatorSource::Bench(folder) => {
             let data = read_bench(folder)?;
@@ -61,7 +61,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
             let found = identify_bench(&data, &Settings::default())?;
             let stored = found.stored();
             let place = |_: &str| Place::file(format!("{}/dataset.ron", data.folder));
-            actuators.warnings.extend(stored.warnings(place));
+            actuators.warnings.extend(actuator_warnings(&stored, place));
             actuators.inputs.push(data.content_hash.clone());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;
@@ -73,7 +73,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
             let stored = read_actuator(&source)?;
             fits_case(loaded, &stored, &source)?;
             let index = RonIndex::new(&source.name, &source.text);
-            actuators.warnings.extend(stored.warnings(|field| index.place(field)));
+            actuators.warnings.extend(actuator_warnings(&stored, |field| index.place(field)));
             actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
             actuators.data_title = stored.title;
             actuators.fits = stored.runs;

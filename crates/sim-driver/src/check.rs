@@ -9,7 +9,7 @@ use crate::files::{
 use crate::identification::gain;
 use crate::output::Printable;
 use crate::problem::{Fault, Place, Problem, Problems};
-use crate::stored_actuator::{GainRule, read_actuator};
+use crate::stored_actuator::{GainRule, actuator_warnings, read_actuator};
 use preisach_dyn::identify::Settings;
 use serde::Serialize;
 use std::path::Path;
@@ -61,13 +61,16 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         Some(FileKind::Actuator) => {
             let stored = read_actuator(&source)?;
             let summary = format!("{}, {} runs", stored.title, stored.runs.len());
-            let warnings = stored.warnings(|field| index.place(field));
+            let warnings = actuator_warnings(&stored, |field| index.place(field));
             Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings })
         }
         Some(FileKind::Case) => {
             let loaded = read_case(&source, &Folder::of_file(path))?;
-            let mut warnings = check_actuator_source(&loaded)?;
-            let doubts = loaded.refuse_resonance().and_then(|()| loaded.doubts());
+            let mut warnings = loaded.warnings.clone();
+            warnings.extend(check_actuator_source(&loaded)?);
+            let doubts = rotor_study::refuse_resonance(&loaded.case)
+                .and_then(|()| loaded.case.plausibility_warnings());
+            let doubts = doubts.map_err(|error| loaded.located(error));
             let doubts = doubts.map_err(|error| {
                 let (place, message) = match error {
                     SimError::Response { place, source } => (place, source.to_string()),
@@ -76,7 +79,7 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
                 };
                 Problem::new(place, Fault::Refused { message })
             })?;
-            warnings.extend(doubts);
+            warnings.extend(loaded.in_words(doubts));
             let summary = loaded.case.title;
             Ok(CheckResult { file: name, kind: FileKind::Case, summary, warnings })
         }
@@ -116,7 +119,7 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
         let fault = Fault::MissingFile { file: file.to_owned(), folder };
         Problems::from(Problem::new(place, fault))
     };
-    match &loaded.case.actuator.source {
+    match &loaded.actuator_source() {
         ActuatorSource::Ideal => Ok(vec![]),
         ActuatorSource::Bench(folder) if !folder.contains(DATASET) => Err(missing(folder, DATASET)),
         ActuatorSource::Bench(folder) => Ok(bench_warnings(&read_bench(folder)?)),
@@ -128,7 +131,7 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
             let stored = read_actuator(&source)?;
             fits_case(loaded, &stored, &source)?;
             let index = RonIndex::new(&source.name, &source.text);
-            Ok(stored.warnings(|field| index.place(field)))
+            Ok(actuator_warnings(&stored, |field| index.place(field)))
         }
     }
 }

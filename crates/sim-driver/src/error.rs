@@ -1,12 +1,13 @@
 //! The errors of the driver and the exit code of each.
 
-use crate::problem::{Place, Problem, Problems};
-use crate::study::StudyError;
+use crate::problem::{Fault, Place, Problem, Problems};
 use flap_aero::AeroError;
+use measured_data::DataError;
 use model_gap::GapError;
 use preisach_dyn::PreisachError;
 use rotor_fem::FemError;
 use rotor_response::ResponseError;
+use rotor_study::{StudyError, soft_pitch_text};
 use std::path::PathBuf;
 use trim::TrimError;
 
@@ -124,9 +125,7 @@ pub enum SimError {
         doubts: Vec<String>,
     },
     /// The trim of a blade whose pitch link is so soft that it holds no pitch.
-    #[error(
-        "{place}: a pitch spring of {stiffness} leaves the blade a pitch frequency of about {frequency_per_rev:.1} per rev, too soft for the loads it holds: {source}. Remedy: a stiffer spring (a pitch link gives 3 per rev and more), or Locked"
-    )]
+    #[error("{place}: {}", soft_pitch_text(*.stiffness, *.frequency_per_rev, .source))]
     SoftPitch {
         /// The spring in the case.
         place: Place,
@@ -218,17 +217,22 @@ impl SimError {
         }
     }
 
-    /// Whether a start from a nearby flight may mend a trim: it lost its way, and nothing said that there is none.
-    pub(crate) fn is_lost(&self) -> bool {
-        let Self::Trim { source, .. } = self else { return false };
-        matches!(
-            source,
-            TrimError::OutOfReach { .. }
-                | TrimError::NoDescent { .. }
-                | TrimError::NotConverged { .. }
-                | TrimError::Singular { .. }
-                | TrimError::Response(_)
-        )
+    /// An error of a study at the place of its field.
+    pub fn of_study(error: StudyError, place: impl Fn(&str) -> Place) -> Self {
+        match error {
+            StudyError::Refused { field, message } => {
+                Problem::new(place(&field), Fault::Refused { message }).into()
+            }
+            StudyError::Blade { field, source } => Self::Blade { place: place(&field), source },
+            StudyError::Response { field, source } => {
+                Self::Response { place: place(&field), source }
+            }
+            StudyError::Trim { field, source } => Self::Trim { place: place(&field), source },
+            StudyError::SoftPitch { field, stiffness, frequency_per_rev, source } => {
+                Self::SoftPitch { place: place(&field), stiffness, frequency_per_rev, source }
+            }
+            source => Self::Study { place: place(source.field()), source },
+        }
     }
 
     /// Family of the error.
@@ -317,5 +321,23 @@ impl From<Problems> for SimError {
 impl From<Problem> for SimError {
     fn from(problem: Problem) -> Self {
         Self::Rejected(problem.into())
+    }
+}
+
+impl From<DataError> for SimError {
+    fn from(error: DataError) -> Self {
+        match error {
+            DataError::Rejected(problems) => Self::Rejected(problems),
+            DataError::WouldOverwrite { path } => Self::WouldOverwrite { path },
+            DataError::WouldOverwriteInput { path } => Self::WouldOverwriteInput { path },
+            DataError::NotWritten { path, reason } => Self::NotWritten { path, reason },
+        }
+    }
+}
+
+/// Where no file is at hand, the place is the field of the case.
+impl From<StudyError> for SimError {
+    fn from(error: StudyError) -> Self {
+        Self::of_study(error, |field| Place::file("case").field(field))
     }
 }

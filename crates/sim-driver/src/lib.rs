@@ -1,6 +1,6 @@
 //! Case files, data files, studies and the `hhc` command of rotor-hhc.
 //!
-//! Floor 4: the only crate that knows files and the terminal. What it hands down are validated
+//! Floor 6: case files with their lines, stored results and the terminal. What it hands down are validated
 //! values; what it gets back are plain results.
 //!
 //! | idea | module |
@@ -8,51 +8,39 @@
 //! | problems of user files, each with file, line, field and remedy | [`problem`] |
 //! | reading and atomic writing, RON, measured tables, shipped files | [`files`] |
 //! | data of the figures of an identification | [`figures`] |
-//! | measured data of other formats into data folders | [`import`] |
-//! | case files and the validated case | [`case`], its hand-over to the models in `models` |
+//! | what an import prints | [`import`] |
+//! | case files: the values of [`rotor_study::case`] with the lines they stand at | [`case`] |
 //! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
-//! | one physics alone | [`modes`], [`section`] |
-//! | a whole case | [`run`], stored by [`results`]; [`stability`] of its trimmed blade, its [`blade_loads`], blades unlike each other in [`dissimilar`]; over advance ratios in [`sweep`] |
+//! | one physics alone | [`section`]; modes and wake of [`rotor_study`] printed by [`print`](mod@print) |
+//! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |
 //! | the HTML report | [`report`] |
 //! | `hhc` | [`cli`] |
 
 pub mod actuator;
-pub mod blade_loads;
 pub mod case;
 pub mod check;
+mod choices;
 pub mod cli;
 pub mod curve_identification;
 pub mod diagnose;
-pub mod dissimilar;
-mod doubts;
 mod error;
 pub mod figures;
 pub mod files;
 pub mod identification;
 pub mod import;
-pub mod inflow;
-pub mod mean_loads;
-mod models;
-pub mod modes;
 pub mod output;
-pub mod problem;
+pub mod print;
 pub mod progress;
-pub mod raw;
-pub mod recompute;
-mod record_fault;
-mod refigure;
 pub mod report;
-mod resonance;
 pub mod results;
 pub mod run;
 pub mod section;
-pub mod stability;
 pub mod stored_actuator;
-pub mod study;
 pub mod sweep;
-pub mod wake;
+mod terminal;
 
 pub use error::{Family, SimError};
+pub use measured_data::problem;
 
 /// Version of the program, part of every result and its key.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

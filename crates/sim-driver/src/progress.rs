@@ -13,7 +13,13 @@ impl Progress {
     /// A bar of `steps` steps.
     pub fn new(steps: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
-        if let Ok(style) = ProgressStyle::with_template("{bar:24} {pos}/{len} {elapsed} {msg}") {
+        // one step has no share and no end that could be told
+        let template = if steps > 1 {
+            "{msg}  {bar:24} {percent} %  {elapsed} gone, about {eta} left"
+        } else {
+            "{msg}  {spinner} {elapsed}"
+        };
+        if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(200));

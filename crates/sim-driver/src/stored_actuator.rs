@@ -1,193 +1,54 @@
-//! Actuator files: an identified actuator with where it comes from and how well it fits.
+//! Actuator files: reading with places, writing, and what is unlikely about them.
 
 use crate::SimError;
 use crate::files::{RonFile, Source, read_ron, ron_text, write_atomic};
 use crate::problem::{Fault, Place, Problem, Problems};
-use preisach_dyn::identify::Settings;
-use preisach_dyn::{ActuatorLaw, ActuatorModel, Doubt, PreisachError, Weight};
-use serde::{Deserialize, Serialize};
+pub use actuator_gap::{FitUse, GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+use preisach_dyn::{ActuatorLaw, Doubt, PreisachError, Weight};
 use std::path::Path;
 
-/// The kind of an actuator file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum StoredKind {
-    /// An actuator.
-    Actuator,
-}
-
-/// An actuator file, as `hhc identify` writes it, or written by hand: then the kind, a title and the
-/// model are enough.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StoredActuator {
-    /// Kind of the file.
-    pub kind: StoredKind,
-    /// Title of the data it was identified from.
-    pub title: String,
-    /// Folder of the data.
-    #[serde(default)]
-    pub dataset: String,
-    /// blake3 of the data.
-    #[serde(default)]
-    pub data_hash: String,
-    /// Version of the program that wrote the file.
-    #[serde(default)]
-    pub program_version: String,
-    /// Input and output of a model that is no actuator, with their units: they stand where the model
-    /// says volt and deg. None for an actuator.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub channels: Option<StoredChannels>,
-    /// Where the flap angle per displacement comes from; none if the file was written by hand.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gain: Option<GainRule>,
-    /// How it was identified.
-    #[serde(default)]
-    pub settings: Settings,
-    /// How it fits.
-    #[serde(default)]
-    pub runs: Vec<StoredFit>,
-    /// The model.
-    pub model: ActuatorModel,
-}
-
-/// Input and output of a generic loop, names with units such as `displacement_in`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StoredChannels {
-    /// The input.
-    pub input: String,
-    /// The output.
-    pub output: String,
-}
-
-/// Where the flap angle per displacement of an identified actuator comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum GainRule {
-    /// `flap_deg_per_um` of the data set.
-    DataSet,
-    /// The widest slow loop was made +-10 deg, as the paper does.
-    WidestSlowLoop,
-    /// There was nothing to tell it: 1 deg/um.
-    Assumed,
-}
-
-impl GainRule {
-    /// The rule in words, for tables.
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::DataSet => "flap_deg_per_um of dataset.ron",
-            Self::WidestSlowLoop => "so that the widest slow loop is +-10 deg",
-            Self::Assumed => {
-                "ASSUMED: no slow loop to scale by; give flap_deg_per_um in dataset.ron"
-            }
-        }
-    }
-}
-
-/// How the model fits one run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StoredFit {
-    /// The run.
-    pub id: String,
-    /// Side of the split.
-    #[serde(rename = "use")]
-    pub use_as: FitUse,
-    /// Frequency of the strongest harmonic of the command, Hz.
-    pub frequency_hz: f64,
-    /// Half peak to peak of the command, V.
-    #[serde(rename = "amplitude_V")]
-    pub amplitude_volt: f64,
-    /// RMS error over the standard deviation of the measured output, percent.
-    pub nrmse_percent: f64,
-    /// RMS error with its mean removed over the range of the measured output, percent.
-    #[serde(default)]
-    pub range_percent: Option<f64>,
-    /// Mean error, measured less simulated, in the unit of the output.
-    #[serde(default)]
-    pub offset: Option<f64>,
-    /// Largest error before the run's window over the range of the measured output, percent; none
-    /// without a window that begins later than the record.
-    #[serde(default)]
-    pub start_up_percent: Option<f64>,
-    /// RMS error before the run's window, about the mean error inside, over the same range, percent.
-    #[serde(default)]
-    pub start_up_rms_percent: Option<f64>,
-    /// NRMSE of the static model alone, percent.
-    pub static_nrmse_percent: f64,
-    /// Amplitude error, percent; none for transients.
-    #[serde(default)]
-    pub amplitude_error_percent: Option<f64>,
-    /// Phase error, deg of harmonic phase, positive if the model lags too much; none for transients.
-    #[serde(default)]
-    pub phase_error_deg: Option<f64>,
-    /// Share of the output's energy that is neither explained nor noise, percent; none without
-    /// repeated cycles.
-    #[serde(default)]
-    pub structured_percent: Option<f64>,
-}
-
-/// Side of the split of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FitUse {
-    /// The model was fitted to it.
-    #[serde(rename = "trained", alias = "Trained")]
-    Trained,
-    /// The model has not seen it.
-    #[serde(rename = "held_out", alias = "HeldOut")]
-    HeldOut,
-}
-
-impl StoredActuator {
-    /// What is impossible or unlikely about the actuator; nothing is known of that of a generic loop.
-    pub fn doubts(&self) -> Vec<Doubt> {
-        if self.channels.is_some() { Vec::new() } else { self.model.doubts() }
-    }
-
-    /// The unlikely, each in a sentence at its place; `place` knows where a field such as
-    /// `model.calibration.deg_per_um` stands.
-    pub fn warnings(&self, place: impl Fn(&str) -> Place) -> Vec<String> {
-        let unlikely = self.doubts().into_iter().filter(|doubt| doubt.weight == Weight::Unlikely);
-        let mut warnings: Vec<(String, String)> =
-            unlikely.map(|doubt| (format!("model.{}", doubt.field), in_words(&doubt))).collect();
-        if self.gain == Some(GainRule::Assumed) {
-            let message = format!(
-                "{} deg/um was assumed, expected the gain of the linkage; flap angles, hinge moments and loads are off by its error: give flap_deg_per_um in dataset.ron and identify again",
-                self.model.calibration.deg_per_um
-            );
-            warnings.push(("model.calibration.deg_per_um".into(), message));
-        }
-        let said = |(field, message): (String, String)| {
-            Problem::new(place(&field).field(field), Fault::Doubtful { message }).to_string()
-        };
-        warnings.into_iter().map(said).collect()
-    }
-
-    /// Writes the file atomically.
-    ///
-    /// # Errors
-    /// [`SimError::NotWritten`].
-    pub fn write(&self, path: &Path) -> Result<(), SimError> {
-        let text = ron_text(self).map_err(|e| SimError::NotWritten {
-            path: path.to_path_buf(),
-            reason: e.to_string(),
-        })?;
-        let (what, units) = match &self.channels {
-            Some(channels) => (
-                format!("Model of {} to {}", channels.input, channels.output),
-                format!(
-                    "// Of its names, volt stands for the unit of {}, deg (and um) for that of {}.\n",
-                    channels.input, channels.output
-                ),
-            ),
-            None => ("Actuator".to_owned(), String::new()),
-        };
-        let comment = format!(
-            "// {what} identified by hhc {} from: {}\n{units}// Made of the data; `hhc identify` or `hhc diagnose` again rather than edit.\n",
-            self.program_version, self.title
+/// What is unlikely about an actuator, each in a sentence at its place; `place` knows where a field such as
+/// `model.calibration.deg_per_um` stands.
+pub fn actuator_warnings(stored: &StoredActuator, place: impl Fn(&str) -> Place) -> Vec<String> {
+    let unlikely = stored.doubts().into_iter().filter(|doubt| doubt.weight == Weight::Unlikely);
+    let mut warnings: Vec<(String, String)> =
+        unlikely.map(|doubt| (format!("model.{}", doubt.field), in_words(&doubt))).collect();
+    if stored.gain == Some(GainRule::Assumed) {
+        let message = format!(
+            "{} deg/um was assumed, expected the gain of the linkage; flap angles, hinge moments and loads are off by its error: give flap_deg_per_um in dataset.ron and identify again",
+            stored.model.calibration.deg_per_um
         );
-        write_atomic(path, text.replacen('\n', &format!("\n{comment}"), 1).as_bytes())
+        warnings.push(("model.calibration.deg_per_um".into(), message));
     }
+    let said = |(field, message): (String, String)| {
+        Problem::new(place(&field).field(field), Fault::Doubtful { message }).to_string()
+    };
+    warnings.into_iter().map(said).collect()
+}
+
+/// Writes an actuator file atomically.
+///
+/// # Errors
+/// [`SimError::NotWritten`].
+pub fn write_actuator(stored: &StoredActuator, path: &Path) -> Result<(), SimError> {
+    let text = ron_text(stored)
+        .map_err(|e| SimError::NotWritten { path: path.to_path_buf(), reason: e.to_string() })?;
+    let (what, units) = match &stored.channels {
+        Some(channels) => (
+            format!("Model of {} to {}", channels.input, channels.output),
+            format!(
+                "// Of its names, volt stands for the unit of {}, deg (and um) for that of {}.\n",
+                channels.input, channels.output
+            ),
+        ),
+        None => ("Actuator".to_owned(), String::new()),
+    };
+    let comment = format!(
+        "// {what} identified by hhc {} from: {}\n{units}// Made of the data; `hhc identify` or `hhc diagnose` again rather than edit.\n",
+        stored.program_version, stored.title
+    );
+    let text = text.replacen('\n', &format!("\n{comment}"), 1);
+    Ok(write_atomic(path, text.as_bytes())?)
 }
 
 const CALIBRATION_REMEDY: &str = "give the flap angle per displacement of the actuator, deg/um";
@@ -307,7 +168,7 @@ mod tests {
     #[test]
     fn the_impossible_is_a_problem_and_the_unlikely_a_warning() {
         assert_eq!(
-            read_actuator(&source(BY_HAND)).unwrap().warnings(|_| Place::default()),
+            actuator_warnings(&read_actuator(&source(BY_HAND)).unwrap(), |_| Place::default()),
             Vec::<String>::new()
         );
         let with = |good: &str, bad: &str| {
@@ -319,7 +180,7 @@ mod tests {
         let problems = with(load, &format!("{load}, {load}")).unwrap_err();
         assert!(format!("{problems:?}").contains("2 LoadStiffness stages"), "{problems:?}");
         let stored = with("v_min_volt: -20, v_max_volt: 150", "v_min_volt: -200, v_max_volt: 500");
-        let warnings = stored.unwrap().warnings(|_| Place::file("actuator.ron"));
+        let warnings = actuator_warnings(&stored.unwrap(), |_| Place::file("actuator.ron"));
         assert!(warnings.len() == 1 && warnings[0].contains("model.amplifier[2]"), "{warnings:?}");
     }
 
@@ -329,7 +190,7 @@ mod tests {
         let from = source(&text);
         let index = RonIndex::new(&from.name, &from.text);
         let stored = read_actuator(&from).unwrap();
-        let warnings = stored.warnings(|field| index.place(field));
+        let warnings = actuator_warnings(&stored, |field| index.place(field));
         assert_eq!(warnings.len(), 1, "{warnings:?}");
         let (place, rest) = warnings[0].split_once(": model.calibration.deg_per_um: ").unwrap();
         let line = text.lines().position(|line| line.contains("deg_per_um")).unwrap() + 1;

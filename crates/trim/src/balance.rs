@@ -36,23 +36,6 @@ pub enum TrimTarget {
 /// Shaft tilt and bank beyond which level flight is not meant, rad.
 pub(crate) const ATTITUDE_LIMIT: f64 = 0.8;
 
-/// Largest force (moment) left over the weight (weight times R) by another response at the controls
-/// and attitude of a trim: with the flaps at work the trim is not what it was. Zero for prescribed
-/// controls, which ask for no balance.
-///
-/// # Errors
-/// [`TrimError::Parameter`] for a bad target.
-pub fn imbalance(
-    solver: &RotorSolver,
-    target: &TrimTarget,
-    trimmed: &crate::TrimSolution,
-    response: &RotorSolution,
-) -> Result<f64, TrimError> {
-    let problem = Balance::new(solver, trimmed.flight.advance_ratio, target)?;
-    let residual = problem.residual(response, &trimmed.attitude);
-    Ok(if residual.is_empty() { 0.0 } else { residual.amax() })
-}
-
 /// Trim equations of a rotor at one advance ratio.
 #[derive(Debug, Clone)]
 pub(crate) struct Balance {

@@ -35,7 +35,8 @@ pub(crate) fn wrong(source: WakeError) -> TrimError {
 /// blades.
 pub(crate) fn on_the_grid(
     solver: &RotorSolver,
-    (response, controls): (&RotorSolution, &Controls),
+    response: &RotorSolution,
+    controls: &Controls,
     panels: &WakeRotor,
     settings: &FreeWakeSettings,
 ) -> Result<(BladeLines, CirculationMap), ResponseError> {
@@ -108,7 +109,7 @@ impl Coupling<'_> {
     ) -> Result<State, TrimError> {
         let settings = self.settings.wake.with_azimuths(azimuths);
         let (lines, circulation) =
-            on_the_grid(&self.solver, (&start.rotor, &start.controls), panels, &settings)?;
+            on_the_grid(&self.solver, &start.rotor, &start.controls, panels, &settings)?;
         let wake = match before {
             Some(wake) => wake.on_grid(azimuths, lines),
             None => FreeWake::undistorted(
@@ -201,9 +202,14 @@ impl Coupling<'_> {
     fn update(&mut self, now: &State, halvings: u32) -> Result<State, Failure> {
         let part = 0.5_f64.powf(f64::from(halvings));
         let panels = now.wake.rotor();
-        let trimmed = (&now.trim.rotor, &now.trim.controls);
-        let (lines, circulation) = on_the_grid(&self.solver, trimmed, panels, now.wake.settings())
-            .map_err(TrimError::from)?;
+        let (lines, circulation) = on_the_grid(
+            &self.solver,
+            &now.trim.rotor,
+            &now.trim.controls,
+            panels,
+            now.wake.settings(),
+        )
+        .map_err(TrimError::from)?;
         let share = MIXED * f64::max(part, 0.4);
         let circulation = circulation.mixed(&now.moving, share)?;
         let mean = momentum_inflow(&now.trim.flight, now.trim.rotor.thrust_coefficient)?;

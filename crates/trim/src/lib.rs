@@ -7,13 +7,15 @@ mod solve;
 mod vehicle;
 mod wake;
 mod wake_response;
+mod wake_settings;
 
-pub use balance::{TrimTarget, imbalance};
+pub use balance::TrimTarget;
 pub use error::TrimError;
-pub use solve::{TrimSettings, TrimSolution, mean_lift_coefficient, trim};
+pub use solve::{TrimSettings, TrimSolution, imbalance, mean_lift_coefficient, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
-pub use wake::{WakeOutcome, WakeTrim, WakeTrimSettings, WakeUpdate, trim_in_free_wake};
+pub use wake::{WakeTrim, trim_in_free_wake};
 pub use wake_response::{WakeDifference, WakeDifferenceSettings, wake_difference};
+pub use wake_settings::{WakeOutcome, WakeTrimSettings, WakeUpdate};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

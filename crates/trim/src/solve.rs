@@ -373,7 +373,7 @@ impl Problem<'_> {
             if stalls && progress.stands_still() {
                 return Err(no_descent(progress));
             }
-            let found = self.descend(solver, (&x, &(step * part)), &current, progress)?;
+            let found = self.descend(solver, &x, &(step * part), &current, progress)?;
             let Some((step, new)) = found else {
                 if !fresh {
                     continue;
@@ -404,7 +404,8 @@ impl Problem<'_> {
     fn descend(
         &self,
         solver: &mut RotorSolver,
-        (x, step): (&DVector<f64>, &DVector<f64>),
+        x: &DVector<f64>,
+        step: &DVector<f64>,
         current: &(RotorSolution, DVector<f64>),
         progress: &mut Progress,
     ) -> Result<Option<Descent>, TrimError> {
@@ -476,4 +477,21 @@ impl Problem<'_> {
             jacobian,
         }
     }
+}
+
+/// Largest force (moment) left over the weight (weight times R) by another response at the controls
+/// and attitude of a trim: with the flaps at work the trim is not what it was. Zero for prescribed
+/// controls, which ask for no balance.
+///
+/// # Errors
+/// [`TrimError::Parameter`] for a bad target.
+pub fn imbalance(
+    solver: &RotorSolver,
+    target: &TrimTarget,
+    trimmed: &TrimSolution,
+    response: &RotorSolution,
+) -> Result<f64, TrimError> {
+    let problem = Balance::new(solver, trimmed.flight.advance_ratio, target)?;
+    let residual = problem.residual(response, &trimmed.attitude);
+    Ok(if residual.is_empty() { 0.0 } else { residual.amax() })
 }

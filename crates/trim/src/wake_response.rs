@@ -1,7 +1,8 @@
 //! What moving flaps do to the hub once the free wake has changed its shape as well.
 
 use crate::coupling::{MIXED, on_the_grid};
-use crate::wake::{WakeTrim, WakeTrimSettings};
+use crate::wake::WakeTrim;
+use crate::wake_settings::WakeTrimSettings;
 use rotor_response::{Condition, ResponseError, RotorSolution, RotorSolver};
 use rotor_wake::{CirculationMap, FreeWake, FrozenWake, momentum_inflow};
 
@@ -67,8 +68,13 @@ impl<'a> WakeResponse<'a> {
         settings: &WakeTrimSettings,
     ) -> Result<(), ResponseError> {
         let panels = self.wake.rotor().clone();
-        let flown = (&self.rotor, &self.condition.controls);
-        let (lines, circulation) = on_the_grid(solver, flown, &panels, self.wake.settings())?;
+        let (lines, circulation) = on_the_grid(
+            solver,
+            &self.rotor,
+            &self.condition.controls,
+            &panels,
+            self.wake.settings(),
+        )?;
         let circulation = circulation.mixed(&self.moving, MIXED)?;
         let flight = self.condition.flight;
         let mean = momentum_inflow(&flight, self.rotor.thrust_coefficient)?;

@@ -3,9 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests read reference tables")]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sim_driver::case::{
-    CouplingsChoice, LoadedCase, TwistAngleChoice, UntwistChoice, shipped_case,
-};
+use sim_driver::case::{CouplingsChoice, LoadedCase, TwistAngle, Untwist, shipped_case};
 use sim_driver::progress::Progress;
 use sim_driver::run::run_case;
 
@@ -62,14 +60,14 @@ fn s1_from_its_case_file() {
 #[test]
 fn the_bounds_see_a_missing_effect() {
     let mut full = shipped_case("crosscheck_s1.ron").unwrap();
-    full.case.blade.couplings = CouplingsChoice::Full;
+    full.case.structure.couplings = CouplingsChoice::Full;
     let outcome = run_case(&full, &Progress::hidden()).unwrap();
     let (found, expected) = (outcome.trimmed.trim().rotor.hub.harmonic(4), reference("hub_Z4"));
     let worst = found.iter().zip(&expected).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
     assert!(worst > 0.1 * norm(&expected), "{worst:e}");
 
     let mut smooth = shipped_case("crosscheck_s1.ron").unwrap();
-    smooth.case.section.drag_coefficient = 0.0;
+    smooth.case.aerodynamics.drag_coefficient = 0.0;
     let outcome = run_case(&smooth, &Progress::hidden()).unwrap();
     let (found, expected) = (outcome.trimmed.trim().rotor.hub.mean(), reference("hub_mean"));
     let error = (found[5] - expected[5]).abs() / norm(&expected[3..6]);
@@ -97,9 +95,9 @@ fn s2_from_its_case_file() {
     let [all, vertical] = s2_distance(&as_shipped);
     assert!(all <= 0.05 && vertical <= 0.15, "{all} {vertical}");
     let mut turning = as_shipped.clone();
-    turning.case.blade.twist_angle = TwistAngleChoice::Rotation;
+    turning.case.structure.twist_angle = TwistAngle::Rotation;
     let [with_turning, _] = s2_distance(&turning);
-    turning.case.blade.untwist = UntwistChoice::Included;
+    turning.case.structure.untwist = Untwist::Included;
     let [whole, whole_vertical] = s2_distance(&turning);
     assert!((0.025..0.04).contains(&with_turning), "{with_turning}");
     assert!((0.09..0.12).contains(&whole) && whole_vertical > 0.2, "{whole} {whole_vertical}");

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use sim_driver::diagnose::{Findings, Question, Records, diagnose};
+use sim_driver::diagnose::{Findings, FolderStore, Question, Records, diagnose};
 use sim_driver::files::{Folder, RunRole, read_bench};
 use truth::hidden::{EXPERIMENTS, File, Hidden, Request, Size, measured_set, reference_files};
 
@@ -102,7 +102,8 @@ fn asked(request: &Request, cache: &Path) -> serde_json::Value {
     };
     let reference = records(&reference_files(base, 40.0, Size::Small).unwrap()).runs;
     let measured = records(&measured_set(request).unwrap().files);
-    let question = Question { reference, cache: Some(cache), ..Question::default() };
+    let store = FolderStore(cache);
+    let question = Question { reference, cache: Some(&store), ..Question::default() };
     let found = diagnose(&measured, &question).unwrap();
     serde_json::to_value(Findings::from(&found)).unwrap()
 }

@@ -5,8 +5,9 @@
 use std::path::Path;
 
 use sim_driver::case::{PAPER_CASE, shipped_case};
-use sim_driver::diagnose::{Ladder, Records, climb};
+use sim_driver::diagnose::{Ladder, Records, Story, climb};
 use sim_driver::files::{Folder, read_bench};
+use sim_driver::output::{Printable, SCREEN};
 use truth::hidden::{File, Hidden, Request, Size, measured_set, reference_files};
 
 fn records(files: &[File], folder: &Path) -> Records {
@@ -34,7 +35,14 @@ fn ladder(hidden: &str, experiment: Option<&str>, cache: &Path) -> Ladder {
     let measured = measured_set(&request).unwrap();
     let measured = records(&measured.files, &folder.path().join("measured"));
     let loaded = shipped_case(PAPER_CASE).unwrap();
-    climb(&measured, &reference, &loaded, Some(cache)).unwrap().0
+    let (ladder, found) = climb(&measured, &reference, &loaded, Some(cache)).unwrap();
+    // what `hhc diagnose` prints fits a screen, the verdict first
+    let text = Story::of(&found).text();
+    let [width, height] = SCREEN;
+    assert!(text.lines().count() <= height, "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
+    assert!(text.starts_with("Missing"), "{text}");
+    ladder
 }
 
 #[test]

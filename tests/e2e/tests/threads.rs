@@ -1,9 +1,9 @@
 //! Results are the same bits on one thread and on two.
 
 use sim_driver::case::{LoadedCase, read_case};
-use sim_driver::files::{Folder, Source};
+use sim_driver::files::{Source, shipped};
 use sim_driver::progress::Progress;
-use sim_driver::results::RunResult;
+use sim_driver::results::Figures;
 use sim_driver::run::run_case;
 
 /// A small rotor with the identified actuator: identification, trim, T matrix and control all take part.
@@ -18,10 +18,10 @@ const CASE: &str = "(
 )
 ";
 
-fn run_on(loaded: &LoadedCase, threads: usize) -> RunResult {
+fn run_on(loaded: &LoadedCase, threads: usize) -> Figures {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     match pool.map(|pool| pool.install(|| run_case(loaded, &Progress::hidden()))) {
-        Ok(Ok(outcome)) => outcome.result,
+        Ok(Ok(outcome)) => outcome.figures(),
         Ok(Err(error)) => panic!("{error}"),
         Err(error) => panic!("{error}"),
     }
@@ -30,7 +30,7 @@ fn run_on(loaded: &LoadedCase, threads: usize) -> RunResult {
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
     let source = Source { name: "threads.ron".into(), text: CASE.into() };
-    let loaded = read_case(&source, &Folder::Shipped("fixtures/cases".into())).unwrap();
+    let loaded = read_case(&source, &shipped("fixtures/cases")).unwrap();
     let one = run_on(&loaded, 1);
     assert!(one.control.iter().all(|line| line.reduction_percent > 1.0), "{one:?}");
     let two = run_on(&loaded, 2);

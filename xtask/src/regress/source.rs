@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use preisach_dyn::ActuatorModel;
+use rotor_study::{Drives, StudyError, TrimmedRotor, control_set};
 use sim_driver::SimError;
 use sim_driver::actuator::case_actuators;
 use sim_driver::case::{
-    ControlActuator, ControllerChoice, EffortChoice, FreeWakeFile, InflowChoice, LoadedCase,
+    ControlActuator, ControllerChoice, EffortChoice, FreeWakeValues, InflowChoice, LoadedCase,
     PAPER_CASE, shipped_case,
 };
-use sim_driver::study::{Drives, StudyError, TrimmedRotor, control_set};
 
 use super::sweep::{SweepInflow, SweepPoint, SweepResult, TrimChannels};
 
@@ -61,9 +61,9 @@ impl Program {
         let harmonics = [point.harmonic_per_rev as usize];
         let mut loaded = self.paper.clone();
         loaded.case.advance_ratio = point.advance_ratio;
-        loaded.case.inflow = match point.inflow {
+        loaded.case.inflow.model = match point.inflow {
             SweepInflow::Drees => InflowChoice::Drees,
-            SweepInflow::FreeWake => InflowChoice::FreeWake(FreeWakeFile::default()),
+            SweepInflow::FreeWake => InflowChoice::FreeWake(FreeWakeValues::default()),
         };
         loaded.case.control.harmonics = vec![harmonics.to_vec()];
         loaded.case.control.actuators = vec![ControlActuator::Hysteretic];
@@ -71,7 +71,7 @@ impl Program {
         loaded.case.control.controller = ControllerChoice::Global;
         loaded.case.control.effort = EffortChoice::MeetStroke;
         let case = &loaded.case;
-        let rotor = TrimmedRotor::new(&loaded, None)?;
+        let rotor = TrimmedRotor::new(case, None)?;
         let drives = Drives::new(case, self.actuator.clone())?;
         let studies = control_set(case, &rotor, &drives, &harmonics, &|| ())?;
         let study = studies.first().ok_or(SweepError::NoControl { point })?;
@@ -86,8 +86,8 @@ impl Program {
                 phi_s_deg: trim.attitude.roll_rad.to_degrees(),
                 inflow: trim.flight.normal_inflow() + trim.rotor.inflow.mean(),
             },
-            baseline_loads: trim.rotor.hub.harmonic(case.blades),
-            controlled_loads: study.state.rotor.hub.harmonic(case.blades),
+            baseline_loads: trim.rotor.hub.harmonic(case.rotor.blades),
+            controlled_loads: study.state.rotor.hub.harmonic(case.rotor.blades),
             j_before: study.j_before,
             j_after: study.j_after,
             t_matrix_norm_per_volt: study.t_norm(),

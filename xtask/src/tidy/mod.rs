@@ -54,8 +54,7 @@ impl fmt::Display for Finding {
 /// |---|---|
 /// | `tree` | the texts |
 /// | `members` | the workspace, for the floors that ARCHITECTURE.md states |
-/// | `known_ids` | ids of all validation checks, in the order of the page |
-pub fn check(tree: &Tree, members: &[Member], known_ids: &[&str]) -> Vec<Finding> {
+pub fn check(tree: &Tree, members: &[Member]) -> Vec<Finding> {
     let mut findings = rust(tree);
     findings.extend(manifests(tree));
     findings.extend(required(tree));
@@ -63,7 +62,7 @@ pub fn check(tree: &Tree, members: &[Member], known_ids: &[&str]) -> Vec<Finding
     findings.extend(links(tree));
     findings.extend(summary(tree));
     findings.extend(floors_of_the_code_map(tree, members));
-    findings.extend(validation_ids(tree, known_ids));
+    findings.extend(validation_ids(tree, &validation::ids().collect::<Vec<_>>()));
     findings.sort();
     findings.dedup();
     findings

@@ -21,6 +21,9 @@ const FORBIDDEN: [(&str, &str); 5] = [
 /// Parts of the standard library that pure functions of values have no use for.
 const OUTSIDE_WORLD: [&str; 5] = ["std::fs", "std::env", "std::net", "std::process", "std::time"];
 
+/// The crates of the product that know files.
+const KNOW_FILES: [&str; 2] = ["measured-data", "sim-driver"];
+
 /// Folders that exist on one machine only.
 const MACHINE_FOLDERS: [&str; 4] =
     [concat!("/ho", "me/"), concat!("/t", "mp/"), concat!("/ro", "ot/"), concat!("/wo", "rk/")];
@@ -31,7 +34,7 @@ const MACHINE_FOLDERS: [&str; 4] =
 /// - it has at most [`LINE_LIMIT`] lines, or a line with a reason in [`LONG_FILES`];
 /// - tests do not expect panics without naming the message, nor are they ignored without reason;
 /// - no word marks work left undone, no path belongs to one machine;
-/// - below `sim-driver` no crate knows files, environment, clock, processes or network.
+/// - no crate but `KNOW_FILES` knows files, environment, clock, processes or network.
 pub fn rust(tree: &Tree) -> Vec<Finding> {
     let mut findings: Vec<Finding> = tree.ending_in(".rs").flat_map(source).collect();
     findings.extend(stale_exceptions(tree, LONG_FILES));
@@ -53,7 +56,7 @@ fn source(file: &TextFile) -> Vec<Finding> {
             format!("has {lines} lines, at most {LINE_LIMIT} expected: split it by idea"),
         ));
     }
-    let pure = file.shipped_by().is_some_and(|name| name != "sim-driver");
+    let pure = file.shipped_by().is_some_and(|name| !KNOW_FILES.contains(&name));
     for (index, line) in file.text.lines().enumerate() {
         let mut fault = |fault: String| findings.push(Finding::at_line(path, index + 1, fault));
         let code = line.trim_start();
@@ -72,7 +75,7 @@ fn source(file: &TextFile) -> Vec<Finding> {
         for module in
             OUTSIDE_WORLD.iter().filter(|module| pure && !commented && line.contains(**module))
         {
-            fault(format!("`{module}` below sim-driver: hand the function values instead"));
+            fault(format!("`{module}` in a crate without files: hand the function values instead"));
         }
     }
     findings

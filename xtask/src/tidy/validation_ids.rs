@@ -1,37 +1,56 @@
 //! Ids of validation checks: unique, on the page, and nowhere without a check behind them.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use super::{Finding, Tree};
 
 /// The page that `cargo xtask validate` writes.
 const PAGE: &str = "docs/src/validation.md";
 
+/// The member that lists the ids.
+const LIST: &str = "tests/validation";
+
 /// Rules for ids of validation checks, `V-AREA-NN`:
 ///
-/// - no two checks share one;
-/// - the page has exactly one row for each check, and no row without a check;
-/// - an id mentioned anywhere in a source or page belongs to a check.
+/// - no two rows share one;
+/// - exactly one test states the row of an id;
+/// - the page has a row for each id, and no row without;
+/// - an id mentioned anywhere in a source or page is one of a row.
 ///
-/// `known` are the ids of all checks.
+/// `known` are the ids of all rows.
 pub fn validation_ids(tree: &Tree, known: &[&str]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut count: BTreeMap<&str, usize> = BTreeMap::new();
     for id in known {
         *count.entry(id).or_default() += 1;
         if ids_in(id) != [*id] {
-            findings.push(Finding::of_file("xtask", format!("check id `{id}` is not V-AREA-NN")));
+            findings.push(Finding::of_file(LIST, format!("id `{id}` is not V-AREA-NN")));
         }
     }
     for (id, _) in count.iter().filter(|(_, n)| **n > 1) {
-        findings.push(Finding::of_file("xtask", format!("two checks share the id {id}")));
+        findings.push(Finding::of_file(LIST, format!("two rows share the id {id}")));
     }
     for file in &tree.texts {
         for (index, line) in file.text.lines().enumerate() {
             for id in ids_in(line).into_iter().filter(|id| !count.contains_key(*id)) {
-                let fault = format!("{id} is the id of no validation check");
+                let fault = format!("{id} is the id of no validation row");
                 findings.push(Finding::at_line(&file.path, index + 1, fault));
             }
+        }
+    }
+    for id in count.keys() {
+        let quoted = format!("\"{id}\"");
+        let tests = tree.texts.iter().filter(|file| {
+            Path::new(&file.path).extension().is_some_and(|kind| kind == "rs")
+                && !file.path.starts_with(LIST)
+                && file.text.contains(&quoted)
+        });
+        let tests: Vec<&str> = tests.map(|file| file.path.as_str()).collect();
+        if tests.len() != 1 {
+            let fault =
+                format!("the row {id} is stated by {} tests: {}", tests.len(), tests.join(", "));
+            findings.push(Finding::of_file(LIST, fault));
         }
     }
     if let Some(page) = tree.text(PAGE) {

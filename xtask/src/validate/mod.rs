@@ -1,111 +1,106 @@
 //! The validation of the whole: every check against theory and published data, one page in the book.
 //!
-//! Each crate's checks stand in one module here, beside the references they are measured against in
-//! `fixtures/reference`. A check is more than a test: it prints how far the bound is.
+//! The checks are tests of the crates they check, named `validation`; each leaves a row in a folder
+//! ([`validation::ROWS_FOLDER`]). Here the tests are run, the rows collected, and the page made of them.
 
-mod check;
-mod error;
 mod page;
-mod reference;
 
-mod actuator;
-mod actuator_data;
-mod actuator_stages;
-mod blade;
-mod blade_loads;
-mod control;
-mod discovery;
-mod hinge;
-mod hover_torque;
-mod inflow;
-mod joints;
-mod moderate;
-mod moderate_blades;
-mod rotor;
-mod rotor_details;
-mod section;
-mod section_beyond;
-mod section_compressible;
-mod study;
-mod study_work;
-mod time_elements;
-mod trim_reference;
-mod trimmed;
-mod wake;
-mod wake_flight;
-mod wake_hover;
-mod wake_measured;
-mod wake_trim;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
-pub use check::{Area, Check, Criterion, Repeatability, Row};
-pub use error::CheckError;
+use validation::{AREAS, FILTER, ROWS_FOLDER, Row, heading_of, ids};
+
+use crate::{XtaskError, files};
+
 pub use page::{render, stale_lines};
 
-use crate::XtaskError;
+/// Where the rows of a run are put, from the root.
+pub const ROWS: &str = "target/validation";
 
-/// All areas, in the order of the page.
-pub const AREAS: &[Area] = &[
-    blade::AREA,
-    moderate::AREA,
-    time_elements::AREA,
-    section::AREA,
-    section_compressible::AREA,
-    section_beyond::AREA,
-    inflow::AREA,
-    wake::AREA,
-    wake_hover::AREA,
-    wake_flight::AREA,
-    wake_measured::AREA,
-    wake_trim::AREA,
-    rotor::AREA,
-    rotor_details::AREA,
-    blade_loads::AREA,
-    joints::AREA,
-    hover_torque::AREA,
-    trimmed::AREA,
-    actuator::AREA,
-    actuator_stages::AREA,
-    actuator_data::AREA,
-    control::AREA,
-    discovery::AREA,
-    study::AREA,
-];
-
-/// Ids of all checks, in the order of the page.
-pub fn ids() -> Vec<&'static str> {
-    AREAS.iter().flat_map(|area| area.checks).map(|check| check.id).collect()
-}
-
-/// Does all checks whose id or area contains `filter` (all, if it is empty), one after the other: what
-/// can run in parallel is inside of them.
+/// Runs the tests that write rows, those whose id or heading contains `filter` (all, if it is empty).
+/// What they wrote before is removed first; a row that does not hold is left to [`collect`].
 ///
 /// # Errors
-/// [`XtaskError::NoSuchCheck`] if there is none. A check that cannot be computed is a row that fails.
-pub fn run(filter: &str) -> Result<Vec<Row>, XtaskError> {
-    let wanted: Vec<(&'static str, Check)> = AREAS
-        .iter()
-        .flat_map(|area| area.checks.iter().map(|check| (area.heading, *check)))
-        .filter(|(heading, check)| check.id.contains(filter) || heading.contains(filter))
-        .collect();
-    if wanted.is_empty() {
+/// [`XtaskError::NoSuchCheck`] if no row matches, [`XtaskError::Start`] if cargo cannot be run.
+pub fn run_tests(root: &Path, filter: &str, profile: &str) -> Result<PathBuf, XtaskError> {
+    if wanted(filter).next().is_none() {
         let areas: Vec<&str> = AREAS.iter().map(|area| area.heading).collect();
         return Err(XtaskError::NoSuchCheck { text: filter.to_owned(), areas: areas.join(", ") });
     }
-    Ok(wanted.into_iter().map(|(heading, check)| Row::of(heading, check)).collect())
+    let folder = root.join(ROWS);
+    files::remove_folder(&folder)?;
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    Command::new(&cargo)
+        .args(["test", "--workspace", "--locked", "--quiet", "--no-fail-fast"])
+        .args(["--profile", profile, "--test", "validation"])
+        .env(ROWS_FOLDER, &folder)
+        .env(FILTER, filter)
+        .current_dir(root)
+        .status()
+        .map_err(|source| XtaskError::Start {
+            program: cargo.to_string_lossy().into_owned(),
+            source,
+        })?;
+    Ok(folder)
 }
 
-/// The rows as a table for the terminal, with the reason of each check that could not be computed.
-pub fn text(rows: &[Row]) -> String {
-    let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::ASCII_BORDERS_ONLY_CONDENSED);
-    table.set_header(["id", "quantity", "unit", "expected", "got", "bound", "pass"]);
-    let mut failures = Vec::new();
-    for row in rows {
-        table.add_row(row.cells().into_iter().take(7).map(|cell| cell.replace('*', "")));
-        if let Err(error) = &row.got {
-            failures.push(format!("{}: {error}\n", row.check.id));
+/// Ids of the rows whose id or heading contains `filter`, in the order of the page.
+fn wanted(filter: &str) -> impl Iterator<Item = &'static str> {
+    ids().filter(move |id| {
+        id.contains(filter) || heading_of(id).is_some_and(|heading| heading.contains(filter))
+    })
+}
+
+/// Rows found, and ids of those that are missing.
+#[derive(Debug)]
+pub struct Collected {
+    /// The rows, in the order of the page.
+    pub rows: Vec<Row>,
+    /// Rows that no test has written.
+    pub missing: Vec<&'static str>,
+}
+
+impl Collected {
+    /// Whether every row is there and holds.
+    pub fn passes(&self) -> bool {
+        self.missing.is_empty() && self.rows.iter().all(Row::passes)
+    }
+}
+
+/// The rows of a folder whose id or heading contains `filter`.
+///
+/// # Errors
+/// [`XtaskError::Row`] if a file is no row.
+pub fn collect(folder: &Path, filter: &str) -> Result<Collected, XtaskError> {
+    let mut collected = Collected { rows: Vec::new(), missing: Vec::new() };
+    for id in wanted(filter) {
+        match Row::read(folder, id) {
+            Ok(Some(row)) => collected.rows.push(row),
+            Ok(None) => collected.missing.push(id),
+            Err(error) => {
+                let (folder, said) = (folder.to_path_buf(), error.to_string());
+                return Err(XtaskError::Row { id, folder, said });
+            }
         }
     }
-    let passed = rows.iter().filter(|row| row.passes()).count();
-    format!("{table}\n{}{passed} of {} checks passed\n", failures.concat(), rows.len())
+    Ok(collected)
+}
+
+/// The rows as a table for the terminal, with the time of each, and what is wrong with those that fail.
+pub fn text(collected: &Collected) -> String {
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::ASCII_BORDERS_ONLY_CONDENSED);
+    table.set_header(page::TITLES.into_iter().take(7).chain(["s"]));
+    let mut failures = Vec::new();
+    for row in &collected.rows {
+        let cells = page::cells(row).into_iter().take(7).map(|cell| cell.replace('*', ""));
+        table.add_row(cells.chain([format!("{:.1}", row.seconds)]));
+        if let Err(error) = &row.got {
+            failures.push(format!("{}: {error}\n", row.id));
+        }
+    }
+    failures.extend(collected.missing.iter().map(|id| format!("{id}: no test has written it\n")));
+    let passed = collected.rows.iter().filter(|row| row.passes()).count();
+    let all = collected.rows.len() + collected.missing.len();
+    format!("{table}\n{}{passed} of {all} checks passed\n", failures.concat())
 }

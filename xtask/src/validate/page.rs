@@ -1,9 +1,19 @@
 //! The validation page of the book: written, and compared with what it should say now.
 
-use super::check::{COLUMNS, GOT, Repeatability, Row, TITLES};
+use validation::{Criterion, Repeatability, Row, heading_of};
 
 /// Share of a bound by which a figure may differ from machine to machine without the page being stale.
 const MACHINE_SCATTER: f64 = 0.01;
+
+/// Columns of the table.
+const COLUMNS: usize = 8;
+
+/// Column of the computed quantity.
+const GOT: usize = 4;
+
+/// Titles of the columns.
+pub(super) const TITLES: [&str; COLUMNS] =
+    ["id", "quantity", "unit", "expected", "got", "bound", "pass", "source"];
 
 const INTRODUCTION: &str = "\
 # Validation
@@ -15,17 +25,18 @@ independent computation, published data. `got` is what this version computes; a 
 fails the command with exit code 3. The unit holds for the columns expected, got and bound.
 ";
 
-/// The page for a set of rows, which are grouped by area already.
+/// The page for a set of rows in its order.
 pub fn render(rows: &[Row]) -> String {
     let mut parts = vec![INTRODUCTION.to_owned()];
     let mut heading = "";
     for row in rows {
-        if row.heading != heading {
-            heading = row.heading;
+        let its = heading_of(&row.id).unwrap_or_default();
+        if its != heading {
+            heading = its;
             parts.push(format!("\n## {heading}\n\n| {} |\n", TITLES.join(" | ")));
             parts.push(format!("|{}\n", "---|".repeat(COLUMNS)));
         }
-        parts.push(format!("| {} |\n", row.cells().join(" | ")));
+        parts.push(format!("| {} |\n", cells(row).join(" | ")));
     }
     let passed = rows.iter().filter(|row| row.passes()).count();
     parts.push(format!("\n{passed} of {} checks passed.\n", rows.len()));
@@ -66,13 +77,103 @@ fn same_row(was: &str, is: &str, rows: &[Row]) -> bool {
     if was.len() != COLUMNS || is.len() != COLUMNS {
         return false;
     }
-    let Some(row) = rows.iter().find(|row| row.check.id == is[0]) else {
+    let Some(row) = rows.iter().find(|row| row.id == is[0]) else {
         return false;
     };
     let others = (0..COLUMNS).filter(|i| *i != GOT).all(|i| was[i] == is[i]);
     let close = match (was[GOT].parse::<f64>(), is[GOT].parse::<f64>()) {
-        (Ok(was), Ok(is)) => (was - is).abs() <= MACHINE_SCATTER * row.check.criterion.width(),
+        (Ok(was), Ok(is)) => (was - is).abs() <= MACHINE_SCATTER * row.criterion.width(),
         _ => false,
     };
-    others && (close || row.check.repeatability == Repeatability::MachineDependent)
+    others && (close || row.repeatability == Repeatability::MachineDependent)
+}
+
+/// The cells of the table, in the order of [`TITLES`].
+pub(super) fn cells(row: &Row) -> [String; COLUMNS] {
+    let [expected, bound] = shown(&row.criterion);
+    let got = match (&row.got, row.criterion) {
+        (Ok(value), Criterion::Near { within, .. }) => precise(*value, within),
+        (Ok(value), _) => figure(*value),
+        (Err(_), _) => "not computed".to_owned(),
+    };
+    let pass = if row.passes() { "yes" } else { "**no**" }.to_owned();
+    let [id, quantity, unit, source] =
+        [&row.id, &row.quantity, &row.unit, &row.source].map(Clone::clone);
+    [id, quantity, unit, expected, got, bound, pass, source]
+}
+
+/// Reference value and bound as the page shows them.
+fn shown(criterion: &Criterion) -> [String; 2] {
+    match *criterion {
+        Criterion::Near { expected, within } => {
+            [precise(expected, within), format!("± {}", figure(within))]
+        }
+        Criterion::AtMost(limit) => ["0".to_owned(), format!("≤ {}", figure(limit))],
+        Criterion::AtLeast(limit) => ["–".to_owned(), format!("≥ {}", figure(limit))],
+        Criterion::Between(low, high) => {
+            ["–".to_owned(), format!("{} to {}", figure(low), figure(high))]
+        }
+    }
+}
+
+/// A number with three significant digits, without zeros that say nothing.
+fn figure(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
+        let text = format!("{value:.2e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, ""));
+        return format!("{}e{exponent}", without_zeros(digits)).trim_end_matches('e').to_owned();
+    }
+    fixed(value, 2 - exponent_of(size))
+}
+
+/// A number with one digit more than a tolerance has.
+fn precise(value: f64, within: f64) -> String {
+    fixed(value, 1 - exponent_of(within))
+}
+
+/// Power of ten of the leading digit.
+fn exponent_of(size: f64) -> i32 {
+    (-30..30).rev().find(|n| size >= 0.999_999 * 10_f64.powi(*n)).unwrap_or(-30)
+}
+
+fn fixed(value: f64, decimals: i32) -> String {
+    let decimals = usize::try_from(decimals).unwrap_or(0);
+    without_zeros(&format!("{value:.decimals$}")).to_owned()
+}
+
+fn without_zeros(digits: &str) -> &str {
+    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_short_and_readable() {
+        for (value, text) in [
+            (0.0, "0"),
+            (15.934, "15.9"),
+            (0.1, "0.1"),
+            (0.004_627, "0.00463"),
+            (-143.25, "-143"),
+            (12_345.6, "12346"),
+            (1000.0, "1000"),
+            (4e-8, "4e-8"),
+            (2.56e-9, "2.56e-9"),
+            (2.5e-9, "2.5e-9"),
+            (120.0, "120"),
+            (2e6, "2e6"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(figure(value), text);
+        }
+        assert_eq!(precise(0.008_113_622_59, 1e-9), "0.0081136226");
+        assert_eq!(precise(4.588_073, 4.6e-5), "4.588073");
+        assert_eq!(precise(2.0, 0.5), "2");
+    }
 }

@@ -3,10 +3,10 @@
 mod polish;
 mod program;
 
-use crate::law::{Anchor, order_one};
+use crate::law::{OperatingPoint, Proximal, Quadratic};
 use crate::limits::ControlLimits;
 use crate::{ControlError, FeedbackLaw, error};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use program::{Cone, Kind, Program};
 
 /// How far an optimum is from the conditions of Karush, Kuhn and Tucker, each relative to the size of
@@ -15,7 +15,8 @@ use program::{Cone, Kind, Program};
 /// ```text
 /// min x'Px/2 + q'x  subject to  s = b - A x in K:      P x + q + A' z = 0,  s in K,  z in K*,  s'z = 0
 /// ```
-/// Computed anew from the control vector returned and the multipliers, with no part of the solver.
+/// Computed anew from the control vector returned and the multipliers, with no part of the solver; limits without a
+/// multiplier are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct KktResidual {
     /// Largest element of `P x + q + A' z`, over the largest of `P` and `q`.
@@ -35,75 +36,6 @@ impl KktResidual {
     }
 }
 
-/// What shows that a point is the optimum within limits, as numbers alone: the program, scaled to order 1,
-/// with its multipliers. Limits without a multiplier are left out.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct KktCertificate {
-    /// `P`, row by row.
-    pub hessian: Vec<Vec<f64>>,
-    /// `q`.
-    pub linear: Vec<f64>,
-    /// `x`: the control over [`Self::volt`].
-    pub point: Vec<f64>,
-    /// Voltage that the point is scaled by, V.
-    pub volt: f64,
-    /// The limits that bind.
-    pub cones: Vec<CertifiedCone>,
-}
-
-/// One limit of a [`KktCertificate`]: `s = bound - A x`, a single row with `s >= 0` or several with
-/// `s_0 >= |(s_1, s_2, ...)|`.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CertifiedCone {
-    /// `A`, row by row.
-    pub rows: Vec<Vec<f64>>,
-    /// The bound of every row.
-    pub bounds: Vec<f64>,
-    /// The multiplier of every row.
-    pub multipliers: Vec<f64>,
-}
-
-impl KktCertificate {
-    /// The residuals of the point, formed from the numbers of the certificate alone; numbers that do not fit
-    /// together give NaN.
-    pub fn residual(&self) -> KktResidual {
-        let n = self.point.len();
-        let of_size = |rows: &[Vec<f64>]| rows.iter().all(|row| row.len() == n);
-        let fits = |cone: &CertifiedCone| {
-            let count = cone.rows.len();
-            let sizes = cone.bounds.len() == count && cone.multipliers.len() == count;
-            sizes && count > 0 && of_size(&cone.rows)
-        };
-        let square = self.hessian.len() == n && self.linear.len() == n && of_size(&self.hessian);
-        if !square || !self.cones.iter().all(fits) {
-            let nan = f64::NAN;
-            return KktResidual { stationarity: nan, primal: nan, dual: nan, complementarity: nan };
-        }
-        let cone = |cone: &CertifiedCone| Cone {
-            kind: if cone.rows.len() == 1 { Kind::Linear } else { Kind::SecondOrder },
-            rows: cone
-                .rows
-                .iter()
-                .zip(&cone.bounds)
-                .map(|(row, bound)| (row.iter().copied().enumerate().collect(), *bound))
-                .collect(),
-        };
-        let program = Program {
-            hessian: DMatrix::from_fn(n, n, |i, j| self.hessian[i][j]),
-            linear: DVector::from_column_slice(&self.linear),
-            cones: self.cones.iter().map(cone).collect(),
-        };
-        let multipliers: Vec<f64> =
-            self.cones.iter().flat_map(|cone| cone.multipliers.iter().copied()).collect();
-        program.kkt(&DVector::from_column_slice(&self.point), &multipliers)
-    }
-
-    /// The control it is about, V.
-    pub fn control_volt(&self) -> Vec<f64> {
-        self.point.iter().map(|x| x * self.volt).collect()
-    }
-}
-
 /// The best control within limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstrainedOptimum {
@@ -111,8 +43,6 @@ pub struct ConstrainedOptimum {
     pub control_volt: Vec<f64>,
     /// How exactly it is the optimum.
     pub kkt: KktResidual,
-    /// The numbers that show it.
-    pub certificate: KktCertificate,
     /// Whether a limit binds; if none does, the optimum is that of eq. (10).
     pub binding: bool,
     /// Iterations of the interior-point method; 0 if no limit binds.
@@ -169,25 +99,25 @@ impl FeedbackLaw {
         limits: &ControlLimits,
     ) -> Result<ConstrainedOptimum, ControlError> {
         error::check_not_negative("control weight rho (1/V^2)", rho)?;
-        let target = self.modal_target(control_volt, hub_loads)?;
-        let anchor = Anchor { weight: 0.0, control_volt };
-        self.optimum_of_target_within(rho, (&target, anchor), limits)
+        let target = self.modal_target(OperatingPoint { control_volt, outputs: hub_loads })?;
+        self.optimum_near_within(rho, &target, Proximal { weight: 0.0, control_volt }, limits)
     }
 
-    /// The same for a modal target, held near an anchor.
-    pub(crate) fn optimum_of_target_within(
+    /// The same for a modal target, with a proximal term.
+    pub(crate) fn optimum_near_within(
         &self,
         rho: f64,
-        (target, anchor): (&DVector<f64>, Anchor<'_>),
+        target: &DVector<f64>,
+        proximal: Proximal<'_>,
         limits: &ControlLimits,
     ) -> Result<ConstrainedOptimum, ControlError> {
         let (found, expected) = (limits.layout().len(), self.shape().1);
         if found != expected {
             return Err(ControlError::Length { what: "controls of the limits", found, expected });
         }
-        let free = self.optimum_near(rho, target, anchor);
+        let free = self.optimum_near(rho, target, proximal);
         let volt = limits.typical_volt().unwrap_or_else(|| largest(&free).max(f64::MIN_POSITIVE));
-        let (hessian, linear) = order_one(anchor.added(self.quadratic(rho, target)), volt);
+        let Quadratic { hessian, linear } = self.quadratic(rho, target).with(proximal).scaled(volt);
         let mut program = Program { hessian, linear, cones: Vec::new() };
         if limits.usage(&free)? <= 1.0 {
             let point = DVector::from_column_slice(&free) / volt;
@@ -195,7 +125,6 @@ impl FeedbackLaw {
             return Ok(ConstrainedOptimum {
                 control_volt: free,
                 kkt,
-                certificate: program.certificate(&point, &[], volt),
                 binding: false,
                 iterations: 0,
             });
@@ -236,16 +165,14 @@ impl FeedbackLaw {
             let usage = limits.usage(&control)?.max(1.0);
             let control_volt: Vec<f64> = control.iter().map(|u| u / usage).collect();
             let point = x / usage;
-            let kkt = round.kkt(&point, &z);
-            let certificate = round.certificate(&point, &z, volt);
-            if kkt.largest() > LARGEST_KKT {
-                let (status, kkt) = (ConeStatus::Inaccurate, kkt.largest());
+            let kkt = round.kkt(&point, &z).largest();
+            if kkt > LARGEST_KKT {
+                let status = ConeStatus::Inaccurate;
                 return Err(ControlError::ConeProgram { status, iterations, kkt });
             }
             return Ok(ConstrainedOptimum {
                 control_volt,
-                kkt,
-                certificate,
+                kkt: round.kkt_of_binding(&point, &z),
                 binding: true,
                 iterations,
             });

@@ -1,6 +1,6 @@
 //! The second-order cone program and its interior-point solver.
 
-use super::{CertifiedCone, ConeStatus, KktCertificate, KktResidual, largest};
+use super::{ConeStatus, KktResidual, largest};
 use crate::ControlError;
 use crate::limits::ControlLimits;
 use clarabel::algebra::CscMatrix;
@@ -216,37 +216,20 @@ impl Program {
         }
     }
 
-    /// The numbers that show a point to be the optimum.
-    pub(super) fn certificate(&self, x: &DVector<f64>, z: &[f64], volt: f64) -> KktCertificate {
-        let n = self.linear.len();
-        let mut cones = Vec::new();
+    /// [`Self::kkt`] of the cones with a multiplier alone.
+    pub(super) fn kkt_of_binding(&self, x: &DVector<f64>, z: &[f64]) -> KktResidual {
+        let mut binding = Self { cones: Vec::new(), ..self.clone() };
+        let mut multipliers = Vec::new();
         let mut at = 0;
         for cone in &self.cones {
-            let Some(multipliers) = z.get(at..at + cone.rows.len()) else { break };
-            at += multipliers.len();
-            if largest(multipliers) <= NO_MULTIPLIER {
-                continue;
+            let own = &z[at..at + cone.rows.len()];
+            at += own.len();
+            if largest(own) > NO_MULTIPLIER {
+                binding.cones.push(cone.clone());
+                multipliers.extend(own);
             }
-            let dense = |row: &[(usize, f64)]| {
-                let mut values = vec![0.0; n];
-                for &(column, value) in row {
-                    values[column] += value;
-                }
-                values
-            };
-            cones.push(CertifiedCone {
-                rows: cone.rows.iter().map(|(row, _)| dense(row)).collect(),
-                bounds: cone.rows.iter().map(|(_, bound)| *bound).collect(),
-                multipliers: multipliers.to_vec(),
-            });
         }
-        KktCertificate {
-            hessian: self.hessian.row_iter().map(|row| row.iter().copied().collect()).collect(),
-            linear: self.linear.iter().copied().collect(),
-            point: x.iter().copied().collect(),
-            volt,
-            cones,
-        }
+        binding.kkt(x, &multipliers)
     }
 
     /// The KKT conditions at a point; without multipliers, those of no cone.

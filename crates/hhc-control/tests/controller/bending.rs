@@ -2,7 +2,7 @@
 
 use hhc_control::{
     ControlLayout, ControlLimits, Controller, FeedbackController, FeedbackSettings, LoadWeights,
-    Measurement, Outcome, Plant, TMatrix,
+    Measurement, Plant, StopReason, TMatrix,
 };
 use rotor_base::Harmonic;
 use std::convert::Infallible;
@@ -43,7 +43,7 @@ impl Plant for Bent {
 
     fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Infallible> {
         Ok(Measurement {
-            hub_loads: self.loads(control_volt),
+            outputs: self.loads(control_volt),
             flap_motion_deg: vec![Harmonic { cosine: control_volt[0], sine: control_volt[1] }],
             mean_flap_deg: vec![0.0],
         })
@@ -91,15 +91,15 @@ fn a_loop_that_halves_learns_how_far_to_trust_its_t() {
             println!(
                 "weak {weak}, bend {bend}: {} steps, {} halvings, {:?}, u_s {:.5} of {exact:.5}",
                 run.steps.len(),
-                run.halvings,
-                run.outcome,
+                run.backtracks,
+                run.stop,
                 found[1]
             );
-            assert_eq!(run.outcome, Outcome::Converged);
+            assert_eq!(run.stop, StopReason::Converged);
             let lost = |u: &[f64]| plant.loads(u).iter().map(|z| z * z).sum::<f64>();
             let (there, best) = (lost(found), lost(&[1.0, exact]));
             assert!(there - best <= 1e-8 * best, "{:e}", there / best - 1.0);
-            assert!(run.halvings <= 8, "{}", run.halvings);
+            assert!(run.backtracks <= 8, "{}", run.backtracks);
         }
     }
 }
@@ -121,7 +121,7 @@ impl Plant for Level {
 
     fn measure(&mut self, u: &[f64]) -> Result<Measurement, Infallible> {
         Ok(Measurement {
-            hub_loads: vec![u[0] - 1.0, self.rest],
+            outputs: vec![u[0] - 1.0, self.rest],
             flap_motion_deg: vec![Harmonic { cosine: u[0], sine: u[1] }],
             mean_flap_deg: vec![0.0],
         })
@@ -158,10 +158,10 @@ fn a_loop_that_wanders_along_a_flat_says_so() {
     };
     // 1e-6 of the starting cost is promised at every step, and 0.1 V asked for
     let flat = run(1e-3);
-    assert_eq!((flat.outcome, flat.halvings), (Outcome::Flat, 0));
+    assert_eq!((flat.stop, flat.backtracks), (StopReason::Stagnated, 0));
     assert!((5..=8).contains(&flat.steps.len()), "{}", flat.steps.len());
     assert!((flat.last().control_volt[0] - 1.0).abs() < 1e-12);
     assert!(flat.end.asked_volt > 0.05, "{}", flat.end.asked_volt);
     // what promises more is followed
-    assert_ne!(run(1e-2).outcome, Outcome::Flat);
+    assert_ne!(run(1e-2).stop, StopReason::Stagnated);
 }

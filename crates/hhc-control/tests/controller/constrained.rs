@@ -2,9 +2,9 @@
 
 use crate::plants::{Problem, as_t};
 use hhc_control::{
-    ControlError, ControlLayout, ControlLimits, ControlRun, Controller, FeedbackController,
-    FeedbackLaw, FeedbackSettings, FlapCircle, LinearPlant, LoadWeights, Measurement, Outcome,
-    Plant, PowerLimit, RunError, StepLeave, TMatrix, VoltageRange,
+    AllowedIncrease, ControlError, ControlLayout, ControlLimits, ControlRun, Controller,
+    FeedbackController, FeedbackLaw, FeedbackSettings, FlapCircle, LinearPlant, LoadWeights,
+    Measurement, Plant, PowerLimit, RunError, StopReason, TMatrix, VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -122,7 +122,7 @@ fn where_no_limit_binds_it_is_the_fixed_point_of_the_law() {
     assert!(
         (u - DVector::from_column_slice(&law.last().control_volt)).norm() <= 1e-8 * free.norm()
     );
-    assert!(constrained.kkt.as_ref().unwrap().residual().largest() <= 1e-12);
+    assert!(constrained.kkt.unwrap().largest() <= 1e-12);
 }
 
 /// A linear plant whose limits move with the control, as a function gives them.
@@ -320,12 +320,6 @@ proptest! {
             .unwrap();
         let found = law(&problem).optimum_within(0.0, &[0.0; 8], &z0, &limits).unwrap();
         prop_assert!(found.kkt.largest() <= 1e-6, "{:?}", found.kkt);
-        // the certificate says the same from its own numbers, and notices a point that is not the optimum
-        let certificate = &found.certificate;
-        prop_assert!(certificate.residual().largest() <= found.kkt.largest() + 1e-9);
-        let mut moved = certificate.clone();
-        moved.point[0] += 1e-3;
-        prop_assert!(moved.residual().largest() > certificate.residual().largest());
         prop_assert!(limits.usage(&found.control_volt).unwrap() <= 1.0 + 1e-12);
     }
 }
@@ -348,15 +342,10 @@ fn the_loop_walks_to_the_constrained_optimum_with_a_wrong_t() {
             .unwrap();
         let cost = run.last().cost.loads;
         let best = loads_cost(&problem, &exact.control_volt);
-        println!(
-            "{}: J / J* - 1 = {:.2e}, {:?}",
-            controller.name(),
-            cost / best - 1.0,
-            run.outcome
-        );
-        assert!(run.kkt.unwrap().residual().largest() <= 1e-6);
+        println!("{}: J / J* - 1 = {:.2e}, {:?}", controller.name(), cost / best - 1.0, run.stop);
+        assert!(run.kkt.unwrap().largest() <= 1e-6);
         if controller != Controller::Global {
-            assert_eq!(run.outcome, Outcome::Converged);
+            assert_eq!(run.stop, StopReason::Converged);
             assert!((cost / best - 1.0).abs() <= 1e-8);
         }
         assert!(cost < run.start.cost.loads);
@@ -426,17 +415,17 @@ fn a_local_t_that_is_wrong_everywhere_learns_from_rejected_steps() {
         let above = |run: &ControlRun| (run.last().cost.loads - best) / run.start.cost.loads;
         println!(
             "gain {gain}, {phase_deg} deg: held {:?} {:.1e} above the optimum; learnt {:?} {:.1e}, {} measurements",
-            held.outcome,
+            held.stop,
             above(&held),
-            learnt.outcome,
+            learnt.stop,
             above(&learnt),
             learnt.measurements
         );
-        stalled += usize::from(held.outcome == Outcome::Stalled);
-        assert_eq!(learnt.outcome, Outcome::Converged, "gain {gain}, {phase_deg} deg");
+        stalled += usize::from(held.stop == StopReason::Stalled);
+        assert_eq!(learnt.stop, StopReason::Converged, "gain {gain}, {phase_deg} deg");
         let (held_above, learnt_above) = (above(&held), above(&learnt));
         assert!(learnt_above <= held_above * (1.0 + 1e-9), "{learnt_above} {held_above}");
-        if held.outcome == Outcome::Stalled {
+        if held.stop == StopReason::Stalled {
             assert!(learnt_above <= 0.5 * held_above, "{learnt_above} {held_above}");
         }
     }
@@ -477,11 +466,15 @@ fn a_loop_that_goes_to_and_fro_over_its_limits_ends_between() {
     };
     let mut giving = Moving { plant: problem.plant, limits_at };
     let run = controller.run_constrained(&mut giving, 0.0).unwrap();
-    assert_eq!(run.outcome, Outcome::Converged);
+    assert_eq!(run.stop, StopReason::Converged);
     assert!(run.steps.len() <= 4, "{} steps", run.steps.len());
     let u = &run.last().control_volt;
     assert!((u[0] - 1.6).abs() < 1e-4 && (u[1] - 1.2).abs() < 1e-4, "{u:?}");
-    assert_eq!(run.steps[1].leave, StepLeave::Limits, "the way back raises the cost, and says why");
+    assert_eq!(
+        run.steps[1].allowed_increase,
+        AllowedIncrease::Restoration,
+        "the way back raises the cost, and says why"
+    );
 }
 
 /// Two flaps whose limits move with the control of the other one: the optimum within them turns by a quarter about
@@ -503,9 +496,9 @@ fn a_loop_that_runs_round_in_its_limits_ends_in_the_middle() {
     let mut turning = Moving { plant: problem.plant, limits_at };
     let run = controller.run_constrained(&mut turning, 0.0).unwrap();
     let u = &run.last().control_volt;
-    println!("{:?} after {} steps: {u:?}", run.outcome, run.steps.len());
+    println!("{:?} after {} steps: {u:?}", run.stop, run.steps.len());
     // within a thousandth of limits that move a step back need not be
-    assert_ne!(run.outcome, Outcome::StepLimit);
+    assert_ne!(run.stop, StopReason::StepLimit);
     assert!((u[0] - 1.0).abs() < 1e-3 && (u[2] - 1.0).abs() < 1e-3, "{u:?}");
 }
 
@@ -593,13 +586,13 @@ fn a_step_to_the_edge_of_the_range_takes_the_bias_with_it() {
     for (name, run) in [("told", &told), ("untold", &untold)] {
         println!(
             "{name}: {:?}, {} steps, {} halvings, J / J* - 1 = {:.1e}",
-            run.outcome,
+            run.stop,
             run.steps.len(),
-            run.halvings,
+            run.backtracks,
             run.last().cost.loads / best - 1.0
         );
     }
-    assert_eq!((told.outcome, told.steps.len(), told.halvings), (Outcome::Converged, 1, 0));
+    assert_eq!((told.stop, told.steps.len(), told.backtracks), (StopReason::Converged, 1, 0));
     assert!((told.last().cost.loads / best - 1.0).abs() <= 1e-4);
-    assert!(untold.halvings > 0 && untold.steps.len() > 1, "the bias does not matter here");
+    assert!(untold.backtracks > 0 && untold.steps.len() > 1, "the bias does not matter here");
 }

@@ -3,7 +3,7 @@
 use crate::plants::{Problem, as_t};
 use hhc_control::{
     ControlError, ControlLayout, FeedbackController, FeedbackLaw, FeedbackSettings, LinearPlant,
-    LoadWeights, Measurement, Plant, PlantCall, RunError, TMatrix, identify_t,
+    LoadWeights, Measurement, Plant, RunError, TMatrix, identify_t,
 };
 use nalgebra::DMatrix;
 
@@ -48,8 +48,8 @@ impl Plant for Faulty {
         if self.calls >= self.at {
             match self.fault {
                 Fault::Fails => return Err(FlewAway),
-                Fault::NanLoad => answer.hub_loads[3] = f64::NAN,
-                Fault::ShortLoads => answer.hub_loads.truncate(11),
+                Fault::NanLoad => answer.outputs[3] = f64::NAN,
+                Fault::ShortLoads => answer.outputs.truncate(11),
                 Fault::ShortFlaps => answer.flap_motion_deg.clear(),
                 Fault::NanMean => answer.mean_flap_deg[0] = f64::NAN,
                 _ => {}
@@ -104,22 +104,25 @@ fn a_failing_plant_is_quoted_with_the_history() {
     assert!(text.contains("after 3 recorded control steps"), "{text}");
     let source = std::error::Error::source(&error).unwrap().to_string();
     assert_eq!(source, "the blade flew away");
-    let RunError::Plant { call: PlantCall::Measure { .. }, history, .. } = error else {
+    let RunError::Plant { call: "measured", history, .. } = error else {
         panic!("{text}");
     };
     assert_eq!(history.len(), 3);
     assert!(history[2].cost.total() < history[0].cost.total());
 
     let error = identify_t(&mut faulty(Fault::Fails, 3), &[0.1; 4]).unwrap_err();
-    assert!(matches!(error, RunError::Plant { call: PlantCall::MeasureMany { count: 8 }, .. }));
+    assert!(matches!(
+        error,
+        RunError::Plant { call: "measured for T, step by step about the control", .. }
+    ));
 }
 
 #[test]
 fn bad_measurements_are_named() {
     for at in [1, 2] {
         for (fault, part) in [
-            (Fault::NanLoad, "measured hub loads: element 3 (from 0) is NaN"),
-            (Fault::ShortLoads, "measured hub loads: found 11 numbers, expected 12"),
+            (Fault::NanLoad, "measured outputs: element 3 (from 0) is NaN"),
+            (Fault::ShortLoads, "measured outputs: found 11 numbers, expected 12"),
             (Fault::ShortFlaps, "measured flap harmonics: found 0 numbers, expected 2"),
             (Fault::NanMean, "mean flap angle (deg): element 0 (from 0) is NaN"),
         ] {
@@ -170,8 +173,8 @@ fn bad_arguments_are_refused() {
     for settings in [
         FeedbackSettings { step_tolerance: 0.0, ..good.clone() },
         FeedbackSettings { stroke_tolerance: f64::NAN, ..good.clone() },
-        FeedbackSettings { cost_rise_allowance: -1.0, ..good.clone() },
-        FeedbackSettings { max_halvings: 61, ..good.clone() },
+        FeedbackSettings { allowed_increase: -1.0, ..good.clone() },
+        FeedbackSettings { max_backtracks: 61, ..good.clone() },
     ] {
         assert!(FeedbackController::new(&t, &LoadWeights::Identity, settings).is_err());
     }

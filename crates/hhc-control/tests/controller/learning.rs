@@ -3,7 +3,7 @@
 use crate::plants::{Problem, RayleighPlant, as_t, relative_error};
 use hhc_control::{
     AdaptiveSettings, ControlError, ControlLayout, ControlRun, Controller, FeedbackController,
-    FeedbackSettings, LoadWeights, Outcome, RunError, identify_t, lag_loss,
+    FeedbackSettings, LoadWeights, RunError, StopReason, identify_t, lag_loss,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -52,11 +52,11 @@ fn controllers_that_learn_reach_the_optimum_where_a_constant_t_stalls() {
             println!(
                 "{phase_deg} deg, {}: excess {excess:?}, {:?}",
                 way.name(),
-                run.as_ref().map(|r| (r.outcome, r.steps.len(), r.halvings, r.measurements))
+                run.as_ref().map(|r| (r.stop, r.steps.len(), r.backtracks, r.measurements))
             );
             if way != Controller::Global {
                 assert!(excess.unwrap() < 1e-6);
-                assert_eq!(run.unwrap().outcome, Outcome::Converged);
+                assert_eq!(run.unwrap().stop, StopReason::Converged);
             } else if phase_deg > 50.0 {
                 assert!(excess.is_none_or(|e| e > 0.1), "{excess:?}");
             }
@@ -101,13 +101,13 @@ fn hysteresis_the_constant_t_ends_short_those_that_learn_converge() {
             "{}: J/J0 {:.6}, {:?}, {} steps, {} halvings, {} measurements",
             way.name(),
             run.last().cost.loads / run.start.cost.loads,
-            run.outcome,
+            run.stop,
             run.steps.len(),
-            run.halvings,
+            run.backtracks,
             run.measurements
         );
         if way != Controller::Global {
-            assert_eq!(run.outcome, Outcome::Converged);
+            assert_eq!(run.stop, StopReason::Converged);
         }
         costs.push(run.last().cost.loads);
     }
@@ -186,7 +186,7 @@ fn a_constant_t_that_leads_nowhere_is_identified_again() {
     let way = Controller::Renewed { step_volt: vec![0.1; 4], renewals: 3 };
     let run =
         controller.with_controller(way).unwrap().run(&mut problem.plant.clone(), 0.0).unwrap();
-    assert_eq!((run.outcome, run.identifications), (Outcome::Converged, 1));
+    assert_eq!((run.stop, run.identifications), (StopReason::Converged, 1));
     let exact = problem.optimum(&[1.0; 6], 0.0);
     assert!(relative_error(&run.last().control_volt, &exact) <= 1e-8);
 }

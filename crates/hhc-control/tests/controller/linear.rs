@@ -2,8 +2,8 @@
 
 use crate::plants::{Problem, as_t, relative_error};
 use hhc_control::{
-    ControlError, FeedbackController, FeedbackSettings, LoadWeights, Outcome, RunError, StepLeave,
-    identify_t,
+    AllowedIncrease, ControlError, FeedbackController, FeedbackSettings, LoadWeights, RunError,
+    StopReason, identify_t,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -74,7 +74,7 @@ proptest! {
         let controller =
             FeedbackController::new(&t0, &load_weights, FeedbackSettings::default()).unwrap();
         let run = controller.run(&mut plant, effort).unwrap();
-        prop_assert_eq!(run.outcome, Outcome::Converged);
+        prop_assert_eq!(run.stop, StopReason::Converged);
         prop_assert_eq!((run.steps.len(), run.measurements), (1, 2));
         let exact = problem.optimum(&weights, effort);
         let error = relative_error(&run.last().control_volt, &exact);
@@ -95,7 +95,7 @@ proptest! {
         let t0 = problem.distorted_t(gain, phase_deg);
         let controller = FeedbackController::new(&t0, &LoadWeights::Identity, tight()).unwrap();
         let run = controller.run(&mut plant, 0.0).unwrap();
-        prop_assert_eq!(run.outcome, Outcome::Converged);
+        prop_assert_eq!(run.stop, StopReason::Converged);
         prop_assert!(run.steps.len() > 3);
         let exact = problem.optimum(&[1.0; LOADS], 0.0);
         let error = relative_error(&run.last().control_volt, &exact);
@@ -111,9 +111,9 @@ proptest! {
     ) {
         let mut plant = problem.plant.clone();
         let t0 = problem.distorted_t(gain, phase_deg);
-        let (cost_rise_allowance, settling_cost) = (0.0, 0.0);
+        let (allowed_increase, non_monotone_cost) = (0.0, 0.0);
         let settings = FeedbackSettings {
-            cost_rise_allowance, settling_cost, ..FeedbackSettings::default()
+            allowed_increase, non_monotone_cost, ..FeedbackSettings::default()
         };
         let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
         let history: Vec<_> = match controller.run(&mut plant, effort) {
@@ -144,7 +144,7 @@ fn the_error_shrinks_as_theory_says() {
         for pair in errors.windows(2).take_while(|pair| pair[1] > 1e-9) {
             assert!((pair[1] / pair[0] - theory).abs() < 1e-5, "{gain} {phase_deg}: {errors:?}");
         }
-        assert_eq!((run.outcome, run.halvings), (Outcome::Converged, 0));
+        assert_eq!((run.stop, run.backtracks), (StopReason::Converged, 0));
         assert!(errors[errors.len() - 1] <= 1e-8);
     }
 }
@@ -175,9 +175,9 @@ fn the_bound_on_the_phase_error_is_sharp() {
         let optimum = worst(sign);
         let z0: Vec<f64> = (-(&t * &optimum)).iter().copied().collect();
         let problem = Problem::new(1, &[3], t.clone(), &z0);
-        let run_over = |phase_deg: f64, settling_cost: f64| {
+        let run_over = |phase_deg: f64, non_monotone_cost: f64| {
             let t0 = problem.distorted_t(1.0, phase_deg);
-            let settings = FeedbackSettings { max_halvings: 40, settling_cost, ..tight() };
+            let settings = FeedbackSettings { max_backtracks: 40, non_monotone_cost, ..tight() };
             FeedbackController::new(&t0, &LoadWeights::Identity, settings)
                 .unwrap()
                 .run(&mut problem.plant.clone(), 0.0)
@@ -190,12 +190,12 @@ fn the_bound_on_the_phase_error_is_sharp() {
         ));
         // full steps contract all the same, by 2 sin(phi/2): over a hill they reach the optimum
         let over = run_over(sign * (limit_deg + 0.5), 10.0).unwrap();
-        assert_eq!(over.outcome, Outcome::Converged);
+        assert_eq!(over.stop, StopReason::Converged);
         assert!(
             relative_error(&over.last().control_volt, &problem.optimum(&[1.0; LOADS], 0.0)) <= 1e-8
         );
         let first = &over.steps[0];
-        assert_eq!(first.leave, StepLeave::Settling);
+        assert_eq!(first.allowed_increase, AllowedIncrease::NonMonotone);
         assert!(first.cost.total() > over.start.cost.total(), "there is no hill");
         let factor = 2.0 * (0.5 * (limit_deg + 0.5).to_radians()).sin();
         for pair in over.steps.windows(2).take(20) {
@@ -221,12 +221,12 @@ fn beyond_60_degrees_halving_saves_the_loop() {
     let controller =
         FeedbackController::new(&t0, &LoadWeights::Identity, settings.clone()).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
-    assert_eq!(run.outcome, Outcome::Converged);
-    assert!(run.halvings > 0);
+    assert_eq!(run.stop, StopReason::Converged);
+    assert!(run.backtracks > 0);
     assert!(relative_error(&run.last().control_volt, &exact) <= 2e-6);
 
     // without halving the same loop is lost
-    let unhalved = FeedbackSettings { max_halvings: 0, ..tight() };
+    let unhalved = FeedbackSettings { max_backtracks: 0, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, unhalved).unwrap();
     let lost = controller.run(&mut problem.plant.clone(), 0.0);
     assert!(matches!(lost, Err(RunError::Control(ControlError::Diverges { .. }))));
@@ -257,13 +257,13 @@ fn with_weighted_control_a_wrong_t_moves_the_fixed_point() {
     let effort = 0.03;
     let exact = problem.optimum(&[1.0; LOADS], effort);
     let t0 = problem.distorted_t(1.0, 20.0);
-    let settings = FeedbackSettings { cost_rise_allowance: 1.0, ..tight() };
+    let settings = FeedbackSettings { allowed_increase: 1.0, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), effort).unwrap();
-    assert_eq!(run.outcome, Outcome::Converged);
+    assert_eq!(run.stop, StopReason::Converged);
     // the fixed point solves rho u = -T0' W Z with the measured Z
     let u = DVector::from_column_slice(&run.last().control_volt);
-    let z = DVector::from_column_slice(&run.last().measurement.hub_loads);
+    let z = DVector::from_column_slice(&run.last().measurement.outputs);
     let residual = &u * effort + t0.as_matrix().transpose() * z;
     assert!(residual.norm() <= 1e-8 * effort * u.norm());
     assert!(relative_error(&run.last().control_volt, &exact) > 0.05);
@@ -273,13 +273,13 @@ fn with_weighted_control_a_wrong_t_moves_the_fixed_point() {
 fn near_the_least_cost_a_wrong_t_stalls_the_strict_loop() {
     let problem = orthogonal();
     let t0 = problem.distorted_t(0.7, 50.0);
-    let settings = FeedbackSettings { cost_rise_allowance: 0.0, ..tight() };
+    let settings = FeedbackSettings { allowed_increase: 0.0, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.05).unwrap();
-    assert_eq!(run.outcome, Outcome::Stalled);
+    assert_eq!(run.stop, StopReason::Stalled);
     // the last search took no part of its step: its halvings count too
-    let taken: u32 = run.steps.iter().map(|step| step.halvings).sum();
-    assert!(run.halvings > taken, "{} of {taken}", run.halvings);
+    let taken: u32 = run.steps.iter().map(|step| step.backtracks).sum();
+    assert!(run.backtracks > taken, "{} of {taken}", run.backtracks);
     assert!(run.last().cost.total() < 0.95 * run.start.cost.total());
 }
 
@@ -290,7 +290,7 @@ fn a_step_limit_is_an_outcome() {
     let settings = FeedbackSettings { max_steps: 3, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
-    assert_eq!((run.outcome, run.steps.len()), (Outcome::StepLimit, 3));
+    assert_eq!((run.stop, run.steps.len()), (StopReason::StepLimit, 3));
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn nothing_to_control_is_converged_at_once() {
     )
     .unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.0).unwrap();
-    assert_eq!((run.outcome, run.steps.len()), (Outcome::Converged, 0));
+    assert_eq!((run.stop, run.steps.len()), (StopReason::Converged, 0));
     assert!(run.reduction_percent().abs() < 1e-12);
 }
 
@@ -319,7 +319,7 @@ fn a_warm_start_ends_where_the_cold_one_does() {
     let exact = DVector::from_column_slice(&cold.last().control_volt);
     assert!(relative_error(&warm.last().control_volt, &exact) < 1e-9);
     let again = controller.run_from(&mut problem.plant.clone(), 0.0, exact.as_slice()).unwrap();
-    assert_eq!((again.outcome, again.steps.len()), (Outcome::Converged, 0));
+    assert_eq!((again.stop, again.steps.len()), (StopReason::Converged, 0));
 }
 
 #[test]

@@ -151,7 +151,7 @@ impl Plant for RayleighPlant {
         let flaps = DVector::from_vec(self.layout.control_volt(&flap_motion_deg).unwrap());
         let hub_loads = (&self.z0 + &self.loads_per_deg * flaps).iter().copied().collect();
         Ok(Measurement {
-            hub_loads,
+            outputs: hub_loads,
             flap_motion_deg,
             mean_flap_deg: vec![0.0; self.layout.flaps()],
         })

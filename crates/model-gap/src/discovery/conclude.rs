@@ -1,28 +1,21 @@
 //! What is said of the causes that a search has found: verdict, confidence, doubts.
 
-use super::decide::{Notes, STRONG, Search};
+use super::decide::{Notes, Search};
 use super::fit::Fitted;
 use super::gain::gain;
 use super::judge::{drift, parameters};
-use super::{Compared, Confidence, Finding, Found, Screened, Simulator, StandsOut, Verdict};
+use super::thresholds::{
+    DRIFT_COSTS, DRIFTING, LEAST_SHARE, LEAST_SHARE_OF_RUNS, STRONG, WRONG_NAME,
+};
+use super::{
+    Compared, Confidence, Finding, Found, Reason, Screened, Simulator, StandsOut, Verdict,
+};
 use crate::{GapError, Scale};
-
-/// Relative spread from which on the name is wrong.
-const WRONG_NAME: f64 = 0.5;
-/// Relative spread of a parameter over the experiments from which on it drifts.
-const DRIFTING: f64 = 0.25;
-/// Share of the drop that values of its own for every experiment must add before a drift speaks
-/// against a name, and the share before it makes the name wrong.
-const DRIFT_COSTS: [f64; 2] = [0.06, 0.15];
-/// Share of the misfit above the floor below which something else than the names is missing too.
-const LEAST_SHARE: f64 = 0.6;
-/// The same for the runs that stand out alone, where an error of form of a cause weighs most.
-const LEAST_SHARE_OF_RUNS: f64 = 0.3;
 
 /// What the causes found leave open.
 #[derive(Default)]
 struct Shortcomings {
-    reasons: Vec<String>,
+    reasons: Vec<Reason>,
     /// Whether they cannot be what is missing.
     is_wrong: bool,
 }
@@ -53,13 +46,13 @@ impl<S: Simulator> Search<'_, S> {
         let [least, most] = if chosen.is_empty() { [1.0; 2] } else { gain.drop_ci95 };
         let (gains, gains_surely) = (most > 0.0, least > 0.0);
         if !gains {
-            reasons.push("the extended model is worse where it is held out".into());
+            reasons.push(Reason::WorseHeldOut);
         } else if !gains_surely {
-            reasons.push("held out it may gain nothing: the name is tentative".into());
+            reasons.push(Reason::GainMayBeZero);
         }
         let wrong_name = !gains || is_wrong;
         if wrong_name && !chosen.is_empty() && before <= self.generic.threshold {
-            reasons.push("what is left is within the floor: the name is dropped".into());
+            reasons.push(Reason::NameDropped);
             let base = self.base.clone();
             let notes = Notes { reasons, looks_like, in_some_runs };
             let mut finding = self.conclude(&[], &base, singles, single_drops, notes)?;
@@ -111,39 +104,31 @@ impl<S: Simulator> Search<'_, S> {
         })
     }
 
-    /// What causes as fitted together leave open; `after` is what they leave along the directions without a name.
+    /// What causes as fitted together leave open; `after` is the chi-square they leave along the generic directions.
     fn shortcomings(&self, current: &Fitted, after: f64) -> Shortcomings {
         let (mut reasons, worst_drift) = self.doubts(current);
         let drop = self.base.cost - current.cost;
         let lack = (after - self.generic.threshold).max(0.0);
         let explained = if drop > 0.0 { drop / (drop + lack) } else { 0.0 };
         if explained < self.discovery.settings.explained {
-            reasons.push(format!(
-                "{:.0} % of the excess is explained; structure is left along directions without a name: {after:.0} noise units, {:.0} at the floor",
-                100.0 * explained, self.generic.threshold
-            ));
+            let floor = self.generic.threshold;
+            reasons.push(Reason::StructureLeft { share: explained, chi2: after, floor });
         }
         let whole = self.share_of_excess(current);
         if whole < LEAST_SHARE {
-            reasons.push(format!(
-                "{:.0} % of what the base model leaves above its floor is explained: most of it is something else",
-                100.0 * whole
-            ));
+            reasons.push(Reason::MisfitLeft { share: whole });
         }
         let of_runs = self.share_of_runs(current);
         if of_runs < LEAST_SHARE_OF_RUNS {
-            reasons.push(format!(
-                "{:.0} % of what stands out run by run is explained: most of it is something else",
-                100.0 * of_runs
-            ));
+            reasons.push(Reason::MisfitOfRunsLeft { share: of_runs });
         }
         let left = self.standing_out_after(current);
-        reasons.extend(left.iter().max_by(|a, b| a.times.total_cmp(&b.times)).map(|worst| {
-            format!(
-                "{} of the runs are missed beside the names too, the worst by {:.1} times what the worst surrogate leaves there",
-                left.len(), worst.times
-            )
-        }));
+        reasons.extend(
+            left.iter()
+                .map(|run| run.times)
+                .max_by(f64::total_cmp)
+                .map(|times| Reason::RunsStandOut { runs: left.len(), times }),
+        );
         let is_wrong = explained < 0.5
             || whole < LEAST_SHARE
             || of_runs < LEAST_SHARE_OF_RUNS
@@ -175,11 +160,10 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     /// Why the names of these causes are tentative, if they are.
-    fn tentative(&self, causes: &[Found]) -> Vec<String> {
-        // a cause whose own signal was not measured may stand for any other slow or scaling error
+    fn tentative(&self, causes: &[Found]) -> Vec<Reason> {
+        // a cause whose own signal was not measured may be mistaken for any other slow or scaling error
         let guessed = causes.iter().flat_map(|c| &c.parameters).find_map(|p| p.needs);
-        let guessed =
-            guessed.map(|needs| format!("without {needs} a name that needs it is tentative"));
+        let guessed = guessed.map(|signal| Reason::NotMeasured { signal });
         let not_excluded = causes.iter().find_map(|found| self.not_excluded(found));
         let open_ended = causes.iter().find_map(|found| self.open_ended(found));
         let undetermined = causes.iter().find_map(|found| self.undetermined(found));
@@ -188,7 +172,7 @@ impl<S: Simulator> Search<'_, S> {
 
     /// What speaks against the parameters of fitted effects: ends of ranges, drift from experiment to
     /// experiment; and the largest drift.
-    pub(super) fn doubts(&self, current: &Fitted) -> (Vec<String>, f64) {
+    pub(super) fn doubts(&self, current: &Fitted) -> (Vec<Reason>, f64) {
         let mut doubts = Vec::new();
         let mut worst = 0.0_f64;
         for (k, &(effect, p)) in current.free.iter().enumerate() {
@@ -198,10 +182,9 @@ impl<S: Simulator> Search<'_, S> {
                 continue;
             }
             let value = own.values[p];
-            let name = format!("{} of {}", parameter.name, self.id(own.candidate));
+            let (cause, name, unit) = (self.id(own.candidate), parameter.name, parameter.unit);
             if parameter.at_bound(value) {
-                let unit = parameter.unit;
-                doubts.push(format!("{name} lies at an end of its range, {value:.3e} {unit}"));
+                doubts.push(Reason::AtBound { cause, parameter: name, value, unit });
             }
             let found = drift(self.evidence, current, k);
             let spread = match parameter.scale {
@@ -213,57 +196,45 @@ impl<S: Simulator> Search<'_, S> {
                 if cost > DRIFT_COSTS[1] {
                     worst = worst.max(spread);
                 }
-                doubts.push(format!(
-                    "{name} drifts by {:.0} % from experiment to experiment: the name may be wrong",
-                    100.0 * spread
-                ));
+                doubts.push(Reason::Drifts { cause, parameter: name, spread });
             }
         }
         (doubts, worst)
     }
 
-    /// What is said of a cause whose closest rival is less likely, but not excluded.
-    fn not_excluded(&self, found: &Found) -> Option<String> {
+    /// Reason for a tentative name: the closest alternative is less likely, but not excluded.
+    fn not_excluded(&self, found: &Found) -> Option<Reason> {
         let listed = |c: &Compared| found.alternatives.iter().any(|a| a.candidate == c.candidate);
         let mut near = found.compared.iter().filter(|c| c.is_near() && !listed(c));
-        near.next().map(|other| {
-            let how = if other.is_open() { "is not excluded" } else { "is excluded by little" };
-            let less = if other.behind < 0.0 { "more" } else { "less" };
-            format!(
-                "{} explains {:.0} noise units {less} than {} and {how}: to stay {:.0} behind would exclude it",
-                self.id(other.candidate),
-                other.behind.abs(),
-                self.id(found.candidate),
-                other.told_apart_beyond
-            )
+        near.next().map(|other| Reason::NotExcluded {
+            cause: self.id(found.candidate),
+            other: self.id(other.candidate),
+            is_open: other.is_open(),
+            delta_chi2: other.delta_chi2,
+            threshold: other.discrimination_threshold,
         })
     }
 
-    /// What is said of a cause none of whose parameters is known: each interval holds no effect at all, or the
-    /// whole range. Such a cause mends the misfit, but what it says of the system may be nothing.
-    fn undetermined(&self, found: &Found) -> Option<String> {
+    /// Reason for a tentative name: no parameter is known. Each interval contains zero effect, or spans the
+    /// whole range.
+    fn undetermined(&self, found: &Found) -> Option<Reason> {
         let cause = &self.discovery.candidates[found.candidate].cause;
         let own = found.parameters.iter().zip(&cause.parameters);
         let mut judged = own.filter(|(v, p)| !v.is_shape && p.needs.is_none()).peekable();
         judged.peek()?;
         judged
             .all(|(value, parameter)| parameter.says_nothing(value.ci95))
-            .then(|| format!("no parameter of {} is determined: the name is tentative", cause.id))
+            .then_some(Reason::Undetermined { cause: cause.id })
     }
 
-    /// What is said of a parameter whose interval reaches an end of its range: an effect of such a kind was
-    /// seen by one of its sides, as a mode far above the runs by its tail.
-    fn open_ended(&self, found: &Found) -> Option<String> {
-        let id = self.id(found.candidate);
+    /// Reason for a tentative name: the interval of a parameter reaches an end of its range, as of a mode far
+    /// above the tested frequencies.
+    fn open_ended(&self, found: &Found) -> Option<Reason> {
+        let cause = self.id(found.candidate);
         let parameters = &self.discovery.candidates[found.candidate].cause.parameters;
         let own = found.parameters.iter().zip(parameters).filter(|p| !p.0.is_shape);
         own.filter(|(value, parameter)| parameter.is_open_ended(value.ci95))
-            .map(|(value, _)| {
-                format!(
-                    "{} of {id} is not determined: its interval reaches an end of its range, the name is tentative",
-                    value.name
-                )
-            })
+            .map(|(value, _)| Reason::OpenEnded { cause, parameter: value.name })
             .next()
     }
 
@@ -278,40 +249,32 @@ impl<S: Simulator> Search<'_, S> {
         excess: f64,
         alone: &[StandsOut],
         in_some_runs: bool,
-        reasons: &mut Vec<String>,
+        reasons: &mut Vec<Reason>,
     ) -> Verdict {
         let threshold = self.generic.threshold;
         if excess > threshold {
-            reasons.push(format!(
-                "{excess:.0} noise units of structure are missing, {threshold:.0} would be the floor, and no known cause explains them"
-            ));
+            reasons.push(Reason::NoKnownCause { chi2: excess, floor: threshold });
             return Verdict::Unknown;
         }
         if let Some(trend) = self.trend() {
-            reasons.push(format!(
-                "the output changes slowly in all runs alike: {trend:.0} noise units along a zero, a gain and a return to zero that are steady, {:.0} would be the floor, and no known cause explains them",
-                self.trends.threshold
-            ));
+            reasons.push(Reason::ChangesSlowly { chi2: trend, floor: self.trends.threshold });
             return Verdict::Unknown;
         }
         if !alone.is_empty() {
-            reasons.push(format!(
-                "{} of the runs are missed by more than any surrogate is there: what is missing is not in all of them alike",
-                alone.len()
-            ));
+            reasons.push(Reason::RunsMissed { runs: alone.len() });
             return Verdict::Unknown;
         }
         if in_some_runs {
-            reasons.push("what it explains is in some of the runs alone: no cause acts so".into());
+            reasons.push(Reason::FewRuns);
             return Verdict::Unknown;
         }
-        // a cause that cannot be there, or has no name, would not be said either
+        // neither a refuted cause nor a decoy would be named
         let visible =
             |(c, s): (usize, &Screened)| self.may_be_named(c) && s.weak_signal > s.threshold;
         if self.screened.iter().enumerate().any(visible) {
             Verdict::NothingMissing
         } else {
-            reasons.push("no cause of usual strength would show in these data".into());
+            reasons.push(Reason::NothingVisible);
             Verdict::NotObservable
         }
     }

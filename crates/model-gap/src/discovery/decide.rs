@@ -5,28 +5,13 @@ use super::fit::{Fitted, Fitter};
 use super::gain::held_out_residual;
 use super::judge::{Generic, paired, parameters};
 use super::screen::screen;
-use super::{Alternative, Compared, Discovery, Finding, Rival, Screened, Simulator};
-use crate::{Effect, GapError};
+use super::thresholds::{
+    CONFUSED_SHARE, HELD_OUT_SHARE, NEXT_SHARE, PROMISE, RIVAL_PROMISE, STRONG, SWAY_SHARE,
+};
+use super::{Alternative, Compared, Discovery, Finding, Reason, Rival, Screened, Simulator};
+use crate::{Effect, GapError, Memo};
 use rayon::prelude::*;
-use std::sync::{Arc, Mutex};
-
-/// Part of its threshold that a candidate must promise before it is fitted.
-const PROMISE: f64 = 0.3;
-/// Part of the drop of a cause that another must promise before it is fitted in its place.
-const RIVAL_PROMISE: f64 = 0.1;
-/// Share of the drop by the causes before that the next one must add: below it, it mends their form.
-const NEXT_SHARE: f64 = 0.04;
-/// The same for a candidate that is easily taken for one of the causes before: an error of their form is most of
-/// all like it.
-const CONFUSED_SHARE: f64 = 0.2;
-/// Times its threshold that a cause must explain to be named with confidence.
-pub(super) const STRONG: f64 = 2.0;
-/// Share of a drop that must show where experiments are held out.
-const HELD_OUT_SHARE: f64 = 0.3;
-/// Share of the drop beyond which structure of the base model does not make two causes change places.
-const SWAY_SHARE: f64 = 0.1;
-/// Share of a drop within which two causes are not told apart: no model of a cause is better.
-const FORM_ERROR: f64 = 0.02;
+use std::sync::Arc;
 
 pub(super) fn decide<S: Simulator>(
     discovery: &Discovery<'_, S>,
@@ -64,7 +49,7 @@ impl<'a, S: Simulator> Search<'a, S> {
         let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
         let generic = Generic::new(discovery, evidence, discovery.generic);
         let trends = Generic::new(discovery, evidence, discovery.trends);
-        let kept = Mutex::new(Vec::new());
+        let kept = Memo::new(discovery.settings.most_causes);
         let columns: Vec<&[Vec<f64>]> = discovery.structures.iter().map(Vec::as_slice).collect();
         let structures = evidence.seen(&columns);
         let energy = |s: &Seen<'_>| evidence.inner(s, s);
@@ -88,27 +73,14 @@ impl<'a, S: Simulator> Search<'a, S> {
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     /// Why it took each decision.
-    pub(super) reasons: Vec<String>,
+    pub(super) reasons: Vec<Reason>,
     /// The cause that what is missing looks most like, and which cannot be there.
     pub(super) looks_like: Option<usize>,
     /// Whether a cause explains much where it is fitted and little where it is held out.
     pub(super) in_some_runs: bool,
 }
 
-/// Why a candidate does not enter.
-struct Refusal {
-    reason: String,
-    /// Whether it explains much where it is fitted and little where it is held out.
-    in_some_runs: bool,
-}
-
-impl From<String> for Refusal {
-    fn from(reason: String) -> Self {
-        Self { reason, in_some_runs: false }
-    }
-}
-
-/// One of the causes found, taken out and looked at again.
+/// One of the causes found, judged against the fit without it.
 pub(super) struct Place {
     /// The fit without it.
     pub(super) rest: Fitted,
@@ -116,7 +88,7 @@ pub(super) struct Place {
     pub(super) alternatives: Vec<Alternative>,
     /// It and those that cannot be excluded, as fitted.
     pub(super) rivals: Vec<Rival>,
-    /// Everything fitted in its place, least behind first.
+    /// Everything fitted in its place, the smallest `delta_chi2` first.
     pub(super) compared: Vec<Compared>,
     pub(super) drop: f64,
 }
@@ -126,8 +98,6 @@ struct TakenOut {
     rest: Fitted,
     fits: Vec<Option<Fitted>>,
 }
-
-type Kept = Vec<((Vec<Effect>, usize), Arc<TakenOut>)>;
 
 pub(super) struct Search<'a, S> {
     pub(super) discovery: &'a Discovery<'a, S>,
@@ -141,7 +111,7 @@ pub(super) struct Search<'a, S> {
     structures: Vec<Seen<'a>>,
     /// Misfit that the worst of them leaves.
     pub(super) structure_energy: f64,
-    kept: Mutex<Kept>,
+    kept: Memo<(Vec<Effect>, usize), TakenOut>,
 }
 
 impl<S: Simulator> Search<'_, S> {
@@ -157,27 +127,28 @@ impl<S: Simulator> Search<'_, S> {
             let (mut candidate, mut next) = match self.next(&current, &fits) {
                 None => break,
                 Some(Err(refusal)) => {
-                    notes.reasons.push(refusal.reason);
-                    notes.in_some_runs = refusal.in_some_runs;
+                    notes.in_some_runs = matches!(refusal,
+                        Reason::LostHeldOut { drop, threshold, .. } if drop > STRONG * threshold);
+                    notes.reasons.push(refusal);
                     break;
                 }
                 Some(Ok(next)) => next,
             };
             let mut why = self.cannot_be(candidate, &next)?;
-            if let Some(what) = self.discovery.candidates[candidate].nameless {
+            if let Some(what) = self.discovery.candidates[candidate].decoy {
                 if why.is_some() {
-                    // it bears no name that could be wrong: the others are asked
+                    // a decoy that is refuted is left out: no name depends on it
                     fits[candidate] = None;
                     continue;
                 }
                 match self.named_as_well(&current, (candidate, &next), &fits)? {
                     Some(named) => (candidate, next) = named,
-                    None => why = Some(format!("no cause of the library does that: {what} would")),
+                    None => why = Some(Reason::Decoy { what }),
                 }
             }
             if let Some(why) = why {
-                let id = self.id(candidate);
-                notes.reasons.push(format!("what is missing looks most like {id}, but {why}"));
+                let (cause, why) = (self.id(candidate), Box::new(why));
+                notes.reasons.push(Reason::Resembles { cause, why });
                 notes.looks_like = Some(candidate);
                 break;
             }
@@ -198,31 +169,31 @@ impl<S: Simulator> Search<'_, S> {
     /// Whether a candidate is a cause that may be there.
     pub(super) fn may_be_named(&self, candidate: usize) -> bool {
         let own = &self.discovery.candidates[candidate];
-        own.refuted.is_none() && own.nameless.is_none()
+        own.refuted.is_none() && own.decoy.is_none()
     }
 
-    /// The cause with a name that explains as much as what has none, but for what one parameter costs.
+    /// The cause of the library that explains as much as a decoy, to within the penalty on one parameter.
     fn named_as_well(
         &self,
         rest: &Fitted,
-        (nameless, fit): (usize, &Fitted),
+        (decoy, fit): (usize, &Fitted),
         fits: &[Option<Fitted>],
     ) -> Result<Option<(usize, Fitted)>, GapError> {
         let drop = |f: &Fitted| rest.cost - f.cost;
         let Some((candidate, found)) = self.best_by(fits, drop, |c, _| self.may_be_named(c)) else {
             return Ok(None);
         };
-        let behind = found.cost - fit.cost + self.penalty(candidate) - self.penalty(nameless);
-        let is_as_good = behind < self.discovery.settings.parameter_penalty
+        let delta_chi2 = found.cost - fit.cost + self.penalty(candidate) - self.penalty(decoy);
+        let is_as_good = delta_chi2 < self.discovery.settings.parameter_penalty
             && self.enters(rest, candidate, &found).is_ok()
             && self.contradicted(&found)?.is_none();
         Ok(is_as_good.then_some((candidate, found)))
     }
 
     /// Why the data show that a candidate, fitted last, is not there.
-    fn cannot_be(&self, candidate: usize, fit: &Fitted) -> Result<Option<String>, GapError> {
+    fn cannot_be(&self, candidate: usize, fit: &Fitted) -> Result<Option<Reason>, GapError> {
         match &self.discovery.candidates[candidate].refuted {
-            Some(why) => Ok(Some(why.clone())),
+            Some(why) => Ok(Some(Reason::Refuted(why.clone()))),
             None => self.contradicted(fit),
         }
     }
@@ -292,7 +263,7 @@ impl<S: Simulator> Search<'_, S> {
         &self,
         current: &Fitted,
         fits: &[Option<Fitted>],
-    ) -> Option<Result<(usize, Fitted), Refusal>> {
+    ) -> Option<Result<(usize, Fitted), Reason>> {
         let shown = self.best_by(fits, |f| self.proven_drop(current, f), |_, _| true)?;
         let next = self.enters(current, shown.0, &shown.1).and_then(|_| {
             let shows = |c: usize, f: &Fitted| {
@@ -308,46 +279,39 @@ impl<S: Simulator> Search<'_, S> {
         self.discovery.candidates[candidate].cause.id
     }
 
-    /// Both keys: the drop exceeds what surrogates reach, and most of it shows where it is held out.
-    fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, Refusal> {
+    /// Both acceptance tests: the drop of chi-square exceeds what surrogates reach, and most of it shows on
+    /// held-out runs.
+    fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, Reason> {
         let drop = self.proven_drop(current, next) - self.penalty(candidate);
         let threshold = self.threshold_after(current, candidate);
-        let id = self.id(candidate);
+        let cause = self.id(candidate);
         if let Some(shown) = self.hardly_shown(candidate, current, next) {
-            return Err(format!("{id} beside the causes before would explain {shown}").into());
+            return Err(Reason::NotAdded { cause, why: Box::new(shown) });
         }
         if drop < threshold {
-            return Err(format!(
-                "{id} would explain most, {:.0} noise units in the chain, within the {threshold:.0} that surrogates with nothing missing can reach",
-                drop.max(0.0)
-            )
-            .into());
+            return Err(Reason::WithinSurrogates { cause, drop: drop.max(0.0), threshold });
         }
         let held_out = self.held_out_drop(current, next);
         let needed = HELD_OUT_SHARE * drop;
         if held_out < needed {
-            let reason = format!(
-                "{id} explains {drop:.0} noise units where it is fitted and {held_out:.0} where it is held out, less than the {needed:.0} asked for"
-            );
-            return Err(Refusal { reason, in_some_runs: drop > STRONG * threshold });
+            return Err(Reason::LostHeldOut { cause, drop, threshold, held_out, needed });
         }
-        // one more cause must stand on its own feet: what drifts mends the form of those before it
+        // parameters of an added cause that drift show that it compensates an error of form of those before it
         if !current.effects.is_empty()
             && let Some(doubt) = self.doubts(next).0.into_iter().next()
         {
-            return Err(format!("{id} beside the causes before is refused: {doubt}").into());
+            return Err(Reason::NotAdded { cause, why: Box::new(doubt) });
         }
         Ok(held_out)
     }
 
-    /// What is said of one more cause that hardly shows on the outputs: further channels alone show an error of
-    /// the form of those before.
-    fn hardly_shown(&self, candidate: usize, before: &Fitted, after: &Fitted) -> Option<String> {
+    /// Why one more cause shows too little on the outputs, if it does: the further channels alone would show an
+    /// error of form of the causes before.
+    fn hardly_shown(&self, candidate: usize, before: &Fitted, after: &Fitted) -> Option<Reason> {
         let (by_others, own) =
             (self.output_drop(&self.base, before), self.output_drop(before, after));
         let asked = self.share_beside(candidate, &before.effects) * by_others;
-        (own < asked)
-            .then(|| format!("{own:.0} noise units of the outputs, less than the {asked:.0} that errors of form of those can leave"))
+        (own < asked).then_some(Reason::HardlyShown { drop: own, needed: asked })
     }
 
     /// What a candidate after those of `current` must take off the misfit.
@@ -356,10 +320,10 @@ impl<S: Simulator> Search<'_, S> {
         self.screened[candidate].threshold + self.share_beside(candidate, &current.effects) * before
     }
 
-    /// What a fit takes off the misfit within the chain. A thermometer that warms or a load cell that feels
-    /// a load shows that an agent is there, not that it does anything.
+    /// Drop of chi-square within the chain, covariates left out. A temperature that rises shows that heat is
+    /// there, not that it changes the output.
     fn proven_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
-        let around = |f: &Fitted| self.evidence.of_circumstances(&f.residual);
+        let around = |f: &Fitted| self.evidence.of_covariates(&f.residual);
         before.cost - after.cost - (around(before) - around(after))
     }
 
@@ -375,9 +339,9 @@ impl<S: Simulator> Search<'_, S> {
     pub(super) fn held_out_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
         let sum = |f: &Fitted| f.held_out(self.evidence).iter().sum::<f64>();
         let drop = sum(before) - sum(after);
-        if self.evidence.has_circumstances() {
+        if self.evidence.has_covariates() {
             let around =
-                |f: &Fitted| self.evidence.of_circumstances(&held_out_residual(self.evidence, f));
+                |f: &Fitted| self.evidence.of_covariates(&held_out_residual(self.evidence, f));
             return drop - (around(before) - around(after));
         }
         drop
@@ -397,21 +361,12 @@ impl<S: Simulator> Search<'_, S> {
         at: usize,
         current: &Fitted,
     ) -> Result<Arc<TakenOut>, GapError> {
-        let key = (current.effects.clone(), at);
-        let known = |kept: &Kept| kept.iter().find(|k| k.0 == key).map(|k| Arc::clone(&k.1));
-        // a lock is poisoned only by a panic while it was held, and nothing panics there
-        if let Some(found) = self.kept.lock().ok().and_then(|kept| known(&kept)) {
-            return Ok(found);
-        }
-        let rest = self.fitter.refine(Self::without(&current.effects, at))?;
-        let least = RIVAL_PROMISE * (rest.cost - current.cost);
-        let fits = self.fits_after(&rest, chosen, least)?;
-        let made = Arc::new(TakenOut { rest, fits });
-        if let Ok(mut kept) = self.kept.lock() {
-            kept.insert(0, (key, Arc::clone(&made)));
-            kept.truncate(self.discovery.settings.most_causes);
-        }
-        Ok(made)
+        self.kept.get((current.effects.clone(), at), || {
+            let rest = self.fitter.refine(Self::without(&current.effects, at))?;
+            let least = RIVAL_PROMISE * (rest.cost - current.cost);
+            let fits = self.fits_after(&rest, chosen, least)?;
+            Ok(TakenOut { rest, fits })
+        })
     }
 
     /// Replaces a chosen cause where another one does better beside the rest.
@@ -449,7 +404,7 @@ impl<S: Simulator> Search<'_, S> {
         while chosen.len() > 1 && at < chosen.len() {
             let rest = self.fitter.refine(Self::without(&current.effects, at))?;
             let drop = rest.cost - current.cost - self.penalty(chosen[at]);
-            // the same two keys that it entered by, now that the others know of it
+            // the same two acceptance tests, now that the other causes are refitted beside it
             let needed = self.threshold_after(&rest, chosen[at]);
             let is_shown = self.hardly_shown(chosen[at], &rest, current).is_none();
             if !is_shown
@@ -483,7 +438,7 @@ impl<S: Simulator> Search<'_, S> {
     ///
     /// Whichever of them is right, structure of at least the size `x` lies there, where noise alone would leave 1.
     /// With its variance beside that of the noise the difference of the misfits weighs `1 / (1 + x^2)` as much.
-    /// A base model without surrogates is taken at its word: nothing is granted to it.
+    /// A base model without surrogates is assumed exact: the result is 0.
     fn left_between(&self, a: &Fitted, b: &Fitted) -> f64 {
         if self.structures.is_empty() {
             return 0.0;
@@ -512,24 +467,24 @@ impl<S: Simulator> Search<'_, S> {
         };
         let TakenOut { rest, fits } = &*out;
         let drop = rest.cost - current.cost;
-        let margin =
-            self.discovery.settings.separation + FORM_ERROR * self.output_drop(rest, current);
+        let settings = self.discovery.settings;
+        let margin = settings.separation + settings.form_error * self.output_drop(rest, current);
         let mut compared: Vec<(Compared, &Fitted)> = Vec::new();
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
-            let behind = fit.cost - current.cost + penalty;
+            let delta_chi2 = fit.cost - current.cost + penalty;
             let (_, error) = paired(self.evidence, fit, current);
             let open = margin + self.swayed(fit, current).max(self.left_between(fit, current));
-            let told_apart_beyond = open.max((2.0 * error).min(0.2 * drop));
-            let compared_with = Compared { candidate, behind, told_apart_beyond };
-            // what is far behind need not be asked why it cannot be
+            let discrimination_threshold = open.max((2.0 * error).min(0.2 * drop));
+            let compared_with = Compared { candidate, delta_chi2, discrimination_threshold };
+            // one that fits far worse is excluded already
             if compared_with.is_near() && self.contradicted(fit)?.is_some() {
                 continue;
             }
             compared.push((compared_with, fit));
         }
-        compared.sort_by(|a, b| a.0.behind.total_cmp(&b.0.behind));
+        compared.sort_by(|a, b| a.0.delta_chi2.total_cmp(&b.0.delta_chi2));
         let may_be = |c: &&(Compared, &Fitted)| self.may_be_named(c.0.candidate);
         let open = compared.iter().filter(|c| c.0.is_open()).filter(may_be);
         let own = std::iter::once((current, chosen[at]));

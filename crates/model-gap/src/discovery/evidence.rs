@@ -1,5 +1,6 @@
 //! Sums of squares with the nuisance projected out.
 
+use super::thresholds::NOISE_DOUBT;
 use super::{Trace, TraceRole};
 use crate::GapError;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -41,8 +42,6 @@ pub(crate) struct Seen<'s> {
 
 /// Rows that are multiplied together: with the nuisance they stay in a second-level cache.
 const ROWS: usize = 512;
-/// Relative error of the noise of a channel, taken from its differences.
-const NOISE_DOUBT: f64 = 0.05;
 
 /// The traces with their nuisance factorised, for all experiments and with each fold left out.
 #[derive(Debug, Clone)]
@@ -192,14 +191,14 @@ impl<'a> Evidence<'a> {
         self.energy_of(residual, |role| role != TraceRole::Output)
     }
 
-    /// The part of [`Self::beside_output`] of what surrounds the chain.
-    pub(crate) fn of_circumstances(&self, residual: &[Vec<f64>]) -> f64 {
-        self.energy_of(residual, |role| role == TraceRole::Circumstance)
+    /// The part of [`Self::beside_output`] of the covariates.
+    pub(crate) fn of_covariates(&self, residual: &[Vec<f64>]) -> f64 {
+        self.energy_of(residual, |role| role == TraceRole::Covariate)
     }
 
-    /// Whether something around the chain was measured.
-    pub(crate) fn has_circumstances(&self) -> bool {
-        self.traces.iter().any(|t| t.role == TraceRole::Circumstance)
+    /// Whether a covariate was measured.
+    pub(crate) fn has_covariates(&self) -> bool {
+        self.traces.iter().any(|t| t.role == TraceRole::Covariate)
     }
 
     /// Sum of squares of the outputs that noise alone would leave, over what they weigh with.

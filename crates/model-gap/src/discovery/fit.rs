@@ -48,8 +48,8 @@ const ITERATIONS: usize = 12;
 const TRIAL_ITERATIONS: usize = 4;
 /// Part of the drop found from other starts that it must have reached by then.
 const TRIAL_SHARE: f64 = 0.5;
-/// Change of the cost below which a fit has settled.
-const SETTLED: f64 = 0.02;
+/// Change of the cost below which a fit has converged.
+const CONVERGED: f64 = 0.02;
 /// Largest step of a logarithmic coordinate.
 const LARGEST_LOG_STEP: f64 = 0.7;
 
@@ -172,14 +172,14 @@ impl<S: Simulator> Fitter<'_, S> {
                     break;
                 }
                 damping *= 10.0;
-                if cost - new_cost > -SETTLED && damping > 1.0 {
+                if cost - new_cost > -CONVERGED && damping > 1.0 {
                     break;
                 }
             }
             let Some((moved, new_residual, new_cost)) = improved else { break };
             let gained = cost - new_cost;
             (effects, residual, cost) = (moved, new_residual, new_cost);
-            if gained < SETTLED {
+            if gained < CONVERGED {
                 break;
             }
         }
@@ -245,8 +245,7 @@ impl Fitted {
     /// cut back to where the residual may be taken as straight in the parameters.
     pub(crate) fn shift(&self, matrix: &DMatrix<f64>, whole: &DMatrix<f64>) -> DVector<f64> {
         let n = matrix.nrows() - 1;
-        let mut shift = DVector::zeros(n + 1);
-        shift[0] = 1.0;
+        let mut shift = zero_shift(n);
         if n == 0 {
             return shift;
         }
@@ -283,8 +282,15 @@ impl Fitted {
 
     /// The residual less the nuisance it asks for.
     pub(crate) fn cleaned(&self, evidence: &Evidence<'_>) -> Vec<Vec<f64>> {
-        let shift = super::judge::unmoved(self.free.len() + 1);
+        let shift = zero_shift(self.free.len());
         let nuisance = evidence.nuisance_of(&self.products, &shift, None);
         evidence.cleaned(&self.residual, &nuisance)
     }
+}
+
+/// No step of `parameters` coordinates: the residual as it is, whose own entry is 1 and stands first.
+fn zero_shift(parameters: usize) -> DVector<f64> {
+    let mut shift = DVector::zeros(parameters + 1);
+    shift[0] = 1.0;
+    shift
 }

@@ -2,16 +2,8 @@
 
 use super::decide::Search;
 use super::fit::Fitted;
+use super::thresholds::{FORM_LEFT, RUN_MARGIN, STANDS_OUT};
 use super::{Simulator, StandsOut};
-
-/// Times the energy that the worst surrogate leaves on an experiment, beyond which that experiment stands
-/// out alone.
-const RUN_MARGIN: f64 = 4.0;
-/// Misfit over the floor, in floors, from which the share of it that is explained means anything.
-const STANDS_OUT: f64 = 0.5;
-
-/// Part of the misfit of an experiment, in energy, that causes with their errors of form may leave.
-const FORM_LEFT: f64 = 0.05;
 
 impl<S: Simulator> Search<'_, S> {
     /// Share of the misfit above the floor that a fit takes away; 1 where nothing stands out. The floor

@@ -2,7 +2,7 @@
 
 use super::evidence::{Evidence, Products, difference};
 use super::fit::Fitted;
-use super::judge::student_975;
+use super::quantile::student_975;
 use super::{Signal, TraceRole};
 use crate::resampling::{NoiseDraw, SplitMix};
 use rayon::prelude::*;

@@ -3,14 +3,13 @@
 use super::FittedParameter;
 use super::evidence::{Evidence, Products, Seen, difference, residual};
 use super::fit::Fitted;
+use super::quantile::{NORMAL_975, student_975};
+use super::thresholds::GENERIC_MARGIN;
 use super::{Discovery, Signal, Simulator};
 use crate::GapError;
 use nalgebra::{DMatrix, DVector};
 
-/// Factor on the energy that surrogates leave along the directions without a name.
-const GENERIC_MARGIN: f64 = 4.0;
-
-/// The directions without a name, ready to be tested against residuals.
+/// The generic directions, ready to be tested against residuals.
 pub(crate) struct Generic<'a> {
     directions: Vec<Seen<'a>>,
     /// Projected products of the directions, inverted on their range.
@@ -174,20 +173,6 @@ fn shifts<S: Simulator>(
     })))
 }
 
-/// Quantile 0.975 of the normal distribution.
-const NORMAL_975: f64 = 1.959_963_985;
-
-/// Quantile 0.975 of Student's distribution, by the first terms of its expansion about the normal one: right to
-/// 4e-3 from five degrees of freedom on. Source: M. Abramowitz and I. A. Stegun, *Handbook of Mathematical
-/// Functions*, 26.7.5.
-pub(crate) fn student_975(degrees: f64) -> f64 {
-    let z = NORMAL_975;
-    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
-    z + (z3 + z) / (4.0 * degrees)
-        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * degrees.powi(2))
-        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * degrees.powi(3))
-}
-
 /// What a standard deviation of each parameter that is held does to the residual.
 fn held_shifts<S: Simulator>(
     discovery: &Discovery<'_, S>,
@@ -285,27 +270,5 @@ impl Evidence<'_> {
             || products.own.clone(),
             |solved| &products.own - products.with_nuisance.tr_mul(&solved),
         )
-    }
-}
-
-/// A vector whose first entry is 1: the residual as it is.
-pub(crate) fn unmoved(columns: usize) -> DVector<f64> {
-    let mut shift = DVector::zeros(columns);
-    if let Some(first) = shift.get_mut(0) {
-        *first = 1.0;
-    }
-    shift
-}
-
-#[cfg(test)]
-mod tests {
-    use super::student_975;
-
-    /// Against the printed table (Abramowitz and Stegun, table 26.10).
-    #[test]
-    fn students_quantile_is_that_of_the_table() {
-        for (degrees, quantile) in [(5.0, 2.571), (10.0, 2.228), (39.0, 2.023)] {
-            assert!((student_975(degrees) - quantile).abs() < 4e-3, "{degrees}");
-        }
     }
 }

@@ -6,14 +6,18 @@ mod evidence;
 mod fit;
 mod floors;
 mod gain;
+mod intermediate;
 mod judge;
+mod quantile;
+mod reason;
 mod rival;
 mod screen;
+mod thresholds;
 mod trace;
 mod verdict;
-mod witness;
 
 pub use gain::Gain;
+pub use reason::Reason;
 pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
 pub use trace::{Simulator, Trace, TraceRole};
@@ -36,11 +40,10 @@ pub struct Discovery<'a, S> {
     pub simulator: &'a S,
     /// What could be missing.
     pub candidates: &'a [Candidate],
-    /// Directions without a name: what is left along them after the best fit is structure that no
-    /// candidate explains.
+    /// Generic directions: structure left along them after the best fit is explained by no candidate.
     pub generic: &'a [Signal],
-    /// Directions that stand for a slow change of the measurement itself, such as a zero that wanders: looked
-    /// at apart, because among all directions without a name one that is certain is lost.
+    /// Directions that stand for a slow change of the measurement itself, such as a zero that wanders: judged
+    /// apart, because one certain direction is lost among all generic ones.
     pub trends: &'a [Signal],
     /// What the base model leaves of surrogate systems of other kinds with nothing missing.
     pub structures: &'a [Signal],
@@ -55,7 +58,7 @@ pub struct Settings {
     pub noise_deviations: f64,
     /// Factor on what surrogates reach.
     pub structure_margin: f64,
-    /// Share of the excess the named causes must explain to be the whole story.
+    /// Share of the excess that the named causes must explain.
     pub explained: f64,
     /// Most causes named together.
     pub most_causes: usize,
@@ -65,6 +68,8 @@ pub struct Settings {
     pub parameter_penalty: f64,
     /// Drop of the misfit that separates two causes, in units of the noise variance.
     pub separation: f64,
+    /// Share of a drop within which two causes are not discriminated: no model of a cause is better.
+    pub form_error: f64,
     /// Whether the base model rests on reference runs; without, nothing is said with confidence.
     pub has_reference: bool,
     /// RMS of a weak effect over the standard deviation of the output.
@@ -83,6 +88,7 @@ impl Default for Settings {
             most_folds: 8,
             parameter_penalty: 3.0,
             separation: 12.0,
+            form_error: 0.02,
             has_reference: true,
             weak_effect: 0.01,
             resamplings: 1000,

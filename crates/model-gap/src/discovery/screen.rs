@@ -1,6 +1,7 @@
 //! What each candidate could explain, before any fit.
 
 use super::evidence::{Evidence, difference};
+use super::thresholds::OTHER_SIGN;
 use super::{Discovery, Signal, Simulator};
 use crate::{Effect, GapError};
 use nalgebra::DMatrix;
@@ -28,8 +29,6 @@ pub struct Screened {
 
 /// Of so many starts of an effect that adapts to each experiment, one is tried on every surrogate.
 const ADAPTED_STARTS: usize = 5;
-/// Weight of what surrogates leave against the sign of an effect.
-const OTHER_SIGN: f64 = 0.5;
 
 /// Mean length of a vector of two standard normal numbers, root(pi / 2).
 const RAYLEIGH_MEAN: f64 = 1.253_314_137_315_500_3;

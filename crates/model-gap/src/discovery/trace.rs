@@ -38,10 +38,10 @@ pub enum TraceRole {
     Output,
     /// A signal within the chain, such as the voltage at the terminals or a second sensor: a cause that
     /// shows there acts on the output.
-    Witness,
-    /// What surrounds the chain, such as a temperature or a load. It tells how much of an agent there is,
-    /// not what the agent does: a cause that shows nowhere else is not shown.
-    Circumstance,
+    IntermediateChannel,
+    /// A quantity beside the chain, such as a temperature or a load. It tells how much of an agent there is,
+    /// not what the agent does: a cause that shows nowhere else is not named.
+    Covariate,
 }
 
 /// What predicts every trace under given effects.

@@ -1,6 +1,7 @@
 //! What can be said at the end.
 
-use super::{Gain, Rival, Screened};
+use super::thresholds::{AS_LIKELY, SURELY};
+use super::{Gain, Reason, Rival, Screened};
 use crate::Effect;
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +27,7 @@ pub enum Verdict {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Confidence {
-    /// Every key turned.
+    /// All acceptance tests passed.
     Confident,
     /// Something speaks against it, or too little for it.
     Tentative,
@@ -56,7 +57,7 @@ pub struct Found {
     pub candidate: usize,
     /// Its parameters.
     pub parameters: Vec<FittedParameter>,
-    /// Drop of the misfit without and with it, in units of the noise variance.
+    /// Drop of chi-square by it.
     pub drop: f64,
     /// The part of that drop on the outputs, further channels left out.
     pub output_drop: f64,
@@ -64,10 +65,9 @@ pub struct Found {
     pub held_out_drop: f64,
     /// The candidates that explain the same data about as well, best first, itself left out.
     pub alternatives: Vec<Alternative>,
-    /// It and every candidate that cannot be excluded, as fitted: what a further experiment has to tell
-    /// apart.
+    /// It and every candidate that cannot be excluded, as fitted: a further experiment has to distinguish them.
     pub rivals: Vec<Rival>,
-    /// How far behind it every other candidate fitted in its place stays, least first.
+    /// Every other candidate fitted in its place, the smallest `delta_chi2` first.
     pub compared: Vec<Compared>,
 }
 
@@ -94,34 +94,27 @@ pub struct Alternative {
 pub struct Compared {
     /// Position among the candidates.
     pub candidate: usize,
-    /// Misfit that it leaves beyond that of the one found, parameters paid for; in units of the noise
-    /// variance.
-    pub behind: f64,
-    /// What it would have to be behind by to be told apart: noise, errors of form, and structure of the
-    /// base model could turn less round.
-    pub told_apart_beyond: f64,
+    /// Chi-square above that of the cause found, the penalties on parameters included.
+    pub delta_chi2: f64,
+    /// `delta_chi2` from which on the two causes are distinguished: noise, errors of form and structure of the
+    /// base model could reverse a smaller one.
+    pub discrimination_threshold: f64,
 }
-
-/// Part of what tells two causes apart within which the other one is as likely.
-const AS_LIKELY: f64 = 0.5;
-/// Times what tells two causes apart that the other one must be behind by for a sure name: what
-/// surrogates can do is known from five of them.
-const SURELY: f64 = 1.25;
 
 impl Compared {
     /// Whether it cannot be excluded.
     pub fn is_open(&self) -> bool {
-        self.behind < self.told_apart_beyond
+        self.delta_chi2 < self.discrimination_threshold
     }
 
     /// Whether it is too close for a sure name.
     pub fn is_near(&self) -> bool {
-        self.behind < SURELY * self.told_apart_beyond
+        self.delta_chi2 < SURELY * self.discrimination_threshold
     }
 
     /// Whether it is so close that it belongs to the answer.
     pub fn is_as_likely(&self) -> bool {
-        self.behind < AS_LIKELY * self.told_apart_beyond
+        self.delta_chi2 < AS_LIKELY * self.discrimination_threshold
     }
 }
 
@@ -145,12 +138,12 @@ pub struct Finding {
     /// Experiments whose own misfit to the base model lies above their own floor.
     pub standing_out: Vec<StandsOut>,
     /// Why the verdict is what it is, in order of the decisions.
-    pub reasons: Vec<String>,
+    pub reasons: Vec<Reason>,
     /// The screening, candidate by candidate.
     pub screen: Vec<Screened>,
-    /// Drop of the misfit by each candidate alone, fitted; none where it was not fitted.
+    /// Drop of chi-square by each candidate alone, fitted; none where it was not fitted.
     pub single_drops: Vec<Option<f64>>,
-    /// Excess along the directions without a name, before and after; in units of the noise variance.
+    /// Chi-square along the generic directions, before and after.
     pub excess: [f64; 2],
     /// Held-out error before and after.
     pub gain: Gain,

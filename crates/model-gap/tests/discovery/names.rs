@@ -4,7 +4,8 @@ use crate::toy::{
     EXPERIMENTS, NOISE, SAMPLES, Toy, added, candidate, find, find_beside, find_by, input, traces,
 };
 use model_gap::discovery::{
-    Confidence, Discovery, Finding, Settings, Signal, Simulator, Trace, Verdict, separations,
+    Confidence, Discovery, Finding, Reason, Settings, Signal, Simulator, Trace, Verdict,
+    separations,
 };
 use model_gap::{Candidate, Effect, GapError, Scale};
 use nalgebra::DMatrix;
@@ -96,7 +97,11 @@ fn a_parameter_that_drifts_from_run_to_run_is_no_confident_name() {
     let truth = |e: usize, i| added(1, [0.02, 0.03, 0.06, 0.2][e], e, i);
     let finding = find(&traces(truth, 4), &candidates);
     assert_ne!(finding.confidence, Confidence::Confident, "{:?}", finding.reasons);
-    assert!(finding.reasons.iter().any(|r| r.contains("drifts")), "{:?}", finding.reasons);
+    assert!(
+        finding.reasons.iter().any(|r| matches!(r, Reason::Drifts { .. })),
+        "{:?}",
+        finding.reasons
+    );
 }
 
 #[test]
@@ -112,7 +117,7 @@ fn what_surrogates_leave_is_no_cause() {
 
 #[test]
 fn what_surrogates_could_do_to_a_difference_keeps_another_cause_open() {
-    // told apart if the base model is exact, not for sure if a surrogate leaves what lies between the two
+    // distinguished if the base model is exact, not for sure if a surrogate leaves what lies between the two
     let mut candidates = ["cubic", "lag", "cubic-twin", "fifth"].map(candidate);
     candidates[2].blocked = Some("no".into());
     let traces = traces(|e, i| added(0, 0.06, e, i), 6);
@@ -152,7 +157,7 @@ fn what_the_better_of_two_leaves_between_them_keeps_the_other_in_the_set() {
     let granted = std::slice::from_ref(&surrogate);
     assert!(alternatives(0.0, granted).is_empty());
     assert_eq!(alternatives(0.7, granted), [3]);
-    // a base model that is taken at its word leaves nothing
+    // a base model that is assumed exact leaves nothing
     assert!(alternatives(0.7, &[]).is_empty());
 }
 
@@ -183,9 +188,8 @@ fn a_cause_none_of_whose_parameters_is_known_is_tentative() {
     let candidates = [candidate("cubic")];
     let finding = find_beside(&traces, &candidates, std::slice::from_ref(&left));
     assert_eq!(finding.confidence, Confidence::Tentative, "{:?}", finding.reasons);
-    let said = |finding: &Finding| {
-        finding.reasons.iter().any(|r| r.contains("no parameter of cubic is determined"))
-    };
+    let said =
+        |finding: &Finding| finding.reasons.contains(&Reason::Undetermined { cause: "cubic" });
     assert!(said(&finding), "{:?}", finding.reasons);
     // a value that may be zero without the effect being none, as a threshold, is known
     let mut place = candidate("cubic");
@@ -230,12 +234,16 @@ fn a_weak_parameter_may_differ_from_run_to_run_where_that_costs_little() {
     assert_eq!(found, [0, 1], "{:?}", finding.reasons);
     // the same differences alone speak against the name
     let alone = find(&traces(|e: usize, i| added(1, 3.0 * (weak[e] - 0.09), e, i), 8), &candidates);
-    assert!(alone.reasons.iter().any(|r| r.contains("drifts")), "{:?}", alone.reasons);
+    assert!(
+        alone.reasons.iter().any(|r| matches!(r, Reason::Drifts { .. })),
+        "{:?}",
+        alone.reasons
+    );
 }
 
 #[test]
 fn one_run_far_out_is_not_lost_among_the_others() {
-    // a line that no cause and no direction without a name explains, in one run of four
+    // a line that no cause and no generic direction explains, in one run of four
     let line = |e: usize, i: usize| {
         if e == 2 { 0.05 * (TAU * 31.0 * i as f64 / SAMPLES as f64).cos() } else { 0.0 }
     };
@@ -269,7 +277,7 @@ fn the_run_that_the_base_model_moved_to_meet_is_the_one_that_stands_out() {
     assert!(finding.standing_out.is_empty(), "{:?}", finding.standing_out);
 }
 
-/// What is found where these trends are looked at, beside many directions without a name that surrogates fill.
+/// What is found where these trends are judged, beside many generic directions that surrogates fill.
 fn found_with_trends(drift: f64, trends: &[Signal]) -> Finding {
     let slow = |i: usize| i as f64 / SAMPLES as f64 - 0.5;
     let traces = traces(|_, i| drift * slow(i), 11);
@@ -304,8 +312,12 @@ fn a_zero_that_wanders_in_all_runs_alike_is_not_nothing() {
     let trends = [vec![(0..SAMPLES).map(slow).collect(); EXPERIMENTS]];
     let finding = found_with_trends(1.5 * NOISE, &trends);
     assert_eq!(finding.verdict, Verdict::Unknown, "{:?}", finding.reasons);
-    assert!(finding.reasons.iter().any(|r| r.contains("changes slowly")), "{:?}", finding.reasons);
-    // among all directions without a name it is lost
+    assert!(
+        finding.reasons.iter().any(|r| matches!(r, Reason::ChangesSlowly { .. })),
+        "{:?}",
+        finding.reasons
+    );
+    // among all generic directions it is lost
     assert_eq!(found_with_trends(1.5 * NOISE, &[]).verdict, Verdict::NothingMissing);
     // and where nothing wanders, nothing is missing
     assert_eq!(found_with_trends(0.0, &trends).verdict, Verdict::NothingMissing);

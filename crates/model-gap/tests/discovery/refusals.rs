@@ -4,21 +4,21 @@ use crate::toy::{
     Metered, SAMPLES, added, candidate, find, find_by, found_beside_meters, traces,
     traces_beside_meters,
 };
-use model_gap::discovery::{Confidence, Finding, TraceRole, Verdict};
+use model_gap::discovery::{Confidence, Finding, Reason, TraceRole, Verdict};
 use std::f64::consts::TAU;
 
 #[test]
 fn what_shows_around_the_chain_alone_is_not_named() {
     // a thermometer that warms while the output does nothing
-    let finding = found_beside_meters(0.3, 0.0, TraceRole::Circumstance, 1.0);
+    let finding = found_beside_meters(0.3, 0.0, TraceRole::Covariate, 1.0);
     assert_eq!(finding.verdict, Verdict::NothingMissing, "{:?}", finding.reasons);
     // with the agent at work the meter makes its size sharp
-    let finding = found_beside_meters(0.06, 0.06, TraceRole::Circumstance, 1.0);
+    let finding = found_beside_meters(0.06, 0.06, TraceRole::Covariate, 1.0);
     assert_eq!((finding.verdict, finding.causes[0].candidate), (Verdict::Named, 1));
     // in a signal of the chain itself the ramp is fitted, and refused only because nothing is gained by it
-    let worse = |f: &Finding| f.reasons.iter().any(|r| r.contains("is worse where it is held out"));
-    let around = found_beside_meters(0.3, 0.0, TraceRole::Circumstance, 1.0);
-    let within = found_beside_meters(0.3, 0.0, TraceRole::Witness, 1.0);
+    let worse = |f: &Finding| f.reasons.contains(&Reason::WorseHeldOut);
+    let around = found_beside_meters(0.3, 0.0, TraceRole::Covariate, 1.0);
+    let within = found_beside_meters(0.3, 0.0, TraceRole::IntermediateChannel, 1.0);
     assert!(!worse(&around) && worse(&within), "{:?} {:?}", around.reasons, within.reasons);
     assert!(within.causes.is_empty() && within.confidence == Confidence::Tentative);
 }
@@ -30,7 +30,7 @@ fn what_looks_like_a_refuted_cause_has_no_name() {
     let finding = find(&traces(|e, i| added(0, 0.06, e, i), 4), &candidates);
     assert_eq!((finding.verdict, finding.causes.len()), (Verdict::Unknown, 0));
     assert!(
-        finding.reasons.iter().any(|r| r.contains("its agent reads none")),
+        finding.reasons.iter().any(|r| r.to_string().contains("its agent reads none")),
         "{:?}",
         finding.reasons
     );
@@ -43,17 +43,17 @@ fn what_looks_like_a_refuted_cause_has_no_name() {
 /// refutes the lag all the same.
 #[test]
 fn a_channel_within_the_chain_that_follows_the_input_refutes_what_acts_before_it() {
-    let unseen = found_beside_meters(0.0, 0.06, TraceRole::Witness, 10.0);
+    let unseen = found_beside_meters(0.0, 0.06, TraceRole::IntermediateChannel, 10.0);
     assert_eq!(
         (unseen.verdict, unseen.causes.len()),
         (Verdict::Unknown, 0),
         "{:?}",
         unseen.reasons
     );
-    assert!(unseen.reasons.iter().any(|r| r.contains("channels beside the output show")));
+    assert!(unseen.reasons.iter().any(|r| r.to_string().contains("intermediate channels show")));
     assert_eq!(unseen.looks_like, Some(1));
     // where it shows as much as the outputs say, the name stands; what surrounds the chain says nothing of it
-    for (read, role) in [(0.06, TraceRole::Witness), (0.0, TraceRole::Circumstance)] {
+    for (read, role) in [(0.06, TraceRole::IntermediateChannel), (0.0, TraceRole::Covariate)] {
         let seen = found_beside_meters(read, 0.06, role, 10.0);
         assert_eq!(seen.verdict, Verdict::Named, "{read}: {:?}", seen.reasons);
     }
@@ -81,7 +81,7 @@ fn what_is_easily_taken_for_a_cause_before_must_add_more_than_an_error_of_form()
         confused.reasons
     );
     assert!(
-        confused.reasons.iter().any(|r| r.contains("errors of form")),
+        confused.reasons.iter().any(|r| r.to_string().contains("errors of form")),
         "{:?}",
         confused.reasons
     );
@@ -104,7 +104,7 @@ fn a_run_that_is_missed_beside_the_name_makes_it_tentative() {
         "{:?}",
         beside.reasons
     );
-    assert!(beside.reasons.iter().any(|r| r.contains("missed beside the names")));
+    assert!(beside.reasons.iter().any(|r| matches!(r, Reason::RunsStandOut { .. })));
     // where the lag is the smaller part of what stands out, it is no answer
     let most = lag_and_line(0.0055, 0.03);
     assert_eq!(most.verdict, Verdict::Unknown, "{:?}", most.reasons);
@@ -120,18 +120,14 @@ fn what_explains_one_run_alone_is_not_nothing() {
         "{:?}",
         finding.reasons
     );
-    assert!(
-        finding.reasons.iter().any(|r| r.contains("in some of the runs alone")),
-        "{:?}",
-        finding.reasons
-    );
+    assert!(finding.reasons.contains(&Reason::FewRuns), "{:?}", finding.reasons);
 }
 
 #[test]
 fn what_has_no_name_is_not_called_by_one_that_does_less_well() {
     let mut candidates =
         [candidate("cubic"), candidate("lag"), candidate("cubic again"), candidate("fifth power")];
-    candidates[3].nameless = Some("a spring");
+    candidates[3].decoy = Some("a spring");
     let cubic = |e: usize, i: usize| added(0, 0.06, e, i);
     let fifth = |e: usize, i: usize| added(3, 0.06, e, i);
     let found = find(&traces(fifth, 4), &candidates);
@@ -141,7 +137,11 @@ fn what_has_no_name_is_not_called_by_one_that_does_less_well() {
         "{:?}",
         found.reasons
     );
-    assert!(found.reasons.iter().any(|r| r.contains("a spring would")), "{:?}", found.reasons);
+    assert!(
+        found.reasons.iter().any(|r| r.to_string().contains("it would be a spring")),
+        "{:?}",
+        found.reasons
+    );
     // what it is not keeps its name; what explains the same but for a parameter has it, tentatively
     candidates[2].blocked = Some("not asked for".into());
     let found = find(&traces(cubic, 4), &candidates);
@@ -152,7 +152,7 @@ fn what_has_no_name_is_not_called_by_one_that_does_less_well() {
         found.reasons
     );
     candidates[2].blocked = None;
-    candidates[2].nameless = Some("a spring");
+    candidates[2].decoy = Some("a spring");
     let found = find(&traces(cubic, 4), &candidates);
     assert_eq!((found.confidence, found.causes[0].candidate), (Confidence::Tentative, 0));
     let names: Vec<usize> =
@@ -167,10 +167,10 @@ fn what_has_no_name_and_is_not_there_stands_in_nobodys_way() {
     let mut candidates =
         [candidate("cubic"), candidate("lag"), candidate("cubic again"), candidate("fifth power")];
     candidates[2].blocked = Some("not asked for".into());
-    candidates[3].nameless = Some("a spring");
+    candidates[3].decoy = Some("a spring");
     let found = |ramp_read: f64| {
         let fifth = |e: usize, i: usize| added(3, 0.06, e, i);
-        let traces = traces_beside_meters(fifth, ramp_read, TraceRole::Witness, 10.0);
+        let traces = traces_beside_meters(fifth, ramp_read, TraceRole::IntermediateChannel, 10.0);
         find_by(&Metered, &traces, &candidates)
     };
     let (unseen, seen) = (found(0.0), found(0.06));

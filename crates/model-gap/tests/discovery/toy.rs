@@ -1,7 +1,7 @@
 //! A system whose answers are known: four sines, and what may act on them.
 
 use model_gap::discovery::{Discovery, Finding, Settings, Signal, Simulator, Trace, TraceRole};
-use model_gap::{Candidate, Cause, Effect, GapError, Parameter, Scale, Side};
+use model_gap::{Candidate, Cause, Effect, GapError, Parameter, Scale};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
@@ -51,7 +51,6 @@ pub(crate) fn candidate(id: &'static str) -> Candidate {
     let cause = Cause {
         id,
         physics: "",
-        side: Side::Output,
         parameters: vec![Parameter {
             name: "size",
             unit: "1",
@@ -74,7 +73,7 @@ pub(crate) fn candidate(id: &'static str) -> Candidate {
         starts: vec![vec![0.05], vec![-0.05]],
         blocked: None,
         refuted: None,
-        nameless: None,
+        decoy: None,
     }
 }
 

@@ -1,8 +1,8 @@
-//! Harmonics by least squares, first harmonic errors, residual tables.
+//! Harmonics by least squares, first harmonic errors.
 
 use crate::{noise, wave};
 use approx::assert_abs_diff_eq;
-use model_gap::{FirstHarmonicError, GapError, HarmonicFit, ResidualHarmonics};
+use model_gap::{FirstHarmonicError, GapError, HarmonicFit};
 use proptest::prelude::*;
 
 const STEP_S: f64 = 1e-3;
@@ -23,32 +23,6 @@ proptest! {
             prop_assert!((found.amplitude() - amplitude).abs() < 1e-9);
             let off = (found.phase_rad() - phase).sin();
             prop_assert!(off.abs() < 1e-7, "{off:e}");
-        }
-    }
-
-    #[test]
-    fn the_residual_table_does_not_depend_on_the_start(
-        residual in prop::collection::vec((0.01..0.3_f64, -3.0..3.0_f64), 9),
-        start in 1..200_usize,
-    ) {
-        let measured = wave(&[(2.0, 0.7)], 5.0, STEP_S, 2000);
-        let left = wave(&residual, 5.0, STEP_S, 2000);
-        let simulated: Vec<f64> = measured.iter().zip(&left).map(|(m, r)| m - r).collect();
-        let whole = ResidualHarmonics::of(&measured, &simulated, STEP_S, 5.0, 9).unwrap();
-        let late =
-            ResidualHarmonics::of(&measured[start..], &simulated[start..], STEP_S, 5.0, 9).unwrap();
-        for ((n, (amplitude, phase)), (a, b)) in
-            (1..).zip(&residual).zip(whole.rows.iter().zip(&late.rows))
-        {
-            prop_assert_eq!((a.number, b.number), (n, n));
-            prop_assert!((a.amplitude - amplitude).abs() < 1e-10);
-            prop_assert!((a.relative_amplitude - amplitude / 2.0).abs() < 1e-10);
-            prop_assert!((b.relative_amplitude - a.relative_amplitude).abs() < 1e-9);
-            let exact_deg = (phase - n as f64 * 0.7).to_degrees();
-            for row in [a, b] {
-                let off = (row.relative_phase_deg - exact_deg).to_radians().sin();
-                prop_assert!(off.abs() < 1e-8, "{off:e}");
-            }
         }
     }
 }

@@ -1,11 +1,9 @@
 //! Measures of misfit against exact answers.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
-
 mod energy_and_noise;
 mod harmonics;
 mod misfit;
-mod splits;
+mod stimulus;
 
 use std::f64::consts::TAU;
 

@@ -100,8 +100,6 @@ impl ActuatorModel {
         let own = match &self.law {
             ActuatorLaw::Linear(_) => range,
             ActuatorLaw::StaticPreisach(law) => law.grid().range(),
-            ActuatorLaw::Everett(law) => law.grid().range(),
-            ActuatorLaw::RelayGrid(law) => law.grid().range(),
             ActuatorLaw::DynamicPreisach(law) => law.grid().range(),
             ActuatorLaw::PrandtlIshlinskii(law) => law.parameters().range_volt,
             ActuatorLaw::BoucWen(law) => law.parameters().range_volt,
@@ -168,7 +166,7 @@ impl Doubts {
     }
 
     /// A number larger than `most`.
-    fn above(&mut self, field: &str, (value, unit): (f64, &str), most: f64) {
+    fn above(&mut self, field: &str, value: f64, unit: &str, most: f64) {
         if value > most {
             let expected = format!("up to {most} {unit}");
             self.unlikely(field, format!("{value} {unit}"), &expected, "check value and unit");

@@ -15,8 +15,8 @@ const MAINS_HZ: std::ops::RangeInclusive<f64> = 10.0..=2000.0;
 pub(super) fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mut Doubts) {
     let (low, high, span) = (range.lowest_volt(), range.highest_volt(), range.span_volt());
     match stage {
-        AmplifierStage::Lag(lag) => doubts.above("tau_s", (lag.tau_s, "s"), 0.5),
-        AmplifierStage::Delay(delay) => doubts.above("delay_s", (delay.delay_s, "s"), 0.1),
+        AmplifierStage::Lag(lag) => doubts.above("tau_s", lag.tau_s, "s", 0.5),
+        AmplifierStage::Delay(delay) => doubts.above("delay_s", delay.delay_s, "s", 0.1),
         AmplifierStage::CurrentLimit(limit) => {
             let sweep_s = span / limit.slew_rate_volt_per_s;
             if sweep_s > 10.0 {
@@ -46,12 +46,12 @@ pub(super) fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mu
             if heat.coefficient_per_k == 0.0 || heat.rise_k_per_volt2_hz == 0.0 {
                 doubts.idle("", "no change of gain with heat".into());
             }
-            doubts.above("coefficient_per_k", (heat.coefficient_per_k.abs(), "1/K"), 0.03);
+            doubts.above("coefficient_per_k", heat.coefficient_per_k.abs(), "1/K", 0.03);
         }
         AmplifierStage::Depolarisation(loss) => {
             let threshold = loss.threshold_volt;
             let loses = loss.loss_per_volt > 0.0 || loss.loss_per_volt_second > 0.0;
-            doubts.above("loss_per_volt_second", (loss.loss_per_volt_second, "1/(V s)"), 1.0);
+            doubts.above("loss_per_volt_second", loss.loss_per_volt_second, "1/(V s)", 1.0);
             if !loses || threshold <= low {
                 doubts.idle("threshold_volt", format!("{threshold} V, never passed below"));
             } else if loss.loss_per_volt * (threshold - high) >= 1.0 {
@@ -84,14 +84,14 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
             if creep.rate_per_decade == 0.0 {
                 doubts.idle("rate_per_decade", "0".into());
             }
-            doubts.above("rate_per_decade", (creep.rate_per_decade, "of a step"), 0.1);
+            doubts.above("rate_per_decade", creep.rate_per_decade, "of a step", 0.1);
         }
         LinkageStage::KelvinVoigt(chain) => {
             let sum: f64 = chain.elements.iter().map(|e| e.compliance_ratio).sum();
             if sum == 0.0 {
                 doubts.idle("elements", "no compliance".into());
             }
-            doubts.above("elements", (sum, "of a step in all"), 0.5);
+            doubts.above("elements", sum, "of a step in all", 0.5);
         }
         LinkageStage::Relaxation(relaxation) => {
             if relaxation.elements.iter().all(|e| e.share == 0.0) {
@@ -102,7 +102,7 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
             if late.share == 0.0 {
                 doubts.idle("share", "0".into());
             }
-            doubts.above("share", (late.share, "of the motion"), 0.3);
+            doubts.above("share", late.share, "of the motion", 0.3);
             if late.travel_um > LONG_TRAVEL * stroke_um {
                 let found = format!("{} um of a stroke of {stroke_um:.1} um", late.travel_um);
                 doubts.unlikely("travel_um", found, "0.1 to 1 stroke", "check the unit");
@@ -124,9 +124,9 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
             if load.stiffness_ratio == 0.0 && load.compliance_um_per_newton == 0.0 {
                 doubts.idle("", "no stiffness and no compliance".into());
             }
-            doubts.above("stiffness_ratio", (load.stiffness_ratio, "of the actuator's"), 10.0);
-            let compliance = (load.compliance_um_per_newton, "um/N");
-            doubts.above("compliance_um_per_newton", compliance, 20.0);
+            doubts.above("stiffness_ratio", load.stiffness_ratio, "of the actuator's", 10.0);
+            let compliance = load.compliance_um_per_newton;
+            doubts.above("compliance_um_per_newton", compliance, "um/N", 20.0);
         }
     }
 }
@@ -151,17 +151,13 @@ pub(super) fn gaps(linkage: &[LinkageStage], stroke_um: f64, doubts: &mut Doubts
 
 pub(super) fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
     match stage {
-        SensorStage::Filter(lag) => doubts.above("tau_s", (lag.tau_s, "s"), 0.5),
-        SensorStage::Delay(delay) => doubts.above("delay_s", (delay.delay_s, "s"), 0.1),
+        SensorStage::Filter(lag) => doubts.above("tau_s", lag.tau_s, "s", 0.5),
+        SensorStage::Delay(delay) => doubts.above("delay_s", delay.delay_s, "s", 0.1),
         SensorStage::Nonlinearity(shape) => {
             if shape.amplitude_um == 0.0 {
                 doubts.idle("amplitude_um", "0 um".into());
             }
-            doubts.above(
-                "amplitude_um",
-                (shape.amplitude_um.abs(), "um"),
-                SENSOR_ERROR * stroke_um,
-            );
+            doubts.above("amplitude_um", shape.amplitude_um.abs(), "um", SENSOR_ERROR * stroke_um);
             if 2.0 * shape.half_range_um < 0.5 * stroke_um {
                 let found = format!("{} um of a stroke of {stroke_um:.1} um", shape.half_range_um);
                 let remedy = "beyond it the polynomial runs away; check the unit";
@@ -179,7 +175,7 @@ pub(super) fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
             if hum.amplitude_um == 0.0 {
                 doubts.idle("amplitude_um", "0 um".into());
             }
-            doubts.above("amplitude_um", (hum.amplitude_um, "um"), SENSOR_ERROR * stroke_um);
+            doubts.above("amplitude_um", hum.amplitude_um, "um", SENSOR_ERROR * stroke_um);
             if !MAINS_HZ.contains(&hum.frequency_hz) {
                 let found = format!("{} Hz", hum.frequency_hz);
                 doubts.unlikely("frequency_hz", found, "50, 60 or 400 Hz", "check value and unit");

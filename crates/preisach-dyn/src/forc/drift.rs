@@ -43,7 +43,7 @@ impl ForcData {
         if kind == DriftKind::Gain {
             for &reading in &readings {
                 let quantity = "calibration reading over the mean reading";
-                crate::actuator::check_positive(quantity, reading / mean)?;
+                crate::check::check_positive(quantity, reading / mean)?;
             }
         }
         let smooth: Vec<f64> = (0..readings.len())

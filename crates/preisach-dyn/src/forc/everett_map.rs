@@ -1,7 +1,7 @@
 //! Everett's integral at the nodes of a grid.
 
-use crate::identify::program::Row;
-use crate::play_map::split;
+use crate::identify::fit::program::Row;
+use crate::laws::play_map::split;
 use crate::{PlayMap, PreisachGrid};
 
 /// Everett's integral `E(alpha, beta)` at the nodes of a grid, straight between them.

@@ -2,9 +2,9 @@
 
 use super::everett_map::{corners, unknown, weights};
 use super::{EverettMap, ForcCurve, ForcData};
-use crate::actuator::check_positive;
-use crate::identify::program::{LeastSquaresProgram, Row};
-use crate::identify::static_fit::merged;
+use crate::check::check_positive;
+use crate::identify::fit::program::{LeastSquaresProgram, Row};
+use crate::identify::fit::static_fit::merged;
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach, VoltageRange};
 use serde::{Deserialize, Serialize};
 

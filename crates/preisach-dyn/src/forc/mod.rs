@@ -128,8 +128,8 @@ impl ForcData {
             }
         }
         let [low, high] = self.input_range();
-        crate::actuator::check_positive("range of the inputs of the curves", high - low)?;
-        crate::actuator::check_positive("range of the outputs of the curves", self.output_span())?;
+        crate::check::check_positive("range of the inputs of the curves", high - low)?;
+        crate::check::check_positive("range of the outputs of the curves", self.output_span())?;
         for (curve, ForcCurve { input, .. }) in self.curves.iter().enumerate() {
             let floor = input[0] - REVERSAL_NOISE * (high - low);
             if let Some((index, &value)) = input.iter().enumerate().find(|(_, u)| **u < floor) {

@@ -10,57 +10,33 @@
 //! Equation error alone is biased, and the quasi-static records contain dynamics too: hence the
 //! last two steps. Refinement must lower the error of the training records or it is dropped.
 
-mod compare;
-mod comparison;
-mod drive;
-mod families;
-mod findings;
-mod flat_top;
-mod fourier;
-mod layered;
-mod noise;
-mod output_error;
-mod passage;
-mod plausibility;
-mod prepared;
-pub(crate) mod program;
-mod rate_fit;
-mod record;
-mod refine;
-mod repetition;
-mod roles;
-mod settings;
-mod spikes;
-mod split_rule;
-pub(crate) mod static_fit;
-mod stop_fit;
-mod stream;
-mod subject;
-mod validate;
+pub(crate) mod families;
+pub(crate) mod fit;
+pub(crate) mod records;
 
-pub use compare::RecordFit;
-pub use comparison::{Candidates, FittedModel, ModelComparison, ModelRow, Order, compare_models};
-pub use drive::{Drive, Waveform};
-pub use families::Family;
-pub use findings::{Finding, Identifiability, Severity};
-pub use noise::CycleNoise;
-pub use output_error::{Covariance, Estimate};
-pub use program::QpStatus;
-pub use record::{BenchRecord, RecordUse, RecordWindows};
-pub use refine::{Refinement, RefinementOutcome};
-pub use settings::{FlapZero, RateSmoothness, Settings};
-pub use split_rule::SplitRule;
-pub use stream::StaticAccumulator;
-pub use subject::Subject;
-pub use validate::Validation;
-
-use crate::{
-    ActuatorLaw, ActuatorModel, DynamicPreisach, LinearGain, PlayMap, PlayMemory, PreisachError,
-    PreisachGrid, StartState, StaticPreisach, TrainedRange,
+pub use families::comparison::{
+    Candidates, FittedModel, ModelComparison, ModelRow, Order, compare_models,
 };
-use output_error::Uncertainty;
-use prepared::Prepared;
-use roles::{Bench, Sorted};
+pub use families::family::Family;
+pub use fit::compare::RecordFit;
+pub use fit::output_error::{Covariance, Estimate};
+pub use fit::program::QpStatus;
+pub use fit::refine::{Refinement, RefinementOutcome};
+pub use fit::stream::StaticAccumulator;
+pub use fit::validate::Validation;
+pub use records::drive::{Drive, Waveform};
+pub use records::findings::{Finding, Identifiability, Severity};
+pub use records::noise::CycleNoise;
+pub use records::record::{BenchRecord, RecordUse, RecordWindows};
+pub use records::settings::{FlapZero, RateSmoothness, Settings};
+pub use records::split_rule::SplitRule;
+pub use records::subject::Subject;
+
+use crate::{ActuatorLaw, ActuatorModel, PreisachError, PreisachGrid, StaticPreisach};
+use fit::output_error::Uncertainty;
+use fit::preisach::{RateFit, fit_linear, major_loop_mean, trained_range};
+use fit::roles::{Bench, Sorted};
+use fit::{compare, static_fit};
 
 /// What the identification says about one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -214,111 +190,6 @@ fn unexplained(reports: &[RecordReport]) -> f64 {
     (trained.iter().sum::<f64>() / trained.len().max(1) as f64).sqrt()
 }
 
-/// A dynamic Preisach law with what its fit rests on.
-struct RateFit {
-    law: ActuatorLaw,
-    smoothness: f64,
-    validation: Vec<Validation>,
-    refinement: Refinement,
-    parameters: Vec<Estimate>,
-    covariance: Option<Covariance>,
-}
-
-impl RateFit {
-    /// The rounds of `mu0` and `mu1, mu2` and the refinement, from a first static map.
-    fn new(
-        grid: &PreisachGrid,
-        mut g0_deg: PlayMap,
-        slow: &[&Prepared],
-        fast: &[&Prepared],
-        settings: &Settings,
-        uncertainty: Uncertainty,
-    ) -> Result<Self, PreisachError> {
-        let (mut smoothness, mut validation) = validate::smoothness(grid, &g0_deg, fast, settings);
-        let mut model = rate_fit::fit(grid, &g0_deg, fast, smoothness, settings)?
-            .model(grid, &g0_deg, settings)?;
-        for round in 1..settings.rounds {
-            let targets: Vec<Vec<f64>> =
-                slow.iter().map(|r| without_rate_terms(&model, r.record)).collect();
-            g0_deg = static_fit::fit(grid, slow, &targets, settings)?;
-            if round == 1 {
-                // again, now that the static map no longer holds the dynamics of the slow records
-                (smoothness, validation) = validate::smoothness(grid, &g0_deg, fast, settings);
-            }
-            let maps = rate_fit::fit(grid, &g0_deg, fast, smoothness, settings)?;
-            model = maps.model(grid, &g0_deg, settings)?;
-        }
-        let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
-        let refine::Refined { model, refinement, parameters, covariance } =
-            refine::refine(&model, &all, settings, uncertainty)?;
-        let law = ActuatorLaw::DynamicPreisach(model);
-        Ok(Self { law, smoothness, validation, refinement, parameters, covariance })
-    }
-}
-
-/// Output of a record with `d G1 + d^2 G2` taken off, `d` from the simulated model: smooth, and
-/// good enough for a term that is small in slow records.
-fn without_rate_terms(model: &DynamicPreisach, record: &BenchRecord) -> Vec<f64> {
-    let mut memory = PlayMemory::new(model.grid(), record.voltage_volt[0], StartState::Rest);
-    let mut history = crate::OutputHistory::at_rest(model.maps(&memory)[0]);
-    let mut counts = crate::StepCounts::default();
-    record
-        .voltage_volt
-        .iter()
-        .zip(&record.output_deg)
-        .map(|(&u, &measured)| {
-            let output = model.step(&mut memory, &mut history, &mut counts, u, record.time_step_s);
-            // the simulated output is G0 + d G1 + d^2 G2 by construction
-            measured - (output - model.maps(&memory)[0])
-        })
-        .collect()
-}
-
-/// Least squares line through the quasi-static records, each weighing alike.
-fn fit_linear(slow: &[&Prepared]) -> LinearGain {
-    let [mut w, mut u1, mut u2, mut y1, mut uy] = [0.0; 5];
-    for Prepared { record, .. } in slow {
-        let weight = 1.0 / record.output_deg.len() as f64;
-        for (&u, &y) in record.voltage_volt.iter().zip(&record.output_deg) {
-            w += weight;
-            u1 += weight * u;
-            u2 += weight * u * u;
-            y1 += weight * y;
-            uy += weight * u * y;
-        }
-    }
-    let gain = (w * uy - u1 * y1) / (w * u2 - u1 * u1);
-    LinearGain { gain_deg_per_volt: gain, bias_volt: (u1 - y1 / gain) / w }
-}
-
-/// Mean over the steady cycles of the periodic quasi-static record with the largest amplitude; over
-/// all of the widest record if none is periodic.
-fn major_loop_mean(slow: &[&Prepared]) -> f64 {
-    let by_amplitude =
-        |a: &&&Prepared, b: &&&Prepared| a.drive.amplitude_volt.total_cmp(&b.drive.amplitude_volt);
-    let periodic = slow.iter().filter(|r| r.cycles.is_some()).max_by(by_amplitude);
-    match periodic.or_else(|| slow.iter().max_by(by_amplitude)) {
-        Some(Prepared { cycles: Some(cycles), .. }) => cycles.series.mean,
-        Some(Prepared { record: BenchRecord { output_deg, .. }, .. }) => {
-            output_deg.iter().sum::<f64>() / output_deg.len() as f64
-        }
-        None => 0.0,
-    }
-}
-
-fn trained_range(slow: &[&Prepared], fast: &[&Prepared], all: &[Prepared]) -> TrainedRange {
-    let trained = || slow.iter().chain(fast).map(|r| &r.drive);
-    let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    TrainedRange {
-        least_amplitude_volt: least(&mut trained().map(|d| d.amplitude_volt)),
-        largest_amplitude_volt: largest(&mut trained().map(|d| d.amplitude_volt)),
-        lowest_hz: least(&mut trained().map(Drive::strongest_hz)),
-        highest_hz: largest(&mut trained().map(Drive::strongest_hz)),
-        bench_highest_hz: largest(&mut all.iter().map(|r| r.drive.strongest_hz())),
-    }
-}
-
 /// The bench gain that makes a displacement record reach `half_stroke_deg` either way.
 ///
 /// ```text
@@ -336,6 +207,6 @@ pub fn half_stroke_gain_deg_per_um(
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let half_um = 0.5 * (high - low);
-    crate::actuator::check_positive("half stroke (um)", half_um)?;
+    crate::check::check_positive("half stroke (um)", half_um)?;
     Ok(half_stroke_deg / half_um)
 }

@@ -12,5 +12,6 @@ mod joints;
 mod newton;
 mod periodic;
 mod sample;
+mod settings;
 
-pub use periodic::{InverseSettings, PeriodicInverse};
+pub use settings::{InverseSettings, PeriodicInverse};

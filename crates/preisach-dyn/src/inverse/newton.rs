@@ -1,7 +1,7 @@
 //! Newton's method on the harmonics of a voltage.
 
 use super::{InverseSettings, PeriodicInverse};
-use crate::actuator::check_positive;
+use crate::check::check_positive;
 use crate::{ActuatorModel, PeriodicResponse, PreisachError};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -138,16 +138,6 @@ impl<'a> Search<'a> {
             Ok((found, iterations)) => Ok(self.solution(found, iterations)),
             Err(stop) => Err(self.failure(&start, 1.0, stop)),
         }
-    }
-
-    /// What a command does, beside what is wanted.
-    pub(super) fn evaluated(
-        &self,
-        command_volt: &HarmonicSeries,
-        iterations: usize,
-    ) -> Result<PeriodicInverse, PreisachError> {
-        let x = coefficients(command_volt, self.settings.voltage_harmonics);
-        Ok(self.solution(self.point(x)?, iterations))
     }
 
     /// Half peak to peak of the wanted motion, deg.

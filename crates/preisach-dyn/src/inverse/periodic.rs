@@ -2,54 +2,9 @@
 
 use super::joints::LastJoint;
 use super::newton::Search;
-use crate::{
-    ActuatorLaw, ActuatorModel, AmplifierStage, PeriodicResponse, PeriodicSettings, PreisachError,
-    StaticPreisach, VoltageRange,
-};
+use super::{InverseSettings, PeriodicInverse};
+use crate::{ActuatorModel, AmplifierStage, PreisachError, VoltageRange};
 use rotor_base::HarmonicSeries;
-use serde::{Deserialize, Serialize};
-
-/// Settings of a periodic inverse.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct InverseSettings {
-    /// How orbits are simulated.
-    pub periodic: PeriodicSettings,
-    /// Harmonics of the voltage: as many harmonics of the flap are made right.
-    pub voltage_harmonics: usize,
-    /// Largest error of the mean and of every coefficient of these harmonics, deg.
-    pub tolerance_deg: f64,
-    /// Newton steps to try at one amplitude.
-    pub largest_iterations: usize,
-}
-
-impl Default for InverseSettings {
-    /// 48 harmonics to 1e-4 deg, within 25 steps: the corners that plays make at reversals need many.
-    fn default() -> Self {
-        Self {
-            periodic: PeriodicSettings::default(),
-            voltage_harmonics: 48,
-            tolerance_deg: 1e-4,
-            largest_iterations: 25,
-        }
-    }
-}
-
-/// A voltage and what it does.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PeriodicInverse {
-    /// The closed orbit of the voltage found: voltage, flap, steps.
-    pub response: PeriodicResponse,
-    /// Largest error of the flap over the revolution, deg: what the harmonics beyond
-    /// [`InverseSettings::voltage_harmonics`] leave.
-    pub largest_error_deg: f64,
-    /// Root mean square error over the revolution, deg.
-    pub rms_error_deg: f64,
-    /// Half peak to peak of the wanted motion, deg.
-    pub amplitude_deg: f64,
-    /// Newton steps in all.
-    pub iterations: usize,
-}
 
 impl ActuatorModel {
     /// The periodic voltage under which the flap moves as wanted.
@@ -73,9 +28,6 @@ impl ActuatorModel {
     ///
     /// Commands beyond a saturation at the amplifier's input are not tried.
     ///
-    /// A [`crate::RelayGrid`] moves in steps, which have no inverse: the voltage is that of the plays
-    /// with the same density, the motion and its error those of the relays.
-    ///
     /// # Errors
     /// [`PreisachError::MotionOutOfReach`] if the voltage range ends before the motion is reached: it
     /// says what amplitude of the same shape is within reach. [`PreisachError::InverseNotConverged`] if
@@ -88,13 +40,6 @@ impl ActuatorModel {
         settings: &InverseSettings,
     ) -> Result<PeriodicInverse, PreisachError> {
         let search = Search::new(self, wanted_deg, rev_hz, settings)?;
-        if let ActuatorLaw::RelayGrid(relays) = &self.law {
-            let plays = StaticPreisach::new(*relays.grid(), relays.map().clone())?;
-            let law = ActuatorLaw::StaticPreisach(plays);
-            let smooth = Self { law, ..self.clone() };
-            let found = smooth.periodic_inverse(wanted_deg, rev_hz, settings)?;
-            return search.evaluated(&found.response.voltage_volt, found.iterations);
-        }
         if let Some(limited) = self.limited() {
             return limited.periodic_inverse(wanted_deg, rev_hz, settings);
         }

@@ -1,7 +1,7 @@
 //! Sample-by-sample inverse of the static model.
 
-use crate::memory::moved;
-use crate::play_map::interpolate;
+use crate::laws::memory::moved;
+use crate::laws::play_map::interpolate;
 use crate::{PlayMemory, PreisachError, StaticPreisach};
 
 impl StaticPreisach {

@@ -3,7 +3,7 @@
 use super::Step;
 use super::lag::LagStep;
 use crate::PreisachError;
-use crate::actuator::{check_not_negative, check_positive};
+use crate::check::{check_not_negative, check_positive};
 use serde::{Deserialize, Serialize};
 
 /// An amplifier whose current is limited, into a capacitance: a slew limit.

@@ -2,7 +2,7 @@
 
 use super::Step;
 use crate::PreisachError;
-use crate::actuator::check_not_negative;
+use crate::check::check_not_negative;
 use serde::{Deserialize, Serialize};
 
 /// A first-order lag: an amplifier's output resistance into a capacitance, or a sensor's filter.

@@ -2,7 +2,7 @@
 
 use super::Step;
 use crate::PreisachError;
-use crate::actuator::check_not_negative;
+use crate::check::check_not_negative;
 use serde::{Deserialize, Serialize};
 
 /// Lost motion in a joint.
@@ -219,7 +219,7 @@ pub struct Accommodation {
 
 impl Accommodation {
     pub(super) fn check(self) -> Result<(), PreisachError> {
-        crate::actuator::check_positive("travel_um", self.travel_um)?;
+        crate::check::check_positive("travel_um", self.travel_um)?;
         if (0.0..=LARGEST_SHARE).contains(&self.share) {
             return Ok(());
         }

@@ -3,7 +3,7 @@
 use super::creep::CreepStep;
 use super::lag::LagStep;
 use crate::PreisachError;
-use crate::actuator::{check_not_negative, check_positive};
+use crate::check::{check_not_negative, check_positive};
 use serde::{Deserialize, Serialize};
 
 /// One relaxation time and its share of the response.

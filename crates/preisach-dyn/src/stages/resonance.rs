@@ -2,7 +2,7 @@
 
 use super::Step;
 use crate::PreisachError;
-use crate::actuator::check_positive;
+use crate::check::check_positive;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

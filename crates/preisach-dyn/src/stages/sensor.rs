@@ -1,7 +1,7 @@
 //! What the sensor adds: an error of its characteristic, rounding, hum.
 
 use super::Step;
-use crate::actuator::{check_not_negative, check_positive};
+use crate::check::{check_not_negative, check_positive};
 use crate::{Calibration, PreisachError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

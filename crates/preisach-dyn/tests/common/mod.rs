@@ -5,12 +5,12 @@
 use preisach_dyn::{
     Accommodation, ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen,
     BoucWenParameters, Calibration, CoulombFriction, CurrentLimit, Delay, Depolarisation,
-    DielectricHeating, Drive, DynamicParameters, DynamicPreisach, Envelope, EverettStaircase,
-    KelvinVoigt, KelvinVoigtElement, Lag, LinearGain, LinkageStage, LoadStiffness, LogCreep,
-    MainsHum, Nonlinearity, NonlinearityShape, PlayMap, PrandtlIshlinskii, PrandtlParameters,
-    PrandtlStop, PreisachGrid, Quantisation, RateForm, Relaxation, RelaxationElement, RelayGrid,
-    Resonance, Saturation, SensorStage, StaticPreisach, StopParameters, TimeOrder, VoltageRange,
-    WeightedPlay, WeightedStop,
+    DielectricHeating, Drive, DynamicParameters, DynamicPreisach, Envelope, KelvinVoigt,
+    KelvinVoigtElement, Lag, LinearGain, LinkageStage, LoadStiffness, LogCreep, MainsHum,
+    Nonlinearity, NonlinearityShape, PlayMap, PrandtlIshlinskii, PrandtlParameters, PrandtlStop,
+    PreisachGrid, Quantisation, RateForm, Relaxation, RelaxationElement, Resonance, Saturation,
+    SensorStage, StaticPreisach, StopParameters, TimeOrder, VoltageRange, WeightedPlay,
+    WeightedStop,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -156,13 +156,10 @@ pub(crate) fn dynamic_law(form: RateForm) -> ActuatorLaw {
 
 /// One of every law.
 pub(crate) fn every_law() -> Vec<ActuatorLaw> {
-    let (grid, map) = map(12);
     let envelope = Envelope { offset_deg: 0.2, quadratic: 0.1, cubic: -0.05 };
     vec![
         linear_law(),
         static_law(),
-        ActuatorLaw::Everett(EverettStaircase::new(grid, map.clone()).unwrap()),
-        ActuatorLaw::RelayGrid(RelayGrid::new(grid, map, 3).unwrap()),
         dynamic_law(RateForm::WellPosed),
         ActuatorLaw::PrandtlIshlinskii(
             PrandtlIshlinskii::new(prandtl(plays(), 5e-4, envelope)).unwrap(),

@@ -1,10 +1,11 @@
 //! What the moderately deflected blade is made of.
 
-use crate::distribution::Allowed;
+use crate::beam::distribution::Allowed;
 use crate::{BladeProperties, BladeSpec, Distribution, FemError};
+use serde::{Deserialize, Serialize};
 
 use super::inertia::SectionMass;
-use super::modal::SectionShape;
+use super::section_shape::SectionShape;
 use super::strain::{STRAIN_VARIABLES, SectionStiffness, at};
 
 /// Whether the radial motion of points off the axis, by the slopes of bending, carries inertia.
@@ -18,7 +19,7 @@ pub enum RotaryInertia {
 }
 
 /// Whether tension turns the built-in twist straight.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Untwist {
     /// The moment `N k_A^2 th_x` acts, as the energy says.
     #[default]
@@ -28,7 +29,7 @@ pub enum Untwist {
 }
 
 /// What the degree of freedom phi is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum TwistAngle {
     /// The last of three rotations (lag, flap, pitch): the section's pitch. Bending in two planes twists
     /// it, `kappa_x = phi_x + w_x v_xx`.

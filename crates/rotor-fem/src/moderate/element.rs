@@ -6,7 +6,7 @@ use super::points::{
     ElementMatrix, ElementPoints, MOTION, Point, STRAIN, SectionMatrix, add_motion, add_strain,
     motion_of, strain_of,
 };
-use crate::shape::ELEMENT_DOF;
+use crate::beam::shape::ELEMENT_DOF;
 
 /// Degrees of freedom of an element with two rates.
 #[derive(Debug, Clone, Copy)]

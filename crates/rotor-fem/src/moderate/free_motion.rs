@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::statics::solve;
 use super::{ModerateModel, NodalMotion, PitchMotion};
 use crate::FemError;
-use crate::assembly::restrict;
+use crate::beam::assembly::restrict;
 
 /// Momentum out of balance at which a step is done, over the largest momentum.
 const TOLERANCE: f64 = 1e-13;

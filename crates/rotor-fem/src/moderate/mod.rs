@@ -14,16 +14,18 @@ mod modal_tangent;
 mod model;
 mod modes;
 mod points;
+mod section_shape;
 mod span;
 mod statics;
 mod strain;
 
 pub use blade::{ModerateBlade, ModerateSpec, RotaryInertia, TorsionTerms, TwistAngle, Untwist};
 pub use free_motion::{FreeMotion, MotionState};
-pub use modal::{ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape, SectionShape};
+pub use modal::{ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape};
 pub use modal_tangent::ModalTangent;
 pub use model::{ModerateModel, NodalMotion, PitchMotion, Tangents};
 pub use modes::{AxialMotion, deflected_fan, deflected_modes};
+pub use section_shape::SectionShape;
 pub use statics::{StaticSettings, StaticState};
 
 /// The numbers the section's functions are written in: real to solve, complex to differentiate.

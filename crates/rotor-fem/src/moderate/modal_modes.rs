@@ -2,7 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::modal::{ModalBlade, ModalShape, SectionShape};
+use super::modal::{ModalBlade, ModalShape};
+use super::section_shape::SectionShape;
 use super::{AxialMotion, ModerateModel, StaticState, deflected_modes};
 use crate::{CoupledMode, FemError, GyroscopicTerms, ModeCount};
 

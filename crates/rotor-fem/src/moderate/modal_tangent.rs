@@ -4,7 +4,8 @@ use nalgebra::{DMatrix, SVector};
 
 use super::PitchMotion;
 use super::inertia::MOTION_VARIABLES;
-use super::modal::{Coordinates, ModalBlade, ModalMotion, SectionShape, Station};
+use super::modal::{Coordinates, ModalBlade, ModalMotion, Station};
+use super::section_shape::SectionShape;
 use super::strain::{Curvatures, STRAIN_VARIABLES, SectionStiffness, at};
 
 /// Modal force with its derivatives.

@@ -6,8 +6,8 @@ use super::ModerateBlade;
 use super::element::{self, ElementMotion, Imposed};
 use super::inertia::Spin;
 use super::points::ElementPoints;
-use crate::assembly::{MAX_ELEMENTS, section_motion};
-use crate::shape::{ELEMENT_DOF, JOINT_DOF, STRIDE, place};
+use crate::beam::assembly::{MAX_ELEMENTS, section_motion};
+use crate::beam::shape::{ELEMENT_DOF, JOINT_DOF, STRIDE, place};
 use crate::{FemError, RootSupport, SectionMotion};
 
 /// Pitch imposed at the root, at 0.75 R of a linearly twisted blade, with its rates in azimuth.

@@ -3,9 +3,9 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::{ModerateBlade, ModerateModel, NodalMotion, PitchMotion, StaticSettings, StaticState};
-use crate::assembly::{dof_kind, restrict};
-use crate::mode_set::shift;
-use crate::modes::ModeProblem;
+use crate::beam::assembly::{dof_kind, restrict};
+use crate::modes::coupled::ModeProblem;
+use crate::modes::mode_set::shift;
 use crate::{CoupledMode, FanPoint, FemError, GyroscopicTerms, ModeCount, ModeKind};
 
 /// What becomes of the axial motion in the modes.

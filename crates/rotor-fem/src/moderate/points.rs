@@ -6,7 +6,7 @@ use rotor_base::gauss_legendre;
 use super::inertia::{self, MotionMatrix, SectionMass};
 use super::strain::{STRAIN_VARIABLES, SectionStiffness};
 use super::{ModerateBlade, Scalar};
-use crate::shape::{ELEMENT_DOF, cubic, hermite, place, quadratic};
+use crate::beam::shape::{ELEMENT_DOF, cubic, hermite, place, quadratic};
 
 /// Gauss points for bending, torsion and inertia.
 const GAUSS_POINTS: usize = 6;

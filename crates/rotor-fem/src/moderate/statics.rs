@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::element::Imposed;
 use super::{ModerateModel, NodalMotion, PitchMotion};
-use crate::assembly::{dof_kind, restrict};
+use crate::beam::assembly::{dof_kind, restrict};
 use crate::{FemError, ModeKind};
 
 /// How the static deflection is sought.

@@ -169,7 +169,7 @@ impl SectionStiffness {
         // kappa_y is kappa_z a quarter turn ahead, so its own partner is -kappa_z
         add_rotation(&mut out, my, &k.y, &k.z.gradient.map(|g| -g));
         let coupling = self.torsion * k.x.value * self.bending_twist;
-        add_pair(&mut out, (at::W_X, at::V_XX), coupling);
+        add_pair(&mut out, at::W_X, at::V_XX, coupling);
         out
     }
 
@@ -186,7 +186,7 @@ impl SectionStiffness {
         let growth = 1.0 + 0.5 * (v_x * v_x + w_x * w_x);
         out[(at::V_X, at::V_X)] = n * (growth + v_x * v_x);
         out[(at::W_X, at::W_X)] = n * (growth + w_x * w_x);
-        add_pair(&mut out, (at::V_X, at::W_X), n * v_x * w_x);
+        add_pair(&mut out, at::V_X, at::W_X, n * v_x * w_x);
         out[(at::PHI_X, at::PHI_X)] = n * self.area_radius_squared;
         add_rotation(&mut out, -n * self.tension_centre, &k.z, &k.y.gradient);
         out
@@ -224,12 +224,12 @@ fn add_rotation(
     curvature: &Measure<f64>,
     ahead: &[f64; STRAIN_VARIABLES],
 ) {
-    add_pair(out, (at::V_XX, at::PHI), moment * ahead[at::V_XX]);
-    add_pair(out, (at::W_XX, at::PHI), moment * ahead[at::W_XX]);
+    add_pair(out, at::V_XX, at::PHI, moment * ahead[at::V_XX]);
+    add_pair(out, at::W_XX, at::PHI, moment * ahead[at::W_XX]);
     out[(at::PHI, at::PHI)] -= moment * curvature.value;
 }
 
-fn add_pair(out: &mut Stiffness, (i, j): (usize, usize), value: f64) {
+fn add_pair(out: &mut Stiffness, i: usize, j: usize, value: f64) {
     out[(i, j)] += value;
     out[(j, i)] += value;
 }

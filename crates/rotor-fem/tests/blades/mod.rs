@@ -38,20 +38,6 @@ pub(crate) fn princeton_blade() -> ModerateSpec {
     BladeSpec { rotor_speed: 0.0, ..BladeSpec::uniform(soft, stiff, torsion, axial) }.into()
 }
 
-/// Saint-Venant's torsion constant of a rectangle, the longer side first.
-///
-/// Source: S. Timoshenko, J. N. Goodier, Theory of Elasticity, article 109.
-pub(crate) fn torsion_constant(long: f64, short: f64) -> f64 {
-    let pi = std::f64::consts::PI;
-    let sum: f64 = (0..40)
-        .map(|k| {
-            let n = f64::from(2 * k + 1);
-            (n * pi * long / (2.0 * short)).tanh() / n.powi(5)
-        })
-        .sum();
-    long * short.powi(3) / 3.0 * (1.0 - 192.0 * short / (pi.powi(5) * long) * sum)
-}
-
 /// Rotor speed that the units of [`tm_4760_blade`] refer to, rpm.
 pub(crate) const TM_4760_RPM: f64 = 660.0;
 
@@ -94,29 +80,4 @@ pub(crate) fn tm_4760_blade() -> ModerateSpec {
         ..BladeSpec::uniform(1.0, 1.0, 1.0, 1.0)
     };
     ModerateSpec { mass_centre: column(&|row| number(row, 7) / radius), ..blade.into() }
-}
-
-/// Rotor speed that the units of [`epps_chandra_strip`] refer to, rpm.
-pub(crate) const EPPS_CHANDRA_RPM: f64 = 750.0;
-
-/// The straight strip of Epps and Chandra, clamped 2.5 in from the axis, flat in the plane of rotation.
-pub(crate) fn epps_chandra_strip() -> ModerateSpec {
-    let (radius, width, thickness) = (40.0_f64, 1.0, 0.063_f64);
-    let (young, poisson, density) = (1.06e7, 0.325, 2.51e-4);
-    let omega = EPPS_CHANDRA_RPM * TAU / 60.0;
-    let force = density * width * thickness * (omega * radius).powi(2);
-    let unit = force * radius * radius;
-    let soft = young * width * thickness.powi(3) / 12.0 / unit;
-    let stiff = young * thickness * width.powi(3) / 12.0 / unit;
-    let shear = young / (2.0 * (1.0 + poisson));
-    let torsion = shear * torsion_constant(width, thickness) / unit;
-    let gyration = |length: f64| length / 12.0_f64.sqrt() / radius;
-    BladeSpec {
-        thickness_gyration_radius: gyration(thickness).into(),
-        chord_gyration_radius: gyration(width).into(),
-        area_gyration_radius: gyration(width.hypot(thickness)).into(),
-        root_offset: 2.5 / radius,
-        ..BladeSpec::uniform(soft, stiff, torsion, young * width * thickness / force)
-    }
-    .into()
 }

@@ -16,11 +16,13 @@
 
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
 
+mod core;
 mod lanes;
 mod segment;
 mod single;
 
-pub use segment::{CoreModel, SegmentSet, arc_velocity};
+pub use core::CoreModel;
+pub use segment::{SegmentSet, arc_velocity};
 
 use crate::vector::Vec3;
 use lanes::{LANES, Lanes, Law, RosenheadMoore, Vatistas};

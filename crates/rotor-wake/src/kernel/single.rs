@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
 #![expect(clippy::cast_possible_truncation, reason = "single precision is what is asked for")]
 
-use super::segment::CoreModel;
+use super::core::CoreModel;
 use crate::vector::{Vec3, dot, sub};
 use std::f64::consts::PI;
 

@@ -3,8 +3,8 @@
 use super::filament::Filament;
 use super::settings::{FreeWakeSettings, NearWakeMotion, WakeSymmetry};
 use super::sources::RollUp;
-use super::{BladeLines, CirculationMap, WakeRotor};
 use crate::vector::Vec3;
+use crate::{BladeLines, CirculationMap, WakeRotor};
 use crate::{FlightState, WakeError};
 
 /// The wake of one of a rotor's alike blades, periodic in azimuth.

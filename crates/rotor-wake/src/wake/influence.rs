@@ -1,8 +1,9 @@
 //! The wake held still: inflow as a linear function of the circulation.
 
-use super::{CirculationMap, ControlPoint, FreeWake, InflowMap, WakeRotor, WakeSymmetry};
+use super::{ControlPoint, FreeWake, WakeSymmetry};
 use crate::kernel::{BLOCK, for_each_velocity};
 use crate::vector::{Vec3, add, norm, scale, sub};
+use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rayon::prelude::*;
@@ -171,7 +172,8 @@ impl LineInduction {
     }
 
     /// The map of circulations that are the same at every azimuth, at one azimuth.
-    pub(crate) fn of_one_azimuth(&self) -> Self {
+    #[must_use]
+    pub fn of_one_azimuth(&self) -> Self {
         let panels = self.rotor.panels();
         let summed = |matrix: &DMatrix<f64>| {
             DMatrix::from_fn(panels, panels, |row, column| {
@@ -184,6 +186,11 @@ impl LineInduction {
             down: summed(&self.down),
             along: summed(&self.along),
         }
+    }
+
+    /// The matrices `A` and `B`: down through the disk, and along it.
+    pub fn matrices(&self) -> [&DMatrix<f64>; 2] {
+        [&self.down, &self.along]
     }
 
     /// Inflow of a circulation.
@@ -218,21 +225,6 @@ impl LineInduction {
         InflowMap::new(&self.rotor, (matrix * gamma).as_slice().to_vec())
     }
 
-    /// Down through the disk and along it, of circulations of the grid.
-    pub(crate) fn induced(&self, circulation: &DVector<f64>) -> [DVector<f64>; 2] {
-        [&self.down * circulation, &self.along * circulation]
-    }
-
-    /// Blades in this wake whose circulation changes by `slopes` per unit of inflow and of velocity along the disk.
-    pub(crate) fn linearised(&self, slopes: Vec<[f64; 2]>) -> LinearisedBlades {
-        let size = self.down.nrows();
-        let matrix = DMatrix::from_fn(size, size, |k, j| {
-            let own = if k == j { 1.0 } else { 0.0 };
-            own - slopes[k][0] * self.down[(k, j)] - slopes[k][1] * self.along[(k, j)]
-        });
-        LinearisedBlades { matrix: matrix.lu(), slopes }
-    }
-
     /// `I + A diag(slope)`, factorised: the matrix of a Newton step where the circulation falls by
     /// `slope` per unit of inflow.
     pub(crate) fn newton_matrix(&self, slope: &[f64]) -> LU<f64, Dyn, Dyn> {
@@ -244,30 +236,6 @@ impl LineInduction {
             matrix[(k, k)] += 1.0;
         }
         matrix.lu()
-    }
-}
-
-/// Blades, linear about a state, in the wake of one geometry.
-#[derive(Debug, Clone)]
-pub(crate) struct LinearisedBlades {
-    /// `I - diag(dGamma/dlambda) A - diag(dGamma/du_t) B`, factorised.
-    matrix: LU<f64, Dyn, Dyn>,
-    slopes: Vec<[f64; 2]>,
-}
-
-impl LinearisedBlades {
-    /// The circulation that agrees with what it induces: where it is `circulation` at a state of inflow and velocity along
-    /// the disk.
-    pub(crate) fn agreed(
-        &self,
-        circulation: &[f64],
-        [inflow, in_plane]: [&DVector<f64>; 2],
-    ) -> Option<DVector<f64>> {
-        let at_rest = DVector::from_fn(circulation.len(), |k, _| {
-            let [down, along] = self.slopes[k];
-            circulation[k] - down * inflow[k] - along * in_plane[k]
-        });
-        self.matrix.solve(&at_rest)
     }
 }
 

@@ -1,9 +1,10 @@
 //! The wake marched in time, blade by blade.
 
+use super::FreeWake;
 use super::filament::Filament;
 use super::settings::{NearWakeMotion, WakeMethod};
 use super::sources::{BladeView, RollUp, SourceContext, Sources};
-use super::{CirculationMap, FreeWake};
+use crate::CirculationMap;
 use crate::WakeError;
 use crate::kernel::{CoreModel, induced_velocities};
 use crate::vector::{Vec3, about_the_shaft, add, is_finite, norm, scale, sub};
@@ -224,7 +225,6 @@ impl WakeMarch {
             advance_ratio: wake.flight.advance_ratio,
             chord: wake.lines.chord(),
             turn: self.turn(),
-            young: &wake.young_lengths(),
         };
         let views: Vec<BladeView<'_>> = self.blades.iter().map(|b| self.view(b)).collect();
         let set = Sources::of_geometry(&views, &context).segments(&context, circulation.values());
@@ -244,7 +244,7 @@ impl WakeMarch {
             if let (true, Some(tip), Some(v)) =
                 (corrected, state.levels[0].last(), of_blade.last_mut())
             {
-                wake.add_arcs_of(tip, state.azimuth, (circulation, &peaks), v);
+                wake.add_arcs_of(tip, state.azimuth, circulation, &peaks, v);
             }
             velocities.push(of_blade);
         }

@@ -1,7 +1,8 @@
 //! Where vortices pass the blades, and what the segments of the wake carry.
 
+use super::FreeWake;
 use super::sources::SourceContext;
-use super::{CirculationMap, FreeWake};
+use crate::CirculationMap;
 use crate::WakeError;
 use crate::vector::{Vec3, add, dot, norm, scale, sub};
 
@@ -85,7 +86,7 @@ impl FreeWake {
                         let core_radius = if k < near_steps {
                             context.trailer_radius(filament.node, from, k)
                         } else {
-                            context.rolled_up_radius(f, from, k, &ends)
+                            context.rolled_up_radius(f, from, k)
                         };
                         least = Some(ClosestPassage {
                             azimuth_rad: met as f64 * step,
@@ -113,12 +114,12 @@ impl FreeWake {
         self.check(circulation)?;
         Ok(self.with_context(circulation, |context| {
             let of = |f: usize, i: usize| {
-                let ends = self.far[f].at(i).windows(2).enumerate();
-                ends.map(|(k, ends)| SegmentState {
+                let segments = self.far[f].at(i).len() - 1;
+                let state = |k: usize| SegmentState {
                     circulation: context.rolled_up_strength(f, i, k),
-                    core_radius: context.rolled_up_radius(f, i, k, &[ends[0], ends[1]]),
-                })
-                .collect()
+                    core_radius: context.rolled_up_radius(f, i, k),
+                };
+                (0..segments).map(state).collect()
             };
             let azimuths = 0..self.settings.azimuths;
             (0..self.far.len()).map(|f| azimuths.clone().map(|i| of(f, i)).collect()).collect()

@@ -1,8 +1,9 @@
 //! Where the wake lies without free motion, and the same wake on another grid.
 
+use super::FreeWake;
 use super::filament::Filament;
 use super::settings::NearWakeMotion;
-use super::{BladeLines, FreeWake};
+use crate::BladeLines;
 use crate::WakeError;
 use crate::vector::{Vec3, add, scale, sub};
 
@@ -21,7 +22,7 @@ impl FreeWake {
             self.carrying_inflow,
             lines,
         )?;
-        let ratio = (self.settings.azimuths, azimuths);
+        let before = self.settings.azimuths;
         let helix = out.clone();
         let pairs = out.far.iter_mut().zip(&self.far).chain(out.near.iter_mut().zip(&self.near));
         for (new, old) in pairs {
@@ -30,7 +31,7 @@ impl FreeWake {
             distortion
                 .fill(self.settings.azimuths, |i, k| sub(old.at(i)[k], self.carried(node, i, k)));
             new.fill(azimuths, |i, k| {
-                add(helix.carried(node, i, k), sampled(&distortion, i, k, ratio))
+                add(helix.carried(node, i, k), sampled(&distortion, i, k, before, azimuths))
             });
         }
         out.place_near_wake();
@@ -96,12 +97,11 @@ impl FreeWake {
 }
 
 /// Point of a filament of another grid, linear between its nodes; grids by their azimuth steps.
-fn sampled(old: &Filament, i: usize, k: usize, (before, now): (usize, usize)) -> Vec3 {
-    let azimuths = before;
+fn sampled(old: &Filament, i: usize, k: usize, before: usize, now: usize) -> Vec3 {
     let (p, z) = (i * before / now, k * before / now);
     let fraction = |n: usize| (n * before % now) as f64 / now as f64;
     let (s, t) = (fraction(i), fraction(k));
-    let value = |p: usize, z: usize| old.at(p % azimuths)[z.min(old.steps)];
+    let value = |p: usize, z: usize| old.at(p % before)[z.min(old.steps)];
     let mix = |a: Vec3, b: Vec3, t: f64| add(scale(a, 1.0 - t), scale(b, t));
     mix(mix(value(p, z), value(p, z + 1), t), mix(value(p + 1, z), value(p + 1, z + 1), t), s)
 }

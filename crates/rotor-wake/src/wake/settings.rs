@@ -1,10 +1,11 @@
 //! The choices of a free wake.
 
 use crate::{CoreModel, WakeError};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_6;
 
 /// How the trailers of the near wake travel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum NearWakeMotion {
     /// Fixed to the plane of the blade, on the arcs its stations have swept: for near wakes of up to
@@ -32,7 +33,7 @@ pub enum ShedVorticity {
 }
 
 /// Where on the chord the sections feel the induced velocity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum ControlPoint {
     /// On the lifting line, at the quarter chord: Prandtl's line, for slender blades.
@@ -41,7 +42,7 @@ pub enum ControlPoint {
     /// Half a chord behind it, less what a straight infinite line of the circulation there would induce,
     /// which is in the section's own lift-curve slope: Weissinger's L-method. The lift of a blade six chords
     /// long is some 5 % less than with the line's own point. Needs blades with a trailing edge
-    /// ([`BladeLines::with_trailing_edge`](super::BladeLines::with_trailing_edge)); without one it is the
+    /// (`BladeLines::with_trailing_edge`); without one it is the
     /// lifting line.
     ///
     /// Source: J. Weissinger, NACA TM 1120 (1947).
@@ -63,7 +64,7 @@ pub enum FarTrailers {
 }
 
 /// Where on the trailing edge a rolled-up vortex is released.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum ReleasePoint {
     /// At its station: the tip vortex at the tip.
@@ -77,7 +78,7 @@ pub enum ReleasePoint {
 }
 
 /// What the wakes at different azimuths have in common.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum WakeSymmetry {
     /// Each azimuth has its own, the same every revolution.
@@ -89,7 +90,7 @@ pub enum WakeSymmetry {
 }
 
 /// How the geometry is carried on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum WakeMethod {
     /// Sweeps of pseudo-implicit relaxation of a wake that is the same every revolution: a count is of sweeps.
@@ -101,7 +102,7 @@ pub enum WakeMethod {
 }
 
 /// Precision of the velocities that old rolled-up vortices induce on the wake itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum FarField {
     /// Double.
@@ -110,17 +111,6 @@ pub enum FarField {
     /// Single for the vortices older than a revolution: their sums run faster, and the velocities differ by some 1e-6 of the
     /// tip speed at most. What the blades feel stays double.
     Single,
-}
-
-/// Whether stretching makes a vortex thinner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum StrainEffect {
-    /// The core depends on age alone.
-    #[default]
-    Ignored,
-    /// The volume of the core is conserved: `r_c` goes with the root of the inverse length.
-    VolumeConserved,
 }
 
 /// The viscous core of the filaments.
@@ -151,8 +141,6 @@ pub struct CoreSettings {
     pub viscosity: f64,
     /// Squire's coefficient `a_1` of turbulent growth.
     pub squire: f64,
-    /// Effect of stretching.
-    pub strain: StrainEffect,
 }
 
 impl Default for CoreSettings {
@@ -166,7 +154,6 @@ impl Default for CoreSettings {
             sheet_rad: FRAC_PI_6,
             viscosity: 1.5e-8,
             squire: 2e-4,
-            strain: StrainEffect::Ignored,
         }
     }
 }

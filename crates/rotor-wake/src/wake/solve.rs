@@ -1,6 +1,7 @@
 //! Sweeps until the geometry stays.
 
-use super::{CirculationMap, FreeWake};
+use super::FreeWake;
+use crate::CirculationMap;
 use crate::WakeError;
 
 /// A displacement this many times the smallest so far means that the iteration runs away.

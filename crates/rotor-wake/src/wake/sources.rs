@@ -2,16 +2,13 @@
 
 use super::settings::{
     FarField, FarTrailers, FreeWakeSettings, NearWakeMotion, ReleasePoint, ShedVorticity,
-    StrainEffect,
 };
-use super::{CirculationMap, WakeRotor};
 use crate::SegmentSet;
 use crate::vector::{Vec3, add, norm, scale, sub};
+use crate::{CirculationMap, WakeRotor};
 
 /// Vatistas's (Lamb's) constant of core growth.
 const ALPHA: f64 = 1.256_43;
-/// Thinnest and thickest that strain makes a core, over its unstrained radius.
-const STRAIN_LIMITS: [f64; 2] = [0.5, 2.0];
 
 /// Speed of a section along its chord, tip speed, below which its sheet does not leave it where the free stream slows it or
 /// turns it round: it lies within some chords after the ages of a sheet. No more than the advance ratio.
@@ -182,8 +179,6 @@ pub(crate) struct SourceContext<'a> {
     pub(crate) chord: f64,
     /// Displacement of the wake in one turn at its free end.
     pub(crate) turn: Vec3,
-    /// Length of the youngest segment of each rolled-up filament, `[filament][azimuth]`.
-    pub(crate) young: &'a [Vec<f64>],
 }
 
 impl SourceContext<'_> {
@@ -205,16 +200,8 @@ impl SourceContext<'_> {
     }
 
     /// Core radius of the same.
-    pub(crate) fn rolled_up_radius(
-        &self,
-        f: usize,
-        azimuth: usize,
-        age: usize,
-        ends: &[Vec3; 2],
-    ) -> f64 {
-        let strength = self.rolled_up_strength(f, azimuth, age);
-        let stretch = norm(sub(ends[1], ends[0])) / self.young[f][self.release(azimuth, age)];
-        core_radius(self.settings, age, strength, stretch)
+    pub(crate) fn rolled_up_radius(&self, f: usize, azimuth: usize, age: usize) -> f64 {
+        core_radius(self.settings, age, self.rolled_up_strength(f, azimuth, age))
     }
 
     /// What the trailer of a node carries from an age to the next one.
@@ -270,7 +257,7 @@ impl Sources {
             out.bound(view, context);
             out.chords(view, context, |n| context.trailer_radius(n, view.azimuth, 0));
             out.near(view, context, 0.0);
-            out.far(view, context, (context.settings.near_steps(), 0.0));
+            out.far(view, context, context.settings.near_steps(), 0.0);
         }
         out
     }
@@ -287,11 +274,11 @@ impl Sources {
             if free {
                 out.chords(view, context, |n| context.trailer_radius(n, view.azimuth, 0));
                 out.near(view, context, core.mutual_radius);
-                out.far(view, context, (context.settings.near_steps(), core.mutual_radius));
+                out.far(view, context, context.settings.near_steps(), core.mutual_radius);
             } else {
                 // about to roll up: as thick as what comes of them
                 out.chords(view, context, |_| core.radius);
-                out.far(view, context, (0, core.mutual_radius));
+                out.far(view, context, 0, core.mutual_radius);
             }
         }
         out
@@ -395,28 +382,21 @@ impl Sources {
     }
 
     /// Rolled-up filaments from an age (steps) on and their repeated last turn, with cores no thinner than `least`.
-    fn far(
-        &mut self,
-        view: &BladeView<'_>,
-        context: &SourceContext<'_>,
-        (first, least): (usize, f64),
-    ) {
+    fn far(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>, first: usize, least: f64) {
         let settings = context.settings;
         let azimuths = settings.azimuths;
         for (f, points) in view.far.iter().enumerate() {
             let steps = points.len() - 1;
             let terms = |age: usize| context.rolled_up_terms(f, view.azimuth, age);
-            let radius = |age: usize, ends: &[Vec3; 2]| {
-                context.rolled_up_radius(f, view.azimuth, age, ends).max(least)
-            };
+            let radius = |age: usize| context.rolled_up_radius(f, view.azimuth, age).max(least);
             for k in first..azimuths.min(steps) {
                 let ends = [points[k], points[k + 1]];
-                self.push(ends, radius(k, &ends), terms(k));
+                self.push(ends, radius(k), terms(k));
             }
             let young = self.ends.len();
             for k in first.max(azimuths)..steps {
                 let ends = [points[k], points[k + 1]];
-                self.push(ends, radius(k, &ends), terms(k));
+                self.push(ends, radius(k), terms(k));
             }
             let mut last = points[steps];
             for turn in 1..=settings.far_turns {
@@ -424,7 +404,7 @@ impl Sources {
                     let next = add(points[steps - azimuths + j], scale(context.turn, turn as f64));
                     let age = steps + (turn - 1) * azimuths + j - 1;
                     let ends = [last, next];
-                    self.push(ends, radius(age, &ends), terms(age));
+                    self.push(ends, radius(age), terms(age));
                     last = next;
                 }
             }
@@ -443,18 +423,11 @@ fn young_radius(context: &SourceContext<'_>, node: usize) -> f64 {
     core.near_radius.min(core.panel_share * width)
 }
 
-/// Core radius of a rolled-up segment by age (steps), strength and length over its length when young.
-fn core_radius(settings: &FreeWakeSettings, age: usize, strength: f64, stretch: f64) -> f64 {
+/// Core radius of a rolled-up segment by age (steps) and strength.
+fn core_radius(settings: &FreeWakeSettings, age: usize, strength: f64) -> f64 {
     let core = &settings.core;
     let eddy = core.viscosity + core.squire * strength.abs();
     let growth =
         if core.viscosity > 0.0 { eddy * (age as f64 + 0.5) * settings.step_rad() } else { 0.0 };
-    let radius = (core.radius * core.radius + 4.0 * ALPHA * growth).sqrt();
-    match core.strain {
-        StrainEffect::Ignored => radius,
-        StrainEffect::VolumeConserved => {
-            let factor = if stretch > 0.0 { stretch.sqrt().recip() } else { 1.0 };
-            radius * factor.clamp(STRAIN_LIMITS[0], STRAIN_LIMITS[1])
-        }
-    }
+    (core.radius * core.radius + 4.0 * ALPHA * growth).sqrt()
 }

@@ -1,9 +1,10 @@
 //! One sweep of pseudo-implicit relaxation.
 
+use super::FreeWake;
 use super::settings::NearWakeMotion;
 use super::sources::RollUp;
 use super::velocity::Velocities;
-use super::{CirculationMap, FreeWake};
+use crate::CirculationMap;
 use crate::WakeError;
 use crate::vector::{Vec3, add, is_finite, norm, scale, sub};
 

@@ -1,11 +1,12 @@
 //! What the wake induces: at its own nodes and anywhere.
 
+use super::FreeWake;
 use super::filament::Filament;
 use super::settings::WakeSymmetry;
 use super::sources::{BladeView, RollUp, SourceContext, Sources};
-use super::{CirculationMap, FreeWake};
+use crate::CirculationMap;
 use crate::kernel::{CoreModel, arc_velocity, induced_velocities};
-use crate::vector::{Vec3, about_the_shaft, add, norm, scale, sub};
+use crate::vector::{Vec3, about_the_shaft, add, scale, sub};
 use crate::{SegmentSet, WakeError};
 
 /// Velocities at all nodes of the free filaments.
@@ -40,14 +41,6 @@ impl FreeWake {
         scale(sum, 1.0 / (self.far.len() * azimuths * counted) as f64)
     }
 
-    pub(crate) fn young_lengths(&self) -> Vec<Vec<f64>> {
-        let length = |p: &[Vec3]| norm(sub(p[1], p[0]));
-        self.far
-            .iter()
-            .map(|f| (0..self.settings.azimuths).map(|i| length(f.at(i))).collect())
-            .collect()
-    }
-
     /// Calls `f` with what the sources are built with.
     pub(crate) fn with_context<T>(
         &self,
@@ -63,7 +56,6 @@ impl FreeWake {
             advance_ratio: self.flight.advance_ratio,
             chord: self.lines.chord(),
             turn: self.turn(),
-            young: &self.young_lengths(),
         };
         f(&context)
     }
@@ -167,7 +159,7 @@ impl FreeWake {
             }
             for i in 0..self.settings.azimuths {
                 let at = f.index(i, 0)..=f.index(i, f.steps);
-                self.add_arcs_of(f.at(i), i, (circulation, &peaks), &mut v[at]);
+                self.add_arcs_of(f.at(i), i, circulation, &peaks, &mut v[at]);
             }
         }
     }
@@ -177,7 +169,8 @@ impl FreeWake {
         &self,
         points: &[Vec3],
         azimuth: usize,
-        (circulation, peaks): (&CirculationMap, &[usize]),
+        circulation: &CirculationMap,
+        peaks: &[usize],
         v: &mut [Vec3],
     ) {
         let azimuths = self.settings.azimuths;

@@ -1,6 +1,6 @@
 //! The aerofoil tables a case names.
 
-use super::AirfoilFile;
+use super::AirfoilStation;
 use crate::files::{self, Folder, RonIndex};
 use crate::problem::{Fault, Problem, Problems};
 use flap_aero::{AirfoilSpan, C81Airfoil};
@@ -9,48 +9,34 @@ use std::sync::Arc;
 /// Reads the tables of a case; none for a case without.
 ///
 /// # Errors
-/// Every file that cannot be read or is no C81 table, with its line; stations out of range or order.
+/// Every file that cannot be read or is no C81 table, with its line.
 pub(super) fn read_airfoils(
-    named: &[AirfoilFile],
+    named: &[AirfoilStation],
     folder: &Folder,
     index: &RonIndex,
 ) -> Result<Option<Arc<AirfoilSpan>>, Problems> {
     let mut problems = Problems::default();
     let mut stations = Vec::with_capacity(named.len());
-    let mut inboard = 0.0;
-    // the first table may lie at the rotor centre, each further one beyond the one before
-    for (i, airfoil) in named.iter().enumerate() {
-        let (station, field) = (airfoil.station_r, format!("aerodynamics.airfoils[{i}].station_r"));
-        let beyond = if i == 0 { station >= 0.0 } else { station > inboard };
-        if beyond && station <= 1.0 {
-            inboard = station;
-        } else {
-            let remedy = "list the tables from root to tip, each station once";
-            let fault =
-                Fault::OutOfRange { value: station, low: inboard, high: 1.0, unit: "R", remedy };
-            problems.push(index.place(&field), fault);
-        }
+    // a name that is left out is a fault of the values
+    let named = named.iter().enumerate().filter(|(_, airfoil)| !airfoil.table.trim().is_empty());
+    for (i, airfoil) in named {
         match read_airfoil(airfoil, folder, index, i) {
-            Ok(table) => stations.push((station, table)),
+            Ok(table) => stations.push((airfoil.station_r, table)),
             Err(problem) => problems.append(problem.into()),
         }
     }
-    let span = if named.is_empty() { None } else { AirfoilSpan::new(stations).ok().map(Arc::new) };
-    problems.into_result(Some(span))
+    let span = (!stations.is_empty()).then(|| AirfoilSpan::new(stations).ok().map(Arc::new));
+    problems.into_result(Some(span.flatten()))
 }
 
 fn read_airfoil(
-    airfoil: &AirfoilFile,
+    airfoil: &AirfoilStation,
     folder: &Folder,
     index: &RonIndex,
     i: usize,
 ) -> Result<C81Airfoil, Problem> {
     let field = format!("aerodynamics.airfoils[{i}].table");
-    if airfoil.table.trim().is_empty() {
-        let of = "a C81 file, relative to the case file";
-        return Err(Problem::new(index.place(&field), Fault::EmptyText { of }));
-    }
-    let (folder, file) = folder.airfoil(&airfoil.table);
+    let (folder, file) = files::airfoil_place(folder, &airfoil.table);
     let missing = |folder: String| Fault::MissingFile { file: file.to_owned(), folder };
     if !folder.contains(file) {
         let shown = match folder.display("") {

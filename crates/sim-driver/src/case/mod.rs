@@ -1,45 +1,23 @@
-//! Case files: what users write, its check, and the validated case.
+//! Case files: the values of a case, and their reading from a text.
 //!
-//! The file types ([`CaseFile`] and its sections) hold degrees and engineering units; the validated
-//! [`Case`] holds radians and rotor units. [`read_case`] reports every problem of a file at once.
+//! | idea | module |
+//! |---|---|
+//! | sections, ranges, models and warnings of a case, faults by field path; no file | [`rotor_study::case`] |
+//! | tables of the fields for the book, and the case of `hhc init` | `describe` |
+//! | RON text, lines of fields, old names, tables and actuators that a case names | `read`, `airfoils` |
+//!
+//! [`read_case`] reports every problem of a file at once. A [`LoadedCase`] is the values with the places of
+//! their fields.
 
 mod airfoils;
-mod checker;
-mod convert;
-mod file;
-mod file_blade;
-mod file_control;
-mod file_wake;
-mod ranges;
-mod ranges_blade;
+mod describe;
 mod read;
 #[cfg(test)]
 mod tests;
-mod validated;
 
-pub use file::{
-    AerodynamicsFile, AirfoilFile, BasisChoice, CaseFile, CompressibilityChoice, CouplingsChoice,
-    DynamicStallChoice, EffectivenessFile, FlapFile, FlapMassChoice, InflowChoice, InflowFile,
-    ModesFile, ResponseFile, ReverseFlowChoice, RotorFile, SectionModelChoice, StructureFile,
-    TolerancesFile, TwistAngleChoice, UntwistChoice,
-};
-pub use file_blade::{BladeTablesFile, GravityChoice, JointChoice, RootFile, UnlikeBladeFile};
-pub use file_control::{
-    ActuatorChoice, ActuatorFile, BenchFile, ControlActuator, ControlFile, ControllerChoice,
-    EffortChoice, HorizontalTailFile, LoadScaleChoice, LoadWeightsFile, PrescribedTrimFile,
-    PropulsiveTrimFile, StoredActuatorFile, StrokeChoice, TInflowChoice, TrimFile,
-    WindTunnelTrimFile,
-};
-pub use file_wake::{
-    CirculationChoice, CirculationShape, ControlPointChoice, CoreChoice, FarFieldChoice,
-    FreeWakeFile, GeometryChoice, NearWakeChoice, PrescribedCirculation, ReleaseChoice,
-    RolledUpChoice, SymmetryChoice, WakeMethodChoice,
-};
+pub use describe::{case_format_page, starting_case};
 pub use read::{
-    CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case,
+    ActuatorSource, CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case,
     with_actuator_file,
 };
-pub use validated::{
-    ActuatorSource, ActuatorValues, BladeValues, Case, ControlValues, FlapValues, SectionValues,
-    TrimValues,
-};
+pub use rotor_study::case::*;

@@ -1,10 +1,12 @@
 //! Reading cases, from disk or from the files shipped inside the program.
 
-use super::convert::convert;
-use super::{ActuatorChoice, Case, CaseFile, ControlActuator, StoredActuatorFile};
-use crate::files::{Folder, RonIndex, SHIPPED_CASES, Source, read_ron};
-use crate::problem::Problems;
+use super::airfoils::read_airfoils;
+use super::{ActuatorChoice, ActuatorPath, Case, CaseFaults, ControlActuator, PlausibilityWarning};
+use crate::SimError;
+use crate::files::{Folder, RonIndex, SHIPPED_BENCH, SHIPPED_CASES, Source, read_ron, shipped};
+use crate::problem::{Fault, Problem, Problems};
 use crate::stored_actuator::read_actuator;
+use rotor_study::StudyError;
 use std::path::Path;
 
 /// Name of the shipped case that bare `hhc` runs.
@@ -12,15 +14,68 @@ pub const PAPER_CASE: &str = "paper_mu030.ron";
 /// Shipped case of the paper's rotor under further controllers.
 pub const CONTROLLERS_CASE: &str = "controllers_mu030.ron";
 
+/// Name of the data set inside the program.
+const SHIPPED_DATASET: &str = "shipped:apa500l_synthetic";
+
+/// Fields that had another name: the path of the name before, the path now.
+const RENAMED: [(&str, &str); 1] = [("rotor.unlike_blades", "rotor.dissimilar_blades")];
+
 /// A case with everything needed to report on it later.
 #[derive(Debug, Clone)]
 pub struct LoadedCase {
-    /// The validated values.
+    /// The values, every one in range, with the tables they name.
     pub case: Case,
-    /// The file with its defaults filled in, as results store it.
-    pub file: CaseFile,
     /// The places of its fields, for problems found while it runs.
     pub index: RonIndex,
+    /// Folder that the paths in it are relative to.
+    pub folder: Folder,
+    /// Fields under a name they no longer have.
+    pub warnings: Vec<String>,
+}
+
+/// Where the actuator model of a case comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ActuatorSource {
+    /// The ideal linear actuator alone.
+    Ideal,
+    /// Bench data folder.
+    Bench(Folder),
+    /// Stored actuator file: its folder and name.
+    Stored {
+        /// Folder of the file.
+        folder: Folder,
+        /// File name, folders included.
+        file: String,
+    },
+}
+
+impl LoadedCase {
+    /// The actuator that the case names, found from its folder.
+    pub fn actuator_source(&self) -> ActuatorSource {
+        match &self.case.actuator.model {
+            ActuatorChoice::Ideal => ActuatorSource::Ideal,
+            ActuatorChoice::Bench(bench) if bench.dataset == SHIPPED_DATASET => {
+                ActuatorSource::Bench(shipped(SHIPPED_BENCH))
+            }
+            ActuatorChoice::Bench(bench) => ActuatorSource::Bench(self.folder.join(&bench.dataset)),
+            ActuatorChoice::File(stored) => {
+                ActuatorSource::Stored { folder: self.folder.clone(), file: stored.path.clone() }
+            }
+        }
+    }
+
+    /// An error of a model or a study at the line of its field.
+    pub fn located(&self, error: impl Into<StudyError>) -> SimError {
+        SimError::of_study(error.into(), |field| self.index.place(field))
+    }
+
+    /// Warnings of values that can be but hardly are meant, each with its place.
+    pub fn in_words(&self, warnings: Vec<PlausibilityWarning>) -> Vec<String> {
+        let said = warnings.into_iter().map(|PlausibilityWarning { field, message }| {
+            Problem::new(self.index.place(&field), Fault::Doubtful { message }).to_string()
+        });
+        said.collect()
+    }
 }
 
 /// Reads and validates a case text; paths in it are relative to `folder`.
@@ -28,23 +83,56 @@ pub struct LoadedCase {
 /// # Errors
 /// Every problem of the file, each with its line.
 pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problems> {
-    let read = read_ron::<CaseFile>(source);
-    let mut problems = read.problems;
-    let Some(mut file) = read.value else {
+    let read = read_ron::<Case>(source);
+    let (mut problems, mut index) = (read.problems, read.index);
+    let Some(mut case) = read.value else {
         return problems.into_result(None);
     };
-    if file.actuator.model == ActuatorChoice::Ideal && !read.index.contains("control.actuators") {
-        // the usual list needs an identified actuator
-        file.control.actuators = vec![ControlActuator::Ideal];
+    let mut warnings = Vec::new();
+    for (before, now) in RENAMED {
+        if index.contains(before) {
+            let message = format!("is named {now} now, and read as that; rename it");
+            let fault = Fault::Doubtful { message };
+            warnings.push(Problem::new(index.place(before), fault).to_string());
+            index.rename(before, now);
+        }
     }
-    let case = match convert(&file, folder, &read.index) {
-        Ok(case) => Some(case),
+    if case.actuator.model == ActuatorChoice::Ideal && !index.contains("control.actuators") {
+        // the usual list needs an identified actuator
+        case.control.actuators = vec![ControlActuator::Ideal];
+    }
+    match resolved(case, index, folder) {
+        Ok(loaded) => problems.into_result(Some(LoadedCase { warnings, ..loaded })),
         Err(more) => {
             problems.append(more);
-            None
+            problems.into_result(None)
         }
-    };
-    problems.into_result(case.map(|case| LoadedCase { case, file, index: read.index }))
+    }
+}
+
+/// Checks the values and reads the tables that they name.
+fn resolved(mut case: Case, index: RonIndex, folder: &Folder) -> Result<LoadedCase, Problems> {
+    let mut problems = Problems::default();
+    if let Err(CaseFaults(faults)) = case.check() {
+        for fault in faults {
+            let message = fault.fault.to_string();
+            problems.push(index.place(&fault.field), Fault::Value { message });
+        }
+    }
+    match read_airfoils(&case.aerodynamics.airfoils, folder, &index) {
+        Ok(tables) => case.aerodynamics.tables = tables,
+        Err(more) => problems.append(more),
+    }
+    let loaded = LoadedCase { case, index, folder: folder.clone(), warnings: vec![] };
+    let loaded = problems.into_result(Some(loaded))?;
+    // what only the blade as a whole can say: flaps beside a tapered one
+    match loaded.case.blade_with_flaps() {
+        Ok(_) => Ok(loaded),
+        Err(error) => {
+            let fault = Fault::Refused { message: SimError::from(error).to_string() };
+            Err(Problem::new(loaded.index.place("rotor"), fault).into())
+        }
+    }
 }
 
 /// Reads and validates a case on disk. An actuator file stands for [`PAPER_CASE`] with that actuator.
@@ -57,8 +145,7 @@ pub fn load_case(path: &Path) -> Result<LoadedCase, Problems> {
         return read_case(&source, &folder);
     }
     read_actuator(&source)?;
-    let shipped = shipped_case(PAPER_CASE)?;
-    with_actuator_file(&shipped.file, &shipped.index, path, &folder)
+    with_actuator_file(&shipped_case(PAPER_CASE)?, path, &folder)
 }
 
 /// Whether a text says that it is an actuator file.
@@ -66,22 +153,20 @@ fn is_actuator_file(source: &Source) -> bool {
     source.text.lines().any(|line| line.trim().trim_end_matches(',') == "kind: Actuator")
 }
 
-/// A case with the actuator of a file in the place of its own.
+/// A case with the actuator of a file in the place of its own; paths are then relative to `folder`.
 ///
 /// # Errors
 /// That the case and the actuator do not fit.
 pub fn with_actuator_file(
-    file: &CaseFile,
-    index: &RonIndex,
+    loaded: &LoadedCase,
     path: &Path,
     folder: &Folder,
 ) -> Result<LoadedCase, Problems> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let mut file = file.clone();
-    file.title = format!("{}, actuator of {name}", file.title);
-    file.actuator.model = ActuatorChoice::File(StoredActuatorFile { path: name });
-    let case = convert(&file, folder, index)?;
-    Ok(LoadedCase { case, file, index: index.clone() })
+    let mut case = loaded.case.clone();
+    case.title = format!("{}, actuator of {name}", case.title);
+    case.actuator.model = ActuatorChoice::File(ActuatorPath { path: name });
+    resolved(case, loaded.index.clone(), folder)
 }
 
 /// Reads and validates a case shipped inside the program, such as [`PAPER_CASE`].
@@ -89,6 +174,6 @@ pub fn with_actuator_file(
 /// # Errors
 /// As [`read_case`], or that no such case is shipped.
 pub fn shipped_case(name: &str) -> Result<LoadedCase, Problems> {
-    let folder = Folder::Shipped(SHIPPED_CASES.to_owned());
+    let folder = shipped(SHIPPED_CASES);
     read_case(&folder.read(name)?, &folder)
 }

@@ -1,16 +1,16 @@
 //! What is accepted and what is reported, by the text of a case.
 
 use super::{
-    ActuatorSource, BladeValues, CompressibilityChoice, CouplingsChoice, InflowChoice, LoadedCase,
-    PAPER_CASE, SectionModelChoice, TrimValues, read_case, shipped_case,
+    ActuatorSource, ActuatorValues, AttachedFlowModel, CompressibilityChoice, CouplingsChoice,
+    InflowChoice, LoadedCase, PAPER_CASE, StructureValues, TrimValues, read_case, shipped_case,
 };
-use crate::files::{Folder, Source, ron_text};
+use crate::files::{Source, ron_text, shipped};
 use approx::assert_relative_eq;
 use rotor_wake::{ControlPoint, FarField, FarTrailers, ReleasePoint, WakeMethod, WakeSymmetry};
 
 fn read(text: &str) -> Result<LoadedCase, String> {
     let source = Source { name: "case.ron".into(), text: text.into() };
-    read_case(&source, &Folder::Shipped("fixtures/cases".into())).map_err(|p| p.to_string())
+    read_case(&source, &shipped("fixtures/cases")).map_err(|p| p.to_string())
 }
 
 #[test]
@@ -18,14 +18,18 @@ fn shipped_cases_are_valid_and_complete() {
     let paper = shipped_case(PAPER_CASE).unwrap();
     // the shipped text leaves nothing to a default, and the defaults are the paper's
     let short = read("()").unwrap();
-    assert_eq!(short.case.blade.modes, [5, 4, 2]);
-    let modes = paper.case.blade.modes;
-    assert_eq!(BladeValues { modes, ..short.case.blade.clone() }, paper.case.blade);
+    assert_eq!(short.case.structure.modes.as_array(), [5, 4, 2]);
+    let modes = paper.case.structure.modes.clone();
+    let structure = StructureValues { modes, ..short.case.structure.clone() };
+    assert_eq!(structure, paper.case.structure);
+    assert_eq!(short.case.rotor, paper.case.rotor);
     assert_eq!(short.case.trim, paper.case.trim);
     assert_eq!(short.case.control, paper.case.control);
     assert_eq!(short.case.flaps, paper.case.flaps);
-    assert_eq!(short.case.section, paper.case.section);
-    assert_eq!(short.case.actuator, paper.case.actuator);
+    assert_eq!(short.case.aerodynamics, paper.case.aerodynamics);
+    assert_eq!(short.actuator_source(), paper.actuator_source());
+    let model = paper.case.actuator.model.clone();
+    assert_eq!(ActuatorValues { model, ..short.case.actuator.clone() }, paper.case.actuator);
     assert_eq!(short.case.response, paper.case.response);
     assert_eq!(short.case.tolerances, paper.case.tolerances);
     for field in ["rotor.ka_r", "flaps[1].cg_fraction", "trim.tail_rotor_arm_r", "control.effort"] {
@@ -34,16 +38,15 @@ fn shipped_cases_are_valid_and_complete() {
     let case = &paper.case;
     assert_relative_eq!(case.tip_mach(), 0.582_227, max_relative = 1e-6);
     assert_relative_eq!(case.bench_frequency_hz(4), 20.0);
-    assert_relative_eq!(case.blade.twist_rad, -0.139_626_340, max_relative = 1e-8);
     assert_eq!(
-        case.actuator.source,
-        ActuatorSource::Bench(Folder::Shipped("fixtures/bench/apa500l_synthetic".into()))
+        paper.actuator_source(),
+        ActuatorSource::Bench(shipped("fixtures/bench/apa500l_synthetic"))
     );
     let physical = shipped_case("paper_mu030_6p383hz.ron").unwrap().case;
     assert_relative_eq!(physical.bench_frequency_hz(4), 25.533_333, max_relative = 1e-7);
     assert_relative_eq!(
         physical.actuator.bench_rev_hz,
-        physical.scales.rev_hz(),
+        physical.scales().rev_hz(),
         max_relative = 1e-14
     );
     let stalled = shipped_case("stalled_mu030.ron").unwrap().case.rotor_model();
@@ -51,19 +54,31 @@ fn shipped_cases_are_valid_and_complete() {
     assert_eq!(stalled.nonlinear.dynamic_stall, Some(rotor_response::DynamicStall::Naca0012));
     assert!(paper.case.rotor_model().nonlinear.is_linear());
     let s1 = shipped_case("crosscheck_s1.ron").unwrap().case;
-    assert_eq!(s1.blade.couplings, CouplingsChoice::Linear);
-    assert_eq!(s1.section.model, SectionModelChoice::QuasiSteady);
-    assert_eq!(s1.section.compressibility, CompressibilityChoice::None);
-    assert_eq!(s1.inflow, InflowChoice::Prescribed { lambda_i: 0.008 });
-    let TrimValues::Prescribed { shaft_tilt_rad, .. } = s1.trim else { panic!("{:?}", s1.trim) };
-    assert_relative_eq!(shaft_tilt_rad, 5.0_f64.to_radians());
+    assert_eq!(s1.structure.couplings, CouplingsChoice::Linear);
+    assert_eq!(s1.aerodynamics.model, AttachedFlowModel::QuasiSteady);
+    assert_eq!(s1.aerodynamics.compressibility, CompressibilityChoice::None);
+    assert_eq!(s1.inflow.model, InflowChoice::Prescribed { lambda_i: 0.008 });
+    let TrimValues::Prescribed(given) = &s1.trim else { panic!("{:?}", s1.trim) };
+    assert_relative_eq!(given.shaft_tilt_deg, 5.0);
 }
 
 #[test]
 fn a_written_case_reads_back() {
     let paper = shipped_case(PAPER_CASE).unwrap();
-    let text = ron_text(&paper.file).unwrap();
-    assert_eq!(read(&text).unwrap().file, paper.file);
+    let text = ron_text(&paper.case).unwrap();
+    assert_eq!(read(&text).unwrap().case, paper.case);
+}
+
+#[test]
+fn a_field_under_its_old_name_is_read_with_a_warning() {
+    let loaded = read("(\n  rotor: (unlike_blades: [(blade: 2, mass: 1.01)]),\n)").unwrap();
+    assert_eq!(loaded.case.rotor.dissimilar_blades.len(), 1);
+    let expected = "case.ron:2:11: rotor.unlike_blades: is named rotor.dissimilar_blades now";
+    assert!(loaded.warnings[0].starts_with(expected), "{:?}", loaded.warnings);
+    let said = read("(\n  rotor: (unlike_blades: [(blade: 9)]),\n)").unwrap_err();
+    let expected = "case.ron:2:28: rotor.dissimilar_blades[0].blade: is 9, expected 1 to 4";
+    assert!(said.starts_with(expected), "{said}");
+    assert!(read("(rotor: (dissimilar_blades: []))").unwrap().warnings.is_empty());
 }
 
 #[test]
@@ -77,10 +92,10 @@ fn every_problem_is_reported_with_its_line() {
         lines,
         [
             "case.ron:2:3: advance_ratio: is 0.6, expected 0 to 0.5; the attached-flow rotor model ends at 0.5; 0 is hover",
-            "case.ron:4:5: rotor.ei_flap: is -0.0108, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0108)",
-            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping, root_offset_r, root, mass_centre_r, tension_centre_r, aerodynamic_centre_r, torque_offset_r, gravity, tables, unlike_blades",
+            "case.ron:4:5: rotor.ei_flap: is -0.0108 m0 Omega^2 R^4, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0108)",
+            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping, root_offset_r, root, mass_centre_r, tension_centre_r, aerodynamic_centre_r, torque_offset_r, gravity, tables, dissimilar_blades, unlike_blades",
             "case.ron:6:5: rotor.blades: is 0, expected 1 to 16; the paper's rotor has 4",
-            "case.ron:7:5: rotor.gj: is NaN, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.00615)",
+            "case.ron:7:5: rotor.gj: is NaN m0 Omega^2 R^4, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.00615)",
             "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) <= start_r < end_r <= 1 R; keep it on the blade, and list flaps from root to tip without overlap",
             "case.ron:10:12: inflow.model: unknown choice `Dress`, did you mean `Drees`?; known here: Uniform, Drees, Prescribed, PittPeters, FreeWake",
             "7 problems",
@@ -96,7 +111,7 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
         of("rolled_up: TipRootAndSheet, release: Centroid, control_point: ThreeQuarterChord, \
             method: Marched, panel_share: 0.3, far_turns: 6, mutual_core_r: 0.1, far_field: Single")
         .unwrap();
-    let InflowChoice::FreeWake(file) = loaded.case.inflow else { unreachable!() };
+    let InflowChoice::FreeWake(file) = loaded.case.inflow.model else { unreachable!() };
     let settings = loaded.case.wake_trim_settings(&file);
     assert_eq!(settings.method, WakeMethod::Marched);
     let wake = settings.wake;
@@ -104,11 +119,11 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
     assert_eq!((wake.core.mutual_radius, wake.far_field), (0.1, FarField::Single));
     assert_eq!(wake.symmetry, WakeSymmetry::Periodic);
     let strided = of("velocity_stride: 2").unwrap().case;
-    let InflowChoice::FreeWake(file) = strided.inflow else { unreachable!() };
+    let InflowChoice::FreeWake(file) = strided.inflow.model else { unreachable!() };
     assert_eq!(strided.wake_trim_settings(&file).wake.velocity_stride, 2);
     let hover = "(advance_ratio: 0.0, inflow: (model: FreeWake(symmetry: Axial)))";
     let hover = read(hover).unwrap().case;
-    let InflowChoice::FreeWake(axial) = hover.inflow else { unreachable!() };
+    let InflowChoice::FreeWake(axial) = hover.inflow.model else { unreachable!() };
     let axial = hover.wake_trim_settings(&axial).wake;
     assert_eq!((axial.symmetry, axial.far_turns), (WakeSymmetry::Axial, 6));
     assert_eq!(wake.far, FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]));
@@ -148,7 +163,7 @@ fn a_free_wake_has_whole_steps_for_any_number_of_blades() {
     let of = |blades: usize| {
         let text = format!("(rotor: (blades: {blades}), inflow: (model: FreeWake()))");
         let loaded = read(&text).unwrap();
-        let InflowChoice::FreeWake(file) = loaded.case.inflow else { unreachable!() };
+        let InflowChoice::FreeWake(file) = loaded.case.inflow.model else { unreachable!() };
         loaded.case.wake_trim_settings(&file)
     };
     for (blades, fine, coarse) in
@@ -290,7 +305,7 @@ fn problems_of_the_blade_name_the_remedy() {
         ),
         (
             "(rotor: (ei_flap: 1e300))",
-            "rotor.ei_flap: is 1e300, expected at most 1e6; a stiffness is positive",
+            "rotor.ei_flap: is 1e300 m0 Omega^2 R^4, expected at most 1e6; a stiffness is positive",
         ),
         (
             "(rotor: (tables: (gj: [(0, 1e7), (1, 0.006)])))",
@@ -298,8 +313,11 @@ fn problems_of_the_blade_name_the_remedy() {
         ),
         ("(rotor: (gravity: Moon))", "unknown choice `Moon`"),
         ("(aerodynamics: (tip_loss: 1.2))", "aerodynamics.tip_loss: is 1.2 R, expected 0.5"),
-        ("(rotor: (ei_flap: 0))", "rotor.ei_flap: is 0, expected a positive finite number"),
-        ("(rotor: (gj: -1))", "rotor.gj: is -1, expected a positive finite number"),
+        (
+            "(rotor: (ei_flap: 0))",
+            "rotor.ei_flap: is 0 m0 Omega^2 R^4, expected a positive finite number",
+        ),
+        ("(rotor: (gj: -1))", "rotor.gj: is -1 m0 Omega^2 R^4, expected a positive finite number"),
         (
             "(rotor: (tables: (mass: [(0, 1), (0.5, 1), (0.4, 1), (1, 1)])))",
             "rotor.tables.mass[2]: is 0.4 R, expected 0.5 to 1 R; list the stations from root to tip",
@@ -333,12 +351,12 @@ fn problems_of_the_blade_name_the_remedy() {
             "flaps[0].end_r: the flap spans 0.9 R to 1.1 R, expected",
         ),
         (
-            "(rotor: (unlike_blades: [(blade: 5, mass: 1.01)]))",
-            "rotor.unlike_blades[0].blade: is 5, expected 1 to 4",
+            "(rotor: (dissimilar_blades: [(blade: 5, mass: 1.01)]))",
+            "rotor.dissimilar_blades[0].blade: is 5, expected 1 to 4",
         ),
         (
-            "(rotor: (unlike_blades: [(blade: 2, mass: 3)]))",
-            "rotor.unlike_blades[0].mass: is 3, expected 0.5 to 2",
+            "(rotor: (dissimilar_blades: [(blade: 2, mass: 3)]))",
+            "rotor.dissimilar_blades[0].mass: is 3, expected 0.5 to 2",
         ),
     ] {
         says(text, expected);
@@ -354,19 +372,22 @@ fn an_undamped_mode_at_a_harmonic_is_refused_at_its_field() {
     let alike = format!("(rotor: ({rigid}, {}))", spring(1.0 / 3.0));
     let unlike =
         format!("(rotor: ({rigid}, {}, unlike_blades: [(blade: 2, mass: 1.2)]))", spring(0.4));
-    for (text, field) in [(alike, "rotor.modal_damping"), (unlike, "rotor.unlike_blades[0]")] {
+    for (text, field) in [(alike, "rotor.modal_damping"), (unlike, "rotor.dissimilar_blades[0]")] {
         let loaded = read(&text).unwrap();
-        let message = loaded.refuse_resonance().unwrap_err().to_string();
+        let message = rotor_study::refuse_resonance(&loaded.case)
+            .map_err(|error| loaded.located(error))
+            .unwrap_err()
+            .to_string();
         let place = format!(
             "{field}: lag 1 at 0.00 deg has 1.0000 per rev, near the harmonic 1 of the loads, and no damping: nothing bounds its response. Remedy: modal_damping above 0"
         );
         assert!(message.contains(&place), "{message}");
     }
     let damped = format!("(rotor: ({}, {}))", rigid.replace(": 0,", ": 0.005,"), spring(1.0 / 3.0));
-    read(&damped).unwrap().refuse_resonance().unwrap();
+    rotor_study::refuse_resonance(&read(&damped).unwrap().case).unwrap();
     // the uncoupled mode of the twisted blade is at 5 per rev, the coupled one beside it
     let twisted = "(rotor: (modal_damping: 0, ei_lag: EI), structure: (couplings: Full))";
-    read(&twisted.replace("EI", "0.0376")).unwrap().refuse_resonance().unwrap();
+    rotor_study::refuse_resonance(&read(&twisted.replace("EI", "0.0376")).unwrap().case).unwrap();
 }
 
 #[test]

@@ -1,9 +1,11 @@
 //! The arguments of `hhc`.
 
-use crate::case::{FreeWakeFile, InflowChoice};
+use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
+use crate::choices::choice_parser;
 use crate::identification::ModelChoice;
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flap_aero::{AttachedFlowModel, Motion};
 use std::path::PathBuf;
@@ -48,7 +50,7 @@ pub enum Command {
     Check(CheckArgs),
     /// Write a commented case to start from.
     Init(InitArgs),
-    /// Write the HTML report again from stored results.
+    /// Show stored results again, and write their report and tables anew.
     Report(ReportArgs),
 }
 
@@ -58,6 +60,24 @@ pub struct FormatArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+}
+
+/// Form of an output of which the terminal shows one screen.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct DetailArgs {
+    /// One screen for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Every table instead of one screen.
+    #[arg(long, conflicts_with = "format")]
+    details: bool,
+}
+
+impl DetailArgs {
+    /// The form asked for.
+    pub fn form(self) -> Format {
+        if self.details { Format::Details } else { self.format }
+    }
 }
 
 /// Inflow models that can replace the case's.
@@ -79,7 +99,7 @@ impl From<InflowOverride> for InflowChoice {
             InflowOverride::Uniform => Self::Uniform,
             InflowOverride::Drees => Self::Drees,
             InflowOverride::PittPeters => Self::PittPeters,
-            InflowOverride::Free => Self::FreeWake(FreeWakeFile::default()),
+            InflowOverride::Free => Self::FreeWake(FreeWakeValues::default()),
         }
     }
 }
@@ -95,7 +115,7 @@ pub struct StudyArgs {
     pub inflow: InflowOverride,
     /// Form of the output.
     #[command(flatten)]
-    pub format: FormatArgs,
+    pub format: DetailArgs,
 }
 
 /// `hhc run`.
@@ -122,7 +142,7 @@ pub struct RunArgs {
     pub robustness: bool,
     /// Form of the output.
     #[command(flatten)]
-    pub format: FormatArgs,
+    pub format: DetailArgs,
 }
 
 /// `hhc identify`.
@@ -145,7 +165,7 @@ pub struct IdentifyArgs {
     pub model: ModelChoice,
     /// Form of the output.
     #[command(flatten)]
-    pub format: FormatArgs,
+    pub format: DetailArgs,
 }
 
 /// `hhc import`.
@@ -158,11 +178,11 @@ pub struct ImportArgs {
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// What the files are; recognised by their first bytes if left out.
-    #[arg(long = "as", value_enum, value_name = "FORMAT")]
+    #[arg(long = "as", value_parser = source_kind(), value_name = "FORMAT")]
     pub source: Option<SourceKind>,
     /// Kind of the data folder; an actuator bench if there are command and displacement, else a
     /// generic loop, if left out.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = import_kind())]
     pub kind: Option<ImportKind>,
     /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
     /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
@@ -198,6 +218,18 @@ pub struct ImportArgs {
     /// Form of the output.
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+fn source_kind() -> impl TypedValueParser<Value = SourceKind> {
+    PossibleValuesParser::new(SourceKind::ALL.map(SourceKind::word)).try_map(|word| {
+        SourceKind::ALL.into_iter().find(|kind| kind.word() == word).ok_or("no such format")
+    })
+}
+
+fn import_kind() -> impl TypedValueParser<Value = ImportKind> {
+    PossibleValuesParser::new(ImportKind::ALL.map(ImportKind::word)).try_map(|word| {
+        ImportKind::ALL.into_iter().find(|kind| kind.word() == word).ok_or("no such kind")
+    })
 }
 
 /// Two numbers with a comma between them.
@@ -240,7 +272,7 @@ pub struct RecordsArgs {
     pub cache: PathBuf,
     /// Form of the output.
     #[command(flatten)]
-    pub format: FormatArgs,
+    pub format: DetailArgs,
 }
 
 /// `hhc ladder`.
@@ -301,51 +333,6 @@ pub struct WakeArgs {
     pub format: FormatArgs,
 }
 
-/// Section models on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SectionModelArg {
-    /// Theodorsen's function set to 1, no apparent mass.
-    QuasiSteady,
-    /// Theodorsen's coefficients with R. T. Jones's two lags for his function; Mach 0 only.
-    Incompressible,
-    /// Compressible indicial functions of the Hariharan-Leishman form (a reconstruction).
-    HariharanLeishman,
-    /// Compressible, fitted to exact linear theory.
-    Calibrated,
-}
-
-impl From<SectionModelArg> for AttachedFlowModel {
-    fn from(given: SectionModelArg) -> Self {
-        match given {
-            SectionModelArg::QuasiSteady => Self::QuasiSteady,
-            SectionModelArg::Incompressible => Self::Incompressible,
-            SectionModelArg::HariharanLeishman => Self::HariharanLeishman,
-            SectionModelArg::Calibrated => Self::Calibrated,
-        }
-    }
-}
-
-/// Motions on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MotionArg {
-    /// Flap angle, trailing edge down positive.
-    Flap,
-    /// Pitch about the quarter chord, nose-up positive.
-    Pitch,
-    /// Plunge velocity over U, down positive.
-    Plunge,
-}
-
-impl From<MotionArg> for Motion {
-    fn from(given: MotionArg) -> Self {
-        match given {
-            MotionArg::Flap => Self::Flap,
-            MotionArg::Pitch => Self::Pitch,
-            MotionArg::Plunge => Self::Plunge,
-        }
-    }
-}
-
 /// Responses of a section on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ResponseArg {
@@ -361,15 +348,6 @@ pub enum ResponseArg {
     Polar,
 }
 
-/// Stall models on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum StallArg {
-    /// Attached flow.
-    Off,
-    /// Leishman-Beddoes with the published constants of the NACA 0012.
-    Naca0012,
-}
-
 /// `hhc section`.
 #[derive(Debug, Clone, Args)]
 pub struct SectionArgs {
@@ -377,8 +355,8 @@ pub struct SectionArgs {
     #[arg(long, value_enum, default_value_t = ResponseArg::Harmonic)]
     pub response: ResponseArg,
     /// Section model; not of a polar of a table [default: calibrated].
-    #[arg(long, value_enum)]
-    pub model: Option<SectionModelArg>,
+    #[arg(long, value_parser = choice_parser::<AttachedFlowModel>())]
+    pub model: Option<AttachedFlowModel>,
     /// Mach number.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub mach: f64,
@@ -386,8 +364,8 @@ pub struct SectionArgs {
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub flap_chord: Option<f64>,
     /// What moves, in every response but a polar [default: flap].
-    #[arg(long, value_enum)]
-    pub motion: Option<MotionArg>,
+    #[arg(long, value_parser = choice_parser::<Motion>())]
+    pub motion: Option<Motion>,
     /// Reduced frequency, omega c / (2 U), of a harmonic response or a loop.
     #[arg(
         long,
@@ -413,8 +391,8 @@ pub struct SectionArgs {
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub amplitude_deg: Option<f64>,
     /// Stall of a loop or of a polar without a table [default: off].
-    #[arg(long, value_enum)]
-    pub stall: Option<StallArg>,
+    #[arg(long, value_parser = choice_parser::<DynamicStallChoice>())]
+    pub stall: Option<DynamicStallChoice>,
     /// C81 file whose polar is wanted; `shipped:naca0012_synthetic.c81` is a synthetic one.
     #[arg(long, value_name = "FILE")]
     pub table: Option<PathBuf>,
@@ -454,4 +432,7 @@ pub struct ReportArgs {
     /// Folder of a study's results.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
+    /// Form of the output.
+    #[command(flatten)]
+    pub format: DetailArgs,
 }

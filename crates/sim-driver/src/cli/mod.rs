@@ -1,16 +1,26 @@
 //! The `hhc` command: arguments, dispatch, exit codes.
 
 mod args;
-mod commands;
+mod data;
+mod diagnose;
+mod identify;
+mod rotor;
+mod run;
 mod section;
 
 pub use args::{
-    CheckArgs, Cli, Command, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs, InflowOverride,
-    InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
+    CheckArgs, Cli, Command, DetailArgs, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs,
+    InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
 };
 
 use crate::SimError;
+use crate::case::{InflowChoice, LoadedCase};
+use crate::files::refuse_input;
+use crate::output::{Format, warnings_text};
+use crate::problem::{Fault, Place, Problems};
 use clap::Parser;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Runs the command with the arguments of the process.
@@ -47,19 +57,55 @@ fn bug_message(panic: &str) -> String {
 /// Whatever stopped it; [`SimError::exit_code`] says what the process should return.
 pub fn execute(cli: &Cli) -> Result<(), SimError> {
     match &cli.command {
-        None => commands::study(&cli.study),
-        Some(Command::Run(args)) => commands::run(args),
-        Some(Command::Identify(args)) => commands::identify(args),
-        Some(Command::Diagnose(args)) => commands::diagnose(args),
-        Some(Command::Ladder(args)) => commands::ladder(args),
-        Some(Command::Import(args)) => commands::import(args),
-        Some(Command::Modes(args)) => commands::modes(args),
-        Some(Command::Wake(args)) => commands::wake(args),
+        None => run::study(&cli.study),
+        Some(Command::Run(args)) => run::run(args),
+        Some(Command::Identify(args)) => identify::identify(args),
+        Some(Command::Diagnose(args)) => diagnose::diagnose(args),
+        Some(Command::Ladder(args)) => diagnose::ladder(args),
+        Some(Command::Import(args)) => data::import(args),
+        Some(Command::Modes(args)) => rotor::modes(args),
+        Some(Command::Wake(args)) => rotor::wake(args),
         Some(Command::Section(args)) => section::section(args),
-        Some(Command::Check(args)) => commands::check(args),
-        Some(Command::Init(args)) => commands::init(args),
-        Some(Command::Report(args)) => commands::report(args),
+        Some(Command::Check(args)) => data::check(args),
+        Some(Command::Init(args)) => data::init(args),
+        Some(Command::Report(args)) => run::report(args),
     }
+}
+
+/// Prints warnings to standard error: short on one screen, whole with every table.
+fn warn<T: Display>(warnings: &[T], format: Format) {
+    eprint!("{}", warnings_text(warnings, format, "in the report, or with --details"));
+}
+
+/// Whether the rotor can fly at an advance ratio of the command line.
+fn check_advance_ratio(problems: &mut Problems, mu: f64) {
+    if !(0.0..=0.5).contains(&mu) {
+        let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
+        let fault = Fault::OutOfRange { value: mu, low: 0.0, high: 0.5, unit: "", remedy };
+        problems.push(Place::file("--mu"), fault);
+    }
+}
+
+/// Ends a command in failure, after what it found is stored and shown, if that is no solution.
+fn refuse_diverged(loaded: &LoadedCase, diverged: bool) -> Result<(), SimError> {
+    if diverged {
+        return Err(SimError::WakeParted { place: loaded.index.place("inflow.model") });
+    }
+    Ok(())
+}
+
+/// The case in another inflow; a case with a free wake keeps its own where one is asked for.
+fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> LoadedCase {
+    let has_one = matches!(loaded.case.inflow.model, InflowChoice::FreeWake(_));
+    if let Some(inflow) = inflow.filter(|i| !(has_one && *i == InflowOverride::Free)) {
+        loaded.case.inflow.model = inflow.into();
+    }
+    loaded
+}
+
+/// Refuses to write to a file that is read, where both are given.
+fn refuse_inputs(read: Option<&Path>, written: Option<&PathBuf>) -> Result<(), SimError> {
+    read.zip(written).map_or(Ok(()), |(read, written)| Ok(refuse_input(read, written)?))
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! `hhc section`: from options to questions about a section.
 
-use super::args::{MotionArg, ResponseArg, SectionArgs, SectionModelArg, StallArg};
+use super::args::{ResponseArg, SectionArgs};
 use crate::SimError;
+use crate::case::DynamicStallChoice;
 use crate::files::{refuse_input, write_atomic};
 use crate::output::{Printable, print};
 use crate::problem::{Fault, Place, Problem};
@@ -9,7 +10,7 @@ use crate::section::{
     LoopQuestion, PolarQuestion, SectionChoice, SectionQuestion, TransientQuestion, loop_history,
     polar, section_response, transient_history,
 };
-use flap_aero::{AeroError, FlapEffectiveness, Mach, StallParameters};
+use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Mach, Motion, StallParameters};
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
     check_section_options(args)?;
@@ -17,19 +18,19 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
         refuse_input(table, output)?;
     }
     let section = SectionChoice {
-        model: args.model.unwrap_or(SectionModelArg::Calibrated).into(),
+        model: args.model.unwrap_or(AttachedFlowModel::Calibrated),
         mach: args.mach,
         flap_chord: args.flap_chord.unwrap_or(0.2),
         effectiveness: effectiveness(&args.effectiveness)?,
     };
-    let motion = args.motion.unwrap_or(MotionArg::Flap).into();
+    let motion = args.motion.unwrap_or(Motion::Flap);
     // the arguments make sure of it where it counts
     let reduced_frequency = args.reduced_frequency.unwrap_or(0.0);
     let mean = args.mean_deg.unwrap_or(0.0).to_radians();
     let half = args.amplitude_deg.unwrap_or(10.0).to_radians();
-    let stall = match args.stall.unwrap_or(StallArg::Off) {
-        StallArg::Off => None,
-        StallArg::Naca0012 => Some(StallParameters::naca_0012(Mach::new(args.mach)?)),
+    let stall = match args.stall.unwrap_or_default() {
+        DynamicStallChoice::Off => None,
+        DynamicStallChoice::Naca0012 => Some(StallParameters::naca_0012(Mach::new(args.mach)?)),
     };
     let (distance, points) = (args.distance.unwrap_or(20.0), args.points.unwrap_or(200));
     let transient = |rise: f64| {
@@ -70,7 +71,7 @@ fn write_csv(args: &SectionArgs, csv: &str, remarks: &[String]) -> Result<(), Si
     for remark in remarks {
         eprintln!("note: {remark}");
     }
-    write_atomic(path, csv.as_bytes())
+    Ok(write_atomic(path, csv.as_bytes())?)
 }
 
 /// Factors of a flap: none given is theory's.

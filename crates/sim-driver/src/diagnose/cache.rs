@@ -1,25 +1,37 @@
 //! Surrogate structures kept on disk between runs, by the content they depend on.
 
 use crate::files::write_atomic;
+use actuator_gap::StructureStore;
+use model_gap::discovery::Signal;
 use std::path::{Path, PathBuf};
 
 /// Signals of every surrogate on every run.
-type Structures = Vec<Vec<Vec<f64>>>;
+type Structures = Vec<Signal>;
+
+/// A folder that keeps the structures of surrogates.
+pub struct FolderStore<'a>(pub &'a Path);
+
+impl StructureStore for FolderStore<'_> {
+    fn get(&self, parts: &[&[f64]], lengths: &[usize]) -> Option<Structures> {
+        read(self.0, &key(parts), lengths)
+    }
+
+    fn keep(&self, parts: &[&[f64]], structures: &[Signal]) {
+        write(self.0, &key(parts), structures);
+    }
+}
 
 /// Name of a file of structures: everything they depend on goes into the hash.
-pub(crate) fn key(parts: &[&[u8]]) -> String {
+fn key(parts: &[&[f64]]) -> String {
     let mut hash = blake3::Hasher::new();
     hash.update(crate::VERSION.as_bytes());
     for part in parts {
-        hash.update(&(part.len() as u64).to_le_bytes());
-        hash.update(part);
+        hash.update(&(size_of_val(*part) as u64).to_le_bytes());
+        for value in *part {
+            hash.update(&value.to_le_bytes());
+        }
     }
     hash.finalize().to_hex().to_string()
-}
-
-/// Bytes of numbers, for a hash.
-pub(crate) fn bytes(values: &[f64]) -> Vec<u8> {
-    values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
 fn file(folder: &Path, key: &str) -> PathBuf {
@@ -28,7 +40,7 @@ fn file(folder: &Path, key: &str) -> PathBuf {
 
 /// Reads structures of the expected lengths; none if there are no such, or they do not fit.
 #[expect(clippy::disallowed_methods, reason = "the one place that reads its own cache")]
-pub(crate) fn read(folder: &Path, key: &str, lengths: &[usize]) -> Option<Structures> {
+fn read(folder: &Path, key: &str, lengths: &[usize]) -> Option<Structures> {
     let raw = std::fs::read(file(folder, key)).ok()?;
     let per_surrogate: usize = lengths.iter().sum::<usize>() * 4;
     if per_surrogate == 0 || raw.len() % per_surrogate != 0 {
@@ -46,7 +58,7 @@ pub(crate) fn read(folder: &Path, key: &str, lengths: &[usize]) -> Option<Struct
 
 /// Keeps structures; a folder that cannot be written is no error, the next run computes them again.
 #[expect(clippy::cast_possible_truncation, reason = "single precision is enough for a floor")]
-pub(crate) fn write(folder: &Path, key: &str, structures: &Structures) {
+fn write(folder: &Path, key: &str, structures: &[Signal]) {
     let raw: Vec<u8> =
         structures.iter().flatten().flatten().flat_map(|&v| (v as f32).to_le_bytes()).collect();
     // a cache that cannot be written costs time, not results

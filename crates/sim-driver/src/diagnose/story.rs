@@ -3,7 +3,7 @@
 
 use super::{Diagnosis, Findings};
 use crate::files::significant;
-use crate::output::{Printable, Sheet, table};
+use crate::output::{Printable, Screen, Sheet, table};
 use model_gap::Candidate;
 use model_gap::discovery::{Confidence, Found, Verdict};
 use serde::Serialize;
@@ -11,21 +11,24 @@ use serde::Serialize;
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
 const POOR_BASE: f64 = 0.1;
 
-/// Motion over that expected, beyond which a unit is more likely wrong than a gain.
-const LIKELY_SCALE: [f64; 2] = [0.4, 2.5];
-
 /// The story of a diagnosis, printable.
 #[derive(Debug, Clone, Serialize)]
 #[serde(transparent)]
 pub struct Story {
     findings: Findings,
     #[serde(skip)]
-    text: String,
+    screen: String,
+    #[serde(skip)]
+    details: String,
 }
 
 impl Printable for Story {
     fn text(&self) -> String {
-        self.text.clone()
+        self.screen.clone()
+    }
+
+    fn details(&self) -> String {
+        self.details.clone()
     }
 }
 
@@ -33,12 +36,30 @@ impl Story {
     /// The story of a diagnosis.
     pub fn of(d: &Diagnosis) -> Self {
         let findings = Findings::from(d);
-        let text = text(d, &findings);
-        Self { findings, text }
+        let (screen, details) = (screen(d, &findings), details(d, &findings));
+        Self { findings, screen, details }
     }
 }
 
-fn text(d: &Diagnosis, findings: &Findings) -> String {
+/// One screen: the verdict first, then what it rests on.
+fn screen(d: &Diagnosis, findings: &Findings) -> String {
+    let mut found = Sheet::default();
+    causes(d, &mut found);
+    gain(d, findings, &mut found);
+    next(d, &mut found);
+    let mut ground = Sheet::default();
+    base(d, &mut ground);
+    let mut screen = Screen::default();
+    screen.wrapped(&verdict_line(d, findings));
+    screen.paragraphs(&found.finish());
+    screen.line("");
+    screen.paragraphs(&ground.finish());
+    screen.line("\nEvery run and every cause: --details");
+    screen.finish()
+}
+
+/// Everything, in the order of the work.
+fn details(d: &Diagnosis, findings: &Findings) -> String {
     let mut sheet = Sheet::default();
     base(d, &mut sheet);
     energies(d, &mut sheet);
@@ -63,7 +84,7 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line(format_args!(
         "  {} measured runs against a base model of {}; its error on runs left out of its fit is {:.2} % of the output, the noise {} {unit}",
         d.run_ids.len(),
-        if d.has_reference { format!("{} reference runs", d.law_inputs.len()) } else { "the same runs (no reference runs)".to_owned() },
+        if d.has_reference { format!("{} reference runs", d.fitted_runs()) } else { "the same runs (no reference runs)".to_owned() },
         100.0 * d.floor,
         significant(d.noise, 3),
     ));
@@ -73,7 +94,7 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
         ));
     }
     if d.floor > POOR_BASE {
-        let known = if d.law_inputs.len() == 1 {
+        let known = if d.fitted_runs() == 1 {
             "one run alone says little about others"
         } else {
             "it is of another kind, or its runs move where the others never did"
@@ -82,7 +103,7 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
             "  The base model hardly predicts a run that it has not seen: {known}. What is not much larger cannot be seen beside that."
         ));
     }
-    if !(LIKELY_SCALE[0]..=LIKELY_SCALE[1]).contains(&d.scale) {
+    if d.unit_looks_wrong() {
         let ask = if d.scale < 0.0 { "sign" } else { "unit" };
         sheet.line(format_args!(
             "  The measured outputs move {} times as much as the base model expects: before anything else, see whether every column has the {ask} of its name.",
@@ -110,7 +131,7 @@ fn energies(d: &Diagnosis, sheet: &mut Sheet) {
 
 /// What each cause could explain.
 fn screening(d: &Diagnosis, sheet: &mut Sheet) {
-    sheet.line(format_args!("\nScreening: what each cause could explain (noise units), beside what surrogates with nothing missing reach"));
+    sheet.line(format_args!("\nScreening: drop of chi-square that each cause could bring, and the floor that surrogates with nothing missing reach"));
     let mut order: Vec<usize> = (0..d.candidates.len()).collect();
     let ratio = |c: usize| d.finding.screen[c].score / d.finding.screen[c].threshold.max(1e-9);
     order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
@@ -122,7 +143,7 @@ fn screening(d: &Diagnosis, sheet: &mut Sheet) {
         }
         let name = match &d.candidates[c] {
             Candidate { refuted: Some(_), .. } => format!("{name} (refuted)"),
-            Candidate { nameless: Some(_), .. } => format!("{name} (not of the library)"),
+            Candidate { decoy: Some(_), .. } => format!("{name} (decoy)"),
             _ => name,
         };
         let alike = s.most_confused.map_or_else(String::new, |(b, cosine)| {
@@ -160,13 +181,15 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
             }
         }
         sheet.line(format_args!(
-            "    signature: {}; explains {:.0} noise units, {:.0} where it is held out",
+            "    signature: {}; lowers chi-square by {:.0}, by {:.0} on held-out runs",
             cause.fingerprint, found.drop, found.held_out_drop
         ));
         for other in found.compared.iter().filter(|other| other.is_as_likely()) {
             sheet.line(format_args!(
-                "    {} in its place explains {:.0} noise units less; {:.0} would tell them apart",
-                d.candidates[other.candidate].cause.id, other.behind, other.told_apart_beyond
+                "    {} in its place leaves {:.0} more; the discrimination threshold is {:.0}",
+                d.candidates[other.candidate].cause.id,
+                other.delta_chi2,
+                other.discrimination_threshold
             ));
         }
     }

@@ -1,5 +1,6 @@
 //! Aerofoil tables from C81 files.
 
+use super::shipped::{SHIPPED_AIRFOILS, shipped};
 use super::{Folder, Source};
 use crate::problem::{Fault, Place, Problem};
 use flap_aero::{AeroError, C81Airfoil};
@@ -20,12 +21,21 @@ pub fn read_airfoil(source: &Source) -> Result<C81Airfoil, Problem> {
     })
 }
 
+/// The folder and name of an aerofoil table: `shipped:NAME` is one shipped inside the program, any
+/// other name a file of `folder`.
+pub fn airfoil_place<'a>(folder: &Folder, name: &'a str) -> (Folder, &'a str) {
+    match name.strip_prefix("shipped:") {
+        Some(name) => (shipped(SHIPPED_AIRFOILS), name),
+        None => (folder.clone(), name),
+    }
+}
+
 /// The text of an aerofoil file; `shipped:NAME` is one shipped inside the program, any other name a file
 /// of the folder.
 ///
 /// # Errors
 /// [`Fault::Unreadable`], [`Fault::NotText`] or [`Fault::NotShipped`].
 pub fn airfoil_text(folder: &Folder, name: &str) -> Result<Source, Problem> {
-    let (folder, name) = folder.airfoil(name);
+    let (folder, name) = airfoil_place(folder, name);
     folder.read(name)
 }

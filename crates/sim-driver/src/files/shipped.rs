@@ -2,6 +2,8 @@
 //!
 //! The paper's study runs from any folder because its input is part of the binary.
 
+use super::{Embedded, Folder};
+
 /// Folder of the shipped cases.
 pub const SHIPPED_CASES: &str = "fixtures/cases";
 /// Folder of the shipped aerofoil tables.
@@ -48,6 +50,11 @@ shipped![
     "fixtures/cases/paper_mu030_6p383hz.ron",
     "fixtures/cases/stalled_mu030.ron",
 ];
+
+/// A folder of the shipped files, such as [`SHIPPED_CASES`].
+pub fn shipped(folder: &str) -> Folder {
+    Folder::Embedded(Embedded::new(folder, FILES))
+}
 
 /// Content of a shipped file by its name, such as `fixtures/cases/paper_mu030.ron`.
 pub fn shipped_file(name: &str) -> Option<&'static [u8]> {

@@ -2,7 +2,7 @@
 
 use super::{BenchIdentification, PickReason, RunFit};
 use crate::files::significant;
-use crate::output::{Printable, Sheet, table};
+use crate::output::{Printable, Screen, Sheet, table};
 use crate::stored_actuator::{FitUse, GainRule, StoredChannels, StoredFit};
 use model_gap::Use;
 use preisach_dyn::identify::{
@@ -208,8 +208,66 @@ pub struct IdentifyResult {
     pub written_to: Option<String>,
 }
 
+/// Rows of held-out runs on one screen.
+const MOST_RUNS: usize = 6;
+/// Findings on one screen.
+const MOST_FINDINGS: usize = 4;
+
 impl Printable for IdentifyResult {
     fn text(&self) -> String {
+        let mut screen = Screen::default();
+        screen.line(&self.title);
+        screen.labelled("Model", &format!("{}, {}", self.model, self.picked()));
+        if self.channels.is_none() {
+            let gain = format!("{:.6} deg/um, {}", self.deg_per_um, self.gain_rule);
+            screen.labelled("Gain", &gain);
+        }
+        let of = |use_as: FitUse| -> Vec<&StoredFit> {
+            self.runs.iter().filter(|run| run.use_as == use_as).collect()
+        };
+        let mut held_out = of(FitUse::HeldOut);
+        held_out.sort_by(|a, b| b.nrmse_percent.total_cmp(&a.nrmse_percent));
+        for (label, runs) in [("Held out", &held_out), ("Trained", &of(FitUse::Trained))] {
+            let squares: f64 = runs.iter().map(|run| run.nrmse_percent.powi(2)).sum();
+            let rms = (squares / runs.len().max(1) as f64).sqrt();
+            let worst = runs.iter().max_by(|a, b| a.nrmse_percent.total_cmp(&b.nrmse_percent));
+            screen.labelled(
+                label,
+                &worst.map_or_else(
+                    || "no run".to_owned(),
+                    |worst| {
+                        format!(
+                            "{} runs, NRMSE {rms:.2} % rms, at most {:.2} % ({})",
+                            runs.len(),
+                            worst.nrmse_percent,
+                            worst.id
+                        )
+                    },
+                ),
+            );
+        }
+        if !self.models.is_empty() {
+            screen.line("\nModels on the same split, NRMSE in %; * chosen by the training runs left out of its fit");
+            screen.block(&short_model_table(&self.models));
+        }
+        if !held_out.is_empty() {
+            screen.line("\nHeld-out runs, the worst first");
+            screen.block(&short_fit_table(&held_out));
+        }
+        screen.line("");
+        for line in self.findings.iter().take(MOST_FINDINGS) {
+            screen.labelled(&format!("{:?}", line.severity), &line.message);
+        }
+        screen.labelled("NRMSE", "rms error over the standard deviation of the measured output");
+        if let Some(path) = &self.written_to {
+            let what = if self.channels.is_some() { "Model" } else { "Actuator" };
+            screen.line(&format!("{what} written to {path}"));
+            screen.line("Every run and parameter: --details");
+        }
+        screen.finish()
+    }
+
+    fn details(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("{}", self.title));
         sheet.line(format_args!("Data   {}\nSplit  {}", self.dataset, self.split));
@@ -264,7 +322,7 @@ impl Printable for IdentifyResult {
             sheet.line(format_args!("\nModels on the same split, NRMSE in %"));
             sheet.block(&model_table(&self.models));
             sheet.line(format_args!(
-                "{} Held-out runs are never looked at for choosing.",
+                "{} Held-out runs take no part in the choice.",
                 if self.models.iter().any(|m| m.cross_validation_percent.is_some()) {
                     "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen, a simpler one if it is within 3 %."
                 } else {
@@ -328,6 +386,41 @@ fn model_table(models: &[ModelLine]) -> String {
                 optional(m.trained_percent),
                 optional(m.held_out_percent),
                 optional(m.worst_held_out_percent),
+            ]
+        }),
+    )
+}
+
+/// The table of models that fits a screen.
+fn short_model_table(models: &[ModelLine]) -> String {
+    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:.2}"));
+    table(
+        &["model", "left out", "trained", "held out", "worst"],
+        models.iter().map(|m| {
+            vec![
+                format!("{}{}", if m.chosen { "* " } else { "" }, m.model),
+                optional(m.cross_validation_percent),
+                optional(m.trained_percent),
+                optional(m.held_out_percent),
+                optional(m.worst_held_out_percent),
+            ]
+        }),
+    )
+}
+
+/// The worst runs.
+fn short_fit_table(runs: &[&StoredFit]) -> String {
+    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
+    table(
+        &["run", "Hz", "amplitude", "NRMSE %", "amplitude error %", "phase error deg"],
+        runs.iter().take(MOST_RUNS).map(|r| {
+            vec![
+                r.id.clone(),
+                format!("{}", significant(r.frequency_hz, 3)),
+                format!("{}", significant(r.amplitude_volt, 3)),
+                format!("{:.2}", r.nrmse_percent),
+                optional(r.amplitude_error_percent),
+                optional(r.phase_error_deg),
             ]
         }),
     )

@@ -1,10 +1,11 @@
 //! The charts, as plotly plots without colours of background and text: the page sets those.
 
-use super::{AzimuthChart, LoadBars, LoopChart};
-use crate::results::HubLoads;
+use super::{AzimuthChart, LoadBars};
+use crate::results::LoopRecord;
 use plotly::common::{Anchor, DashType, Line, Mode, Orientation, Title};
 use plotly::layout::{Axis, BarMode, Legend, Margin};
 use plotly::{Bar, Layout, Plot, Scatter};
+use rotor_study::HubLoads;
 
 /// Colours that stay apart from each other and readable on light and dark, also for the colour-blind
 /// (Okabe and Ito's palette).
@@ -38,7 +39,7 @@ fn line(
 }
 
 /// Flap angle against voltage: measured, dynamic model, static model.
-pub(super) fn loop_chart(chart: &LoopChart) -> Plot {
+pub(super) fn loop_chart(chart: &LoopRecord) -> Plot {
     let mut plot = Plot::new();
     let u = &chart.voltage_volt;
     if !chart.static_deg.is_empty() {

@@ -1,15 +1,14 @@
-//! What a report shows: plain numbers, stored beside the report so that it can be written again.
+//! What a report shows: plain numbers and words.
 
+use super::{Assumption, Finding};
 use crate::identification::fit_table;
-use crate::mean_loads::MeanLoads;
 use crate::output::table;
-use crate::results::{Residuals, TrimLine};
-use crate::stability::StabilityLine;
+use crate::results::{LoopRecord, Residuals, TrimLine};
 use crate::stored_actuator::StoredFit;
-use serde::{Deserialize, Serialize};
+use rotor_study::{MeanLoads, StabilityLine};
 
 /// Everything a report shows.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct StudyReport {
     /// Title of the page.
     pub title: String,
@@ -19,6 +18,10 @@ pub struct StudyReport {
     pub key: String,
     /// What was run, a sentence each: rotor, inflow, sections, bench mapping.
     pub setting: Vec<String>,
+    /// Everything the case says, with units.
+    pub assumptions: Vec<Assumption>,
+    /// The six loads before and after, one panel a set of harmonics.
+    pub finding: Finding,
     /// What a reader should know before using the numbers.
     pub warnings: Vec<String>,
     /// Title of the bench data, which says whether they are synthetic.
@@ -27,18 +30,16 @@ pub struct StudyReport {
     pub headline: Vec<HeadlineRow>,
     /// The trim.
     pub trim: TrimLine,
-    /// Mean loads on the hub and the power of the shaft; none in reports stored before they were.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Mean loads on the hub and the power of the shaft.
     pub mean_loads: Option<MeanLoads>,
     /// The three residuals.
     pub residuals: Residuals,
     /// Stability of the trimmed blade.
-    #[serde(default)]
     pub stability: StabilityLine,
     /// Fit of every bench run.
     pub fits: Vec<StoredFit>,
     /// Measured and simulated loops.
-    pub loops: Vec<LoopChart>,
+    pub loops: Vec<LoopRecord>,
     /// Flap and voltage against azimuth.
     pub azimuth: Vec<AzimuthChart>,
     /// Hub loads before and after.
@@ -48,7 +49,7 @@ pub struct StudyReport {
 }
 
 /// One line of the comparison with the paper.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct HeadlineRow {
     /// The quantity, with its unit.
     pub quantity: String,
@@ -58,31 +59,8 @@ pub struct HeadlineRow {
     pub ours: Vec<(String, String)>,
 }
 
-/// One bench run: displacement as flap angle against voltage over the last steady cycle.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LoopChart {
-    /// The run.
-    pub id: String,
-    /// Frequency, Hz.
-    pub frequency_hz: f64,
-    /// Half peak to peak of the voltage, V.
-    pub amplitude_volt: f64,
-    /// Whether the model was fitted to it.
-    pub trained: bool,
-    /// RMS error over the standard deviation of the measured output, percent.
-    pub nrmse_percent: f64,
-    /// Voltage at every sample, V.
-    pub voltage_volt: Vec<f64>,
-    /// Measured flap angle, deg.
-    pub measured_deg: Vec<f64>,
-    /// Simulated flap angle, deg.
-    pub simulated_deg: Vec<f64>,
-    /// The static model's flap angle, deg.
-    pub static_deg: Vec<f64>,
-}
-
 /// Voltage and flap angle over one revolution.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct AzimuthChart {
     /// Set of harmonics and actuator, such as `3/rev, hysteretic`.
     pub title: String,
@@ -93,7 +71,7 @@ pub struct AzimuthChart {
 }
 
 /// One flap over one revolution.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FlapTrace {
     /// Name, such as `inboard`.
     pub name: String,
@@ -104,7 +82,7 @@ pub struct FlapTrace {
 }
 
 /// The six hub loads of one set of harmonics without control and with each actuator.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LoadBars {
     /// Set of harmonics, such as `3/rev`.
     pub title: String,
@@ -115,7 +93,7 @@ pub struct LoadBars {
 }
 
 /// A further table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ResultSection {
     /// Heading.
     pub title: String,

@@ -2,9 +2,9 @@
 
 use super::charts::{azimuth_chart, load_chart, loop_chart};
 use super::{HeadlineRow, StudyReport};
-use crate::mean_loads::MeanLoads;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plotly::Plot;
+use rotor_study::MeanLoads;
 
 /// The report as one HTML text: charts, style and script inside, nothing loaded from anywhere.
 pub fn report_html(report: &StudyReport) -> String {
@@ -12,6 +12,9 @@ pub fn report_html(report: &StudyReport) -> String {
     let body = html! {
         header {
             h1 { (report.title) }
+            @if report.finding.is_drawn() {
+                figure.finding { (PreEscaped(report.finding.svg(&report.title))) }
+            }
             p.lead { @for sentence in &report.setting { (sentence) " " } }
             @if !report.data_title.is_empty() { p { "Bench data: " strong { (report.data_title) } } }
         }
@@ -68,6 +71,7 @@ pub fn report_html(report: &StudyReport) -> String {
                 (table(&section.header, &section.rows))
             }
         }
+        (assumed(report))
         footer { p { (report.program) ", result " code { (report.key) } } }
     };
     let page = html! {
@@ -137,6 +141,25 @@ fn state(report: &StudyReport) -> Markup {
             }
             @if let Some(stability) = report.stability.text() {
                 p { "Trimmed blade " (stability) ". All motions are in result.json." }
+            }
+        }
+    }
+}
+
+/// Everything the case says, with units.
+fn assumed(report: &StudyReport) -> Markup {
+    let header = ["part of the case", "quantity", "value", "unit"].map(str::to_owned);
+    let rows: Vec<Vec<String>> = report
+        .assumptions
+        .iter()
+        .map(|a| vec![a.part.clone(), a.quantity.clone(), a.value.clone(), a.unit.to_owned()])
+        .collect();
+    html! {
+        @if !rows.is_empty() {
+            section {
+                h2 { "Assumptions" }
+                p { "R is the radius of the rotor, m0 the mass per length of its blade, Omega its speed." }
+                (table(&header, &rows))
             }
         }
     }

@@ -196,14 +196,17 @@ fn a_negative_stiffness() {
     bad_case(
         "(\n  rotor: (\n    ei_lag: -0.0268,\n  ),\n)",
         &[
-            "case.ron:3:5: rotor.ei_lag: is -0.0268, expected a positive finite number; a stiffness is positive",
+            "case.ron:3:5: rotor.ei_lag: is -0.0268 m0 Omega^2 R^4, expected a positive finite number; a stiffness is positive",
         ],
     );
 }
 
 #[test]
 fn a_blade_that_is_none() {
-    bad_case("(rotor: (gj: 0))", &["rotor.gj: is 0, expected a positive finite number"]);
+    bad_case(
+        "(rotor: (gj: 0))",
+        &["rotor.gj: is 0 m0 Omega^2 R^4, expected a positive finite number"],
+    );
     bad_case(
         "(rotor: (tables: (ei_flap: [(0, 0.02), (0.6, 0.01), (0.3, 0.01), (1, 0.01)])))",
         &["rotor.tables.ei_flap[2]: is 0.3 R, expected 0.6 to 1 R; list the stations from root"],

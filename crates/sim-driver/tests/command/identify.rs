@@ -84,7 +84,7 @@ fn what_is_assumed_is_said() {
         "d/dataset.ron",
         "(kind: ActuatorBench, title: \"t\", runs: [(id: \"a\", file: \"a.csv\", role: Reference)], command_range_V: (-100, 150))",
     );
-    let text = place.hhc(&["identify", "d", "-o", "a.ron"]).done();
+    let text = place.hhc(&["identify", "d", "-o", "a.ron", "--details"]).done();
     for part in ["ASSUMED: no slow loop to scale by", "too few training runs to choose a model by"]
     {
         assert!(text.contains(part), "{part}: {text}");

@@ -481,7 +481,7 @@ fn the_measured_friction_damper_is_a_stop_and_no_play() {
     let (stops, fixed) = (held_out("Prandtl-Ishlinskii stops"), held_out("static Preisach"));
     assert!(stops.0 && !fixed.0, "{models:?}");
     assert!(stops.1 < 50.0 && fixed.1 > 80.0, "{stops:?} {fixed:?}");
-    let text = place.hhc(&args).done();
+    let text = place.hhc(&[&args[..], &["--details"]].concat()).done();
     assert!(text.contains("friction does"), "{text}");
     assert!(text.contains("Model written to damper.ron"), "{text}");
     // the path of the data may be called anything
@@ -535,7 +535,7 @@ fn a_generic_loop_is_identified_in_its_own_units() {
     for run in json["runs"].as_array().unwrap() {
         assert!(run["nrmse_percent"].as_f64().unwrap() < 10.0, "{run}");
     }
-    let text = place.hhc(&args[..4]).done();
+    let text = place.hhc(&[&args[..4], &["--details"]].concat()).done();
     assert!(text.contains("Model  field_Oe to moment_emu, field_Oe -15 to 145 (from"), "{text}");
     let figures = place.listing().into_iter().filter(|f| f.starts_with("figures/"));
     let expected = ["density", "loop_five", "loop_one_large", "loop_one_small", "loop_slow"];

@@ -8,5 +8,6 @@ mod identify;
 mod import;
 mod place;
 mod rotor;
+mod screen;
 mod stages_doc;
 mod wake;

@@ -15,12 +15,14 @@
 //! Everything is deterministic: the same numbers at every run.
 
 mod gains;
+mod pole_fit;
 mod pole_law;
 mod render;
 mod samples;
 
 pub use gains::{GainTable, Gains, fit_gains};
-pub use pole_law::{POLES, PoleLaw, fit_pole_law};
+pub use pole_fit::fit_pole_law;
+pub use pole_law::{POLES, PoleLaw};
 pub use samples::{REDUCED_FREQUENCIES, Samples};
 
 use crate::ExactError;

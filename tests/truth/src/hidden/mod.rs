@@ -43,6 +43,7 @@ pub use effect::{Character, Element, Parameter, Physics};
 pub use mechanics::Mechanics;
 pub use relays::{RelayParameters, Relays};
 pub use sensor::Sensor;
-pub use set::{File, MeasuredSet, Request, Truth, measured_set, noise_um, reference_files, truth};
+pub use set::{MeasuredSet, Request, Truth, measured_set, noise_um, reference_files, truth};
 pub use simulate::{Exact, Prepared, STIFFNESS_NEWTON_PER_UM, internal_rate_hz};
+pub use text::File;
 pub use waveform::Waveform;

@@ -7,7 +7,7 @@ use super::catalogue::Hidden;
 use super::design::{self, BASES, Design, Experiment, Monitor, Plan, RANGE_VOLT, Size};
 use super::effect::{Character, Parameter, Physics};
 use super::simulate::{Exact, Prepared};
-use super::text::{self, Columns};
+use super::text::{self, Columns, File};
 use crate::error::TruthError;
 
 /// What is asked for.
@@ -52,9 +52,6 @@ impl Request {
         found
     }
 }
-
-/// A file of a folder: name and content.
-pub type File = (String, String);
 
 /// A generated measured folder with its answer.
 #[derive(Debug, Clone, PartialEq)]

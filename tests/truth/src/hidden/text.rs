@@ -2,10 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::design::{Monitor, Monitors, Plan};
+use super::design::{Fitting, Monitor, Monitors, Plan};
 use super::draw::{Draw, Purpose};
-use super::set::File;
 use super::simulate::Exact;
+
+/// A file of a folder: name and content.
+pub type File = (String, String);
 
 /// What is written of a run.
 #[derive(Debug, Clone, Copy)]
@@ -85,7 +87,13 @@ pub(super) fn dataset(title: &str, role: &str, plans: &[Plan], range_volt: (f64,
         "#![enable(implicit_some)]\n(\n    kind: ActuatorBench,\n    title: \"{title}\",\n    runs: [\n"
     );
     for plan in plans {
-        let _ = writeln!(text, "        (id: \"{0}\", file: \"{0}.csv\", role: {role}),", plan.id);
+        let how = match plan.fitting {
+            Fitting::Laser => ", sensor: Ideal",
+            Fitting::Preload => ", fitting: Preloaded",
+            Fitting::Plain | Fitting::Spring(_) => "",
+        };
+        let _ =
+            writeln!(text, "        (id: \"{0}\", file: \"{0}.csv\", role: {role}{how}),", plan.id);
     }
     let (low, high) = range_volt;
     let _ = writeln!(

@@ -1,0 +1,540 @@
+//! A diagnosis: what the base model of a bench gets wrong, why, and what it is worth to know.
+
+use crate::actuator_file::StoredChannels;
+use crate::base::{BaseModel, white_noise};
+use crate::causes::{self, BenchCause, Design};
+use crate::error::DiagnosisError;
+use crate::next::{self, Proposal};
+use crate::record::{Record, Records};
+use crate::simulator::{BenchSimulator, averaged, slope};
+use crate::surrogate;
+use model_gap::discovery::{Confidence, Discovery, Finding, Reason, Settings, Signal, Verdict};
+use model_gap::{Candidate, GapError};
+use preisach_dyn::{ActuatorModel, PreisachError};
+use rotor_base::{mean_square, variance};
+
+/// A diagnosis with everything it rests on.
+pub struct Diagnosis {
+    /// What was found.
+    pub finding: Finding,
+    /// The candidates, in the order of the library.
+    pub candidates: Vec<Candidate>,
+    pub(crate) library: Vec<Box<dyn BenchCause>>,
+    pub(crate) base: BaseModel,
+    /// Inputs that the base model was fitted to.
+    pub(crate) law_inputs: Vec<Vec<f64>>,
+    /// Names of the measured runs.
+    pub run_ids: Vec<String>,
+    /// Times at which what is judged of the measured runs begins, s.
+    pub(crate) run_starts_s: Vec<f64>,
+    /// Inputs of the measured runs, thinned as the residuals are.
+    pub(crate) run_inputs: Vec<Vec<f64>>,
+    /// Run and channel of every trace, and the time between its samples, s.
+    pub(crate) traces: Vec<(usize, &'static str, f64)>,
+    /// Energy of every measured run.
+    pub energy: Vec<RunEnergy>,
+    /// Title of the data.
+    pub title: String,
+    /// Folder of the data.
+    pub folder: String,
+    pub(crate) content_hash: String,
+    pub(crate) range: (f64, f64),
+    pub(crate) deg_per_um: Option<f64>,
+    pub(crate) is_bench: bool,
+    pub(crate) channels: Option<StoredChannels>,
+    /// Whether reference runs fix the base model.
+    pub has_reference: bool,
+    /// Error of the model given on the measured runs, rms over spread, percent; none if it was not
+    /// simulated.
+    pub given_error_percent: Option<f64>,
+    /// Motion of the measured outputs over that of the base model, by least squares: far from 1 where the
+    /// unit of a column is not what its name says.
+    pub scale: f64,
+    /// Unit of the output.
+    pub output_unit: String,
+    /// What to measure next.
+    pub next: Proposal,
+    /// Error of the base model on reference runs left out of its fit, over the spread of the output.
+    pub floor: f64,
+    /// Noise of the reading on the reference runs, in the output's unit.
+    pub noise: f64,
+}
+
+/// Where the energy of a measured run goes under the base model, fractions that sum to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunEnergy {
+    /// The run.
+    pub id: String,
+    /// Explained.
+    pub explained: f64,
+    /// Noise.
+    pub noise: f64,
+    /// Left over and not noise.
+    pub structured: f64,
+}
+
+/// Keeps what surrogates leave on measured runs: it depends on the data alone and takes long.
+pub trait StructureStore: Sync {
+    /// The structures kept under `parts`, all the numbers they depend on; `lengths` are the samples of every measured
+    /// run. None if there are no such.
+    fn get(&self, parts: &[&[f64]], lengths: &[usize]) -> Option<Vec<Signal>>;
+    /// Keeps structures; a store that cannot costs time, not results.
+    fn keep(&self, parts: &[&[f64]], structures: &[Signal]);
+}
+
+/// What a diagnosis is asked.
+#[derive(Clone, Default)]
+pub struct Question<'a> {
+    /// Reference runs from another folder.
+    pub reference: Vec<Record>,
+    /// Only these causes, all of them taken for true: what a refit with the known causes would gain.
+    pub only: Vec<String>,
+    /// Where surrogate structures are kept; none computes them anew.
+    pub cache: Option<&'a dyn StructureStore>,
+    /// The model given, to be shown beside the base model.
+    pub given: Option<&'a ActuatorModel>,
+}
+
+/// Motion over that expected, beyond which a unit is more likely wrong than a gain.
+const LIKELY_SCALE: [f64; 2] = [0.4, 2.5];
+/// Times the noise of the reference runs from which a reading is another.
+const NOISIER: f64 = 2.0;
+/// Share of its threshold from which on a cause may be there and hidden.
+const MAY_BE_HIDDEN: f64 = 0.5;
+
+impl Diagnosis {
+    /// Reference runs that the base model was fitted to; the measured ones where there are none.
+    pub fn fitted_runs(&self) -> usize {
+        self.law_inputs.len()
+    }
+
+    /// Whether the measured outputs move so much more or less than expected that a unit is more likely wrong than a gain.
+    pub fn unit_looks_wrong(&self) -> bool {
+        !(LIKELY_SCALE[0]..=LIKELY_SCALE[1]).contains(&self.scale)
+    }
+
+    /// Causes that these data could not have shown at usual strength; and, where nothing is named, those
+    /// that would explain a good part of the misfit and stay within what surrogates reach.
+    pub fn not_observable(&self) -> Vec<String> {
+        let unnamed = self.finding.causes.is_empty();
+        self.candidates
+            .iter()
+            .zip(&self.finding.screen)
+            // what the data refute they have shown; what has no name is not asked for
+            .filter(|(candidate, _)| candidate.refuted.is_none() && candidate.decoy.is_none())
+            .filter(|(candidate, screened)| {
+                let hidden = MAY_BE_HIDDEN * screened.threshold..screened.threshold;
+                candidate.blocked.is_some()
+                    || screened.weak_signal < screened.threshold
+                    || (unnamed && hidden.contains(&screened.score))
+            })
+            .map(|(candidate, _)| candidate.cause.id.to_owned())
+            .collect()
+    }
+}
+
+/// Diagnoses measured runs against the base model of the reference runs.
+///
+/// # Errors
+/// [`DiagnosisError::NothingMeasured`]; [`DiagnosisError::Misfit`] where the numerics fail, or where a cause of
+/// [`Question::only`] is not in the library.
+pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, DiagnosisError> {
+    let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
+    let mut library: Vec<Box<dyn BenchCause>> = causes::library();
+    let named = library.len();
+    library.extend(causes::decoys());
+    let runs: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
+    if runs.is_empty() {
+        return Err(DiagnosisError::NothingMeasured { runs: measured.runs.len() });
+    }
+    let mut references: Vec<&Record> = question.reference.iter().collect();
+    references.extend(measured.runs.iter().filter(|r| r.is_reference));
+    let has_reference = !references.is_empty();
+    let fitted = if has_reference { &references } else { &runs };
+    let range = range_of(measured.range, fitted, &runs);
+    let base =
+        BaseModel::fit(fitted, range, None).ok_or_else(|| too_few("runs of the base model"))?;
+    let design = Design::of(&runs, measured.is_bench, has_reference);
+    let mut candidates = causes::candidates(&library, &design);
+    let given = restrict(&mut candidates[..named], &question.only)?;
+    let simulator = BenchSimulator::new(&base, runs.clone(), &library, range)?;
+    let traces = simulator.traces();
+    let structures: Vec<Signal> = kept_structures(&base, fitted, &runs, range, question.cache)
+        .iter()
+        .map(|s| simulator.on_traces(s))
+        .collect();
+    let generic = directions(&simulator, |input, plain, step_s| {
+        surrogate::generic(input, plain, base.spread, step_s)
+    });
+    let trends =
+        directions(&simulator, |_, plain, step_s| surrogate::trends(plain, base.spread, step_s));
+    let settings = Settings { has_reference, ..Settings::default() };
+    let discovery = Discovery {
+        traces: &traces,
+        simulator: &simulator,
+        candidates: &candidates,
+        generic: &generic,
+        trends: &trends,
+        structures: &structures,
+        settings,
+    };
+    let mut finding = match given {
+        Some(given) => discovery.refit(&given),
+        None => discovery.find(),
+    }?;
+    if finding.verdict == Verdict::NothingMissing
+        && let Some(reason) = noisier(&runs, &base)
+    {
+        finding.confidence = Confidence::Tentative;
+        finding.reasons.push(reason);
+    }
+    let bench = next::Bench {
+        base: &base,
+        library: &library,
+        candidates: &candidates,
+        runs: &runs,
+        design: &design,
+        range,
+    };
+    let next = next::proposal(&bench, &finding)?;
+    let energy = energy(&runs, &base);
+    let kinds = simulator.kinds();
+    Ok(Diagnosis {
+        finding,
+        candidates: candidates.clone(),
+        law_inputs: fitted.iter().map(|r| r.input.clone()).collect(),
+        run_ids: runs.iter().map(|r| r.id.clone()).collect(),
+        run_starts_s: runs.iter().map(|r| r.window.start as f64 * r.step_s).collect(),
+        run_inputs: runs.iter().map(|r| averaged(r.judged_input(), simulator.block)).collect(),
+        traces: kinds,
+        energy,
+        title: measured.title.clone(),
+        folder: measured.folder.clone(),
+        content_hash: measured.content_hash.clone(),
+        range,
+        deg_per_um: measured.deg_per_um,
+        is_bench: measured.is_bench,
+        channels: (!measured.is_bench).then(|| StoredChannels {
+            input: measured.input_label.clone(),
+            output: measured.output_label.clone(),
+        }),
+        has_reference,
+        given_error_percent: question.given.and_then(|model| error_percent(model, &runs).ok()),
+        scale: scale_of(&runs, &base),
+        output_unit: measured.output_unit.clone(),
+        next,
+        floor: base.floor,
+        noise: base.noise,
+        library,
+        base,
+    })
+}
+
+/// Blocks every candidate that is not asked for; the places of those that are.
+fn restrict(candidates: &mut [Candidate], only: &[String]) -> Result<Option<Vec<usize>>, GapError> {
+    if only.is_empty() {
+        return Ok(None);
+    }
+    let mut places = Vec::new();
+    for id in only {
+        let place = candidates.iter().position(|c| c.cause.id == id.as_str());
+        places.push(place.ok_or_else(|| {
+            let known: Vec<&str> = candidates.iter().map(|c| c.cause.id).collect();
+            let message = format!("not in the library: {}", known.join(", "));
+            GapError::Simulation { what: id.clone(), message }
+        })?);
+    }
+    for (c, candidate) in candidates.iter_mut().enumerate() {
+        if !places.contains(&c) {
+            candidate.blocked = Some("not asked for".into());
+        }
+    }
+    Ok(Some(places))
+}
+
+/// The structures of the surrogates, from the store where they are there.
+fn kept_structures(
+    base: &BaseModel,
+    fitted: &[&Record],
+    runs: &[&Record],
+    range: (f64, f64),
+    store: Option<&dyn StructureStore>,
+) -> Vec<Signal> {
+    let found = || surrogate::structures(base, fitted, runs, range);
+    let Some(store) = store else { return found() };
+    let lengths: Vec<usize> = runs.iter().map(|r| r.input.len()).collect();
+    let range = [range.0, range.1];
+    let mut parts: Vec<&[f64]> = vec![&range];
+    for run in fitted {
+        parts.extend([std::slice::from_ref(&run.step_s), &run.input, run.judged_output()]);
+    }
+    for run in runs {
+        parts.extend([std::slice::from_ref(&run.step_s), run.input.as_slice()]);
+    }
+    store.get(&parts, &lengths).unwrap_or_else(|| {
+        let found = found();
+        store.keep(&parts, &found);
+        found
+    })
+}
+
+fn energy(runs: &[&Record], base: &BaseModel) -> Vec<RunEnergy> {
+    runs.iter()
+        .map(|run| {
+            let residual = base.residual(run);
+            let total = variance(run.judged_output()).max(1e-300);
+            let left = mean_square(&residual);
+            let noise = white_noise(&residual).powi(2).min(left);
+            RunEnergy {
+                id: run.id.clone(),
+                explained: 1.0 - left / total,
+                noise: noise / total,
+                structured: (left - noise) / total,
+            }
+        })
+        .collect()
+}
+
+/// What is said of the measured run whose reading is noisier than that of the reference runs by most. No cause of a
+/// simulation adds noise, but a sensor or an amplifier that has become noisy is no longer what it was.
+fn noisier(runs: &[&Record], base: &BaseModel) -> Option<Reason> {
+    let times = |run: &&Record| white_noise(&base.residual(run)) / base.noise;
+    let (run, times) = runs
+        .iter()
+        .map(|run| (run, times(run)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, times)| *times > NOISIER)?;
+    Some(Reason::Noisier { run: run.id.clone(), times })
+}
+
+/// RMS error of a model on runs over the spread of their output, zero displacement left free, percent.
+pub(crate) fn error_percent(model: &ActuatorModel, runs: &[&Record]) -> Result<f64, PreisachError> {
+    let (mut left, mut all) = (0.0, 0.0);
+    for run in runs {
+        let drive = preisach_dyn::Drive::new(&run.input, run.step_s);
+        let simulated = model.simulate_bench(&drive)?;
+        let off: Vec<f64> = run
+            .judged(&simulated.measured_deg)
+            .iter()
+            .zip(run.judged_output())
+            .map(|(deg, y)| y - model.calibration.displacement_um(*deg))
+            .collect();
+        left += variance(&off) * off.len() as f64;
+        all += variance(run.judged_output()) * off.len() as f64;
+    }
+    Ok(100.0 * (left / all.max(1e-300)).sqrt())
+}
+
+/// Slope of what runs did against what the base model expects of them, each about its mean.
+fn scale_of(runs: &[&Record], base: &BaseModel) -> f64 {
+    let (mut both, mut own) = (0.0, 0.0);
+    for run in runs {
+        let expected = base.predict(&run.input, run.step_s);
+        let expected = run.judged(&expected);
+        let n = expected.len() as f64 * variance(expected);
+        both += n * slope(expected, run.judged_output());
+        own += n;
+    }
+    if own > 0.0 { both / own } else { 1.0 }
+}
+
+/// The range of the base model: that of the data set, widened to every input that occurs.
+pub(crate) fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
+    a.iter()
+        .chain(b)
+        .flat_map(|r| r.input.iter())
+        .fold(given, |(low, high), &u| (low.min(u), high.max(u)))
+}
+
+/// Directions on all traces, from input, output of the base model and step of every run.
+pub(crate) fn directions(
+    simulator: &BenchSimulator<'_>,
+    of_run: impl Fn(&[f64], &[f64], f64) -> Vec<Vec<f64>>,
+) -> Vec<Signal> {
+    let per_run: Vec<Vec<Vec<f64>>> = (0..simulator.runs.len())
+        .map(|number| {
+            let (input, plain) = simulator.plain(number);
+            of_run(input, plain, simulator.runs[number].step_s)
+        })
+        .collect();
+    let count = per_run.first().map_or(0, Vec::len);
+    (0..count)
+        .map(|k| {
+            let outputs: Vec<Vec<f64>> = per_run.iter().map(|run| run[k].clone()).collect();
+            simulator.on_traces(&outputs)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of gain 2.5 on a slow triangle and a sine, times a factor.
+    fn runs(is_reference: bool, factor: f64) -> Vec<Record> {
+        let wave = |i: u32| (0.011 * f64::from(i)).sin() * (0.0017 * f64::from(i)).cos();
+        [0.9, 0.5]
+            .map(|amplitude| {
+                let input: Vec<f64> =
+                    (0..3000).map(|i| 65.0 + 85.0 * amplitude * wave(i)).collect();
+                let jitter = |i: usize| 0.05 * ((i * 7919 % 101) as f64 / 50.0 - 1.0);
+                let output =
+                    (0..).zip(&input).map(|(i, u)| factor * (2.5 * u + jitter(i))).collect();
+                Record { is_reference, ..Record::new(amplitude.to_string(), 2e-3, input, output) }
+            })
+            .into()
+    }
+
+    fn records(runs: Vec<Record>) -> Records {
+        Records {
+            title: "line".into(),
+            folder: "line".into(),
+            runs,
+            range: (-20.0, 150.0),
+            input_unit: "V".into(),
+            output_unit: "um".into(),
+            input_label: "command_V".into(),
+            output_label: "displacement_um".into(),
+            deg_per_um: None,
+            is_bench: true,
+            content_hash: String::new(),
+        }
+    }
+
+    #[test]
+    fn an_output_in_another_unit_is_noticed() {
+        for (factor, warned) in [(1.0, false), (1e-3, true)] {
+            let question = Question { reference: runs(true, 1.0), ..Question::default() };
+            let found = diagnose(&records(runs(false, factor)), &question).unwrap();
+            assert!((found.scale / factor - 1.0).abs() < 0.01, "{}", found.scale);
+            assert_eq!(found.unit_looks_wrong(), warned, "{}", found.scale);
+        }
+    }
+
+    /// A characteristic of the sensor can bend its way to a larger gain; a gain alone is nothing it would be called by.
+    #[test]
+    fn a_larger_gain_alone_is_not_called_a_bent_sensor() {
+        let question = Question { reference: runs(true, 1.0), ..Question::default() };
+        let found = diagnose(&records(runs(false, 1.04)), &question).unwrap();
+        assert_eq!(found.finding.verdict, Verdict::Unknown, "{:?}", found.finding.reasons);
+        assert!(
+            found
+                .finding
+                .reasons
+                .iter()
+                .any(|r| matches!(r, Reason::Resembles { cause: "gain-rise", .. }))
+        );
+        assert!(!found.not_observable().iter().any(|id| id == "gain-rise"));
+    }
+
+    /// What is found of measured runs that were changed.
+    fn found(change: impl Fn(&mut Record)) -> Diagnosis {
+        let question = Question { reference: runs(true, 1.0), ..Question::default() };
+        let mut measured = runs(false, 1.0);
+        measured.iter_mut().for_each(change);
+        diagnose(&records(measured), &question).unwrap()
+    }
+
+    fn looks_like(found: &Diagnosis) -> Option<&'static str> {
+        found.finding.looks_like.map(|candidate| found.candidates[candidate].cause.id)
+    }
+
+    #[test]
+    fn flat_tops_of_the_reading_are_no_voltage_limit_where_the_terminals_follow() {
+        let cut = |run: &mut Record| run.output.iter_mut().for_each(|y| *y = y.min(240.0));
+        let watched = found(|run| {
+            cut(run);
+            run.amplifier = Some(run.input.clone());
+        });
+        assert_eq!(watched.finding.verdict, Verdict::Unknown, "{:?}", watched.finding.reasons);
+        assert_eq!(looks_like(&watched), Some("reading-range"));
+        // a line behind a limit of the voltage is cut about alike
+        let alone = found(cut);
+        assert_eq!(alone.finding.confidence, Confidence::Tentative, "{:?}", alone.finding.reasons);
+        assert!(alone.finding.reasons.iter().any(|r| r.to_string().contains("reading-range")));
+    }
+
+    #[test]
+    fn an_amplifier_of_another_gain_is_seen_at_the_terminals() {
+        let found = found(|run| {
+            let terminals: Vec<f64> = run.input.iter().map(|u| 1.04 * u - 2.6).collect();
+            run.output.iter_mut().zip(&run.input).for_each(|(y, u)| *y += 2.5 * (0.04 * u - 2.6));
+            run.amplifier = Some(terminals);
+        });
+        assert_eq!(found.finding.verdict, Verdict::Unknown, "{:?}", found.finding.reasons);
+        assert_eq!(looks_like(&found), Some("amplifier-gain"), "{:?}", found.finding.reasons);
+    }
+
+    #[test]
+    fn a_noisier_reading_is_no_confident_nothing() {
+        let jitter = |i: usize| ((i * i * i + 7 * i) % 101) as f64 / 50.0 - 1.0;
+        for (size, confidence) in [(0.0, Confidence::Confident), (0.2, Confidence::Tentative)] {
+            let found = found(|run| {
+                run.output.iter_mut().enumerate().for_each(|(i, y)| *y += size * jitter(i));
+            });
+            let finding = &found.finding;
+            assert_eq!(
+                (finding.verdict, finding.confidence),
+                (Verdict::NothingMissing, confidence)
+            );
+            let is_said = finding.reasons.iter().any(|r| matches!(r, Reason::Noisier { .. }));
+            assert_eq!(is_said, confidence == Confidence::Tentative, "{:?}", finding.reasons);
+        }
+    }
+
+    #[test]
+    fn samples_outside_the_window_are_neither_fitted_nor_judged() {
+        let started = |run: &mut Record| {
+            run.output[..800]
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, y)| *y += 40.0 - 0.05 * i as f64);
+        };
+        let whole = found(started);
+        assert_ne!(whole.finding.verdict, Verdict::NothingMissing, "{:?}", whole.finding.reasons);
+        let windowed = found(|run| {
+            started(run);
+            run.window = 800..run.output.len();
+        });
+        let finding = &windowed.finding;
+        assert_eq!(
+            (finding.verdict, finding.confidence),
+            (Verdict::NothingMissing, Confidence::Confident),
+            "{:?}",
+            finding.reasons
+        );
+        assert!(finding.residual_before[0].len() <= 2200 && windowed.energy[0].explained > 0.999);
+        // a reference run is fitted inside its window alone
+        let mut reference = runs(true, 1.0);
+        for run in &mut reference {
+            started(run);
+            run.window = 800..run.output.len();
+        }
+        let question = Question { reference, ..Question::default() };
+        let found = diagnose(&records(runs(false, 1.0)), &question).unwrap();
+        assert_eq!(found.finding.verdict, Verdict::NothingMissing, "{:?}", found.finding.reasons);
+    }
+
+    #[test]
+    fn a_reading_that_returns_to_zero_is_not_nothing() {
+        let found = found(|run| {
+            let (first, mut sum) = (run.output[0], 0.0);
+            for y in &mut run.output {
+                sum += run.step_s * (*y - first) / 40.0;
+                *y -= sum;
+            }
+        });
+        assert_eq!(found.finding.verdict, Verdict::Unknown, "{:?}", found.finding.reasons);
+        assert!(found.finding.is_slow, "{:?}", found.finding.reasons);
+        assert_eq!(found.next.id, "hold-steps-100s");
+    }
+
+    #[test]
+    fn data_without_measured_runs_are_refused_in_words() {
+        let message = match diagnose(&records(runs(true, 1.0)), &Question::default()) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string(),
+        };
+        assert!(message.contains("role: Measured") && message.contains("all 2"), "{message}");
+    }
+}

@@ -1,0 +1,173 @@
+//! `findings.json`: the findings in the form other programs read.
+
+use crate::diagnosis::Diagnosis;
+use model_gap::discovery::{Confidence, FittedParameter, Verdict};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Findings {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The causes, best first; of an ambiguous verdict all that may be it.
+    pub causes: Vec<String>,
+    /// How sure the verdict is.
+    pub confidence: Confidence,
+    /// Parameters of every cause of [`Self::causes`], were it the one; the extended model has those of the first.
+    pub parameters: BTreeMap<String, BTreeMap<String, ParameterValue>>,
+    /// Whether the causes leave structure that they do not explain.
+    pub structure_remains: bool,
+    /// Measured runs that the base model misses by more than any surrogate there.
+    pub standing_out: Vec<String>,
+    /// Error on held-out experiments.
+    pub gain: GainValue,
+    /// What to measure next.
+    pub next_experiment: String,
+    /// What was fitted in the place of each cause found, with its chi-square above that of the cause found.
+    pub compared: Vec<ComparedValue>,
+    /// Causes these data could not show.
+    pub not_observable: Vec<String>,
+    /// The screening.
+    pub screen: Vec<ScreenValue>,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParameterValue {
+    /// Value.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+/// Error on experiments that the model has not seen.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GainValue {
+    /// RMS of the base model.
+    pub heldout_rms_before: f64,
+    /// RMS of the extended model.
+    pub heldout_rms_after: f64,
+    /// 95 % interval of the difference of both on these experiments, were they measured again.
+    pub ci95: [f64; 2],
+    /// 95 % interval of the difference on other experiments of these kinds.
+    pub ci95_other_experiments: [f64; 2],
+    /// Unit.
+    pub unit: String,
+}
+
+/// Another cause in the place of one that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparedValue {
+    /// The cause found.
+    pub instead_of: String,
+    /// The other cause.
+    pub cause: String,
+    /// Chi-square above that of the cause found.
+    pub delta_chi2: f64,
+    /// `delta_chi2` from which on the two are distinguished.
+    pub discrimination_threshold: f64,
+}
+
+/// One row of the screening.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ScreenValue {
+    /// The cause.
+    pub cause: String,
+    /// Drop of chi-square that its effect could bring.
+    pub score: f64,
+    /// Share of the effect that the base model absorbs.
+    pub absorbed: f64,
+    /// The cause that looks most alike.
+    pub most_confused_with: String,
+    /// Cosine between both.
+    pub cosine: f64,
+}
+
+/// Parameters that have a meaning of their own.
+fn values(parameters: &[FittedParameter]) -> BTreeMap<String, ParameterValue> {
+    let own = parameters.iter().filter(|p| !p.is_shape);
+    own.map(|p| {
+        (p.name.to_owned(), ParameterValue { value: p.value, unit: p.unit.into(), ci95: p.ci95 })
+    })
+    .collect()
+}
+
+impl From<&Diagnosis> for Findings {
+    fn from(d: &Diagnosis) -> Self {
+        let finding = &d.finding;
+        let id = |c: usize| d.candidates[c].cause.id.to_owned();
+        let mut causes: Vec<String> = finding.causes.iter().map(|f| id(f.candidate)).collect();
+        for found in &finding.causes {
+            for other in &found.alternatives {
+                if !causes.contains(&id(other.candidate)) {
+                    causes.push(id(other.candidate));
+                }
+            }
+        }
+        let mut parameters = BTreeMap::new();
+        for found in &finding.causes {
+            parameters.insert(id(found.candidate), values(&found.parameters));
+            for other in &found.alternatives {
+                let own = || values(&other.parameters);
+                parameters.entry(id(other.candidate)).or_insert_with(own);
+            }
+        }
+        if matches!(finding.verdict, Verdict::Unknown) {
+            causes.clear();
+            parameters.clear();
+        }
+        let gain = finding.gain;
+        let compared = finding
+            .causes
+            .iter()
+            .flat_map(|found| {
+                found.compared.iter().map(|other| ComparedValue {
+                    instead_of: id(found.candidate),
+                    cause: id(other.candidate),
+                    delta_chi2: other.delta_chi2,
+                    discrimination_threshold: other.discrimination_threshold,
+                })
+            })
+            .collect();
+        let screen = finding
+            .screen
+            .iter()
+            .enumerate()
+            .map(|(c, s)| ScreenValue {
+                cause: id(c),
+                score: s.score,
+                absorbed: s.absorbed,
+                most_confused_with: s.most_confused.map(|m| id(m.0)).unwrap_or_default(),
+                cosine: s.most_confused.map_or(0.0, |m| m.1),
+            })
+            .collect();
+        let mut not_observable = d.not_observable();
+        not_observable.retain(|id| !causes.contains(id));
+        Self {
+            verdict: finding.verdict,
+            causes,
+            confidence: finding.confidence,
+            parameters,
+            structure_remains: finding.structure_remains,
+            standing_out: finding
+                .standing_out
+                .iter()
+                .map(|run| d.run_ids[run.experiment].clone())
+                .collect(),
+            gain: GainValue {
+                heldout_rms_before: gain.rms_before,
+                heldout_rms_after: gain.rms_after,
+                ci95: gain.drop_ci95,
+                ci95_other_experiments: gain.drop_elsewhere_ci95,
+                unit: d.output_unit.clone(),
+            },
+            next_experiment: d.next.id.clone(),
+            compared,
+            not_observable,
+            screen,
+        }
+    }
+}

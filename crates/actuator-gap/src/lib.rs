@@ -1,0 +1,45 @@
+//! The actuator bench as a kind of data that discovery works on: base model, causes, catalogue of experiments.
+//!
+//! It is handed records and gives findings back; it knows no file and no terminal.
+//!
+//! | idea | module |
+//! |---|---|
+//! | the records of a diagnosis | `record` |
+//! | plays and lags, linear in their weights | `plays` |
+//! | the base model with the covariance of its weights | `base` |
+//! | the cause library, one file per cause | `causes` |
+//! | the measured runs under effects | `simulator` |
+//! | what other hysteresis families leave with nothing missing | `surrogate` |
+//! | a diagnosis, its findings and the data of its figures | `diagnosis`, `findings`, `figures` |
+//! | what to measure next | `next` |
+//! | the extended actuator, and what an actuator file holds | `extended`, `actuator_file` |
+//! | the models of the discovery ladder | `rungs` |
+
+mod actuator_file;
+mod base;
+mod causes;
+mod diagnosis;
+mod displays;
+mod error;
+mod extended;
+mod figures;
+mod findings;
+mod next;
+mod plays;
+mod record;
+mod rungs;
+mod simulator;
+mod surrogate;
+
+pub use actuator_file::{FitUse, GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+pub use diagnosis::{Diagnosis, Question, RunEnergy, StructureStore, diagnose};
+pub use error::DiagnosisError;
+pub use findings::{ComparedValue, Findings, GainValue, ParameterValue, ScreenValue};
+pub use next::Proposal;
+pub use record::{Record, Records};
+pub use rungs::{Asked, RungModel, rung_models};
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

@@ -1,0 +1,333 @@
+//! What to measure next: of the experiments a bench can do, the one that parts the explanations which
+//! the data leave open.
+//!
+//! Every experiment is simulated with every explanation as fitted. It resolves a truth if every other
+//! explanation, refitted within what the data at hand allow, would miss it by more than the search asks
+//! of two causes to be told apart. The experiment that resolves the largest share of the truths is
+//! proposed, among equals the one whose smallest distance is largest (T-optimality); where none
+//! resolves all, two or three together that do better.
+
+use super::catalogue::{Experiment, Measured, Planned, catalogue};
+use super::excitation::Span;
+use crate::base::BaseModel;
+use crate::causes::{BenchCause, Design, chain_under};
+use crate::record::{Record, frequency_hz};
+use crate::simulator::{BenchSimulator, ChannelKind};
+use crate::surrogate::Noise;
+use measured_data::Sensor;
+use model_gap::discovery::{
+    Finding, Found, Rival, Separation, Settings, Simulator, Verdict, separations,
+};
+use model_gap::{Candidate, Effect, GapError};
+use preisach_dyn::AmplifierStage;
+use rayon::prelude::*;
+
+/// Margin on what the search asks of two causes to be discriminated: distances are straight in the parameters.
+const MARGIN: f64 = 2.0;
+
+/// A proposal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proposal {
+    /// Name of the experiment; of several to be done together, joined by `+`.
+    pub id: String,
+    /// What to do.
+    pub what: String,
+    /// Share of the open explanations that it would single out if true; none where nothing is open.
+    pub resolves: Option<f64>,
+}
+
+/// What a proposal is worked out from.
+pub(crate) struct Bench<'a> {
+    pub(crate) base: &'a BaseModel,
+    pub(crate) library: &'a [Box<dyn BenchCause>],
+    pub(crate) candidates: &'a [Candidate],
+    pub(crate) runs: &'a [&'a Record],
+    pub(crate) design: &'a Design,
+    pub(crate) range: (f64, f64),
+}
+
+/// The experiment that tells the remaining explanations apart best.
+pub(crate) fn proposal(bench: &Bench<'_>, finding: &Finding) -> Result<Proposal, GapError> {
+    let (low, high) = bench.design.input;
+    let span = Span { middle: f64::midpoint(low, high), half: 0.5 * (high - low) };
+    let catalogue = catalogue(span, bench.runs, bench.design.is_bench);
+    let open = finding.causes.iter().max_by_key(|found| found.rivals.len());
+    let Some(open) = open.filter(|found| found.rivals.len() > 1) else {
+        let usual = usual(finding, bench, &catalogue);
+        let (id, what) = usual.map_or(("", ""), |e| (e.id, e.what));
+        return Ok(Proposal { id: id.to_owned(), what: what.to_owned(), resolves: None });
+    };
+    let parted: Vec<Parting> = catalogue
+        .par_iter()
+        .map(|experiment| parting(bench, experiment, open))
+        .collect::<Result<_, _>>()?;
+    let (parting, places) = choose(&parted);
+    let join = |of: fn(&Experiment) -> &str, between: &str| {
+        places.iter().map(|&i| of(&catalogue[i])).collect::<Vec<_>>().join(between)
+    };
+    Ok(Proposal {
+        id: join(|e| e.id, "+"),
+        what: join(|e| e.what, "; and "),
+        resolves: Some(parting.resolves()),
+    })
+}
+
+/// Most experiments proposed together.
+const MOST_TOGETHER: usize = 3;
+
+/// The experiment, or the few together, that resolve the largest share of truths: as few as do, among
+/// equals the one whose smallest distance is largest.
+fn choose(parted: &[Parting]) -> (Parting, Vec<usize>) {
+    let mut best: Option<(Parting, Vec<usize>)> = None;
+    let mut sets: Vec<(Parting, Vec<usize>)> =
+        parted.iter().enumerate().map(|(i, own)| (own.clone(), vec![i])).collect();
+    for _ in 0..MOST_TOGETHER {
+        let score = |own: &Parting| (own.resolves(), own.least());
+        let first = sets.iter().max_by(|a, b| {
+            let (a, b) = (score(&a.0), score(&b.0));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        if let Some(first) = first
+            && best.as_ref().is_none_or(|b| first.0.resolves() > b.0.resolves() + 1e-9)
+        {
+            best = Some(first.clone());
+        }
+        if best.as_ref().is_some_and(|b| b.0.resolves() >= 1.0) {
+            break;
+        }
+        sets = sets
+            .iter()
+            .flat_map(|(own, places)| {
+                let next = places.last().map_or(0, |last| last + 1);
+                (next..parted.len()).map(move |i| {
+                    (own.with(&parted[i]), places.iter().copied().chain([i]).collect())
+                })
+            })
+            .collect();
+    }
+    best.unwrap_or((Parting(Vec::new()), Vec::new()))
+}
+
+/// Distances over what is asked, `[truth][other]`; above 1 the other is ruled out.
+#[derive(Debug, Clone, PartialEq)]
+struct Parting(Vec<Vec<f64>>);
+
+impl Parting {
+    fn of(found: &Separation, drop: f64) -> Self {
+        let Settings { separation, form_error, .. } = Settings::default();
+        let count = found.energy.len();
+        let ratio = |a: usize, b: usize| {
+            let asked = MARGIN * separation + MARGIN * form_error * (drop + found.energy[a]);
+            if a == b { f64::INFINITY } else { found.distance[(a, b)] / asked }
+        };
+        Self((0..count).map(|a| (0..count).map(|b| ratio(a, b)).collect()).collect())
+    }
+
+    /// Both experiments: either of them rules out what it rules out.
+    fn with(&self, other: &Self) -> Self {
+        let sum =
+            |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(x, y)| x.max(*y)).collect();
+        Self(self.0.iter().zip(&other.0).map(sum).collect())
+    }
+
+    fn resolves(&self) -> f64 {
+        let singled_out = self.0.iter().filter(|row| row.iter().all(|r| *r > 1.0)).count();
+        singled_out as f64 / self.0.len().max(1) as f64
+    }
+
+    fn least(&self) -> f64 {
+        self.0.iter().flatten().copied().fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<Parting, GapError> {
+    let by_second_sensor = |planned: &Planned| {
+        let record = undisturbed(bench, planned);
+        let twin = Planned {
+            id: format!("laser_{}", planned.id),
+            input: planned.input.clone(),
+            sensor: Sensor::Ideal,
+            ..*planned
+        };
+        [record, undisturbed(bench, &twin)]
+    };
+    let mut records: Vec<Record> = match &experiment.measured {
+        Measured::Runs(runs) | Measured::Warm(runs) => {
+            runs.iter().map(|planned| undisturbed(bench, planned)).collect()
+        }
+        Measured::Again(runs) | Measured::Twice(runs) => {
+            runs.iter().flat_map(by_second_sensor).collect()
+        }
+        Measured::Amplifier | Measured::Temperature => {
+            bench.runs.iter().map(|&r| Record { load: None, ..r.clone() }).collect()
+        }
+    };
+    let shown = match experiment.measured {
+        Measured::Runs(_) => &[ChannelKind::Output][..],
+        Measured::Again(_) => &[ChannelKind::Comparison],
+        Measured::Twice(_) => &[ChannelKind::Output, ChannelKind::Comparison],
+        Measured::Warm(_) => &[ChannelKind::Output, ChannelKind::Temperature],
+        Measured::Amplifier => &[ChannelKind::Amplifier],
+        Measured::Temperature => &[ChannelKind::Temperature],
+    };
+    for record in &mut records {
+        if shown.contains(&ChannelKind::Amplifier) {
+            record.amplifier = Some(record.input.clone());
+        }
+        if shown.contains(&ChannelKind::Temperature) {
+            record.temperature = Some(warmth(bench, &open.rivals, record)?);
+        }
+    }
+    let runs: Vec<&Record> = records.iter().collect();
+    let whole = BenchSimulator::new(bench.base, runs, bench.library, bench.range)?;
+    let places: Vec<usize> =
+        (0..whole.channels.len()).filter(|&t| shown.contains(&whole.channels[t].1)).collect();
+    let channels: Vec<_> = places.iter().map(|&t| whole.channels[t]).collect();
+    let traces = whole.traces_of(&channels);
+    let simulator = Shown { whole: &whole, places };
+    let found = separations(&simulator, &traces, bench.candidates, &open.rivals)?;
+    Ok(Parting::of(&found, open.output_drop))
+}
+
+/// Some of the channels of a bench.
+struct Shown<'a> {
+    whole: &'a BenchSimulator<'a>,
+    places: Vec<usize>,
+}
+
+impl Simulator for Shown<'_> {
+    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
+        let all = self.whole.predict(effects)?;
+        Ok(self.places.iter().map(|&t| all[t].clone()).collect())
+    }
+}
+
+/// A planned run of the base model, with its noise: that noise is what a distance is measured by.
+fn undisturbed(bench: &Bench<'_>, planned: &Planned) -> Record {
+    // another draw for every run: two sensors on one motion do not share their noise
+    let of_name =
+        planned.id.bytes().fold(0, |sum: u64, b| sum.wrapping_mul(31).wrapping_add(b.into()));
+    let mut noise = Noise(0x0F1E_2D3C ^ of_name);
+    let mut output = bench.base.predict(&planned.input, planned.step_s);
+    for y in &mut output {
+        *y += bench.base.noise * noise.normal();
+    }
+    let id = planned.id.clone();
+    Record {
+        sensor: planned.sensor,
+        fitting: planned.fitting,
+        ..Record::new(id, planned.step_s, planned.input.clone(), output)
+    }
+}
+
+/// The temperature that a rival expects: a thermometer shows the heat of the one that has any.
+fn warmth(bench: &Bench<'_>, rivals: &[Rival], record: &Record) -> Result<Vec<f64>, GapError> {
+    let is_heat = |effect: &&Effect| {
+        let chain = chain_under(bench.library, std::slice::from_ref(effect));
+        let stages = &chain.front.amplifier;
+        stages.iter().any(|stage| matches!(stage, AmplifierStage::DielectricHeating(_)))
+    };
+    let Some(heat) = rivals.iter().flat_map(|r| &r.effects).find(is_heat) else {
+        return Ok(vec![0.0; record.input.len()]);
+    };
+    let bare = Record { temperature: None, ..record.clone() };
+    let simulator = BenchSimulator::new(bench.base, vec![&bare], bench.library, bench.range)?;
+    simulator.rise_k(heat)
+}
+
+/// Frequency from which a run carries what the multisines of 5 to 181 Hz would, Hz: they move as a sine of
+/// 106 Hz does.
+const WIDE_HZ: f64 = 50.0;
+
+/// Whether a run carries high frequencies all along: each quarter of it, because the edges of a single step
+/// are fast too.
+fn is_wide(run: &Record) -> bool {
+    let input = run.judged_input();
+    let quarter = (input.len() / 4).max(1);
+    input.chunks_exact(quarter).all(|part| frequency_hz(part, run.step_s) > WIDE_HZ)
+}
+
+/// What is usual where no explanations are to be told apart.
+fn usual<'m>(
+    finding: &Finding,
+    bench: &Bench<'_>,
+    catalogue: &'m [Experiment],
+) -> Option<&'m Experiment> {
+    let of = |id: &str| catalogue.iter().find(|experiment| experiment.id == id);
+    let first = finding.causes.first().map(|found| found.candidate).or(finding.looks_like);
+    let named = first.map(|candidate| &bench.candidates[candidate].cause);
+    // what was measured already is no longer on the catalogue
+    let separating = named.and_then(|cause| cause.separating.iter().find_map(|id| of(id)));
+    separating.or_else(|| {
+        of(if finding.verdict == Verdict::NothingMissing {
+            "small-motion"
+        } else if !bench.design.is_bench {
+            // the catalogue's frequencies are those of a piezo bench; amplitudes are the system's own
+            "amplitude-sweep"
+        } else if bench.design.only_hz.is_some() {
+            "frequency-sweep"
+        } else if finding.is_slow || bench.runs.iter().any(|run| is_wide(run)) {
+            // high frequencies were measured already: what is left to see is slow
+            "hold-steps-100s"
+        } else {
+            "multisine-5-181Hz"
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SELF: f64 = f64::INFINITY;
+
+    #[test]
+    fn every_experiment_that_a_cause_names_can_be_simulated() {
+        let input: Vec<f64> = (0..400).map(|i| 80.0 * (0.1 * f64::from(i)).sin()).collect();
+        let run = Record::new("a", 1e-3, input.clone(), input);
+        let design = Design::of(&[&run], true, true);
+        let catalogue = catalogue(Span { middle: 0.0, half: 80.0 }, &[&run], true);
+        for cause in crate::causes::library() {
+            let cause = cause.cause(&design);
+            assert!(!cause.separating.is_empty(), "{}", cause.id);
+            for id in cause.separating {
+                assert!(catalogue.iter().any(|e| e.id == *id), "{}: {id}", cause.id);
+            }
+        }
+    }
+
+    #[test]
+    fn a_band_is_wide_and_a_fast_edge_is_not() {
+        let span = Span { middle: 0.0, half: 80.0 };
+        let run = |input: Vec<f64>| Record::new("a", 5e-4, input.clone(), input);
+        // RMS of equal lines from 5 to 181 Hz: ((5^2 + 5 181 + 181^2) / 3)^(1/2) = 106 Hz
+        let band = run(span.multisine((5.0, 181.0), 2.0, 0.35, 2.0, 5e-4));
+        assert!((band.frequency_hz() - 106.0).abs() < 3.0, "{}", band.frequency_hz());
+        assert!(is_wide(&band));
+        assert!(!is_wide(&run(span.multisine((1.0, 35.0), 0.5, 0.7, 3.0, 5e-4))));
+        assert!(!is_wide(&run(span.steps(&[0.5], 0.5, 5e-4))));
+    }
+
+    #[test]
+    fn the_fewest_experiments_that_single_out_most_are_chosen() {
+        // three explanations; the first experiment parts one of them, the second another, weakly
+        let first = Parting(vec![vec![SELF, 9.0, 9.0], vec![9.0, SELF, 0.1], vec![9.0, 0.1, SELF]]);
+        let second =
+            Parting(vec![vec![SELF, 0.2, 2.0], vec![0.2, SELF, 2.0], vec![2.0, 2.0, SELF]]);
+        let nothing =
+            Parting(vec![vec![SELF, 0.5, 0.5], vec![0.5, SELF, 0.5], vec![0.5, 0.5, SELF]]);
+        let all = [nothing.clone(), first.clone(), second.clone()];
+        let (parting, places) = choose(&all);
+        assert_eq!(places, [1, 2]);
+        assert!(parting.resolves() >= 1.0);
+        // one that does it alone is preferred, of two the one with the larger smallest distance
+        let alone = |least: f64| {
+            Parting(vec![vec![SELF, least, 5.0], vec![least, SELF, 5.0], vec![5.0, 5.0, SELF]])
+        };
+        let (_, places) = choose(&[first, second, alone(1.5), alone(3.0), nothing.clone()]);
+        assert_eq!(places, [3]);
+        // where nothing singles out any, one is proposed and not three
+        let (parting, places) = choose(&[nothing.clone(), nothing]);
+        assert!(parting.resolves() <= 0.0 && places.len() == 1, "{places:?}");
+    }
+}

@@ -1,0 +1,243 @@
+//! The records of a diagnosis, in the units of the bench.
+
+use measured_data::{BenchData, Fitting, LoopData, Run, RunRole, RunUse, Sensor, Timed};
+use rotor_base::{mean_square, variance};
+use std::ops::Range;
+
+/// One record: input, output and what else was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// Name of the run.
+    pub id: String,
+    /// Whether it shows the system with nothing missing.
+    pub is_reference: bool,
+    /// Time between samples, s.
+    pub step_s: f64,
+    /// Input: V on a bench.
+    pub input: Vec<f64>,
+    /// Output: um on a bench.
+    pub output: Vec<f64>,
+    /// Terminal voltage, V.
+    pub amplifier: Option<Vec<f64>>,
+    /// Temperature, degrees Celsius.
+    pub temperature: Option<Vec<f64>>,
+    /// Load on the actuator, N.
+    pub load: Option<Vec<f64>>,
+    /// Samples that are fitted and judged. Simulations begin at the first sample all the same.
+    pub window: Range<usize>,
+    /// Sensor that read the output.
+    pub sensor: Sensor,
+    /// How the actuator was fitted to the bench.
+    pub fitting: Fitting,
+}
+
+impl Record {
+    /// A measured record of input and output alone, all of which is judged.
+    pub fn new(id: impl Into<String>, step_s: f64, input: Vec<f64>, output: Vec<f64>) -> Self {
+        Self {
+            id: id.into(),
+            is_reference: false,
+            step_s,
+            window: 0..output.len(),
+            input,
+            output,
+            amplifier: None,
+            temperature: None,
+            load: None,
+            sensor: Sensor::Bench,
+            fitting: Fitting::Plain,
+        }
+    }
+
+    /// Whether the run was read by a second, ideal sensor.
+    pub fn has_ideal_sensor(&self) -> bool {
+        self.sensor == Sensor::Ideal
+    }
+
+    /// Whether the lever was preloaded, so that no joint has play.
+    pub fn is_preloaded(&self) -> bool {
+        self.fitting == Fitting::Preloaded
+    }
+
+    /// The part of a signal of this run that is judged.
+    pub(crate) fn judged<'a>(&self, signal: &'a [f64]) -> &'a [f64] {
+        signal.get(self.window.clone()).unwrap_or(signal)
+    }
+
+    /// Output that is judged.
+    pub(crate) fn judged_output(&self) -> &[f64] {
+        self.judged(&self.output)
+    }
+
+    /// Input meanwhile.
+    pub(crate) fn judged_input(&self) -> &[f64] {
+        self.judged(&self.input)
+    }
+
+    /// Length of what is judged, s.
+    pub fn duration_s(&self) -> f64 {
+        self.step_s * self.judged_input().len() as f64
+    }
+
+    /// Frequency of a sine that moves as fast as the input, Hz: see `frequency_hz`.
+    pub fn frequency_hz(&self) -> f64 {
+        frequency_hz(self.judged_input(), self.step_s)
+    }
+}
+
+/// Frequency of a sine that moves as fast as an input, for its size, Hz: RMS of the rate over the spread.
+pub(crate) fn frequency_hz(input: &[f64], step_s: f64) -> f64 {
+    let rates: Vec<f64> = input.windows(2).map(|w| (w[1] - w[0]) / step_s).collect();
+    let spread = variance(input).sqrt();
+    if spread > 0.0 { mean_square(&rates).sqrt() / spread / std::f64::consts::TAU } else { 0.0 }
+}
+
+/// Records with their range and units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Records {
+    /// Title of the data.
+    pub title: String,
+    /// Folder of the data.
+    pub folder: String,
+    /// The records.
+    pub runs: Vec<Record>,
+    /// Range of the input.
+    pub range: (f64, f64),
+    /// Unit of the input.
+    pub input_unit: String,
+    /// Unit of the output.
+    pub output_unit: String,
+    /// Name and unit of the input, such as `command_V`.
+    pub input_label: String,
+    /// Name and unit of the output.
+    pub output_label: String,
+    /// Flap angle per output, deg/um, if it is an actuator and the data say it.
+    pub deg_per_um: Option<f64>,
+    /// Whether this is an actuator bench.
+    pub is_bench: bool,
+    /// blake3 of the data.
+    pub content_hash: String,
+}
+
+/// The records of runs, each with input and output from its table.
+///
+/// A run may be a reference by its role. In a set without any measured run, where the sides of the
+/// split are stated, those to be held out are what has to be explained.
+fn records<T: Timed>(runs: &[Run<T>], columns: impl Fn(&T) -> Record) -> Vec<Record> {
+    let all_reference = runs.iter().all(|r| r.role == RunRole::Reference);
+    let is_explained = |run: &Run<T>| match run.role {
+        RunRole::Measured => true,
+        RunRole::Reference => all_reference && run.use_as == Some(RunUse::HeldOut),
+    };
+    runs.iter()
+        .map(|run| Record {
+            id: run.id.clone(),
+            is_reference: !is_explained(run),
+            window: run.window(),
+            sensor: run.sensor,
+            fitting: run.fitting,
+            ..columns(&run.table)
+        })
+        .collect()
+}
+
+impl From<&BenchData> for Records {
+    fn from(data: &BenchData) -> Self {
+        let runs = records(&data.runs, |table| {
+            let (input, output) = (table.command_volt.clone(), table.displacement_um.clone());
+            Record {
+                amplifier: table.amplifier_volt.clone(),
+                temperature: table.temperature_celsius.clone(),
+                load: table.load_newton.clone(),
+                ..Record::new("", table.time_step_s, input, output)
+            }
+        });
+        Self {
+            title: data.title.clone(),
+            folder: data.folder.clone(),
+            runs,
+            range: data.command_range_volt,
+            input_unit: "V".into(),
+            output_unit: "um".into(),
+            input_label: "command_V".into(),
+            output_label: "displacement_um".into(),
+            deg_per_um: data.flap_deg_per_um,
+            is_bench: true,
+            content_hash: data.content_hash.clone(),
+        }
+    }
+}
+
+impl From<&LoopData> for Records {
+    fn from(data: &LoopData) -> Self {
+        let runs = records(&data.runs, |table| {
+            Record::new("", table.time_step_s, table.input.clone(), table.output.clone())
+        });
+        Self {
+            title: data.title.clone(),
+            folder: data.folder.clone(),
+            runs,
+            range: data.input_range.limits(),
+            input_unit: data.channels.input.unit.symbol.to_owned(),
+            output_unit: data.channels.output.unit.symbol.to_owned(),
+            input_label: data.channels.input.label(),
+            output_label: data.channels.output.label(),
+            deg_per_um: None,
+            is_bench: false,
+            content_hash: data.content_hash.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use measured_data::MeasuredTable;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn window_sensor_and_fitting_of_a_run_reach_its_record() {
+        let time_s: Vec<f64> = (0..100).map(|i| 0.01 * f64::from(i)).collect();
+        let run = |id: &str, role, window_s, sensor, fitting| Run {
+            id: id.into(),
+            file: String::new(),
+            role,
+            note: String::new(),
+            start_s: None,
+            use_as: None,
+            window_s,
+            sensor,
+            fitting,
+            conditions: BTreeMap::new(),
+            table: MeasuredTable {
+                time_step_s: 0.01,
+                command_volt: time_s.clone(),
+                displacement_um: time_s.clone(),
+                amplifier_volt: None,
+                temperature_celsius: None,
+                load_newton: None,
+                lines: vec![],
+                warnings: vec![],
+                time_s: time_s.clone(),
+            },
+        };
+        let data = BenchData {
+            title: String::new(),
+            folder: String::new(),
+            runs: vec![
+                run("a", RunRole::Reference, None, Sensor::Bench, Fitting::Preloaded),
+                run("b", RunRole::Measured, Some((0.195, 0.495)), Sensor::Ideal, Fitting::Plain),
+            ],
+            flap_deg_per_um: None,
+            command_range_volt: (-20.0, 150.0),
+            warnings: vec![],
+            content_hash: String::new(),
+        };
+        let [first, second] = &Records::from(&data).runs[..] else { panic!("two runs") };
+        assert!(first.is_reference && first.is_preloaded() && !first.has_ideal_sensor());
+        assert_eq!(first.window, 0..100);
+        assert!(!second.is_reference && second.has_ideal_sensor() && !second.is_preloaded());
+        assert_eq!(second.window, 20..50);
+        assert!((second.duration_s() - 0.3).abs() < 1e-12);
+    }
+}

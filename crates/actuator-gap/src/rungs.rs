@@ -1,0 +1,132 @@
+//! The models of the discovery ladder: from a straight line upwards, each with what the data say it lacks.
+
+use crate::base::BaseModel;
+use crate::causes::{self, Design, StaticHysteresis};
+use crate::diagnosis::{
+    Diagnosis, Question, StructureStore, diagnose, directions, error_percent, range_of,
+};
+use crate::error::DiagnosisError;
+use crate::extended::{LawOfFile, USUAL_DEG_PER_UM};
+use crate::findings::Findings;
+use crate::record::{Record, Records};
+use crate::simulator::BenchSimulator;
+use crate::surrogate;
+use model_gap::GapError;
+use model_gap::discovery::{Confidence, Discovery, Settings, Verdict};
+use preisach_dyn::ActuatorModel;
+
+/// Runs whose input is no faster than this, rms rate over rms amplitude, are slow, Hz.
+const SLOW_HZ: f64 = 1.5;
+/// A model and what the data say it lacks.
+pub struct RungModel {
+    /// Name of the model.
+    pub name: &'static str,
+    /// The model.
+    pub model: ActuatorModel,
+    /// What it lacks; none on the last rung.
+    pub asked: Option<Asked>,
+    /// Error on the slow runs and on the measured ones, rms over spread, percent.
+    pub error_percent: [f64; 2],
+}
+
+/// What a rung lacks, and what the cause named gains.
+pub struct Asked {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Names, best first.
+    pub lacks: Vec<String>,
+    /// How sure they are.
+    pub confidence: Confidence,
+    /// Held-out error before and after the cause named, rms, output's unit.
+    pub heldout_rms: [f64; 2],
+}
+
+/// Straight line, static hysteresis of the slow runs and extended actuator; and the diagnosis that the last is made of.
+///
+/// # Errors
+/// [`DiagnosisError::Misfit`] without slow runs, and as [`diagnose`].
+pub fn rung_models(
+    measured: &Records,
+    reference: &[Record],
+    store: Option<&dyn StructureStore>,
+) -> Result<([RungModel; 3], Diagnosis), DiagnosisError> {
+    let too_few = |what: String| GapError::TooShort { what, samples: 0, needed: 1 };
+    let all: Vec<&Record> =
+        reference.iter().chain(measured.runs.iter().filter(|r| r.is_reference)).collect();
+    let slow: Vec<&Record> = all.iter().copied().filter(|r| r.frequency_hz() <= SLOW_HZ).collect();
+    if slow.is_empty() {
+        return Err(too_few(format!("reference runs no faster than {SLOW_HZ} Hz")).into());
+    }
+    let targets: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
+    let range = range_of(measured.range, &all, &targets);
+    let line = BaseModel::straight(&slow, range);
+    let loops = BaseModel::fit(&slow, range, None).ok_or_else(|| too_few("slow runs".into()))?;
+    let first = asked_of_line(&line, &slow, measured, range)?;
+    let question = Question { reference: reference.to_vec(), cache: store, ..Question::default() };
+    let found = diagnose(measured, &question)?;
+    let findings = Findings::from(&found);
+    let second = Asked {
+        verdict: findings.verdict,
+        lacks: findings.causes.clone(),
+        confidence: findings.confidence,
+        heldout_rms: [findings.gain.heldout_rms_before, findings.gain.heldout_rms_after],
+    };
+    let deg_per_um = measured.deg_per_um.unwrap_or(USUAL_DEG_PER_UM);
+    let law = LawOfFile { range, deg_per_um, is_bench: measured.is_bench };
+    let inputs: Vec<Vec<f64>> = slow.iter().map(|r| r.input.clone()).collect();
+    let rung = |name, model: ActuatorModel, asked| -> Result<RungModel, DiagnosisError> {
+        let error_percent = [error_percent(&model, &slow)?, error_percent(&model, &targets)?];
+        Ok(RungModel { name, model, asked, error_percent })
+    };
+    let rungs = [
+        rung("straight line", law.of(&line, &inputs)?.0, Some(first))?,
+        rung("static hysteresis of the slow runs", law.of(&loops, &inputs)?.0, Some(second))?,
+        rung("extended actuator", found.extended()?.model, None)?,
+    ];
+    Ok((rungs, found))
+}
+
+/// What a straight line lacks on slow runs.
+fn asked_of_line(
+    line: &BaseModel,
+    slow: &[&Record],
+    measured: &Records,
+    range: (f64, f64),
+) -> Result<Asked, GapError> {
+    let mut library = causes::library();
+    library.push(Box::new(StaticHysteresis));
+    let design = Design::of(slow, measured.is_bench, true);
+    let candidates = causes::candidates(&library, &design);
+    let simulator = BenchSimulator::new(line, slow.to_vec(), &library, range)?;
+    let traces = simulator.traces();
+    let generic = directions(&simulator, |input, plain, step_s| {
+        surrogate::generic(input, plain, line.spread, step_s)
+    });
+    // one cause at a time: a second would mend the form of the first
+    let settings = Settings { most_causes: 1, ..Settings::default() };
+    let discovery = Discovery {
+        traces: &traces,
+        simulator: &simulator,
+        candidates: &candidates,
+        generic: &generic,
+        trends: &[],
+        structures: &[],
+        settings,
+    };
+    let finding = discovery.find()?;
+    let id = |candidate: usize| candidates[candidate].cause.id.to_owned();
+    let lacks = finding
+        .causes
+        .iter()
+        .flat_map(|f| {
+            std::iter::once(f.candidate).chain(f.alternatives.iter().map(|a| a.candidate))
+        })
+        .map(id)
+        .collect();
+    Ok(Asked {
+        verdict: finding.verdict,
+        lacks,
+        confidence: finding.confidence,
+        heldout_rms: [finding.gain.rms_before, finding.gain.rms_after],
+    })
+}

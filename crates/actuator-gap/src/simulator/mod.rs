@@ -1,0 +1,9 @@
+//! The measured runs under the effects of causes, and how their traces are weighed.
+
+mod bench;
+mod response;
+mod smooth;
+mod traces;
+
+pub(crate) use bench::{BenchSimulator, ChannelKind, averaged};
+pub(crate) use response::slope;

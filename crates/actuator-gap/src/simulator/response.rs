@@ -1,0 +1,443 @@
+//! The runs under effects, stage by stage.
+//!
+//! What the front and the rear of a [`Chain`] make of the runs is kept for a while: a search that moves a stage
+//! of the rear simulates the rear alone. Hum is added to the output of all others.
+
+use super::smooth::{Smooth, Weights};
+use crate::base::BaseModel;
+use crate::causes::{
+    BenchCause, Chain, Command, FrontStages, Loops, Rate, RearStages, chain_under, looped,
+    rate_dependent,
+};
+use crate::plays::behind_lags;
+use crate::record::Record;
+use model_gap::{Effect, GapError, Memo};
+use preisach_dyn::{
+    ActuatorLaw, ActuatorModel, AmplifierStage, BenchSimulation, Calibration, DielectricHeating,
+    Drive, Lag, LinearGain, LinkageStage, LogCreep, MainsHum, SensorStage, VoltageRange,
+};
+use std::sync::Arc;
+
+/// Fronts and responses kept; each holds two or three signals of all samples.
+const KEPT: usize = 6;
+
+/// Chords for each step of a relaxation.
+const FINER: u32 = 4;
+
+/// What has passed the law, on every run.
+#[derive(Debug)]
+struct Front {
+    /// Terminal voltage; none where it is the command.
+    terminals: Vec<Option<Vec<f64>>>,
+    rises_k: Vec<Option<Vec<f64>>>,
+    outputs: Arc<Vec<Vec<f64>>>,
+}
+
+/// Signals of all runs under effects.
+pub(super) struct Response {
+    front: Arc<Front>,
+    outputs: Arc<Vec<Vec<f64>>>,
+    hum: Vec<Option<Vec<f64>>>,
+    /// Whether a load spring is among the effects.
+    pub(super) is_loaded: bool,
+}
+
+impl Response {
+    /// Output of a run.
+    pub(super) fn output(&self, run: usize) -> Vec<f64> {
+        let own = &self.outputs[run];
+        match &self.hum[run] {
+            Some(hum) => {
+                let hum = hum.iter().copied().chain(std::iter::repeat(0.0));
+                own.iter().zip(hum).map(|(y, h)| y + h).collect()
+            }
+            None => own.clone(),
+        }
+    }
+
+    /// Output of a run without the hum of its reading.
+    pub(super) fn steady_output(&self, run: usize) -> &[f64] {
+        &self.outputs[run]
+    }
+
+    /// Terminal voltage of a run; none where it is the command.
+    pub(super) fn terminal(&self, run: usize) -> Option<&[f64]> {
+        self.front.terminals[run].as_deref()
+    }
+
+    /// Temperature rise of a run; none where nothing warms.
+    pub(super) fn rise_k(&self, run: usize) -> Option<&[f64]> {
+        self.front.rises_k[run].as_deref()
+    }
+}
+
+/// The base model on runs, with the stages of causes.
+pub(super) struct Plant<'a> {
+    base: &'a BaseModel,
+    runs: Vec<&'a Record>,
+    causes: &'a [Box<dyn BenchCause>],
+    /// Output of the base's static part, and behind its relaxation, on the plain command.
+    pub(super) laws: Vec<Vec<f64>>,
+    pub(super) plain: Arc<Vec<Vec<f64>>>,
+    /// How smooth commands and plain outputs are: most candidates act on one of them.
+    commands: Vec<Weights>,
+    plain_outputs: Vec<Weights>,
+    /// The law at rest at 0 V, and in the middle of the range.
+    neutral: (f64, f64),
+    /// Stages that only see signals: any value may pass.
+    wide: VoltageRange,
+    fronts: Memo<FrontStages, Front>,
+    rears: Memo<(FrontStages, RearStages), Arc<Vec<Vec<f64>>>>,
+}
+
+impl<'a> Plant<'a> {
+    pub(super) fn new(
+        base: &'a BaseModel,
+        runs: Vec<&'a Record>,
+        causes: &'a [Box<dyn BenchCause>],
+        range: (f64, f64),
+    ) -> Result<Self, GapError> {
+        let laws: Vec<Vec<f64>> = runs.iter().map(|r| base.hysteresis(&r.input)).collect();
+        let plain: Vec<Vec<f64>> =
+            runs.iter().zip(&laws).map(|(r, law)| base.relaxed(law, r.step_s)).collect();
+        let commands = runs.iter().map(|r| Smooth::weights(&r.input)).collect();
+        let plain_outputs = plain.iter().map(|y| Smooth::weights(y)).collect();
+        let at = |volt: f64| base.hysteresis(&[volt]).first().copied().unwrap_or_default();
+        let neutral = (at(0.0), at(f64::midpoint(range.0, range.1)));
+        let wide = VoltageRange::new(-1e9, 1e9).map_err(|e| failed("the range of signals", &e))?;
+        let (fronts, rears) = (Memo::new(KEPT), Memo::new(KEPT));
+        let plain = Arc::new(plain);
+        Ok(Self {
+            base,
+            runs,
+            causes,
+            laws,
+            plain,
+            commands,
+            plain_outputs,
+            neutral,
+            wide,
+            fronts,
+            rears,
+        })
+    }
+
+    /// All runs under effects. The phase of a hum is what the measured output asks for beside the other
+    /// effects.
+    pub(super) fn respond(&self, effects: &[Effect]) -> Result<Response, GapError> {
+        let Chain { front: stages, mut rear } = chain_under(self.causes, effects);
+        let hum = rear.take_hum();
+        let front = self.fronts.get(stages.clone(), || self.front(&stages))?;
+        let is_loaded = rear.linkage.iter().any(|s| matches!(s, LinkageStage::LoadStiffness(_)));
+        let make = || self.rear(&front, &rear);
+        let outputs = self.rears.get((stages, rear.clone()), make)?;
+        let hum = (0..self.runs.len())
+            .map(|run| hum.and_then(|hum| self.hum_of(run, &outputs[run], hum)))
+            .collect();
+        Ok(Response { front, outputs: Arc::clone(&outputs), hum, is_loaded })
+    }
+
+    fn front(&self, stages: &FrontStages) -> Result<Front, GapError> {
+        let count = self.runs.len();
+        if *stages == FrontStages::default() {
+            let none = || vec![None; count];
+            let outputs = Arc::clone(&self.plain);
+            return Ok(Front { terminals: none(), rises_k: none(), outputs });
+        }
+        let (mut terminals, mut rises_k, mut outputs) = (Vec::new(), Vec::new(), Vec::new());
+        for number in 0..count {
+            let run = self.runs[number];
+            let mut terminal: Option<Vec<f64>> =
+                stages.command.map(|Command { gain, zero_volt }| {
+                    run.input.iter().map(|u| gain * u + zero_volt).collect()
+                });
+            for stage in stages.amplifier.iter().filter(|stage| !acts_on_gain(stage)) {
+                let input = terminal.as_deref().unwrap_or(&run.input);
+                terminal = Some(match stage {
+                    AmplifierStage::Lag(lag) => {
+                        let known = terminal.is_none().then(|| &self.commands[number]);
+                        behind_lag(&smooth(input, known), *lag, run.step_s)
+                    }
+                    other => {
+                        let chain = amplifier_alone(*other);
+                        self.through(chain, input, run)?.terminal_volt
+                    }
+                });
+            }
+            let mut law = match &terminal {
+                Some(volt) => self.base.hysteresis(volt),
+                None => self.laws[number].clone(),
+            };
+            let volt = terminal.as_deref().unwrap_or(&run.input);
+            rises_k.push(self.ceramic(number, stages, volt, &mut law)?);
+            outputs.push(self.base.relaxed(&law, run.step_s));
+            terminals.push(terminal);
+        }
+        Ok(Front { terminals, rises_k, outputs: Arc::new(outputs) })
+    }
+
+    /// What gain and rate make of the law's output; returns the temperature rise if anything warms.
+    fn ceramic(
+        &self,
+        number: usize,
+        stages: &FrontStages,
+        volt: &[f64],
+        law: &mut Vec<f64>,
+    ) -> Result<Option<Vec<f64>>, GapError> {
+        let (zero, middle) = self.neutral;
+        let step_s = self.runs[number].step_s;
+        if let Some(Loops { share, widest }) = stages.loops {
+            *law = looped(law, share, widest);
+        }
+        let mut rise_k = None;
+        let scale = |law: &mut [f64], about: f64, gain: &mut dyn Iterator<Item = f64>| {
+            let point = zero + about * (middle - zero);
+            for (y, g) in law.iter_mut().zip(gain) {
+                *y = point + g * (*y - point);
+            }
+        };
+        for stage in &stages.amplifier {
+            match stage {
+                AmplifierStage::DielectricHeating(stage) => {
+                    let (rise, factor) = self.heated(number, *stage, volt)?;
+                    let gain = |t: &f64| 1.0 + stage.coefficient_per_k * t * factor;
+                    scale(law, stages.heat_about, &mut rise.iter().map(gain));
+                    rise_k = Some(rise.iter().map(|t| t * factor).collect());
+                }
+                AmplifierStage::Depolarisation(stage) => {
+                    scale(law, stages.loss_about, &mut stage.gains(volt, step_s).into_iter());
+                }
+                _ => {}
+            }
+        }
+        if let Some(Rate { tau_s, position }) = stages.rate {
+            let place = (middle, self.base.spread);
+            // the relaxation time follows the state: no closed form for a curved input, so short chords
+            let fine = Smooth::new(law).refined(FINER);
+            let late = rate_dependent(&fine, tau_s, position, place, step_s / f64::from(FINER));
+            *law = late.into_iter().step_by(FINER as usize).collect();
+        }
+        Ok(rise_k)
+    }
+
+    fn rear(&self, front: &Front, stages: &RearStages) -> Result<Arc<Vec<Vec<f64>>>, GapError> {
+        if *stages == RearStages::default() {
+            return Ok(Arc::clone(&front.outputs));
+        }
+        let mut outputs = Vec::with_capacity(self.runs.len());
+        let is_plain = Arc::ptr_eq(&front.outputs, &self.plain) && stages.gain.is_none();
+        for (number, (run, output)) in self.runs.iter().zip(front.outputs.iter()).enumerate() {
+            let mut known = is_plain.then(|| &self.plain_outputs[number]);
+            let gain = stages.gain.unwrap_or(1.0);
+            let mut signal: Vec<f64> = output.iter().map(|y| gain * y).collect();
+            let has_play = |stage: &&LinkageStage| matches!(stage, LinkageStage::Backlash(_));
+            for stage in stages.linkage.iter().filter(|s| !(run.is_preloaded() && has_play(s))) {
+                let known = known.take();
+                signal = match stage {
+                    LinkageStage::Resonance(mode) if mode.damping_ratio < 1.0 => smooth(
+                        &signal, known,
+                    )
+                    .through_mode(mode.frequency_hz, mode.damping_ratio, run.step_s),
+                    LinkageStage::LogCreep(creep) => crept(&signal, creep, run.step_s),
+                    other => {
+                        let linkage = vec![other.clone()];
+                        self.pass(run, &signal, RearStages { linkage, ..Default::default() })?
+                    }
+                };
+            }
+            if !run.has_ideal_sensor() {
+                for stage in &stages.sensor {
+                    let known = known.take();
+                    signal = match stage {
+                        SensorStage::Filter(lag) => {
+                            behind_lag(&smooth(&signal, known), *lag, run.step_s)
+                        }
+                        SensorStage::Delay(delay) => {
+                            smooth(&signal, known).late_by(delay.delay_s / run.step_s)
+                        }
+                        other => {
+                            let sensor = vec![*other];
+                            self.pass(run, &signal, RearStages { sensor, ..Default::default() })?
+                        }
+                    };
+                }
+                for reading in &stages.readings {
+                    signal = reading.of(&signal, run.step_s);
+                }
+            }
+            outputs.push(signal);
+        }
+        Ok(Arc::new(outputs))
+    }
+
+    fn hum_of(&self, number: usize, output: &[f64], hum: MainsHum) -> Option<Vec<f64>> {
+        let run = self.runs[number];
+        if run.has_ideal_sensor() {
+            return None;
+        }
+        let pairs = run.judged_output().iter().zip(run.judged(output));
+        let residual: Vec<f64> = pairs.map(|(measured, y)| measured - y).collect();
+        let line = line(hum.amplitude_um, hum.frequency_hz * run.step_s, &residual);
+        // where nothing is judged there is no hum to tell
+        Some([vec![0.0; run.window.start], line].concat())
+    }
+
+    /// A signal through stages behind the law.
+    fn pass(&self, run: &Record, signal: &[f64], rear: RearStages) -> Result<Vec<f64>, GapError> {
+        let simulated = self.through(Chain { rear, ..Chain::default() }, signal, run)?;
+        Ok(simulated.measured_deg)
+    }
+
+    /// A signal through stages alone: a law of gain 1 between them, degrees standing for the output's unit.
+    fn through(
+        &self,
+        chain: Chain,
+        signal: &[f64],
+        run: &Record,
+    ) -> Result<BenchSimulation, GapError> {
+        let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 1.0, bias_volt: 0.0 });
+        let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+        let mut model = ActuatorModel::new(law, self.wide, calibration);
+        chain.extend(&mut model);
+        let drive = Drive::new(signal, run.step_s);
+        model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))
+    }
+
+    /// The temperature rise of a heating stage, K, and the factor that a thermometer sets it right by.
+    fn heated(
+        &self,
+        number: usize,
+        stage: DielectricHeating,
+        volt: &[f64],
+    ) -> Result<(Vec<f64>, f64), GapError> {
+        let run = self.runs[number];
+        let chain = amplifier_alone(AmplifierStage::DielectricHeating(stage));
+        let rise = self.through(chain, volt, run)?.temperature_k;
+        let factor = run.temperature.as_ref().map_or(1.0, |measured| slope(&rise, measured));
+        Ok((rise, factor.max(0.0)))
+    }
+}
+
+/// A signal as a smooth one, by its weights where they are known.
+fn smooth<'s>(signal: &'s [f64], known: Option<&'s Weights>) -> Smooth<'s> {
+    known.map_or_else(|| Smooth::new(signal), |weights| Smooth::known(signal, weights))
+}
+
+/// A signal with its creep, `u + sum_i w_i (lag_i[u] - u_start)`.
+fn crept(signal: &[f64], creep: &LogCreep, step_s: f64) -> Vec<f64> {
+    let lags = creep.lags();
+    let whole: f64 = lags.iter().map(|(weight, _)| weight).sum();
+    let start = signal.first().copied().unwrap_or_default();
+    let mut output =
+        behind_lags(signal, lags.into_iter().map(|(weight, tau_s)| (tau_s, weight)), step_s);
+    for (y, u) in output.iter_mut().zip(signal) {
+        *y += whole * (u - start);
+    }
+    output
+}
+
+/// A signal behind a lag; one of no time constant changes nothing.
+fn behind_lag(signal: &Smooth<'_>, lag: Lag, step_s: f64) -> Vec<f64> {
+    if lag.tau_s > 0.0 { signal.lagged(lag.tau_s, step_s) } else { signal.samples().to_vec() }
+}
+
+/// A chain of one stage of the amplifier.
+fn amplifier_alone(stage: AmplifierStage) -> Chain {
+    let mut chain = Chain::default();
+    chain.front.amplifier.push(stage);
+    chain
+}
+
+/// Whether a stage acts on the gain of the law and not on the voltage before it.
+fn acts_on_gain(stage: &AmplifierStage) -> bool {
+    matches!(stage, AmplifierStage::DielectricHeating(_) | AmplifierStage::Depolarisation(_))
+}
+
+/// Samples after which the turning of a line begins anew, so that its rounding does not grow.
+const TURNED: usize = 64;
+
+/// Cosine and sine at every sample of a line of a number of turns per sample.
+fn waves(turns_per_sample: f64, samples: usize) -> Vec<(f64, f64)> {
+    let step = std::f64::consts::TAU * turns_per_sample.fract();
+    let (sin, cos) = step.sin_cos();
+    let mut all = Vec::with_capacity(samples);
+    let (mut s, mut c) = (0.0, 1.0);
+    for i in 0..samples {
+        if i % TURNED == 0 {
+            (s, c) = (std::f64::consts::TAU * (turns_per_sample * i as f64).fract()).sin_cos();
+        }
+        all.push((c, s));
+        (c, s) = (c * cos - s * sin, s * cos + c * sin);
+    }
+    all
+}
+
+/// A line of an amplitude and a number of turns per sample, with the phase that a residual asks for.
+pub(super) fn line(amplitude: f64, turns_per_sample: f64, residual: &[f64]) -> Vec<f64> {
+    let waves = waves(turns_per_sample, residual.len());
+    let (mut s, mut c) = (0.0, 0.0);
+    for (r, (cos, sin)) in residual.iter().zip(&waves) {
+        s += r * sin;
+        c += r * cos;
+    }
+    let size = amplitude / c.hypot(s).max(1e-300);
+    waves.iter().map(|(cos, sin)| size * (c * cos + s * sin)).collect()
+}
+
+/// Slope of `y` against `x` by least squares, both about their means; 0 where `x` is constant.
+pub(crate) fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let n = x.len().max(1) as f64;
+    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let (mut xy, mut xx) = (0.0, 0.0);
+    for (a, b) in x.iter().zip(y) {
+        xy += (a - mx) * (b - my);
+        xx += (a - mx).powi(2);
+    }
+    if xx > 0.0 { xy / xx } else { 0.0 }
+}
+
+fn failed(what: &str, error: &preisach_dyn::PreisachError) -> GapError {
+    GapError::Simulation { what: what.to_owned(), message: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    #[test]
+    fn a_line_turned_on_sample_by_sample_is_that_of_its_angles() {
+        let waves = waves(0.050_013_7, 20_000);
+        for (i, (cos, sin)) in waves.iter().enumerate() {
+            let angle = std::f64::consts::TAU * (0.050_013_7 * i as f64).fract();
+            assert_abs_diff_eq!(*cos, angle.cos(), epsilon = 1e-12);
+            assert_abs_diff_eq!(*sin, angle.sin(), epsilon = 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_line_has_the_phase_that_the_residual_asks_for() {
+        let wave = |i: u32| (0.31 * f64::from(i) + 0.8).sin();
+        let residual: Vec<f64> = (0..5000).map(|i| 3.0 * wave(i)).collect();
+        let found = line(0.7, 0.31 / std::f64::consts::TAU, &residual);
+        for (i, y) in (0..).zip(&found) {
+            assert_abs_diff_eq!(*y, 0.7 * wave(i), epsilon = 1e-3);
+        }
+    }
+
+    #[test]
+    fn the_creep_in_lags_side_by_side_is_that_of_the_stage() {
+        let input: Vec<f64> =
+            (0..3000).map(|i| 3.0 + (0.01 * f64::from(i)).sin() + f64::from(i / 1000)).collect();
+        let creep = LogCreep { rate_per_decade: 0.03, from_s: 0.02, to_s: 1000.0 };
+        let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 1.0, bias_volt: 0.0 });
+        let wide = VoltageRange::new(-10.0, 10.0).expect("a range");
+        let unit = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+        let mut model = ActuatorModel::new(law, wide, unit);
+        model.linkage = vec![LinkageStage::LogCreep(creep)];
+        let staged = model.simulate_bench(&Drive::new(&input, 2e-3)).expect("in range");
+        for (own, y) in crept(&input, &creep, 2e-3).iter().zip(&staged.measured_deg) {
+            assert_abs_diff_eq!(*own, *y, epsilon = 1e-12);
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! Aerofoil tables and the steady flow they describe.
+
+pub(crate) mod c81;
+pub(crate) mod steady_flow;

@@ -1,0 +1,24 @@
+//! Rows of the validation page: the section.
+
+mod errors;
+mod known_errors;
+mod section;
+mod section_beyond;
+mod section_compressible;
+
+use validation::hold;
+
+#[test]
+fn section_rows() {
+    hold(section::ROWS);
+}
+
+#[test]
+fn section_compressible_rows() {
+    hold(section_compressible::ROWS);
+}
+
+#[test]
+fn section_beyond_rows() {
+    hold(section_beyond::ROWS);
+}

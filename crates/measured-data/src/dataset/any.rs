@@ -1,0 +1,53 @@
+//! A data folder of any kind.
+
+use super::file::{DatasetFile, DatasetKind};
+use super::open::read_description;
+use super::{BenchData, CurveData, LoopData, read_bench, read_curves, read_loops};
+use crate::files::{Folder, read_ron};
+use crate::problem::{Problem, Problems};
+
+/// A data folder of any kind, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DataSet {
+    /// Kind `ActuatorBench`.
+    Bench(BenchData),
+    /// Kind `GenericLoop`.
+    Loops(LoopData),
+    /// Kind `ReversalCurves`.
+    Curves(CurveData),
+}
+
+impl DataSet {
+    /// What a reader should know about the data.
+    pub fn warnings(&self) -> &[Problem] {
+        match self {
+            Self::Bench(data) => &data.warnings,
+            Self::Loops(data) => &data.warnings,
+            Self::Curves(data) => &data.warnings,
+        }
+    }
+
+    /// Number of runs.
+    pub fn run_count(&self) -> usize {
+        match self {
+            Self::Bench(data) => data.runs.len(),
+            Self::Loops(data) => data.runs.len(),
+            Self::Curves(data) => data.runs.len(),
+        }
+    }
+}
+
+/// Reads a data folder of any kind.
+///
+/// # Errors
+/// Every problem of `dataset.ron` and of every record, ordered by file and line.
+pub fn read_dataset(folder: &Folder) -> Result<DataSet, Problems> {
+    let source = read_description(folder)?;
+    // a kind that cannot be read is reported by the reader of benches
+    let kind = read_ron::<DatasetFile>(&source).value.map(|file| file.kind);
+    match kind {
+        Some(DatasetKind::GenericLoop) => read_loops(folder).map(DataSet::Loops),
+        Some(DatasetKind::ReversalCurves) => read_curves(folder).map(DataSet::Curves),
+        Some(DatasetKind::ActuatorBench) | None => read_bench(folder).map(DataSet::Bench),
+    }
+}

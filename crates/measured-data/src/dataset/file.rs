@@ -1,0 +1,135 @@
+//! `dataset.ron`: what the files of a data folder are.
+
+use crate::tables::ChannelFile;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The kinds of data folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum DatasetKind {
+    /// Voltage and displacement of a piezo actuator on a bench.
+    ActuatorBench,
+    /// Any input and any output of a hysteretic system, in the units of the header.
+    GenericLoop,
+    /// First-order reversal curves, quasi-static: a curve number instead of a time.
+    ReversalCurves,
+}
+
+impl DatasetKind {
+    /// The word in `dataset.ron`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::ActuatorBench => "ActuatorBench",
+            Self::GenericLoop => "GenericLoop",
+            Self::ReversalCurves => "ReversalCurves",
+        }
+    }
+}
+
+/// What a run is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RunRole {
+    /// A record of the actuator as it is: models are identified from it.
+    Reference,
+    /// A record to be explained: simulations are compared with it.
+    Measured,
+}
+
+/// Which side of the split a run is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RunUse {
+    /// Models may be fitted to it.
+    Train,
+    /// Models are only tested on it.
+    HeldOut,
+}
+
+/// Which sensor read the output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Sensor {
+    /// The sensor of the bench.
+    #[default]
+    Bench,
+    /// A second one that reads the motion as it is, such as a laser.
+    Ideal,
+}
+
+/// How the system was fitted to the bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Fitting {
+    /// As always.
+    #[default]
+    Plain,
+    /// The lever was preloaded, so that no joint has play.
+    Preloaded,
+}
+
+/// `dataset.ron` as users write it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DatasetFile {
+    /// Kind of the data folder.
+    pub kind: DatasetKind,
+    /// One line about the data, printed wherever they are used.
+    pub title: String,
+    /// The records.
+    pub runs: Vec<RunFile>,
+    /// Equivalent flap angle per displacement, deg/um, positive; without it, identification sets the
+    /// gain so that the slowest full-scale loop is +-10 deg. `ActuatorBench` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flap_deg_per_um: Option<f64>,
+    /// Voltages the actuator may see, V, lower limit first; without it those of an APA500L-like
+    /// stack, -20 to 150 V. `ActuatorBench` only.
+    #[serde(default, rename = "command_range_V", skip_serializing_if = "Option::is_none")]
+    pub command_range_volt: Option<(f64, f64)>,
+    /// Which column is the input; without it the first one besides the time. Not `ActuatorBench`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input: Option<ChannelFile>,
+    /// Which column is the output; without it the second one besides the time. Not `ActuatorBench`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output: Option<ChannelFile>,
+    /// Inputs the system may see, in the unit of the input, lower limit first; without it from the
+    /// smallest to the largest input of all runs. Not `ActuatorBench`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_range: Option<(f64, f64)>,
+}
+
+/// One record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunFile {
+    /// Name of the run, unique in the data set.
+    pub id: String,
+    /// File beside `dataset.ron`.
+    pub file: String,
+    /// What the run is for.
+    pub role: RunRole,
+    /// What was done.
+    #[serde(default)]
+    pub note: String,
+    /// Seconds since switch-on at which the record begins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_s: Option<f64>,
+    /// Side of the split; without it, identification splits by the rule it prints.
+    #[serde(default, rename = "use", skip_serializing_if = "Option::is_none")]
+    pub use_as: Option<RunUse>,
+    /// Times of the record, s, between which it trains or is judged; simulations still begin at its
+    /// first sample. A file may be used by several runs with different windows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<(f64, f64)>,
+    /// Sensor that read the output; left out, the sensor of the bench. Not `ReversalCurves`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<Sensor>,
+    /// How the system was fitted; left out, as always. Not `ReversalCurves`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fitting: Option<Fitting>,
+    /// What was held constant: names with unit and numbers, such as `"temperature_C": 40`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub conditions: BTreeMap<String, f64>,
+    /// Table of the drift calibration, one row per curve. `ReversalCurves` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
+}
+
+/// Range of an APA500L-like stack, V: that of an `ActuatorBench` which names none.
+pub const DEFAULT_COMMAND_RANGE_VOLT: (f64, f64) = (-20.0, 150.0);

@@ -1,0 +1,198 @@
+//! Where files come from: a folder on disk, or the files shipped inside the program.
+
+use crate::problem::{Fault, Place, Problem};
+use std::fmt;
+use std::path::{Component, Path, PathBuf};
+
+/// A text file that was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Name for messages: the path as the user gave it.
+    pub name: String,
+    /// The text.
+    pub text: String,
+}
+
+/// A folder that files are read from; relative paths in a file are relative to its folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Folder {
+    /// A folder on disk.
+    Disk(PathBuf),
+    /// A folder of the files shipped inside the program.
+    Embedded(Embedded),
+}
+
+/// A folder among files that are part of the program.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Embedded {
+    /// Path of the folder, with `/` between its parts.
+    path: String,
+    /// Path and content of every file, in this folder or another.
+    files: &'static [(&'static str, &'static [u8])],
+}
+
+impl Embedded {
+    /// The folder `path` among `files`, each with its path and its content.
+    pub fn new(path: &str, files: &'static [(&'static str, &'static [u8])]) -> Self {
+        Self { path: normalised(path), files }
+    }
+
+    /// The path of a file of this folder.
+    fn file(&self, file: &str) -> String {
+        normalised(&format!("{}/{file}", self.path))
+    }
+
+    /// The content of a file of this folder.
+    fn content(&self, file: &str) -> Option<&'static [u8]> {
+        let path = self.file(file);
+        self.files.iter().find(|(name, _)| *name == path).map(|(_, bytes)| *bytes)
+    }
+}
+
+impl fmt::Debug for Embedded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Embedded").field(&self.path).finish()
+    }
+}
+
+impl Folder {
+    /// The folder that holds a file on disk.
+    pub fn of_file(path: &Path) -> Self {
+        Self::Disk(path.parent().map(Path::to_path_buf).unwrap_or_default())
+    }
+
+    /// The name of a file in this folder, as messages and results show it.
+    pub fn display(&self, file: &str) -> String {
+        match self {
+            Self::Disk(folder) => folder.join(file).display().to_string(),
+            Self::Embedded(folder) => folder.file(file),
+        }
+    }
+
+    /// A folder relative to this one; an absolute path on disk stands for itself.
+    #[must_use]
+    pub fn join(&self, relative: &str) -> Self {
+        match self {
+            Self::Disk(folder) => Self::Disk(folder.join(relative)),
+            Self::Embedded(folder) => {
+                Self::Embedded(Embedded { path: folder.file(relative), ..folder.clone() })
+            }
+        }
+    }
+
+    /// Reads a text file of this folder.
+    ///
+    /// # Errors
+    /// [`Fault::Unreadable`], [`Fault::NotText`] or [`Fault::NotShipped`].
+    pub fn read(&self, file: &str) -> Result<Source, Problem> {
+        let name = self.display(file);
+        let bytes = match self {
+            Self::Disk(folder) => read_bytes(&folder.join(file), &name)?,
+            Self::Embedded(folder) => folder
+                .content(file)
+                .ok_or_else(|| {
+                    Problem::new(Place::file(&name), Fault::NotShipped { path: name.clone() })
+                })?
+                .to_vec(),
+        };
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let offset = e.utf8_error().valid_up_to();
+            Problem::new(Place::file(&name), Fault::NotText { offset })
+        })?;
+        // a byte-order mark belongs to no format read here
+        let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+        Ok(Source { name, text })
+    }
+
+    /// Size of a file of this folder, bytes; 0 if it cannot be told.
+    pub fn size_bytes(&self, file: &str) -> u64 {
+        match self {
+            Self::Disk(folder) => std::fs::metadata(folder.join(file)).map_or(0, |m| m.len()),
+            Self::Embedded(folder) => folder.content(file).map_or(0, |b| b.len() as u64),
+        }
+    }
+
+    /// Whether a file exists in this folder.
+    pub fn contains(&self, file: &str) -> bool {
+        match self {
+            Self::Disk(folder) => folder.join(file).is_file(),
+            Self::Embedded(folder) => folder.content(file).is_some(),
+        }
+    }
+}
+
+impl Source {
+    /// Reads a text file on disk.
+    ///
+    /// # Errors
+    /// [`Fault::Unreadable`] or [`Fault::NotText`].
+    pub fn read(path: &Path) -> Result<Self, Problem> {
+        let folder = Folder::of_file(path);
+        if let Some(file) = path.file_name().and_then(|n| n.to_str()) {
+            return folder.read(file);
+        }
+        let reason = "not a file name".to_owned();
+        let place = Place::file(path.display().to_string());
+        Err(Problem::new(place, Fault::Unreadable { reason }))
+    }
+}
+
+/// Opens a file to be read piece by piece.
+///
+/// # Errors
+/// [`Fault::Unreadable`].
+#[expect(clippy::disallowed_methods, reason = "beside `read_bytes` the one place that reads files")]
+pub fn open_reader(path: &Path) -> Result<std::io::BufReader<std::fs::File>, Problem> {
+    let name = path.display().to_string();
+    let unreadable =
+        |reason: String| Problem::new(Place::file(&name), Fault::Unreadable { reason });
+    let file = std::fs::File::open(path).map_err(|e| unreadable(e.to_string()))?;
+    // a folder opens but cannot be read
+    if file.metadata().is_ok_and(|m| m.is_dir()) {
+        return Err(unreadable("it is a folder".into()));
+    }
+    Ok(std::io::BufReader::with_capacity(1 << 16, file))
+}
+
+#[expect(clippy::disallowed_methods, reason = "the one place of the program that reads files")]
+fn read_bytes(path: &Path, name: &str) -> Result<Vec<u8>, Problem> {
+    std::fs::read(path)
+        .map_err(|e| Problem::new(Place::file(name), Fault::Unreadable { reason: e.to_string() }))
+}
+
+/// A path with `.` and `..` resolved and `/` between its parts.
+fn normalised(path: &str) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for component in Path::new(path).components() {
+        match component {
+            Component::ParentDir => {
+                parts.pop();
+            }
+            Component::Normal(part) => parts.push(part.to_string_lossy().into_owned()),
+            _ => {}
+        }
+    }
+    parts.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn embedded_paths_resolve_dots() {
+        const FILES: &[(&str, &[u8])] = &[("data/bench/dataset.ron", b"()")];
+        let cases = Folder::Embedded(Embedded::new("data/cases", FILES));
+        let bench = cases.join("../bench");
+        assert_eq!(bench, Folder::Embedded(Embedded::new("data/./bench", FILES)));
+        assert_eq!(bench.read("dataset.ron").unwrap().text, "()");
+        assert!(!bench.contains("none.csv"));
+        assert!(matches!(bench.read("none.csv").unwrap_err().fault, Fault::NotShipped { .. }));
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let problem = Source::read(Path::new("no/such/case.ron")).unwrap_err();
+        assert!(problem.to_string().starts_with("no/such/case.ron: cannot be read"), "{problem}");
+    }
+}

@@ -1,0 +1,13 @@
+//! Files: reading with places, atomic writing, and RON with the place of every field.
+
+mod folder;
+mod ron_index;
+mod ron_read;
+mod write;
+
+pub use folder::{Embedded, Folder, Source, open_reader};
+pub use ron_index::RonIndex;
+pub use ron_read::{RonFile, read_ron, ron_text};
+pub use write::{
+    refuse_input, refuse_inside, refuse_unwritable, write_atomic, write_folder, write_new,
+};

@@ -1,0 +1,315 @@
+//! Atomic writing: a file appears whole or not at all.
+
+use crate::error::DataError;
+use std::io::{Error, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Links followed before they are taken for a ring.
+const MOST_LINKS: usize = 40;
+
+/// Writes a file through a temporary one in the same folder, which is created if needed.
+///
+/// A symbolic link stays: the file it leads to is the one written. What is no regular file (a pipe, a
+/// device, standard output) is written to as it is, never replaced.
+///
+/// # Errors
+/// [`DataError::NotWritten`]; a file that was at `path` before is then still there.
+pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
+    let write = || match Target::of(path)? {
+        Target::Descriptor(1) => through(std::io::stdout().lock(), bytes),
+        Target::Descriptor(2) => through(std::io::stderr().lock(), bytes),
+        Target::Descriptor(_) | Target::Special => {
+            through(std::fs::OpenOptions::new().write(true).open(path)?, bytes)
+        }
+        Target::File(file) => {
+            prepare(&file, bytes)?.persist(&file).map(|_| ()).map_err(|e| e.error)
+        }
+    };
+    write().map_err(|e| not_written(path, &e))
+}
+
+fn through(mut place: impl Write, bytes: &[u8]) -> std::io::Result<()> {
+    place.write_all(bytes)?;
+    place.flush()
+}
+
+/// What a path leads to.
+#[derive(Debug, PartialEq)]
+enum Target {
+    /// A regular file, or none yet: its path with all links followed.
+    File(PathBuf),
+    /// A file this process holds open, by its number: `/dev/stdout` is 1.
+    Descriptor(u32),
+    /// Something else: a pipe, a device, a folder.
+    Special,
+}
+
+impl Target {
+    fn of(path: &Path) -> std::io::Result<Self> {
+        let mut at = path.to_path_buf();
+        for _ in 0..MOST_LINKS {
+            if let Some(number) = own_descriptor(&at) {
+                return Ok(Self::Descriptor(number));
+            }
+            match std::fs::read_link(&at) {
+                Ok(link) => at = parent_of(&at).join(link),
+                Err(_) if at.exists() && !at.is_file() => return Ok(Self::Special),
+                Err(_) => return Ok(Self::File(at)),
+            }
+        }
+        Err(Error::new(ErrorKind::InvalidInput, "a ring of symbolic links"))
+    }
+}
+
+/// The number of an open file of this process, from a path such as `/proc/self/fd/1`.
+fn own_descriptor(path: &Path) -> Option<u32> {
+    let number = path.file_name()?.to_str()?.parse().ok()?;
+    let open = Path::new("/proc/self/fd").canonicalize().ok()?;
+    (parent_of(path).canonicalize().ok()? == open).then_some(number)
+}
+
+/// Refuses to replace a file that a command reads with what it writes.
+///
+/// # Errors
+/// [`DataError::WouldOverwriteInput`] if both paths lead to the same regular file.
+pub fn refuse_input(input: &Path, output: &Path) -> Result<(), DataError> {
+    match (input.canonicalize(), output.canonicalize()) {
+        (Ok(input), Ok(same)) if input == same && same.is_file() => {
+            Err(DataError::WouldOverwriteInput { path: output.to_path_buf() })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a folder that no file can be written to, before what is to be written is computed. Leaves nothing behind: of a
+/// folder that is not there yet, the nearest one above is tried.
+///
+/// # Errors
+/// [`DataError::NotWritten`].
+pub fn refuse_unwritable(folder: &Path) -> Result<(), DataError> {
+    let there = folder.ancestors().find(|above| above.exists());
+    let tried = match there {
+        Some(above) if !above.as_os_str().is_empty() => above,
+        _ => Path::new("."),
+    };
+    tempfile::Builder::new()
+        .prefix(".hhc-")
+        .tempfile_in(tried)
+        .map(|_| ())
+        .map_err(|e| not_written(folder, &e))
+}
+
+/// Like [`write_atomic`], but refuses to replace a file.
+///
+/// # Errors
+/// [`DataError::WouldOverwrite`] or [`DataError::NotWritten`].
+pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
+    let taken = || DataError::WouldOverwrite { path: path.to_path_buf() };
+    if path.exists() {
+        return Err(taken());
+    }
+    let file = prepare(path, bytes).map_err(|e| not_written(path, &e))?;
+    file.persist_noclobber(path).map(|_| ()).map_err(|e| {
+        if e.error.kind() == std::io::ErrorKind::AlreadyExists {
+            taken()
+        } else {
+            not_written(path, &e.error)
+        }
+    })
+}
+
+/// Refuses to replace a file of a data folder with a result.
+///
+/// # Errors
+/// [`DataError::WouldOverwrite`] if `path` is a file that lies directly in `data`.
+pub fn refuse_inside(data: &Path, path: &Path) -> Result<(), DataError> {
+    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    };
+    if path.exists() && same(data, parent_of(path)) {
+        return Err(DataError::WouldOverwrite { path: path.to_path_buf() });
+    }
+    Ok(())
+}
+
+/// Writes a new folder with its files: it appears whole or not at all.
+///
+/// # Errors
+/// [`DataError::WouldOverwrite`] if something is at `path` already, [`DataError::NotWritten`].
+pub fn write_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<(), DataError> {
+    if path.exists() {
+        return Err(DataError::WouldOverwrite { path: path.to_path_buf() });
+    }
+    let parent = parent_of(path);
+    let whole = || -> std::io::Result<()> {
+        std::fs::create_dir_all(parent)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".hhc-");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o777));
+        }
+        let folder = builder.tempdir_in(parent)?;
+        for (name, bytes) in files {
+            prepare(&folder.path().join(name), bytes)?
+                .persist_noclobber(folder.path().join(name))
+                .map_err(|e| e.error)?;
+        }
+        // renamed last; an error leaves the temporary folder to be removed
+        std::fs::rename(folder.path(), path)?;
+        let _moved_away = folder.keep();
+        Ok(())
+    };
+    whole().map_err(|e| not_written(path, &e))
+}
+
+fn parent_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+fn prepare(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> {
+    let folder = parent_of(path);
+    std::fs::create_dir_all(folder)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".hhc-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // the user's umask applies to this as to any new file
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    Ok(file)
+}
+
+fn not_written(path: &Path, error: &std::io::Error) -> DataError {
+    DataError::NotWritten { path: path.to_path_buf(), reason: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[expect(clippy::disallowed_methods, reason = "reads back what was written")]
+    fn files_are_replaced_whole_and_new_ones_never_replace() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/er/file.txt");
+        write_atomic(&path, b"one").unwrap();
+        write_atomic(&path, b"two").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
+        let error = write_new(&path, b"three").unwrap_err();
+        assert!(matches!(error, DataError::WouldOverwrite { .. }));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
+        let left: Vec<_> = std::fs::read_dir(path.parent().unwrap()).unwrap().collect();
+        assert_eq!(left.len(), 1, "no temporary file stays behind");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    #[expect(clippy::disallowed_methods, reason = "reads back what was written")]
+    fn links_stay_and_lead_to_the_file() {
+        let place = tempfile::tempdir().unwrap();
+        let at = |name: &str| place.path().join(name);
+        write_atomic(&at("deep/file"), b"old").unwrap();
+        std::os::unix::fs::symlink("deep/file", at("link")).unwrap();
+        std::os::unix::fs::symlink("link", at("second")).unwrap();
+        std::os::unix::fs::symlink("deep/new", at("dangling")).unwrap();
+        for (name, file) in
+            [("link", "deep/file"), ("second", "deep/file"), ("dangling", "deep/new")]
+        {
+            write_atomic(&at(name), name.as_bytes()).unwrap();
+            assert!(at(name).symlink_metadata().unwrap().is_symlink(), "{name}");
+            assert_eq!(std::fs::read_to_string(at(file)).unwrap(), name);
+        }
+        std::os::unix::fs::symlink("ring", at("ring")).unwrap();
+        let error = write_atomic(&at("ring"), b"x").unwrap_err();
+        assert!(matches!(error, DataError::NotWritten { .. }), "{error}");
+        let error = refuse_input(&at("second"), &at("deep/file")).unwrap_err();
+        assert!(matches!(error, DataError::WouldOverwriteInput { .. }));
+        refuse_input(&at("second"), &at("deep/new")).unwrap();
+        refuse_input(&at("gone"), &at("gone")).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    #[expect(clippy::disallowed_methods, reason = "reads back what was written")]
+    fn a_pipe_gets_the_text_and_stays_a_pipe() {
+        use std::os::unix::fs::FileTypeExt;
+        let place = tempfile::tempdir().unwrap();
+        let pipe = place.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || std::fs::read_to_string(pipe).unwrap()
+        });
+        write_atomic(&pipe, b"S,cn\n").unwrap();
+        assert!(pipe.metadata().unwrap().file_type().is_fifo());
+        assert_eq!(reader.join().unwrap(), "S,cn\n");
+    }
+
+    /// On a copy of the device that is always full, where the system lets one be made.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_device_is_an_error_and_stays_a_device() {
+        use std::os::unix::fs::FileTypeExt;
+        let place = tempfile::tempdir().unwrap();
+        let device = place.path().join("full");
+        let made = std::process::Command::new("mknod").arg(&device).args(["c", "1", "7"]).output();
+        if !made.is_ok_and(|made| made.status.success()) {
+            return;
+        }
+        match write_atomic(&device, b"x") {
+            Err(DataError::NotWritten { .. }) => {}
+            other => panic!("{other:?}"),
+        }
+        assert!(device.metadata().unwrap().file_type().is_char_device());
+        assert_eq!(Target::of(&device).unwrap(), Target::Special);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn standard_output_is_written_to_and_never_replaced() {
+        assert_eq!(Target::of(Path::new("/dev/stdout")).unwrap(), Target::Descriptor(1));
+        assert_eq!(Target::of(Path::new("/dev/fd/2")).unwrap(), Target::Descriptor(2));
+    }
+
+    #[test]
+    fn a_folder_appears_whole_or_not_at_all() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a/data");
+        let files = [("x.csv".to_owned(), b"1".to_vec()), ("y.csv".to_owned(), b"2".to_vec())];
+        write_folder(&path, &files).unwrap();
+        assert!(path.join("x.csv").is_file() && path.join("y.csv").is_file());
+        let error = write_folder(&path, &files).unwrap_err();
+        assert!(matches!(error, DataError::WouldOverwrite { .. }));
+        // the second file cannot be written: nothing stays
+        let bad = [files[0].clone(), ("x.csv/below".to_owned(), vec![])];
+        let error = write_folder(&place.path().join("b"), &bad).unwrap_err();
+        assert!(matches!(error, DataError::NotWritten { .. }));
+        let left: Vec<_> = std::fs::read_dir(place.path()).unwrap().collect();
+        assert_eq!(left.len(), 1, "{left:?}");
+    }
+
+    #[test]
+    fn an_impossible_place_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        write_atomic(&folder.path().join("file"), b"x").unwrap();
+        let error = write_atomic(&folder.path().join("file/below"), b"x").unwrap_err();
+        assert!(matches!(error, DataError::NotWritten { .. }));
+        for place in ["file", "file/below", "file/far/below"] {
+            let error = refuse_unwritable(&folder.path().join(place)).unwrap_err();
+            assert!(matches!(error, DataError::NotWritten { .. }), "{place}");
+        }
+        refuse_unwritable(&folder.path().join("new/folder")).unwrap();
+        let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+        assert_eq!(left.len(), 1, "nothing is left behind: {left:?}");
+    }
+}

@@ -1,0 +1,339 @@
+//! Samples as they stream in: counted, checked in time, averaged into blocks so that memory stays
+//! bounded.
+
+use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
+use crate::tables::{Listing, RESAMPLED_JITTER, ROUNDING_JITTER, Sampling, resample, resampled};
+
+/// How much of a record is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reduction {
+    /// Most samples kept; even, at least 4.
+    pub(super) most_samples: usize,
+    /// Sampling frequency the record is reduced to, Hz; it is not reduced further than to
+    /// `most_samples` without one.
+    pub(super) reduce_to_hz: Option<f64>,
+    /// Sampling frequency of sources without a time, Hz.
+    pub(super) sampling_hz: Option<f64>,
+}
+
+/// Samples while they come in.
+///
+/// Blocks of `block` samples are averaged, time like the rest, so that a block stands at its middle.
+/// When `most_samples` blocks are there, neighbours are averaged and `block` doubles: a mean is a mean
+/// of means of equal blocks, so that the order of the halving leaves no trace.
+pub(super) struct Gather {
+    file: String,
+    labels: Vec<String>,
+    reduction: Reduction,
+    block: usize,
+    columns: Vec<Vec<f64>>,
+    lines: Vec<usize>,
+    sums: Vec<f64>,
+    in_block: usize,
+    block_line: usize,
+    count: usize,
+    time: TimeTrack,
+}
+
+/// Steps of the time as it comes in.
+#[derive(Default)]
+struct TimeTrack {
+    first_s: f64,
+    last_s: f64,
+    /// Shortest and longest step with the line behind it.
+    shortest: Option<(f64, usize)>,
+    longest: Option<(f64, usize)>,
+    backward: Listing,
+    /// Whether a step went back or was far from the usual one.
+    faulty: bool,
+    /// Whether a row that cannot be read was left out since the last sample.
+    hole: bool,
+    /// Whether one ever was.
+    holes: bool,
+}
+
+/// A record that has come in whole.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Gathered {
+    /// Time, s, in equal steps.
+    pub(super) time_s: Vec<f64>,
+    /// The other columns.
+    pub(super) columns: Vec<Vec<f64>>,
+    /// Line of each sample in the source; empty without lines.
+    pub(super) lines: Vec<usize>,
+    /// Samples of the source.
+    pub(super) count: usize,
+    /// Samples of the source averaged into one.
+    pub(super) block: usize,
+    /// How the source is sampled.
+    pub(super) sampling: Sampling,
+    /// What a reader should know.
+    pub(super) warnings: Vec<Problem>,
+}
+
+impl Gather {
+    /// An empty record; the first of `labels` is the time, in s.
+    pub(super) fn new(file: &str, labels: Vec<String>, reduction: Reduction) -> Self {
+        let width = labels.len();
+        Self {
+            file: file.to_owned(),
+            labels,
+            reduction,
+            block: 1,
+            columns: vec![Vec::new(); width],
+            lines: Vec::new(),
+            sums: vec![0.0; width],
+            in_block: 0,
+            block_line: 0,
+            count: 0,
+            time: TimeTrack::default(),
+        }
+    }
+
+    /// Samples so far.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Tells of a row that cannot be read: the time steps across it say nothing.
+    pub(super) fn leave_out(&mut self) {
+        (self.time.hole, self.time.holes) = (true, true);
+    }
+
+    /// Takes one sample up: the time, s, and the other columns. `line` is 0 where there are none.
+    pub(super) fn push(&mut self, row: &[f64], line: usize, problems: &mut Problems) {
+        self.track_time(row[0], line, problems);
+        self.count += 1;
+        if self.in_block == 0 {
+            self.block_line = line;
+        }
+        for (sum, value) in self.sums.iter_mut().zip(row) {
+            *sum += value;
+        }
+        self.in_block += 1;
+        if self.in_block < self.block {
+            return;
+        }
+        let block = self.block as f64;
+        for (column, sum) in self.columns.iter_mut().zip(&mut self.sums) {
+            column.push(*sum / block);
+            *sum = 0.0;
+        }
+        if self.block_line > 0 {
+            self.lines.push(self.block_line);
+        }
+        self.in_block = 0;
+        if self.columns[0].len() >= self.reduction.most_samples {
+            self.average(2);
+        }
+    }
+
+    fn track_time(&mut self, time_s: f64, line: usize, problems: &mut Problems) {
+        let track = &mut self.time;
+        if self.count == 0 {
+            track.first_s = time_s;
+        } else if !track.hole {
+            let step = time_s - track.last_s;
+            if step <= 0.0 {
+                let place = match line {
+                    0 => Place::file(&self.file),
+                    line => Place::at(&self.file, line, 1),
+                };
+                let fault = Fault::TimeNotIncreasing { time_s, before_s: track.last_s };
+                track.backward.push(problems, place.field(&self.labels[0]), fault);
+                track.faulty = true;
+            }
+            if track.shortest.is_none_or(|(s, _)| step < s) {
+                track.shortest = Some((step, line));
+            }
+            if track.longest.is_none_or(|(s, _)| step > s) {
+                track.longest = Some((step, line));
+            }
+        }
+        track.last_s = time_s;
+        track.hole = false;
+    }
+
+    /// Averages each `factor` neighbours; those at the end that are fewer are left out.
+    fn average(&mut self, factor: usize) {
+        for column in &mut self.columns {
+            let means = column.chunks_exact(factor).map(|c| c.iter().sum::<f64>() / factor as f64);
+            *column = means.collect();
+        }
+        let samples = self.columns[0].len();
+        self.lines = self.lines.iter().copied().step_by(factor).take(samples).collect();
+        self.block *= factor;
+    }
+
+    /// The record; none if it cannot be used, which `problems` then say.
+    pub(super) fn finish(mut self, problems: &mut Problems) -> Option<Gathered> {
+        std::mem::take(&mut self.time.backward).finish(problems);
+        let label = self.labels[0].clone();
+        if self.count < 3 {
+            let fault = Fault::TooFewRows { rows: self.count, least: 3 };
+            problems.push(Place::file(&self.file), fault);
+            return None;
+        }
+        let step_s = (self.time.last_s - self.time.first_s) / (self.count - 1) as f64;
+        let jitter = self.jitter(step_s, &label, problems);
+        let sampling = Sampling { step_s, jitter };
+        if !problems.is_empty() {
+            if self.time.faulty {
+                self.swapped(&label, problems);
+            }
+            return None;
+        }
+        if let Some(wanted_hz) = self.reduction.reduce_to_hz {
+            let rate_hz = 1.0 / (step_s * self.block as f64);
+            // a rate a hair below a whole multiple is that multiple
+            let factor = (rate_hz / wanted_hz * (1.0 + 1e-6)).floor().clamp(1.0, 1e9);
+            let mut whole = 1;
+            while ((whole + 1) as f64) <= factor {
+                whole += 1;
+            }
+            if whole > 1 {
+                self.average(whole);
+            }
+        }
+        let mut warnings = Vec::new();
+        let left_out = self.count - self.block * self.columns[0].len();
+        if left_out > 0 {
+            let fault = RecordFault::Remainder { count: left_out, block: self.block };
+            warnings.push(Problem::new(Place::file(&self.file), fault.into()));
+        }
+        let mut columns = self.columns;
+        let mut time_s = columns.remove(0);
+        if time_s.len() < 3 {
+            let fault = Fault::TooFewRows { rows: time_s.len(), least: 3 };
+            problems.push(Place::file(&self.file), fault);
+            return None;
+        }
+        if sampling.jitter > ROUNDING_JITTER {
+            resample(&mut time_s, &mut columns.iter_mut().collect::<Vec<_>>());
+            warnings.push(resampled(&self.file, &label, sampling));
+        }
+        // the digits of the source's times differ by rounding: equal steps are written
+        let (first, last) = (time_s[0], time_s[time_s.len() - 1]);
+        let even = (last - first) / (time_s.len() - 1) as f64;
+        for (i, time) in time_s.iter_mut().enumerate() {
+            *time = first + even * i as f64;
+        }
+        let (lines, count, block) = (self.lines, self.count, self.block);
+        Some(Gathered { time_s, columns, lines, count, block, sampling, warnings })
+    }
+
+    /// Largest deviation of a step from the usual one; a problem if it is no jitter.
+    ///
+    /// The usual step is the mean; where a gap spoils the mean, the median of the steps kept.
+    fn jitter(&mut self, mean_s: f64, label: &str, problems: &mut Problems) -> f64 {
+        let (Some(shortest), Some(longest)) = (self.time.shortest, self.time.longest) else {
+            return 0.0;
+        };
+        let mut steps: Vec<f64> = self.columns[0].windows(2).map(|w| w[1] - w[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let median_s = steps.get(steps.len() / 2).map_or(mean_s, |s| s / self.block as f64);
+        let torn = self.time.holes || longest.0 > 2.0 * median_s;
+        let usual_s = if torn { median_s } else { mean_s };
+        let deviation = |step: (f64, usize)| (step.0 - usual_s).abs() / usual_s;
+        let worst = if deviation(shortest) > deviation(longest) { shortest } else { longest };
+        let (step_s, line) = worst;
+        // steps that go back are reported already
+        if deviation(worst) > RESAMPLED_JITTER && shortest.0 > 0.0 {
+            let place = match line {
+                0 => Place::file(&self.file),
+                line => Place::at(&self.file, line, 1),
+            };
+            problems.push(place.field(label), Fault::TimeStepUneven { step_s, usual_s });
+            self.time.faulty = true;
+        }
+        deviation(worst)
+    }
+
+    /// Says it if another column than the time looks like the time.
+    fn swapped(&self, label: &str, problems: &mut Problems) {
+        for (column, other) in self.columns.iter().zip(&self.labels).skip(1) {
+            if crate::tables::increases_evenly(column) {
+                let fault = RecordFault::TimeSwapped { other: other.clone() };
+                problems.push(Place::file(&self.file).field(label), fault.into());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gather(reduction: Reduction, samples: usize, jitter: f64) -> Result<Gathered, Problems> {
+        let labels = vec!["time_s".to_owned(), "u_V".to_owned()];
+        let mut gather = Gather::new("r.csv", labels, reduction);
+        let mut problems = Problems::default();
+        for i in 0..samples {
+            let time = i as f64 * 1e-3 + if i % 2 == 1 { jitter * 1e-3 } else { 0.0 };
+            gather.push(&[time, 2.0 * time], i + 2, &mut problems);
+        }
+        let found = gather.finish(&mut problems);
+        problems.into_result(found)
+    }
+
+    fn reduction(most_samples: usize, reduce_to_hz: Option<f64>) -> Reduction {
+        Reduction { most_samples, reduce_to_hz, sampling_hz: None }
+    }
+
+    #[test]
+    fn blocks_are_means_and_few() {
+        let all = gather(reduction(1000, None), 999, 0.0).unwrap();
+        assert_eq!((all.block, all.time_s.len(), all.warnings.len()), (1, 999, 0));
+        let some = gather(reduction(100, None), 10_007, 0.0).unwrap();
+        assert_eq!((some.count, some.block), (10_007, 128));
+        assert_eq!(some.time_s.len(), 10_007 / 128);
+        assert!(some.warnings[0].to_string().contains("23 samples at the end"));
+        // the mean of 0..127 ms, and of twice that
+        for (i, (t, u)) in some.time_s.iter().zip(&some.columns[0]).enumerate() {
+            let middle = 1e-3 * (128.0 * i as f64 + 63.5);
+            assert!((t - middle).abs() < 1e-12 && (u - 2.0 * middle).abs() < 1e-12, "{i}");
+        }
+        assert_eq!(some.lines[1], 2 + 128);
+        let rate = gather(reduction(1000, Some(250.0)), 999, 0.0).unwrap();
+        assert_eq!((rate.block, rate.time_s.len()), (4, 249));
+    }
+
+    #[test]
+    fn jitter_is_rounded_resampled_or_refused() {
+        assert!(gather(reduction(1000, None), 99, 0.005).unwrap().warnings.is_empty());
+        let some = gather(reduction(1000, None), 99, 0.08).unwrap();
+        assert!(
+            some.warnings[0].to_string().contains("differ by up to 8 %"),
+            "{:?}",
+            some.warnings
+        );
+        for (t, u) in some.time_s.iter().zip(&some.columns[0]) {
+            assert!((u - 2.0 * t).abs() < 1e-12, "a straight line stays one");
+        }
+        let text = gather(reduction(1000, None), 99, 0.4).unwrap_err().to_string();
+        assert!(text.contains("expected uniform sampling"), "{text}");
+    }
+
+    /// Ten million samples: what is kept stays small, and is right.
+    #[test]
+    fn ten_million_samples_stay_bounded() {
+        let labels = vec!["time_s".to_owned(), "u_V".to_owned()];
+        let mut gather = Gather::new("r.csv", labels, reduction(4096, None));
+        let mut problems = Problems::default();
+        let mut largest = 0;
+        for i in 0..10_000_000_usize {
+            gather.push(&[i as f64 * 1e-4, (i % 7) as f64], i + 1, &mut problems);
+            largest = largest.max(gather.columns[0].capacity() + gather.lines.capacity());
+        }
+        assert!(largest <= 4 * 4096, "{largest} numbers kept");
+        let found = gather.finish(&mut problems).unwrap();
+        assert_eq!((found.count, found.block), (10_000_000, 4096));
+        assert!(found.columns[0].iter().all(|u| (u - 3.0).abs() < 4e-3), "means of 0 to 6");
+    }
+
+    #[test]
+    fn one_sample_is_too_few() {
+        let text = gather(reduction(1000, None), 1, 0.0).unwrap_err().to_string();
+        assert!(text.contains("has 1 rows of numbers, expected at least 3"), "{text}");
+    }
+}

@@ -1,0 +1,36 @@
+//! Measured data: data folders, tables with units, importers, and problems with file and line.
+//!
+//! | idea | module |
+//! |---|---|
+//! | what is wrong in a file, where, what was expected, the remedy | [`problem`] |
+//! | reading with places, atomic writing, RON with the place of every field | `files` |
+//! | tables with units in the header, checks of a record | `tables` |
+//! | `dataset.ron` and its records, of each kind | `dataset` |
+//! | data of other formats into a data folder | [`import`] |
+
+mod dataset;
+mod error;
+mod files;
+pub mod import;
+pub mod problem;
+mod tables;
+
+pub use dataset::{
+    BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet, DatasetFile,
+    DatasetKind, Fitting, InputRange, LoopData, ReversalCurve, Run, RunFile, RunRole, RunUse,
+    Sensor, Timed, read_bench, read_curves, read_dataset, read_loops, samples_within,
+};
+pub use error::DataError;
+pub use files::{
+    Embedded, Folder, RonFile, RonIndex, Source, open_reader, read_ron, refuse_input,
+    refuse_inside, refuse_unwritable, ron_text, write_atomic, write_folder, write_new,
+};
+pub use tables::{
+    Channel, ChannelFile, Channels, Dimension, LoopTable, MeasuredTable, RESAMPLED_JITTER,
+    ROUNDING_JITTER, Sampling, UNITS, Unit, parse_measured_csv, resample, significant,
+};
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

@@ -1,0 +1,194 @@
+//! The families of models that the same records can be fitted with.
+
+use crate::identify::families::family::{Family, Fitted, Given, Search, Training, share};
+use crate::identify::families::layered;
+use crate::identify::families::stop_fit;
+use crate::identify::fit::output_error::Build;
+use crate::identify::fit::preisach::{RateFit, fit_linear};
+use crate::identify::records::prepared::Prepared;
+use crate::identify::{RateSmoothness, Settings};
+use crate::{
+    ActuatorLaw, AmplifierStage, BoucWen, BoucWenParameters, Envelope, Lag, LinearGain,
+    PrandtlIshlinskii, PrandtlParameters, PreisachError, StaticPreisach, TimeOrder, VoltageRange,
+    WeightedPlay,
+};
+use nalgebra::DVector;
+
+/// Fits a family.
+///
+/// # Errors
+/// [`PreisachError::NoTrainingRecord`] without the records a family needs, [`PreisachError::NotFitted`]
+/// if no start led anywhere, or those of the fits.
+pub(crate) fn fit(
+    family: Family,
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
+    if family.needs_rate() && training.fast.is_empty() {
+        return Err(PreisachError::NoTrainingRecord {
+            part: "what depends on rate",
+            remedy: "record periodic runs at two or more frequencies, for instance 1 and 10 Hz",
+        });
+    }
+    let mut settings = training.settings.clone();
+    settings.rate_smoothness = RateSmoothness::Fixed(given.smoothness);
+    let training = Training { settings: &settings, ..training };
+    match family {
+        Family::StaticPreisach => {
+            let law = StaticPreisach::new(*training.grid, training.static_map()?)?;
+            let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
+            Ok(Fitted { model, parameters: Vec::new() })
+        }
+        Family::DynamicPreisachFirst | Family::DynamicPreisach => {
+            let time_order = match family {
+                Family::DynamicPreisachFirst => TimeOrder::First,
+                _ => TimeOrder::Second,
+            };
+            let settings = Settings { time_order, ..settings.clone() };
+            let Training { grid, slow, fast, .. } = training;
+            let rate = RateFit::new(
+                grid,
+                training.static_map()?,
+                slow,
+                fast,
+                &settings,
+                given.uncertainty(),
+            )?;
+            Ok(Fitted { model: settings.actuator_of(rate.law), parameters: rate.parameters })
+        }
+        Family::PrandtlStop => stop_fit::fit(training),
+        Family::DynamicPreisachCreep => layered::dynamic_creep(training, given),
+        Family::StaticPreisachRelaxation => layered::relaxation(training, given),
+        _ => by_output_error(family, training, given),
+    }
+}
+
+/// Plays of the Prandtl-Ishlinskii model.
+const PLAYS: usize = 8;
+
+/// Fits a family of few parameters to all records at once.
+fn by_output_error(
+    family: Family,
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
+    let all: Vec<&Prepared> = training.slow.iter().chain(training.fast).copied().collect();
+    let line = fit_linear(training.slow);
+    let range = training.settings.range_volt;
+    let middle_deg = line.output_deg(range.middle_volt());
+    let wrap = |law: ActuatorLaw| training.settings.actuator_of(law);
+    let linear = |x: &DVector<f64>| {
+        let gain_deg_per_volt = line.gain_deg_per_volt * (1.0 + x[0]);
+        let bias_volt = line.bias_volt + 0.1 * range.span_volt() * x[1];
+        wrap(ActuatorLaw::Linear(LinearGain { gain_deg_per_volt, bias_volt }))
+    };
+    // a rising law: the families below know no falling ones
+    let gain = line.gain_deg_per_volt.abs();
+    let envelope = |x: &DVector<f64>| Envelope {
+        offset_deg: middle_deg + 0.1 * gain * range.span_volt() * x[1],
+        quadratic: 0.45 * x[2].tanh(),
+        cubic: 0.3 * x[3].tanh(),
+    };
+    let bouc_wen = |x: &DVector<f64>, exponent: f64| {
+        let gain_deg_per_volt = gain * x[0].exp();
+        let law = bouc_wen_law(x, exponent, gain_deg_per_volt, range, envelope(x))?;
+        Some(wrap(ActuatorLaw::BoucWen(law)))
+    };
+    let prandtl = |x: &DVector<f64>| {
+        let step_volt = 0.5 * range.span_volt() / (PLAYS + 1) as f64;
+        let parameters = PrandtlParameters {
+            range_volt: range,
+            gain_deg_per_volt: gain * x[0].exp(),
+            plays: (0..PLAYS)
+                .map(|i| WeightedPlay {
+                    threshold_volt: (i + 1) as f64 * step_volt,
+                    weight_deg_per_volt: gain * x[5 + i] * x[5 + i],
+                })
+                .collect(),
+            threshold_growth_s: x[4].exp(),
+            envelope: envelope(x),
+        };
+        Some(wrap(ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).ok()?)))
+    };
+    let common = ["ln gain", "offset, tenths of the stroke", "quadratic, artanh", "cubic, artanh"];
+    let search = |build: Build<'_>, everywhere: &[DVector<f64>], names: &[&str]| {
+        let search = Search { family, build, records: &all, names, pulls: &[] };
+        let minimum = search.minimum(&given.starts(everywhere))?;
+        Ok(search.fitted(minimum, given.uncertainty()))
+    };
+    match family {
+        Family::Linear => {
+            let build = |x: &DVector<f64>| Some(linear(x));
+            let names = ["gain, relative", "bias, tenths of the range"];
+            search(&build, &[DVector::zeros(2)], &names)
+        }
+        Family::LinearLag => {
+            let build = |x: &DVector<f64>| {
+                let mut model = linear(x);
+                model.amplifier.push(AmplifierStage::Lag(Lag { tau_s: x[2].exp() }));
+                Some(model)
+            };
+            let start = |tau_s: f64| DVector::from_vec(vec![0.0, 0.0, tau_s.ln()]);
+            let names = ["gain, relative", "bias, tenths of the range", "ln time constant, s"];
+            search(&build, &[1e-3, 1e-2, 5e-2].map(start), &names)
+        }
+        Family::BoucWen => {
+            let start = |rise: f64| DVector::from_vec(vec![0.1, 0.0, 0.0, 0.0, 0.0, rise, 0.0]);
+            let starts = given.starts(&[-0.7, 0.5].map(start));
+            let mut names = common.to_vec();
+            names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
+            // the exponents with a closed solution
+            let builds = [1.0, 2.0].map(|exponent| move |x: &DVector<f64>| bouc_wen(x, exponent));
+            let searches = [0, 1].map(|i| Search {
+                family,
+                build: &builds[i],
+                records: &all,
+                names: &names,
+                pulls: &[],
+            });
+            let (first, second) = (searches[0].minimum(&starts)?, searches[1].minimum(&starts)?);
+            let (search, minimum) = if second.nrmse < first.nrmse {
+                (&searches[1], second)
+            } else {
+                (&searches[0], first)
+            };
+            Ok(search.fitted(minimum, given.uncertainty()))
+        }
+        _ => {
+            let start = |growth_s: f64| {
+                let mut x = vec![-0.5, 0.0, 0.0, 0.0, growth_s.ln()];
+                x.resize(5 + PLAYS, 0.2);
+                DVector::from_vec(x)
+            };
+            let mut names = common.to_vec();
+            names.push("ln growth of the half-widths, s");
+            let plays: Vec<String> = (1..=PLAYS).map(|i| format!("root of weight {i}")).collect();
+            names.extend(plays.iter().map(String::as_str));
+            search(&prandtl, &[1e-3, 1e-2].map(start), &names)
+        }
+    }
+}
+
+/// The Bouc-Wen law of the parameters behind gain and envelope; none outside its domain.
+fn bouc_wen_law(
+    x: &DVector<f64>,
+    exponent: f64,
+    gain_deg_per_volt: f64,
+    range_volt: VoltageRange,
+    envelope: Envelope,
+) -> Option<BoucWen> {
+    let rise_volt = 20.0 * x[5].exp();
+    let sigma = 0.5 + 0.5 * x[6].exp();
+    let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
+    let half_height_deg = most_deg * share(x[4]);
+    let parameters = BoucWenParameters {
+        range_volt,
+        gain_deg_per_volt,
+        half_height_deg,
+        rise_volt,
+        sigma,
+        exponent,
+        envelope,
+    };
+    BoucWen::new(parameters).ok()
+}

@@ -1,0 +1,351 @@
+//! The table of all models, and which of them to use.
+
+use crate::identify::families::by_family;
+use crate::identify::families::family::{Family, Fitted, Given, Training};
+use crate::identify::fit::compare;
+use crate::identify::fit::output_error::Estimate;
+use crate::identify::fit::preisach::{major_loop_mean, trained_range};
+use crate::identify::fit::roles::{Bench, Sorted};
+use crate::identify::fit::static_fit;
+use crate::identify::fit::validate;
+use crate::identify::records::prepared::Prepared;
+use crate::identify::{BenchRecord, FlapZero, Identifiability, RecordFit, RecordUse, Settings};
+use crate::{ActuatorModel, PreisachError, PreisachGrid};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// A simpler family is preferred if its error is at most this much larger.
+const WITHIN: f64 = 1.03;
+
+/// Levels of the memory and of the rate maps, smoothness of the density.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Order {
+    /// Levels of the memory and of `mu0`.
+    pub levels: usize,
+    /// Levels of `mu1` and `mu2`; a divisor of `levels`.
+    pub rate_levels: usize,
+    /// Weight of the smoothness of `mu0`.
+    pub static_smoothness: f64,
+}
+
+impl Order {
+    /// The order of some settings.
+    pub fn of(settings: &Settings) -> Self {
+        let Settings { levels, rate_levels, static_smoothness, .. } = *settings;
+        Self { levels, rate_levels, static_smoothness }
+    }
+}
+
+/// What a comparison tries.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Candidates {
+    /// The families, the simplest first.
+    pub families: Vec<Family>,
+    /// Orders tried for the family chosen, beside that of the settings; none leaves it at that.
+    pub orders: Vec<Order>,
+}
+
+impl Default for Candidates {
+    /// All families; for the chosen one 12 and 24 levels, the density smooth and less so.
+    fn default() -> Self {
+        let order =
+            |(levels, static_smoothness)| Order { levels, rate_levels: 4, static_smoothness };
+        let orders = [(12, 1e-4), (12, 1e-6), (24, 1e-4), (24, 1e-6)].map(order);
+        Self { families: Family::ALL.to_vec(), orders: orders.to_vec() }
+    }
+}
+
+/// How one family did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelRow {
+    /// The family.
+    pub family: Family,
+    /// Order of its memory, where it has one.
+    pub order: Order,
+    /// Root mean square of the NRMSE of training records that were left out of the fit, a frequency or
+    /// an amplitude at a time;
+    /// none if there were too few to leave one out.
+    pub cross_validation: Option<f64>,
+    /// The model fitted to all training records, or why there is none.
+    pub fitted: Result<FittedModel, PreisachError>,
+}
+
+/// A fitted model with its fits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedModel {
+    /// The model.
+    pub model: ActuatorModel,
+    /// Its fit of every record, in the order given.
+    pub fits: Vec<RecordFit>,
+    /// Parameters that were found by output error, as the fit holds them, with their standard
+    /// deviations.
+    pub parameters: Vec<Estimate>,
+}
+
+/// The table of all models.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelComparison {
+    /// One row per family, as asked for.
+    pub rows: Vec<ModelRow>,
+    /// The row of the family chosen.
+    pub chosen: usize,
+    /// The chosen family on several grids, by levels; here slow records are left out in turn too, so
+    /// that the errors of cross-validation stand apart from those of `rows`.
+    pub orders: Vec<ModelRow>,
+    /// The row of the order chosen; means nothing if `orders` is empty.
+    pub chosen_order: usize,
+    /// Ids of the records and their uses, in the order given.
+    pub records: Vec<(String, RecordUse)>,
+    /// Output of the records that is zero flap angle of the models, deg.
+    pub zero_deg: f64,
+    /// What the records cannot tell.
+    pub summary: Identifiability,
+}
+
+impl ModelComparison {
+    /// The model to use; none if no family could be fitted.
+    pub fn model(&self) -> Option<&ActuatorModel> {
+        Some(&self.best()?.fitted.as_ref().ok()?.model)
+    }
+
+    /// The row to use: family and order.
+    pub fn best(&self) -> Option<&ModelRow> {
+        self.orders.get(self.chosen_order).or_else(|| self.rows.get(self.chosen))
+    }
+
+    /// Root mean square and largest NRMSE of a row over the records of one use; none without any.
+    pub fn error_over(&self, row: &ModelRow, record_use: RecordUse) -> Option<(f64, f64)> {
+        let fits = &row.fitted.as_ref().ok()?.fits;
+        let pairs = self.records.iter().zip(fits);
+        let of_use: Vec<f64> =
+            pairs.filter(|((_, u), _)| *u == record_use).map(|(_, fit)| fit.nrmse).collect();
+        if of_use.is_empty() {
+            return None;
+        }
+        let squares: f64 = of_use.iter().map(|e| e * e).sum();
+        let largest = of_use.iter().copied().fold(0.0, f64::max);
+        Some(((squares / of_use.len() as f64).sqrt(), largest))
+    }
+}
+
+/// Fits every family to the same training records and chooses by cross-validation over experiments.
+///
+/// All fast training records of one frequency are left out of the fit in turn and simulated, then all
+/// of one amplitude: conditions, because the model will be used at others than the bench ran. Where no
+/// record is fast, each slow one is left out in turn. The family with the smallest error is chosen, a
+/// simpler one if it is within 3 %; then the order of the memory with the smallest error: there
+/// smoothness keeps large grids in check. Held-out records are never looked at for choosing: they only
+/// stand in the table.
+///
+/// # Errors
+/// As [`crate::identify::identify`] for the records; a family that cannot be fitted has its error in its row.
+pub fn compare_models(
+    records: &[BenchRecord],
+    settings: &Settings,
+    candidates: &Candidates,
+) -> Result<ModelComparison, PreisachError> {
+    let contest = Contest::new(records, settings)?;
+    let own = Order::of(settings);
+    let (mut rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = candidates
+        .families
+        .par_iter()
+        .map(|&family| contest.row(family, own, Folds::Conditions, None))
+        .collect::<Result<Vec<_>, _>>()?
+        .into_iter()
+        .unzip();
+    let chosen = best(&rows, WITHIN);
+    let (mut orders, mut chosen_order) = (Vec::new(), 0);
+    let family = rows.get(chosen).filter(|row| has_memory(row.family)).map(|row| row.family);
+    if let (Some(family), false) = (family, candidates.orders.is_empty()) {
+        let mut tried = candidates.orders.clone();
+        tried.push(own);
+        // the simplest first: few levels, smooth
+        tried.sort_by(|a, b| {
+            let levels = (a.levels, a.rate_levels).cmp(&(b.levels, b.rate_levels));
+            levels.then(b.static_smoothness.total_cmp(&a.static_smoothness))
+        });
+        tried.dedup();
+        orders = tried
+            .par_iter()
+            .map(|&order| {
+                let known = trials[chosen].as_ref().filter(|_| order == own);
+                Ok(contest.row(family, order, Folds::All, known)?.0)
+            })
+            .collect::<Result<Vec<_>, PreisachError>>()?;
+        // nothing to choose by: the order asked for stands
+        let by_error = orders.iter().any(|row| row.cross_validation.is_some());
+        let asked_for = tried.iter().position(|order| *order == own);
+        chosen_order = if by_error { best(&orders, 1.0) } else { asked_for.unwrap_or(0) };
+    }
+    let Contest { bench, zero_deg, summary, .. } = contest;
+    for row in rows.iter_mut().chain(&mut orders) {
+        if let Ok(fitted) = &mut row.fitted {
+            fitted.model = fitted.model.clone().shifted(-zero_deg);
+        }
+    }
+    let ids = records.iter().map(|r| r.id.clone());
+    let records = ids.zip(bench.uses().iter().copied()).collect();
+    Ok(ModelComparison { rows, chosen, orders, chosen_order, records, zero_deg, summary })
+}
+
+/// What is left out in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Folds {
+    /// Frequencies and amplitudes of the fast records.
+    Conditions,
+    /// Slow records too.
+    All,
+}
+
+/// The fit of a family to all training records, and the errors of the folds left out.
+#[derive(Debug, Clone)]
+struct Trial {
+    whole: Fitted,
+    errors: Vec<f64>,
+}
+
+fn has_memory(family: Family) -> bool {
+    !matches!(
+        family,
+        Family::Linear
+            | Family::LinearLag
+            | Family::BoucWen
+            | Family::PrandtlIshlinskii
+            | Family::PrandtlStop
+    )
+}
+
+/// The row with the smallest cross-validated error, an earlier one if it is at most `within` times it; without
+/// cross-validation the static Preisach model, or what could be fitted at all.
+fn best(rows: &[ModelRow], within: f64) -> usize {
+    let error = |row: &ModelRow| row.fitted.as_ref().ok().and(row.cross_validation);
+    let least = rows.iter().filter_map(error).fold(f64::INFINITY, f64::min);
+    let near = rows.iter().position(|row| error(row).is_some_and(|e| e <= within * least));
+    let of = |family: Family| move |row: &ModelRow| row.family == family && row.fitted.is_ok();
+    near.filter(|_| least.is_finite())
+        .or_else(|| rows.iter().position(of(Family::DynamicPreisach)))
+        .or_else(|| rows.iter().position(of(Family::StaticPreisach)))
+        .or_else(|| rows.iter().position(|row| row.fitted.is_ok()))
+        .unwrap_or(0)
+}
+
+/// Records made ready for all families.
+struct Contest<'a> {
+    bench: Bench<'a>,
+    settings: &'a Settings,
+    zero_deg: f64,
+    summary: Identifiability,
+    smoothness: f64,
+}
+
+impl<'a> Contest<'a> {
+    fn new(records: &'a [BenchRecord], settings: &'a Settings) -> Result<Self, PreisachError> {
+        let grid = PreisachGrid::new(settings.range_volt, settings.levels.max(1))?;
+        let bench = Bench::new(records, settings)?;
+        let prepared = bench.prepared(&grid, settings)?;
+        let Sorted { slow, fast } = Sorted::of(&prepared)?;
+        let summary = bench.summary(&grid, &prepared, settings);
+        let zero_deg = match settings.zero {
+            FlapZero::AsRecorded => 0.0,
+            FlapZero::MajorLoopMean => major_loop_mean(&slow),
+        };
+        // one smoothness for all folds, chosen on the training records
+        let measured: Vec<Vec<f64>> = slow.iter().map(|r| r.record.output_deg.clone()).collect();
+        let map = static_fit::fit(&grid, &slow, &measured, settings)?;
+        let smoothness = validate::smoothness(&grid, &map, &fast, settings).0;
+        Ok(Self { bench, settings, zero_deg, summary, smoothness })
+    }
+
+    /// A row of the table, and what a row with more folds can go on from; `known`: what one with fewer
+    /// left.
+    fn row(
+        &self,
+        family: Family,
+        order: Order,
+        which: Folds,
+        known: Option<&Trial>,
+    ) -> Result<(ModelRow, Option<Trial>), PreisachError> {
+        let Order { levels, rate_levels, static_smoothness } = order;
+        let settings = Settings { levels, rate_levels, static_smoothness, ..self.settings.clone() };
+        settings.check()?;
+        let grid = PreisachGrid::new(settings.range_volt, levels)?;
+        let prepared = self.bench.prepared(&grid, &settings)?;
+        let Sorted { slow, fast } = Sorted::of(&prepared)?;
+        let fit = |slow: &[&Prepared], fast: &[&Prepared], whole: Option<&Fitted>| {
+            let training = Training { grid: &grid, slow, fast, settings: &settings };
+            by_family::fit(family, training, Given { smoothness: self.smoothness, whole })
+        };
+        let whole = known.map_or_else(|| fit(&slow, &fast, None), |known| Ok(known.whole.clone()));
+        // places in the slow and the fast records, one after another
+        let left_out = |fold: &Vec<usize>, whole: &Fitted| -> Result<f64, PreisachError> {
+            let mut own: [Vec<&Prepared>; 2] = [Vec::new(), Vec::new()];
+            let mut tested: Vec<&Prepared> = Vec::new();
+            for (place, record) in slow.iter().chain(&fast).enumerate() {
+                if fold.contains(&place) {
+                    tested.push(record);
+                } else {
+                    own[usize::from(place >= slow.len())].push(record);
+                }
+            }
+            let model = fit(&own[0], &own[1], Some(whole))?.model;
+            let errors = tested.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
+            Ok(errors.sum::<Result<f64, PreisachError>>()? / fold.len() as f64)
+        };
+        let mut folds = conditions(&fast, slow.len());
+        let fewest = if fast.is_empty() { 2 } else { 3 };
+        if slow.len() >= fewest && (fast.is_empty() || which == Folds::All) {
+            folds.extend((0..slow.len()).map(|place| vec![place]));
+        }
+        let trial = whole.as_ref().ok().map(|whole| {
+            let mut errors = known.map_or_else(Vec::new, |known| known.errors.clone());
+            // the folds of conditions come first
+            let rest = folds.get(errors.len()..).unwrap_or_default().par_iter();
+            let rest = rest.map(|fold| left_out(fold, whole).unwrap_or(f64::INFINITY));
+            errors.extend(rest.collect::<Vec<f64>>());
+            Trial { whole: whole.clone(), errors }
+        });
+        let errors = trial.as_ref().map_or(&[][..], |trial| &trial.errors);
+        let cross_validation =
+            (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
+        let fitted = whole.and_then(|Fitted { mut model, parameters }| {
+            model.trained = Some(trained_range(&slow, &fast, &prepared));
+            let fits = prepared.iter().map(|r| compare::compare(&model, r));
+            let fits = fits.collect::<Result<Vec<_>, _>>()?;
+            Ok(FittedModel { model, fits, parameters })
+        });
+        Ok((ModelRow { family, order, cross_validation, fitted }, trial))
+    }
+}
+
+/// What is left out of the fast records in turn, as places from `first` on: all records of one
+/// frequency, and all of one amplitude, because a model is used at frequencies and amplitudes the bench
+/// did not run. Single records where there is only one frequency and one amplitude.
+fn conditions(fast: &[&Prepared], first: usize) -> Vec<Vec<usize>> {
+    let groups = |value: &dyn Fn(&Prepared) -> f64| {
+        let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+        for (place, record) in fast.iter().enumerate() {
+            let own = value(record);
+            match groups.iter_mut().find(|(v, _)| (own / *v - 1.0).abs() <= SAME) {
+                Some((_, members)) => members.push(first + place),
+                None => groups.push((own, vec![first + place])),
+            }
+        }
+        let members: Vec<Vec<usize>> = groups.into_iter().map(|(_, members)| members).collect();
+        if members.len() < 2 { Vec::new() } else { members }
+    };
+    let mut folds = groups(&|r| r.drive.strongest_hz());
+    for group in groups(&|r| r.drive.amplitude_volt) {
+        if !folds.contains(&group) {
+            folds.push(group);
+        }
+    }
+    if folds.is_empty() && fast.len() >= 2 {
+        folds = (0..fast.len()).map(|place| vec![first + place]).collect();
+    }
+    folds
+}
+
+/// Frequencies and amplitudes that differ by less than this share are one.
+const SAME: f64 = 0.05;

@@ -1,0 +1,170 @@
+//! The families of models, the records they are fitted to, and the search for their parameters.
+
+use crate::identify::Settings;
+use crate::identify::fit::output_error::{
+    Build, Estimate, Minimum, OutputError, Pull, Uncertainty,
+};
+use crate::identify::fit::static_fit;
+use crate::identify::records::prepared::Prepared;
+use crate::{ActuatorModel, PlayMap, PreisachError, PreisachGrid};
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+
+/// A family of actuator models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Family {
+    /// A gain.
+    Linear,
+    /// A gain behind a first-order lag of the voltage.
+    LinearLag,
+    /// Bouc-Wen hysteresis, rate-independent.
+    BoucWen,
+    /// Prandtl-Ishlinskii hysteresis whose half-widths grow with the voltage rate.
+    PrandtlIshlinskii,
+    /// Prandtl-Ishlinskii stops: an output that leads the input.
+    PrandtlStop,
+    /// Static Preisach.
+    StaticPreisach,
+    /// Dynamic Preisach, implicit Euler in time.
+    DynamicPreisachFirst,
+    /// Dynamic Preisach, second order in time.
+    DynamicPreisach,
+    /// Dynamic Preisach before creep along the logarithm of time.
+    DynamicPreisachCreep,
+    /// Static Preisach before accommodation, one relaxation time, a share that follows at once, and
+    /// creep.
+    StaticPreisachRelaxation,
+}
+
+impl Family {
+    /// All of them, from the simplest.
+    pub const ALL: [Self; 10] = [
+        Self::Linear,
+        Self::LinearLag,
+        Self::BoucWen,
+        Self::PrandtlIshlinskii,
+        Self::PrandtlStop,
+        Self::StaticPreisach,
+        Self::DynamicPreisachFirst,
+        Self::DynamicPreisach,
+        Self::DynamicPreisachCreep,
+        Self::StaticPreisachRelaxation,
+    ];
+
+    /// Name for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear gain",
+            Self::LinearLag => "linear gain + lag",
+            Self::BoucWen => "Bouc-Wen",
+            Self::PrandtlIshlinskii => "rate-dependent Prandtl-Ishlinskii",
+            Self::PrandtlStop => "Prandtl-Ishlinskii stops",
+            Self::StaticPreisach => "static Preisach",
+            Self::DynamicPreisachFirst => "dynamic Preisach, first order",
+            Self::DynamicPreisach => "dynamic Preisach, second order",
+            Self::DynamicPreisachCreep => "dynamic Preisach + creep",
+            Self::StaticPreisachRelaxation => {
+                "static Preisach + accommodation + relaxation + creep"
+            }
+        }
+    }
+
+    /// Whether a fit needs records at several frequencies.
+    pub fn needs_rate(self) -> bool {
+        !matches!(self, Self::Linear | Self::BoucWen | Self::PrandtlStop | Self::StaticPreisach)
+    }
+}
+
+/// A fitted member of a family.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fitted {
+    pub(crate) model: ActuatorModel,
+    pub(crate) parameters: Vec<Estimate>,
+}
+
+/// Records to fit to.
+#[derive(Clone, Copy)]
+pub(crate) struct Training<'a> {
+    pub(crate) grid: &'a PreisachGrid,
+    pub(crate) slow: &'a [&'a Prepared<'a>],
+    pub(crate) fast: &'a [&'a Prepared<'a>],
+    pub(crate) settings: &'a Settings,
+}
+
+impl Training<'_> {
+    /// The static map of the slow records as they stand.
+    pub(crate) fn static_map(&self) -> Result<PlayMap, PreisachError> {
+        let measured: Vec<Vec<f64>> =
+            self.slow.iter().map(|r| r.record.output_deg.clone()).collect();
+        static_fit::fit(self.grid, self.slow, &measured, self.settings)
+    }
+}
+
+/// What a fit takes as given: found once on all training records, it is not sought again in every
+/// fold of a cross-validation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Given<'a> {
+    /// Smoothness of the rate maps.
+    pub(crate) smoothness: f64,
+    /// A model of the family fitted to all training records, if there is one already.
+    pub(crate) whole: Option<&'a Fitted>,
+}
+
+impl Given<'_> {
+    /// The parameters of a fold are not looked at, only its model.
+    pub(crate) fn uncertainty(&self) -> Uncertainty {
+        if self.whole.is_some() { Uncertainty::LeftOut } else { Uncertainty::Wanted }
+    }
+
+    /// Where to start a minimisation: at the parameters of the whole fit, or else everywhere.
+    pub(crate) fn starts(&self, everywhere: &[DVector<f64>]) -> Vec<DVector<f64>> {
+        let at = |f: &Fitted| {
+            DVector::from_iterator(f.parameters.len(), f.parameters.iter().map(|p| p.value))
+        };
+        self.whole.map_or_else(|| everywhere.to_vec(), |fitted| vec![at(fitted)])
+    }
+}
+
+/// A number in 0..1 from any number.
+pub(crate) fn share(x: f64) -> f64 {
+    1.0 / (1.0 + (-x).exp())
+}
+
+/// Steps the minimisation may try for each parameter.
+pub(crate) const PATIENCE: usize = 4;
+
+/// The minimisation of the output error of a family over some records.
+pub(crate) struct Search<'a> {
+    pub(crate) family: Family,
+    pub(crate) build: Build<'a>,
+    pub(crate) records: &'a [&'a Prepared<'a>],
+    /// Names of the parameters.
+    pub(crate) names: &'a [&'a str],
+    /// What is known of the first of them.
+    pub(crate) pulls: &'a [Pull],
+}
+
+impl Search<'_> {
+    /// The best minimum found from some starts.
+    pub(crate) fn minimum(&self, starts: &[DVector<f64>]) -> Result<Minimum, PreisachError> {
+        OutputError::best_of(self.build, self.records, self.pulls, starts, PATIENCE)
+            .ok_or(PreisachError::NotFitted { family: self.family.name() })
+    }
+
+    /// The model of a minimum with its parameters, and their standard deviations if they are wanted.
+    pub(crate) fn fitted(&self, minimum: Minimum, uncertainty: Uncertainty) -> Fitted {
+        let Minimum { x, model, .. } = minimum;
+        let covariance = match uncertainty {
+            Uncertainty::Wanted => {
+                OutputError::pulled(self.build, self.records, self.pulls, x.clone()).covariance()
+            }
+            Uncertainty::LeftOut => None,
+        };
+        let parameters = self.names.iter().zip(x.iter()).enumerate().map(|(k, (name, &value))| {
+            let deviation = covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k));
+            Estimate { name: (*name).to_owned(), value, std_deviation: deviation }
+        });
+        Fitted { model, parameters: parameters.collect() }
+    }
+}

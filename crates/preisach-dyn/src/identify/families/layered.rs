@@ -1,0 +1,242 @@
+//! Fits of Preisach laws with linear stages behind them.
+
+use crate::identify::BenchRecord;
+use crate::identify::families::family::{Family, Fitted, Given, Search, Training, share};
+use crate::identify::fit::compare;
+use crate::identify::fit::output_error::{Minimum, Pull};
+use crate::identify::fit::preisach::RateFit;
+use crate::identify::fit::refine::{SHAPE, reshaped};
+use crate::identify::fit::static_fit;
+use crate::identify::records::prepared::Prepared;
+use crate::stages::StageStep;
+use crate::{
+    Accommodation, ActuatorLaw, ActuatorModel, Calibration, LinkageStage, LogCreep, PlayMap,
+    PreisachError, Relaxation, RelaxationElement, StaticPreisach,
+};
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// Rates of creep per decade that are tried.
+const CREEP_RATES: [f64; 5] = [0.005, 0.01, 0.015, 0.02, 0.03];
+/// Rounds of static map and stages.
+const ROUNDS: usize = 5;
+/// Largest creep per decade of a fit.
+const MOST_CREEP: f64 = 0.06;
+
+/// A record with a linear stage behind the law taken off its output.
+///
+/// The output of a linear stage is `a + b u` of its input `u` at the sample, with `a` and `b` known
+/// from the past: solved for `u` sample by sample. Only for stages that answer at once (`b` near 1);
+/// a lag would raise the noise.
+fn without_stage(record: &BenchRecord, stage: &StageStep) -> BenchRecord {
+    let mut record = record.clone();
+    let Some(&first) = record.output_deg.first() else {
+        return record;
+    };
+    let mut memory = stage.start(first).0;
+    for output in record.output_deg.iter_mut().skip(1) {
+        let at = |input: f64| stage.advance(&mut memory.clone(), input);
+        let (zero, one) = (at(0.0), at(1.0));
+        let input = (*output - zero) / (one - zero);
+        stage.advance(&mut memory, input);
+        *output = input;
+    }
+    record
+}
+
+/// Creep per decade of a model with that stage.
+fn creep_per_decade(model: &ActuatorModel) -> Option<f64> {
+    model.linkage.iter().find_map(|stage| match stage {
+        LinkageStage::LogCreep(creep) => Some(creep.rate_per_decade),
+        _ => None,
+    })
+}
+
+/// Dynamic Preisach before creep: the rate of creep that fits the training records best, the law
+/// fitted to the records with that creep taken off.
+pub(crate) fn dynamic_creep(
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
+    let Training { grid, slow, fast, settings } = training;
+    let unit = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+    let given_rate = given.whole.and_then(|whole| creep_per_decade(&whole.model));
+    let rates = given_rate.map_or(CREEP_RATES.to_vec(), |rate| vec![rate]);
+    let tried: Vec<Result<(f64, Fitted), PreisachError>> = rates
+        .par_iter()
+        .map(|&rate| {
+            let creep = LinkageStage::LogCreep(LogCreep::new(rate));
+            let strip = |r: &&Prepared| {
+                without_stage(r.record, &creep.prepared(r.record.time_step_s, &unit))
+            };
+            let stripped: [Vec<BenchRecord>; 2] =
+                [slow, fast].map(|part| part.iter().map(strip).collect());
+            let prepare = |index: usize, part: &[&Prepared]| {
+                part.iter()
+                    .zip(&stripped[index])
+                    .map(|(r, record)| {
+                        let drive = r.drive.clone();
+                        Prepared::new(record, drive, r.record_use, r.is_slow, grid, settings)
+                    })
+                    .collect::<Result<Vec<_>, PreisachError>>()
+            };
+            let (own_slow, own_fast) = (prepare(0, slow)?, prepare(1, fast)?);
+            let (own_slow, own_fast): (Vec<&Prepared>, Vec<&Prepared>) =
+                (own_slow.iter().collect(), own_fast.iter().collect());
+            let own = Training { grid, slow: &own_slow, fast: &own_fast, settings };
+            let fitted = RateFit::new(
+                grid,
+                own.static_map()?,
+                &own_slow,
+                &own_fast,
+                settings,
+                given.uncertainty(),
+            )?;
+            let mut model = settings.actuator_of(fitted.law);
+            model.linkage.push(creep);
+            let squares = slow
+                .iter()
+                .chain(fast)
+                .map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)))
+                .sum::<Result<f64, PreisachError>>()?;
+            Ok((squares, Fitted { model, parameters: fitted.parameters }))
+        })
+        .collect();
+    let mut best: Option<(f64, Fitted)> = None;
+    for result in tried {
+        let (error, fitted) = result?;
+        if best.as_ref().is_none_or(|(least, _)| error < *least) {
+            best = Some((error, fitted));
+        }
+    }
+    let family = Family::DynamicPreisachCreep.name();
+    best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family })
+}
+
+/// Parameters of the stages of [`relaxation`].
+const STAGES: usize = 5;
+
+/// Static Preisach before accommodation, one relaxation time, a share that follows at once, and creep. A
+/// second time is left out: runs at two frequencies do not carry it beyond them.
+///
+/// ```text
+/// y = creep[ (1 - f) x + f A ],   T dx/dt + x = A,   A = accommodation[G_0],   0 < f < 0.3
+/// ```
+/// Rounds of two steps: output error over the stages, twelve numbers in all, with the change of the
+/// density held to the exponential of a quadratic form; then the density anew from the slow records with
+/// what the stages add taken off.
+pub(crate) fn relaxation(
+    training: Training<'_>,
+    given: Given<'_>,
+) -> Result<Fitted, PreisachError> {
+    let Training { grid, slow, fast, settings } = training;
+    let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
+    let mut map = training.static_map()?;
+    let everywhere =
+        [(0.02, -6.0), (0.02, -1.5), (0.004, -3.0)].map(|(time_s, at_once): (f64, f64)| {
+            let mut x = vec![time_s.ln(), at_once, -2.0, 0.25, -1.0];
+            x.resize(STAGES + SHAPE, 0.0);
+            DVector::from_vec(x)
+        });
+    let mut starts = given.starts(&everywhere);
+    for start in &mut starts {
+        start.rows_mut(STAGES, SHAPE).fill(0.0);
+    }
+    let rounds = if given.whole.is_some() { 2 } else { ROUNDS };
+    if let Some(whole) = given.whole {
+        map = remapped(training, &whole.model)?;
+    }
+    let stroke_um = (map.largest().0 - map.constant) / settings.deg_per_um.abs();
+    let built = |held: &PlayMap, x: &DVector<f64>| {
+        let law = StaticPreisach::new(*grid, reshaped(held, &x.as_slice()[STAGES..])).ok()?;
+        let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
+        Some(with_stages(model, x, stroke_um))
+    };
+    let family = Family::StaticPreisachRelaxation;
+    // the best minimum, with the density and the misfit its search began with
+    let mut best: Option<(Minimum, PlayMap, f64)> = None;
+    let mut misfit = USUAL_NRMSE;
+    for _ in 0..rounds {
+        let (held, before) = (map, misfit);
+        let build = |x: &DVector<f64>| built(&held, x);
+        let pulls = pulls(before);
+        let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
+        let minimum = search.minimum(&starts)?;
+        let mut next = minimum.x.clone();
+        next.rows_mut(STAGES, SHAPE).fill(0.0);
+        starts = vec![next];
+        misfit = misfit.min(minimum.nrmse);
+        map = remapped(training, &minimum.model)?;
+        if best.as_ref().is_none_or(|(least, ..)| minimum.nrmse < least.nrmse) {
+            best = Some((minimum, held, before));
+        }
+    }
+    let (minimum, held, before) = best.ok_or(PreisachError::NotFitted { family: family.name() })?;
+    let build = |x: &DVector<f64>| built(&held, x);
+    let pulls = pulls(before);
+    let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
+    Ok(search.fitted(minimum, given.uncertainty()))
+}
+
+/// Largest share that settles with the way.
+const MOST_LATE: f64 = 0.5;
+/// Largest share that follows at once.
+const MOST_AT_ONCE: f64 = 0.3;
+
+/// What is known of the stages beforehand, and how well: 1 or 2 % at once, 1.4 % of creep per decade, 6 %
+/// of accommodation over a third of the stroke. Nothing of the relaxation time.
+const KNOWN: [(f64, f64); STAGES] =
+    [(0.0, f64::INFINITY), (-3.0, 1.0), (-1.2, 1.0), (0.25, 0.15), (-1.0, 1.0)];
+/// Misfit expected before there is one.
+const USUAL_NRMSE: f64 = 0.015;
+/// Independent residuals that a set of records is worth, roughly.
+const INDEPENDENT: f64 = 200.0;
+
+/// Pulls that weigh what is known against records that leave a misfit: `nrmse / (sqrt(n) sigma)`.
+fn pulls(nrmse: f64) -> [Pull; STAGES] {
+    KNOWN.map(|(at, deviation)| Pull { at, weight: nrmse / (INDEPENDENT.sqrt() * deviation) })
+}
+
+const NAMES: [&str; STAGES + SHAPE] = [
+    "ln relaxation time, s",
+    "share at once, logit",
+    "creep per decade, logit",
+    "root of the share of the accommodation",
+    "ln travel of the accommodation over the stroke",
+    "offset, deg",
+    "ln mu0",
+    "ln mu0 per centre",
+    "ln mu0 per half-width",
+    "ln mu0 per centre^2",
+    "ln mu0 per centre x half-width",
+    "ln mu0 per half-width^2",
+];
+
+fn with_stages(mut model: ActuatorModel, x: &DVector<f64>, stroke_um: f64) -> ActuatorModel {
+    model.linkage.push(LinkageStage::Accommodation(Accommodation {
+        share: (x[3] * x[3]).min(MOST_LATE),
+        travel_um: stroke_um * x[4].exp(),
+    }));
+    let at_once = MOST_AT_ONCE * share(x[1]);
+    let elements = vec![RelaxationElement { share: 1.0 - at_once, time_constant_s: x[0].exp() }];
+    model.linkage.push(LinkageStage::Relaxation(Relaxation { elements }));
+    model.linkage.push(LinkageStage::LogCreep(LogCreep::new(MOST_CREEP * share(x[2]))));
+    model
+}
+
+/// The static map of the slow records with what the stages add to the law's output taken off.
+fn remapped(training: Training<'_>, model: &ActuatorModel) -> Result<PlayMap, PreisachError> {
+    let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
+    let targets = training
+        .slow
+        .iter()
+        .map(|r| {
+            let record = r.record;
+            let whole = model.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
+            let law = bare.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
+            let triples = record.output_deg.iter().zip(whole.iter().zip(&law));
+            Ok(triples.map(|(y, (a, b))| y - (a - b)).collect())
+        })
+        .collect::<Result<Vec<Vec<f64>>, PreisachError>>()?;
+    static_fit::fit(training.grid, training.slow, &targets, training.settings)
+}

@@ -1,0 +1,7 @@
+//! Families of models fitted to the same records and compared.
+
+pub(crate) mod by_family;
+pub(crate) mod comparison;
+pub(crate) mod family;
+pub(crate) mod layered;
+pub(crate) mod stop_fit;

@@ -1,0 +1,332 @@
+//! Output error: records are simulated from their first sample and compared.
+
+use crate::ActuatorModel;
+use crate::identify::fit::passage::Passage;
+use crate::identify::records::prepared::Prepared;
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// Residuals kept of one record at most; all samples are simulated.
+const MOST_RESIDUALS: usize = 800;
+/// Residuals outside the domain over the best ones.
+const PENALTY: f64 = 10.0;
+/// A parameter whose influence is below this share of the largest has none.
+const DEAD: f64 = 1e-10;
+/// Step of the difference quotients.
+const DIFFERENCE: f64 = 1e-5;
+
+/// A family of models: the one of given parameters, none outside the family's domain. Parameters are
+/// of order one: a step of 1e-5 in any of them must mean something.
+pub(crate) type Build<'a> = &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> + Sync);
+
+/// What is known of a parameter beforehand: the residual `weight (x - at)` is added.
+///
+/// Where records determine the parameter it means little; where they do not, the parameter stays
+/// where the literature has it instead of wandering off.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pull {
+    pub(crate) at: f64,
+    pub(crate) weight: f64,
+}
+
+/// A parameter with its uncertainty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Name, with its unit.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Standard deviation; infinite if the records do not determine the parameter.
+    pub std_deviation: f64,
+}
+
+/// Whether a fit finds the covariance of its parameters: the folds of a cross-validation need none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Uncertainty {
+    Wanted,
+    LeftOut,
+}
+
+/// Covariance of refined parameters.
+///
+/// ```text
+/// C = H^-1 [ sum_k s_k^2 T_k J_k' J_k ] H^-1,   H = J'J,   T_k = 1 + 2 sum_lag rho_k(lag)
+/// ```
+/// Gauss-Newton about the minimum, record by record `k` with its own residual variance `s_k^2`. What a
+/// model misses is correlated from sample to sample, so `n` samples are worth `n / T_k` independent
+/// ones; the autocorrelations are summed up to their first zero. Misfit of the model counts as noise
+/// here: where it dominates, the true parameters of a better model may lie further off.
+/// Source: G. A. F. Seber, C. J. Wild, *Nonlinear Regression* (1989), sections 2.1 and 6.2.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Covariance {
+    /// The matrix, row by row, in the order of the parameters.
+    pub rows: Vec<Vec<f64>>,
+    /// Residuals used.
+    pub samples: usize,
+    /// Independent residuals they are worth.
+    pub effective_samples: f64,
+}
+
+impl Covariance {
+    /// Standard deviation of parameter `index`.
+    pub fn std_deviation(&self, index: usize) -> f64 {
+        self.rows.get(index).and_then(|row| row.get(index)).map_or(f64::NAN, |v| v.sqrt())
+    }
+}
+
+/// Where a minimisation ended.
+pub(crate) struct Minimum {
+    pub(crate) x: DVector<f64>,
+    pub(crate) model: ActuatorModel,
+    /// Root mean square of the NRMSE of the records, with the pulls if there are any.
+    pub(crate) nrmse: f64,
+    /// Evaluations spent.
+    pub(crate) steps: usize,
+}
+
+/// The problem of one family on some records.
+#[derive(Clone)]
+pub(crate) struct OutputError<'a> {
+    build: Build<'a>,
+    records: &'a [&'a Prepared<'a>],
+    /// Of the first parameters.
+    pulls: &'a [Pull],
+    x: DVector<f64>,
+    /// Residuals at `x`; outside the domain those of the best parameters ten times as
+    /// large, so that the step is taken back; none if the start lies outside.
+    here: Option<DVector<f64>>,
+    /// The best parameters so far and their residuals.
+    best: Option<(DVector<f64>, DVector<f64>)>,
+    /// The model at the parameters last tried that gave residuals, run over the records; none if they
+    /// are too long to be kept.
+    passage: Option<Run>,
+}
+
+/// Parameters and the passage of their model.
+type Run = (DVector<f64>, Passage);
+
+impl<'a> OutputError<'a> {
+    pub(crate) fn new(build: Build<'a>, records: &'a [&'a Prepared<'a>], x: DVector<f64>) -> Self {
+        Self::pulled(build, records, &[], x)
+    }
+
+    /// With what is known beforehand of the first parameters.
+    pub(crate) fn pulled(
+        build: Build<'a>,
+        records: &'a [&'a Prepared<'a>],
+        pulls: &'a [Pull],
+        x: DVector<f64>,
+    ) -> Self {
+        let mut problem = Self { build, records, pulls, x, here: None, best: None, passage: None };
+        (problem.here, problem.passage) = problem.evaluated(&problem.x);
+        problem.best = problem.here.clone().map(|here| (problem.x.clone(), here));
+        problem
+    }
+
+    /// Root mean square of the NRMSE of the records at the start, with the pulls.
+    pub(crate) fn nrmse(&self) -> Option<f64> {
+        Some(self.here.as_ref()?.norm())
+    }
+
+    /// Samples of a record that give residuals.
+    fn kept(record: &Prepared) -> impl Iterator<Item = usize> {
+        let trained = record.record.trained_samples();
+        let stride = trained.len().div_ceil(MOST_RESIDUALS).max(1);
+        trained.step_by(stride)
+    }
+
+    /// Residuals at some parameters, with the passage they come from where it is kept; none if the
+    /// model diverges.
+    fn evaluated(&self, x: &DVector<f64>) -> (Option<DVector<f64>>, Option<Run>) {
+        if !Passage::fits(self.records) {
+            return (self.residuals_at(x), None);
+        }
+        let passage = (self.build)(x).and_then(|model| Passage::of(model, self.records));
+        let here = passage
+            .as_ref()
+            .and_then(|passage| self.residuals(x, |r| Some(Cow::Borrowed(passage.output_deg(r)))));
+        let kept = passage.filter(|_| here.is_some()).map(|passage| (x.clone(), passage));
+        (here, kept)
+    }
+
+    /// Residuals at some parameters; none if the model diverges. One record is held at a time.
+    fn residuals_at(&self, x: &DVector<f64>) -> Option<DVector<f64>> {
+        let model = (self.build)(x)?;
+        self.residuals(x, |r| {
+            let record = self.records[r].record;
+            let voltages = &record.voltage_volt[..record.trained_samples().end];
+            Some(Cow::Owned(model.simulate(voltages, record.time_step_s).ok()?.output_deg))
+        })
+    }
+
+    /// Weighted residuals of all records, one after another, from the flap angles over each; none if
+    /// they are not finite.
+    fn residuals<'o>(
+        &self,
+        x: &DVector<f64>,
+        mut output_deg: impl FnMut(usize) -> Option<Cow<'o, [f64]>>,
+    ) -> Option<DVector<f64>> {
+        let mut residuals = Vec::new();
+        for (r, prepared) in self.records.iter().enumerate() {
+            let record = prepared.record;
+            let kept = Self::kept(prepared).count() as f64 * self.records.len() as f64;
+            let weight = 1.0 / (prepared.spread_deg * kept.sqrt());
+            let output = output_deg(r)?;
+            residuals
+                .extend(Self::kept(prepared).map(|i| weight * (output[i] - record.output_deg[i])));
+        }
+        residuals.extend(self.pulls.iter().zip(x.iter()).map(|(p, x)| p.weight * (x - p.at)));
+        let residuals = DVector::from_vec(residuals);
+        residuals.iter().all(|r| r.is_finite()).then_some(residuals)
+    }
+
+    /// Residuals one difference up in every parameter; none where the model diverges.
+    fn residuals_beside(&self, moved: &[DVector<f64>]) -> Vec<Option<DVector<f64>>> {
+        let Some((_, passage)) = self.passage.as_ref().filter(|(x, _)| *x == self.x) else {
+            return moved.par_iter().map(|x| self.residuals_at(x)).collect();
+        };
+        let models: Vec<Option<ActuatorModel>> = moved.iter().map(|x| (self.build)(x)).collect();
+        let laws = passage.laws_beside(&models, self.records);
+        let columns: Vec<_> = moved.iter().zip(models).zip(laws).collect();
+        columns
+            .into_par_iter()
+            .map(|((x, model), law)| {
+                let outputs = passage.beside(&model?, law, self.records)?;
+                self.residuals(x, |r| Some(Cow::Borrowed(outputs[r].as_slice())))
+            })
+            .collect()
+    }
+
+    /// Levenberg-Marquardt from the start; none if the start lies outside the domain.
+    pub(crate) fn minimise(self, patience: usize) -> Option<Minimum> {
+        self.nrmse()?;
+        let (problem, report) = LevenbergMarquardt::new()
+            .with_patience(patience)
+            .with_ftol(1e-4)
+            .with_xtol(1e-4)
+            .minimize(self);
+        let (x, residuals) = problem.best?;
+        let model = (problem.build)(&x)?;
+        let steps = report.number_of_evaluations;
+        Some(Minimum { model, nrmse: residuals.norm(), steps, x })
+    }
+
+    /// The best of several starts: the smallest error, the first of equals.
+    pub(crate) fn best_of(
+        build: Build<'a>,
+        records: &'a [&'a Prepared<'a>],
+        pulls: &'a [Pull],
+        starts: &[DVector<f64>],
+        patience: usize,
+    ) -> Option<Minimum> {
+        let found: Vec<Option<Minimum>> = starts
+            .par_iter()
+            .map(|x| Self::pulled(build, records, pulls, x.clone()).minimise(patience))
+            .collect();
+        found.into_iter().flatten().reduce(|a, b| if b.nrmse < a.nrmse { b } else { a })
+    }
+
+    /// The covariance of the parameters where the problem stands; none outside the domain or if
+    /// parameters act alike.
+    pub(crate) fn covariance(&self) -> Option<Covariance> {
+        let here = self.here.as_ref()?;
+        let whole = self.jacobian()?;
+        // what has no influence is left out: its variance is infinite
+        let largest = whole.column_iter().map(|c| c.norm()).fold(0.0, f64::max);
+        let active: Vec<usize> =
+            (0..self.x.len()).filter(|&k| whole.column(k).norm() > DEAD * largest).collect();
+        let jacobian = whole.select_columns(&active);
+        let inverse = (jacobian.transpose() * &jacobian).cholesky()?.inverse();
+        let mut middle = DMatrix::zeros(active.len(), active.len());
+        let (mut first, mut effective_samples) = (0, 0.0);
+        for prepared in self.records {
+            let count = Self::kept(prepared).count();
+            let residuals: Vec<f64> = here.rows(first, count).iter().copied().collect();
+            let rows = jacobian.rows(first, count);
+            let variance = residuals.iter().map(|r| r * r).sum::<f64>() / count as f64;
+            let time = correlation_time(&residuals);
+            middle += rows.transpose() * rows * (variance * time);
+            effective_samples += count as f64 / time;
+            first += count;
+        }
+        let matrix = &inverse * middle * &inverse;
+        let mut rows = vec![vec![0.0; self.x.len()]; self.x.len()];
+        (0..self.x.len()).for_each(|k| rows[k][k] = f64::INFINITY);
+        for (i, &row) in active.iter().enumerate() {
+            for (j, &column) in active.iter().enumerate() {
+                rows[row][column] = matrix[(i, j)];
+            }
+        }
+        Some(Covariance { rows, samples: first, effective_samples })
+    }
+}
+
+/// `1 + 2 sum rho` up to the first lag at which the autocorrelation is not positive.
+fn correlation_time(residuals: &[f64]) -> f64 {
+    let variance: f64 = residuals.iter().map(|r| r * r).sum();
+    if variance <= 0.0 {
+        return 1.0;
+    }
+    let at = |lag: usize| {
+        residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum::<f64>() / variance
+    };
+    let sum: f64 = (1..residuals.len() / 2).map(at).take_while(|rho| *rho > 0.0).sum();
+    1.0 + 2.0 * sum
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, x: &DVector<f64>) {
+        self.x.copy_from(x);
+        let found = match &self.best {
+            // a step taken back
+            Some((at, best)) if at == x => Some(best.clone()),
+            _ => {
+                let (found, passage) = self.evaluated(x);
+                self.passage = passage.or(self.passage.take());
+                found
+            }
+        };
+        if let (Some(found), Some((_, best))) = (&found, &self.best)
+            && found.norm() < best.norm()
+        {
+            self.best = Some((x.clone(), found.clone()));
+        }
+        self.here = found.or_else(|| self.best.as_ref().map(|(_, best)| best * PENALTY));
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.x.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        self.here.clone()
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let here = self.here.as_ref()?;
+        let moved = |k: usize, difference: f64| {
+            let mut x = self.x.clone();
+            x[k] += difference;
+            x
+        };
+        let ahead: Vec<_> = (0..self.x.len()).map(|k| moved(k, DIFFERENCE)).collect();
+        let columns = self
+            .residuals_beside(&ahead)
+            .into_iter()
+            .enumerate()
+            .map(|(k, found)| match found {
+                Some(found) => Some((found - here) / DIFFERENCE),
+                // the domain may end at the parameter
+                None => Some((self.residuals_at(&moved(k, -DIFFERENCE))? - here) / -DIFFERENCE),
+            })
+            .collect::<Option<Vec<_>>>()?;
+        Some(DMatrix::from_columns(&columns))
+    }
+}

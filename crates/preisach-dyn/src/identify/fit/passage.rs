@@ -1,0 +1,241 @@
+//! The way of a model over the records, kept part by part.
+
+use crate::identify::records::prepared::Prepared;
+use crate::{ActuatorLaw, ActuatorModel};
+use rayon::prelude::*;
+
+/// Samples of a set of records up to which signals are kept: 8 MB per part of the chain.
+const MOST_KEPT: usize = 1 << 20;
+
+/// The signals of a model over all records, behind the law and behind every stage of the linkage.
+///
+/// A model beside it is run from the part it differs in; its outputs are those of its own
+/// simulation, to the last bit.
+#[derive(Debug, Clone)]
+pub(crate) struct Passage {
+    model: ActuatorModel,
+    /// Per record: behind the law, behind the first stage, ..., the flap angle, deg.
+    signals: Vec<Vec<Vec<f64>>>,
+}
+
+/// Voltages of a record up to the end of what trains.
+fn voltages<'a>(prepared: &Prepared<'a>) -> &'a [f64] {
+    &prepared.record.voltage_volt[..prepared.record.trained_samples().end]
+}
+
+impl Passage {
+    /// Whether records are short enough for their signals to be kept.
+    pub(crate) fn fits(records: &[&Prepared]) -> bool {
+        records.iter().map(|r| voltages(r).len()).sum::<usize>() <= MOST_KEPT
+    }
+
+    /// The passage of a model; none if it diverges or a stage is refused.
+    pub(crate) fn of(model: ActuatorModel, records: &[&Prepared]) -> Option<Self> {
+        let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
+        let free = |r: &&Prepared| {
+            let law = bare.simulate(voltages(r), r.record.time_step_s).ok()?.output_deg;
+            through(&model, 0, law, r)
+        };
+        let signals = records.iter().map(free).collect::<Option<Vec<_>>>()?;
+        Some(Self { model, signals })
+    }
+
+    /// The flap angle over a record, deg.
+    pub(crate) fn output_deg(&self, record: usize) -> &[f64] {
+        self.signals[record].last().map_or(&[], Vec::as_slice)
+    }
+
+    /// Signals behind the laws of models beside this one, by model and record; none where the law is
+    /// the same or has to be simulated.
+    pub(crate) fn laws_beside(
+        &self,
+        models: &[Option<ActuatorModel>],
+        records: &[&Prepared],
+    ) -> Vec<Option<Vec<Vec<f64>>>> {
+        let own: Vec<Option<&ActuatorLaw>> =
+            models.iter().map(|model| self.other_law(model.as_ref()?)).collect();
+        let laws: Vec<&ActuatorLaw> = own.iter().copied().flatten().collect();
+        let by_record: Option<Vec<Vec<Vec<f64>>>> = records
+            .par_iter()
+            .map(|r| ActuatorLaw::side_by_side(&laws, voltages(r), r.record.time_step_s))
+            .collect();
+        let Some(by_record) = by_record else {
+            return vec![None; models.len()];
+        };
+        let mut by_record: Vec<_> = by_record.into_iter().map(Vec::into_iter).collect();
+        own.iter()
+            .map(|law| {
+                (*law)?;
+                by_record.iter_mut().map(Iterator::next).collect()
+            })
+            .collect()
+    }
+
+    /// The flap angles of a model beside this one, by record, deg: of its law if it is given, and
+    /// from the first stage that differs; none if it diverges.
+    pub(crate) fn beside(
+        &self,
+        model: &ActuatorModel,
+        law: Option<Vec<Vec<f64>>>,
+        records: &[&Prepared],
+    ) -> Option<Vec<Vec<f64>>> {
+        let (signals, first): (Vec<Vec<f64>>, usize) = match law {
+            Some(law) => (law, 0),
+            None if self.same_front(model) => {
+                let pairs = model.linkage.iter().zip(&self.model.linkage);
+                let same = pairs.take_while(|(a, b)| a == b).count();
+                (self.signals.iter().map(|s| s[same].clone()).collect(), same)
+            }
+            None => {
+                let passage = Self::of(model.clone(), records)?;
+                return passage.signals.into_iter().map(|mut s| s.pop()).collect();
+            }
+        };
+        let pairs = signals.into_iter().zip(records);
+        pairs.map(|(signal, r)| through(model, first, signal, r)?.pop()).collect()
+    }
+
+    /// The law of a model that differs from this one and acts on the command itself.
+    fn other_law<'a>(&self, model: &'a ActuatorModel) -> Option<&'a ActuatorLaw> {
+        let own = model.amplifier.is_empty() && !self.same_front(model);
+        own.then_some(&model.law)
+    }
+
+    /// Whether a model has the amplifier and the law of this one.
+    fn same_front(&self, model: &ActuatorModel) -> bool {
+        let own = &self.model;
+        model.amplifier == own.amplifier
+            && model.law == own.law
+            && model.calibration == own.calibration
+            && model.range_volt == own.range_volt
+    }
+}
+
+/// A signal through the linkage from stage `first` on: before it and behind every stage; none if it
+/// diverges.
+fn through(
+    model: &ActuatorModel,
+    first: usize,
+    signal: Vec<f64>,
+    prepared: &Prepared,
+) -> Option<Vec<Vec<f64>>> {
+    model.check_stages().ok()?;
+    let mut signals = vec![signal];
+    for stage in &model.linkage[first..] {
+        let mut signal = signals.last()?.clone();
+        stage.prepared(prepared.record.time_step_s, &model.calibration).pass(&mut signal);
+        signals.push(signal);
+    }
+    signals.last()?.iter().all(|y| y.is_finite()).then_some(signals)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::{BenchRecord, RecordUse, Settings};
+    use crate::{
+        Accommodation, AmplifierStage, Backlash, DynamicParameters, DynamicPreisach, KelvinVoigt,
+        KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep, PlayMap, PreisachGrid,
+        RateForm, Relaxation, RelaxationElement, Resonance, StaticPreisach, TimeOrder,
+    };
+    use std::f64::consts::TAU;
+
+    fn records(settings: &Settings) -> Vec<BenchRecord> {
+        [1.0, 7.0]
+            .map(|hz| BenchRecord {
+                id: "sine".into(),
+                time_step_s: settings.least_relaxation_s * 10.0,
+                voltage_volt: (0..1500)
+                    .map(|i| 65.0 + 80.0 * (TAU * hz * f64::from(i) * 1e-3).sin())
+                    .collect(),
+                output_deg: (0..1500).map(|i| f64::from(i % 7)).collect(),
+                ..BenchRecord::default()
+            })
+            .to_vec()
+    }
+
+    fn law(grid: &PreisachGrid, bend: f64, dynamic: bool) -> ActuatorLaw {
+        let n = grid.levels();
+        let rises: Vec<Vec<f64>> = (0..n)
+            .map(|j| (0..n - j).map(|k| 0.1 + bend * ((j + 2 * k) as f64).sin().abs()).collect())
+            .collect();
+        let g0_deg = PlayMap::from_rises(grid, 0.3, &rises).unwrap();
+        if !dynamic {
+            return ActuatorLaw::StaticPreisach(StaticPreisach::new(*grid, g0_deg).unwrap());
+        }
+        let law = DynamicPreisach::new(DynamicParameters {
+            grid: *grid,
+            g1_s: PlayMap::constant(grid, -0.003 - 0.01 * bend),
+            g2_s2_per_deg: PlayMap::constant(grid, 1e-7),
+            g0_deg,
+            form: RateForm::WellPosed,
+            unfolded_rate_deg_s: 10.0,
+            time_order: TimeOrder::Second,
+        });
+        ActuatorLaw::DynamicPreisach(law.unwrap())
+    }
+
+    fn actuator(settings: &Settings, law: ActuatorLaw, creep: f64, lag: bool) -> ActuatorModel {
+        let element = |share, time_constant_s| RelaxationElement { share, time_constant_s };
+        let mut model = settings.actuator_of(law);
+        model.linkage = vec![
+            LinkageStage::Accommodation(Accommodation { share: 0.1, travel_um: 5.0 }),
+            LinkageStage::Relaxation(Relaxation { elements: vec![element(0.9, 0.02)] }),
+            LinkageStage::LogCreep(LogCreep { to_s: 3e4, ..LogCreep::new(creep) }),
+            LinkageStage::KelvinVoigt(KelvinVoigt {
+                elements: vec![KelvinVoigtElement {
+                    compliance_ratio: creep,
+                    time_constant_s: 0.3,
+                }],
+            }),
+            LinkageStage::Resonance(Resonance { frequency_hz: 90.0, damping_ratio: 0.02 }),
+            LinkageStage::Backlash(Backlash { width_um: 0.1 }),
+            LinkageStage::LoadStiffness(LoadStiffness {
+                stiffness_ratio: 0.2,
+                compliance_um_per_newton: 0.0,
+            }),
+        ];
+        if lag {
+            model.amplifier.push(AmplifierStage::Lag(Lag { tau_s: 1e-3 }));
+        }
+        model
+    }
+
+    /// Whatever differs from the model that was run, and whatever is taken from it, the outputs are the
+    /// bits of a simulation from the start. The grids have and have not a multiple of four levels.
+    #[test]
+    fn what_is_kept_changes_no_bit() {
+        for (levels, dynamic, lag) in
+            [(12, false, false), (7, false, false), (6, true, false), (8, false, true)]
+        {
+            let settings = Settings { levels, ..Settings::default() };
+            let grid = PreisachGrid::new(settings.range_volt, levels).unwrap();
+            let records = records(&settings);
+            let prepared: Vec<Prepared> = records
+                .iter()
+                .map(|r| Prepared::new(r, r.drive(), RecordUse::Train, false, &grid, &settings))
+                .collect::<Result<_, _>>()
+                .unwrap();
+            let all: Vec<&Prepared> = prepared.iter().collect();
+            let model = |bend, creep| actuator(&settings, law(&grid, bend, dynamic), creep, lag);
+            let simulated = |model: &ActuatorModel| -> Vec<Vec<f64>> {
+                let of = |r: &&Prepared| model.simulate(voltages(r), r.record.time_step_s);
+                all.iter().map(|r| of(r).unwrap().output_deg).collect()
+            };
+            let passage = Passage::of(model(0.1, 0.02), &all).unwrap();
+            for (r, expected) in simulated(&model(0.1, 0.02)).iter().enumerate() {
+                assert_eq!(passage.output_deg(r), expected);
+            }
+            // more laws than are evaluated at once, one model without a neighbour, one with its law
+            let mut beside: Vec<Option<ActuatorModel>> =
+                (0..10).map(|i| Some(model(0.1 + 1e-3 * f64::from(i + 1), 0.02))).collect();
+            beside.extend([None, Some(model(0.1, 0.03)), Some(model(0.1, 0.02))]);
+            let laws = passage.laws_beside(&beside, &all);
+            assert_eq!(laws.iter().filter(|law| law.is_some()).count(), if lag { 0 } else { 10 });
+            for (model, law) in beside.iter().zip(laws) {
+                let Some(model) = model else { continue };
+                assert_eq!(passage.beside(model, law, &all).unwrap(), simulated(model));
+            }
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Which record trains what, and what the set of records cannot tell.
+
+use crate::identify::fit::static_fit;
+use crate::identify::records::findings::{Finding, Identifiability};
+use crate::identify::records::plausibility;
+use crate::identify::records::prepared::Prepared;
+use crate::identify::records::spikes;
+use crate::identify::{BenchRecord, Drive, RecordUse, Settings, Waveform};
+use crate::{PreisachError, PreisachGrid};
+use rayon::prelude::*;
+use std::borrow::Cow;
+
+/// Frequencies that differ by less than this share are one.
+const SAME_HZ: f64 = 0.05;
+/// A density is called unique if the records determine this share of its numbers.
+const UNIQUE: f64 = 0.5;
+/// Amplitudes that differ by less than this share are one.
+const SAME_AMPLITUDE: f64 = 0.05;
+
+/// Checked records with their commands and uses.
+pub(crate) struct Bench<'a> {
+    /// Spikes left out.
+    records: Vec<Cow<'a, BenchRecord>>,
+    drives: Vec<Drive>,
+    uses: Vec<RecordUse>,
+    /// Whether a record trains the static map.
+    slow: Vec<bool>,
+    findings: Vec<Finding>,
+}
+
+impl<'a> Bench<'a> {
+    /// Checks records and settings, and gives every record its part.
+    pub(crate) fn new(
+        records: &'a [BenchRecord],
+        settings: &Settings,
+    ) -> Result<Self, PreisachError> {
+        settings.check()?;
+        plausibility::check_units(records, settings)?;
+        for record in records {
+            record.check(settings.range_volt)?;
+        }
+        let mut findings = Vec::new();
+        let mended: Vec<Option<_>> = records.par_iter().map(spikes::mended).collect();
+        let mut left_out = Vec::new();
+        let kept = records.iter().zip(mended).map(|(record, mended)| match mended {
+            Some((mended, found)) => {
+                left_out.extend(found);
+                Cow::Owned(mended)
+            }
+            None => Cow::Borrowed(record),
+        });
+        let given = records;
+        let records: Vec<Cow<BenchRecord>> = kept.collect();
+        let drives: Vec<Drive> = records.iter().map(|record| record.drive()).collect();
+        let mut uses = settings.split.uses(given, &drives);
+        let moves = |i: usize| drives[i].waveform != Waveform::Constant;
+        let lowest = |indices: &mut dyn Iterator<Item = usize>| {
+            indices.map(|i| drives[i].strongest_hz()).fold(f64::INFINITY, f64::min)
+        };
+        let all = 0..records.len();
+        if !all.clone().any(|i| uses[i] == RecordUse::Train && moves(i)) {
+            let free = |i: &usize| records[*i].record_use.is_none() && moves(*i);
+            let slowest = lowest(&mut all.clone().filter(free));
+            let taken: Vec<usize> = all
+                .clone()
+                .filter(free)
+                .filter(|&i| drives[i].strongest_hz() <= slowest * (1.0 + SAME_HZ))
+                .collect();
+            if taken.is_empty() {
+                return Err(PreisachError::NoTrainingRecord {
+                    part: "the static density mu0",
+                    remedy: "record a slow major loop and reversal curves, and mark them for training",
+                });
+            }
+            for &i in &taken {
+                uses[i] = RecordUse::Train;
+            }
+            findings.push(Finding::TrainedByDefault { records: taken.len() });
+        }
+        let trains = |i: &usize| uses[*i] == RecordUse::Train && moves(*i);
+        let quasi_static = |i: usize| settings.split.is_quasi_static(&drives[i]);
+        let mut slow: Vec<bool> = all.clone().map(quasi_static).collect();
+        if !all.clone().filter(trains).any(quasi_static) {
+            let lowest_hz = lowest(&mut all.clone().filter(trains));
+            for i in all.clone().filter(trains) {
+                slow[i] = drives[i].strongest_hz() <= lowest_hz * (1.0 + SAME_HZ);
+            }
+            let limit_hz = settings.split.quasi_static_hz;
+            findings.push(Finding::NoSlowRecords { lowest_hz, limit_hz });
+        }
+        findings.extend(left_out);
+        for i in all {
+            findings.extend(plausibility::suspicions(&records[i], &drives[i], quasi_static(i)));
+        }
+        Ok(Self { records, drives, uses, slow, findings })
+    }
+
+    /// The use of every record.
+    pub(crate) fn uses(&self) -> &[RecordUse] {
+        &self.uses
+    }
+
+    /// The records made ready for the fits.
+    pub(crate) fn prepared<'s>(
+        &'s self,
+        grid: &PreisachGrid,
+        settings: &Settings,
+    ) -> Result<Vec<Prepared<'s>>, PreisachError> {
+        (0..self.records.len())
+            .map(|i| {
+                let drive = self.drives[i].clone();
+                Prepared::new(&self.records[i], drive, self.uses[i], self.slow[i], grid, settings)
+            })
+            .collect()
+    }
+
+    /// What the records can tell and what they cannot.
+    pub(crate) fn summary(
+        &self,
+        grid: &PreisachGrid,
+        prepared: &[Prepared],
+        settings: &Settings,
+    ) -> Identifiability {
+        let Ok(Sorted { slow, fast }) = Sorted::of(prepared) else {
+            return Identifiability::default();
+        };
+        let periodic = slow.iter().chain(&fast).filter(|r| r.drive.is_periodic());
+        let mut hz: Vec<f64> = periodic.map(|r| r.drive.strongest_hz()).collect();
+        hz.sort_by(f64::total_cmp);
+        hz.dedup_by(|b, a| *b <= *a * (1.0 + SAME_HZ));
+        let mut findings = self.findings.clone();
+        if fast.is_empty() {
+            findings.push(match hz.as_slice() {
+                [hz] => Finding::OneFrequency { hz: *hz },
+                _ => Finding::NoRateRecords { slow_hz: settings.split.quasi_static_hz },
+            });
+        }
+        let [determined, unknowns] = static_fit::determined(grid, &slow);
+        if (determined as f64) < UNIQUE * unknowns as f64 {
+            findings.push(Finding::DensityNotUnique { determined, unknowns });
+        }
+        let amplitudes = || fast.iter().map(|r| r.drive.amplitude_volt);
+        let largest = amplitudes().fold(0.0, f64::max);
+        if !fast.is_empty() && amplitudes().all(|a| a >= largest * (1.0 - SAME_AMPLITUDE)) {
+            findings.push(Finding::OneAmplitude { amplitude_volt: largest });
+        }
+        Identifiability { findings, density_determined: [determined, unknowns], trained_hz: hz }
+    }
+}
+
+/// The records that train: the static map, and the rate maps.
+pub(crate) struct Sorted<'p, 'r> {
+    pub(crate) slow: Vec<&'p Prepared<'r>>,
+    pub(crate) fast: Vec<&'p Prepared<'r>>,
+}
+
+impl<'p, 'r> Sorted<'p, 'r> {
+    pub(crate) fn of(prepared: &'p [Prepared<'r>]) -> Result<Self, PreisachError> {
+        let trained = || prepared.iter().filter(|r| !r.samples.is_empty());
+        let slow: Vec<_> = trained().filter(|r| r.is_slow).collect();
+        if slow.is_empty() {
+            return Err(PreisachError::NoTrainingRecord {
+                part: "the static density mu0",
+                remedy: "record a slow major loop and reversal curves, or raise quasi_static_hz",
+            });
+        }
+        Ok(Self { slow, fast: trained().filter(|r| !r.is_slow).collect() })
+    }
+}

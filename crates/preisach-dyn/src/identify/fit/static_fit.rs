@@ -1,0 +1,166 @@
+//! The static map `G0` from quasi-static records, by constrained least squares.
+
+use crate::identify::Settings;
+use crate::identify::fit::program::{LeastSquaresProgram, Row};
+use crate::identify::records::prepared::Prepared;
+use crate::laws::play_map::split;
+use crate::{PlayMap, PreisachError, PreisachGrid};
+
+/// `G0` of the density `mu0 >= 0` that fits targets in the least squares sense.
+///
+/// ```text
+/// min  sum_records mean_i (offset + sum_jk v_jk N_jk(x_i) - target_i)^2 / spread^2 / records
+///      + smoothness * cells * sum_neighbours (m_a - m_b)^2 / spread^2
+/// m_jk = v_j,k+1 - v_jk >= 0,   v_j0 = 0
+/// ```
+/// `N_jk` are the hat functions of the knots. Neighbouring cells share a side in the
+/// (alpha, beta) plane; the reversible part, which sits on the diagonal, is smoothed along it.
+/// A cell no record crosses takes what its neighbours have.
+///
+/// `targets_deg` has one row per record, one value per sample.
+pub(crate) fn fit(
+    grid: &PreisachGrid,
+    records: &[&Prepared],
+    targets_deg: &[Vec<f64>],
+    settings: &Settings,
+) -> Result<PlayMap, PreisachError> {
+    let unknowns = Unknowns::new(grid);
+    let mut program = LeastSquaresProgram::new(unknowns.count);
+    let spread =
+        targets_deg.iter().map(|t| crate::identify::records::record::spread(t)).fold(0.0, f64::max);
+    let share = 1.0 / (records.len() as f64 * spread * spread);
+    let mut row = Row::new();
+    for (record, targets) in records.iter().zip(targets_deg) {
+        let weight = share / record.samples.len() as f64;
+        for (index, cells) in record.states() {
+            unknowns.hats(cells, &mut row);
+            program.add(&row, targets[index], weight);
+        }
+    }
+    unknowns.regularise(grid, settings.static_smoothness / (spread * spread), &mut program);
+    Ok(unknowns.map(grid, &program.solve("static map")?))
+}
+
+/// Numbers of the density that records determine, and how many there are.
+pub(crate) fn determined(grid: &PreisachGrid, records: &[&Prepared]) -> [usize; 2] {
+    let unknowns = Unknowns::new(grid);
+    let mut program = LeastSquaresProgram::new(unknowns.count);
+    let mut row = Row::new();
+    for record in records {
+        for (_, cells) in record.states() {
+            unknowns.hats(cells, &mut row);
+            program.add(&row, 0.0, 1.0 / record.samples.len() as f64);
+        }
+    }
+    [program.rank(RANK), unknowns.count]
+}
+
+/// Information of a direction below this share of the largest counts as none.
+const RANK: f64 = 1e-6;
+
+/// Sums entries of the same column; columns ascend.
+pub(crate) fn merged(mut row: Row) -> Row {
+    row.sort_by_key(|entry| entry.0);
+    let mut result: Row = Vec::with_capacity(row.len());
+    for (column, value) in row {
+        match result.last_mut() {
+            Some(last) if last.0 == column => last.1 += value,
+            _ => result.push((column, value)),
+        }
+    }
+    result
+}
+
+/// Numbering of the unknowns: the offset, then `v_jk` for `k >= 1`, play by play.
+#[derive(Debug, Clone)]
+pub(crate) struct Unknowns {
+    starts: Vec<usize>,
+    pub(crate) count: usize,
+}
+
+impl Unknowns {
+    /// Adds smoothness of weight `penalty` per cell, and the bounds of the density.
+    pub(crate) fn regularise(
+        &self,
+        grid: &PreisachGrid,
+        penalty: f64,
+        program: &mut LeastSquaresProgram,
+    ) {
+        let penalty = penalty * (self.count - 1) as f64;
+        for j in 0..grid.levels() {
+            for k in 0..grid.levels() - j {
+                program.at_least(self.rise(j, k, 1.0), 0.0);
+                let neighbours = match j {
+                    0 => [Some((0, k + 1)), None],
+                    _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
+                };
+                for (j2, k2) in neighbours.into_iter().flatten() {
+                    if j2 < grid.levels() && k2 < grid.levels() - j2 {
+                        let mut difference = self.rise(j, k, 1.0);
+                        difference.extend(self.rise(j2, k2, -1.0));
+                        program.add(&merged(difference), 0.0, penalty);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The map of a solution.
+    pub(crate) fn map(&self, grid: &PreisachGrid, solution: &[f64]) -> PlayMap {
+        let nodes = (0..grid.levels())
+            .map(|j| {
+                // the solver meets the bounds to its tolerance only: no density below zero is kept
+                let mut value = 0.0_f64;
+                let mut nodes = vec![value];
+                for k in 1..grid.knots(j) {
+                    value = value.max(solution[self.node(j, k)]);
+                    nodes.push(value);
+                }
+                nodes
+            })
+            .collect();
+        PlayMap { constant: solution[0], nodes }
+    }
+
+    pub(crate) fn new(grid: &PreisachGrid) -> Self {
+        let mut count = 1;
+        let starts = (0..grid.levels())
+            .map(|j| {
+                let start = count;
+                count += grid.levels() - j;
+                start
+            })
+            .collect();
+        Self { starts, count }
+    }
+
+    /// Number of `v_jk`, `k >= 1`.
+    fn node(&self, j: usize, k: usize) -> usize {
+        self.starts[j] + k - 1
+    }
+
+    /// `scale (v_j,k+1 - v_jk)` as a row.
+    fn rise(&self, j: usize, k: usize, scale: f64) -> Row {
+        let mut row = Row::new();
+        if k > 0 {
+            row.push((self.node(j, k), -scale));
+        }
+        row.push((self.node(j, k + 1), scale));
+        row
+    }
+
+    /// The row of the offset and all hat functions in a memory state.
+    pub(crate) fn hats(&self, cells: &[f64], row: &mut Row) {
+        row.clear();
+        row.push((0, 1.0));
+        for (j, &x) in cells.iter().enumerate() {
+            let (k, t) = split(x);
+            if k > 0 {
+                row.push((self.node(j, k), 1.0 - t));
+            }
+            if t > 0.0 {
+                row.push((self.node(j, k + 1), t));
+            }
+        }
+    }
+}

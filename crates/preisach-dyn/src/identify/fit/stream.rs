@@ -1,0 +1,147 @@
+//! The static fit of records that do not fit into memory.
+
+use crate::actuator::model::SAMPLE_TOLERANCE;
+use crate::identify::Settings;
+use crate::identify::fit::program::{LeastSquaresProgram, Row};
+use crate::identify::fit::static_fit::Unknowns;
+use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach};
+
+/// Builds a static Preisach model from samples that come piece by piece.
+///
+/// Every sample moves the plays, so that no turning point is missed; one in `stride` enters the normal
+/// equations. What is kept is those equations and one memory, however many samples come: about
+/// `levels^4 / 8` numbers.
+///
+/// ```text
+/// min  mean_i (offset + sum_jk v_jk N_jk(x_i) - y_i)^2 / spread^2 + smoothness as in the batch fit
+/// ```
+/// Differs from the batch fit: samples weigh alike, there records do.
+#[derive(Debug, Clone)]
+pub struct StaticAccumulator {
+    grid: PreisachGrid,
+    unknowns: Unknowns,
+    program: LeastSquaresProgram,
+    smoothness: f64,
+    stride: usize,
+    memory: Option<PlayMemory>,
+    row: Row,
+    seen: usize,
+    used: usize,
+    /// Sum and sum of squares of the outputs used, about the first one.
+    sums: [f64; 2],
+    first_deg: f64,
+}
+
+impl StaticAccumulator {
+    /// An accumulator for a grid of `settings.levels` over `settings.range_volt`.
+    ///
+    /// # Errors
+    /// Refused settings; [`PreisachError::TooFew`] for `stride = 0`.
+    pub fn new(settings: &Settings, stride: usize) -> Result<Self, PreisachError> {
+        settings.check()?;
+        if stride == 0 {
+            return Err(PreisachError::TooFew { quantity: "stride", value: 0, least: 1 });
+        }
+        let grid = PreisachGrid::new(settings.range_volt, settings.levels)?;
+        let unknowns = Unknowns::new(&grid);
+        Ok(Self {
+            grid,
+            program: LeastSquaresProgram::new(unknowns.count),
+            unknowns,
+            smoothness: settings.static_smoothness,
+            stride,
+            memory: None,
+            row: Row::new(),
+            seen: 0,
+            used: 0,
+            sums: [0.0; 2],
+            first_deg: 0.0,
+        })
+    }
+
+    /// The next sample begins a new record, at rest at its first voltage.
+    pub fn begin_record(&mut self) {
+        self.memory = None;
+    }
+
+    /// Takes the next samples of the present record: V and deg.
+    ///
+    /// # Errors
+    /// [`PreisachError::UnequalColumns`]; [`PreisachError::BadRecord`] with the place of the sample,
+    /// counted over all that came. Nothing of a refused piece is used beyond the sample named.
+    pub fn push(&mut self, voltage_volt: &[f64], output_deg: &[f64]) -> Result<(), PreisachError> {
+        let (voltages, outputs) = (voltage_volt.len(), output_deg.len());
+        let id = || "stream".to_owned();
+        if voltages != outputs {
+            return Err(PreisachError::UnequalColumns { id: id(), voltages, outputs });
+        }
+        let range = self.grid.range();
+        let tolerance = SAMPLE_TOLERANCE * range.span_volt();
+        for (&u, &y) in voltage_volt.iter().zip(output_deg) {
+            let (problem, value) = if !u.is_finite() {
+                ("the voltage is not a finite number", u)
+            } else if !y.is_finite() {
+                ("the output is not a finite number", y)
+            } else {
+                ("the voltage is outside the actuator's range", u)
+            };
+            if !(y.is_finite() && range.excess_volt(u) <= tolerance) {
+                return Err(PreisachError::BadRecord {
+                    id: id(),
+                    index: self.seen,
+                    problem,
+                    value,
+                });
+            }
+            let grid = &self.grid;
+            let memory =
+                self.memory.get_or_insert_with(|| PlayMemory::new(grid, u, StartState::Rest));
+            memory.apply(grid, u);
+            if self.seen.is_multiple_of(self.stride) {
+                if self.used == 0 {
+                    self.first_deg = y;
+                }
+                self.unknowns.hats(memory.cells(), &mut self.row);
+                self.program.add(&self.row, y, 1.0);
+                let off = y - self.first_deg;
+                self.sums[0] += off;
+                self.sums[1] += off * off;
+                self.used += 1;
+            }
+            self.seen += 1;
+        }
+        Ok(())
+    }
+
+    /// Samples that came, and samples that entered the equations.
+    pub fn samples(&self) -> [usize; 2] {
+        [self.seen, self.used]
+    }
+
+    /// Numbers kept at present, however many samples came.
+    pub fn kept_numbers(&self) -> usize {
+        self.program.kept_numbers() + self.memory.as_ref().map_or(0, PlayMemory::levels)
+    }
+
+    /// The model of all samples so far; more may follow.
+    ///
+    /// # Errors
+    /// [`PreisachError::TooFew`] samples, [`PreisachError::NotPositive`] if the output never changed,
+    /// [`PreisachError::QuadraticProgram`].
+    pub fn fit(&self) -> Result<StaticPreisach, PreisachError> {
+        const LEAST: usize = 16;
+        if self.used < LEAST {
+            let quantity = "samples of a static fit";
+            return Err(PreisachError::TooFew { quantity, value: self.used, least: LEAST });
+        }
+        let count = self.used as f64;
+        let mean = self.sums[0] / count;
+        let variance = self.sums[1] / count - mean * mean;
+        crate::check::check_positive("variance of the outputs, deg^2", variance)?;
+        let mut program = self.program.clone();
+        program.scale(1.0 / (count * variance));
+        self.unknowns.regularise(&self.grid, self.smoothness / variance, &mut program);
+        let map = self.unknowns.map(&self.grid, &program.solve("static map")?);
+        StaticPreisach::new(self.grid, map)
+    }
+}

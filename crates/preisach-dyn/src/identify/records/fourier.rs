@@ -1,0 +1,129 @@
+//! Fourier series of steady cycles: averages the cycles, and is the only thing differentiated.
+
+use crate::PreisachError;
+use nalgebra::{DMatrix, DVector};
+use rotor_base::{Harmonic, HarmonicSeries};
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// A Fourier series fitted to samples over whole periods.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FourierFit {
+    /// The series about `phase(i)`.
+    pub(crate) series: HarmonicSeries,
+    /// Cycles per sample.
+    cycles_per_sample: f64,
+    /// Standard deviation of what the series leaves: noise, and whatever does not repeat.
+    pub(crate) noise: f64,
+}
+
+impl FourierFit {
+    /// Phase of a sample, rad.
+    fn phase_rad(&self, index: usize) -> f64 {
+        TAU * (self.cycles_per_sample * index as f64).fract()
+    }
+
+    /// Value at a sample, and its time derivative per sample.
+    pub(crate) fn value_and_rate(&self, index: usize) -> (f64, f64) {
+        let [value, rate, _] = self.series.value_and_rates(self.phase_rad(index));
+        (value, rate * TAU * self.cycles_per_sample)
+    }
+}
+
+/// Least squares fit of mean and `count` harmonics to the samples of a range.
+///
+/// # Errors
+/// [`PreisachError::TooFew`] if the samples cannot carry the harmonics.
+pub(crate) fn fit(
+    values: &[f64],
+    range: Range<usize>,
+    cycles_per_sample: f64,
+    count: usize,
+) -> Result<FourierFit, PreisachError> {
+    let unknowns = 2 * count + 1;
+    let too_few = PreisachError::TooFew {
+        quantity: "samples of steady cycles",
+        value: range.len(),
+        least: unknowns,
+    };
+    let mut normal = DMatrix::zeros(unknowns, unknowns);
+    let mut right = DVector::zeros(unknowns);
+    let mut result =
+        FourierFit { series: HarmonicSeries::zero(count), cycles_per_sample, noise: 0.0 };
+    let mut row = DVector::zeros(unknowns);
+    for index in range.clone() {
+        let (sin1, cos1) = result.phase_rad(index).sin_cos();
+        let (mut s, mut c) = (sin1, cos1);
+        row[0] = 1.0;
+        for n in 0..count {
+            row[2 * n + 1] = c;
+            row[2 * n + 2] = s;
+            (c, s) = (c * cos1 - s * sin1, s * cos1 + c * sin1);
+        }
+        normal.ger(1.0, &row, &row, 1.0);
+        right.axpy(values[index], &row, 1.0);
+    }
+    let Some(factor) = (range.len() >= unknowns).then(|| normal.cholesky()).flatten() else {
+        return Err(too_few);
+    };
+    let solution = factor.solve(&right);
+    result.series.mean = solution[0];
+    for (n, h) in result.series.harmonics.iter_mut().enumerate() {
+        *h = Harmonic { cosine: solution[2 * n + 1], sine: solution[2 * n + 2] };
+    }
+    let left: f64 = range.clone().map(|i| (values[i] - result.value_and_rate(i).0).powi(2)).sum();
+    let freedom = (range.len() - unknowns).max(1);
+    result.noise = (left / freedom as f64).sqrt();
+    Ok(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, Normal};
+
+    /// 2 + 3 sin + 0.5 cos 3 at 66.67 samples per cycle.
+    fn signal(i: usize) -> f64 {
+        let psi = TAU * i as f64 * 0.015;
+        2.0 + 3.0 * psi.sin() + 0.5 * (3.0 * psi).cos()
+    }
+
+    #[test]
+    fn a_series_is_found_exactly_though_a_cycle_is_no_whole_number_of_samples() {
+        let values: Vec<f64> = (0..500).map(signal).collect();
+        let found = fit(&values, 100..300, 0.015, 8).unwrap();
+        assert_abs_diff_eq!(found.series.mean, 2.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(found.series.harmonic(1).sine, 3.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(found.series.harmonic(3).cosine, 0.5, epsilon = 1e-12);
+        assert!(found.noise < 1e-12);
+        let (value, rate) = found.value_and_rate(777);
+        assert_abs_diff_eq!(value, signal(777), epsilon = 1e-11);
+        let central = 0.5 * (signal(778) - signal(776));
+        assert_abs_diff_eq!(rate, central, epsilon = 3e-2);
+    }
+
+    #[test]
+    fn noise_is_measured_and_hardly_reaches_the_derivative() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let noise = Normal::new(0.0, 0.02).unwrap();
+        let values: Vec<f64> = (0..2000).map(|i| signal(i) + noise.sample(&mut rng)).collect();
+        let found = fit(&values, 0..2000, 0.015, 10).unwrap();
+        assert!((found.noise / 0.02 - 1.0).abs() < 0.1, "{}", found.noise);
+        let exact = fit(&(0..2000).map(signal).collect::<Vec<_>>(), 0..2000, 0.015, 10).unwrap();
+        let square = |rate: f64, i: usize| (rate - exact.value_and_rate(i).1).powi(2);
+        let (series, differences) = (1..1999).fold((0.0, 0.0), |(a, b), i| {
+            let central = 0.5 * (values[i + 1] - values[i - 1]);
+            (a + square(found.value_and_rate(i).1, i), b + square(central, i))
+        });
+        // differences of the samples carry far more of the noise
+        assert!(series * 100.0 < differences, "{series} {differences}");
+    }
+
+    #[test]
+    fn too_few_samples_are_refused() {
+        assert!(fit(&[0.0; 10], 0..10, 0.1, 5).is_err());
+    }
+}

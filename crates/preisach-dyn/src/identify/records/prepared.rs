@@ -1,0 +1,96 @@
+//! Records made ready for the fits.
+
+use crate::identify::records::fourier::{self, FourierFit};
+use crate::identify::records::noise::CycleNoise;
+use crate::identify::records::record::spread;
+use crate::identify::{BenchRecord, Drive, RecordUse, Settings, Waveform};
+use crate::{PlayMemory, PreisachError, PreisachGrid, StartState};
+
+/// Samples a quasi-static record gives to the static fit at most; a denser one is thinned.
+const MOST_STATIC_SAMPLES: usize = 4000;
+/// Samples the steady cycles of a record give to the rate fit at most.
+const MOST_RATE_SAMPLES: usize = 600;
+
+/// A record made ready: its drive, its averaged cycles, the play states where they are needed.
+pub(crate) struct Prepared<'a> {
+    pub(crate) record: &'a BenchRecord,
+    pub(crate) spread_deg: f64,
+    pub(crate) drive: Drive,
+    pub(crate) record_use: RecordUse,
+    /// Whether it trains the static map; if not it trains the rate maps.
+    pub(crate) is_slow: bool,
+    /// Fourier series of the steady cycles that train; none for transients.
+    pub(crate) cycles: Option<FourierFit>,
+    /// Scatter of the repeated cycles; none for transients and single cycles.
+    pub(crate) noise: Option<CycleNoise>,
+    /// Samples the fits look at; empty for held-out records.
+    pub(crate) samples: Vec<usize>,
+    levels: usize,
+    /// Play states at those samples, one row of `levels` each.
+    states: Vec<f64>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(crate) fn new(
+        record: &'a BenchRecord,
+        drive: Drive,
+        record_use: RecordUse,
+        is_slow: bool,
+        grid: &PreisachGrid,
+        settings: &Settings,
+    ) -> Result<Self, PreisachError> {
+        let steady = drive.steady_within(&record.trained_samples(), record.time_step_s);
+        let cycles = match &steady {
+            Some(steady) => {
+                let count = drive.harmonics_within(record.time_step_s, settings.harmonics);
+                let per_sample = drive.base_hz * record.time_step_s;
+                Some(fourier::fit(&record.output_deg, steady.clone(), per_sample, count)?)
+            }
+            None => None,
+        };
+        let period = 1.0 / (drive.base_hz * record.time_step_s);
+        let noise = steady.clone().and_then(|s| CycleNoise::of(&record.output_deg[s], period));
+        let trains = record_use == RecordUse::Train && drive.waveform != Waveform::Constant;
+        let (range, most) = match (trains, is_slow) {
+            (false, _) => (0..0, 1),
+            (true, true) => (record.trained_samples(), MOST_STATIC_SAMPLES),
+            (true, false) => (steady.unwrap_or(0..0), MOST_RATE_SAMPLES),
+        };
+        let stride = range.len().div_ceil(most).max(1);
+        let mut prepared = Self {
+            record,
+            spread_deg: spread(&record.output_deg[record.trained_samples()]),
+            drive,
+            record_use,
+            is_slow,
+            cycles,
+            noise,
+            samples: range.step_by(stride).collect(),
+            levels: grid.levels(),
+            states: Vec::new(),
+        };
+        prepared.find_states(grid);
+        Ok(prepared)
+    }
+
+    /// Runs the memory over the record, from rest at its first voltage.
+    fn find_states(&mut self, grid: &PreisachGrid) {
+        let voltages = &self.record.voltage_volt;
+        let mut memory = PlayMemory::new(grid, voltages[0], StartState::Rest);
+        let mut next = self.samples.iter().copied().peekable();
+        for (index, &u) in voltages.iter().enumerate() {
+            if next.peek().is_none() {
+                break;
+            }
+            memory.apply(grid, u);
+            if next.next_if_eq(&index).is_some() {
+                self.states.extend_from_slice(memory.cells());
+            }
+        }
+    }
+
+    /// Sample indices with the play states there.
+    pub(crate) fn states(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.samples.iter().copied().zip(self.states.chunks_exact(self.levels))
+    }
+}

@@ -1,0 +1,389 @@
+//! The dynamic Preisach actuator, paper equation (5).
+
+use crate::laws::play_map::NodeTable;
+use crate::{
+    HysteresisLaw, PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach,
+    StepCounts,
+};
+use serde::{Deserialize, Serialize};
+
+/// How equation (5) is kept solvable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum RateForm {
+    /// The paper as printed: `mu1` and `mu2` of any sign, nothing guaranteed. Steps with `G1 >= 0`
+    /// or a negative discriminant are counted; the output may diverge.
+    Literal,
+    /// `G1 < 0` in every reachable state, checked when the model is built, and no fold up to a
+    /// stated output rate.
+    #[default]
+    WellPosed,
+}
+
+/// Order of the time integration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum TimeOrder {
+    /// Implicit Euler.
+    First,
+    /// Two-step backward differences (BDF2, variable step), the first step by implicit Euler.
+    #[default]
+    Second,
+}
+
+/// The root of equation (5) within one time step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutputRate {
+    /// The output rate `d`, deg/s.
+    pub rate_deg_s: f64,
+    /// Whether the discriminant was negative and the fold was taken.
+    pub folded: bool,
+}
+
+/// The output rate that satisfies equation (5) at the end of a time step.
+///
+/// ```text
+/// delta = base + weight d   and   delta = G0 + d G1 + d^2 G2
+/// =>  G2 d^2 - b d + q = 0,   b = weight - G1,   q = G0 - base
+///     d = 2 q / (b + sign(b) sqrt(b^2 - 4 G2 q)),   or d = b / (2 G2) past the fold
+/// ```
+/// | argument | symbol | unit |
+/// |---|---|---|
+/// | `g` | `G0, G1, G2` | deg, s, s^2/deg |
+/// | `base` | | deg; the previous output for implicit Euler |
+/// | `weight` | | s; the time step for implicit Euler |
+///
+/// The root is the one that stays finite as `G2 -> 0`.
+/// Source: Viswamurthy and Ganguli, equation (5); how to solve it for `d` is not said there.
+pub fn output_rate(g: [f64; 3], base: f64, weight: f64) -> OutputRate {
+    let [g0, g1, g2] = g;
+    let b = weight - g1;
+    let q = g0 - base;
+    let discriminant = b * b - 4.0 * g2 * q;
+    if discriminant < 0.0 {
+        return OutputRate { rate_deg_s: b / (2.0 * g2), folded: true };
+    }
+    let denominator = b + discriminant.sqrt().copysign(b);
+    let rate_deg_s = if q == 0.0 { 0.0 } else { 2.0 * q / denominator };
+    OutputRate { rate_deg_s, folded: false }
+}
+
+/// The output history the time integration looks back on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OutputHistory {
+    /// Present output, deg.
+    pub output_deg: f64,
+    /// Output one step earlier and the length of that step in seconds, if there was one.
+    pub earlier: Option<(f64, f64)>,
+}
+
+impl OutputHistory {
+    /// An actuator at rest.
+    pub fn at_rest(output_deg: f64) -> Self {
+        Self { output_deg, earlier: None }
+    }
+
+    /// `base` and `weight` of the backward difference `delta = base + weight d` over a new step.
+    ///
+    /// ```text
+    /// Euler:  base = delta_n,  weight = h
+    /// BDF2:   delta_{n+1} = [ (1+w)^2 delta_n - w^2 delta_{n-1} + (1+w) h d ] / (1 + 2 w),  w = h / h_n
+    /// ```
+    /// Source: Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, section III.5.
+    fn difference(&self, order: TimeOrder, step_s: f64) -> (f64, f64) {
+        match (order, self.earlier) {
+            (TimeOrder::Second, Some((earlier_deg, earlier_step_s))) => {
+                let w = step_s / earlier_step_s;
+                let scale = 1.0 / (1.0 + 2.0 * w);
+                let plus = 1.0 + w;
+                let base = (plus * plus * self.output_deg - w * w * earlier_deg) * scale;
+                (base, plus * step_s * scale)
+            }
+            _ => (self.output_deg, step_s),
+        }
+    }
+
+    /// One time step on with the maps `G0, G1, G2` there; whether it was a fold.
+    #[inline]
+    fn advance(&mut self, g: [f64; 3], order: TimeOrder, step_s: f64) -> bool {
+        let (base, weight) = self.difference(order, step_s);
+        let OutputRate { rate_deg_s, folded } = output_rate(g, base, weight);
+        let output_deg = base + weight * rate_deg_s;
+        *self = Self { output_deg, earlier: Some((self.output_deg, step_s)) };
+        folded
+    }
+}
+
+/// A dynamic Preisach actuator: `delta = G0 + d G1 + d^2 G2`, `d = d(delta)/dt`.
+///
+/// The three maps share one memory of plays. With the voltage held, `-G1` is the relaxation time of
+/// the state the actuator is in.
+///
+/// Not modelled: creep over minutes, resonance, load, heating.
+/// Source: Viswamurthy and Ganguli, equations (3) to (5), after Mayergoyz (1988).
+/// Differs from source: `G1` may carry a constant, a relaxation time common to all states; without
+/// it `G1` vanishes at both saturations of a symmetric actuator and a plain lag is outside the
+/// model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "DynamicParameters", into = "DynamicParameters")]
+pub struct DynamicPreisach {
+    parameters: DynamicParameters,
+    /// Values of `G0, G1, G2` at every node, then their rises to the next.
+    table: NodeTable<6>,
+}
+
+/// The numbers that make a [`DynamicPreisach`], as they are written to files.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DynamicParameters {
+    /// Levels and voltage range of the shared memory.
+    pub grid: PreisachGrid,
+    /// Static map `G0`, deg.
+    pub g0_deg: PlayMap,
+    /// Map `G1`, s.
+    pub g1_s: PlayMap,
+    /// Map `G2`, s^2/deg.
+    pub g2_s2_per_deg: PlayMap,
+    /// What is guaranteed.
+    pub form: RateForm,
+    /// Output rate up to which no reachable state folds, deg/s. Checked for
+    /// [`RateForm::WellPosed`], a remark otherwise.
+    pub unfolded_rate_deg_s: f64,
+    /// Order of the time integration.
+    pub time_order: TimeOrder,
+}
+
+impl TryFrom<DynamicParameters> for DynamicPreisach {
+    type Error = PreisachError;
+
+    fn try_from(parameters: DynamicParameters) -> Result<Self, PreisachError> {
+        Self::new(parameters)
+    }
+}
+
+impl From<DynamicPreisach> for DynamicParameters {
+    fn from(model: DynamicPreisach) -> Self {
+        model.parameters
+    }
+}
+
+impl DynamicPreisach {
+    /// The model of the given maps, checked over *all* reachable states.
+    ///
+    /// ```text
+    /// WellPosed:  max G1 < 0,   max (2 d |G2| + G1) <= 0  at d = unfolded_rate_deg_s
+    /// ```
+    /// The second makes every fold lie at an output rate of at least `unfolded_rate_deg_s`: a fold
+    /// needs `d >= b / (2 |G2|)` and `b >= -G1`.
+    ///
+    /// # Errors
+    /// [`PreisachError::NodeCount`], [`PreisachError::NotFinite`],
+    /// [`PreisachError::NegativeDensity`], [`PreisachError::NotWellPosed`],
+    /// [`PreisachError::FoldsTooEarly`].
+    pub fn new(parameters: DynamicParameters) -> Result<Self, PreisachError> {
+        let p = &parameters;
+        p.g0_deg.check(&p.grid, "g0_deg")?;
+        p.g1_s.check(&p.grid, "g1_s")?;
+        p.g2_s2_per_deg.check(&p.grid, "g2_s2_per_deg")?;
+        p.g0_deg.check_rising()?;
+        let rate = p.unfolded_rate_deg_s;
+        if !(rate.is_finite() && rate >= 0.0) {
+            return Err(PreisachError::NotPositive {
+                quantity: "unfolded_rate_deg_s",
+                value: rate,
+            });
+        }
+        if p.form == RateForm::WellPosed {
+            let (largest_g1_s, _) = p.g1_s.largest();
+            if largest_g1_s >= 0.0 {
+                return Err(PreisachError::NotWellPosed { largest_g1_s });
+            }
+            for sign in [1.0, -1.0] {
+                let slack = p.g1_s.combined(1.0, &p.g2_s2_per_deg, 2.0 * sign * rate);
+                let (excess_s, _) = slack.largest();
+                if excess_s > 0.0 {
+                    return Err(PreisachError::FoldsTooEarly { excess_s, rate_deg_s: rate });
+                }
+            }
+        }
+        let maps = [&p.g0_deg, &p.g1_s, &p.g2_s2_per_deg];
+        let table = NodeTable::new(&p.grid, |play, knot| {
+            let [a, b, c] = maps.map(|map| {
+                let row = &map.nodes[play];
+                (row[knot], row.get(knot + 1).map_or(0.0, |next| next - row[knot]))
+            });
+            [a.0, b.0, c.0, a.1, b.1, c.1]
+        });
+        Ok(Self { parameters, table })
+    }
+
+    /// Its numbers.
+    pub fn parameters(&self) -> &DynamicParameters {
+        &self.parameters
+    }
+
+    /// Its grid.
+    pub fn grid(&self) -> &PreisachGrid {
+        &self.parameters.grid
+    }
+
+    /// The static actuator that `G0` alone describes.
+    ///
+    /// # Errors
+    /// None for a model that was itself built; the checks are those of [`StaticPreisach::new`].
+    pub fn static_part(&self) -> Result<StaticPreisach, PreisachError> {
+        StaticPreisach::new(self.parameters.grid, self.parameters.g0_deg.clone())
+    }
+
+    /// The same model with another order of time integration.
+    #[must_use]
+    pub fn with_time_order(mut self, order: TimeOrder) -> Self {
+        self.parameters.time_order = order;
+        self
+    }
+
+    /// `G0` (deg), `G1` (s) and `G2` (s^2/deg) in a given memory state.
+    pub fn maps(&self, memory: &PlayMemory) -> [f64; 3] {
+        let p = &self.parameters;
+        [p.g0_deg.value(memory), p.g1_s.value(memory), p.g2_s2_per_deg.value(memory)]
+    }
+
+    /// Moves the memory to a voltage and returns `G0, G1, G2` there.
+    pub fn apply(&self, memory: &mut PlayMemory, voltage_volt: f64) -> [f64; 3] {
+        let p = &self.parameters;
+        memory.apply(&p.grid, voltage_volt);
+        let [mut g0, mut g1, mut g2] =
+            [p.g0_deg.constant, p.g1_s.constant, p.g2_s2_per_deg.constant];
+        for (play, &x) in memory.cells().iter().enumerate() {
+            let (&[a, b, c, a_rise, b_rise, c_rise], t) = self.table.at(play, x);
+            g0 += a + t * a_rise;
+            g1 += b + t * b_rise;
+            g2 += c + t * c_rise;
+        }
+        [g0, g1, g2]
+    }
+
+    /// One time step to a new voltage: moves memory and output history, counts, returns the output
+    /// in deg.
+    ///
+    /// Voltages beyond the grid's range act as its limits. The memory must belong to this grid.
+    pub fn step(
+        &self,
+        memory: &mut PlayMemory,
+        history: &mut OutputHistory,
+        counts: &mut StepCounts,
+        voltage_volt: f64,
+        time_step_s: f64,
+    ) -> f64 {
+        let g = self.apply(memory, voltage_volt);
+        let folded = history.advance(g, self.parameters.time_order, time_step_s);
+        counts.steps += 1;
+        counts.g1_not_negative += usize::from(g[1] >= 0.0);
+        counts.folds += usize::from(folded);
+        history.output_deg
+    }
+}
+
+/// Models that are evaluated at once.
+const TOGETHER: usize = 4;
+
+impl DynamicPreisach {
+    /// The outputs of models on one grid over the same voltages, from rest at the first: the plays
+    /// move once for all of them. Each is that of its own simulation, to the last bit; one that
+    /// diverges is not stopped.
+    pub(crate) fn side_by_side(
+        models: &[&Self],
+        voltages_volt: &[f64],
+        time_step_s: f64,
+    ) -> Vec<Vec<f64>> {
+        let groups = models.chunks(TOGETHER);
+        groups.flat_map(|group| Self::group(group, voltages_volt, time_step_s)).collect()
+    }
+
+    /// As [`Self::side_by_side`], of at most [`TOGETHER`] models.
+    fn group(models: &[&Self], voltages_volt: &[f64], time_step_s: f64) -> Vec<Vec<f64>> {
+        const SUMS: usize = 3 * TOGETHER;
+        let (Some(first), Some(&start)) = (models.first(), voltages_volt.first()) else {
+            return vec![Vec::new(); models.len()];
+        };
+        let grid = first.grid();
+        let of = |lane: usize| models.get(lane).unwrap_or(first);
+        // G0 of all models, G1, G2, then the rises of each
+        let table = NodeTable::<{ 2 * SUMS }>::new(grid, |play, knot| {
+            std::array::from_fn(|i| of(i % TOGETHER).table.at(play, knot as f64).0[i / TOGETHER])
+        });
+        let constants: [f64; SUMS] = std::array::from_fn(|i| {
+            let p = &of(i % TOGETHER).parameters;
+            [p.g0_deg.constant, p.g1_s.constant, p.g2_s2_per_deg.constant][i / TOGETHER]
+        });
+        let mut memory = PlayMemory::new(grid, start, StartState::Rest);
+        let mut histories: Vec<OutputHistory> =
+            models.iter().map(|m| OutputHistory::at_rest(m.maps(&memory)[0])).collect();
+        let mut outputs: Vec<Vec<f64>> = histories
+            .iter()
+            .map(|history| {
+                let mut output = Vec::with_capacity(voltages_volt.len());
+                output.push(history.output_deg);
+                output
+            })
+            .collect();
+        for &volt in &voltages_volt[1..] {
+            memory.apply(grid, volt);
+            let mut sums = constants;
+            for (play, &x) in memory.cells().iter().enumerate() {
+                let (entry, t) = table.at(play, x);
+                let (values, rises) = entry.split_at(SUMS);
+                for i in 0..SUMS {
+                    sums[i] += values[i] + t * rises[i];
+                }
+            }
+            let own = models.iter().zip(&mut histories).zip(&mut outputs).enumerate();
+            for (lane, ((model, history), output)) in own {
+                let g = [sums[lane], sums[TOGETHER + lane], sums[2 * TOGETHER + lane]];
+                history.advance(g, model.parameters.time_order, time_step_s);
+                output.push(history.output_deg);
+            }
+        }
+        outputs
+    }
+}
+
+/// What a [`DynamicPreisach`] remembers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DynamicMemory {
+    /// The plays.
+    pub plays: PlayMemory,
+    /// The past outputs.
+    pub history: OutputHistory,
+    /// What happened to the steps.
+    pub counts: StepCounts,
+}
+
+impl HysteresisLaw for DynamicPreisach {
+    type Memory = DynamicMemory;
+
+    fn start(&self, voltage_volt: f64, state: StartState) -> (DynamicMemory, f64) {
+        let plays = PlayMemory::new(self.grid(), voltage_volt, state);
+        let [output_deg, ..] = self.maps(&plays);
+        let history = OutputHistory::at_rest(output_deg);
+        (DynamicMemory { plays, history, counts: StepCounts::default() }, output_deg)
+    }
+
+    #[inline]
+    fn step(&self, memory: &mut DynamicMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
+        let DynamicMemory { plays, history, counts } = memory;
+        self.step(plays, history, counts, voltage_volt, time_step_s)
+    }
+
+    fn check_memory(&self, memory: &DynamicMemory) -> Result<(), PreisachError> {
+        memory.plays.check(self.grid())
+    }
+
+    fn counts(&self, memory: &DynamicMemory) -> StepCounts {
+        memory.counts
+    }
+
+    fn shifted(mut self, shift_deg: f64) -> Self {
+        self.parameters.g0_deg.constant += shift_deg;
+        self
+    }
+}

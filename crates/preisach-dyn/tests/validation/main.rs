@@ -1,0 +1,18 @@
+//! Rows of the validation page: laws and stages of the actuator.
+
+mod actuator;
+mod actuator_stages;
+#[path = "../oracles/mod.rs"]
+mod oracles;
+
+use validation::hold;
+
+#[test]
+fn actuator_rows() {
+    hold(actuator::ROWS);
+}
+
+#[test]
+fn actuator_stages_rows() {
+    hold(actuator_stages::ROWS);
+}

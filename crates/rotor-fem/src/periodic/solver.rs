@@ -1,0 +1,457 @@
+//! Periodic orbits of `M q'' + f(q, q', q'', psi) = 0` by Newton's method on the whole revolution.
+
+use nalgebra::DMatrix;
+
+use crate::periodic::acceleration::Anderson;
+use crate::periodic::newton_matrix::{Factorisation, NewtonMatrixError};
+use crate::periodic::renewal::{Renewal, Verdict};
+use crate::{FemError, Orbit, OrbitSamples, PeriodicError, PeriodicSystem, TimeElements};
+
+/// Steps of a careful search in which the best residual has to fall, and to what part of it: one that does not
+/// goes nowhere.
+const STANDSTILL: (usize, f64) = (30, 0.5);
+/// Halvings of a step that makes the residual grow.
+const MAX_HALVINGS: i32 = 6;
+
+/// How chord steps are combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Acceleration {
+    /// Plain chord steps.
+    None,
+    /// Anderson mixing of the last `depth` steps.
+    Anderson {
+        /// Number of earlier steps that are mixed, 1 to 10.
+        depth: usize,
+    },
+}
+
+/// Settings of the [`PeriodicSolver`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeriodicSettings {
+    /// Bound on the residual norm, in generalised force (rotor units).
+    pub tolerance: f64,
+    /// Largest number of residual evaluations beyond the first.
+    pub max_iterations: usize,
+    /// The kept factorisation is renewed when a step leaves more than this fraction of the residual.
+    pub refresh_contraction: f64,
+    /// How chord steps are combined.
+    pub acceleration: Acceleration,
+}
+
+impl Default for PeriodicSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-11,
+            max_iterations: 60,
+            refresh_contraction: 0.3,
+            acceleration: Acceleration::Anderson { depth: 5 },
+        }
+    }
+}
+
+/// A converged periodic orbit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PeriodicSolution {
+    /// The orbit.
+    pub orbit: Orbit,
+    /// The orbit at all Gauss points.
+    pub samples: OrbitSamples,
+    /// `f` of the system there, shape `dof x points`.
+    pub force: DMatrix<f64>,
+    /// Largest weak residual over its test function's integral: the generalised force left over.
+    pub residual_norm: f64,
+    /// Residual norm at the start and after every step.
+    pub residual_history: Vec<f64>,
+    /// Steps taken.
+    pub iterations: usize,
+    /// Newton matrices factorised during this solve.
+    pub factorisations: usize,
+}
+
+/// One orbit with its weak residual.
+pub(crate) struct Iterate {
+    pub(crate) orbit: Orbit,
+    samples: OrbitSamples,
+    /// `f` at all points, shape `dof x points`.
+    pub(crate) force: DMatrix<f64>,
+    /// Weak residual over the nodes' integral weights, shape `dof x nodes`.
+    pub(crate) residual: DMatrix<f64>,
+    norm: f64,
+}
+
+/// Whether a search that is careful since a step has stopped gaining.
+fn stands_still(history: &[f64], careful_from: Option<usize>) -> bool {
+    let (steps, part) = STANDSTILL;
+    let best = |residuals: &[f64]| residuals.iter().copied().fold(f64::INFINITY, f64::min);
+    let before = history.len().saturating_sub(steps);
+    careful_from.is_some_and(|from| from <= before)
+        && best(&history[before..]) > part * best(&history[..before])
+}
+
+/// Newton's method on a whole revolution, with a factorisation that outlives a solve.
+///
+/// ```text
+/// integral( -N_a' M q' + N_a f ) dpsi = 0   for every node a
+/// ```
+/// The Newton matrix is factorised once and used for chord steps, also in later solves, until a step
+/// contracts the residual too little; when chord steps stall, the search goes back to the best orbit and
+/// takes Newton steps, shortened until the residual falls, and ends where thirty of them do not halve it. The sequence of solves is therefore part of the result at the
+/// level of the tolerance: use one solver per thread, or [`forget_factorisation`] between solves.
+///
+/// Assumes: a constant symmetric mass matrix; period 2 pi.
+/// Not modelled: stability of the orbit, which is for [`Floquet`](crate::Floquet).
+///
+/// [`forget_factorisation`]: Self::forget_factorisation
+#[derive(Debug, Clone)]
+pub struct PeriodicSolver {
+    time: TimeElements,
+    settings: PeriodicSettings,
+    pub(crate) factorisation: Option<Factorisation>,
+}
+
+impl PeriodicSolver {
+    /// A solver on a time mesh.
+    ///
+    /// # Errors
+    /// [`FemError::SolverSetting`] for a tolerance or contraction that is not positive, no iteration,
+    /// or a mixing depth outside 1 to 10.
+    pub fn new(time: TimeElements, settings: PeriodicSettings) -> Result<Self, FemError> {
+        let bad = |name, value, expected| Err(FemError::SolverSetting { name, value, expected });
+        if !(settings.tolerance > 0.0 && settings.tolerance.is_finite()) {
+            return bad("tolerance", settings.tolerance, "a positive number");
+        }
+        if !(settings.refresh_contraction > 0.0 && settings.refresh_contraction < 1.0) {
+            return bad("refresh_contraction", settings.refresh_contraction, "between 0 and 1");
+        }
+        if settings.max_iterations == 0 {
+            return bad("max_iterations", 0.0, "at least 1");
+        }
+        if let Acceleration::Anderson { depth } = settings.acceleration
+            && !(1..=10).contains(&depth)
+        {
+            return bad("acceleration depth", depth as f64, "1 to 10");
+        }
+        Ok(Self { time, settings, factorisation: None })
+    }
+
+    /// The time mesh.
+    pub fn time(&self) -> &TimeElements {
+        &self.time
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &PeriodicSettings {
+        &self.settings
+    }
+
+    /// Drops the kept factorisation: the next solve starts with a new Newton matrix.
+    pub fn forget_factorisation(&mut self) {
+        self.factorisation = None;
+    }
+
+    /// The periodic orbit of a system, from a start orbit on this solver's mesh.
+    ///
+    /// # Errors
+    /// [`PeriodicError`]: a start or matrix of the wrong size, the system's own error, a number that is
+    /// not finite, an undamped resonance, or no convergence (with history and best orbit).
+    pub fn solve<S: PeriodicSystem>(
+        &mut self,
+        system: &S,
+        start: &Orbit,
+    ) -> Result<PeriodicSolution, PeriodicError<S::Error>> {
+        self.solve_to(self.settings.tolerance, system, start)
+    }
+
+    /// The same with a residual bound of its own, for an orbit that is on the way to another one.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_to<S: PeriodicSystem>(
+        &mut self,
+        tolerance: f64,
+        system: &S,
+        start: &Orbit,
+    ) -> Result<PeriodicSolution, PeriodicError<S::Error>> {
+        self.check(system, start)?;
+        let mut state = self.evaluate(system, start.clone(), 0, start)?;
+        let mut history = vec![state.norm];
+        let mut best = (state.norm, state.orbit.clone());
+        let mut mixing = Anderson::new(match self.settings.acceleration {
+            Acceleration::None => 0,
+            Acceleration::Anderson { depth } => depth,
+        });
+        let mut renewal = Renewal::new(self.settings.refresh_contraction);
+        let mut careful_from = None;
+        while state.norm > tolerance {
+            let iteration = history.len();
+            if iteration > self.settings.max_iterations || stands_still(&history, careful_from) {
+                return Err(PeriodicError::NotConverged {
+                    iterations: iteration - 1,
+                    residual: state.norm,
+                    tolerance,
+                    history,
+                    best: Box::new(best.1),
+                });
+            }
+            let kept = self.factorisation.take().filter(|f| f.dof() == system.dof());
+            let factorisation = if let Some(kept) = kept {
+                kept
+            } else {
+                renewal.renewed();
+                mixing.clear();
+                self.factorise(system, &state, iteration - 1)?
+            };
+            let step = factorisation.solve(&state.residual);
+            let proposal = mixing.propose(&state.orbit.nodal, &step);
+            let next = self.evaluate(system, Orbit { nodal: proposal }, iteration, &best.1);
+            let growth = match &next {
+                Ok(next) => next.norm / state.norm,
+                Err(PeriodicError::NotFinite { .. }) => f64::INFINITY,
+                Err(_) => 0.0,
+            };
+            state = match renewal.judge(growth) {
+                Verdict::Accept => {
+                    self.factorisation = renewal.keeps().then_some(factorisation);
+                    next?
+                }
+                Verdict::Shorten => {
+                    self.factorisation = renewal.keeps().then_some(factorisation);
+                    self.shorten(system, &state, &step, iteration)?
+                }
+                // the matrix is dropped; the better of the two orbits gets a new one
+                Verdict::Renew => match next {
+                    Ok(next) if next.norm < state.norm => next,
+                    _ => state,
+                },
+            };
+            history.push(state.norm);
+            let improved = state.norm < best.0;
+            if improved {
+                best = (state.norm, state.orbit.clone());
+            }
+            if renewal.stalls(improved) {
+                state = self.evaluate(system, best.1.clone(), iteration, &best.1)?;
+                self.factorisation = None;
+                mixing = Anderson::new(0);
+                careful_from = Some(history.len());
+            }
+        }
+        Ok(PeriodicSolution {
+            orbit: state.orbit,
+            samples: state.samples,
+            force: state.force,
+            residual_norm: state.norm,
+            iterations: history.len() - 1,
+            residual_history: history,
+            factorisations: renewal.factorisations,
+        })
+    }
+
+    /// What the accelerations lack for the equations of motion to hold at each azimuth, seen from the
+    /// Newton matrix that is kept.
+    ///
+    /// ```text
+    /// dq'' = -(M + df/dq'')^-1 (M q'' + f)
+    /// ```
+    /// `unbalanced` is `M q'' + f`, shape `dof x points`. None without a kept matrix of that size. `f`
+    /// depends on the accelerations weakly; adding the answer and asking again converges the faster the
+    /// nearer the orbit is to that of the matrix.
+    pub fn lacking_accelerations(&self, unbalanced: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let kept = self.factorisation.as_ref().filter(|f| f.dof() == unbalanced.nrows())?;
+        let mut lacking = unbalanced.clone();
+        for point in 0..unbalanced.ncols() {
+            let mut column = unbalanced.column(point).into_owned();
+            if !kept.acceleration(point, &mut column) {
+                return None;
+            }
+            lacking.set_column(point, &column);
+        }
+        Some(lacking)
+    }
+
+    /// Refuses a system or start that does not fit.
+    pub(crate) fn check<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        start: &Orbit,
+    ) -> Result<(), PeriodicError<S::Error>> {
+        let (dof, mass) = (system.dof(), system.mass());
+        let sizes = [
+            ("rows of the mass matrix", mass.nrows(), dof),
+            ("columns of the mass matrix", mass.ncols(), dof),
+            ("degrees of freedom of the start orbit", start.dof(), dof),
+            ("time nodes of the start orbit", start.nodal.ncols(), self.time.unknowns_per_dof()),
+        ];
+        for (what, found, expected) in sizes {
+            if found != expected {
+                return Err(PeriodicError::Shape { what, found, expected });
+            }
+        }
+        let scale = mass.amax();
+        for row in 0..dof {
+            for column in 0..dof {
+                let value = mass[(row, column)];
+                let skew = (value - mass[(column, row)]).abs();
+                let sound = value.is_finite() && skew <= 1e-12 * scale;
+                if !sound || (row == column && value <= 0.0) {
+                    return Err(PeriodicError::Mass { row, column, value });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The weak residual of an orbit.
+    pub(crate) fn evaluate<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        orbit: Orbit,
+        iteration: usize,
+        best: &Orbit,
+    ) -> Result<Iterate, PeriodicError<S::Error>> {
+        let time = &self.time;
+        let samples = orbit.sample(time);
+        let mut force = DMatrix::zeros(system.dof(), time.points().len());
+        system
+            .residual(&samples, &mut force)
+            .map_err(|source| PeriodicError::System { iteration, source })?;
+        self.weigh(system, (orbit, samples, force), iteration, best)
+    }
+
+    /// The weak residual of an orbit whose forces at all points are known.
+    pub(crate) fn weigh<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        (orbit, samples, force): (Orbit, OrbitSamples, DMatrix<f64>),
+        iteration: usize,
+        best: &Orbit,
+    ) -> Result<Iterate, PeriodicError<S::Error>> {
+        let time = &self.time;
+        let expected = (system.dof(), time.points().len());
+        if force.shape() != expected {
+            let (found, expected) = (force.len(), expected.0 * expected.1);
+            return Err(PeriodicError::Shape { what: "entries of the residual", found, expected });
+        }
+        let not_finite = |entry: usize, azimuth_rad: f64| PeriodicError::NotFinite {
+            iteration,
+            dof: entry % system.dof(),
+            azimuth_rad,
+            best: Box::new(best.clone()),
+        };
+        if let Some(entry) = force.iter().position(|f| !f.is_finite()) {
+            return Err(not_finite(entry, time.points()[entry / system.dof()]));
+        }
+        let momentum = system.mass() * &samples.qd;
+        let residual = self.weak(&momentum, &force);
+        if let Some(entry) = residual.iter().position(|r| !r.is_finite()) {
+            return Err(not_finite(entry, time.node_azimuths_rad()[entry / system.dof()]));
+        }
+        let norm = residual.amax();
+        Ok(Iterate { orbit, samples, force, residual, norm })
+    }
+
+    /// `integral( -N_a' p + N_a f ) dpsi` over the integral of `N_a`, for momenta `p` and forces `f` at
+    /// all points.
+    pub(crate) fn weak(&self, momentum: &DMatrix<f64>, force: &DMatrix<f64>) -> DMatrix<f64> {
+        let time = &self.time;
+        let mut residual = DMatrix::zeros(force.nrows(), time.unknowns_per_dof());
+        for e in 0..time.elements() {
+            for g in 0..time.gauss_per_element() {
+                let point = e * time.gauss_per_element() + g;
+                let weight = time.weights()[point];
+                for (a, [n, d, _]) in time.shapes(g).iter().enumerate() {
+                    let mut column = residual.column_mut(time.node(e, a));
+                    column.axpy(-weight * d, &momentum.column(point), 1.0);
+                    column.axpy(weight * n, &force.column(point), 1.0);
+                }
+            }
+        }
+        for (mut column, weight) in residual.column_iter_mut().zip(time.node_weights()) {
+            column /= *weight;
+        }
+        residual
+    }
+
+    /// A new Newton matrix at an orbit.
+    pub(crate) fn factorise<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        state: &Iterate,
+        iteration: usize,
+    ) -> Result<Factorisation, PeriodicError<S::Error>> {
+        let tangents = system
+            .tangents(&state.samples)
+            .map_err(|source| PeriodicError::System { iteration, source })?;
+        let memory = system
+            .memory(&state.samples)
+            .map_err(|source| PeriodicError::System { iteration, source })?;
+        let made = Factorisation::new(&self.time, system.mass(), &tangents, memory.as_ref());
+        made.map_err(|error| match error {
+            NewtonMatrixError::Shape { what, found, expected } => {
+                PeriodicError::Shape { what, found, expected }
+            }
+            NewtonMatrixError::NotFinite { dof, point } => PeriodicError::NotFinite {
+                iteration,
+                dof,
+                azimuth_rad: self.time.points()[point],
+                best: Box::new(state.orbit.clone()),
+            },
+            NewtonMatrixError::Resonance { dof, per_rev, dynamic_stiffness, resolution } => {
+                PeriodicError::Resonance { dof, per_rev, dynamic_stiffness, resolution }
+            }
+        })
+    }
+
+    /// The longest halved Newton step that keeps the residual from growing, or the best one tried.
+    fn shorten<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        state: &Iterate,
+        step: &DMatrix<f64>,
+        iteration: usize,
+    ) -> Result<Iterate, PeriodicError<S::Error>> {
+        let mut shortest = None;
+        let mut failure = None;
+        for halving in 0..=MAX_HALVINGS {
+            let factor = 0.5_f64.powi(halving);
+            let nodal = &state.orbit.nodal + step * factor;
+            match self.evaluate(system, Orbit { nodal }, iteration, &state.orbit) {
+                Ok(trial) if trial.norm < state.norm => return Ok(trial),
+                Ok(trial) => {
+                    if shortest.as_ref().is_none_or(|best: &Iterate| trial.norm < best.norm) {
+                        shortest = Some(trial);
+                    }
+                }
+                Err(error @ PeriodicError::NotFinite { .. }) => failure = Some(error),
+                Err(error) => return Err(error),
+            }
+        }
+        match (shortest, failure) {
+            (Some(trial), _) => Ok(trial),
+            (None, Some(error)) => Err(error),
+            (None, None) => Err(PeriodicError::NotConverged {
+                iterations: iteration,
+                residual: state.norm,
+                tolerance: self.settings.tolerance,
+                history: vec![state.norm],
+                best: Box::new(state.orbit.clone()),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stands_still;
+
+    /// A careful search may be slow, but not without end: thirty steps have to halve the residual.
+    #[test]
+    fn a_search_that_gains_nothing_ends() {
+        let slow: Vec<f64> = (0..60).map(|k| 0.97_f64.powi(k)).collect();
+        let stuck: Vec<f64> = (0..60).map(|k| 0.5 + 0.01 * f64::from(k % 7)).collect();
+        assert!(!stands_still(&slow, Some(0)) && !stands_still(&stuck, None));
+        assert!(stands_still(&stuck, Some(20)), "careful for forty steps");
+        assert!(!stands_still(&stuck, Some(40)), "careful for twenty");
+    }
+}

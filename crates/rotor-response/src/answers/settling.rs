@@ -1,0 +1,191 @@
+//! The inflow settled on the loading that its own change brings, to first order.
+//!
+//! ```text
+//! (I - G) dlambda = dlambda_wanted,      G = change of the wanted inflow per change of the inflow
+//! ```
+//! `G` is never formed: every direction of the inflow costs one set of linear equations of the blade. All
+//! right-hand sides share the directions, by the method of generalised conjugate residuals, as in
+//! [`rotor_fem::PeriodicSolver::linear_response`].
+
+use crate::loads::wrenches::SixLoads;
+use rotor_base::HarmonicSeries;
+
+/// Change of the inflow that a linearised response leaves, over the largest that any direction asks for.
+pub(crate) const INFLOW_TOLERANCE: f64 = 1e-4;
+/// Rounds of inflow directions allowed.
+pub(crate) const INFLOW_ROUNDS: usize = 40;
+/// A direction of which only this part is new holds nothing new: far above what the linear equations of the
+/// blade leave.
+const DEPENDENT: f64 = 1e-3;
+
+/// Part of a direction that must be new for it to be asked for beside the others of a round; the next round
+/// takes up what is left.
+const INDEPENDENT: f64 = 0.03;
+
+/// Hub loads, hinge moments, and the parameters of the inflow that goes with them; or changes of these.
+#[derive(Debug, Clone)]
+pub(crate) struct Answer {
+    pub(crate) hub: SixLoads,
+    pub(crate) hinge: Vec<HarmonicSeries>,
+    pub(crate) wanted: Vec<f64>,
+}
+
+impl Default for Answer {
+    fn default() -> Self {
+        let components = std::array::from_fn(|_| HarmonicSeries::zero(0));
+        Self { hub: SixLoads { components }, hinge: Vec::new(), wanted: Vec::new() }
+    }
+}
+
+impl Answer {
+    /// `self += factor other`.
+    pub(crate) fn add(&mut self, other: &Self, factor: f64) {
+        self.add_loads(other, factor);
+        for (value, part) in self.wanted.iter_mut().zip(&other.wanted) {
+            *value += factor * part;
+        }
+    }
+
+    /// The same of the loads alone.
+    fn add_loads(&mut self, other: &Self, factor: f64) {
+        let mine = self.hub.components.iter_mut().chain(&mut self.hinge);
+        for (value, part) in mine.zip(other.hub.components.iter().chain(&other.hinge)) {
+            *value = sum(value, part, factor);
+        }
+    }
+
+    /// `self *= factor`.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        for value in self.hub.components.iter_mut().chain(&mut self.hinge) {
+            *value = sum(&HarmonicSeries::zero(value.harmonics.len()), value, factor);
+        }
+        for value in &mut self.wanted {
+            *value *= factor;
+        }
+    }
+}
+
+/// A direction of the inflow, what it leaves of itself, and its loads.
+struct Followed {
+    image: Vec<f64>,
+    answer: Answer,
+}
+
+/// The inflow changes still asked for, by direction of the flaps.
+pub(crate) struct Settling {
+    left: Vec<Vec<f64>>,
+    size: f64,
+    basis: Vec<Followed>,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The vectors that are not near a combination of those before them.
+pub(crate) fn independent(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut units: Vec<Vec<f64>> = Vec::new();
+    let mut kept = Vec::new();
+    for vector in vectors {
+        let whole = norm(&vector);
+        let mut rest = vector.clone();
+        for _ in 0..2 {
+            for unit in &units {
+                let along = dot(&rest, unit);
+                for (value, part) in rest.iter_mut().zip(unit) {
+                    *value -= along * part;
+                }
+            }
+        }
+        let size = norm(&rest);
+        if size > INDEPENDENT * whole {
+            units.push(rest.into_iter().map(|value| value / size).collect());
+            kept.push(vector);
+        }
+    }
+    kept
+}
+
+impl Settling {
+    /// For the answers with the inflow held.
+    pub(crate) fn new(answers: &[Answer]) -> Self {
+        let left: Vec<Vec<f64>> = answers.iter().map(|answer| answer.wanted.clone()).collect();
+        let size = left.iter().map(|wanted| norm(wanted)).fold(0.0, f64::max);
+        Self { left, size, basis: Vec::new() }
+    }
+
+    /// Largest change left, over the largest asked for.
+    pub(crate) fn worst(&self) -> f64 {
+        if self.size == 0.0 {
+            return 0.0;
+        }
+        self.left.iter().map(|left| norm(left) / self.size).fold(0.0, f64::max)
+    }
+
+    /// The changes that are not settled yet.
+    pub(crate) fn open(&self) -> Vec<Vec<f64>> {
+        let limit = INFLOW_TOLERANCE * self.size;
+        self.left.iter().filter(|left| norm(left) > limit).cloned().collect()
+    }
+
+    /// Lets the inflow follow along one more direction, whose answer is known.
+    pub(crate) fn follow(
+        &mut self,
+        direction: Vec<f64>,
+        mut answer: Answer,
+        answers: &mut [Answer],
+    ) {
+        let mut image = direction;
+        for (value, wanted) in image.iter_mut().zip(&answer.wanted) {
+            *value -= wanted;
+        }
+        let whole = norm(&image);
+        // twice is enough to be orthogonal to rounding
+        for _ in 0..2 {
+            for known in &self.basis {
+                let along = dot(&image, &known.image);
+                for (value, part) in image.iter_mut().zip(&known.image) {
+                    *value -= along * part;
+                }
+                answer.add_loads(&known.answer, -along);
+            }
+        }
+        let size = norm(&image);
+        if size <= DEPENDENT * whole {
+            return;
+        }
+        for value in &mut image {
+            *value /= size;
+        }
+        answer.scale(1.0 / size);
+        for (left, loads) in self.left.iter_mut().zip(answers) {
+            let along = dot(left, &image);
+            for (value, part) in left.iter_mut().zip(&image) {
+                *value -= along * part;
+            }
+            loads.add_loads(&answer, along);
+        }
+        self.basis.push(Followed { image, answer });
+    }
+}
+
+/// `angle + factor direction`.
+pub(crate) fn sum(
+    angle: &HarmonicSeries,
+    direction: &HarmonicSeries,
+    factor: f64,
+) -> HarmonicSeries {
+    let mut out = angle.clone();
+    out.mean += factor * direction.mean;
+    for (k, part) in direction.harmonics.iter().enumerate() {
+        let mut harmonic = out.harmonic(k + 1);
+        harmonic.cosine += factor * part.cosine;
+        harmonic.sine += factor * part.sine;
+        out.set_harmonic(k + 1, harmonic);
+    }
+    out
+}

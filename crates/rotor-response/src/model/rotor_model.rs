@@ -1,0 +1,364 @@
+//! What a rotor is made of: validated parameters handed down by the drivers.
+
+use crate::{NonlinearSections, ResponseError, TrailingEdgeFlap};
+use flap_aero::AttachedFlowModel;
+use rotor_base::gauss_legendre;
+use rotor_fem::{Distribution, ModalBasis, TorsionTerms};
+use serde::{Deserialize, Serialize};
+
+/// Largest local Mach number handed to the section models, where linear theory ends.
+pub(crate) const MACH_LIMIT: f64 = 0.9;
+
+/// Which nonlinear structural and inertial terms the modal equations carry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Couplings {
+    /// Small deflections: tension of the undeformed blade, no lag-axial Coriolis term, bending in
+    /// flap and lag apart, propeller moment linearised in the pitch angle.
+    Linear,
+    /// Second order: tension with the Coriolis part, foreshortening rate in the lag equation,
+    /// flap-lag coupling through the pitch angle, torsion driven by `(EI_z - EI_y) kappa_z kappa_y`.
+    Full,
+    /// Moderate deflections: the exact modal equations of the Hodges-Dowell energies with the axial
+    /// motion condensed ([`rotor_fem::ModalBlade`]). Beyond `Full`: all foreshortening terms in the tension, the
+    /// axial part of the air loads, bending-torsion coupling `GJ (phi_x + w_x v_xx)`, full gyroscopic
+    /// terms of the section, and the terms of torsion that are named here.
+    Moderate(TorsionTerms),
+}
+
+/// How the local Mach number enters the section aerodynamics.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Compressibility {
+    /// Mach number zero everywhere.
+    None,
+    /// Local Mach number `M_tip |x + mu sin psi|`, at most 0.9.
+    LocalMach {
+        /// Hover tip Mach number.
+        tip_mach: f64,
+    },
+}
+
+/// How the circulation of a section, and with it the in-plane part of its lift, changes sense where
+/// the tangential speed does.
+///
+/// ```text
+/// F_y = -s (L / |U_T|) U_P - (rho c / 2) c_d0 |U_T| U_T
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum ReverseFlow {
+    /// `s = U_T / sqrt(U_T^2 + U_P^2)`, the cosine of the inflow angle: as the flow turns normal to the
+    /// chord the edge at which the circulation is fixed changes, and the circulation passes through
+    /// zero. Continuous, so that the loads converge with the mesh; equal to the small-angle form to
+    /// `(U_P / U_T)^2 / 2`.
+    #[default]
+    Gradual,
+    /// `s = sgn(x + mu sin psi)` of the rigid blade: the small-angle form, whose in-plane load jumps by
+    /// `2 (L / |U_T|) U_P` at the edge of the reverse-flow region. The 4/rev loads then converge slowly
+    /// with the mesh. It follows the rigid blade because a jump that moves with the motion keeps the
+    /// response from converging.
+    Abrupt,
+}
+
+/// Centres of a section ahead of its elastic axis, and the blade's axis ahead of the hub's centre, radius R;
+/// the same all along the blade.
+///
+/// Mass and tension centre are known to the equations of [`Couplings::Moderate`] alone, the torque offset to
+/// those of `Linear` and `Full`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SectionOffsets {
+    /// Mass centre, `e_g`.
+    pub mass_centre: f64,
+    /// Tension centre, `e_A`.
+    pub tension_centre: f64,
+    /// Aerodynamic centre (the quarter chord), `e_d`. Lift there turns the section nose up, and a section
+    /// that pitches about its elastic axis moves it: `U_P` holds `e_d om`.
+    pub aerodynamic_centre: f64,
+    /// Torque offset: how far the axis of the blade at rest passes ahead of the rotor centre, toward the
+    /// leading edge. Centrifugal force then has a part along the lag motion, and the rotation gives the air
+    /// a speed along the blade.
+    pub torque: f64,
+}
+
+/// Where the blade departs from a rectangle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Planform {
+    /// Chord along the span, radius R; none: [`RotorModel::chord`] everywhere.
+    pub chord: Option<Distribution>,
+}
+
+/// The rotor apart from the structure of its blades. Rotor units: length R, mass per length `m0`,
+/// time 1/Omega.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorModel {
+    /// Number of blades.
+    pub blades: usize,
+    /// Reference chord over radius: that of the Lock number, and of the blade where the planform says no other.
+    pub chord: f64,
+    /// Chord along the span.
+    pub planform: Planform,
+    /// Lock number `gamma = rho a c R^4 / I_b` with `a = 2 pi` and `I_b = m0 R^3 / 3`; the air density
+    /// follows from it.
+    pub lock_number: f64,
+    /// Profile drag coefficient.
+    pub drag_coefficient: f64,
+    /// Aerodynamic root cut-out, radius R.
+    pub root_cutout: f64,
+    /// Tip loss factor B, radius R: outboard of it a section drags but does not lift; 1 for none.
+    pub tip_loss: f64,
+    /// Acceleration of gravity over `Omega^2 R`, zero without gravity.
+    pub gravity: f64,
+    /// Mass and tension centre off the elastic axis.
+    pub offsets: SectionOffsets,
+    /// Modal damping over critical.
+    pub modal_damping: f64,
+    /// Terms of the structural equations.
+    pub couplings: Couplings,
+    /// Section aerodynamics.
+    pub section_model: AttachedFlowModel,
+    /// Mach number.
+    pub compressibility: Compressibility,
+    /// Circulation at the edge of the reverse-flow region.
+    pub reverse_flow: ReverseFlow,
+    /// Trailing-edge flaps from root to tip.
+    pub flaps: Vec<TrailingEdgeFlap>,
+    /// Tables and dynamic stall of the sections; none by default.
+    pub nonlinear: NonlinearSections,
+}
+
+impl RotorModel {
+    /// The rotor of Table 1 of the paper: quasi-steady sections, incompressible, no flaps; cut-out, drag and
+    /// damping, which the paper leaves open, as in the shipped case.
+    ///
+    /// Source: S. R. Viswamurthy, R. Ganguli, Table 1.
+    pub fn table_1(couplings: Couplings) -> Self {
+        Self {
+            blades: 4,
+            chord: 0.055,
+            planform: Planform::default(),
+            lock_number: 5.2,
+            drag_coefficient: 0.01,
+            root_cutout: 0.2,
+            tip_loss: 1.0,
+            gravity: 0.0,
+            offsets: SectionOffsets::default(),
+            modal_damping: 0.005,
+            couplings,
+            section_model: AttachedFlowModel::QuasiSteady,
+            compressibility: Compressibility::None,
+            reverse_flow: ReverseFlow::default(),
+            flaps: vec![],
+            nonlinear: NonlinearSections::default(),
+        }
+    }
+
+    /// The same with the two flaps of the paper's case and sections of the form of Hariharan and Leishman at
+    /// the local Mach number.
+    pub fn paper_case() -> Self {
+        Self {
+            section_model: AttachedFlowModel::HariharanLeishman,
+            compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
+            flaps: TrailingEdgeFlap::paper_case().to_vec(),
+            ..Self::table_1(Couplings::Full)
+        }
+    }
+
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// [`ResponseError::Parameter`] or [`ResponseError::FlapSpan`] for the first one out of range.
+    pub fn validate(&self) -> Result<(), ResponseError> {
+        let check = |field, value: f64, ok: bool, expected| {
+            if ok { Ok(()) } else { Err(ResponseError::Parameter { field, value, expected }) }
+        };
+        let within = |v: f64, low: f64, high: f64| v >= low && v <= high;
+        let count = self.blades as f64;
+        check("blades", count, (1..=16).contains(&self.blades), "1 to 16")?;
+        check("chord", self.chord, within(self.chord, 1e-3, 0.5), "0.001 to 0.5 R")?;
+        for &station in self.planform.chord.iter().flat_map(Distribution::breaks) {
+            let chord = self.chord_at(station);
+            check("planform.chord", chord, within(chord, 1e-3, 0.5), "0.001 to 0.5 R")?;
+        }
+        let gamma = self.lock_number;
+        check("lock_number", gamma, within(gamma, 0.0, 50.0), "0 to 50")?;
+        let cd = self.drag_coefficient;
+        check("drag_coefficient", cd, within(cd, 0.0, 1.0), "0 to 1")?;
+        let cutout = self.root_cutout;
+        check("root_cutout", cutout, within(cutout, 0.0, 0.9), "0 to 0.9 R")?;
+        let tip_loss = self.tip_loss;
+        let beyond = "0.5 to 1 R, outboard of the root cut-out";
+        check("tip_loss", tip_loss, within(tip_loss, cutout.max(0.5), 1.0), beyond)?;
+        let gravity = self.gravity;
+        check("gravity", gravity, within(gravity, 0.0, 1.0), "0 to 1 Omega^2 R")?;
+        for (field, offset) in [
+            ("offsets.mass_centre", self.offsets.mass_centre),
+            ("offsets.tension_centre", self.offsets.tension_centre),
+        ] {
+            check(field, offset, within(offset, -0.1, 0.1), "-0.1 to 0.1 R")?;
+            let known = offset == 0.0 || matches!(self.couplings, Couplings::Moderate(_));
+            check(field, offset, known, "0 unless the couplings are Moderate")?;
+        }
+        let SectionOffsets { aerodynamic_centre, torque, .. } = self.offsets;
+        let quarter = 0.25 * self.chord;
+        let field = "offsets.aerodynamic_centre";
+        let inside = within(aerodynamic_centre, -3.0 * quarter, quarter);
+        check(
+            field,
+            aerodynamic_centre,
+            inside,
+            "the elastic axis between the edges of the chord",
+        )?;
+        check("offsets.torque", torque, within(torque, -0.1, 0.1), "-0.1 to 0.1 R")?;
+        let known = torque == 0.0 || !matches!(self.couplings, Couplings::Moderate(_));
+        check("offsets.torque", torque, known, "0 if the couplings are Moderate")?;
+        let zeta = self.modal_damping;
+        check("modal_damping", zeta, within(zeta, 0.0, 0.5), "0 to 0.5 of critical")?;
+        if let Compressibility::LocalMach { tip_mach } = self.compressibility {
+            check("tip_mach", tip_mach, within(tip_mach, 1e-3, 0.95), "0.001 to 0.95")?;
+        }
+        let mut from = cutout;
+        for (index, flap) in self.flaps.iter().enumerate() {
+            let (start, end) = (flap.start, flap.end);
+            if !(start >= from && end > start && end <= 1.0) {
+                return Err(ResponseError::FlapSpan { index, start, end, cutout });
+            }
+            from = end;
+            let e = flap.chord_fraction;
+            check("flap chord_fraction", e, within(e, 0.05, 0.5), "0.05 to 0.5 of the chord")?;
+            let m = flap.mass_fraction;
+            check("flap mass_fraction", m, within(m, 0.0, 1.0), "0 to 1 of m0")?;
+            let cg = flap.cg_fraction;
+            let beyond = "-1 to 1 flap chord: 1 is the trailing edge";
+            check("flap cg_fraction", cg, within(cg, -1.0, 1.0), beyond)?;
+            if let Some(k) = flap.gyration_fraction {
+                let least = "abs(cg_fraction) to 1 flap chord: it is about the hinge";
+                check("flap gyration_fraction", k, within(k, cg.abs(), 1.0), least)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Chord at a station, radius R.
+    pub fn chord_at(&self, station: f64) -> f64 {
+        self.planform.chord.as_ref().map_or(self.chord, |chord| chord.value(station))
+    }
+
+    /// Chord of the rectangular blade that carries the same thrust at the same lift coefficient, radius R:
+    ///
+    /// ```text
+    /// c_T = 3 int_0^1 c x^2 dx
+    /// ```
+    /// with the innermost value of a table carried on to the rotor centre.
+    pub fn thrust_weighted_chord(&self) -> f64 {
+        let Some(chord) = &self.planform.chord else { return self.chord };
+        let inside = chord.breaks().iter().copied().filter(|x| *x > 0.0 && *x < 1.0);
+        let edges: Vec<f64> = [0.0].into_iter().chain(inside).chain([1.0]).collect();
+        // the cubic c x^2 is integrated exactly; what the reference chord lacks, so that its own table gives itself
+        let rule = gauss_legendre(2);
+        let mut lacking = 0.0;
+        for pair in edges.windows(2) {
+            let (half, middle) = (0.5 * (pair[1] - pair[0]), 0.5 * (pair[1] + pair[0]));
+            for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
+                let x = middle + half * node;
+                lacking += half * weight * (chord.value(x) - self.chord) * x * x;
+            }
+        }
+        self.chord + 3.0 * lacking
+    }
+
+    /// Density group `rho c R / m0 = gamma / (3 a)`, `a = 2 pi`, of the reference chord.
+    pub fn density_chord(&self) -> f64 {
+        self.lock_number / (3.0 * std::f64::consts::TAU)
+    }
+
+    /// Solidity `N_b c_T / (pi R)`, thrust-weighted ([`Self::thrust_weighted_chord`]).
+    pub fn solidity(&self) -> f64 {
+        self.blades as f64 * self.thrust_weighted_chord() / std::f64::consts::PI
+    }
+
+    /// Thrust coefficient `C_T = T / (rho pi R^2 (Omega R)^2)` of a thrust in `m0 Omega^2 R^2`.
+    pub fn thrust_coefficient(&self, thrust: f64) -> f64 {
+        thrust * self.chord / (std::f64::consts::PI * self.density_chord())
+    }
+
+    /// Thrust in `m0 Omega^2 R^2` of a thrust coefficient over solidity.
+    pub fn thrust_of_loading(&self, ct_sigma: f64) -> f64 {
+        let planform = self.thrust_weighted_chord() / self.chord;
+        ct_sigma * self.blades as f64 * self.density_chord() * planform
+    }
+
+    /// Tangential speeds, tip speed, at which the section coefficients have a kink.
+    pub(crate) fn speeds_with_kinks(&self) -> Vec<f64> {
+        let tip_mach = self.compressible_tip_mach();
+        let within = |mach: &f64| tip_mach > 0.0 && *mach > 0.0;
+        let machs = self.section_model.mach_kinks().iter().copied().chain([MACH_LIMIT]);
+        machs.filter(within).map(|mach| mach / tip_mach).collect()
+    }
+
+    /// Tip Mach number used for the sections, zero without compressibility.
+    pub(crate) fn compressible_tip_mach(&self) -> f64 {
+        match self.compressibility {
+            Compressibility::None => 0.0,
+            Compressibility::LocalMach { tip_mach } => tip_mach,
+        }
+    }
+}
+
+/// Pitch controls at the blade root, `theta = theta0 + theta1c cos psi + theta1s sin psi`, nose up
+/// positive; `theta0` is the pitch at 0.75 R when the twist is zero there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Controls {
+    /// Collective, rad.
+    pub theta0_rad: f64,
+    /// Lateral cyclic, rad.
+    pub theta1c_rad: f64,
+    /// Longitudinal cyclic, rad.
+    pub theta1s_rad: f64,
+}
+
+/// How finely the rotor is resolved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Discretisation {
+    /// Beam elements of the blade.
+    pub blade_elements: usize,
+    /// Flap, lag and torsion modes.
+    pub modes: [usize; 3],
+    /// Natural modes, or the last of each family replaced by a static completion.
+    pub basis: ModalBasis,
+    /// Gauss points in each spanwise piece.
+    pub span_points_per_piece: usize,
+    /// Elements of the time discretisation.
+    pub time_elements: usize,
+    /// Polynomial order of the time elements.
+    pub time_order: usize,
+    /// Gauss points per time element.
+    pub time_gauss_points: usize,
+    /// Highest harmonic of the loads kept in results.
+    pub load_harmonics: usize,
+}
+
+impl Discretisation {
+    /// The paper's: ten beam elements, 4 flap, 4 lag and 2 torsion modes, eight time elements of order 5;
+    /// the rest as by default.
+    ///
+    /// Source: S. R. Viswamurthy, R. Ganguli, Table 1.
+    pub fn paper() -> Self {
+        Self { modes: [4, 4, 2], ..Self::default() }
+    }
+}
+
+impl Default for Discretisation {
+    /// Ten beam elements, 5 flap, 4 lag and 2 torsion modes (a flap mode more than the paper, whose
+    /// yawing moment at 4/rev is 1.5 % from that of many modes; so many has the paper's blade below 22 per
+    /// rev), eight time elements of order 5, four spanwise points per piece, eight time points per element.
+    fn default() -> Self {
+        Self {
+            blade_elements: 10,
+            modes: [5, 4, 2],
+            basis: ModalBasis::Natural,
+            span_points_per_piece: 4,
+            time_elements: 8,
+            time_order: 5,
+            time_gauss_points: 8,
+            load_harmonics: 12,
+        }
+    }
+}

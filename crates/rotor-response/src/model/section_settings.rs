@@ -1,0 +1,41 @@
+//! What of the sections goes beyond attached linear theory.
+
+use flap_aero::{AirfoilSpan, Mach, StallParameters};
+use std::sync::Arc;
+
+/// How sections stall dynamically.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DynamicStall {
+    /// Leishman and Beddoes with their constants of the NACA 0012 at the local Mach number.
+    Naca0012,
+    /// Leishman and Beddoes with the same constants at every Mach number.
+    Constant(StallParameters),
+}
+
+impl DynamicStall {
+    /// The constants at a Mach number.
+    pub(crate) fn parameters(&self, mach: Mach) -> StallParameters {
+        match self {
+            Self::Naca0012 => StallParameters::naca_0012(mach),
+            Self::Constant(parameters) => *parameters,
+        }
+    }
+}
+
+/// What of a rotor's sections goes beyond attached linear theory. Nothing by default.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NonlinearSections {
+    /// Aerofoil tables along the span, stations in radius R. They take the place of the static lift
+    /// and moment of the attached model and of the rotor's profile drag coefficient. `None`: the
+    /// attached model's own.
+    pub airfoils: Option<Arc<AirfoilSpan>>,
+    /// Dynamic stall. `None`: the sections stall no more than their tables do.
+    pub dynamic_stall: Option<DynamicStall>,
+}
+
+impl NonlinearSections {
+    /// Whether the sections are those of attached linear theory.
+    pub fn is_linear(&self) -> bool {
+        self.airfoils.is_none() && self.dynamic_stall.is_none()
+    }
+}

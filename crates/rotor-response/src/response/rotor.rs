@@ -1,0 +1,108 @@
+//! A rotor ready to be solved, and the condition it is solved in.
+
+use crate::model::flap_mass::with_flap_masses;
+use crate::response::system::{PointInput, ResponseSystem};
+use crate::sections::flight_air::FlightAir;
+use crate::structure::blade::ResponseBlade;
+use crate::{Controls, Discretisation, ResponseError, RotorModel};
+use nalgebra::DMatrix;
+use rotor_base::HarmonicSeries;
+use rotor_fem::BladeProperties;
+use rotor_wake::FlightState;
+
+/// A rotor ready to be solved in any flight condition.
+#[derive(Debug, Clone)]
+pub struct Rotor {
+    model: RotorModel,
+    discretisation: Discretisation,
+    blade: ResponseBlade,
+    mass: DMatrix<f64>,
+    damping: Vec<f64>,
+}
+
+impl Rotor {
+    /// Builds mode shapes, stations and matrices, of the blade made heavier by flaps that its mass does
+    /// not contain ([`with_flap_masses`]).
+    ///
+    /// # Errors
+    /// Any problem of the model, the blade or the discretisation.
+    pub fn new(
+        model: RotorModel,
+        properties: &BladeProperties,
+        discretisation: Discretisation,
+    ) -> Result<Self, ResponseError> {
+        model.validate()?;
+        let properties = with_flap_masses(properties, &model.flaps)?;
+        let blade = ResponseBlade::new(&model, &properties, discretisation)?;
+        let mass = blade.mass_matrix();
+        let damping = blade.damping(model.modal_damping);
+        Ok(Self { model, discretisation, blade, mass, damping })
+    }
+
+    pub(crate) fn with_damping(&self, model: RotorModel, damping: Vec<f64>) -> Self {
+        Self { model, damping, ..self.clone() }
+    }
+
+    /// The parameters.
+    pub fn model(&self) -> &RotorModel {
+        &self.model
+    }
+
+    /// Weight of all blades, `m0 Omega^2 R^2`; zero without gravity.
+    pub fn blades_weight(&self) -> f64 {
+        self.model.blades as f64 * self.model.gravity * self.blade.grid.integral(&self.blade.mass)
+    }
+
+    pub(crate) fn mass(&self) -> &DMatrix<f64> {
+        &self.mass
+    }
+
+    pub(crate) fn damping(&self) -> &[f64] {
+        &self.damping
+    }
+
+    pub(crate) fn discretisation(&self) -> Discretisation {
+        self.discretisation
+    }
+
+    /// The blade at its stations.
+    pub fn blade(&self) -> &ResponseBlade {
+        &self.blade
+    }
+
+    /// The periodic system of one blade for what air and pilot do at every point.
+    pub(crate) fn system<'a>(
+        &'a self,
+        air: &'a FlightAir,
+        points: Vec<PointInput>,
+    ) -> ResponseSystem<'a> {
+        ResponseSystem {
+            blade: &self.blade,
+            couplings: self.model.couplings,
+            air,
+            points,
+            damping: &self.damping,
+            mass: &self.mass,
+        }
+    }
+}
+
+/// Flight condition, controls and flap motion of one solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    /// Advance ratio and shaft tilt.
+    pub flight: FlightState,
+    /// Bank, rad, right positive: the direction of gravity besides the shaft tilt.
+    pub bank_rad: f64,
+    /// Pitch controls.
+    pub controls: Controls,
+    /// Angle of every flap (rad, trailing edge down positive) against blade azimuth.
+    pub flap_angles_rad: Vec<HarmonicSeries>,
+}
+
+/// The upward vertical in hub axes (X aft, Y starboard, Z along the shaft).
+pub(crate) fn up(condition: &Condition) -> [f64; 3] {
+    let (sin_a, cos_a) = condition.flight.shaft_tilt_rad.sin_cos();
+    let (sin_f, cos_f) = condition.bank_rad.sin_cos();
+    [sin_a * cos_f, -sin_f, cos_a * cos_f]
+}

@@ -1,0 +1,353 @@
+//! The periodic response of a rotor: blade motion, inflow and hub loads together.
+
+use crate::loads::power::PowerBalance;
+use crate::loads::wrenches::SixLoads;
+use crate::response::hinge::HingeMoment;
+use crate::response::revolution::{Lifting, RevolutionLoads, SETTLED, unit_weights};
+use crate::response::rotor::up;
+use crate::response::system::{PointInput, ResponseSystem};
+use crate::sections::air::{AirPoint, FlapAngle};
+use crate::sections::flight_air::FlightAir;
+use crate::{Condition, ResponseError, Rotor};
+use nalgebra::DMatrix;
+use rotor_base::HarmonicSeries;
+use rotor_fem::{
+    Anderson, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver, TimeElements,
+};
+use rotor_wake::{InducedInflow, InflowModel, RotorLoading};
+use std::sync::Arc;
+
+/// The Newton matrix leaves the lag states out, so chord steps contract slowly with any matrix: a new
+/// one, thirty times the cost of a step, pays only when they hardly contract at all.
+const REFRESH_CONTRACTION: f64 = 0.8;
+
+/// Steps of the inflow that Anderson's acceleration remembers.
+const INFLOW_STEPS_KEPT: usize = 16;
+/// Residual of the orbit over the last change of the inflow, to which it is solved while the inflow is still on its
+/// way: a thrust that is off by as much moves the inflow by a tenth of it.
+const ORBIT_SHARE: f64 = 0.01;
+/// Residual to which it is solved before any change of the inflow is known.
+const FIRST_ORBIT: f64 = 1e-6;
+/// Change of the inflow over its tolerance from which the next orbit is likely to be the last.
+const NEARLY_SETTLED: f64 = 1e3;
+/// Iterations of the orbit allowed to sections that may stall, whose loads have kinks.
+const STALL_ITERATIONS: usize = 200;
+
+/// Tolerances of the response.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponseTolerances {
+    /// Largest weak residual of the periodic orbit, generalised force in rotor units.
+    pub periodicity: f64,
+    /// Largest change of an inflow parameter between iterations, tip speed.
+    pub inflow: f64,
+    /// Iterations allowed for the inflow.
+    pub inflow_iterations: usize,
+}
+
+impl Default for ResponseTolerances {
+    fn default() -> Self {
+        Self { periodicity: 1e-11, inflow: 1e-10, inflow_iterations: 60 }
+    }
+}
+
+/// How well a solution satisfies its equations, and what it cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponseResiduals {
+    /// Largest weak residual of the periodic orbit, generalised force in rotor units.
+    pub periodicity: f64,
+    /// Mismatch between the inflow used and the inflow the loads call for, tip speed.
+    pub inflow: f64,
+    /// Newton and chord iterations over all inflow iterations.
+    pub response_iterations: usize,
+    /// Newton matrices made.
+    pub factorisations: usize,
+    /// Inflow iterations.
+    pub inflow_iterations: usize,
+}
+
+/// A converged rotor.
+#[derive(Debug, Clone)]
+pub struct RotorSolution {
+    /// Modal motion over the revolution, order flap, lag, torsion; tip value of each shape is 1.
+    pub orbit: Orbit,
+    /// Harmonics of every modal coordinate.
+    pub modal: Vec<HarmonicSeries>,
+    /// Induced inflow.
+    pub inflow: InducedInflow,
+    /// Lift and circulation at every point and lifting station.
+    pub(crate) lifting: Vec<Vec<Lifting>>,
+    /// Modal accelerations that satisfy the equations of motion at every point.
+    pub(crate) accelerations: DMatrix<f64>,
+    /// Thrust coefficient `C_T`, of the air alone: the weight of the blades, if there is gravity, is a
+    /// load on the hub but no thrust.
+    pub thrust_coefficient: f64,
+    /// Root loads of the blade, rotating frame.
+    pub root: SixLoads,
+    /// Hub loads, fixed frame, all blades.
+    pub hub: SixLoads,
+    /// Hinge moments of each flap, root to tip.
+    pub hinge: Vec<HingeMoment>,
+    /// Mean power of one blade.
+    pub power: PowerBalance,
+    /// Residuals and iterations.
+    pub residuals: ResponseResiduals,
+}
+
+/// Solves one rotor at one advance ratio, keeping the factorised Newton matrix between solutions.
+#[derive(Debug, Clone)]
+pub struct RotorSolver {
+    pub(crate) rotor: Arc<Rotor>,
+    pub(crate) air: Arc<FlightAir>,
+    pub(crate) time: TimeElements,
+    pub(crate) solver: PeriodicSolver,
+    tolerances: ResponseTolerances,
+    advance_ratio: f64,
+}
+
+impl RotorSolver {
+    /// Prepares the section aerodynamics of one advance ratio.
+    ///
+    /// # Errors
+    /// Problems of the time elements or of the section model at the local Mach numbers.
+    pub fn new(
+        rotor: Arc<Rotor>,
+        advance_ratio: f64,
+        tolerances: ResponseTolerances,
+    ) -> Result<Self, ResponseError> {
+        let d = rotor.discretisation();
+        let time = TimeElements::new(d.time_elements, d.time_order, d.time_gauss_points)?;
+        let air = FlightAir::new(rotor.model(), rotor.blade(), &time, advance_ratio)?;
+        let settings = PeriodicSettings {
+            tolerance: tolerances.periodicity,
+            refresh_contraction: REFRESH_CONTRACTION,
+            max_iterations: if rotor.model().nonlinear.is_linear() { 60 } else { STALL_ITERATIONS },
+            ..PeriodicSettings::default()
+        };
+        let solver = PeriodicSolver::new(time.clone(), settings)?;
+        Ok(Self { rotor, air: Arc::new(air), time, solver, tolerances, advance_ratio })
+    }
+
+    /// The rotor.
+    pub fn rotor(&self) -> &Rotor {
+        &self.rotor
+    }
+
+    /// The same solver with other tolerances.
+    #[must_use]
+    pub fn with_tolerances(&self, tolerances: ResponseTolerances) -> Self {
+        Self { tolerances, ..self.clone() }
+    }
+
+    /// The tolerances.
+    pub fn tolerances(&self) -> ResponseTolerances {
+        self.tolerances
+    }
+
+    pub(crate) fn advance_ratio(&self) -> f64 {
+        self.advance_ratio
+    }
+
+    pub(crate) fn time(&self) -> &TimeElements {
+        &self.time
+    }
+
+    /// Periodic response with the inflow settled on the thrust it carries.
+    ///
+    /// `start` is a solution nearby (or none: the undeformed blade and the inflow of zero thrust).
+    ///
+    /// # Errors
+    /// [`ResponseError::FlapMotions`], [`ResponseError::Parameter`] for an advance ratio other than
+    /// the solver's; [`ResponseError::Periodic`], [`ResponseError::PeriodicStall`] and
+    /// [`ResponseError::InflowNotConverged`] with what was reached.
+    pub fn solve(
+        &mut self,
+        condition: &Condition,
+        inflow_model: &dyn InflowModel,
+        start: Option<&RotorSolution>,
+    ) -> Result<RotorSolution, ResponseError> {
+        let expected = self.rotor.model().flaps.len();
+        let given = condition.flap_angles_rad.len();
+        if given != expected {
+            return Err(ResponseError::FlapMotions { given, expected });
+        }
+        let mu = condition.flight.advance_ratio;
+        if (mu - self.advance_ratio).abs() > 1e-12 {
+            return Err(ResponseError::Parameter {
+                field: "advance_ratio",
+                value: mu,
+                expected: "the advance ratio the solver was prepared for",
+            });
+        }
+        let dof = self.rotor.mass().nrows();
+        let mut orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
+        let mut inflow =
+            inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
+        if let Some(s) = start {
+            // a start with another kind of inflow gives its motion only
+            inflow = inflow.with_parameters(&s.inflow.parameters()).unwrap_or(inflow);
+        }
+        let (mut iterations, mut factorisations) = (0, 0);
+        let mut previous: Option<(Vec<f64>, f64)> = None;
+        let mut anderson = Anderson::new(INFLOW_STEPS_KEPT);
+        let mut last = (f64::INFINITY, 0.0);
+        // sections that stall may have more than one orbit, and a wake that meets blades more than one course:
+        // their way is left alone
+        let may_be_rough = inflow_model.follows_loading()
+            && inflow_model.circulation_grid().is_none()
+            && self.rotor.model().nonlinear.is_linear();
+        let exact = self.solver.settings().tolerance;
+        let mut orbit_tolerance = if may_be_rough { FIRST_ORBIT.max(exact) } else { exact };
+        for inflow_iteration in 1..=self.tolerances.inflow_iterations {
+            let rotor = Arc::clone(&self.rotor);
+            let air = Arc::clone(&self.air);
+            let system = rotor.system(&air, self.point_inputs(condition, &inflow));
+            let solved = self.solver.solve_to(orbit_tolerance, &system, &orbit);
+            let solution = solved.map_err(Self::orbit_error(&rotor))?;
+            iterations += solution.iterations;
+            factorisations += solution.factorisations;
+            let is_exact = solution.residual_norm <= exact;
+            let absolute = if is_exact { SETTLED } else { orbit_tolerance };
+            let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution, absolute)?;
+            let hub = loads.hub(&rotor, &self.time);
+            let ct = rotor.model().thrust_coefficient(
+                hub.components[2].mean + rotor.blades_weight() * up(condition)[2],
+            );
+            let loading = loads.loading(&rotor, &self.time, ct, inflow_model.circulation_grid())?;
+            let wanted = inflow_model.induced(&condition.flight, &loading)?;
+            let used = inflow.parameters();
+            let change: Vec<f64> =
+                wanted.parameters().iter().zip(&used).map(|(a, b)| a - b).collect();
+            let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+
+            if size <= self.tolerances.inflow && is_exact {
+                let root = loads.root(&self.time, rotor.discretisation().load_harmonics);
+                return Ok(RotorSolution {
+                    lifting: loads.lifting.clone(),
+                    accelerations: loads.accelerations.clone(),
+                    modal: self.modal_harmonics(&solution.samples),
+                    orbit: solution.orbit,
+                    thrust_coefficient: ct,
+                    hinge: loads.hinge(&self.time, rotor.discretisation().load_harmonics),
+                    inflow,
+                    power: loads.power,
+                    root,
+                    hub,
+                    residuals: ResponseResiduals {
+                        periodicity: solution.residual_norm,
+                        inflow: size,
+                        response_iterations: iterations,
+                        factorisations,
+                        inflow_iterations: inflow_iteration,
+                    },
+                });
+            }
+            last = (size, ct);
+            orbit = solution.orbit;
+            orbit_tolerance = if may_be_rough && size > NEARLY_SETTLED * self.tolerances.inflow {
+                (ORBIT_SHARE * size).clamp(exact, FIRST_ORBIT.max(exact))
+            } else {
+                exact
+            };
+            let next = if let Some(step) = inflow_model.improved_step(&change) {
+                let column = |v: &[f64]| DMatrix::from_column_slice(v.len(), 1, v);
+                anderson.propose(&column(&used), &column(&step)).as_slice().to_vec()
+            } else {
+                let relaxation = irons_tuck(previous.as_ref(), &change);
+                let next = used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
+                previous = Some((change, relaxation));
+                next
+            };
+            inflow = inflow.with_parameters(&next)?;
+        }
+        Err(ResponseError::InflowNotConverged {
+            iterations: self.tolerances.inflow_iterations,
+            change: last.0,
+            tolerance: self.tolerances.inflow,
+            thrust_coefficient: last.1,
+        })
+    }
+
+    /// Why an orbit was not found; sections that may stall are the likely reason.
+    pub(crate) fn orbit_error(
+        rotor: &Rotor,
+    ) -> impl Fn(PeriodicError<ResponseError>) -> ResponseError + use<> {
+        let stalls = !rotor.model().nonlinear.is_linear();
+        move |error| match error {
+            PeriodicError::System { source, .. } => source,
+            other @ (PeriodicError::NotConverged { .. } | PeriodicError::NotFinite { .. })
+                if stalls =>
+            {
+                ResponseError::PeriodicStall(Box::new(other))
+            }
+            other => ResponseError::Periodic(Box::new(other)),
+        }
+    }
+
+    /// Azimuth, pitch, inflow and flap angles at every point.
+    pub(crate) fn point_inputs(
+        &self,
+        condition: &Condition,
+        inflow: &InducedInflow,
+    ) -> Vec<PointInput> {
+        let first = self.air.first_station();
+        let stations = &self.rotor.blade().grid.x()[first..];
+        let mu = condition.flight.advance_ratio;
+        let through = mu * condition.flight.shaft_tilt_rad.tan();
+        let reverse_flow = self.rotor.model().reverse_flow;
+        self.time
+            .points()
+            .iter()
+            .map(|&azimuth| {
+                let (sin, cos) = azimuth.sin_cos();
+                let pitch = ResponseSystem::root_pitch(&condition.controls, azimuth);
+                let flap: Vec<FlapAngle> =
+                    condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
+                PointInput {
+                    gravity: self.gravity(condition, sin, cos),
+                    air: AirPoint { sin, cos, advance_ratio: mu, pitch, reverse_flow },
+                    inflow: inflow.along(azimuth, stations).iter().map(|i| through + i).collect(),
+                    flap,
+                }
+            })
+            .collect()
+    }
+
+    /// Acceleration of gravity in the axes of the coned blade at an azimuth.
+    ///
+    /// ```text
+    /// up = (sin a cos f, -sin f, cos a cos f) in hub axes,   a shaft tilt forward, f bank right
+    /// ```
+    fn gravity(&self, condition: &Condition, sin: f64, cos: f64) -> [f64; 3] {
+        let up = up(condition).map(|c| -self.rotor.model().gravity * c);
+        let [outward, leading] = [up[0] * cos + up[1] * sin, up[1] * cos - up[0] * sin];
+        let (across, along) = self.rotor.blade().precone.sin_cos();
+        [outward * along + up[2] * across, leading, up[2] * along - outward * across]
+    }
+
+    pub(crate) fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
+        let weights = unit_weights(&self.time);
+        let count = self.rotor.discretisation().load_harmonics;
+        samples
+            .q
+            .row_iter()
+            .map(|row| {
+                let values: Vec<f64> = row.iter().copied().collect();
+                HarmonicSeries::project(&samples.azimuth_rad, &weights, &values, count)
+            })
+            .collect()
+    }
+}
+
+/// Irons and Tuck's relaxation factor of a fixed-point iteration (the vector form of Aitken's and the
+/// secant method): exact in one step for a scalar linear map.
+///
+/// Source: B. Irons, R. Tuck, Int. J. Numer. Methods Eng. 1 (1969) 275.
+fn irons_tuck(previous: Option<&(Vec<f64>, f64)>, change: &[f64]) -> f64 {
+    let Some((before, relaxation)) = previous else { return 1.0 };
+    let (mut num, mut den) = (0.0, 0.0);
+    for (new, old) in change.iter().zip(before) {
+        num += old * (new - old);
+        den += (new - old) * (new - old);
+    }
+    if den > 0.0 { (-relaxation * num / den).clamp(0.05, 3.0) } else { 1.0 }
+}

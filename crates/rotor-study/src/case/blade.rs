@@ -1,0 +1,274 @@
+//! The sections of a case: the rotor, its blades and their flaps.
+
+use super::field::{choice, is_default, section};
+use rotor_fem::RootSupport;
+use rotor_response::FlapMass;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// Largest bending and torsion stiffness, over `m0 Omega^2 R^4`: beyond it the frequencies of a blade leave no
+/// digits for those of the others.
+pub(super) const RIGID: f64 = 1e6;
+/// Largest axial stiffness, over `m0 Omega^2 R^2`.
+pub(super) const RIGID_ALONG: f64 = 1e9;
+/// Largest radius (m), speed (rpm), mass (kg/m) and radius of gyration (R): beyond that of anything that turns.
+const LARGEST: f64 = 1e6;
+
+section! {
+    /// The rotor. Stiffness and lengths are over the rotor's own units: `m0` is `mass_kg_m`, `Omega` the rotor
+    /// speed, `R` the radius.
+    #[serde(deny_unknown_fields, default)]
+    pub struct RotorValues {
+        /// Number of blades.
+        pub blades: usize = 4, Count(1, 16), "", "the paper's rotor has 4";
+        /// Radius.
+        pub radius_m: f64 = 4.94, UpTo(LARGEST), "m", "the paper's rotor has 4.94 m";
+        /// Rotor speed.
+        pub omega_rpm: f64 = 383.0, UpTo(LARGEST), "rpm", "the paper's rotor turns at 383 rpm";
+        /// Mass per length `m0` of the blade; flaps included unless they say `AddedToBlade`.
+        pub mass_kg_m: f64 = 6.46, UpTo(LARGEST), "kg/m", "the paper's blade has 6.46 kg/m";
+        /// Blade chord. With `tables.chord_r` it is no more than the chord of `lock_number`.
+        pub chord_r: f64 = 0.055, Within(1e-3, 0.5), "R", "the paper's blade has 0.055 R";
+        /// Lock number `rho a c R^4 / I_b` with `a = 2 pi`, `I_b = m0 R^3 / 3`; it sets the air density,
+        /// which is never given as well.
+        pub lock_number: f64 = 5.20, Within(1e-2, 50.0), "", "the paper's rotor has 5.20";
+        /// Flap bending stiffness `EI_y`.
+        pub ei_flap: f64 = 0.0108, UpTo(RIGID), "m0 Omega^2 R^4",
+            "a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0108)";
+        /// Lag bending stiffness `EI_z`.
+        pub ei_lag: f64 = 0.0268, UpTo(RIGID), "m0 Omega^2 R^4",
+            "a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0268)";
+        /// Torsion stiffness `GJ`.
+        pub gj: f64 = 0.00615, UpTo(RIGID), "m0 Omega^2 R^4",
+            "a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.00615)";
+        /// Axial stiffness `EA`.
+        pub ea: f64 = 1000.0, UpTo(RIGID_ALONG), "m0 Omega^2 R^2",
+            "a stiffness is positive and over m0 Omega^2 R^2, not in N (1000 is usual)";
+        /// Mass radius of gyration about the chord line.
+        pub km1_r: f64 = 0.0132, UpTo(LARGEST), "R", "a radius of gyration is positive (0.0132 R is usual)";
+        /// Mass radius of gyration about the normal to the chord through the elastic axis, so at least
+        /// `mass_centre_r`.
+        pub km2_r: f64 = 0.0247, UpTo(LARGEST), "R", "a radius of gyration is positive (0.0247 R is usual)";
+        /// Area radius of gyration about the elastic axis.
+        pub ka_r: f64 = 0.029, Within(0.0, 0.5), "R", "0.029 R is usual";
+        /// Linear twist from root to tip, zero at 0.75 R.
+        pub twist_deg: f64 = -8.0, Within(-45.0, 45.0), "deg", "nose-down twist is negative";
+        /// Precone, up positive.
+        pub precone_deg: f64 = 0.0, Within(-10.0, 10.0), "deg", "up is positive";
+        /// Aerodynamic root cut-out: no airloads inboard.
+        pub root_cutout_r: f64 = 0.20, Within(0.0, 0.9), "R", "0.2 R is usual";
+        /// Damping of every mode over critical. With 0 a coupled lag mode within 0.01 per rev of a whole
+        /// number is refused, at no collective and at that of the trim.
+        pub modal_damping: f64 = 0.005, Within(0.0, 0.5), "", "give a fraction: 0.005 is 0.5 %";
+        /// Station of the blade's root, where hinges are; nothing moves or weighs inboard.
+        #[serde(skip_serializing_if = "is_default")]
+        pub root_offset_r: f64 = 0.0, Within(0.0, 0.5), "R", "0 is the rotor centre; nothing moves inboard of it";
+        /// How the root is held: flap and lag hinge, pitch bearing, each `Locked`, `Free` or
+        /// `Spring(stiffness: 0.05)` (moment per rad over `m0 Omega^2 R^3`). The spring of `pitch` is pitch
+        /// link with control system, 0.001 or stiffer. A free lag hinge needs a `root_offset_r`.
+        #[serde(skip_serializing_if = "is_default")]
+        pub root: RootSupport = RootSupport::default(), Any, "", "";
+        /// Mass centre ahead of the elastic axis; `couplings: Moderate` only.
+        #[serde(skip_serializing_if = "is_default")]
+        pub mass_centre_r: f64 = 0.0, Within(-0.05, 0.05), "R",
+            "ahead of the elastic axis is positive; a tenth of the chord is much";
+        /// Tension centre ahead of the elastic axis; `couplings: Moderate` only.
+        #[serde(skip_serializing_if = "is_default")]
+        pub tension_centre_r: f64 = 0.0, Within(-0.05, 0.05), "R",
+            "ahead of the elastic axis is positive; a tenth of the chord is much";
+        /// Aerodynamic centre, the quarter chord, ahead of the elastic axis.
+        #[serde(skip_serializing_if = "is_default")]
+        pub aerodynamic_centre_r: f64 = 0.0, Rule("-0.75 to 0.25 chords"), "R", "";
+        /// Axis of the blade ahead of the rotor centre, toward the leading edge; not with
+        /// `couplings: Moderate`.
+        #[serde(skip_serializing_if = "is_default")]
+        pub torque_offset_r: f64 = 0.0, Within(-0.1, 0.1), "R",
+            "toward the leading edge is positive; a tenth of the radius is much";
+        /// Weight of the blades, 9.80665 m/s^2, in loads and trim; the trim's weight is that of the whole
+        /// helicopter.
+        #[serde(skip_serializing_if = "is_default")]
+        pub gravity: GravityChoice = GravityChoice::Off, Any, "", "";
+        /// Values along the span in place of uniform ones.
+        #[serde(skip_serializing_if = "is_default")]
+        pub tables: BladeTables = BladeTables::default(), Any, "", "";
+        /// Blades that differ from the others. The result then has the hub loads at every harmonic, with
+        /// controls, attitude and inflow of the rotor with all blades alike.
+        #[serde(skip_serializing_if = "Vec::is_empty", alias = "unlike_blades")]
+        pub dissimilar_blades: Vec<DissimilarBlade> = vec![], Any, "", "";
+    }
+}
+
+/// Whether the blades weigh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum GravityChoice {
+    /// They do not.
+    #[default]
+    Off,
+    /// 9.80665 m/s^2, down.
+    On,
+}
+
+choice!(GravityChoice);
+
+section! {
+    /// Values along the span in place of the uniform ones: `mass: [(0, 1.5), (0.2, 1), (1, 0.9)]`, a list of
+    /// `(station_r, value)` from `root_offset_r`, or further inboard, to 1, straight lines between. A table that
+    /// is left out is the uniform value.
+    #[serde(deny_unknown_fields, default)]
+    pub struct BladeTables {
+        /// Chord: of air loads, flaps, wake and solidity, which is thrust-weighted, `3 N_b / pi int_0^1 c x^2 dx`.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub chord_r: Vec<(f64, f64)> = vec![], Rule("0.001 to 0.5"), "R", "";
+        /// Mass per length over `mass_kg_m`.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub mass: Vec<(f64, f64)> = vec![], Rule("above 0"), "m0", "";
+        /// Flap bending stiffness.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub ei_flap: Vec<(f64, f64)> = vec![], Rule("above 0"), "m0 Omega^2 R^4", "";
+        /// Lag bending stiffness.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub ei_lag: Vec<(f64, f64)> = vec![], Rule("above 0"), "m0 Omega^2 R^4", "";
+        /// Torsion stiffness.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub gj: Vec<(f64, f64)> = vec![], Rule("above 0"), "m0 Omega^2 R^4", "";
+        /// Axial stiffness.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub ea: Vec<(f64, f64)> = vec![], Rule("above 0"), "m0 Omega^2 R^2", "";
+        /// Mass radius of gyration about the chord line.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub km1_r: Vec<(f64, f64)> = vec![], Rule("above 0"), "R", "";
+        /// Mass radius of gyration about the normal to the chord.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub km2_r: Vec<(f64, f64)> = vec![], Rule("above 0"), "R", "";
+        /// Area radius of gyration.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub ka_r: Vec<(f64, f64)> = vec![], Rule("0 to 1"), "R", "";
+        /// Twist; the table says itself where it is zero.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub twist_deg: Vec<(f64, f64)> = vec![], Rule("-90 to 90"), "deg", "";
+    }
+}
+
+/// A table as it is given: one without a value would pass for one that is left out.
+fn not_empty<'de, D: Deserializer<'de>>(given: D) -> Result<Vec<(f64, f64)>, D::Error> {
+    let table = Vec::<(f64, f64)>::deserialize(given)?;
+    if table.is_empty() {
+        let message = "the table has no value: list (station_r, value) from the root to 1 R, or leave the table out for the uniform value";
+        return Err(D::Error::custom(message));
+    }
+    Ok(table)
+}
+
+/// A table with its name, and what its values are.
+pub(super) type NamedTable<'a> = (&'static str, &'a [(f64, f64)], TableKind);
+
+/// What the values of a table are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TableKind {
+    Positive,
+    Radius,
+    Angle,
+    Chord,
+}
+
+impl BladeTables {
+    /// Every table.
+    pub(super) fn named(&self) -> [NamedTable<'_>; 10] {
+        use TableKind::{Angle, Chord, Positive, Radius};
+        [
+            ("chord_r", &self.chord_r, Chord),
+            ("mass", &self.mass, Positive),
+            ("ei_flap", &self.ei_flap, Positive),
+            ("ei_lag", &self.ei_lag, Positive),
+            ("gj", &self.gj, Positive),
+            ("ea", &self.ea, Positive),
+            ("km1_r", &self.km1_r, Positive),
+            ("km2_r", &self.km2_r, Positive),
+            ("ka_r", &self.ka_r, Radius),
+            ("twist_deg", &self.twist_deg, Angle),
+        ]
+    }
+}
+
+section! {
+    /// A blade that differs from the others: factors on what they have.
+    #[derive(Copy)]
+    #[serde(deny_unknown_fields)]
+    pub struct DissimilarBlade {
+        /// Its number: blade k flies `(k - 1) 360 deg / blades` ahead of blade 1, whose azimuth is the
+        /// rotor's.
+        pub blade: usize = 1, Rule("1 to the number of blades, each once; required"), "", "";
+        /// On the mass per length.
+        #[serde(default = "one")]
+        pub mass: f64 = 1.0, Within(0.5, 2.0), "", "a factor on what the other blades have: 1.02 is 2 % more";
+        /// On the flap bending stiffness.
+        #[serde(default = "one")]
+        pub ei_flap: f64 = 1.0, Within(0.5, 2.0), "", "a factor on what the other blades have: 1.02 is 2 % more";
+        /// On the lag bending stiffness.
+        #[serde(default = "one")]
+        pub ei_lag: f64 = 1.0, Within(0.5, 2.0), "", "a factor on what the other blades have: 1.02 is 2 % more";
+        /// On the torsion stiffness.
+        #[serde(default = "one")]
+        pub gj: f64 = 1.0, Within(0.5, 2.0), "", "a factor on what the other blades have: 1.02 is 2 % more";
+        /// On the motion of its flaps.
+        #[serde(default = "one")]
+        pub flap_motion: f64 = 1.0, Within(-2.0, 2.0), "", "1 moves its flaps like the others', 0 not at all";
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+section! {
+    /// A trailing-edge flap.
+    #[serde(deny_unknown_fields)]
+    pub struct FlapValues {
+        /// Inboard edge.
+        pub start_r: f64 = 0.70, Rule("outboard of cut-out, root and the flap before; required"), "R", "";
+        /// Outboard edge.
+        pub end_r: f64 = 0.75, Rule("`start_r` to 1; required"), "R", "";
+        /// Flap chord over blade chord.
+        #[serde(default = "a_fifth")]
+        pub chord_fraction: f64 = 0.20, Within(0.05, 0.5), "", "the paper's flap has 0.20 chord";
+        /// Flap mass per length over `mass_kg_m`.
+        #[serde(default = "a_tenth")]
+        pub mass_fraction: f64 = 0.10, Within(0.0, 1.0), "", "the flap's mass is part of the blade's";
+        /// Centre of gravity behind the hinge over the flap chord.
+        #[serde(default = "a_fifth")]
+        pub cg_fraction: f64 = 0.20, Within(-1.0, 1.0), "", "behind the hinge is positive, 1 is the trailing edge";
+        /// Radius of gyration about the hinge over the flap chord; left out: a uniform thin rod about its
+        /// centre of gravity.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub gyration_fraction: Option<f64> = None, Rule("`cg_fraction` to 1"), "", "";
+        /// Whether `mass_kg_m` and `tables.mass` contain the flap. Added, it weighs on the elastic axis, and
+        /// its distance from there makes loads of its own.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub mass: FlapMass = FlapMass::PartOfBlade, Any, "", "";
+        /// Factors on the loads that the flap makes.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub effectiveness: EffectivenessValues = EffectivenessValues::default(), Any, "", "";
+    }
+}
+
+section! {
+    /// Factors on the loads a flap makes; 1 is thin-aerofoil theory.
+    #[derive(Copy)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct EffectivenessValues {
+        /// On the lift.
+        pub lift: f64 = 1.0, Within(0.0, 2.0), "", "1 is thin-aerofoil theory; a real flap makes about 0.8 of its lift";
+        /// On the moment about the quarter chord.
+        pub moment: f64 = 1.0, Within(0.0, 2.0), "", "1 is thin-aerofoil theory; a real flap makes about 0.8 of its lift";
+        /// On the hinge moment.
+        pub hinge: f64 = 1.0, Within(0.0, 2.0), "", "1 is thin-aerofoil theory; a real flap makes about 0.8 of its lift";
+    }
+}
+
+fn a_fifth() -> f64 {
+    0.20
+}
+
+fn a_tenth() -> f64 {
+    0.10
+}

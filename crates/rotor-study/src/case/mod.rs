@@ -1,0 +1,55 @@
+//! The values of a case: sections and their ranges, the models built from them, and warnings of values that
+//! can be but hardly are meant.
+//!
+//! Nothing here knows a file. A field is named by its path (`flaps[1].start_r`); who has read the case from a
+//! text adds the line. One struct per section holds what a user writes, in degrees and engineering units; the
+//! models below are built from it in one step, in radians and rotor units, by `models`.
+//!
+//! | idea | module |
+//! |---|---|
+//! | a field stated once: name, default, range, unit, remedy, meaning | `field` |
+//! | sections of a case | `sections`, `blade`, `wake`, `control` |
+//! | rules between fields, and [`Case::check`] | `rules`, `rules_blade` |
+//! | what is wrong with a value, and where | `fault` |
+//! | values into the models of the crates below | `models` |
+//! | values that can be, but hardly are meant | `plausibility` |
+
+mod blade;
+mod checker;
+mod control;
+mod fault;
+mod field;
+mod models;
+mod plausibility;
+mod rules;
+mod rules_blade;
+mod sections;
+mod wake;
+
+pub use blade::{
+    BladeTables, DissimilarBlade, EffectivenessValues, FlapValues, GravityChoice, RotorValues,
+};
+pub use control::{
+    ActuatorChoice, ActuatorPath, ActuatorValues, BenchFolder, ControlActuator, ControlValues,
+    ControllerChoice, EffortChoice, HorizontalTailValues, LoadScaleChoice, LoadWeights,
+    PrescribedTrim, PropulsiveTrim, StrokeChoice, TInflowChoice, TrimValues, WindTunnelTrim,
+};
+pub use fault::{CaseFault, CaseFaults, FieldFault};
+pub use field::{Field, Range, Section, Value, Visitor, variant_names};
+pub use plausibility::PlausibilityWarning;
+pub use sections::{
+    AerodynamicsValues, AirfoilStation, Case, CompressibilityChoice, CouplingsChoice,
+    DynamicStallChoice, InflowChoice, InflowValues, ModeNumbers, ResponseValues, StructureValues,
+    ToleranceValues,
+};
+pub use wake::{
+    CirculationChoice, CirculationShape, FreeWakeValues, GeometryChoice, PrescribedCirculation,
+    RolledUpChoice,
+};
+// settings of the models below, which a case names as they are
+pub use flap_aero::AttachedFlowModel;
+pub use rotor_fem::{Joint, ModalBasis, RootSupport, TwistAngle, Untwist};
+pub use rotor_response::{FlapMass, ReverseFlow};
+pub use rotor_wake::{
+    ControlPoint, CoreModel, FarField, NearWakeMotion, ReleasePoint, WakeMethod, WakeSymmetry,
+};

@@ -1,0 +1,271 @@
+//! Rules between the fields of a case, and of values that a plain range cannot say.
+
+use super::checker::{Checker, number};
+use super::field::Section as _;
+use super::rules_blade::check_blade;
+use super::{
+    ActuatorChoice, AirfoilStation, AttachedFlowModel, Case, CaseFault, CaseFaults,
+    CompressibilityChoice, ControlActuator, ControllerChoice, EffortChoice, FreeWakeValues,
+    InflowChoice, StrokeChoice, TInflowChoice, WakeMethod, WakeSymmetry,
+};
+
+// rules between fields
+const INCOMPRESSIBLE: &str = "Incompressible holds at Mach 0 only; set aerodynamics.compressibility: None, or choose Calibrated or HariharanLeishman";
+const NEEDS_ACTUATOR: &str = "Ignored and Hysteretic need an identified actuator; set actuator.model to Bench(...) or File(...)";
+const NEEDS_LIMITS: &str =
+    "a limit of the power is kept by the cone program alone; set control.effort to Limits";
+const NEEDS_CONSTANT_T: &str = "a weight tuned to the stroke (effort: MeetStroke) is a root find over whole loops with one T; with a T that is learnt their ends scatter; write controller: Global, or effort: Limits, which keeps the stroke of each flap exactly";
+const NEEDS_FREE_WAKE: &str =
+    "there is no free wake to converge anew; write t_inflow: Settled, or inflow: FreeWake()";
+const NO_LOAD_WEIGHTED: &str =
+    "every load weight is 0, so there is nothing to reduce; 1 is the paper's identity weight";
+const NEEDS_FLAPS: &str =
+    "the blade has no flap to control with; give flaps, or write harmonics: []";
+
+impl Case {
+    /// Checks every value and the rules between them.
+    ///
+    /// # Errors
+    /// Every value out of range and every rule broken, each with its field.
+    pub fn check(&self) -> Result<(), CaseFaults> {
+        let mut check = Checker::default();
+        self.each(&mut check);
+        check_inflow(&mut check, self);
+        check_blade(&mut check, self);
+        check_structure(&mut check, self);
+        check_flaps(&mut check, self);
+        check_section(&mut check, self);
+        check_actuator(&mut check, self);
+        check_control(&mut check, self);
+        check_response(&mut check, self);
+        check.finish()
+    }
+}
+
+fn check_inflow(check: &mut Checker, case: &Case) {
+    if let InflowChoice::Prescribed { lambda_i } = case.inflow.model {
+        let remedy = "give the induced inflow over the tip speed, down positive (0.01 is usual)";
+        check.within(number("inflow.model.lambda_i", lambda_i, "", remedy), -0.2, 0.2);
+    }
+    if let InflowChoice::FreeWake(wake) = &case.inflow.model {
+        check_wake(check, wake, case.rotor.blades);
+        check_axial(check, wake, case.advance_ratio);
+    }
+}
+
+fn check_wake(check: &mut Checker, wake: &FreeWakeValues, blades: usize) {
+    let field = "inflow.model.azimuths";
+    let azimuths = wake.azimuths_for(blades);
+    check.count(field, azimuths, (8, 144), "36 are steps of 10 deg");
+    if !azimuths.is_multiple_of(blades.max(1)) {
+        let (below, above) = (azimuths - azimuths % blades, azimuths.next_multiple_of(blades));
+        let message = format!(
+            "{azimuths} steps per revolution do not give each of {blades} blades a whole number of them; give {below} or {above}, or leave it out"
+        );
+        check.refuse(field, message);
+    }
+    if wake.velocity_stride > 1 && wake.method == WakeMethod::Marched {
+        let message = "a march in time computes every age: leave it out, or give method: Relaxed";
+        check.refuse("inflow.model.velocity_stride", message);
+    }
+}
+
+/// Refuses an axial wake in forward flight.
+fn check_axial(check: &mut Checker, wake: &FreeWakeValues, advance_ratio: f64) {
+    if wake.symmetry == WakeSymmetry::Axial {
+        let remedy = "a wake turns with its blades in hover only; leave inflow.model.symmetry out";
+        check.within(number("advance_ratio", advance_ratio, "", remedy), 0.0, 0.0);
+    }
+}
+
+fn check_structure(check: &mut Checker, case: &Case) {
+    let s = &case.structure;
+    let most = 2 * s.elements;
+    let remedy = "as many as the elements resolve: the paper keeps 4, 4 and 2";
+    check.count("structure.modes.flap", s.modes.flap, (1, most), remedy);
+    check.count("structure.modes.lag", s.modes.lag, (1, most), remedy);
+    check.count("structure.modes.torsion", s.modes.torsion, (1, most), remedy);
+}
+
+/// Slowest tip for which the sections take a Mach number.
+const LEAST_TIP_MACH: f64 = 1e-3;
+
+fn check_flaps(check: &mut Checker, case: &Case) {
+    let mut from_r = case.rotor.root_cutout_r.max(case.rotor.root_offset_r);
+    for (i, flap) in case.flaps.iter().enumerate() {
+        let (start_r, end_r) = (flap.start_r, flap.end_r);
+        if start_r >= from_r && end_r > start_r && end_r <= 1.0 {
+            from_r = end_r;
+        } else {
+            let end = start_r >= from_r && start_r < 1.0;
+            let field = if end { "end_r" } else { "start_r" };
+            check.fault(
+                &format!("flaps[{i}].{field}"),
+                CaseFault::FlapSpan { start_r, end_r, from_r },
+            );
+        }
+        if let Some(gyration) = flap.gyration_fraction {
+            let remedy = "it is about the hinge: at least the distance of the centre of gravity; leave it out for a thin rod";
+            let field = format!("flaps[{i}].gyration_fraction");
+            check.within(
+                number(&field, gyration, "", remedy),
+                flap.cg_fraction.abs().min(1.0),
+                1.0,
+            );
+        }
+    }
+}
+
+fn check_section(check: &mut Checker, case: &Case) {
+    let a = &case.aerodynamics;
+    check_airfoils(check, &a.airfoils);
+    let remedy = "1 is no loss, 0.97 is usual; outboard of the root cut-out";
+    let least = case.rotor.root_cutout_r.max(0.5);
+    check.within(number("aerodynamics.tip_loss", a.tip_loss, "R", remedy), least, 1.0);
+    let field = "aerodynamics.speed_of_sound_m_s";
+    let remedy = "340.3 m/s is the standard atmosphere at sea level; the tip must stay subsonic";
+    let tip_speed = case.scales().tip_speed_m_s();
+    let lowest = if tip_speed.is_finite() { (tip_speed / 0.95).max(1.0) } else { 1.0 };
+    check.within(number(field, a.speed_of_sound_m_s, "m/s", remedy), lowest, 2000.0);
+    let is_slow = tip_speed > 0.0 && tip_speed < LEAST_TIP_MACH * a.speed_of_sound_m_s;
+    if is_slow && a.compressibility == CompressibilityChoice::LocalMach {
+        let message = format!(
+            "the tip moves at {tip_speed:.3e} m/s, Mach {:.1e}: below Mach {LEAST_TIP_MACH} compressibility means nothing; give the speed in rpm (the paper's rotor turns at 383), or set aerodynamics.compressibility: None",
+            tip_speed / a.speed_of_sound_m_s
+        );
+        check.refuse("rotor.omega_rpm", message);
+    }
+    if a.model == AttachedFlowModel::Incompressible
+        && a.compressibility != CompressibilityChoice::None
+    {
+        check.conflict("aerodynamics.model", INCOMPRESSIBLE);
+    }
+    if a.model == AttachedFlowModel::Calibrated {
+        let remedy = "the calibrated section model holds for these; or choose another model";
+        for (i, flap) in case.flaps.iter().enumerate() {
+            let field = format!("flaps[{i}].chord_fraction");
+            check.within(number(&field, flap.chord_fraction, "", remedy), 0.1, 0.4);
+        }
+    }
+}
+
+/// Stations of aerofoil tables: the first may lie at the rotor centre, each further one beyond the one before.
+fn check_airfoils(check: &mut Checker, airfoils: &[AirfoilStation]) {
+    let mut inboard = 0.0;
+    for (i, airfoil) in airfoils.iter().enumerate() {
+        let value = airfoil.station_r;
+        let beyond = if i == 0 { value >= 0.0 } else { value > inboard };
+        if beyond && value <= 1.0 {
+            inboard = value;
+        } else {
+            let remedy = "list the tables from root to tip, each station once";
+            let fault = CaseFault::OutOfRange { value, low: inboard, high: 1.0, unit: "R", remedy };
+            check.fault(&format!("aerodynamics.airfoils[{i}].station_r"), fault);
+        }
+    }
+}
+
+fn check_actuator(check: &mut Checker, case: &Case) {
+    let (low, high) = case.actuator.range_volt;
+    if !(low < high && low.is_finite() && high.is_finite()) {
+        check.fault("actuator.range_V", CaseFault::EmptyRange { low, high });
+    }
+}
+
+fn check_control(check: &mut Checker, case: &Case) {
+    let c = &case.control;
+    let (low_volt, high_volt) = case.actuator.range_volt;
+    let (bias_volt, amplitude_volt) = (c.bias_volt, c.amplitude_volt);
+    let room_volt = (high_volt - bias_volt).min(bias_volt - low_volt);
+    let slack = 1e-9 * (high_volt - low_volt).abs();
+    // a range that is no range and an amplitude that is none are reported on their own
+    let fits = amplitude_volt <= room_volt + slack;
+    if low_volt < high_volt && amplitude_volt > 0.0 && !fits {
+        let fault = CaseFault::VoltageOutsideRange {
+            bias_volt,
+            amplitude_volt,
+            low_volt,
+            high_volt,
+            room_volt: room_volt.max(0.0),
+        };
+        check.fault("control.amplitude_V", fault);
+    }
+    if case.flaps.is_empty() && !c.harmonics.is_empty() {
+        check.conflict("control.harmonics", NEEDS_FLAPS);
+    }
+    for (i, set) in c.harmonics.iter().enumerate() {
+        if set.is_empty() {
+            check.fault(
+                &format!("control.harmonics[{i}]"),
+                CaseFault::Empty { of: "at least one harmonic" },
+            );
+        }
+        for (j, &harmonic) in set.iter().enumerate() {
+            let field = format!("control.harmonics[{i}][{j}]");
+            let remedy = "the paper controls 2, 3, 4 (and 5) per rev";
+            check.count(&field, harmonic, (1, 12), remedy);
+            if set[..j].contains(&harmonic) {
+                let name = harmonic.to_string();
+                let first = format!("control.harmonics[{i}]");
+                check.fault(&field, CaseFault::Repeated { name, of: "harmonic of a set", first });
+            }
+        }
+    }
+    let ideal = case.actuator.model == ActuatorChoice::Ideal;
+    for (i, actuator) in c.actuators.iter().enumerate() {
+        if ideal && !c.harmonics.is_empty() && *actuator != ControlActuator::Ideal {
+            check.conflict(&format!("control.actuators[{i}]"), NEEDS_ACTUATOR);
+        }
+    }
+    if let StrokeChoice::Given { amplitude_deg } = c.stroke_limit {
+        let remedy = "or write FromActuator";
+        let field = "control.stroke_limit.amplitude_deg";
+        check.within(number(field, amplitude_deg, "deg", remedy), 1e-3, 45.0);
+    }
+    if c.effort == EffortChoice::MeetStroke && c.controller != ControllerChoice::Global {
+        check.conflict("control.controller", NEEDS_CONSTANT_T);
+    }
+    let has_wake = matches!(case.inflow.model, InflowChoice::FreeWake(_));
+    if c.t_inflow == TInflowChoice::Reconverged && !has_wake {
+        check.conflict("control.t_inflow", NEEDS_FREE_WAKE);
+    }
+    if let EffortChoice::Given { rho } = c.effort {
+        let remedy = "or write MeetStroke";
+        check.within(number("control.effort.rho", rho, "1/V^2", remedy), 0.0, 1e6);
+    }
+    let w = &c.load_weights;
+    if [w.fx, w.fy, w.fz, w.mx, w.my, w.mz].iter().all(|weight| *weight == 0.0) {
+        check.conflict("control.load_weights", NO_LOAD_WEIGHTED);
+    }
+    if c.power_limit_watt.is_some() && c.effort != EffortChoice::Limits {
+        check.conflict("control.power_limit_W", NEEDS_LIMITS);
+    }
+}
+
+fn check_response(check: &mut Checker, case: &Case) {
+    let r = &case.response;
+    let remedy = "8 is usual; at least the order of the elements";
+    check.count("response.time_gauss_points", r.time_gauss_points, (r.time_order, 32), remedy);
+    let least = case.rotor.blades.min(64);
+    let remedy = "12 is usual; at least the blade number, whose harmonic reaches the hub";
+    check.count("response.load_harmonics", r.load_harmonics, (least, 64), remedy);
+    check_load_stations(check, case);
+}
+
+/// Stations on the blade, each once.
+fn check_load_stations(check: &mut Checker, case: &Case) {
+    let root = case.rotor.root_offset_r;
+    let stations = case.response.load_stations_r.as_deref().unwrap_or_default();
+    for (i, &station) in stations.iter().enumerate() {
+        let field = format!("response.load_stations_r[{i}]");
+        let remedy = "a station of the blade: the root is rotor.root_offset_r, the tip is 1";
+        check.within(number(&field, station, "R", remedy), root, 1.0);
+        if let Some(first) = stations[..i].iter().position(|s| (s - station).abs() < 1e-9) {
+            let message = format!(
+                "the station {station} R is in the list already (number {}); name each station once",
+                first + 1
+            );
+            check.refuse(&field, message);
+        }
+    }
+}

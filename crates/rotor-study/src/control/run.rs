@@ -1,0 +1,165 @@
+//! One case from trim to controlled vibration.
+
+use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice};
+use crate::control::drives::Drives;
+use crate::control::set::{ControlSet, close_loop, cost_tolerance};
+use crate::control::study::ControlStudy;
+use crate::error::StudyError;
+use crate::rotor::TrimmedRotor;
+use hhc_control::{Controller, Plant, identify_t};
+use rayon::prelude::*;
+
+/// Accuracy of the part of a voltage that is taken over.
+const TAKEN_OVER_TOLERANCE: f64 = 1e-4;
+
+/// Share of a motion that is out of reach, should rounding call it whole.
+const LARGEST_SHARE_BEYOND: f64 = 1.0 - 1e-9;
+/// Controls one set of harmonics with every actuator the case asks for, in the order of the case.
+///
+/// # Errors
+/// [`StudyError`].
+pub fn control_set(
+    case: &Case,
+    rotor: &TrimmedRotor,
+    drives: &Drives,
+    harmonics: &[usize],
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<ControlStudy>, StudyError> {
+    let set = ControlSet::new(case, rotor, drives, harmonics)?;
+    let asked = &case.control.actuators;
+    // the ideal actuator's run serves three actuators and is made only for them
+    let ideal = if asked.iter().any(|&actuator| actuator != ControlActuator::Hysteretic) {
+        Some(set.feedback(ControlActuator::Ideal)?)
+    } else {
+        None
+    };
+    let inverse =
+        |a: &ControlActuator| matches!(a, ControlActuator::Ideal | ControlActuator::Inverse);
+    let made = match &ideal {
+        Some(ideal) if drives.hysteretic.is_some() && asked.iter().any(inverse) => {
+            Some(set.through_the_inverse(ideal)?)
+        }
+        _ => None,
+    };
+    let mut studies = Vec::with_capacity(asked.len());
+    for &actuator in asked {
+        studies.push(match (actuator, &ideal) {
+            (ControlActuator::Ideal, Some(ideal)) => {
+                let reach_share = made.as_ref().and_then(|made| match made {
+                    Ok(_) => Some(1.0),
+                    Err(error) => error.within_reach().map(|share| share.min(LARGEST_SHARE_BEYOND)),
+                });
+                ControlStudy { reach_share, ..ideal.clone() }
+            }
+            (ControlActuator::Ignored, Some(ideal)) => set.with_ideal_voltages(ideal)?,
+            (ControlActuator::Inverse, Some(ideal)) => set.inverted(ideal, made.clone())?,
+            _ => set.feedback(actuator)?,
+        });
+        done();
+    }
+    Ok(studies)
+}
+
+/// One set of harmonics with the ideal actuator alone.
+///
+/// # Errors
+/// [`StudyError`].
+pub(crate) fn ideal_control(
+    case: &Case,
+    rotor: &TrimmedRotor,
+    drives: &Drives,
+    harmonics: &[usize],
+) -> Result<ControlStudy, StudyError> {
+    ControlSet::new(case, rotor, drives, harmonics)?.feedback(ControlActuator::Ideal)
+}
+
+/// Controls every set of harmonics of the case; sets in parallel, results in the order of the case.
+///
+/// # Errors
+/// [`StudyError`] of the first set that fails.
+pub fn control_all(
+    case: &Case,
+    rotor: &TrimmedRotor,
+    drives: &Drives,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<ControlStudy>, StudyError> {
+    let control = &case.control;
+    if control.controller == ControllerChoice::Local && !control.harmonics.is_empty() {
+        // made once before the sets run side by side; a failure is that of the set that needs it
+        let _ = rotor.authority();
+    }
+    let sets = control
+        .harmonics
+        .par_iter()
+        .map(|harmonics| control_set(case, rotor, drives, harmonics, done))
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(sets.into_iter().flatten().collect())
+}
+
+impl ControlSet<'_> {
+    /// Feedback to convergence on the plant itself, from zero control.
+    fn feedback(&self, actuator: ControlActuator) -> Result<ControlStudy, StudyError> {
+        let mut plant = self.plant(actuator)?;
+        let failed = |e| self.failed(actuator, e);
+        let control = &self.case.control;
+        let step_volt = self.step_volts(&plant);
+        let way = match (actuator, control.controller) {
+            // the ideal actuator has nearly one T everywhere: at limits that bind even the rotor's own bend shows
+            (ControlActuator::Ideal, ControllerChoice::Global | ControllerChoice::Adaptive) => {
+                Controller::Global
+            }
+            (_, choice) => self.t_policy(choice, step_volt.clone()),
+        };
+        let t = match way {
+            Controller::Local { .. } => self.t_at_rest(&plant).map_err(failed)?,
+            _ => identify_t(&mut plant, &step_volt).map_err(failed)?,
+        };
+        let holds_t = matches!(way, Controller::Renewed { .. });
+        let cost_tolerance = cost_tolerance(&way, control.effort);
+        let controller = self.controller(&t, way, control.effort).map_err(failed)?;
+        let (run, rho) = close_loop(&controller, &mut plant, control.effort).map_err(failed)?;
+        let volts = run.last().control_volt.clone();
+        let state = self.state(actuator, &plant, &volts)?;
+        // whether whole steps settle there is a question of a constant T and a given weight
+        let t_at_end = if holds_t && control.effort != EffortChoice::Limits {
+            plant.linearised_t(&volts).ok().flatten()
+        } else {
+            None
+        };
+        Ok(ControlStudy {
+            t: Some(run.t.clone()),
+            run: Some(run),
+            rho,
+            t_at_end,
+            cost_tolerance,
+            ..self.study(actuator, &plant, volts, state)?
+        })
+    }
+
+    /// The ideal actuator's voltages applied to the hysteretic one: what ignoring hysteresis costs. Where
+    /// their swing leaves no room for the bias that centres the flap, the largest part of them that does.
+    fn with_ideal_voltages(&self, ideal: &ControlStudy) -> Result<ControlStudy, StudyError> {
+        let actuator = ControlActuator::Ignored;
+        let plant = self.plant(actuator)?;
+        let part =
+            |share: f64| -> Vec<f64> { ideal.control_volt.iter().map(|u| share * u).collect() };
+        let mut share = 1.0;
+        if !plant.admits(&part(share)) {
+            let (mut low, mut high) = (0.0, 1.0);
+            while high - low > TAKEN_OVER_TOLERANCE {
+                let middle = f64::midpoint(low, high);
+                let end = if plant.admits(&part(middle)) { &mut low } else { &mut high };
+                *end = middle;
+            }
+            share = low;
+        }
+        let volts = part(share);
+        let state = self.state(actuator, &plant, &volts)?;
+        Ok(ControlStudy {
+            t: ideal.t.clone(),
+            rho: ideal.rho,
+            voltage_share: Some(share),
+            ..self.study(actuator, &plant, volts, state)?
+        })
+    }
+}

@@ -1,0 +1,63 @@
+//! Studies of a rotor with driven trailing-edge flaps: values in, values out.
+//!
+//! Floor 4: a [`case::Case`] holds the values of a rotor, its flaps and its control; a [`TrimmedRotor`] flies it; a
+//! [`RotorPlant`] answers voltages with hub loads; [`control_all`] closes the loop over it. No file, no terminal: an
+//! error names the field of the case that is at fault ([`StudyError::field`]), who has read the case adds the line.
+//!
+//! | idea | module |
+//! |---|---|
+//! | values of a case, their ranges, the models built from them, plausibility warnings | [`case`] |
+//! | from a voltage to the motion of a flap; hinge moment, power | `flaps` |
+//! | the rotor in trim, its inflow, T of the linearised rotor | `rotor` |
+//! | both as the `Plant` of a controller: outputs, limits, tangents | `plant` |
+//! | control of all sets, forecasts, robustness | `control` |
+//! | assumptions changed one at a time | `sensitivity` |
+//! | modes, stability, loads, dissimilar blades | `blade` |
+//! | the free wake of a case | `wake` |
+
+mod blade;
+pub mod case;
+mod control;
+mod error;
+mod flaps;
+mod loads;
+mod plant;
+mod rotor;
+mod sensitivity;
+mod series;
+mod wake;
+
+pub use blade::{
+    AboutState, FAN_SPEEDS, LoadLine, MeanLoads, ModeLine, ModesQuestion, ModesResult, MomentLine,
+    MotionLine, StabilityLine, StationLine, SteadyTip, UnlikeBladeLine, UnlikeLine,
+    each_unlike_blade, numbered, rotating_modes, station_lines, unlike_lines,
+};
+pub use control::{
+    ControlStudy, Disturbance, Drives, Forecast, ForecastLine, ForecastRecord, RobustnessCell,
+    RobustnessLine, control_all, control_set, control_status, forecasts, robustness,
+    robustness_maps,
+};
+pub use error::{StudyError, soft_pitch_text};
+pub use flaps::{
+    COUPLING_TOLERANCE_DEG, CouplingResidual, FlapDrive, FlapMotion, FullScale, HingeCoupling,
+    HingePower, MEAN_FLAP_TOLERANCE_DEG, PlantError,
+};
+pub use loads::{HubLoads, Setting, is_still, loads_cost};
+pub use plant::{
+    HUB_OUTPUTS, PlantState, PowerOutputs, RotorPlant, given_watt_per_rad2, hub_outputs,
+    output_weights,
+};
+pub use rotor::{
+    FlapAuthority, ReconvergedAuthority, SettledTrim, TrimmedRotor, UnlikeSolver, WakeStatus,
+    continued_trim, refuse_resonance, settled_trim, wake_status, wake_warnings,
+};
+pub use sensitivity::{
+    Assumptions, Sensitivity, SensitivityLine, SensitivityRecord, most_moved, sensitivities,
+    sensitivity_lines,
+};
+pub use wake::{FoundWake, PassageLine, WakeResult, WakeUpdateLine, wake_of_case};
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

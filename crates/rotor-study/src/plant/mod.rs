@@ -1,0 +1,14 @@
+//! The trimmed rotor with driven flaps as the plant of a controller.
+
+mod answered;
+mod memo;
+mod outputs;
+mod pair_power;
+mod power;
+mod rotor_plant;
+mod tangent;
+
+pub(crate) use answered::{Answered, Answers, ModelPlant};
+pub use outputs::{HUB_OUTPUTS, PowerOutputs, hub_outputs, output_weights};
+pub use pair_power::given_watt_per_rad2;
+pub use rotor_plant::{PlantState, RotorPlant};

@@ -1,0 +1,155 @@
+//! T of the plant: what its controls do to the hub.
+//!
+//! ```text
+//! T(u) = G(u) A(u),   G = dZ/d(flap motion) of the rotor linearised about its controlled orbit,   A = d(flap motion)/du
+//! ```
+
+use crate::flaps::{FlapMotion, PlantError};
+use crate::plant::rotor_plant::{RotorPlant, angles_rad, bits};
+use hhc_control::{TMatrix, VoltageRange};
+use rayon::prelude::*;
+use rotor_base::{Harmonic, HarmonicSeries};
+use std::sync::Arc;
+
+/// Azimuths at which the range of the voltage is held: a peak of the fifth harmonic between two of them may lie beyond by
+/// 2e-4 of its amplitude.
+const LIMIT_AZIMUTHS: usize = 720;
+/// Voltage step of the tangent of an actuator as a part of its range, 1 V of 170 V: wide enough to see past the steps
+/// of its memory.
+const TANGENT_STEP: f64 = 1.0 / 170.0;
+/// Part of the range of voltages that the tangent of the bias has to leave free at zero control.
+const LEAST_ROOM_PART: f64 = 0.05;
+
+impl RotorPlant {
+    /// T about a control vector: rotor and actuators linearised about the state there.
+    ///
+    /// # Errors
+    /// The errors of actuator and rotor.
+    pub(crate) fn t_about(&self, control_volt: &[f64]) -> Result<TMatrix, PlantError> {
+        let known = self.measured.as_ref().filter(|(control, _)| control == control_volt);
+        let state = match known {
+            Some((_, state)) => Arc::clone(state),
+            None => Arc::new(self.state(control_volt)?),
+        };
+        let loads = |motions: &[Vec<HarmonicSeries>]| {
+            Ok(self.rotor.loads_along(angles_rad(&state.flaps), &state.rotor, motions)?)
+        };
+        self.t_of_motions(loads, &self.tangents_at(control_volt)?)
+    }
+
+    /// Change of the motion of every flap with its controls, per V.
+    fn tangents_at(&self, control_volt: &[f64]) -> Result<Vec<Vec<FlapMotion>>, PlantError> {
+        let each = self.voltages(control_volt)?;
+        each.par_iter().map(|voltages| self.tangent(voltages)).collect()
+    }
+
+    /// Change of the motion of a flap with its controls, per V.
+    fn tangent(&self, voltages: &[(usize, Harmonic)]) -> Result<Vec<FlapMotion>, PlantError> {
+        let step_volt = TANGENT_STEP * self.drive.range_volt().span_volt();
+        let found = || self.drive.tangent(voltages, step_volt);
+        self.tangents.answer(bits(voltages), found)
+    }
+
+    /// The range of the voltage about a control vector and the motion it makes, with the bias as it moves with the
+    /// control. Where its tangent leads out of the range, or there is none, the bias is that of the motion.
+    pub(crate) fn voltage_range(
+        &self,
+        control_volt: &[f64],
+        flaps: &[FlapMotion],
+    ) -> Result<VoltageRange, PlantError> {
+        let range = self.drive.range_volt();
+        let mut bias_volt = Vec::with_capacity(flaps.len());
+        let mut bias_slope = Vec::with_capacity(control_volt.len());
+        let per_flap = 2 * self.layout.harmonics().len();
+        let each = self.voltages(control_volt)?;
+        for ((flap, voltages), own) in
+            flaps.iter().zip(&each).zip(control_volt.chunks_exact(per_flap))
+        {
+            let bias = flap.voltage_volt.mean;
+            let slope: Vec<f64> = self
+                .tangent(voltages)
+                .map(|tangent| tangent.iter().map(|along| along.voltage_volt.mean).collect())
+                .unwrap_or_default();
+            let at_zero = bias - slope.iter().zip(own).map(|(s, u)| s * u).sum::<f64>();
+            let room = (range.highest_volt() - at_zero).min(at_zero - range.lowest_volt());
+            if slope.len() == per_flap && room > LEAST_ROOM_PART * range.span_volt() {
+                bias_volt.push(at_zero);
+                bias_slope.extend(slope);
+            } else {
+                bias_volt.push(bias);
+                bias_slope.extend(std::iter::repeat_n(0.0, per_flap));
+            }
+        }
+        Ok(VoltageRange {
+            range_volt: [range.lowest_volt(), range.highest_volt()],
+            bias_volt,
+            bias_slope,
+            azimuths: LIMIT_AZIMUTHS,
+        })
+    }
+
+    /// T from what the controls of every flap make of its motion, per V: load per V of each, with the
+    /// outputs of the power.
+    fn t_of_motions(
+        &self,
+        loads: impl FnOnce(&[Vec<HarmonicSeries>]) -> Result<Vec<[f64; 12]>, PlantError>,
+        tangents: &[Vec<FlapMotion>],
+    ) -> Result<TMatrix, PlantError> {
+        let rest = vec![HarmonicSeries::zero(0); tangents.len()];
+        let motions: Vec<Vec<HarmonicSeries>> = tangents
+            .iter()
+            .enumerate()
+            .flat_map(|(flap, tangent)| {
+                let rest = &rest;
+                tangent.iter().map(move |along| {
+                    let mut motion = rest.clone();
+                    motion[flap] = along.flap_deg.clone();
+                    motion
+                })
+            })
+            .collect();
+        let mut columns: Vec<Vec<f64>> =
+            loads(&motions)?.iter().map(|column| column.to_vec()).collect();
+        let power = self.power_outputs();
+        for (control, column) in columns.iter_mut().enumerate() {
+            column.extend(power.along(control));
+        }
+        TMatrix::from_columns(&columns).map_err(PlantError::Bias)
+    }
+
+    /// T about a control vector of a rotor that is linear: its derivatives are those about the trim.
+    pub(crate) fn t_about_trim(&self, control_volt: &[f64]) -> Result<TMatrix, PlantError> {
+        self.t_of_linear_rotor(&self.tangents_at(control_volt)?)
+    }
+
+    /// T about zero control of the rotor linearised there, the actuators by central differences of the step that
+    /// eq. (8) takes: at rest the tangent of a hysteretic actuator is not what it does at that step.
+    ///
+    /// # Errors
+    /// As [`Self::t_about_trim`].
+    pub(crate) fn t_at_rest(&self, step_volt: f64) -> Result<TMatrix, PlantError> {
+        let at_rest = self.voltages(&self.layout.zero())?;
+        let tangents: Vec<Vec<FlapMotion>> = at_rest
+            .par_iter()
+            .map(|voltages| self.drive.tangent(voltages, step_volt))
+            .collect::<Result<_, _>>()?;
+        self.t_of_linear_rotor(&tangents)
+    }
+
+    /// T of the rotor linearised about its trim.
+    fn t_of_linear_rotor(&self, tangents: &[Vec<FlapMotion>]) -> Result<TMatrix, PlantError> {
+        let authority = self.rotor.authority()?;
+        let loads = |motions: &[Vec<HarmonicSeries>]| {
+            let each = motions.iter().map(|flaps| {
+                flaps.iter().enumerate().fold([0.0; 12], |mut sum, (flap, motion)| {
+                    for (sum, part) in sum.iter_mut().zip(authority.loads(flap, motion)) {
+                        *sum += part;
+                    }
+                    sum
+                })
+            });
+            Ok(each.collect())
+        };
+        self.t_of_motions(loads, tangents)
+    }
+}

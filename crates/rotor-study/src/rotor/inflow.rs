@@ -1,0 +1,205 @@
+//! The inflow of a case: a linear model, or a free wake settled with the trim.
+
+use crate::case::{Case, CirculationChoice, FreeWakeValues, InflowChoice};
+use crate::error::StudyError;
+use rotor_response::{ResponseTolerances, RotorSolver};
+use rotor_wake::{
+    ClosestPassage, FlightState, InflowModel, WAKE_BREAKDOWN_TRANSPORT, descent_transport,
+    momentum_inflow,
+};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use trim::{TrimError, TrimSolution, WakeOutcome, WakeTrim, trim, trim_in_free_wake};
+
+/// Iterations of circulation and inflow allowed in a free wake, at least.
+const WAKE_ITERATIONS: usize = 200;
+
+/// How the iteration of a free wake and the trim ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WakeStatus {
+    /// Wake, inflow and trim are within their tolerances.
+    #[serde(alias = "settled")]
+    Converged,
+    /// Not within them after all updates: the state with the least change.
+    #[serde(alias = "not-settled")]
+    NotConverged,
+    /// The iteration diverged: no solution, the last state before.
+    #[serde(alias = "parted")]
+    Diverged,
+}
+
+impl WakeStatus {
+    /// As in JSON and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::NotConverged => "not-converged",
+            Self::Diverged => "diverged",
+        }
+    }
+}
+
+/// A trim with the inflow it settled on, and the wake if there is a free one.
+#[derive(Debug, Clone)]
+pub struct SettledTrim {
+    /// The trim.
+    pub trim: TrimSolution,
+    /// Its inflow; a free wake held still.
+    pub inflow: Arc<dyn InflowModel>,
+    /// The free wake.
+    pub wake: Option<Arc<WakeTrim>>,
+}
+
+/// Refuses to trim a rotor in the wake of a circulation that is not its own.
+///
+/// # Errors
+/// [`StudyError::Refused`].
+pub(crate) fn refuse_prescribed_circulation(case: &Case) -> Result<(), StudyError> {
+    let InflowChoice::FreeWake(FreeWakeValues {
+        circulation: CirculationChoice::Prescribed(_),
+        ..
+    }) = case.inflow.model
+    else {
+        return Ok(());
+    };
+    let message = "a rotor is trimmed with the circulation it has: leave it out, or look at the wake alone with `hhc wake`";
+    let field = "inflow.model.circulation".to_owned();
+    Err(StudyError::Refused { field, message: message.to_owned() })
+}
+
+/// Trims the rotor of a case in the inflow the case asks for.
+///
+/// # Errors
+/// The errors of the trim and of the wake.
+pub fn settled_trim(
+    case: &Case,
+    solver: &mut RotorSolver,
+    start: Option<&TrimSolution>,
+) -> Result<SettledTrim, TrimError> {
+    let (mu, target, settings) = (case.advance_ratio, case.trim_target(), case.trim_settings());
+    let choice = &case.inflow.model;
+    let Some(inflow) = choice.model() else {
+        let coupling = case.wake_trim_settings(&choice.free_wake().unwrap_or_default());
+        let tolerances = solver.tolerances();
+        let inflow_iterations = tolerances.inflow_iterations.max(WAKE_ITERATIONS);
+        *solver = solver.with_tolerances(ResponseTolerances { inflow_iterations, ..tolerances });
+        let wake = trim_in_free_wake(solver, &coupling, mu, &target, &settings)?;
+        let (trim, inflow) = (wake.trim.clone(), Arc::new(wake.frozen.clone()));
+        return Ok(SettledTrim { trim, inflow, wake: Some(Arc::new(wake)) });
+    };
+    let trim = trim(solver, inflow.as_ref(), mu, &target, &settings, start)?;
+    Ok(SettledTrim { trim, inflow, wake: None })
+}
+
+/// What may help a wake that does not settle.
+const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`, more `updates` if all were used";
+
+/// Mean inflow over that of momentum theory, least and most, that a rotor in its wake has.
+const MOMENTUM: [f64; 2] = [0.5, 2.5];
+
+/// Where a coupling that failed has stopped, on a grid of so many steps per revolution.
+fn kept(
+    azimuths: usize,
+    updates: usize,
+    inflow_change: f64,
+    error: &dyn std::error::Error,
+) -> String {
+    let state = if inflow_change.is_finite() {
+        format!(
+            "what is given is the state of the least change of the inflow, {inflow_change:.1e} of the tip speed, on {azimuths} steps per revolution"
+        )
+    } else {
+        format!(
+            "what is given is the last state before, on {azimuths} steps per revolution: of a coarser grid if the case asks for more"
+        )
+    };
+    format!("wake and trim part after {updates} updates: {error}; {state}. {WAKE_REMEDY}")
+}
+
+/// How the coupling with a wake ended, in a word.
+pub fn wake_status(wake: &WakeTrim) -> WakeStatus {
+    match wake.outcome {
+        WakeOutcome::Settled => WakeStatus::Converged,
+        WakeOutcome::NotSettled { .. } => WakeStatus::NotConverged,
+        _ => WakeStatus::Diverged,
+    }
+}
+
+/// What a user should know about a wake; empty if there is nothing.
+pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let azimuths = wake.wake.settings().azimuths;
+    match &wake.outcome {
+        WakeOutcome::NotSettled {
+            updates,
+            inflow_change,
+            tolerance,
+            displacement,
+            displacement_tolerance,
+            theta0_band_rad,
+        } => {
+            let [low, high] = theta0_band_rad.map(f64::to_degrees);
+            warnings.push(format!(
+                "the free wake has not settled in {updates} updates: the inflow still changes by {inflow_change:.1e} of the tip speed ({tolerance:.1e} was asked) and the wake moves by {displacement:.1e} R ({displacement_tolerance:.1e}) in the update kept, the nearest to rest; theta0 between {low:.3} and {high:.3} deg in it and the second half of the updates, on {azimuths} steps per revolution. {WAKE_REMEDY}"
+            ));
+        }
+        WakeOutcome::WakeFailed { updates, inflow_change, error } => {
+            warnings.push(kept(azimuths, *updates, *inflow_change, error));
+        }
+        WakeOutcome::TrimFailed { updates, inflow_change, error } => {
+            warnings.push(kept(azimuths, *updates, *inflow_change, error));
+        }
+        _ => {}
+    }
+    let (flight, thrust) = (&wake.trim.flight, wake.trim.rotor.thrust_coefficient);
+    let settled = wake.outcome == WakeOutcome::Settled;
+    warnings.extend(descent_warning(flight, thrust, settled));
+    warnings.extend(momentum_warning(flight, thrust, wake.trim.rotor.inflow.mean()));
+    warnings.extend(wake.closest_passage.and_then(passage_warning));
+    warnings
+}
+
+/// What a user should know about the wake of a descent.
+pub(crate) fn descent_warning(
+    flight: &FlightState,
+    thrust_coefficient: f64,
+    settled: bool,
+) -> Option<String> {
+    let transport = descent_transport(flight, thrust_coefficient)?;
+    let breaks_down = transport < WAKE_BREAKDOWN_TRANSPORT;
+    let state = if breaks_down { "in the" } else { "near the" };
+    (breaks_down || (transport < 1.0 && !settled)).then(|| {
+        format!(
+            "{state} vortex-ring state: in this descent the wake is carried away with {transport:.2} of the hover induced velocity, and below {WAKE_BREAKDOWN_TRANSPORT} wakes break down and the flow is unsteady: a periodic wake stands for its mean at best. Fly faster, or descend less or much more steeply"
+        )
+    })
+}
+
+/// What a user should know about an inflow that does not go with the thrust.
+fn momentum_warning(flight: &FlightState, thrust_coefficient: f64, mean: f64) -> Option<String> {
+    if descent_transport(flight, thrust_coefficient).is_some() {
+        return None;
+    }
+    let ratio = mean / momentum_inflow(flight, thrust_coefficient).ok()?;
+    let [least, most] = MOMENTUM;
+    (!(least..=most).contains(&ratio)).then(|| {
+        format!(
+            "the mean inflow is {ratio:.2} of momentum theory's for this thrust, {least} to {most} are usual: lightly loaded blades carry lift of both senses along the span, the wake has more than one state, and neither trim nor power can be trusted. Remedy: more thrust, or compare with inflow.model: Uniform"
+        )
+    })
+}
+
+/// What a user should know about a vortex that passes a blade closely.
+pub(crate) fn passage_warning(passage: ClosestPassage) -> Option<String> {
+    passage.within_core().then(|| {
+        format!(
+            "a tip vortex of age {:.0} deg passes the blade at azimuth {:.0} deg, {:.2} R, at {:.4} R, closer than its core ({:.4} R): the core radius decides the load there",
+            passage.age_rad.to_degrees(),
+            passage.azimuth_rad.to_degrees(),
+            passage.station,
+            passage.distance,
+            passage.core_radius
+        )
+    })
+}

@@ -1,0 +1,18 @@
+//! The rotor in trim: its inflow, its response to moving flaps, and what they do to the hub.
+
+mod authority;
+mod continuation;
+mod hinge_response;
+mod inflow;
+mod once;
+mod reconverged;
+mod resonance;
+mod trimmed;
+
+pub use authority::FlapAuthority;
+pub use continuation::continued_trim;
+pub use inflow::{SettledTrim, WakeStatus, settled_trim, wake_status, wake_warnings};
+pub(crate) use inflow::{descent_warning, passage_warning};
+pub use reconverged::ReconvergedAuthority;
+pub use resonance::refuse_resonance;
+pub use trimmed::{TrimmedRotor, UnlikeSolver};

@@ -1,0 +1,99 @@
+//! T with the geometry of the free wake converged anew, by central differences.
+
+use crate::case::Case;
+use crate::rotor::authority::FlapAuthority;
+use rayon::prelude::*;
+use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_response::{Condition, ResponseError, RotorSolver};
+use std::collections::BTreeSet;
+use trim::{WakeDifference, WakeDifferenceSettings, WakeTrim, WakeTrimSettings, wake_difference};
+
+/// What the differences take.
+#[derive(Debug, Clone)]
+pub(crate) struct Reconverging {
+    /// Harmonics per rev that the case controls.
+    harmonics: Vec<usize>,
+    /// Step of a flap harmonic, deg.
+    step_deg: f64,
+    /// The coupling with the free wake of the case; none in another inflow.
+    pub(crate) coupling: Option<WakeTrimSettings>,
+}
+
+/// [`FlapAuthority`] with the geometry of the wake converged anew at the controlled harmonics.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReconvergedAuthority {
+    /// The derivatives; of harmonics that the case does not control, and of hinge moments, those with the
+    /// geometry held.
+    pub authority: FlapAuthority,
+    /// The same differences with the geometry held: a check on the linearised rotor.
+    pub held: FlapAuthority,
+    /// Updates of the wake that the slowest difference took.
+    pub updates: usize,
+    /// Largest change of a difference in its last update, over its size.
+    pub change: f64,
+}
+
+impl Reconverging {
+    pub(crate) fn of(case: &Case) -> Self {
+        let harmonics: BTreeSet<usize> = case.control.harmonics.iter().flatten().copied().collect();
+        let wake = case.inflow.model.free_wake();
+        let coupling = wake.map(|values| case.wake_trim_settings(&values));
+        let step_deg = case.control.t_step_deg;
+        Self { harmonics: harmonics.into_iter().collect(), step_deg, coupling }
+    }
+
+    /// The derivatives about a trim with flaps at rest; `settled` has what is not found anew.
+    ///
+    /// # Errors
+    /// The errors of the response and of the wake.
+    pub(crate) fn authority(
+        &self,
+        (wake, solver, coupling): (&WakeTrim, &RotorSolver, &WakeTrimSettings),
+        rest: &Condition,
+        settled: FlapAuthority,
+    ) -> Result<ReconvergedAuthority, ResponseError> {
+        let flaps = rest.flap_angles_rad.len();
+        let pairs: Vec<(usize, usize)> = (0..flaps)
+            .flat_map(|flap| self.harmonics.iter().map(move |&harmonic| (flap, harmonic)))
+            .collect();
+        let controls: Vec<(usize, usize, bool)> =
+            pairs.iter().flat_map(|&(f, n)| [(f, n, false), (f, n, true)]).collect();
+        let settings = WakeDifferenceSettings::default();
+        let found = controls
+            .into_par_iter()
+            .map(|control| {
+                let [plus, minus] = [1.0, -1.0].map(|side| self.moved(rest, control, side));
+                wake_difference(wake, solver, coupling, [&plus, &minus], settings)
+            })
+            .collect::<Result<Vec<WakeDifference>, ResponseError>>()?;
+        let per_deg = |difference: [f64; 12]| difference.map(|z| z / (2.0 * self.step_deg));
+        let mut made = ReconvergedAuthority {
+            authority: settled.clone(),
+            held: settled,
+            updates: found.iter().map(|d| d.hub.len() - 1).max().unwrap_or(0),
+            change: found.iter().map(|d| d.change).fold(0.0, f64::max),
+        };
+        for (&pair, both) in pairs.iter().zip(found.chunks_exact(2)) {
+            let last = [per_deg(both[0].last()), per_deg(both[1].last())];
+            let first = [per_deg(both[0].hub[0]), per_deg(both[1].hub[0])];
+            made.authority = made.authority.with_harmonic(pair, last);
+            made.held = made.held.with_harmonic(pair, first);
+        }
+        Ok(made)
+    }
+
+    /// A condition with one harmonic of one flap moved by a step.
+    fn moved(
+        &self,
+        rest: &Condition,
+        (flap, harmonic, sine): (usize, usize, bool),
+        side: f64,
+    ) -> Condition {
+        let step = side * self.step_deg.to_radians();
+        let (cosine, sine) = if sine { (0.0, step) } else { (step, 0.0) };
+        let mut moved = rest.clone();
+        moved.flap_angles_rad[flap] = HarmonicSeries::zero(harmonic);
+        moved.flap_angles_rad[flap].set_harmonic(harmonic, Harmonic { cosine, sine });
+        moved
+    }
+}

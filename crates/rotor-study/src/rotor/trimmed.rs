@@ -1,0 +1,341 @@
+//! A rotor in trim with its flaps at rest.
+
+use crate::case::{Case, TInflowChoice};
+use crate::error::StudyError;
+use crate::rotor::authority::{FlapAuthority, HARMONICS};
+use crate::rotor::inflow::{SettledTrim, refuse_prescribed_circulation, settled_trim};
+use crate::rotor::once::Once;
+use crate::rotor::reconverged::{ReconvergedAuthority, Reconverging};
+use crate::rotor::resonance::{refuse_resonance_of, trim_error};
+use crate::series::scaled;
+use nalgebra::DMatrix;
+use rotor_base::{HarmonicSeries, RotorScales};
+use rotor_response::{
+    Condition, FlapDirection, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution,
+    RotorSolver, SectionLift, SixLoads, Stability, StationLoads, dissimilar_hub_loads,
+};
+use rotor_wake::InflowModel;
+use std::sync::Arc;
+use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
+
+/// A rotor in trim, flaps at rest: where every control run starts.
+#[derive(Debug, Clone)]
+pub struct TrimmedRotor {
+    solver: RotorSolver,
+    inflow: Arc<dyn InflowModel>,
+    pub(super) trim: TrimSolution,
+    scales: RotorScales,
+    /// Inflow in the T of the linearised rotor.
+    t_inflow: TInflowChoice,
+    /// What a wake converged anew takes: controlled harmonics, steps and settings.
+    reconverging: Reconverging,
+    reconverged: Once<ReconvergedAuthority>,
+    /// Change of the hinge moments with the flap motions.
+    pub(super) hinge_response: Once<DMatrix<f64>>,
+    authority: Once<FlapAuthority>,
+    wake: Option<Arc<WakeTrim>>,
+}
+
+impl TrimmedRotor {
+    /// Builds the rotor of a case and trims it with its flaps at rest, from a nearby trim if there
+    /// is one.
+    ///
+    /// # Errors
+    /// [`StudyError::Blade`], [`StudyError::Response`] and [`StudyError::Trim`], with the field of the case
+    /// that asked for it.
+    pub fn new(case: &Case, start: Option<&TrimSolution>) -> Result<Self, StudyError> {
+        refuse_prescribed_circulation(case)?;
+        let at_rotor = |source| StudyError::Response { field: "rotor".to_owned(), source };
+        let rotor = case.rotor_of(&case.blade_properties()?, "rotor")?;
+        refuse_resonance_of(case, &rotor)?;
+        let mu = case.advance_ratio;
+        let tolerances = case.response_tolerances();
+        let mut solver = RotorSolver::new(Arc::new(rotor), mu, tolerances).map_err(at_rotor)?;
+        let settled = settled_trim(case, &mut solver, start);
+        let settled = settled.map_err(|source| trim_error(case, source))?;
+        let scales = case.scales();
+        let SettledTrim { trim, inflow, wake } = settled;
+        let t_inflow = case.control.t_inflow;
+        let reconverging = Reconverging::of(case);
+        Ok(Self {
+            solver,
+            inflow,
+            trim,
+            scales,
+            t_inflow,
+            reconverging,
+            reconverged: Once::default(),
+            hinge_response: Once::default(),
+            authority: Once::default(),
+            wake,
+        })
+    }
+
+    /// The same rotor with the inflow settled in its T, as in its responses.
+    pub(crate) fn with_settled_t(&self) -> Self {
+        match self.t_inflow {
+            TInflowChoice::Settled => self.clone(),
+            _ => Self {
+                t_inflow: TInflowChoice::Settled,
+                authority: Once::default(),
+                ..self.clone()
+            },
+        }
+    }
+
+    /// Units of the rotor.
+    pub fn scales(&self) -> &RotorScales {
+        &self.scales
+    }
+
+    /// Moment unit `m0 Omega^2 R^3`, N m.
+    pub(crate) fn moment_newton_metre(&self) -> f64 {
+        self.scales.moment_newton_metre()
+    }
+
+    /// The trim.
+    pub fn trim(&self) -> &TrimSolution {
+        &self.trim
+    }
+
+    /// The free wake the trim settled with, if the case asks for one.
+    pub fn wake(&self) -> Option<&WakeTrim> {
+        self.wake.as_deref()
+    }
+
+    /// Whether the iteration of free wake and trim diverged: this is the last good state, no solution.
+    pub fn wake_parted(&self) -> bool {
+        self.wake().is_some_and(|wake| wake.outcome.ran_away())
+    }
+
+    /// The rotor.
+    pub fn rotor(&self) -> &Rotor {
+        self.solver.rotor()
+    }
+
+    /// What the flaps do to the hub, linearised about the trimmed orbit with the inflow as the case has it in T.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn authority(&self) -> Result<&FlapAuthority, ResponseError> {
+        self.authority.found(|| self.linearised(self.state_in_t()))
+    }
+
+    /// The same with the geometry of the free wake converged anew at the harmonics that the case controls; none
+    /// without a free wake.
+    ///
+    /// # Errors
+    /// The errors of the response and of the wake.
+    pub fn reconverged(&self) -> Result<Option<&ReconvergedAuthority>, ResponseError> {
+        let Some(wake) = &self.wake else { return Ok(None) };
+        let Some(coupling) = &self.reconverging.coupling else { return Ok(None) };
+        let found = self.reconverged.found(|| {
+            let settled = self.linearised(InflowState::Settled)?;
+            let about = (wake.as_ref(), &self.solver, coupling);
+            self.reconverging.authority(about, &self.flaps_at_rest(), settled)
+        })?;
+        Ok(Some(found))
+    }
+
+    /// The same with the inflow as asked for, made anew.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn linearised(&self, state: InflowState) -> Result<FlapAuthority, ResponseError> {
+        self.linearised_to(state, HARMONICS)
+    }
+
+    pub(crate) fn linearised_to(
+        &self,
+        state: InflowState,
+        highest: usize,
+    ) -> Result<FlapAuthority, ResponseError> {
+        let condition = self.flaps_at_rest();
+        let about = (&condition, &self.trim.rotor);
+        FlapAuthority::about(
+            &mut self.solver.clone(),
+            about,
+            self.inflow.as_ref(),
+            (state, highest),
+        )
+    }
+
+    /// Change of the hub loads at the blade number per rev with small motions of the flaps (all flaps of each motion,
+    /// deg), about a response with moved flaps of one's own: inflow as the case has it in T. Load per unit of motion.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn loads_along(
+        &self,
+        flap_angles_rad: Vec<HarmonicSeries>,
+        about: &RotorSolution,
+        motions_deg: &[Vec<HarmonicSeries>],
+    ) -> Result<Vec<[f64; 12]>, ResponseError> {
+        let condition = self.condition(flap_angles_rad);
+        let directions: Vec<FlapDirection> = motions_deg
+            .iter()
+            .map(|flaps| flaps.iter().map(|m| scaled(m, 1.0_f64.to_radians())).collect())
+            .collect();
+        let mut solver = self.solver.clone();
+        let at = (&condition, about);
+        let found = solver.linearised(at, self.inflow.as_ref(), &directions, self.state_in_t())?;
+        let blades = self.rotor().model().blades;
+        Ok(found.sensitivities.iter().map(|s| s.hub.harmonic(blades)).collect())
+    }
+
+    /// What the inflow does in T. A loop measures responses with the geometry of the wake held: the T that
+    /// converges it anew is a forecast of what the hub would feel, not of what the loop measures.
+    fn state_in_t(&self) -> InflowState {
+        match self.t_inflow {
+            TInflowChoice::Settled | TInflowChoice::Reconverged => InflowState::Settled,
+            TInflowChoice::Frozen => InflowState::Frozen,
+        }
+    }
+
+    /// What another response leaves unbalanced at the controls and attitude of this trim, over the
+    /// weight.
+    ///
+    /// # Errors
+    /// As [`trim::imbalance`].
+    pub fn imbalance(
+        &self,
+        target: &TrimTarget,
+        response: &RotorSolution,
+    ) -> Result<f64, TrimError> {
+        imbalance(&self.solver, target, &self.trim, response)
+    }
+
+    /// Stability of the trimmed blade, flaps at rest.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::stability`].
+    pub fn stability(&self) -> Result<Stability, ResponseError> {
+        self.solver.stability(&self.flaps_at_rest(), &self.trim.rotor)
+    }
+
+    /// The section of the trimmed rotor that lifts hardest.
+    pub fn largest_section_lift(&self) -> Option<SectionLift> {
+        self.solver.largest_section_lift(&self.trim.rotor)
+    }
+
+    /// Stability of an unlike blade, and its loads at stations of its span (R), flaps at rest.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn unlike_blade(
+        &self,
+        unlike: &UnlikeSolver,
+        stations: &[f64],
+    ) -> Result<(Stability, Vec<StationLoads>), ResponseError> {
+        let mut solver = unlike.solver.clone();
+        let condition = self.flaps_at_rest();
+        let found = solver.blade_response(&condition, &self.trim.rotor)?;
+        let loads = solver.station_loads(&condition, &found, stations)?;
+        Ok((solver.stability(&condition, &found)?, loads))
+    }
+
+    /// Loads of one blade at stations of its span (R), flaps at rest.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::station_loads`].
+    pub fn station_loads(&self, stations: &[f64]) -> Result<Vec<StationLoads>, ResponseError> {
+        self.solver.station_loads(&self.flaps_at_rest(), &self.trim.rotor, stations)
+    }
+
+    fn flaps_at_rest(&self) -> Condition {
+        self.condition(vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()])
+    }
+
+    /// Controls and attitude of the trim with flaps that move.
+    fn condition(&self, flap_angles_rad: Vec<HarmonicSeries>) -> Condition {
+        Condition {
+            bank_rad: self.trim.attitude.roll_rad,
+            flight: self.trim.flight,
+            controls: self.trim.controls,
+            flap_angles_rad,
+        }
+    }
+
+    /// A solver for every unlike blade of a case, at the advance ratio of this trim.
+    ///
+    /// # Errors
+    /// [`StudyError::Blade`] and [`StudyError::Response`].
+    pub fn unlike_solvers(&self, case: &Case) -> Result<Vec<UnlikeSolver>, StudyError> {
+        let unlike = case.rotor.dissimilar_blades.iter().enumerate();
+        unlike
+            .map(|(i, unlike)| {
+                let field = format!("rotor.dissimilar_blades[{i}]");
+                let failed = |source| StudyError::Response { field: field.clone(), source };
+                let rotor = case.rotor_of(&case.dissimilar_blade(unlike)?, &field)?;
+                rotor.refuse_resonance(self.trim.controls.theta0_rad).map_err(failed)?;
+                let mu = self.trim.flight.advance_ratio;
+                let solver = RotorSolver::new(Arc::new(rotor), mu, case.response_tolerances())
+                    .map_err(failed)?;
+                let (position, flap_motion) = (unlike.blade - 1, unlike.flap_motion);
+                Ok(UnlikeSolver { position, flap_motion, solver })
+            })
+            .collect()
+    }
+
+    /// Hub loads with unlike blades in the inflow of a response, for given flap motions of the others.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn unlike_hub_loads(
+        &self,
+        unlike: &mut [UnlikeSolver],
+        flap_angles_rad: &[HarmonicSeries],
+        about: &RotorSolution,
+    ) -> Result<SixLoads, ResponseError> {
+        let condition = |factor: f64| {
+            self.condition(flap_angles_rad.iter().map(|angle| scaled(angle, factor)).collect())
+        };
+        let mut others: Vec<OtherBlade> = unlike
+            .iter()
+            .map(|one| OtherBlade {
+                position: one.position,
+                solver: one.solver.clone(),
+                condition: condition(one.flap_motion),
+            })
+            .collect();
+        let mut alike = self.solver.clone();
+        dissimilar_hub_loads(&mut alike, (&condition(1.0), about), &mut others)
+    }
+
+    /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
+    ///
+    /// Starts from the trimmed orbit with the trim's factorisation, whatever was solved before.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn with_flaps(
+        &self,
+        flap_angles_rad: Vec<HarmonicSeries>,
+    ) -> Result<RotorSolution, ResponseError> {
+        self.with_flaps_from(flap_angles_rad, &self.trim.rotor)
+    }
+
+    /// The same, started from a response of one's own.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn with_flaps_from(
+        &self,
+        flap_angles_rad: Vec<HarmonicSeries>,
+        start: &RotorSolution,
+    ) -> Result<RotorSolution, ResponseError> {
+        self.solver.clone().solve(
+            &self.condition(flap_angles_rad),
+            self.inflow.as_ref(),
+            Some(start),
+        )
+    }
+}
+
+/// The solver of a blade unlike the rest.
+#[derive(Debug, Clone)]
+pub struct UnlikeSolver {
+    position: usize,
+    flap_motion: f64,
+    solver: RotorSolver,
+}

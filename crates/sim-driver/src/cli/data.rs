@@ -1,0 +1,51 @@
+//! `hhc import`, `hhc check` and `hhc init`.
+
+use super::args::{CheckArgs, ImportArgs, InitArgs};
+use super::warn;
+use crate::SimError;
+use crate::case::starting_case;
+use crate::check::check_file;
+use crate::files::write_new;
+use crate::import::{ColumnOptions, ImportRequest, default_folder};
+use crate::output::{Format, Printable, print};
+use std::path::{Path, PathBuf};
+
+pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
+    let first = args.files.first().map_or(Path::new("data"), PathBuf::as_path);
+    let request = ImportRequest {
+        files: args.files.clone(),
+        out: args.out.clone().unwrap_or_else(|| default_folder(first)),
+        source: args.source,
+        kind: args.kind,
+        columns: ColumnOptions {
+            columns: args.columns.clone(),
+            input: args.input.clone(),
+            response: args.response.clone(),
+            convert: args.convert.clone(),
+        },
+        variable: args.variable.clone(),
+        range: args.range,
+        sampling_hz: args.sampling_hz,
+        reduce_to_hz: args.reduce_to_hz,
+        most_samples: args.max_samples,
+        title: args.title.clone(),
+    };
+    let result = crate::import::import(&request)?;
+    warn(&result.warnings, Format::Details);
+    print(&result.render(args.format.format)?)
+}
+
+pub(super) fn check(args: &CheckArgs) -> Result<(), SimError> {
+    let result = check_file(&args.file)?;
+    warn(&result.warnings, Format::Details);
+    print(&result.render(args.format.format)?)
+}
+
+pub(super) fn init(args: &InitArgs) -> Result<(), SimError> {
+    let text = starting_case()?;
+    write_new(&args.file, text.as_bytes())?;
+    print(&format!(
+        "{0} written: the paper's case, every field commented. Edit it, then `hhc check {0}` and `hhc run {0}`.\n",
+        args.file.display()
+    ))
+}

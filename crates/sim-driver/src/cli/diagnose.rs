@@ -1,0 +1,154 @@
+//! `hhc diagnose` and `hhc ladder`.
+
+use super::args::{DiagnoseArgs, LadderArgs, RecordsArgs};
+use super::{overridden, warn};
+use crate::SimError;
+use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case, with_actuator_file};
+use crate::diagnose::{Findings, FolderStore, Question, Record, Records, Story, climb, extended};
+use crate::files::{DataSet, Folder, Source, read_dataset, refuse_input, ron_text, write_atomic};
+use crate::output::{Format, Printable, print};
+use crate::problem::{Fault, Place, Problem};
+use crate::progress::Progress;
+use crate::stored_actuator::{read_actuator, write_actuator};
+use preisach_dyn::ActuatorModel;
+use std::path::Path;
+
+/// Name of the actuator a diagnosis extended.
+const EXTENDED_FILE: &str = "extended.ron";
+/// Name of the case given to a diagnosis, with that actuator.
+const EXTENDED_CASE_FILE: &str = "extended_case.ron";
+
+pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
+    let RecordsArgs { output, cache, format, .. } = &args.records;
+    refuse_input(&args.model, &output.join(EXTENDED_FILE))?;
+    let (model, case) = given_model(&args.model)?;
+    let (measured, reference) = both_records(&args.records)?;
+    let progress = Progress::new(1);
+    progress.doing(format!("diagnosing {} runs", measured.runs.len()));
+    let question = Question {
+        reference,
+        only: args.only.clone(),
+        cache: Some(&FolderStore(cache)),
+        given: model.as_ref(),
+    };
+    let found = crate::diagnose::diagnose(&measured, &question);
+    progress.finish();
+    let found = found?;
+    let findings = serde_json::to_string_pretty(&Findings::from(&found)).map_err(|e| {
+        SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
+    })?;
+    write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
+    if let Some(case) = case {
+        write_extended_case(&case, output)?;
+    }
+    for (name, text) in found.figures() {
+        write_atomic(&output.join(name), text.as_bytes())?;
+    }
+    write_atomic(&output.join("findings.json"), (findings + "\n").as_bytes())?;
+    print(&Story::of(&found).render(format.form())?)
+}
+
+pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
+    let RecordsArgs { output, cache, format, .. } = &args.records;
+    let (measured, reference) = both_records(&args.records)?;
+    let loaded = match &args.case {
+        Some(path) => load_case(path)?,
+        None => shipped_case(PAPER_CASE)?,
+    };
+    let loaded = overridden(loaded, args.inflow);
+    let progress = Progress::new(1);
+    progress.doing(format!("climbing on {} runs", measured.runs.len()));
+    let climbed = climb(&measured, &reference, &loaded, Some(cache));
+    progress.finish();
+    let (ladder, found) = climbed?;
+    let text = serde_json::to_string_pretty(&ladder)
+        .map_err(|e| SimError::NotWritten { path: "ladder.json".into(), reason: e.to_string() })?;
+    write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
+    write_atomic(&output.join("ladder.json"), (text + "\n").as_bytes())?;
+    print(&ladder.render(format.form())?)
+}
+
+/// The runs to be explained and those that show the system as it is.
+fn both_records(args: &RecordsArgs) -> Result<(Records, Vec<Record>), SimError> {
+    let measured = records_of(&args.data)?;
+    let reference = reference_runs(args.reference.as_deref(), &args.data, &measured)?;
+    Ok((measured, reference))
+}
+
+/// The model of an actuator file; or the case.
+fn given_model(path: &Path) -> Result<(Option<ActuatorModel>, Option<LoadedCase>), SimError> {
+    let source = Source::read(path)?;
+    match read_actuator(&source) {
+        Ok(stored) => Ok((Some(stored.model), None)),
+        Err(problems) if source.text.contains("kind: Actuator") => Err(problems.into()),
+        Err(_) => Ok((None, Some(load_case(path)?))),
+    }
+}
+
+/// Writes a case with the extended actuator beside it, where no other file is named in it: their paths would
+/// lead elsewhere.
+fn write_extended_case(case: &LoadedCase, output: &Path) -> Result<(), SimError> {
+    let extended = output.join(EXTENDED_FILE);
+    let folder = Folder::of_file(&extended);
+    let Ok(own) = with_actuator_file(case, &extended, &folder) else {
+        eprintln!(
+            "warning: no {EXTENDED_CASE_FILE}: the case names files beside it; name {} as its actuator",
+            extended.display()
+        );
+        return Ok(());
+    };
+    let path = output.join(EXTENDED_CASE_FILE);
+    let text = ron_text(&own.case)
+        .map_err(|e| SimError::NotWritten { path: path.clone(), reason: e.to_string() })?;
+    Ok(write_atomic(&path, text.as_bytes())?)
+}
+
+fn records_of(folder: &Path) -> Result<Records, SimError> {
+    let data = read_dataset(&Folder::Disk(folder.to_path_buf()))?;
+    warn(data.warnings(), Format::Text);
+    match &data {
+        DataSet::Bench(bench) => Ok(bench.into()),
+        DataSet::Loops(loops) => Ok(loops.into()),
+        DataSet::Curves(curves) => {
+            let place = Place::file(format!("{}/dataset.ron", curves.folder)).field("kind");
+            let message =
+                "reversal curves hold no time: nothing dynamic can be diagnosed from them; \
+                           give an ActuatorBench or a GenericLoop"
+                    .to_owned();
+            Err(Problem::new(place, Fault::Refused { message }).into())
+        }
+    }
+}
+
+/// Reference runs: of the folder given, else those of the data, else of `../reference`. A folder in which no
+/// run has a role is one of reference runs.
+fn reference_runs(
+    given: Option<&Path>,
+    data: &Path,
+    measured: &Records,
+) -> Result<Vec<Record>, SimError> {
+    let folder = match given {
+        Some(folder) => folder.to_path_buf(),
+        None if measured.runs.iter().any(|run| run.is_reference) => return Ok(Vec::new()),
+        None => data.join("../reference"),
+    };
+    if given.is_none() && !folder.join("dataset.ron").is_file() {
+        return Ok(Vec::new());
+    }
+    let found = records_of(&folder)?;
+    if found.content_hash == measured.content_hash {
+        let place = Place::file(format!("{}/dataset.ron", folder.display()));
+        let message = "these are the measured runs themselves: reference runs show the actuator with nothing missing; \
+             give their folder, or none"
+            .to_owned();
+        return Err(Problem::new(place, Fault::Refused { message }).into());
+    }
+    let mut runs = found.runs;
+    if runs.iter().any(|run| run.is_reference) {
+        runs.retain(|run| run.is_reference);
+    }
+    for run in &mut runs {
+        run.is_reference = true;
+    }
+    Ok(runs)
+}

@@ -1,0 +1,77 @@
+//! `hhc identify`.
+
+use super::args::IdentifyArgs;
+use super::{refuse_inputs, warn};
+use crate::SimError;
+use crate::curve_identification::identify_curves;
+use crate::figures::figure_files;
+use crate::files::{DataSet, Folder, Source, read_dataset, refuse_inside, write_atomic};
+use crate::identification::{BenchIdentification, identify_bench, identify_loops};
+use crate::output::{Printable, print};
+use crate::progress::Progress;
+use crate::stored_actuator::{StoredActuator, read_actuator, write_actuator};
+use preisach_dyn::identify::Settings;
+
+pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
+    let base = match &args.start {
+        Some(path) => read_actuator(&Source::read(path)?)?.settings,
+        None => Settings::default(),
+    };
+    refuse_inside(&args.bench, &args.output)?;
+    refuse_inputs(args.start.as_deref(), Some(&args.output))?;
+    let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
+    warn(data.warnings(), args.format.form());
+    let progress = Progress::new(1);
+    progress.doing(format!("identifying from {} runs", data.run_count()));
+    let written = Some(args.output.display().to_string());
+    let (stored, text, figures) = match &data {
+        DataSet::Curves(curves) => {
+            let found = identify_curves(curves);
+            progress.finish();
+            let found = found?;
+            let figures = args.figures.as_ref().map(|_| found.figure_files()).transpose()?;
+            (found.stored(), found.summary(written).render(args.format.form())?, figures)
+        }
+        DataSet::Bench(bench) => {
+            record_files(&compared(identify_bench(bench, &base), args, &progress)?, written, args)?
+        }
+        DataSet::Loops(loops) => {
+            record_files(&compared(identify_loops(loops, &base), args, &progress)?, written, args)?
+        }
+    };
+    write_actuator(&stored, &args.output)?;
+    if let (Some(folder), Some(figures)) = (&args.figures, figures) {
+        for (name, text) in figures {
+            write_atomic(&folder.join(name), text.as_bytes())?;
+        }
+    }
+    print(&text)
+}
+
+/// Model file, printed text and tables of the figures.
+type IdentifiedFiles = (StoredActuator, String, Option<Vec<(String, String)>>);
+
+fn record_files(
+    found: &BenchIdentification,
+    written: Option<String>,
+    args: &IdentifyArgs,
+) -> Result<IdentifiedFiles, SimError> {
+    let figures = args.figures.as_ref().map(|_| figure_files(found)).transpose()?;
+    Ok((found.stored(), found.summary(written).render(args.format.form())?, figures))
+}
+
+/// The identification with the table of all models and the one that is wanted in place.
+fn compared(
+    found: Result<BenchIdentification, SimError>,
+    args: &IdentifyArgs,
+    progress: &Progress,
+) -> Result<BenchIdentification, SimError> {
+    progress.doing("comparing all models".to_owned());
+    let found = found.and_then(|mut found| {
+        found.compare()?;
+        found.pick(args.model)?;
+        Ok(found)
+    });
+    progress.finish();
+    found
+}

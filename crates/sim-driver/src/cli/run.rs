@@ -1,0 +1,260 @@
+//! Bare `hhc`, `hhc run` and `hhc report`: a case run, stored and shown.
+
+use super::args::{ReportArgs, RunArgs, StudyArgs};
+use super::{check_advance_ratio, overridden, refuse_diverged, warn};
+use crate::SimError;
+use crate::actuator::case_actuators;
+use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
+use crate::files::{refuse_unwritable, write_atomic};
+use crate::output::{Format, Printable, print};
+use crate::print::blade_loads::blade_loads_csv;
+use crate::print::study::{robustness_csv, sensitivity_csv};
+use crate::problem::{Fault, Place, Problems};
+use crate::progress::Progress;
+use crate::report::{histories_csv, report_html, study_report};
+use crate::results::{BenchPart, Figures, RESULT_FILE, StoredResult, figures};
+use crate::run::{RunOutcome, run_case, run_trimmed, steps_of};
+use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
+use crate::terminal::{Summary, details, summary};
+use rotor_study::{Assumptions, robustness_maps, sensitivities};
+use std::path::{Path, PathBuf};
+use trim::TrimSolution;
+
+/// Name of the report.
+const REPORT_FILE: &str = "report.html";
+/// Name of the picture it opens with.
+const FIGURE_FILE: &str = "figure.svg";
+/// Name of the flap and voltage histories.
+const HISTORIES_FILE: &str = "histories.csv";
+/// Name of the loads along the blade over azimuth.
+const BLADE_LOADS_FILE: &str = "blade_loads.csv";
+/// Name of the sensitivities.
+const SENSITIVITY_FILE: &str = "sensitivity.csv";
+/// Name of the robustness maps.
+const ROBUSTNESS_FILE: &str = "robustness.csv";
+/// Name of the table over advance ratios.
+const SWEEP_FILE: &str = "sweep.csv";
+
+pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
+    let loaded = overridden(shipped_case(PAPER_CASE)?, Some(args.inflow));
+    let scope = Scope { sensitivity: Some(Assumptions::WithoutWake), robustness: false };
+    run_and_store(&loaded, &args.out, args.format.form(), scope)
+}
+
+pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
+    let loaded = overridden(load_case(&args.case)?, args.inflow);
+    let out = args.out.clone().unwrap_or_else(|| {
+        let stem = args.case.file_stem().map(PathBuf::from).unwrap_or_default();
+        Path::new("out").join(stem)
+    });
+    let sensitivity = args.sensitivity.then_some(Assumptions::WithWake);
+    let scope = Scope { sensitivity, robustness: args.robustness };
+    let format = args.format.form();
+    if args.mu.is_empty() {
+        return run_and_store(&loaded, &out, format, scope);
+    }
+    Sweep { loaded: &loaded, out: &out, scope, format }.run(&args.mu)
+}
+
+pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
+    let stored = StoredResult::read(&args.dir)?;
+    let figures = figures(&stored.result, &stored.setting()?);
+    write_shown(&stored, &figures, &args.dir)?;
+    show(&Summary { stored: &stored, figures: &figures, folder: &args.dir }, args.format.form())
+}
+
+/// What is computed beside the case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Scope {
+    sensitivity: Option<Assumptions>,
+    robustness: bool,
+}
+
+impl Scope {
+    /// Steps of the progress of a case with all of it.
+    fn steps(self, loaded: &LoadedCase) -> usize {
+        steps_of(loaded) + self.sensitivity.map_or(0, |which| which.rows(&loaded.case))
+    }
+
+    /// The outcome with what is computed beside the case.
+    fn added(
+        self,
+        loaded: &LoadedCase,
+        mut outcome: RunOutcome,
+        progress: &Progress,
+    ) -> Result<RunOutcome, SimError> {
+        if let Some(which) = self.sensitivity {
+            progress.doing("sensitivity");
+            let done = || progress.step();
+            let rotor = (&outcome.trimmed, &outcome.drives);
+            outcome.result.sensitivity = sensitivities(&loaded.case, rotor, which, &done)
+                .map_err(|error| loaded.located(error))?;
+        }
+        if self.robustness {
+            progress.doing("robustness");
+            outcome.result.robustness =
+                robustness_maps(&loaded.case, &outcome.trimmed, &outcome.drives)
+                    .map_err(|error| loaded.located(error))?;
+        }
+        Ok(outcome)
+    }
+}
+
+fn run_and_store(
+    loaded: &LoadedCase,
+    out: &Path,
+    format: Format,
+    scope: Scope,
+) -> Result<(), SimError> {
+    refuse_unwritable(out)?;
+    let progress = Progress::new(scope.steps(loaded));
+    let computed =
+        run_case(loaded, &progress).and_then(|outcome| scope.added(loaded, outcome, &progress));
+    progress.finish();
+    let outcome = computed.inspect_err(|_| note_earlier(out))?;
+    let figures = outcome.figures();
+    let stored = store(loaded, &outcome, &figures, out)?;
+    warn(&figures.warnings, format);
+    show(&Summary { stored: &stored, figures: &figures, folder: out }, format)?;
+    refuse_diverged(loaded, outcome.trimmed.wake_parted())
+}
+
+/// Writes everything a run leaves behind.
+fn store(
+    loaded: &LoadedCase,
+    outcome: &RunOutcome,
+    figures: &Figures,
+    out: &Path,
+) -> Result<StoredResult, SimError> {
+    let actuators = &outcome.actuators;
+    let (inputs, bench) = (actuators.inputs.clone(), BenchPart::of(actuators)?);
+    let stored = StoredResult::new(&loaded.case, inputs, bench, outcome.result.clone())?;
+    stored.write(&out.join(RESULT_FILE))?;
+    let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales());
+    write_atomic(&out.join(BLADE_LOADS_FILE), blade_loads.as_bytes())?;
+    write_shown(&stored, figures, out)?;
+    Ok(stored)
+}
+
+/// Writes what follows from a stored result: tables, picture and report.
+fn write_shown(stored: &StoredResult, figures: &Figures, out: &Path) -> Result<(), SimError> {
+    let write = |name: &str, text: &str| write_atomic(&out.join(name), text.as_bytes());
+    write(HISTORIES_FILE, &histories_csv(&stored.result.control))?;
+    if !figures.sensitivity.is_empty() {
+        let harmonics = &stored.case.control.harmonics;
+        write(SENSITIVITY_FILE, &sensitivity_csv(harmonics, &figures.sensitivity))?;
+    }
+    if !figures.robustness.is_empty() {
+        write(ROBUSTNESS_FILE, &robustness_csv(&figures.robustness))?;
+    }
+    let report = study_report(stored, figures);
+    if report.finding.is_drawn() {
+        write(FIGURE_FILE, &report.finding.svg(&report.title))?;
+    }
+    Ok(write(REPORT_FILE, &report_html(&report))?)
+}
+
+/// Shows a stored result.
+fn show(of: &Summary<'_>, format: Format) -> Result<(), SimError> {
+    match format {
+        Format::Text => print(&summary(of)),
+        Format::Details => {
+            let text = details(of.figures) + &study_report(of.stored, of.figures).text();
+            print(&format!("{text}\nResults, histories and report in {}\n", of.folder.display()))
+        }
+        Format::Json => {
+            let text = serde_json::to_string_pretty(of.figures)
+                .map_err(|e| SimError::NotWritten { path: "JSON".into(), reason: e.to_string() })?;
+            print(&(text + "\n"))
+        }
+    }
+}
+
+/// Name of the folder of the results at an advance ratio.
+fn sweep_folder(advance_ratio: f64) -> String {
+    format!("mu_{advance_ratio}")
+}
+
+/// A case at several advance ratios.
+struct Sweep<'a> {
+    loaded: &'a LoadedCase,
+    out: &'a Path,
+    scope: Scope,
+    format: Format,
+}
+
+impl Sweep<'_> {
+    fn run(&self, advance_ratios: &[f64]) -> Result<(), SimError> {
+        let mut problems = Problems::default();
+        for (i, &mu) in advance_ratios.iter().enumerate() {
+            check_advance_ratio(&mut problems, mu);
+            if advance_ratios[..i].iter().any(|before| sweep_folder(*before) == sweep_folder(mu)) {
+                let message = format!("{mu} is given twice; give every advance ratio once");
+                problems.push(Place::file("--mu"), Fault::Refused { message });
+            }
+        }
+        problems.into_result(Some(()))?;
+        refuse_unwritable(self.out)?;
+        let mut rows = Vec::new();
+        let ended = self.fill(&mut rows, advance_ratios);
+        // what was found before an advance ratio that fails is of use
+        if !rows.is_empty() {
+            let sweep = SweepResult { rows };
+            write_atomic(&self.out.join(SWEEP_FILE), sweep_csv(&sweep).as_bytes())?;
+            let text = sweep.render(self.format)?;
+            match self.format {
+                Format::Json => print(&text)?,
+                Format::Text | Format::Details => print(&format!(
+                    "{text}\nResults in {}, a folder for each advance ratio\n",
+                    self.out.display()
+                ))?,
+            }
+        }
+        ended
+    }
+
+    /// Runs the advance ratios, each from the one before, up to the first that fails.
+    fn fill(&self, rows: &mut Vec<SweepRow>, advance_ratios: &[f64]) -> Result<(), SimError> {
+        let actuators = case_actuators(self.loaded)?;
+        let mut start: Option<TrimSolution> = None;
+        // a wake that diverged does not keep the others from being found
+        let mut ended = Ok(());
+        for &mu in advance_ratios {
+            let here = at_advance_ratio(self.loaded, mu);
+            let folder = self.out.join(sweep_folder(mu));
+            let progress = Progress::new(self.scope.steps(&here));
+            progress.doing(format!("advance ratio {mu}"));
+            let computed = continued_trim(&here, start.as_ref()).and_then(|trimmed| {
+                run_trimmed(&here, actuators.clone(), trimmed, &progress)
+                    .and_then(|outcome| self.scope.added(&here, outcome, &progress))
+            });
+            progress.finish();
+            let computed = computed.inspect_err(|_| note_earlier(&folder));
+            let outcome = computed.map_err(|source| SimError::SweepEnded {
+                advance_ratio: mu,
+                found: rows.iter().map(|row| row.advance_ratio).collect(),
+                source: Box::new(source),
+            })?;
+            start = Some(outcome.trimmed.trim().clone());
+            let figures = outcome.figures();
+            store(&here, &outcome, &figures, &folder)?;
+            warn(&figures.warnings, self.format);
+            if outcome.trimmed.wake_parted() && ended.is_ok() {
+                ended = refuse_diverged(&here, true).map_err(|source| SimError::SweepEnded {
+                    advance_ratio: mu,
+                    found: Vec::new(),
+                    source: Box::new(source),
+                });
+            }
+            rows.push(SweepRow { advance_ratio: mu, result: figures });
+        }
+        ended
+    }
+}
+
+/// Says of a run that failed that the results in its folder are not its own.
+fn note_earlier(out: &Path) {
+    if out.join(RESULT_FILE).is_file() {
+        eprintln!("note: the results in {} are of an earlier run", out.display());
+    }
+}

@@ -1,0 +1,6 @@
+//! Results of a study for people and files: tables and CSV.
+
+pub mod blade_loads;
+pub mod modes;
+pub mod study;
+pub mod wake;

@@ -1,0 +1,81 @@
+//! `hhc modes`: rotating frequencies and the data of a fan plot.
+
+use crate::SimError;
+use crate::case::LoadedCase;
+use crate::output::{Printable, Sheet, table};
+use rotor_study::{ModesQuestion, ModesResult, numbered, rotating_modes};
+use std::fmt::Write as _;
+
+/// Rotating modes of a case's blade, with plausibility warnings about the blade.
+///
+/// # Errors
+/// [`SimError::Blade`].
+pub fn modes_of_case(
+    loaded: &LoadedCase,
+    question: &ModesQuestion,
+) -> Result<ModesResult, SimError> {
+    let doubts = || loaded.in_words(loaded.case.blade_warnings());
+    let found = rotating_modes(&loaded.case, question)
+        .map_err(|error| loaded.located(error).in_doubt(doubts()))?;
+    let warnings = doubts().into_iter().chain(found.warnings).collect();
+    Ok(ModesResult { warnings, ..found })
+}
+
+/// The fan plot as a table: one row for each mode at each rotor speed.
+pub fn fan_csv(result: &ModesResult) -> String {
+    let mut text = String::from(
+        "rotor_speed_rad_s,mode,frequency_hz,per_rev,flap_share,lag_share,torsion_share,axial_share\n",
+    );
+    for point in &result.fan {
+        for (name, mode) in numbered(&point.modes).zip(&point.modes) {
+            let per_rev = mode.per_rev.map_or_else(String::new, |p| format!("{p:.9}"));
+            let [flap, lag, torsion, axial] = mode.energy;
+            // writing to a string cannot fail
+            let _ = writeln!(
+                text,
+                "{},{name},{:.9},{per_rev},{flap:.6},{lag:.6},{torsion:.6},{axial:.6}",
+                point.rotor_speed_rad_s, mode.hz
+            );
+        }
+    }
+    text
+}
+
+impl Printable for ModesResult {
+    fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!("Rotor speed {:.4} rad/s", self.rotor_speed_rad_s));
+        if let Some(tip) = self.steady_tip {
+            sheet.line(format_args!(
+                "Steady tip: lag {:.5} R, flap {:.5} R, twist {:.3} deg",
+                tip.lag_r, tip.flap_r, tip.twist_deg
+            ));
+        }
+        sheet.block(&table(
+            &["mode", "per rev", "Hz", "flap %", "lag %", "torsion %"],
+            numbered(&self.modes).zip(&self.modes).map(|(name, mode)| {
+                let per_rev = mode.per_rev.map_or_else(|| "-".to_owned(), |p| format!("{p:.6}"));
+                let shares = mode.energy.iter().take(3).map(|e| format!("{:.1}", 100.0 * e));
+                [name, per_rev, format!("{:.4}", mode.hz)].into_iter().chain(shares).collect()
+            }),
+        ));
+        for warning in &self.warnings {
+            sheet.line(format_args!("warning: {warning}"));
+        }
+        if !self.fan.is_empty() {
+            sheet.line(format_args!("\nFrequencies in Hz over rotor speed"));
+            let names: Vec<String> = numbered(&self.modes).collect();
+            let mut header = vec!["rad/s"];
+            header.extend(names.iter().map(String::as_str));
+            sheet.block(&table(
+                &header,
+                self.fan.iter().map(|point| {
+                    std::iter::once(format!("{:.4}", point.rotor_speed_rad_s))
+                        .chain(point.modes.iter().map(|m| format!("{:.3}", m.hz)))
+                        .collect()
+                }),
+            ));
+        }
+        sheet.finish()
+    }
+}

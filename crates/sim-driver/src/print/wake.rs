@@ -1,0 +1,236 @@
+//! `hhc wake`: a free wake as a table and as files to look at.
+
+use crate::SimError;
+use crate::case::LoadedCase;
+use crate::output::{Printable, Sheet, table};
+use rotor_study::StudyError;
+use rotor_study::{FoundWake, WakeResult, WakeUpdateLine, wake_of_case};
+use rotor_wake::{
+    CirculationMap, FilamentStates, FreeWake, InducedInflow, SegmentState, Vec3, WakeError,
+    WakeFilament,
+};
+use std::fmt::Write as _;
+
+/// Files of a wake: name and text.
+pub type WakeFiles = Vec<(&'static str, String)>;
+
+/// The wake of a case with plausibility warnings about the case, and its files.
+///
+/// # Errors
+/// The errors of the rotor, of the trim and of the wake.
+pub fn wake_files(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimError> {
+    let doubts = || loaded.in_words(loaded.case.value_warnings());
+    let found = wake_of_case(&loaded.case).and_then(|found| {
+        let FoundWake { result, wake, circulation, inflow } = found;
+        let files = files_of(&wake, &circulation, &inflow, &result.updates);
+        let files = files.map_err(|source| StudyError::Response {
+            field: "inflow.model".to_owned(),
+            source: source.into(),
+        })?;
+        Ok((result, files))
+    });
+    let (mut result, files) = found.map_err(|error| loaded.located(error).in_doubt(doubts()))?;
+    result.warnings.splice(0..0, doubts());
+    Ok((result, files))
+}
+
+fn files_of(
+    wake: &FreeWake,
+    circulation: &CirculationMap,
+    inflow: &InducedInflow,
+    updates: &[WakeUpdateLine],
+) -> Result<WakeFiles, WakeError> {
+    let mut convergence = String::from("azimuths,displacement_r,inflow_change,part,theta0_deg\n");
+    for u in updates {
+        let theta0 = u.theta0_deg.map(|t| t.to_string()).unwrap_or_default();
+        let _ = writeln!(
+            convergence,
+            "{},{:e},{:e},{},{theta0}",
+            u.azimuths, u.displacement_r, u.inflow_change, u.part
+        );
+    }
+    let states = [wake.vortex_states(circulation)?, wake.trailer_states(circulation)?];
+    Ok(vec![
+        ("wake_geometry.csv", geometry_csv(wake, &states)),
+        ("wake.vtk", vtk(wake, circulation, &states)),
+        ("inflow_map.csv", inflow_csv(inflow)),
+        ("convergence.csv", convergence),
+    ])
+}
+
+/// Where a filament carries vorticity, and what, at a node: that of the segment behind it, of the last one at its end; none
+/// younger than `first`, where the near wake stands for it.
+fn at_node(states: &[SegmentState], k: usize, first: usize) -> SegmentState {
+    if k < first {
+        return SegmentState::default();
+    }
+    states.get(k.min(states.len().saturating_sub(1))).copied().unwrap_or_default()
+}
+
+/// One row per node: the rolled-up vortices, from the age on at which they carry vorticity, and the trailers of the near
+/// wake.
+fn geometry_csv(wake: &FreeWake, [far, near]: &[Vec<FilamentStates>; 2]) -> String {
+    let mut out = String::from(
+        "kind,filament,release_r,azimuth_deg,age_deg,x_r,y_r,z_r,circulation,core_r\n",
+    );
+    let step = wake.settings().step_rad().to_degrees();
+    let kinds = [("near", wake.near_wake(), near), ("rolled_up", wake.vortices(), far)];
+    for (kind, filaments, states) in kinds {
+        for (j, (filament, states)) in filaments.iter().zip(states).enumerate() {
+            for (i, (points, states)) in filament.points.iter().zip(states).enumerate() {
+                for (k, [x, y, z]) in points.iter().enumerate().skip(filament.first_age) {
+                    let (azimuth, age, r) = (i as f64 * step, k as f64 * step, filament.release_r);
+                    let SegmentState { circulation, core_radius } =
+                        at_node(states, k, filament.first_age);
+                    let _ = writeln!(
+                        out,
+                        "{kind},{j},{r},{azimuth},{age},{x:.6},{y:.6},{z:.6},{circulation:.8},{core_radius:.6}"
+                    );
+                }
+            }
+        }
+    }
+    out
+}
+
+/// One row per azimuth and station.
+fn inflow_csv(inflow: &InducedInflow) -> String {
+    let mut out = String::from("azimuth_deg,r,induced_inflow\n");
+    if let InducedInflow::Map(map) = inflow {
+        for i in 0..map.azimuths() {
+            let azimuth = 360.0 * i as f64 / map.azimuths() as f64;
+            for (r, value) in map.stations().iter().zip(map.row(i)) {
+                let _ = writeln!(out, "{azimuth},{r:.6},{value:.8}");
+            }
+        }
+    }
+    out
+}
+
+/// A line of the VTK file: its points, ages of them (deg), kind and what it carries.
+struct VtkLine<'a> {
+    points: &'a [Vec3],
+    step_deg: f64,
+    kind: u8,
+    states: Vec<SegmentState>,
+}
+
+/// The wakes of all blades and the blades with blade 0 over the tail, VTK legacy ASCII: lines with age, kind (0 blade, 1
+/// near wake, 2 rolled-up vortex), circulation and core radius at every point.
+fn vtk(
+    wake: &FreeWake,
+    circulation: &CirculationMap,
+    [far_states, near_states]: &[Vec<FilamentStates>; 2],
+) -> String {
+    let azimuths = wake.settings().azimuths;
+    let step_deg = wake.settings().step_rad().to_degrees();
+    let core_radius = wake.settings().core.near_radius;
+    let (near, far): (Vec<WakeFilament>, Vec<WakeFilament>) = (wake.near_wake(), wake.vortices());
+    let mut lines: Vec<VtkLine<'_>> = Vec::new();
+    for b in 0..wake.rotor().blades() {
+        let i = b * azimuths / wake.rotor().blades();
+        let bound = circulation.row(i).iter();
+        let mut states: Vec<SegmentState> =
+            bound.map(|&circulation| SegmentState { circulation, core_radius }).collect();
+        states.extend(states.last().copied());
+        lines.push(VtkLine { points: wake.lines().at(i), step_deg: 0.0, kind: 0, states });
+        for (kind, filaments, of) in [(1, &near, near_states), (2, &far, far_states)] {
+            for (filament, states) in filaments.iter().zip(of) {
+                let points = &filament.points[i];
+                let first = filament.first_age;
+                let states = (0..points.len()).map(|k| at_node(&states[i], k, first)).collect();
+                lines.push(VtkLine { points, step_deg, kind, states });
+            }
+        }
+    }
+    let count: usize = lines.iter().map(|l| l.points.len()).sum();
+    let mut out = String::from(
+        "# vtk DataFile Version 3.0\nfree wake, lengths in R, X aft, Y starboard, Z up\nASCII\nDATASET POLYDATA\n",
+    );
+    let _ = writeln!(out, "POINTS {count} double");
+    for [x, y, z] in lines.iter().flat_map(|l| l.points) {
+        let _ = writeln!(out, "{x:.6} {y:.6} {z:.6}");
+    }
+    let _ = writeln!(out, "LINES {} {}", lines.len(), lines.len() + count);
+    let mut first = 0;
+    for line in &lines {
+        let _ = write!(out, "{}", line.points.len());
+        for k in first..first + line.points.len() {
+            let _ = write!(out, " {k}");
+        }
+        out.push('\n');
+        first += line.points.len();
+    }
+    let _ = writeln!(out, "POINT_DATA {count}");
+    let mut scalars = |name: &str, of: &dyn Fn(&VtkLine<'_>, usize) -> String| {
+        let _ = writeln!(out, "SCALARS {name} 1\nLOOKUP_TABLE default");
+        for line in &lines {
+            for k in 0..line.points.len() {
+                let _ = writeln!(out, "{}", of(line, k));
+            }
+        }
+    };
+    scalars("age_deg double", &|line, k| (k as f64 * line.step_deg).to_string());
+    scalars("kind int", &|line, _| line.kind.to_string());
+    scalars("circulation double", &|line, k| format!("{:.8}", line.states[k].circulation));
+    scalars("core_r double", &|line, k| format!("{:.6}", line.states[k].core_radius));
+    out
+}
+
+impl Printable for WakeResult {
+    fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!(
+            "Free wake at mu {:.3}: {}",
+            self.advance_ratio,
+            match (self.controls_deg, self.settled) {
+                (Some(_), true) => "settled with the trim",
+                (None, true) => "circulation prescribed, settled",
+                (Some(_), false) if self.parted => "parted, the last good state",
+                (Some(_), false) => "not settled",
+                (None, false) => "circulation prescribed, not settled",
+            }
+        ));
+        if let Some([theta0, theta1c, theta1s, tilt]) = self.controls_deg {
+            sheet.line(format_args!(
+                "Trim       theta0 {theta0:.4} deg, theta1c {theta1c:.4} deg, theta1s {theta1s:.4} deg, shaft tilt {tilt:.4} deg, C_T/sigma {:.5}",
+                self.ct_sigma
+            ));
+        }
+        sheet.line(format_args!(
+            "Inflow     mean {:.6}, {:.3} of Glauert's; near wake {:.0} deg, core {:.4} R, near wake {:.4} R, mutual {:.4} R",
+            self.mean_inflow,
+            self.mean_over_glauert,
+            self.near_wake_deg,
+            self.core_r,
+            self.near_core_r,
+            self.mutual_core_r
+        ));
+        if let Some(p) = self.closest_passage {
+            sheet.line(format_args!(
+                "Passage    nearest: {:.4} R from the blade at azimuth {:.0} deg, {:.2} R, age {:.0} deg, core {:.4} R",
+                p.distance_r, p.azimuth_deg, p.station_r, p.age_deg, p.core_r
+            ));
+        }
+        if let Some(amplitudes) = self.hub_amplitudes {
+            let names = ["FX", "FY", "FZ", "MX", "MY", "MZ"];
+            let hub: Vec<String> =
+                names.iter().zip(amplitudes).map(|(n, a)| format!("{n} {a:.4e}")).collect();
+            sheet.line(format_args!("Hub loads  at the blade number per rev: {}", hub.join(", ")));
+        }
+        sheet.line(format_args!(""));
+        sheet.block(&table(
+            &["steps", "displacement R", "inflow change", "part", "theta0 deg"],
+            self.updates.iter().map(|u| {
+                vec![
+                    u.azimuths.to_string(),
+                    format!("{:.2e}", u.displacement_r),
+                    format!("{:.2e}", u.inflow_change),
+                    format!("{:.3}", u.part),
+                    u.theta0_deg.map_or_else(String::new, |t| format!("{t:.5}")),
+                ]
+            }),
+        ));
+        sheet.finish()
+    }
+}

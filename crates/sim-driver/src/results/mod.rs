@@ -1,0 +1,169 @@
+//! What `hhc run` finds: raw numbers as they are stored, and the figures that follow from them.
+//!
+//! | idea | module |
+//! |---|---|
+//! | what a run found, each number once | here, controls in `control` |
+//! | figures: costs, reductions, lags, powers, computed where they are printed | `figures` |
+//! | the file and its hash | `stored` |
+
+mod bench;
+mod control;
+mod figures;
+mod stored;
+
+pub use bench::{BenchPart, LoopRecord, bench_loops};
+pub use control::{ControlEnd, ControlRecord, CouplingLine, FlapRecord, SeriesLine, StepRecord};
+pub use figures::{ControlLine, Figures, FlapLine, figures};
+pub use stored::{RESULT_FILE, StoredResult, result_key, setting_of_file};
+
+use rotor_study::StabilityLine;
+use rotor_study::StationLine;
+use rotor_study::WakeStatus;
+use rotor_study::{ForecastLine, HubLoads, RobustnessCell, Sensitivity};
+use rotor_study::{UnlikeBladeLine, UnlikeLine};
+use serde::{Deserialize, Serialize};
+
+/// What a run found, each number once. Loads nondimensional (`m0 Omega^2 R^2`, `m0 Omega^2 R^3`), a harmonic as
+/// `[cosine, sine]`.
+///
+/// What follows from these numbers and the case is in [`Figures`]; it is not stored.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct RunResult {
+    /// The trim found.
+    pub trim: TrimLine,
+    /// How well the equations are satisfied; no vibration number without them.
+    pub residuals: Residuals,
+    /// How wake and trim ended; none without a free wake.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wake: Option<WakeStatus>,
+    /// Mean loads on the hub; none in results stored before they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_loads: Option<MeanHubLoads>,
+    /// Loads without control.
+    pub baseline: Baseline,
+    /// Loads of one blade along its span without control, of each of the like ones where some are dissimilar; none in
+    /// results stored before they were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blade_loads: Vec<StationLine>,
+    /// Stability of the trimmed blade, of each of the like ones where some are dissimilar.
+    #[serde(default)]
+    pub stability: StabilityLine,
+    /// One entry per set of harmonics and actuator.
+    pub control: Vec<ControlRecord>,
+    /// What the linearised rotor says beforehand, one entry per set; empty without an identified actuator.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub forecasts: Vec<ForecastLine>,
+    /// Loads with one assumption changed at a time; empty unless asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensitivity: Vec<Sensitivity>,
+    /// Control under noise, a wrong T and drift; empty unless asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robustness: Vec<RobustnessCell>,
+    /// Hub loads with dissimilar blades, flaps at rest and after every control; empty if all are alike.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unlike_blades: Vec<UnlikeLine>,
+    /// Stability and loads of every dissimilar blade, flaps at rest; empty if all are alike.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub each_unlike_blade: Vec<UnlikeBladeLine>,
+    /// What a reader should know before using the numbers.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+}
+
+impl RunResult {
+    /// Whether the iteration of wake and trim diverged: no solution, and not controlled.
+    pub fn wake_diverged(&self) -> bool {
+        self.wake == Some(WakeStatus::Diverged)
+    }
+}
+
+/// Mean loads of all blades on the hub without control, fixed shaft axes (X aft, Y to starboard, Z up).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct MeanHubLoads {
+    /// `FX FY FZ` over `m0 Omega^2 R^2`, `MX MY MZ` over `m0 Omega^2 R^3`.
+    pub hub: [f64; 6],
+}
+
+/// Controls and attitude. Angles in deg.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct TrimLine {
+    /// Collective at 0.75 R.
+    pub theta0_deg: f64,
+    /// Lateral cyclic.
+    pub theta1c_deg: f64,
+    /// Longitudinal cyclic.
+    pub theta1s_deg: f64,
+    /// Shaft tilt, forward positive.
+    pub alpha_s_deg: f64,
+    /// Bank, right positive.
+    pub phi_s_deg: f64,
+    /// Tail rotor thrust to starboard, `m0 Omega^2 R^2`.
+    pub tail_thrust: f64,
+    /// Thrust coefficient over solidity.
+    pub ct_sigma: f64,
+    /// Mean induced inflow, tip speed, down positive.
+    pub induced_inflow: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+}
+
+/// The three residuals of every result.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Residuals {
+    /// Largest trim residual over the weight.
+    pub trim: f64,
+    /// Largest weak residual of the periodic orbit.
+    pub periodicity: f64,
+    /// Mismatch of the inflow, tip speed.
+    pub inflow: f64,
+}
+
+/// Loads without control.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Baseline {
+    /// Fixed-frame hub loads at the blade number per rev.
+    #[serde(alias = "hub_4_per_rev")]
+    pub hub_nb_per_rev: HubLoads,
+}
+
+/// Name of a flap, counted from 0 at the root.
+pub fn flap_name(index: usize) -> String {
+    match index {
+        0 => "inboard".to_owned(),
+        1 => "outboard".to_owned(),
+        more => format!("flap {}", more + 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Loads at the blade number were once stored as those at 4/rev, of whatever number of blades.
+    #[test]
+    fn loads_under_their_old_name_are_read() {
+        let baseline = Baseline { hub_nb_per_rev: HubLoads::from_parts([0.5; 12]) };
+        let new = serde_json::to_string(&baseline).unwrap();
+        let old = new.replace("hub_nb_per_rev", "hub_4_per_rev");
+        assert!(old != new);
+        assert_eq!(serde_json::from_str::<Baseline>(&old).unwrap(), baseline);
+    }
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "small integers are exact")]
+    fn hub_loads_keep_their_order() {
+        let mut parts = [0.0; 12];
+        for (i, p) in parts.iter_mut().enumerate() {
+            *p = i as f64;
+        }
+        let loads = HubLoads::from_parts(parts);
+        assert_eq!(loads.fz, [4.0, 5.0]);
+        assert_eq!(loads.mz, [10.0, 11.0]);
+        let json = serde_json::to_value(loads).unwrap();
+        for (name, amplitude) in HubLoads::NAMES.iter().zip(loads.amplitudes()) {
+            let pair = &json[name];
+            let found = pair[0].as_f64().unwrap().hypot(pair[1].as_f64().unwrap());
+            assert!((found - amplitude).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! The contents of the validation page: every row by its id, in the order of the page.
+
+/// A part of the page.
+#[derive(Debug, Clone, Copy)]
+pub struct Area {
+    /// Heading on the page.
+    pub heading: &'static str,
+    /// Ids of its rows, in the order of the page; an id is never used again for another row.
+    pub ids: &'static [&'static str],
+}
+
+/// All areas, in the order of the page.
+pub const AREAS: &[Area] = &[
+    Area {
+        heading: "Blade structure (`rotor-fem`)",
+        ids: &[
+            "V-FEM-01", "V-FEM-02", "V-FEM-03", "V-FEM-04", "V-FEM-05", "V-FEM-06", "V-FEM-07",
+            "V-FEM-08",
+        ],
+    },
+    Area {
+        heading: "Blade with moderate deflections (`rotor-fem`)",
+        ids: &[
+            "V-MOD-01", "V-MOD-02", "V-MOD-03", "V-MOD-04", "V-MOD-05", "V-MOD-06", "V-MOD-07",
+            "V-MOD-08", "V-MOD-09", "V-MOD-10", "V-MOD-11", "V-MOD-12", "V-MOD-13", "V-MOD-14",
+            "V-MOD-15", "V-MOD-16", "V-MOD-17", "V-MOD-18", "V-MOD-19", "V-MOD-20", "V-MOD-21",
+        ],
+    },
+    Area {
+        heading: "Time elements (`rotor-fem`)",
+        ids: &["V-TIME-01", "V-TIME-02", "V-TIME-03", "V-TIME-04"],
+    },
+    Area {
+        heading: "Section aerodynamics (`flap-aero`)",
+        ids: &[
+            "V-AERO-01",
+            "V-AERO-02",
+            "V-AERO-03",
+            "V-AERO-46",
+            "V-AERO-04",
+            "V-AERO-05",
+            "V-AERO-06",
+        ],
+    },
+    Area {
+        heading: "Compressible, stalled and tabulated sections (`flap-aero`, `exact-section`)",
+        ids: &[
+            "V-AERO-07",
+            "V-AERO-08",
+            "V-AERO-09",
+            "V-AERO-10",
+            "V-AERO-11",
+            "V-AERO-12",
+            "V-AERO-13",
+            "V-AERO-14",
+            "V-AERO-15",
+            "V-AERO-16",
+            "V-AERO-17",
+            "V-AERO-18",
+            "V-AERO-19",
+            "V-AERO-20",
+            "V-AERO-21",
+            "V-AERO-22",
+            "V-AERO-23",
+            "V-AERO-24",
+            "V-AERO-25",
+            "V-AERO-43",
+            "V-AERO-44",
+            "V-AERO-45",
+            "V-AERO-26",
+            "V-AERO-27",
+            "V-AERO-28",
+            "V-AERO-29",
+            "V-AERO-30",
+            "V-AERO-31",
+            "V-AERO-32",
+            "V-AERO-42",
+        ],
+    },
+    Area {
+        heading: "Sections beyond attached theory, in air and rotor (`flap-aero`, `rotor-response`)",
+        ids: &[
+            "V-AERO-33",
+            "V-AERO-34",
+            "V-AERO-35",
+            "V-AERO-36",
+            "V-AERO-37",
+            "V-AERO-38",
+            "V-AERO-39",
+            "V-AERO-40",
+            "V-AERO-41",
+        ],
+    },
+    Area {
+        heading: "Inflow (`rotor-wake`)",
+        ids: &["V-WAKE-01", "V-WAKE-02", "V-WAKE-03", "V-WAKE-04"],
+    },
+    Area {
+        heading: "Free wake (`rotor-wake`)",
+        ids: &[
+            "V-WAKE-05",
+            "V-WAKE-06",
+            "V-WAKE-07",
+            "V-WAKE-08",
+            "V-WAKE-09",
+            "V-WAKE-10",
+            "V-WAKE-11",
+            "V-WAKE-12",
+            "V-WAKE-13",
+            "V-WAKE-46",
+            "V-WAKE-47",
+        ],
+    },
+    Area {
+        heading: "Free wake in hover (`rotor-wake`)",
+        ids: &[
+            "V-WAKE-14",
+            "V-WAKE-15",
+            "V-WAKE-16",
+            "V-WAKE-17",
+            "V-WAKE-18",
+            "V-WAKE-57",
+            "V-WAKE-19",
+            "V-WAKE-20",
+            "V-WAKE-21",
+            "V-WAKE-43",
+            "V-WAKE-44",
+            "V-WAKE-45",
+        ],
+    },
+    Area {
+        heading: "Free wake in forward flight (`rotor-wake`)",
+        ids: &[
+            "V-WAKE-22",
+            "V-WAKE-23",
+            "V-WAKE-24",
+            "V-WAKE-25",
+            "V-WAKE-26",
+            "V-WAKE-27",
+            "V-WAKE-28",
+        ],
+    },
+    Area {
+        heading: "Free wake against measured inflow (`rotor-wake`)",
+        ids: &[
+            "V-WAKE-29",
+            "V-WAKE-30",
+            "V-WAKE-31",
+            "V-WAKE-32",
+            "V-WAKE-33",
+            "V-WAKE-34",
+            "V-WAKE-35",
+            "V-WAKE-36",
+            "V-WAKE-37",
+            "V-WAKE-38",
+            "V-WAKE-39",
+            "V-WAKE-40",
+            "V-WAKE-41",
+            "V-WAKE-42",
+        ],
+    },
+    Area {
+        heading: "Trim in the free wake (`trim`, `rotor-wake`)",
+        ids: &[
+            "V-WAKE-48",
+            "V-WAKE-49",
+            "V-WAKE-50",
+            "V-WAKE-51",
+            "V-WAKE-52",
+            "V-WAKE-54",
+            "V-WAKE-55",
+            "V-WAKE-56",
+            "V-WAKE-53",
+        ],
+    },
+    Area {
+        heading: "Rotor response (`rotor-response`)",
+        ids: &[
+            "V-RESP-01",
+            "V-RESP-02",
+            "V-RESP-03",
+            "V-RESP-04",
+            "V-RESP-05",
+            "V-RESP-06",
+            "V-RESP-07",
+            "V-RESP-08",
+            "V-RESP-09",
+            "V-RESP-10",
+            "V-RESP-11",
+            "V-RESP-12",
+            "V-RESP-13",
+            "V-RESP-14",
+            "V-RESP-15",
+            "V-RESP-16",
+        ],
+    },
+    Area {
+        heading: "Planform of the blade (`rotor-response`)",
+        ids: &["V-PLAN-01", "V-PLAN-02", "V-PLAN-03", "V-PLAN-04"],
+    },
+    Area {
+        heading: "Rotor response, details (`rotor-response`)",
+        ids: &[
+            "V-RESP-30",
+            "V-RESP-31",
+            "V-RESP-32",
+            "V-RESP-33",
+            "V-RESP-34",
+            "V-RESP-38",
+            "V-RESP-58",
+            "V-RESP-39",
+            "V-RESP-40",
+            "V-RESP-41",
+            "V-RESP-44",
+            "V-RESP-47",
+            "V-RESP-48",
+            "V-RESP-49",
+            "V-RESP-50",
+            "V-RESP-51",
+            "V-RESP-42",
+            "V-RESP-43",
+        ],
+    },
+    Area {
+        heading: "Loads of the blade (`rotor-response`)",
+        ids: &[
+            "V-RESP-45",
+            "V-RESP-46",
+            "V-RESP-52",
+            "V-RESP-53",
+            "V-RESP-35",
+            "V-RESP-36",
+            "V-RESP-54",
+            "V-RESP-37",
+            "V-RESP-55",
+            "V-RESP-64",
+            "V-RESP-56",
+            "V-RESP-57",
+        ],
+    },
+    Area {
+        heading: "Hinges and springs of the root (`rotor-response`)",
+        ids: &["V-RESP-59", "V-RESP-60", "V-RESP-61", "V-RESP-62", "V-RESP-63"],
+    },
+    Area {
+        heading: "Torque of the shaft (`rotor-response`)",
+        ids: &["V-RESP-65", "V-RESP-66", "V-RESP-67", "V-RESP-68", "V-RESP-69", "V-RESP-70"],
+    },
+    Area {
+        heading: "Trim (`trim`)",
+        ids: &[
+            "V-TRIM-01",
+            "V-TRIM-02",
+            "V-TRIM-03",
+            "V-TRIM-04",
+            "V-TRIM-06",
+            "V-TRIM-07",
+            "V-TRIM-08",
+            "V-TRIM-09",
+            "V-TRIM-10",
+            "V-TRIM-05",
+        ],
+    },
+    Area {
+        heading: "Actuator (`preisach-dyn`)",
+        ids: &[
+            "V-ACT-01", "V-ACT-02", "V-ACT-03", "V-ACT-04", "V-ACT-05", "V-ACT-06", "V-ACT-07",
+            "V-ACT-08", "V-ACT-09",
+        ],
+    },
+    Area {
+        heading: "Actuator, laws and stages (`preisach-dyn`)",
+        ids: &[
+            "V-ACT-10", "V-ACT-11", "V-ACT-12", "V-ACT-13", "V-ACT-14", "V-ACT-15", "V-ACT-16",
+            "V-ACT-17", "V-ACT-18", "V-ACT-19", "V-ACT-20", "V-ACT-21", "V-ACT-22", "V-ACT-23",
+            "V-ACT-24",
+        ],
+    },
+    Area {
+        heading: "Actuator on data (`preisach-dyn`, `sim-driver`)",
+        ids: &[
+            "V-ACT-30", "V-ACT-31", "V-ACT-32", "V-ACT-37", "V-ACT-38", "V-ACT-33", "V-ACT-34",
+            "V-ACT-35", "V-ACT-36",
+        ],
+    },
+    Area {
+        heading: "Control (`hhc-control`)",
+        ids: &["V-CTRL-01", "V-CTRL-02", "V-CTRL-03", "V-CTRL-04", "V-CTRL-05", "V-CTRL-06"],
+    },
+    Area {
+        heading: "Discovery (`model-gap`, `sim-driver`)",
+        ids: &["V-GAP-01", "V-GAP-02", "V-GAP-03", "V-GAP-04", "V-GAP-05"],
+    },
+    Area {
+        heading: "Control study (`sim-driver`)",
+        ids: &[
+            "V-STUDY-01",
+            "V-STUDY-02",
+            "V-STUDY-03",
+            "V-STUDY-04",
+            "V-STUDY-05",
+            "V-STUDY-06",
+            "V-STUDY-07",
+            "V-STUDY-08",
+            "V-STUDY-09",
+            "V-STUDY-10",
+            "V-STUDY-11",
+            "V-STUDY-12",
+            "V-STUDY-13",
+            "V-STUDY-14",
+            "V-STUDY-15",
+            "V-STUDY-16",
+            "V-STUDY-17",
+            "V-STUDY-18",
+            "V-STUDY-19",
+            "V-STUDY-20",
+            "V-STUDY-21",
+        ],
+    },
+];
+
+/// Ids of all rows, in the order of the page.
+pub fn ids() -> impl Iterator<Item = &'static str> {
+    AREAS.iter().flat_map(|area| area.ids.iter().copied())
+}
+
+/// The heading over a row, where there is such a row.
+pub fn heading_of(id: &str) -> Option<&'static str> {
+    AREAS.iter().find(|area| area.ids.contains(&id)).map(|area| area.heading)
+}

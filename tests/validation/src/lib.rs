@@ -1,0 +1,116 @@
+//! Rows of the validation page, written by the tests that check them.
+//!
+//! A test states its rows as a table of [`Check`]s and calls [`hold`], which computes each quantity and
+//! fails where a bound is not kept. Where [`ROWS_FOLDER`] names a folder, every row is also written there
+//! as `<id>.ron`, for `cargo xtask validate` to make the page of. Which rows there are, and their order,
+//! stands in [`AREAS`].
+//!
+//! ```no_run
+//! use validation::row;
+//!
+//! validation::hold(&[
+//!     row("V-ACT-01", "wiping-out: output with and without a past", "deg")
+//!         .against("definition")
+//!         .at_most(1e-12, || Ok(3e-16)),
+//! ]);
+//! ```
+
+#![expect(
+    clippy::disallowed_methods,
+    reason = "reads reference tables and writes rows where the environment asks for them"
+)]
+
+mod areas;
+mod check;
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+pub use areas::{AREAS, Area, heading_of, ids};
+pub use check::{Check, Criterion, Draft, Measure, Repeatability, Row, row};
+pub use table::{Table, TableError, TableRow, crosscheck, crosscheck_rows};
+
+/// Environment variable: the folder that rows are written to.
+pub const ROWS_FOLDER: &str = "VALIDATION_ROWS";
+
+/// Environment variable: only rows with this text in id or heading are computed.
+pub const FILTER: &str = "VALIDATION_FILTER";
+
+/// Why a quantity could not be computed.
+pub type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Computes every check and writes its row where [`ROWS_FOLDER`] asks for it.
+///
+/// # Panics
+/// If a quantity cannot be computed or does not keep its bound, with all such rows; if a row is in no
+/// [`Area`] or cannot be written.
+pub fn hold(checks: &[Check]) {
+    let filter = std::env::var(FILTER).unwrap_or_default();
+    let folder = std::env::var_os(ROWS_FOLDER).map(PathBuf::from);
+    hold_in(folder.as_deref(), &filter, checks);
+}
+
+/// [`hold`] with the folder and the filter given.
+fn hold_in(folder: Option<&Path>, filter: &str, checks: &[Check]) {
+    let mut failed = Vec::new();
+    for check in checks {
+        let Some(heading) = heading_of(check.id) else {
+            panic!("{} is in no area: add it to AREAS of the package `validation`", check.id)
+        };
+        if !(check.id.contains(filter) || heading.contains(filter)) {
+            continue;
+        }
+        let row = Row::of(check);
+        if let Some(folder) = folder
+            && let Err(error) = row.write(folder)
+        {
+            panic!("the row of {} cannot be written to {}: {error}", row.id, folder.display());
+        }
+        if !row.passes() {
+            failed
+                .push(format!("{}, {}: {:?}, {:?}", row.id, row.quantity, row.got, row.criterion));
+        }
+    }
+    assert!(failed.is_empty(), "{} rows do not hold:\n{}", failed.len(), failed.join("\n"));
+}
+
+/// The root folder of the workspace.
+pub fn root() -> PathBuf {
+    let member = Path::new(env!("CARGO_MANIFEST_DIR"));
+    member.ancestors().nth(2).unwrap_or(member).to_path_buf()
+}
+
+/// What several rows share, computed once.
+///
+/// # Errors
+/// The failure of the computation.
+pub fn shared<T>(lazy: &'static LazyLock<Result<T, Failure>>) -> Result<&'static T, Failure> {
+    lazy.as_ref().map_err(|error| error.to_string().into())
+}
+
+/// Fewer values were found than a row needs.
+pub fn too_few(what: &str, found: usize, needed: usize) -> Failure {
+    format!("only {found} values of {what} were compared, {needed} are needed").into()
+}
+
+/// The largest of at least `needed` values; a NaN is the largest of all.
+///
+/// # Errors
+/// The first value that could not be computed, or [`too_few`].
+pub fn worst(
+    what: &str,
+    needed: usize,
+    values: impl IntoIterator<Item = Result<f64, Failure>>,
+) -> Result<f64, Failure> {
+    let (mut largest, mut found) = (0.0_f64, 0);
+    for value in values {
+        let value = value?;
+        if value.is_nan() {
+            return Ok(value);
+        }
+        largest = largest.max(value);
+        found += 1;
+    }
+    if found < needed { Err(too_few(what, found, needed)) } else { Ok(largest) }
+}
