@@ -251,6 +251,16 @@ fn dead_links_and_lost_pages_are_found() {
 }
 
 #[test]
+fn a_named_path_that_is_gone_and_a_row_that_is_a_paragraph_are_found() {
+    let gone = "`crates/trim/src/law.rs`, `solve` and `crates/NAME/src`, `docs/src/a.md::x`\n";
+    let files = [("docs/src/a.md", gone), ("crates/trim/src/solve.rs", "")];
+    one(&tidy::named_paths(&Tree::of(&files)), "`crates/trim/src/law.rs` is not in the tree");
+    let row = |length: usize| format!("| {} |\n{}\n", "x".repeat(length - 4), "y".repeat(400));
+    assert_eq!(tidy::long_rows(&Tree::of(&[("docs/src/a.md", &row(300))])), []);
+    one(&tidy::long_rows(&Tree::of(&[("docs/src/a.md", &row(301))])), "a row of 301 characters");
+}
+
+#[test]
 fn the_code_map_must_agree_with_the_manifests() {
     let members = [member("trim", 3, &[]), member("truth", 0, &[])];
     let map = |text: &str| {

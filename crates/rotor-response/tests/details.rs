@@ -305,7 +305,8 @@ fn unlike_blades_pass_every_harmonic() {
 #[test]
 fn a_chord_table_of_the_reference_chord_is_no_change() {
     let of = |chord: Option<Distribution>| {
-        let model = RotorModel { planform: Planform { chord }, ..RotorModel::paper_case() };
+        let model =
+            RotorModel { planform: Planform { chord, set_back: None }, ..RotorModel::paper_case() };
         let rotor = Rotor::new(model, &paper_blade(), Discretisation::default()).unwrap();
         let solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default());
         solver.unwrap().solve(&common::condition(), &INFLOW, None).unwrap()

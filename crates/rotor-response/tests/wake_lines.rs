@@ -63,7 +63,7 @@ fn the_edge_of_a_tapered_blade_follows_its_chord() {
         values: vec![0.055, 0.055, 0.03],
     };
     let model = RotorModel {
-        planform: Planform { chord: Some(table.clone()) },
+        planform: Planform { chord: Some(table.clone()), set_back: None },
         ..RotorModel::paper_case()
     };
     let rotor = Rotor::new(model, &common::paper_blade(), Discretisation::default()).unwrap();

@@ -195,8 +195,18 @@ pub const AREAS: &[Area] = &[
         ],
     },
     Area {
-        heading: "Planform of the blade (`rotor-response`)",
-        ids: &["V-PLAN-01", "V-PLAN-02", "V-PLAN-03", "V-PLAN-04"],
+        heading: "Planform and lag damper of the blade (`rotor-response`)",
+        ids: &[
+            "V-PLAN-01",
+            "V-PLAN-02",
+            "V-PLAN-03",
+            "V-PLAN-04",
+            "V-PLAN-05",
+            "V-PLAN-06",
+            "V-PLAN-07",
+            "V-PLAN-08",
+            "V-PLAN-09",
+        ],
     },
     Area {
         heading: "Rotor response, details (`rotor-response`)",

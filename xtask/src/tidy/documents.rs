@@ -89,6 +89,50 @@ pub fn links(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
+/// Every path in back ticks that begins at a folder of the root leads to a file or folder of the tree.
+pub fn named_paths(tree: &Tree) -> Vec<Finding> {
+    let roots = ["crates/", "docs/", "fixtures/", "xtask/"];
+    let mut findings = Vec::new();
+    for file in tree.ending_in(".md").filter(|file| !file.path.starts_with("CHANGELOG")) {
+        for (index, line) in file.text.lines().enumerate() {
+            for span in line.split('`').skip(1).step_by(2) {
+                let path = span.split([' ', ',', ':']).next().unwrap_or_default();
+                let is_pattern = path.contains(['*', '<']) || path.contains("NAME");
+                let path = path.trim_end_matches('/');
+                if roots.iter().any(|root| path.starts_with(root))
+                    && !is_pattern
+                    && !tree.paths.contains(path)
+                {
+                    let fault = format!("`{path}` is not in the tree");
+                    findings.push(Finding::at_line(&file.path, index + 1, fault));
+                }
+            }
+        }
+    }
+    findings
+}
+
+/// Longest row of a table, characters.
+const ROW: usize = 300;
+/// The page of generated rows, whose texts belong to the tests.
+const GENERATED: &str = "docs/src/validation.md";
+
+/// No row of a table is a paragraph.
+pub fn long_rows(tree: &Tree) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for file in tree.ending_in(".md").filter(|file| file.path != GENERATED) {
+        for (index, line) in file.text.lines().enumerate() {
+            let length = line.chars().count();
+            if line.starts_with('|') && length > ROW {
+                let fault =
+                    format!("a row of {length} characters: {ROW} at most, say the rest below");
+                findings.push(Finding::at_line(&file.path, index + 1, fault));
+            }
+        }
+    }
+    findings
+}
+
 /// Targets of the relative links `[text](target)` in a line, without their `#` part.
 fn link_targets(line: &str) -> impl Iterator<Item = &str> {
     line.split("](").skip(1).filter_map(|rest| {

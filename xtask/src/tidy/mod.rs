@@ -10,7 +10,10 @@ mod validation_ids;
 
 use std::fmt;
 
-pub use documents::{REQUIRED_FILES, changelog, floors_of_the_code_map, links, required, summary};
+pub use documents::{
+    REQUIRED_FILES, changelog, floors_of_the_code_map, links, long_rows, named_paths, required,
+    summary,
+};
 pub use manifests::manifests;
 pub use rust::{LINE_LIMIT, LONG_FILES, rust};
 pub use tree::{TextFile, Tree};
@@ -60,6 +63,8 @@ pub fn check(tree: &Tree, members: &[Member]) -> Vec<Finding> {
     findings.extend(required(tree));
     findings.extend(changelog(tree));
     findings.extend(links(tree));
+    findings.extend(named_paths(tree));
+    findings.extend(long_rows(tree));
     findings.extend(summary(tree));
     findings.extend(floors_of_the_code_map(tree, members));
     findings.extend(validation_ids(tree, &validation::ids().collect::<Vec<_>>()));

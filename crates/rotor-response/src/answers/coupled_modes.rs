@@ -179,7 +179,8 @@ impl Rotor {
             // damping is a share of the frequency; flap and torsion are damped by the air
             let free = harmonic == 0.0
                 || ((model.modal_damping == 0.0 || self.blade().turns_freely((kind, number)))
-                    && (kind == ModeKind::Lag || model.lock_number == 0.0));
+                    && (kind == ModeKind::Lag || model.lock_number == 0.0)
+                    && !(kind == ModeKind::Lag && model.lag_damper > 0.0));
             let near = (frequency_per_rev - harmonic).abs() < within_per_rev;
             (free && near).then_some(ResponseError::Resonance {
                 kind,
@@ -242,7 +243,7 @@ impl Rotor {
         flight: Option<&RotorSolution>,
     ) -> Result<Option<CoupledBladeMode>, ResponseError> {
         let damping = self.model().modal_damping;
-        if damping == 0.0 || damping >= HARDLY_DAMPED {
+        if damping == 0.0 || damping >= HARDLY_DAMPED || self.model().lag_damper > 0.0 {
             return Ok(None);
         }
         let modes = match flight {
@@ -266,7 +267,8 @@ impl Rotor {
     #[must_use]
     pub fn with_modal_damping(&self, modal_damping: f64) -> Self {
         let model = RotorModel { modal_damping, ..self.model().clone() };
-        self.with_damping(model, self.blade().damping(modal_damping))
+        let damping = self.blade().damping(modal_damping, model.lag_damper);
+        self.with_damping(model, damping)
     }
 
     /// Why a response was not found: an undamped mode near a harmonic in place of a failure to converge.

@@ -428,6 +428,7 @@ mod tests {
             drag_coefficient: 0.01,
             root_cutout: 0.2,
             modal_damping: 0.005,
+            lag_damper: 0.0,
             couplings,
             section_model: AttachedFlowModel::Calibrated,
             compressibility: Compressibility::LocalMach { tip_mach: 0.58 },

@@ -93,6 +93,7 @@ mod tests {
             drag_coefficient: 0.01,
             root_cutout: cutout,
             modal_damping: 0.005,
+            lag_damper: 0.0,
             couplings: Couplings::Linear,
             section_model: AttachedFlowModel::QuasiSteady,
             compressibility: Compressibility::None,

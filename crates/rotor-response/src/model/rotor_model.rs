@@ -83,6 +83,37 @@ pub struct SectionOffsets {
 pub struct Planform {
     /// Chord along the span, radius R; none: [`RotorModel::chord`] everywhere.
     pub chord: Option<Distribution>,
+    /// How far the sections, with their mass and aerodynamic centres, are set back behind the straight elastic axis,
+    /// radius R, aft positive; none: nowhere. Its slope is the tangent of the sweep angle, aft positive. Known to
+    /// [`Couplings::Moderate`] alone, and not with tables of airfoils or dynamic stall.
+    ///
+    /// A swept section is a section across the swept line (simple sweep theory): the velocity normal to its surface is that
+    /// of the unswept one; speed, Mach number and chord are those across the line.
+    ///
+    /// ```text
+    /// U = U_T + U_S tan L,   M = M_tip U cos L,   rho -> rho cos L
+    /// ```
+    /// `U_S` is the speed along the blade, outboard. Assumes: a straight elastic axis; the pull of the lift along the span and
+    /// the bending part of the section's own moment are left out; the wake leaves the unswept line.
+    /// Source: R. T. Jones, NACA Report 863 (1947), for the independence of flow along the span.
+    pub set_back: Option<Distribution>,
+}
+
+impl Planform {
+    /// Tangent of the sweep angle at a station, aft positive.
+    pub fn sweep_tangent(&self, station: f64) -> f64 {
+        self.set_back.as_ref().map_or(0.0, |line| line.slope(station))
+    }
+
+    /// Distance of the sections behind the elastic axis at a station, radius R.
+    pub fn set_back_at(&self, station: f64) -> f64 {
+        self.set_back.as_ref().map_or(0.0, |line| line.value(station))
+    }
+
+    /// Stations where the planform has a kink.
+    pub fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
+        self.chord.iter().chain(&self.set_back).flat_map(Distribution::breaks).copied()
+    }
 }
 
 /// The rotor apart from the structure of its blades. Rotor units: length R, mass per length `m0`,
@@ -110,6 +141,9 @@ pub struct RotorModel {
     pub offsets: SectionOffsets,
     /// Modal damping over critical.
     pub modal_damping: f64,
+    /// Viscous damper of the lag rotation at the root, moment per rate, `m0 Omega R^3`: it acts where the blade's lag
+    /// joint turns.
+    pub lag_damper: f64,
     /// Terms of the structural equations.
     pub couplings: Couplings,
     /// Section aerodynamics.
@@ -141,6 +175,7 @@ impl RotorModel {
             gravity: 0.0,
             offsets: SectionOffsets::default(),
             modal_damping: 0.005,
+            lag_damper: 0.0,
             couplings,
             section_model: AttachedFlowModel::QuasiSteady,
             compressibility: Compressibility::None,
@@ -177,6 +212,7 @@ impl RotorModel {
             let chord = self.chord_at(station);
             check("planform.chord", chord, within(chord, 1e-3, 0.5), "0.001 to 0.5 R")?;
         }
+        self.validate_sweep()?;
         let gamma = self.lock_number;
         check("lock_number", gamma, within(gamma, 0.0, 50.0), "0 to 50")?;
         let cd = self.drag_coefficient;
@@ -211,6 +247,8 @@ impl RotorModel {
         check("offsets.torque", torque, known, "0 if the couplings are Moderate")?;
         let zeta = self.modal_damping;
         check("modal_damping", zeta, within(zeta, 0.0, 0.5), "0 to 0.5 of critical")?;
+        let damper = self.lag_damper;
+        check("lag_damper", damper, within(damper, 0.0, 10.0), "0 to 10 m0 Omega R^3")?;
         if let Compressibility::LocalMach { tip_mach } = self.compressibility {
             check("tip_mach", tip_mach, within(tip_mach, 1e-3, 0.95), "0.001 to 0.95")?;
         }
@@ -234,6 +272,40 @@ impl RotorModel {
             }
         }
         Ok(())
+    }
+
+    /// Checks the line of a swept blade.
+    fn validate_sweep(&self) -> Result<(), ResponseError> {
+        let Some(line) = &self.planform.set_back else { return Ok(()) };
+        let field = "planform.set_back";
+        let check = |value: f64, ok: bool, expected| {
+            if ok { Ok(()) } else { Err(ResponseError::Parameter { field, value, expected }) }
+        };
+        let tip = line.value(1.0);
+        let known = matches!(self.couplings, Couplings::Moderate(_)) && self.nonlinear.is_linear();
+        check(tip, known, "none unless the couplings are Moderate and the sections linear")?;
+        for pair in line.breaks().windows(2) {
+            let tangent = line.slope(0.5 * (pair[0] + pair[1]));
+            check(tangent, tangent.abs() <= 1.0, "a sweep of 45 deg or less")?;
+            let flapped = self.flaps.iter().any(|f| f.start < pair[1] && f.end > pair[0]);
+            check(tangent, tangent == 0.0 || !flapped, "no sweep where a flap is")?;
+        }
+        line.breaks().iter().map(|x| line.value(*x)).try_for_each(|back| {
+            check(back, back.abs() <= 0.2, "-0.2 to 0.2 R behind the elastic axis")
+        })
+    }
+
+    /// Mass centre ahead of the elastic axis along the span, radius R: the offset less what the sweep sets it back.
+    pub fn mass_centre(&self) -> Distribution {
+        let ahead = self.offsets.mass_centre;
+        match &self.planform.set_back {
+            None => ahead.into(),
+            Some(line) => {
+                let stations = line.breaks().to_vec();
+                let values = stations.iter().map(|x| ahead - line.value(*x)).collect();
+                Distribution::PiecewiseLinear { stations, values }
+            }
+        }
     }
 
     /// Chord at a station, radius R.

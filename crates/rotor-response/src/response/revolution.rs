@@ -9,7 +9,7 @@ use crate::sections::air::SectionLoads;
 use crate::sections::flight_air::POINTS_TOGETHER;
 use crate::structure::equations::{BladeState, SpanLoads};
 use crate::{ResponseError, Rotor};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{OrbitSamples, PeriodicSolution, PeriodicSolver, TimeElements};
@@ -83,7 +83,8 @@ impl PointLoads {
         let pitch = system.points[p].air.pitch;
         let state = BladeState { motion, pitch, loads };
         let root = loading.on_hub(blade, couplings, state, &q);
-        let damped = qd.iter().zip(rotor.damping()).map(|(rate, c)| c * rate * rate).sum();
+        let rates = DVector::from_column_slice(&qd);
+        let damped = rates.dot(&(rotor.damping() * &rates));
         Self {
             lifting: sections.iter().map(Lifting::of).collect(),
             root,

@@ -17,7 +17,7 @@ pub struct Rotor {
     discretisation: Discretisation,
     blade: ResponseBlade,
     mass: DMatrix<f64>,
-    damping: Vec<f64>,
+    damping: DMatrix<f64>,
 }
 
 impl Rotor {
@@ -35,11 +35,11 @@ impl Rotor {
         let properties = with_flap_masses(properties, &model.flaps)?;
         let blade = ResponseBlade::new(&model, &properties, discretisation)?;
         let mass = blade.mass_matrix();
-        let damping = blade.damping(model.modal_damping);
+        let damping = blade.damping(model.modal_damping, model.lag_damper);
         Ok(Self { model, discretisation, blade, mass, damping })
     }
 
-    pub(crate) fn with_damping(&self, model: RotorModel, damping: Vec<f64>) -> Self {
+    pub(crate) fn with_damping(&self, model: RotorModel, damping: DMatrix<f64>) -> Self {
         Self { model, damping, ..self.clone() }
     }
 
@@ -57,7 +57,7 @@ impl Rotor {
         &self.mass
     }
 
-    pub(crate) fn damping(&self) -> &[f64] {
+    pub(crate) fn damping(&self) -> &DMatrix<f64> {
         &self.damping
     }
 

@@ -37,8 +37,8 @@ pub(crate) struct ResponseSystem<'a> {
     pub(crate) couplings: Couplings,
     pub(crate) air: &'a FlightAir,
     pub(crate) points: Vec<PointInput>,
-    /// Modal damping coefficients `2 zeta omega M`.
-    pub(crate) damping: &'a [f64],
+    /// Damping of the modes and of the lag damper.
+    pub(crate) damping: &'a DMatrix<f64>,
     pub(crate) mass: &'a DMatrix<f64>,
 }
 
@@ -172,12 +172,12 @@ impl ResponseSystem<'_> {
             [out.fy[first + s], out.fz[first + s]] = axes.force(load);
             out.moment[first + s] = load.moment;
         }
-        if self.blade.offsets.mass_centre != 0.0 {
-            let [_, y, z] = out.gravity;
-            for i in 0..self.blade.grid.len() {
+        let [_, y, z] = out.gravity;
+        for (i, centre) in self.blade.mass_centre.iter().enumerate() {
+            if *centre != 0.0 {
                 let twist = self.points[point].air.pitch.angle + self.blade.twist[i];
                 let (sin, cos) = (twist + motion.phi.value[i]).sin_cos();
-                let arm = self.blade.section_mass[i] * self.blade.offsets.mass_centre;
+                let arm = self.blade.section_mass[i] * centre;
                 out.moment[i] += arm * (cos * z - sin * y);
             }
         }
@@ -218,8 +218,8 @@ impl ResponseSystem<'_> {
         let state = BladeState { motion, pitch, loads };
         let equations = Equations { blade: self.blade, couplings: self.couplings, mass: self.mass };
         equations.residual(state, coordinates, structure, out);
-        for ((o, d), rate) in out.iter_mut().zip(self.damping).zip(coordinates[1]) {
-            *o += d * rate;
+        for (o, row) in out.iter_mut().zip(self.damping.row_iter()) {
+            *o += row.iter().zip(coordinates[1]).map(|(d, rate)| d * rate).sum::<f64>();
         }
     }
 

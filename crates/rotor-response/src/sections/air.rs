@@ -6,6 +6,7 @@
 //! W   = (c mu cos psi - s lambda, -mu sin psi, -(c lambda + s mu cos psi))
 //! om  = th' + w_x + bp                                pitch rate of the section
 //! U_T = a . chord                                     tangential, from leading to trailing edge
+//! U   = U_T + a . t tan L,  t = (1, v_x, w_x)         the same across a line swept back by L
 //! U_P = a . normal + e_d om                           down through the blade at the aerodynamic centre
 //! ```
 //! with chord and normal of [`SectionAxes`], along which the loads stand: velocity and force are each other's
@@ -34,6 +35,7 @@ pub(crate) type FlapAngle = [f64; 3];
 /// Air seen by one section at one azimuth; speeds in tip speed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct SectionFlow {
+    /// Speed across the line of the sections, chordwise.
     pub(crate) u_t: f64,
     pub(crate) u_p: f64,
     /// Sense of the circulation: 1 in flow from the leading edge, -1 in reverse flow.
@@ -166,7 +168,7 @@ pub(crate) fn section_flow(
     let (w, phi) = (&motion.w, &motion.phi);
     let theta = point.pitch.angle + blade.twist[i] + phi.value[i];
     let theta_rate = point.pitch.rate + phi.rate[i];
-    let AirScales { chord, centre, .. } = blade.air[i];
+    let AirScales { chord, centre, sweep, .. } = blade.air[i];
     let om = theta_rate + w.slope[i] + blade.precone;
     let om_rate = point.pitch.acceleration + phi.acceleration[i] + w.slope_rate[i];
     let through = through_air(blade, motion, point, i, lambda);
@@ -175,15 +177,16 @@ pub(crate) fn section_flow(
     let [normal, normal_rate] = through.along(&axes.normal);
     let u_p = normal + centre * om;
     let u_p_rate = normal_rate + centre * om_rate;
+    let along_span = || {
+        let [x, y, z] = through.value;
+        x + motion.v.slope[i] * y + motion.w.slope[i] * z
+    };
+    let speed = if sweep == 0.0 { u_t } else { u_t + sweep * along_span() };
+    let rigid = blade.grid.x()[i] + point.advance_ratio * (point.sin - sweep * point.cos);
     SectionFlow {
-        u_t,
+        u_t: speed,
         u_p,
-        sense: sense(
-            point.reverse_flow,
-            u_t,
-            u_p,
-            blade.grid.x()[i] + point.advance_ratio * point.sin,
-        ),
+        sense: sense(point.reverse_flow, speed, u_p, rigid),
         pitch: theta,
         input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
         input_rate: [

@@ -30,24 +30,29 @@ pub(crate) struct RigidSpeed<'a> {
     /// Station, radius R.
     pub(crate) station: f64,
     pub(crate) advance_ratio: f64,
+    /// Tangent of the sweep angle `L`, aft positive.
+    pub(crate) sweep: f64,
     /// Magnitudes of speed with a kink besides zero, tip speed.
     pub(crate) kinks: &'a [f64],
 }
 
 impl RigidSpeed<'_> {
-    /// `x + mu sin psi`.
+    /// `x + mu (sin psi - tan L cos psi)`.
     pub(crate) fn at(&self, azimuth_rad: f64) -> f64 {
-        self.station + self.advance_ratio * azimuth_rad.sin()
+        let (sin, cos) = azimuth_rad.sin_cos();
+        self.station + self.advance_ratio * (sin - self.sweep * cos)
     }
 
     /// Azimuths in `[0, 2 pi)` where the speed has the magnitude of a kink.
     fn azimuths(&self) -> Vec<f64> {
+        // sin psi - tan L cos psi = sin(psi - L) / cos L
+        let (amplitude, phase) = (self.advance_ratio * self.sweep.hypot(1.0), self.sweep.atan());
         let magnitudes = self.kinks.iter().flat_map(|k| [*k, -*k]).chain([0.0]);
         magnitudes
-            .map(|speed| ((speed - self.station) / self.advance_ratio).asin())
+            .map(|speed| ((speed - self.station) / amplitude).asin())
             .filter(|angle| angle.is_finite())
             .flat_map(|angle| [angle, PI - angle])
-            .map(|psi| psi.rem_euclid(TAU))
+            .map(|psi| (psi + phase).rem_euclid(TAU))
             .collect()
     }
 }
@@ -179,7 +184,8 @@ mod tests {
     use crate::sections::lag::{Collocation, PeriodicLag};
     use approx::assert_abs_diff_eq;
 
-    const SPEED: RigidSpeed<'_> = RigidSpeed { station: 0.22, advance_ratio: 0.3, kinks: &[0.08] };
+    const SPEED: RigidSpeed<'_> =
+        RigidSpeed { station: 0.22, advance_ratio: 0.3, sweep: 0.0, kinks: &[0.08] };
 
     /// `int_0^psi |x + mu sin| dpsi` for `x < mu`.
     fn travelled(psi: f64) -> f64 {
@@ -260,7 +266,8 @@ mod tests {
     fn only_a_station_with_a_kink_has_finer_points() {
         let time = TimeElements::default();
         let of = |station, advance_ratio, kinks| {
-            FineAzimuth::new(&time, &RigidSpeed { station, advance_ratio, kinks }).is_some()
+            FineAzimuth::new(&time, &RigidSpeed { station, advance_ratio, sweep: 0.0, kinks })
+                .is_some()
         };
         assert!(of(0.25, 0.3, &[]) && !of(0.35, 0.3, &[]) && of(0.35, 0.3, &[0.08]));
         assert!(!of(0.5, 0.3, &[0.08]) && !of(0.25, 0.0, &[0.08]) && !of(0.0, 0.0, &[]));

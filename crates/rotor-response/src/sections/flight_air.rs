@@ -10,7 +10,7 @@ mod memory;
 pub(crate) const POINTS_TOGETHER: usize = 4;
 
 pub(crate) use self::memory::{StationChannel, StationMemory};
-use crate::model::air_scales::AirScales;
+use crate::model::air_scales::{AirScales, sweep_cosine};
 
 use crate::model::rotor_model::MACH_LIMIT;
 use crate::sections::air::{
@@ -90,13 +90,15 @@ impl FlightAir {
         let x = blade.grid.x();
         let first_station = x.iter().take_while(|x| **x < blade.cutout).count();
         let collocation = Collocation::new(time);
-        let kinks = model.speeds_with_kinks();
+        let level = model.speeds_with_kinks();
         let stations = (first_station..x.len())
             .into_par_iter()
             .map(|i| {
-                let place =
-                    Place { station: x[i], flap: blade.flap_index[i], chord: blade.air[i].chord };
-                let speed = RigidSpeed { station: x[i], advance_ratio, kinks: &kinks };
+                let AirScales { chord, sweep, .. } = blade.air[i];
+                let across = sweep_cosine(sweep);
+                let place = Place { station: x[i], flap: blade.flap_index[i], chord, across };
+                let kinks: Vec<f64> = level.iter().map(|speed| speed / across).collect();
+                let speed = RigidSpeed { station: x[i], advance_ratio, sweep, kinks: &kinks };
                 Station::new(model, place, &speed, time, &collocation)
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -248,24 +250,25 @@ impl FineStation {
     }
 }
 
-/// Where a station is, which flap it has and how wide it is (R).
+/// Where a station is, which flap it has, how wide it is (R), and the cosine of its sweep.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     station: f64,
     flap: Option<usize>,
     chord: f64,
+    across: f64,
 }
 
 impl StationAir {
     fn new(
         model: &RotorModel,
-        Place { station, flap, chord }: Place,
+        Place { station, flap, chord, across }: Place,
         collocation: &Collocation,
         points: &[f64],
         speeds: &[f64],
     ) -> Result<Self, ResponseError> {
         let nonlinear = &model.nonlinear;
-        let tip_mach = model.compressible_tip_mach();
+        let tip_mach = model.compressible_tip_mach() * across;
         let chord_fraction = flap.map_or(0.0, |k| model.flaps[k].chord_fraction);
         let effectiveness = flap.map(|k| model.flaps[k].effectiveness).unwrap_or_default();
         let flap_chord = FlapChord::new(chord_fraction)?;

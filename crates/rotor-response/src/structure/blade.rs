@@ -7,8 +7,8 @@ use crate::{
 };
 use nalgebra::DMatrix;
 use rotor_fem::{
-    BladeProperties, Distribution, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet,
-    ModerateBlade, ModerateSpec, SectionShape, TorsionTerms, UncoupledMode, modal_basis,
+    BladeProperties, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
+    ModerateSpec, SectionShape, UncoupledMode, modal_basis,
 };
 
 /// Station inboard of which the flow may turn round, radius R: the largest advance ratio the attached
@@ -74,6 +74,8 @@ pub struct ResponseBlade {
     pub(crate) tip_loss: f64,
     /// Centres ahead of the elastic axis, and the axis ahead of the rotor centre, radius R.
     pub(crate) offsets: SectionOffsets,
+    /// Mass centre ahead of the elastic axis at each station, radius R.
+    pub(crate) mass_centre: Vec<f64>,
     pub(crate) root_offset: f64,
     /// The blade of [`Couplings::Moderate`], and its own modal equations.
     pub(crate) moderate: Option<ModerateBlade>,
@@ -101,7 +103,7 @@ impl ResponseBlade {
             .chain(properties.breaks().iter().copied())
             .chain([model.root_cutout, model.tip_loss])
             .chain(model.flaps.iter().flat_map(|f| [f.start, f.end]))
-            .chain(model.planform.chord.iter().flat_map(Distribution::breaks).copied())
+            .chain(model.planform.breaks())
             .collect();
         let turning = [model.root_cutout, REVERSE_FLOW_END];
         let grid = SpanGrid::halved(root, &breaks, turning, discretisation.span_points_per_piece)?;
@@ -115,7 +117,13 @@ impl ResponseBlade {
         };
         let moderate = match model.couplings {
             Couplings::Moderate(torsion) => {
-                Some(moderate_blade(properties, torsion, model.offsets)?)
+                let spec = ModerateSpec {
+                    torsion,
+                    mass_centre: model.mass_centre(),
+                    tension_centre: model.offsets.tension_centre.into(),
+                    ..properties.spec().clone().into()
+                };
+                Some(ModerateBlade::new(spec)?)
             }
             Couplings::Linear | Couplings::Full => None,
         };
@@ -154,6 +162,7 @@ impl ResponseBlade {
             air,
             cutout: model.root_cutout,
             tip_loss: model.tip_loss,
+            mass_centre: along(&|x| model.mass_centre().value(x)),
             offsets: model.offsets,
             root_offset: root,
             modal: match &moderate {
@@ -230,13 +239,26 @@ impl ResponseBlade {
         }
     }
 
-    /// Modal damping coefficients `2 zeta omega M`; none of the first mode of a free hinge, a rotation about it
-    /// that strains nothing.
-    pub(crate) fn damping(&self, ratio: f64) -> Vec<f64> {
-        let of = |(i, (omega, mass)): (usize, (&f64, &f64))| {
-            if self.turns_freely(self.mode(i)) { 0.0 } else { 2.0 * ratio * omega * mass }
-        };
-        self.frequencies.iter().zip(&self.modal_masses).enumerate().map(of).collect()
+    /// Damping of the modes and of the lag damper on the modal coordinates:
+    ///
+    /// ```text
+    /// C_ii = 2 zeta omega M,   C_ij += c s_i s_j   of lag modes, s_i their slope at the root
+    /// ```
+    /// without the modal part of the first mode of a free hinge, a rotation about it that strains nothing.
+    pub(crate) fn damping(&self, modal_ratio: f64, lag_damper: f64) -> DMatrix<f64> {
+        DMatrix::from_fn(self.dof(), self.dof(), |i, j| {
+            let modes @ [(kind, _), (other, _)] = [i, j].map(|k| self.mode(k));
+            let own = if i == j && !self.turns_freely(modes[0]) {
+                2.0 * modal_ratio * self.frequencies[i] * self.modal_masses[i]
+            } else {
+                0.0
+            };
+            if [kind, other] == [ModeKind::Lag; 2] {
+                own + lag_damper * self.root_rotation[i] * self.root_rotation[j]
+            } else {
+                own
+            }
+        })
     }
 
     /// Stations and quadrature of the blade.
@@ -282,21 +304,6 @@ fn root_rotations(modes: &ModeSet, root: f64) -> Result<Vec<f64>, ResponseError>
         Ok(if matches!(mode.kind(), ModeKind::Flap | ModeKind::Lag) { shape[1] } else { shape[0] })
     };
     modes.modes().iter().map(rotation).collect()
-}
-
-/// The blade with moderate deflections.
-fn moderate_blade(
-    properties: &BladeProperties,
-    torsion: TorsionTerms,
-    offsets: SectionOffsets,
-) -> Result<ModerateBlade, ResponseError> {
-    let spec = ModerateSpec {
-        torsion,
-        mass_centre: offsets.mass_centre.into(),
-        tension_centre: offsets.tension_centre.into(),
-        ..properties.spec().clone().into()
-    };
-    Ok(ModerateBlade::new(spec)?)
 }
 
 /// The same in the coordinates of the uncoupled modes.

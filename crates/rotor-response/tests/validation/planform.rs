@@ -1,14 +1,14 @@
-//! A blade whose chord varies along the span: closed forms of a stiff blade in hover, and the identity of one reference
-//! chord with another.
+//! A blade whose chord varies along the span, a swept blade, a lag damper: closed forms of stiff blades, and the identity
+//! of one reference chord with another.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_fem::{BladeProperties, BladeSpec, Distribution, RootSupport};
+use rotor_fem::{BladeProperties, BladeSpec, Distribution, Joint, RootSupport, TorsionTerms};
 use rotor_response::{
     Condition, Controls, Couplings, Discretisation, Planform, ResponseTolerances, ReverseFlow,
-    Rotor, RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
+    Rotor, RotorModel, RotorSolution, RotorSolver, SectionLags, TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 
@@ -53,7 +53,48 @@ pub(crate) const ROWS: &[Check] = &[
     )
     .against("the same rotor")
     .at_most(1e-9, identity),
+    row(
+        "V-PLAN-05",
+        "thrust and torque of a stiff blade in hover, swept aft by 21.8 deg beyond \
+         .8 R: largest error",
+        "%",
+    )
+    .against(SWEPT)
+    .at_most(1e-3, swept_hover),
+    row(
+        "V-PLAN-06",
+        "pitch and roll moment of that blade on the hub at mu .15, no pitch, upflow \
+         of .05: error over the norm",
+        "%",
+    )
+    .against(SWEPT)
+    .at_most(1e-3, || Ok(swept_flight()?.0)),
+    row(
+        "V-PLAN-07",
+        "the same of the unswept blade against that form: what the bound must see",
+        "%",
+    )
+    .against(SWEPT)
+    .at_least(5.0, || Ok(swept_flight()?.1)),
+    row(
+        "V-PLAN-08",
+        "moment about the elastic axis at the root of that blade, at no pitch: lift \
+         of an upflow of .05; mass in vacuum at .5 deg of precone: largest error",
+        "%",
+    )
+    .against("int of lift, and of m x sin b cos b, times the distance behind the axis")
+    .at_most(1e-2, || worst("moments", 2, [swept_lift_torsion(), swept_mass_torsion()])),
+    row(
+        "V-PLAN-09",
+        "stiff blade with lag hinge at .05 R, free and on a spring, damper of .01 \
+         m0 Omega R^3, in vacuum, both theories: Floquet exponent, largest error",
+        "relative",
+    )
+    .against("-c/(2 I) +- i sqrt(w^2 - (c/2I)^2)")
+    .at_most(1e-6, lag_damper),
 ];
+
+const SWEPT: &str = "blade elements of simple sweep theory in closed form";
 
 /// Where the taper begins, R, with the name it has.
 const TAPERS: [(f64, &str); 2] = [(0.0, "root"), (0.6, "kink")];
@@ -92,7 +133,7 @@ fn chord_moment(n: i32, from: f64) -> f64 {
 
 fn model(chord: Option<Distribution>) -> RotorModel {
     RotorModel {
-        planform: Planform { chord },
+        planform: Planform { chord, set_back: None },
         drag_coefficient: DRAG,
         reverse_flow: ReverseFlow::Abrupt,
         ..paper_rotor(Couplings::Full, CUTOUT)
@@ -174,7 +215,7 @@ fn identity() -> Result<f64, Failure> {
     let half = 0.5 * paper.chord;
     let stations = vec![0.0, 1.0];
     let table = Distribution::PiecewiseLinear { stations, values: vec![half; 2] };
-    let planform = Planform { chord: Some(table) };
+    let planform = Planform { chord: Some(table), set_back: None };
     let by_table = RotorModel { planform, ..paper.clone() };
     let lock_number = 0.5 * paper.lock_number;
     let by_reference = RotorModel { chord: half, lock_number, ..paper };
@@ -201,4 +242,172 @@ fn identity() -> Result<f64, Failure> {
     let largest = a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let gap = a.iter().zip(&b).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs()));
     Ok((gap / largest).max((unit_a / unit_b - 1.0).abs()))
+}
+
+/// Where the swept part begins, R, and the tangent of its angle, aft.
+const SWEEP_FROM: f64 = 0.8;
+const TANGENT: f64 = 0.4;
+const MU: f64 = 0.15;
+
+/// `int f(x) dx` over the lifting span for cubics: `f` is given the tangent of the sweep and the distance behind the axis.
+fn over_span(f: impl Fn(f64, f64, f64) -> f64) -> f64 {
+    let of = |low: f64, high: f64, tangent: f64| {
+        let half = 0.5 * (high - low);
+        let rule = rotor_base::gauss_legendre(4);
+        let parts = rule.nodes.iter().zip(&rule.weights).map(|(node, weight)| {
+            let x = low + half * (node + 1.0);
+            half * weight * f(x, tangent, tangent * (x - SWEEP_FROM))
+        });
+        parts.sum::<f64>()
+    };
+    of(CUTOUT, SWEEP_FROM, 0.0) + of(SWEEP_FROM, 1.0, TANGENT)
+}
+
+fn cosine(tangent: f64) -> f64 {
+    1.0 / (1.0 + tangent * tangent).sqrt()
+}
+
+/// A stiff blade, swept or not, without trailing-edge flaps.
+struct Stiff {
+    tangent: f64,
+    lock_number: f64,
+    precone_rad: f64,
+    mu: f64,
+    theta0_rad: f64,
+    inflow: f64,
+}
+
+impl Stiff {
+    fn swept() -> Self {
+        Self {
+            tangent: TANGENT,
+            lock_number: RotorModel::paper_case().lock_number,
+            precone_rad: 0.0,
+            mu: 0.0,
+            theta0_rad: PITCH,
+            inflow: INFLOW,
+        }
+    }
+
+    fn solve(&self) -> Result<(RotorModel, RotorSolution), Failure> {
+        let set_back = Distribution::PiecewiseLinear {
+            stations: vec![0.0, SWEEP_FROM, 1.0],
+            values: vec![0.0, 0.0, self.tangent * (1.0 - SWEEP_FROM)],
+        };
+        let model = RotorModel {
+            planform: Planform { chord: None, set_back: Some(set_back) },
+            drag_coefficient: DRAG,
+            reverse_flow: ReverseFlow::Abrupt,
+            lock_number: self.lock_number,
+            ..paper_rotor(Couplings::Moderate(TorsionTerms::default()), CUTOUT)
+        };
+        let spec = BladeSpec {
+            root: RootSupport::CLAMPED,
+            precone_rad: self.precone_rad,
+            chord_gyration_radius: 0.09.into(),
+            ..BladeSpec::uniform(1e5, 1e5, 1e5, 1e8)
+        };
+        let d = Discretisation { modes: [1, 1, 1], ..Discretisation::default() };
+        let rotor = Rotor::new(model.clone(), &BladeProperties::new(spec)?, d)?;
+        let rotor = Arc::new(rotor);
+        let mut solver = RotorSolver::new(rotor, self.mu, ResponseTolerances::default())?;
+        let condition = Condition {
+            bank_rad: 0.0,
+            flight: FlightState { advance_ratio: self.mu, shaft_tilt_rad: 0.0 },
+            controls: Controls { theta0_rad: self.theta0_rad, ..Controls::default() },
+            flap_angles_rad: vec![],
+        };
+        let inflow = LinearInflow::Prescribed { induced_inflow: self.inflow };
+        Ok((model, solver.solve(&condition, &inflow, None)?))
+    }
+}
+
+/// `C_T = N_b int c cos L (x^2 th - x la) dx`, `C_Q = la C_T + N_b c_d / (2 pi) int c cos L x^3 dx`.
+fn swept_hover() -> Result<f64, Failure> {
+    let (model, found) = Stiff::swept().solve()?;
+    let (unit, blades) = (model.thrust_coefficient(1.0), model.blades as f64);
+    let mean = found.hub.mean();
+    let c = model.chord;
+    let thrust = blades * c * over_span(|x, t, _| cosine(t) * x * (x * PITCH - INFLOW));
+    let torque =
+        INFLOW * thrust + blades * c * DRAG * over_span(|x, t, _| cosine(t) * x.powi(3)) / TAU;
+    let errors = [unit * mean[2] / thrust - 1.0, -unit * mean[5] / torque - 1.0];
+    Ok(100.0 * errors.iter().fold(0.0_f64, |most, e| most.max(e.abs())))
+}
+
+/// Lift `F = c cos L (U_T + U_S tan L)(-la)` at no pitch, `U_T = x + mu sin psi`, `U_S = -mu cos psi`, at `x` along the blade
+/// and `s` behind its axis. Its cosine and sine at 1/rev make the moments
+///
+/// ```text
+/// M_x = (x F_1s - s F_1c) N_b / 2,   M_y = -(x F_1c + s F_1s) N_b / 2
+/// ```
+/// Errors of the swept blade, and of the unswept one, against those of the swept.
+fn swept_flight() -> Result<(f64, f64), Failure> {
+    let of = |tangent: f64| -> Result<[f64; 2], Failure> {
+        let stiff = Stiff { tangent, mu: MU, theta0_rad: 0.0, inflow: -INFLOW, ..Stiff::swept() };
+        let (model, found) = stiff.solve()?;
+        let unit = model.thrust_coefficient(1.0) / (model.blades as f64 * model.chord);
+        let mean = found.hub.mean();
+        Ok([unit * mean[3], unit * mean[4]])
+    };
+    let factor = 0.5 * MU * INFLOW;
+    let roll = factor * over_span(|x, t, s| cosine(t) * (x + s * t));
+    let pitch = factor * over_span(|x, t, s| cosine(t) * (x * t - s));
+    let error = |[x, y]: [f64; 2]| 100.0 * (x - roll).hypot(y - pitch) / roll.hypot(pitch);
+    Ok((error(of(TANGENT)?), error(of(0.0)?)))
+}
+
+fn swept_lift_torsion() -> Result<f64, Failure> {
+    let (model, found) = Stiff { theta0_rad: 0.0, inflow: -INFLOW, ..Stiff::swept() }.solve()?;
+    let unit = model.thrust_coefficient(1.0);
+    let expected = -model.chord * INFLOW * over_span(|x, t, back| cosine(t) * x * back);
+    Ok(100.0 * (unit * found.root.components[3].mean / expected - 1.0).abs())
+}
+
+fn swept_mass_torsion() -> Result<f64, Failure> {
+    let precone_rad = 0.5_f64.to_radians();
+    let blade =
+        Stiff { lock_number: 0.0, precone_rad, theta0_rad: 0.0, inflow: 0.0, ..Stiff::swept() };
+    let (_, found) = blade.solve()?;
+    let expected = precone_rad.sin() * precone_rad.cos() * over_span(|x, _, back| x * back);
+    Ok(100.0 * (found.root.components[3].mean / expected - 1.0).abs())
+}
+
+fn lag_damper() -> Result<f64, Failure> {
+    let (hinge, damper) = (0.05_f64, 0.01);
+    let inertia = (1.0 - hinge).powi(3) / 3.0;
+    let mut errors = Vec::new();
+    for couplings in [Couplings::Linear, Couplings::Moderate(TorsionTerms::default())] {
+        for (lag, spring) in [(Joint::Free, 0.0), (Joint::Spring { stiffness: 0.02 }, 0.02)] {
+            let root = RootSupport { lag, ..RootSupport::CLAMPED };
+            let spec =
+                BladeSpec { root, root_offset: hinge, ..BladeSpec::uniform(1e5, 1e5, 1e5, 1e8) };
+            let model = RotorModel {
+                lock_number: 0.0,
+                modal_damping: 0.0,
+                lag_damper: damper,
+                ..paper_rotor(couplings, CUTOUT)
+            };
+            let d = Discretisation { modes: [0, 1, 0], ..Discretisation::default() };
+            let rotor = Arc::new(Rotor::new(model, &BladeProperties::new(spec)?, d)?);
+            let mut solver = RotorSolver::new(rotor, 0.0, ResponseTolerances::default())?;
+            let condition = Condition {
+                bank_rad: 0.0,
+                flight: FlightState { advance_ratio: 0.0, shaft_tilt_rad: 0.0 },
+                controls: Controls::default(),
+                flap_angles_rad: vec![],
+            };
+            let still = LinearInflow::Prescribed { induced_inflow: 0.0 };
+            let found = solver.solve(&condition, &still, None)?;
+            let stability = solver.stability_with(&condition, &found, SectionLags::Moving)?;
+            let motion = stability.least_stable().ok_or("no motion")?;
+            let decay = damper / (2.0 * inertia);
+            // centrifugal stiffness int m e (x - e) dx
+            let squared = (0.5 * hinge * (1.0 - hinge).powi(2) + spring) / inertia;
+            let frequency = (squared - decay * decay).sqrt();
+            errors.push(Ok((motion.growth_per_rad / -decay - 1.0).abs()));
+            errors.push(Ok((motion.frequency_per_rev / frequency - 1.0).abs()));
+        }
+    }
+    worst("exponents", 8, errors)
 }

@@ -127,7 +127,7 @@ fn modes_at(
         }
         AboutState::Deflected => {
             let spec = ModerateSpec {
-                mass_centre: case.rotor.mass_centre_r.into(),
+                mass_centre: case.rotor_model().mass_centre(),
                 tension_centre: case.rotor.tension_centre_r.into(),
                 torsion: case.torsion_terms(),
                 ..ModerateSpec::from(blade.spec().clone())

@@ -60,6 +60,10 @@ section! {
         /// Damping of every mode over critical. With 0 a coupled lag mode within 0.01 per rev of a whole
         /// number is refused, at no collective and at that of the trim.
         pub modal_damping: f64 = 0.005, Within(0.0, 0.5), "", "give a fraction: 0.005 is 0.5 %";
+        /// Viscous damper of the lag rotation at the root, moment per rate; the lag joint turns, `Free` or `Spring`.
+        #[serde(skip_serializing_if = "is_default")]
+        pub lag_damper: f64 = 0.0, Within(0.0, 10.0), "m0 Omega R^3",
+            "a damper is not negative and over m0 Omega R^3, not in N m s (0.01 damps a hinged lag mode by some 5 %)";
         /// Station of the blade's root, where hinges are; nothing moves or weighs inboard.
         #[serde(skip_serializing_if = "is_default")]
         pub root_offset_r: f64 = 0.0, Within(0.0, 0.5), "R", "0 is the rotor centre; nothing moves inboard of it";
@@ -119,6 +123,12 @@ section! {
         /// Chord: of air loads, flaps, wake and solidity, which is thrust-weighted, `3 N_b / pi int_0^1 c x^2 dx`.
         #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
         pub chord_r: Vec<(f64, f64)> = vec![], Rule("0.001 to 0.5"), "R", "";
+        /// How far the sections, with their mass and aerodynamic centres, are set back behind the straight elastic
+        /// axis; its slope is the tangent of the sweep angle: `[(0, 0), (0.92, 0), (1, 0.029)]` sweeps the tip by
+        /// 20 deg. `couplings: Moderate` and linear sections only, no flap on the swept part; `km2_r` is about the
+        /// elastic axis, so at least as large.
+        #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
+        pub set_back_r: Vec<(f64, f64)> = vec![], Rule("-0.2 to 0.2, 45 deg or less"), "R", "";
         /// Mass per length over `mass_kg_m`.
         #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "not_empty")]
         pub mass: Vec<(f64, f64)> = vec![], Rule("above 0"), "m0", "";
@@ -169,14 +179,16 @@ pub(super) enum TableKind {
     Radius,
     Angle,
     Chord,
+    SetBack,
 }
 
 impl BladeTables {
     /// Every table.
-    pub(super) fn named(&self) -> [NamedTable<'_>; 10] {
-        use TableKind::{Angle, Chord, Positive, Radius};
+    pub(super) fn named(&self) -> [NamedTable<'_>; 11] {
+        use TableKind::{Angle, Chord, Positive, Radius, SetBack};
         [
             ("chord_r", &self.chord_r, Chord),
+            ("set_back_r", &self.set_back_r, SetBack),
             ("mass", &self.mass, Positive),
             ("ei_flap", &self.ei_flap, Positive),
             ("ei_lag", &self.ei_lag, Positive),

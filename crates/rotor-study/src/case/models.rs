@@ -131,7 +131,10 @@ impl Case {
         RotorModel {
             blades: self.rotor.blades,
             chord: self.rotor.chord_r,
-            planform: Planform { chord: given(&self.rotor.tables.chord_r) },
+            planform: Planform {
+                chord: given(&self.rotor.tables.chord_r),
+                set_back: given(&self.rotor.tables.set_back_r),
+            },
             lock_number: self.rotor.lock_number,
             drag_coefficient: self.aerodynamics.drag_coefficient,
             root_cutout: self.rotor.root_cutout_r,
@@ -146,6 +149,7 @@ impl Case {
             },
             offsets: self.section_offsets(),
             modal_damping: self.rotor.modal_damping,
+            lag_damper: self.rotor.lag_damper,
             couplings: match self.structure.couplings {
                 CouplingsChoice::Linear => Couplings::Linear,
                 CouplingsChoice::Full => Couplings::Full,

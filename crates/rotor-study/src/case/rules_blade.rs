@@ -3,11 +3,13 @@
 use super::blade::{RIGID, RIGID_ALONG, TableKind};
 use super::checker::{Checker, number};
 use super::field::{Field, Range, Value as _};
-use super::{Case, CaseFault, CouplingsChoice, Joint, TwistAngle, Untwist};
+use super::{Case, CaseFault, CouplingsChoice, DynamicStallChoice, Joint, TwistAngle, Untwist};
 
 /// Softest springs of flap and lag hinges and of the pitch link, over `m0 Omega^2 R^3`.
 const LEAST_SPRING: f64 = 1e-6;
 const LEAST_PITCH_SPRING: f64 = 1e-3;
+/// Largest sweep of a part of the blade, deg.
+const MOST_SWEEP_DEG: f64 = 45.0;
 
 /// Checks what the blade has beyond the uniform one on a clamp.
 pub(super) fn check_blade(check: &mut Checker, case: &Case) {
@@ -29,6 +31,11 @@ pub(super) fn check_blade(check: &mut Checker, case: &Case) {
         let message = "a lag hinge at the rotor centre has no stiffness, the blade turns about the shaft on its own: give rotor.root_offset_r, or Spring(stiffness: ...)";
         check.refuse("rotor.root.lag", message);
     }
+    if r.lag_damper > 0.0 && r.root.lag == Joint::Locked {
+        let message =
+            "a damper needs a lag joint that turns: give rotor.root.lag: Free or Spring, or 0";
+        check.refuse("rotor.lag_damper", message);
+    }
     if r.root.feather == Joint::Free {
         let message =
             "a blade without pitch link holds no pitch: give Spring(stiffness: ...), or Locked";
@@ -44,6 +51,7 @@ pub(super) fn check_blade(check: &mut Checker, case: &Case) {
         }
     }
     check_mass_centre(check, case);
+    check_sweep(check, case);
     let field = "rotor.aerodynamic_centre_r";
     let remedy =
         "quarter chord ahead of the elastic axis is positive; the axis lies inside the chord";
@@ -73,12 +81,48 @@ fn check_mass_centre(check: &mut Checker, case: &Case) {
     let r = &case.rotor;
     let listed = r.tables.km2_r.iter().map(|own| own.1).reduce(f64::min);
     let (key, least) = listed.map_or(("km2_r", r.km2_r), |least| ("tables.km2_r", least));
-    let offset = r.mass_centre_r;
+    let backs = r.tables.set_back_r.iter().map(|(_, back)| r.mass_centre_r - back);
+    let offset = backs.fold(r.mass_centre_r, |far, at| if at.abs() > far.abs() { at } else { far });
     if least > 0.0 && offset.abs() > least {
         let message = format!(
             "{offset} R is farther from the elastic axis than rotor.{key}, {least} R, the radius of gyration about that axis: give a radius of at least sqrt(k^2 + mass_centre_r^2), with k that about the mass centre"
         );
         check.refuse("rotor.mass_centre_r", message);
+    }
+}
+
+/// A swept blade: what knows it, its angle, its flaps, its radius of gyration about the elastic axis.
+fn check_sweep(check: &mut Checker, case: &Case) {
+    let (field, table) = ("rotor.tables.set_back_r", &case.rotor.tables.set_back_r);
+    if table.iter().all(|(_, back)| *back == 0.0) {
+        return;
+    }
+    if case.structure.couplings != CouplingsChoice::Moderate {
+        let message = "Linear and Full know no mass behind the axis: choose structure.couplings: Moderate, or leave it out";
+        check.refuse(field, message);
+    }
+    let air = &case.aerodynamics;
+    if air.dynamic_stall != DynamicStallChoice::Off || !air.airfoils.is_empty() {
+        let message = "airfoil tables and dynamic stall know no sweep: leave aerodynamics.airfoils and dynamic_stall out, or the sweep";
+        check.refuse(field, message);
+    }
+    for (i, pair) in table.windows(2).enumerate() {
+        let [(from, back), (to, next)] = [pair[0], pair[1]];
+        let angle = ((next - back) / (to - from)).atan().to_degrees();
+        let at = format!("{field}[{}]", i + 1);
+        if angle.abs() > MOST_SWEEP_DEG {
+            let message = format!(
+                "the blade sweeps by {angle:.0} deg from {from} R to {to} R; 45 deg is the most, a jump has no angle"
+            );
+            check.refuse(&at, message);
+        }
+        let flap = case.flaps.iter().position(|f| f.start_r < to && f.end_r > from);
+        if let (Some(flap), true) = (flap, next != back) {
+            let message = format!(
+                "the blade sweeps from {from} R to {to} R, where flaps[{flap}] is; a flap stands on an unswept part"
+            );
+            check.refuse(&at, message);
+        }
     }
 }
 
@@ -140,6 +184,10 @@ fn check_tables(check: &mut Checker, case: &Case) {
                 TableKind::Angle => {
                     let remedy = "a helicopter's blade turns by 8 to 16 deg from root to tip";
                     check.within(number(&at(i), value, "deg", remedy), -90.0, 90.0);
+                }
+                TableKind::SetBack => {
+                    let remedy = "aft positive; a tip swept by 20 deg from 0.92 R ends at 0.029 R";
+                    check.within(number(&at(i), value, "R", remedy), -0.2, 0.2);
                 }
                 TableKind::Chord => {
                     let remedy = "a blade's chord is 0.03 to 0.12 R";

@@ -93,7 +93,7 @@ fn every_problem_is_reported_with_its_line() {
         [
             "case.ron:2:3: advance_ratio: is 0.6, expected 0 to 0.5; the attached-flow rotor model ends at 0.5; 0 is hover",
             "case.ron:4:5: rotor.ei_flap: is -0.0108 m0 Omega^2 R^4, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0108)",
-            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping, root_offset_r, root, mass_centre_r, tension_centre_r, aerodynamic_centre_r, torque_offset_r, gravity, tables, dissimilar_blades, unlike_blades",
+            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping, lag_damper, root_offset_r, root, mass_centre_r, tension_centre_r, aerodynamic_centre_r, torque_offset_r, gravity, tables, dissimilar_blades, unlike_blades",
             "case.ron:6:5: rotor.blades: is 0, expected 1 to 16; the paper's rotor has 4",
             "case.ron:7:5: rotor.gj: is NaN m0 Omega^2 R^4, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.00615)",
             "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) <= start_r < end_r <= 1 R; keep it on the blade, and list flaps from root to tip without overlap",

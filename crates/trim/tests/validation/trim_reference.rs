@@ -70,6 +70,7 @@ fn trimmed(mu: f64, split: usize) -> Result<TrimSolution, Failure> {
         // the reference's Lock number is with its own lift slope, ours with 2 pi
         lock_number: 5.2 * TAU / LIFT_SLOPE,
         modal_damping: 0.0,
+        lag_damper: 0.0,
         nonlinear: NonlinearSections { airfoils: Some(Arc::new(span)), dynamic_stall: None },
         ..RotorModel::table_1(Couplings::Linear)
     };

@@ -1,6 +1,6 @@
 //! Which effect a seed hides, on which base and how strong: functions of the seed alone.
 //!
-//! Seeds come in blocks of 33. Each block holds 10 sets without effect, each cause of the library once, 4 pairs and
+//! Seeds come in blocks of [`BLOCK`]. Each block holds 10 sets without effect, each cause of the library once, 4 pairs and
 //! 4 effects outside the library (in turn), in an order that a hash of the block decides. A category meets
 //! the bases in an order that a hash of the category decides: ten blocks, ten different bases.
 
@@ -9,7 +9,7 @@ use super::design::BASES;
 use super::draw::{Draw, Purpose};
 
 /// Seeds in a block.
-pub const BLOCK: u64 = 33;
+pub const BLOCK: u64 = (NULLS + Cause::ALL.len() + 2 * IN_TURN) as u64;
 
 /// Sets without effect in a block.
 const NULLS: usize = 10;
@@ -35,7 +35,7 @@ pub struct Assignment {
 
 impl Assignment {
     /// The assignment of a seed.
-    #[expect(clippy::cast_possible_truncation, reason = "numbers below 33 and turns of ten")]
+    #[expect(clippy::cast_possible_truncation, reason = "numbers below a block and turns of ten")]
     pub fn of_seed(seed: u64) -> Self {
         let (block, place) = (seed / BLOCK, (seed % BLOCK) as usize);
         let slot = Draw::new(Purpose::Assignment, &[0, block]).permutation(BLOCK as usize)[place];
