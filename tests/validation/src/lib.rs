@@ -24,8 +24,10 @@ mod areas;
 mod check;
 mod table;
 
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{LazyLock, OnceLock};
 
 pub use areas::{AREAS, Area, heading_of, ids};
 pub use check::{Check, Criterion, Draft, Measure, Repeatability, Row, row};
@@ -51,27 +53,46 @@ pub fn hold(checks: &[Check]) {
     hold_in(folder.as_deref(), &filter, checks);
 }
 
-/// [`hold`] with the folder and the filter given.
+/// [`hold`] with the folder and the filter given. As many checks as there are cores are computed at once.
 fn hold_in(folder: Option<&Path>, filter: &str, checks: &[Check]) {
-    let mut failed = Vec::new();
-    for check in checks {
-        let Some(heading) = heading_of(check.id) else {
-            panic!("{} is in no area: add it to AREAS of the package `validation`", check.id)
-        };
-        if !(check.id.contains(filter) || heading.contains(filter)) {
-            continue;
+    let chosen: Vec<&Check> = checks
+        .iter()
+        .filter(|check| {
+            let Some(heading) = heading_of(check.id) else {
+                panic!("{} is in no area: add it to AREAS of the package `validation`", check.id)
+            };
+            check.id.contains(filter) || heading.contains(filter)
+        })
+        .collect();
+    let next = AtomicUsize::new(0);
+    let rows: Vec<OnceLock<Row>> = chosen.iter().map(|_| OnceLock::new()).collect();
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    std::thread::scope(|scope| {
+        for _ in 0..cores {
+            scope.spawn(|| {
+                loop {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    let (Some(check), Some(done)) = (chosen.get(place), rows.get(place)) else {
+                        break;
+                    };
+                    let row = Row::of(check);
+                    if let Some(folder) = folder
+                        && let Err(error) = row.write(folder)
+                    {
+                        let to = folder.display();
+                        panic!("the row of {} cannot be written to {to}: {error}", row.id);
+                    }
+                    done.get_or_init(|| row);
+                }
+            });
         }
-        let row = Row::of(check);
-        if let Some(folder) = folder
-            && let Err(error) = row.write(folder)
-        {
-            panic!("the row of {} cannot be written to {}: {error}", row.id, folder.display());
-        }
-        if !row.passes() {
-            failed
-                .push(format!("{}, {}: {:?}, {:?}", row.id, row.quantity, row.got, row.criterion));
-        }
-    }
+    });
+    let failed: Vec<String> = rows
+        .iter()
+        .filter_map(OnceLock::get)
+        .filter(|row| !row.passes())
+        .map(|row| format!("{}, {}: {:?}, {:?}", row.id, row.quantity, row.got, row.criterion))
+        .collect();
     assert!(failed.is_empty(), "{} rows do not hold:\n{}", failed.len(), failed.join("\n"));
 }
 
