@@ -156,3 +156,61 @@ fn a_second_sensor_tells_a_late_reading_from_a_filtered_one() {
         assert!((value / truth - 1.0).abs() < 0.02, "{hidden}: {value} s for {truth} s");
     }
 }
+
+/// A disturbance outside the window that `dataset.ron` gives is not seen by the diagnosis; inside, it is.
+#[test]
+fn the_window_of_a_run_is_respected_from_the_file_to_the_verdict() {
+    let cache = tempfile::tempdir().unwrap();
+    let request = request("null", 10, 1);
+    let reference = reference_files(10, 40.0, Size::Small).unwrap();
+    let measured = measured_set(&request).unwrap().files;
+    let records = |files: &[File]| {
+        let folder = tempfile::tempdir().unwrap();
+        write(folder.path(), files);
+        Records::from(&read_bench(&Folder::Disk(folder.path().to_path_buf())).unwrap())
+    };
+    let verdict = |files: &[File]| {
+        let store = FolderStore(cache.path());
+        let reference = records(&reference).runs;
+        let question = Question { reference, cache: Some(&store), ..Question::default() };
+        let found = Findings::from(&diagnose(&records(files), &question).unwrap());
+        serde_json::to_value(found).unwrap()["verdict"].as_str().unwrap().to_owned()
+    };
+    // the last tenth of the first run rises by 30 um
+    let (name, text) = measured.iter().find(|(name, _)| name.ends_with(".csv")).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let head = lines.iter().position(|line| line.starts_with("time_s")).unwrap();
+    let output = lines[head].split(',').position(|c| c == "displacement_um").unwrap();
+    let from = lines.len() - (lines.len() - head) / 10;
+    let spoiled: Vec<String> = lines
+        .iter()
+        .enumerate()
+        .map(|(i, line)| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if i >= from {
+                cells[output] = (cells[output].parse::<f64>().unwrap() + 30.0).to_string();
+            }
+            cells.join(",")
+        })
+        .collect();
+    let end = lines[from - 1].split(',').next().unwrap();
+    let with = |text: &str, window: &str| -> Vec<File> {
+        let entry = format!("file: \"{name}\"");
+        let edited = |(own, old): &File| {
+            let new = if own == name {
+                text.to_owned()
+            } else if own == "dataset.ron" {
+                assert!(old.contains(&entry), "{old}");
+                old.replace(&entry, &format!("{entry}{window}"))
+            } else {
+                old.clone()
+            };
+            (own.clone(), new)
+        };
+        measured.iter().map(edited).collect()
+    };
+    let window = format!(", window_s: (0.0, {end})");
+    assert_eq!(verdict(&with(&spoiled.join("\n"), &window)), "nothing-missing");
+    assert_eq!(verdict(&with(text, &window)), "nothing-missing");
+    assert_ne!(verdict(&with(&spoiled.join("\n"), "")), "nothing-missing");
+}
