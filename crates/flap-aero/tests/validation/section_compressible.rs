@@ -1,7 +1,7 @@
 //! Compressible, stalled and tabulated sections, and the exact theory they are measured against.
 
 use std::f64::consts::TAU;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use exact_section::{Possio, incompressible_loads, short_time, start_loads};
 use flap_aero::{
@@ -12,7 +12,7 @@ use flap_aero::{
 use num_complex::Complex64;
 
 use crate::errors::{ErrorBands, errors_against_possio, errors_of_flaps};
-use validation::{Check, Failure, Table, TableRow, row, worst};
+use validation::{Check, Failure, Table, TableRow, row, shared, worst};
 
 const OWN: &str = "Possio's equation, the project's own solver; Theodorsen at Mach 0";
 const SLOW: usize = 0;
@@ -330,12 +330,9 @@ fn collected(machs: &[f64]) -> Result<Errors, Failure> {
 
 /// The whole grid, computed once for all checks.
 fn grid() -> Result<&'static [Errors; 2], Failure> {
-    static ERRORS: OnceLock<[Errors; 2]> = OnceLock::new();
-    if let Some(errors) = ERRORS.get() {
-        return Ok(errors);
-    }
-    let fresh = [collected(&SUBCRITICAL)?, collected(&FASTER)?];
-    Ok(ERRORS.get_or_init(|| fresh))
+    static ERRORS: LazyLock<Result<[Errors; 2], Failure>> =
+        LazyLock::new(|| Ok([collected(&SUBCRITICAL)?, collected(&FASTER)?]));
+    shared(&ERRORS)
 }
 
 /// Largest error of a load of a flap motion, per cent, over a band of the grid.

@@ -1,6 +1,6 @@
 //! The control study of the paper's case: what must hold whatever the numbers are.
 
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use hhc_control::{ControlLayout, ControlLimits, FeedbackLaw, LoadWeights, TMatrix};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use sim_driver::case::{
 use sim_driver::progress::Progress;
 use sim_driver::results::ControlLine;
 use sim_driver::run::{run_case, run_trimmed};
-use validation::{Check, Failure, row, too_few, worst};
+use validation::{Check, Failure, row, shared, too_few, worst};
 
 const SELF: &str = "the study itself, Drees inflow, advance ratio 0.30";
 
@@ -198,8 +198,7 @@ struct InFreeWake {
 }
 
 fn in_free_wake() -> Result<&'static InFreeWake, Failure> {
-    static FOUND: OnceLock<InFreeWake> = OnceLock::new();
-    if FOUND.get().is_none() {
+    static FOUND: LazyLock<Result<InFreeWake, Failure>> = LazyLock::new(|| {
         let mut loaded = controllers_case()?;
         loaded.case.inflow.model = InflowChoice::FreeWake(FreeWakeValues::default());
         loaded.case.control.harmonics = vec![vec![3]];
@@ -221,13 +220,13 @@ fn in_free_wake() -> Result<&'static InFreeWake, Failure> {
             }
             (sums[0] / sums[1]).sqrt()
         };
-        let _ = FOUND.set(InFreeWake {
+        Ok(InFreeWake {
             held: distance(&anew.held, &settled),
             change: anew.change,
             moved: distance(&anew.authority, &settled),
-        });
-    }
-    FOUND.get().ok_or(too_few("free wakes", 0, 1))
+        })
+    });
+    shared(&FOUND)
 }
 
 fn inverse_over_feedback() -> Result<f64, Failure> {
@@ -278,8 +277,7 @@ const SLOWER: &str = "the study itself, Drees inflow";
 
 /// The paper's case at other advance ratios, one after another.
 fn slower() -> Result<&'static [ControlLine], Failure> {
-    static LINES: OnceLock<Vec<ControlLine>> = OnceLock::new();
-    if LINES.get().is_none() {
+    static LINES: LazyLock<Result<Vec<ControlLine>, Failure>> = LazyLock::new(|| {
         let loaded = shipped_case(PAPER_CASE).map_err(SimError::from)?;
         let actuators = case_actuators(&loaded)?;
         let mut lines = Vec::new();
@@ -290,15 +288,14 @@ fn slower() -> Result<&'static [ControlLine], Failure> {
             let run = run_trimmed(&here, actuators.clone(), rotor, &Progress::hidden())?;
             lines.extend(run.figures().control);
         }
-        let _ = LINES.set(lines);
-    }
-    Ok(LINES.get().map_or(&[], Vec::as_slice))
+        Ok(lines)
+    });
+    Ok(shared(&LINES)?)
 }
 
 /// Largest flap harmonic over a limit of 1 deg, and how far the largest of a set stays below it.
 fn given_stroke() -> Result<(f64, f64), Failure> {
-    static FOUND: OnceLock<(f64, f64)> = OnceLock::new();
-    if FOUND.get().is_none() {
+    static FOUND: LazyLock<Result<(f64, f64), Failure>> = LazyLock::new(|| {
         let mut loaded = controllers_case()?;
         loaded.case.control.stroke_limit = StrokeChoice::Given { amplitude_deg: 1.0 };
         loaded.case.control.actuators = vec![ControlActuator::Hysteretic];
@@ -309,20 +306,19 @@ fn given_stroke() -> Result<(f64, f64), Failure> {
         });
         let (over, under) =
             largest.fold((0.0_f64, 0.0_f64), |(o, u), a| (o.max(a), u.max(1.0 - a)));
-        let _ = FOUND.set((over, under));
-    }
-    FOUND.get().copied().ok_or(too_few("sets", 0, 5))
+        Ok((over, under))
+    });
+    shared(&FOUND).copied()
 }
 
 /// The paper's case: constant T, weight tuned to the stroke.
 fn paper_study() -> Result<&'static [ControlLine], Failure> {
-    static LINES: OnceLock<Vec<ControlLine>> = OnceLock::new();
-    if LINES.get().is_none() {
+    static LINES: LazyLock<Result<Vec<ControlLine>, Failure>> = LazyLock::new(|| {
         let outcome =
             run_case(&shipped_case(PAPER_CASE).map_err(SimError::from)?, &Progress::hidden())?;
-        let _ = LINES.set(outcome.figures().control);
-    }
-    Ok(LINES.get().map_or(&[], Vec::as_slice))
+        Ok(outcome.figures().control)
+    });
+    Ok(shared(&LINES)?)
 }
 
 fn fed_back(lines: &'static [ControlLine]) -> impl Iterator<Item = &'static ControlLine> {
@@ -451,12 +447,11 @@ fn controllers_case() -> Result<LoadedCase, SimError> {
 
 /// Every control of the case with all controllers, computed once.
 fn study() -> Result<&'static [ControlLine], Failure> {
-    static LINES: OnceLock<Vec<ControlLine>> = OnceLock::new();
-    if LINES.get().is_none() {
+    static LINES: LazyLock<Result<Vec<ControlLine>, Failure>> = LazyLock::new(|| {
         let outcome = run_case(&controllers_case()?, &Progress::hidden())?;
-        let _ = LINES.set(outcome.figures().control);
-    }
-    Ok(LINES.get().map_or(&[], Vec::as_slice))
+        Ok(outcome.figures().control)
+    });
+    Ok(shared(&LINES)?)
 }
 
 fn line(harmonics: &[usize], actuator: &str) -> Result<&'static ControlLine, Failure> {
