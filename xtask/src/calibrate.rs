@@ -1,4 +1,4 @@
-//! `cargo xtask calibrate`: poles and gains of the calibrated section model, from exact theory to source.
+//! `cargo xtask calibrate`: poles and gains of the calibrated section model, from exact theory to its table.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use exact_section::calibration::{Calibration, calibrate};
 use crate::{XtaskError, files};
 
 /// The file the calibration is stored in, from the root.
-pub const TABLE: &str = "crates/flap-aero/src/attached/calibrated/table.rs";
+pub const TABLE: &str = "crates/flap-aero/src/attached/calibrated/table.in";
 
 /// Numbers of a table that differ by more than this are different: the fit is iterative, and
 /// logarithms are not the same to the last bit on every machine.

@@ -2,11 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use reference_rotors::CouplingSettings;
-use reference_rotors::{Landgrebe, slender};
+use reference_rotors::{CouplingSettings, Landgrebe, contraction_drift, slender};
 use rotor_wake::{
     ControlPoint, CoreModel, FarTrailers, FlightState, FreeWakeSettings, NearWakeMotion, WakeError,
-    WakeRotor, contraction_drift,
+    WakeRotor,
 };
 
 /// A hovering rotor and its wake.

@@ -119,7 +119,18 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
                 layers::check(&members).iter().map(ToString::to_string).collect();
             let tree = tidy::Tree::load(root)?;
             faults.extend(rooms::check(&tree).iter().map(ToString::to_string));
-            let summary = format!("{} members, {} faults\n", members.len(), faults.len());
+            let lines = rooms::lines_of_code(&tree);
+            let product = lines.iter().filter(|(member, _)| member.starts_with("crates/"));
+            let all: usize = product.clone().map(|(_, lines)| lines).sum();
+            let by_crate: Vec<String> = product
+                .map(|(member, lines)| format!("{lines:6} lines of code in {member}"))
+                .collect();
+            let summary = format!(
+                "{}\n{all:6} in all crates\n{} members, {} faults\n",
+                by_crate.join("\n"),
+                members.len(),
+                faults.len()
+            );
             Ok(verdict(&faults, &summary))
         }
         Chore::Dependencies => {

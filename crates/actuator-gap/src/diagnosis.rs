@@ -1,17 +1,17 @@
 //! A diagnosis: what the base model of a bench gets wrong, why, and what it is worth to know.
 
-use crate::actuator_file::StoredChannels;
 use crate::base::{BaseModel, white_noise};
 use crate::causes::{self, BenchCause, Design};
 use crate::error::DiagnosisError;
 use crate::next::{self, Proposal};
+use crate::numbers::{less, range, slope};
 use crate::record::{Record, Records};
-use crate::simulator::{BenchSimulator, averaged, slope};
+use crate::simulator::{BenchSimulator, ChannelKind, averaged};
 use crate::surrogate;
 use model_gap::discovery::{Confidence, Discovery, Finding, Reason, Settings, Signal, Verdict};
-use model_gap::{Candidate, GapError};
+use model_gap::{Candidate, EnergySplit, GapError};
 use preisach_dyn::{ActuatorModel, PreisachError};
-use rotor_base::{mean_square, variance};
+use rotor_base::variance;
 
 /// A diagnosis with everything it rests on.
 pub struct Diagnosis {
@@ -19,29 +19,22 @@ pub struct Diagnosis {
     pub finding: Finding,
     /// The candidates, in the order of the library.
     pub candidates: Vec<Candidate>,
-    pub(crate) library: Vec<Box<dyn BenchCause>>,
+    pub(crate) library: Vec<BenchCause>,
     pub(crate) base: BaseModel,
     /// Inputs that the base model was fitted to.
     pub(crate) law_inputs: Vec<Vec<f64>>,
     /// Names of the measured runs.
     pub run_ids: Vec<String>,
-    /// Times at which what is judged of the measured runs begins, s.
-    pub(crate) run_starts_s: Vec<f64>,
-    /// Inputs of the measured runs, thinned as the residuals are.
-    pub(crate) run_inputs: Vec<Vec<f64>>,
-    /// Run and channel of every trace, and the time between its samples, s.
-    pub(crate) traces: Vec<(usize, &'static str, f64)>,
+    /// The outputs among the traces.
+    pub(crate) outputs: Vec<OutputTrace>,
     /// Energy of every measured run.
     pub energy: Vec<RunEnergy>,
     /// Title of the data.
     pub title: String,
     /// Folder of the data.
     pub folder: String,
-    pub(crate) content_hash: String,
-    pub(crate) range: (f64, f64),
-    pub(crate) deg_per_um: Option<f64>,
-    pub(crate) is_bench: bool,
-    pub(crate) channels: Option<StoredChannels>,
+    /// The data without their runs, the range widened to every input.
+    pub(crate) data: Records,
     /// Whether reference runs fix the base model.
     pub has_reference: bool,
     /// Error of the model given on the measured runs, rms over spread, percent; none if it was not
@@ -58,6 +51,20 @@ pub struct Diagnosis {
     pub floor: f64,
     /// Noise of the reading on the reference runs, in the output's unit.
     pub noise: f64,
+}
+
+/// The trace of an output, as a figure shows it.
+pub(crate) struct OutputTrace {
+    /// Its number among the traces.
+    pub(crate) number: usize,
+    /// Name of the run.
+    pub(crate) id: String,
+    /// Time at which what is judged of the run begins, s.
+    pub(crate) start_s: f64,
+    /// Time between samples, s.
+    pub(crate) step_s: f64,
+    /// Input meanwhile, thinned as the residuals are.
+    pub(crate) input: Vec<f64>,
 }
 
 /// Where the energy of a measured run goes under the base model, fractions that sum to 1.
@@ -128,7 +135,7 @@ impl Diagnosis {
                     || screened.weak_signal < screened.threshold
                     || (unnamed && hidden.contains(&screened.score))
             })
-            .map(|(candidate, _)| candidate.cause.id.to_owned())
+            .map(|(candidate, _)| candidate.id.to_owned())
             .collect()
     }
 }
@@ -140,9 +147,7 @@ impl Diagnosis {
 /// [`Question::only`] is not in the library.
 pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, DiagnosisError> {
     let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
-    let mut library: Vec<Box<dyn BenchCause>> = causes::library();
-    let named = library.len();
-    library.extend(causes::decoys());
+    let library = [causes::LIBRARY.as_slice(), &causes::DECOYS].concat();
     let runs: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
     if runs.is_empty() {
         return Err(DiagnosisError::NothingMeasured { runs: measured.runs.len() });
@@ -156,32 +161,17 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         BaseModel::fit(fitted, range, None).ok_or_else(|| too_few("runs of the base model"))?;
     let design = Design::of(&runs, measured.is_bench, has_reference);
     let mut candidates = causes::candidates(&library, &design);
-    let given = restrict(&mut candidates[..named], &question.only)?;
+    let given = restrict(&mut candidates[..causes::LIBRARY.len()], &question.only)?;
     let simulator = BenchSimulator::new(&base, runs.clone(), &library, range)?;
-    let traces = simulator.traces();
     let structures: Vec<Signal> = kept_structures(&base, fitted, &runs, range, question.cache)
         .iter()
-        .map(|s| simulator.on_traces(s))
+        .map(|s| simulator.on_traces(|run| &s[run]))
         .collect();
-    let generic = directions(&simulator, |input, plain, step_s| {
-        surrogate::generic(input, plain, base.spread, step_s)
-    });
     let trends =
-        directions(&simulator, |_, plain, step_s| surrogate::trends(plain, base.spread, step_s));
+        simulator.directions(|_, plain, step_s| surrogate::trends(plain, base.spread, step_s));
     let settings = Settings { has_reference, ..Settings::default() };
-    let discovery = Discovery {
-        traces: &traces,
-        simulator: &simulator,
-        candidates: &candidates,
-        generic: &generic,
-        trends: &trends,
-        structures: &structures,
-        settings,
-    };
-    let mut finding = match given {
-        Some(given) => discovery.refit(&given),
-        None => discovery.find(),
-    }?;
+    let mut finding =
+        search(&simulator, &candidates, &trends, &structures, settings, given.as_deref())?;
     if finding.verdict == Verdict::NothingMissing
         && let Some(reason) = noisier(&runs, &base)
     {
@@ -197,27 +187,15 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         range,
     };
     let next = next::proposal(&bench, &finding)?;
-    let energy = energy(&runs, &base);
-    let kinds = simulator.kinds();
     Ok(Diagnosis {
         finding,
-        candidates: candidates.clone(),
         law_inputs: fitted.iter().map(|r| r.input.clone()).collect(),
         run_ids: runs.iter().map(|r| r.id.clone()).collect(),
-        run_starts_s: runs.iter().map(|r| r.window.start as f64 * r.step_s).collect(),
-        run_inputs: runs.iter().map(|r| averaged(r.judged_input(), simulator.block)).collect(),
-        traces: kinds,
-        energy,
+        outputs: outputs(&simulator),
+        energy: runs.iter().map(|run| RunEnergy::of(run, &base)).collect(),
         title: measured.title.clone(),
         folder: measured.folder.clone(),
-        content_hash: measured.content_hash.clone(),
-        range,
-        deg_per_um: measured.deg_per_um,
-        is_bench: measured.is_bench,
-        channels: (!measured.is_bench).then(|| StoredChannels {
-            input: measured.input_label.clone(),
-            output: measured.output_label.clone(),
-        }),
+        data: Records { runs: Vec::new(), range, ..measured.clone() },
         has_reference,
         given_error_percent: question.given.and_then(|model| error_percent(model, &runs).ok()),
         scale: scale_of(&runs, &base),
@@ -225,9 +203,49 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         next,
         floor: base.floor,
         noise: base.noise,
+        candidates,
         library,
         base,
     })
+}
+
+/// What a search finds in the runs of a simulator; the candidates given are fitted together and not refused.
+pub(crate) fn search(
+    simulator: &BenchSimulator<'_>,
+    candidates: &[Candidate],
+    trends: &[Signal],
+    structures: &[Signal],
+    settings: Settings,
+    given: Option<&[usize]>,
+) -> Result<Finding, GapError> {
+    let (traces, spread) = (simulator.traces(), simulator.base.spread);
+    let generic = simulator
+        .directions(|input, plain, step_s| surrogate::generic(input, plain, spread, step_s));
+    let (traces, generic) = (traces.as_slice(), generic.as_slice());
+    let discovery =
+        Discovery { traces, simulator, candidates, generic, trends, structures, settings };
+    match given {
+        Some(given) => discovery.refit(given),
+        None => discovery.find(),
+    }
+}
+
+/// The outputs among the traces of a simulator.
+fn outputs(simulator: &BenchSimulator<'_>) -> Vec<OutputTrace> {
+    let traces = simulator.channels.iter().enumerate();
+    traces
+        .filter(|(_, channel)| channel.kind == ChannelKind::Output)
+        .map(|(number, channel)| {
+            let run = simulator.runs[channel.run];
+            OutputTrace {
+                number,
+                id: run.id.clone(),
+                start_s: run.window.start as f64 * run.step_s,
+                step_s: run.step_s * simulator.block as f64,
+                input: averaged(run.judged_input(), simulator.block),
+            }
+        })
+        .collect()
 }
 
 /// Blocks every candidate that is not asked for; the places of those that are.
@@ -237,9 +255,9 @@ fn restrict(candidates: &mut [Candidate], only: &[String]) -> Result<Option<Vec<
     }
     let mut places = Vec::new();
     for id in only {
-        let place = candidates.iter().position(|c| c.cause.id == id.as_str());
+        let place = candidates.iter().position(|c| c.id == id.as_str());
         places.push(place.ok_or_else(|| {
-            let known: Vec<&str> = candidates.iter().map(|c| c.cause.id).collect();
+            let known: Vec<&str> = candidates.iter().map(|c| c.id).collect();
             let message = format!("not in the library: {}", known.join(", "));
             GapError::Simulation { what: id.clone(), message }
         })?);
@@ -278,21 +296,14 @@ fn kept_structures(
     })
 }
 
-fn energy(runs: &[&Record], base: &BaseModel) -> Vec<RunEnergy> {
-    runs.iter()
-        .map(|run| {
-            let residual = base.residual(run);
-            let total = variance(run.judged_output()).max(1e-300);
-            let left = mean_square(&residual);
-            let noise = white_noise(&residual).powi(2).min(left);
-            RunEnergy {
-                id: run.id.clone(),
-                explained: 1.0 - left / total,
-                noise: noise / total,
-                structured: (left - noise) / total,
-            }
-        })
-        .collect()
+impl RunEnergy {
+    fn of(run: &Record, base: &BaseModel) -> Self {
+        let residual = base.residual(run);
+        let total = variance(run.judged_output()).max(1e-300);
+        let EnergySplit { explained, noise, structured } =
+            EnergySplit::of_residual(&residual, total, white_noise(&residual).powi(2));
+        Self { id: run.id.clone(), explained, noise, structured }
+    }
 }
 
 /// What is said of the measured run whose reading is noisier than that of the reference runs by most. No cause of a
@@ -313,12 +324,9 @@ pub(crate) fn error_percent(model: &ActuatorModel, runs: &[&Record]) -> Result<f
     for run in runs {
         let drive = preisach_dyn::Drive::new(&run.input, run.step_s);
         let simulated = model.simulate_bench(&drive)?;
-        let off: Vec<f64> = run
-            .judged(&simulated.measured_deg)
-            .iter()
-            .zip(run.judged_output())
-            .map(|(deg, y)| y - model.calibration.displacement_um(*deg))
-            .collect();
+        let deg = run.judged(&simulated.measured_deg);
+        let um: Vec<f64> = deg.iter().map(|deg| model.calibration.displacement_um(*deg)).collect();
+        let off = less(run.judged_output(), &um);
         left += variance(&off) * off.len() as f64;
         all += variance(run.judged_output()) * off.len() as f64;
     }
@@ -340,30 +348,7 @@ fn scale_of(runs: &[&Record], base: &BaseModel) -> f64 {
 
 /// The range of the base model: that of the data set, widened to every input that occurs.
 pub(crate) fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
-    a.iter()
-        .chain(b)
-        .flat_map(|r| r.input.iter())
-        .fold(given, |(low, high), &u| (low.min(u), high.max(u)))
-}
-
-/// Directions on all traces, from input, output of the base model and step of every run.
-pub(crate) fn directions(
-    simulator: &BenchSimulator<'_>,
-    of_run: impl Fn(&[f64], &[f64], f64) -> Vec<Vec<f64>>,
-) -> Vec<Signal> {
-    let per_run: Vec<Vec<Vec<f64>>> = (0..simulator.runs.len())
-        .map(|number| {
-            let (input, plain) = simulator.plain(number);
-            of_run(input, plain, simulator.runs[number].step_s)
-        })
-        .collect();
-    let count = per_run.first().map_or(0, Vec::len);
-    (0..count)
-        .map(|k| {
-            let outputs: Vec<Vec<f64>> = per_run.iter().map(|run| run[k].clone()).collect();
-            simulator.on_traces(&outputs)
-        })
-        .collect()
+    range([&given.0, &given.1].into_iter().chain(a.iter().chain(b).flat_map(|r| &r.input)))
 }
 
 #[cfg(test)]
@@ -436,7 +421,7 @@ mod tests {
     }
 
     fn looks_like(found: &Diagnosis) -> Option<&'static str> {
-        found.finding.looks_like.map(|candidate| found.candidates[candidate].cause.id)
+        found.finding.looks_like.map(|candidate| found.candidates[candidate].id)
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //! reversal and dose of drive. Each shows a kind of cause: slopes over amplitude and frequency, flat
 //! tops, creep, heat.
 
-use model_gap::{HarmonicFit, Stimulus};
+use crate::numbers::{mean, range};
+use model_gap::{HarmonicFit, Sine};
 use std::fmt::Write;
 
 /// Harmonics of a table.
@@ -43,10 +44,16 @@ impl Bin {
         }
     }
 
-    /// Mean and rms before, mean and rms after.
-    fn row(&self) -> [f64; 4] {
-        let rms = |i: usize| (self.square[i] / self.count).sqrt();
-        [self.sum[0] / self.count, rms(0), self.sum[1] / self.count, rms(1)]
+    /// The columns of a bin.
+    fn head(unit: &str) -> String {
+        format!("samples,mean_before_{unit},rms_before_{unit},mean_after_{unit},rms_after_{unit}\n")
+    }
+
+    /// Samples, mean and rms before, mean and rms after; none of an empty bin.
+    fn row(&self) -> Option<String> {
+        let Self { count, sum, square } = *self;
+        let [a, b] = [0, 1].map(|i| (sum[i] / count, (square[i] / count).sqrt()));
+        (count > 0.0).then(|| format!("{count},{:.6e},{:.6e},{:.6e},{:.6e}", a.0, a.1, b.0, b.1))
     }
 }
 
@@ -76,15 +83,10 @@ fn harmonics(runs: &[Shown<'_>], unit: &str) -> String {
         "run,frequency_hz,input_amplitude,harmonic,before_{unit},before_phase_deg,after_{unit},after_phase_deg\n"
     );
     for run in runs {
-        let Stimulus::Sine { frequency_hz, amplitude, samples, .. } =
-            Stimulus::of(run.input, run.step_s)
-        else {
-            continue;
-        };
-        let carried = (1..=HARMONICS).rev().find(|n| {
-            let highest_hz = *n as f64 * frequency_hz;
-            highest_hz < 0.45 / run.step_s
-        });
+        let Some(sine) = Sine::of(run.input, run.step_s) else { continue };
+        let Sine { frequency_hz, amplitude, samples, .. } = sine;
+        let is_carried = |n: &usize| *n as f64 * frequency_hz < 0.45 / run.step_s;
+        let carried = (1..=HARMONICS).rev().find(is_carried);
         let fit = |residual: &[f64]| {
             let own = residual.get(samples.clone())?;
             HarmonicFit::of(own, run.step_s, frequency_hz, carried?).ok()
@@ -107,13 +109,9 @@ fn harmonics(runs: &[Shown<'_>], unit: &str) -> String {
     text
 }
 
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
-}
-
 /// Residuals over input and rate of the input; rates beyond nine tenths of all are put to the ends.
 fn input_and_rate(runs: &[Shown<'_>], unit: &str) -> String {
-    let (low, high) = range(runs.iter().flat_map(|r| r.input.iter().copied()));
+    let (low, high) = range(runs.iter().flat_map(|r| r.input));
     let rate = |run: &Shown<'_>, i: usize| (run.input[i] - run.input[i - 1]) / run.step_s;
     let mut sizes: Vec<f64> =
         runs.iter().flat_map(|r| (1..r.input.len()).map(|i| rate(r, i).abs())).collect();
@@ -127,19 +125,13 @@ fn input_and_rate(runs: &[Shown<'_>], unit: &str) -> String {
             bins[u][v].add([run.before[i], run.after[i]]);
         }
     }
-    let mut text = format!(
-        "input,rate_per_s,samples,mean_before_{unit},rms_before_{unit},mean_after_{unit},rms_after_{unit}\n"
-    );
+    let mut text = format!("input,rate_per_s,{}", Bin::head(unit));
     for (u, row) in bins.iter().enumerate() {
-        for (v, bin) in row.iter().enumerate().filter(|(_, bin)| bin.count > 0.0) {
+        for (v, bin) in row.iter().enumerate() {
+            let Some(row) = bin.row() else { continue };
             let input = low + (high - low) * (u as f64 + 0.5) / INPUT_BINS as f64;
             let rate = most * (2.0 * (v as f64 + 0.5) / RATE_BINS as f64 - 1.0);
-            let [a, b, c, d] = bin.row();
-            let _ = writeln!(
-                text,
-                "{input:.6},{rate:.6},{},{a:.6e},{b:.6e},{c:.6e},{d:.6e}",
-                bin.count
-            );
+            let _ = writeln!(text, "{input:.6},{rate:.6},{row}");
         }
     }
     text
@@ -164,13 +156,11 @@ fn since_reversal(runs: &[Shown<'_>], unit: &str) -> String {
             bins[bin].add([direction * run.before[i], direction * run.after[i]]);
         }
     }
-    let mut text = format!(
-        "since_reversal_s,samples,mean_before_{unit},rms_before_{unit},mean_after_{unit},rms_after_{unit}\n"
-    );
-    for (i, bin) in bins.iter().enumerate().filter(|(_, bin)| bin.count > 0.0) {
+    let mut text = format!("since_reversal_s,{}", Bin::head(unit));
+    for (i, bin) in bins.iter().enumerate() {
+        let Some(row) = bin.row() else { continue };
         let time_s = SHORTEST_S * 10.0_f64.powf((i as f64 + 0.5) / PER_DECADE);
-        let [a, b, c, d] = bin.row();
-        let _ = writeln!(text, "{time_s:.6e},{},{a:.6e},{b:.6e},{c:.6e},{d:.6e}", bin.count);
+        let _ = writeln!(text, "{time_s:.6e},{row}");
     }
     text
 }
@@ -179,16 +169,15 @@ fn since_reversal(runs: &[Shown<'_>], unit: &str) -> String {
 /// began, which grows with `f V^2`; in units of the largest dose of all runs.
 fn dose(runs: &[Shown<'_>]) -> String {
     let doses = |run: &Shown<'_>| -> (f64, Vec<f64>) {
-        let mean = run.input.iter().sum::<f64>() / run.input.len().max(1) as f64;
+        let mean = mean(run.input);
         let mut sum = 0.0;
-        let all = (0..run.input.len())
-            .map(|i| {
-                let before = run.input[i.saturating_sub(1)];
-                sum += (run.input[i] - before).abs() * (run.input[i] - mean).abs();
-                sum
-            })
-            .collect();
-        (mean, all)
+        let grown = |(u, before): (&f64, &f64)| {
+            sum += (u - before).abs() * (u - mean).abs();
+            sum
+        };
+        // the first sample has not moved
+        let before = run.input.first().into_iter().chain(run.input);
+        (mean, run.input.iter().zip(before).map(grown).collect())
     };
     let all: Vec<(f64, Vec<f64>)> = runs.iter().map(doses).collect();
     let largest = all.iter().filter_map(|d| d.1.last()).fold(1e-300_f64, |m, d| m.max(*d));

@@ -1,7 +1,8 @@
 //! `findings.json`: the findings in the form other programs read.
 
 use crate::diagnosis::Diagnosis;
-use model_gap::discovery::{Confidence, FittedParameter, Verdict};
+use model_gap::Candidate;
+use model_gap::discovery::{Confidence, Finding, FittedParameter, Verdict};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -86,6 +87,20 @@ pub struct ScreenValue {
     pub cosine: f64,
 }
 
+/// Names of the causes found, best first, then of those that may be one of them instead.
+pub(crate) fn names(finding: &Finding, candidates: &[Candidate]) -> Vec<String> {
+    let alternatives = finding.causes.iter().flat_map(|found| &found.alternatives);
+    let all = finding.causes.iter().map(|found| found.candidate);
+    let mut names: Vec<String> = Vec::new();
+    for candidate in all.chain(alternatives.map(|other| other.candidate)) {
+        let id = candidates[candidate].id;
+        if !names.iter().any(|name| name == id) {
+            names.push(id.to_owned());
+        }
+    }
+    names
+}
+
 /// Parameters that have a meaning of their own.
 fn values(parameters: &[FittedParameter]) -> BTreeMap<String, ParameterValue> {
     let own = parameters.iter().filter(|p| !p.is_shape);
@@ -98,15 +113,8 @@ fn values(parameters: &[FittedParameter]) -> BTreeMap<String, ParameterValue> {
 impl From<&Diagnosis> for Findings {
     fn from(d: &Diagnosis) -> Self {
         let finding = &d.finding;
-        let id = |c: usize| d.candidates[c].cause.id.to_owned();
-        let mut causes: Vec<String> = finding.causes.iter().map(|f| id(f.candidate)).collect();
-        for found in &finding.causes {
-            for other in &found.alternatives {
-                if !causes.contains(&id(other.candidate)) {
-                    causes.push(id(other.candidate));
-                }
-            }
-        }
+        let id = |c: usize| d.candidates[c].id.to_owned();
+        let mut causes = names(finding, &d.candidates);
         let mut parameters = BTreeMap::new();
         for found in &finding.causes {
             parameters.insert(id(found.candidate), values(&found.parameters));

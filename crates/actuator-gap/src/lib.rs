@@ -25,6 +25,7 @@ mod extended;
 mod figures;
 mod findings;
 mod next;
+mod numbers;
 mod plays;
 mod record;
 mod rungs;

@@ -164,8 +164,7 @@ impl Plays {
     /// The rises of the maps that stand behind the coefficients: `coefficients = matrix rises`. Every
     /// map has opposite values at its ends.
     pub(crate) fn rises_to_coefficients(&self) -> DMatrix<f64> {
-        let rises: usize = self.all.iter().map(|p| p.cells + 1).sum();
-        let mut matrix = DMatrix::zeros(self.count, rises);
+        let mut matrix = DMatrix::zeros(self.count, self.rises());
         let mut column = 0;
         for play in &self.all {
             for k in 0..=play.cells {
@@ -178,11 +177,15 @@ impl Plays {
         matrix
     }
 
+    /// Number of rises.
+    fn rises(&self) -> usize {
+        self.all.iter().map(|p| p.cells + 1).sum()
+    }
+
     /// Rises and offset of a straight line, `output = at_zero + slope input`.
     pub(crate) fn line(&self, slope: f64, at_zero: f64) -> (DVector<f64>, f64) {
-        let rises: usize = self.all.iter().map(|p| p.cells + 1).sum();
         let cells = self.all.first().map_or(1, |narrowest| narrowest.cells);
-        let mut line = DVector::zeros(rises);
+        let mut line = DVector::zeros(self.rises());
         line.rows_mut(0, cells + 1).fill(2.0 * slope * self.half / cells as f64);
         (line, at_zero + slope * self.middle)
     }
@@ -192,26 +195,22 @@ impl Plays {
     /// reversible part of slope size `reversible`.
     pub(crate) fn prior(&self, amplitude: f64, reversible: f64, length: f64) -> DMatrix<f64> {
         let mut places = Vec::new();
-        for (number, play) in self.all.iter().enumerate() {
+        for play in &self.all {
             let step = 2.0 * (1.0 - play.half_width) / play.cells as f64;
-            for k in 0..=play.cells {
-                let place = play.half_width - 1.0 + step * k as f64;
-                places.push((number == 0, play.half_width, place, step, play.share));
-            }
+            let place = |k: usize| (play, play.half_width - 1.0 + step * k as f64, step);
+            places.extend((0..=play.cells).map(place));
         }
         let near = |d: f64| (-0.5 * d * d / (length * length)).exp();
         DMatrix::from_fn(places.len(), places.len(), |a, b| {
-            let (ra, rb) = (places[a], places[b]);
+            let ((pa, at, step), (pb, bt, other)) = (places[a], places[b]);
             let nugget = if a == b { 1e-3 } else { 0.0 };
-            let together = near(ra.2 - rb.2) + nugget;
-            let size = |p: &(bool, f64, f64, f64, f64)| amplitude * p.3 * p.4;
-            let dense = size(&ra) * size(&rb) * (near(ra.1 - rb.1) * near(ra.2 - rb.2) + nugget);
-            let straight = if ra.0 && rb.0 {
-                (reversible * ra.3) * (reversible * rb.3) * together
-            } else {
-                0.0
-            };
-            dense + straight
+            let alike = near(at - bt);
+            let sizes = (amplitude * step * pa.share) * (amplitude * other * pb.share);
+            let dense = sizes * (near(pa.half_width - pb.half_width) * alike + nugget);
+            if pa.first > 0 || pb.first > 0 {
+                return dense;
+            }
+            dense + (reversible * step) * (reversible * other) * (alike + nugget)
         })
     }
 }
@@ -253,17 +252,7 @@ fn cells_of(room: f64) -> usize {
 
 /// Output of a first-order lag for an input straight between samples, at rest at first.
 pub(crate) fn lagged(input: &[f64], tau_s: f64, step_s: f64) -> Vec<f64> {
-    let (decay, ramp) = decay_and_ramp(tau_s, step_s);
-    let mut deviation = 0.0;
-    let mut before = input.first().copied().unwrap_or_default();
-    input
-        .iter()
-        .map(|&u| {
-            deviation = decay * deviation - ramp * (u - before);
-            before = u;
-            u + deviation
-        })
-        .collect()
+    behind_lags(input, [(tau_s, 1.0)].into_iter(), step_s)
 }
 
 /// A signal with shares of its lags' deviations, `u + sum_k share_k (x_k - u)`, each `x_k` as of [`lagged`]:
@@ -281,8 +270,9 @@ pub(crate) fn behind_lags(
         let (mut decay, mut ramp, mut share) =
             ([0.0; SIDE_BY_SIDE], [0.0; SIDE_BY_SIDE], [0.0; SIDE_BY_SIDE]);
         for (k, &(tau_s, own)) in some.iter().enumerate() {
-            (decay[k], ramp[k]) = decay_and_ramp(tau_s, step_s);
-            share[k] = own;
+            let x = step_s / tau_s;
+            // what is left of a deviation after a step, and what a unit of the input's rise adds to it
+            (decay[k], ramp[k], share[k]) = ((-x).exp(), -(-x).exp_m1() / x, own);
         }
         let mut deviation = [0.0; SIDE_BY_SIDE];
         let mut before = input.first().copied().unwrap_or_default();
@@ -297,17 +287,6 @@ pub(crate) fn behind_lags(
         }
     }
     output
-}
-
-/// What is left of the deviation of a lag after a step, and what a unit of the input's rise adds to it.
-fn decay_and_ramp(tau_s: f64, step_s: f64) -> (f64, f64) {
-    let x = step_s / tau_s;
-    ((-x).exp(), -(-x).exp_m1() / x)
-}
-
-/// Solves for the coefficients of a Gaussian prior and Gaussian data: `(gram + precision) x = right`.
-pub(crate) fn solve(gram: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    gram.clone().cholesky().map(|c| c.solve(right))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The records of a diagnosis, in the units of the bench.
 
-use measured_data::{BenchData, Fitting, LoopData, Run, RunRole, RunUse, Sensor, Timed};
+use measured_data::{BenchData, Fitting, LoopData, Run, RunRole, RunUse, Sensor};
 use rotor_base::{mean_square, variance};
 use std::ops::Range;
 
@@ -119,43 +119,39 @@ pub struct Records {
     pub content_hash: String,
 }
 
-/// The records of runs, each with input and output from its table.
+/// The records of runs.
 ///
 /// A run may be a reference by its role. In a set without any measured run, where the sides of the
 /// split are stated, those to be held out are what has to be explained.
-fn records<T: Timed>(runs: &[Run<T>], columns: impl Fn(&T) -> Record) -> Vec<Record> {
-    let all_reference = runs.iter().all(|r| r.role == RunRole::Reference);
-    let is_explained = |run: &Run<T>| match run.role {
+fn records(runs: &[Run]) -> Vec<Record> {
+    let all_reference = runs.iter().all(|r| r.entry.role == RunRole::Reference);
+    let is_explained = |run: &Run| match run.entry.role {
         RunRole::Measured => true,
-        RunRole::Reference => all_reference && run.use_as == Some(RunUse::HeldOut),
+        RunRole::Reference => all_reference && run.entry.use_as == Some(RunUse::HeldOut),
     };
     runs.iter()
         .map(|run| Record {
-            id: run.id.clone(),
+            id: run.entry.id.clone(),
             is_reference: !is_explained(run),
+            step_s: run.table.time_step_s,
+            input: run.table.input.clone(),
+            output: run.table.output.clone(),
+            amplifier: run.table.amplifier_volt.clone(),
+            temperature: run.table.temperature_celsius.clone(),
+            load: run.table.load_newton.clone(),
             window: run.window(),
-            sensor: run.sensor,
-            fitting: run.fitting,
-            ..columns(&run.table)
+            sensor: run.setup().0,
+            fitting: run.setup().1,
         })
         .collect()
 }
 
 impl From<&BenchData> for Records {
     fn from(data: &BenchData) -> Self {
-        let runs = records(&data.runs, |table| {
-            let (input, output) = (table.command_volt.clone(), table.displacement_um.clone());
-            Record {
-                amplifier: table.amplifier_volt.clone(),
-                temperature: table.temperature_celsius.clone(),
-                load: table.load_newton.clone(),
-                ..Record::new("", table.time_step_s, input, output)
-            }
-        });
         Self {
             title: data.title.clone(),
             folder: data.folder.clone(),
-            runs,
+            runs: records(&data.runs),
             range: data.command_range_volt,
             input_unit: "V".into(),
             output_unit: "um".into(),
@@ -170,14 +166,11 @@ impl From<&BenchData> for Records {
 
 impl From<&LoopData> for Records {
     fn from(data: &LoopData) -> Self {
-        let runs = records(&data.runs, |table| {
-            Record::new("", table.time_step_s, table.input.clone(), table.output.clone())
-        });
         Self {
             title: data.title.clone(),
             folder: data.folder.clone(),
-            runs,
-            range: data.input_range.limits(),
+            runs: records(&data.runs),
+            range: data.input_range,
             input_unit: data.channels.input.unit.symbol.to_owned(),
             output_unit: data.channels.output.unit.symbol.to_owned(),
             input_label: data.channels.input.label(),
@@ -192,33 +185,26 @@ impl From<&LoopData> for Records {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use measured_data::MeasuredTable;
-    use std::collections::BTreeMap;
+    use measured_data::{MeasuredTable, RunFile};
 
     #[test]
     fn window_sensor_and_fitting_of_a_run_reach_its_record() {
         let time_s: Vec<f64> = (0..100).map(|i| 0.01 * f64::from(i)).collect();
         let run = |id: &str, role, window_s, sensor, fitting| Run {
-            id: id.into(),
-            file: String::new(),
-            role,
-            note: String::new(),
-            start_s: None,
-            use_as: None,
-            window_s,
-            sensor,
-            fitting,
-            conditions: BTreeMap::new(),
+            entry: RunFile {
+                id: id.into(),
+                role,
+                window_s,
+                sensor: Some(sensor),
+                fitting: Some(fitting),
+                ..RunFile::default()
+            },
             table: MeasuredTable {
                 time_step_s: 0.01,
-                command_volt: time_s.clone(),
-                displacement_um: time_s.clone(),
-                amplifier_volt: None,
-                temperature_celsius: None,
-                load_newton: None,
-                lines: vec![],
-                warnings: vec![],
+                input: time_s.clone(),
+                output: time_s.clone(),
                 time_s: time_s.clone(),
+                ..MeasuredTable::default()
             },
         };
         let data = BenchData {

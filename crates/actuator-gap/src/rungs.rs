@@ -1,18 +1,17 @@
 //! The models of the discovery ladder: from a straight line upwards, each with what the data say it lacks.
 
 use crate::base::BaseModel;
-use crate::causes::{self, Design, StaticHysteresis};
+use crate::causes::{self, Design};
 use crate::diagnosis::{
-    Diagnosis, Question, StructureStore, diagnose, directions, error_percent, range_of,
+    Diagnosis, Question, StructureStore, diagnose, error_percent, range_of, search,
 };
 use crate::error::DiagnosisError;
-use crate::extended::{LawOfFile, USUAL_DEG_PER_UM};
-use crate::findings::Findings;
+use crate::extended::{USUAL_DEG_PER_UM, law_of_file};
+use crate::findings::{Findings, names};
 use crate::record::{Record, Records};
 use crate::simulator::BenchSimulator;
-use crate::surrogate;
 use model_gap::GapError;
-use model_gap::discovery::{Confidence, Discovery, Settings, Verdict};
+use model_gap::discovery::{Confidence, Settings, Verdict};
 use preisach_dyn::ActuatorModel;
 
 /// Runs whose input is no faster than this, rms rate over rms amplitude, are slow, Hz.
@@ -72,15 +71,15 @@ pub fn rung_models(
         heldout_rms: [findings.gain.heldout_rms_before, findings.gain.heldout_rms_after],
     };
     let deg_per_um = measured.deg_per_um.unwrap_or(USUAL_DEG_PER_UM);
-    let law = LawOfFile { range, deg_per_um, is_bench: measured.is_bench };
     let inputs: Vec<Vec<f64>> = slow.iter().map(|r| r.input.clone()).collect();
+    let law = |base| law_of_file(base, &inputs, range, deg_per_um, measured.is_bench);
     let rung = |name, model: ActuatorModel, asked| -> Result<RungModel, DiagnosisError> {
         let error_percent = [error_percent(&model, &slow)?, error_percent(&model, &targets)?];
         Ok(RungModel { name, model, asked, error_percent })
     };
     let rungs = [
-        rung("straight line", law.of(&line, &inputs)?.0, Some(first))?,
-        rung("static hysteresis of the slow runs", law.of(&loops, &inputs)?.0, Some(second))?,
+        rung("straight line", law(&line)?.0, Some(first))?,
+        rung("static hysteresis of the slow runs", law(&loops)?.0, Some(second))?,
         rung("extended actuator", found.extended()?.model, None)?,
     ];
     Ok((rungs, found))
@@ -93,39 +92,16 @@ fn asked_of_line(
     measured: &Records,
     range: (f64, f64),
 ) -> Result<Asked, GapError> {
-    let mut library = causes::library();
-    library.push(Box::new(StaticHysteresis));
+    let library = [causes::LIBRARY.as_slice(), &[causes::HYSTERESIS]].concat();
     let design = Design::of(slow, measured.is_bench, true);
     let candidates = causes::candidates(&library, &design);
     let simulator = BenchSimulator::new(line, slow.to_vec(), &library, range)?;
-    let traces = simulator.traces();
-    let generic = directions(&simulator, |input, plain, step_s| {
-        surrogate::generic(input, plain, line.spread, step_s)
-    });
     // one cause at a time: a second would mend the form of the first
     let settings = Settings { most_causes: 1, ..Settings::default() };
-    let discovery = Discovery {
-        traces: &traces,
-        simulator: &simulator,
-        candidates: &candidates,
-        generic: &generic,
-        trends: &[],
-        structures: &[],
-        settings,
-    };
-    let finding = discovery.find()?;
-    let id = |candidate: usize| candidates[candidate].cause.id.to_owned();
-    let lacks = finding
-        .causes
-        .iter()
-        .flat_map(|f| {
-            std::iter::once(f.candidate).chain(f.alternatives.iter().map(|a| a.candidate))
-        })
-        .map(id)
-        .collect();
+    let finding = search(&simulator, &candidates, &[], &[], settings, None)?;
     Ok(Asked {
         verdict: finding.verdict,
-        lacks,
+        lacks: names(&finding, &candidates),
         confidence: finding.confidence,
         heldout_rms: [finding.gain.rms_before, finding.gain.rms_after],
     })

@@ -7,6 +7,7 @@
 //! nothing missing: the floor of every decision.
 
 use crate::base::BaseModel;
+use crate::numbers::less;
 use crate::plays::lagged;
 use crate::record::Record;
 use model_gap::NoiseDraw;
@@ -16,6 +17,8 @@ use rotor_base::mean_square;
 
 /// Relays of the relay surrogate.
 const RELAYS: usize = 700;
+/// Plays of the surrogates of plays.
+const PLAYS: usize = 11;
 /// Largest factor by which the structure left of a surrogate is scaled to that left of the data.
 const LARGEST_SCALE: f64 = 3.0;
 /// Least factor, for surrogates that are harder to describe than the data.
@@ -23,20 +26,21 @@ const LEAST_SCALE: f64 = 0.33;
 /// Part of the relaxation that depends on the state in some surrogates.
 const STATE_PART: f64 = 0.1;
 
-/// The families.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A family of hysteresis, linear in the weights of its features.
 enum Family {
-    /// Generalised play: other half-widths, cubic maps.
-    GeneralisedPlay,
-    /// Prandtl-Ishlinskii: straight plays, cubic envelope.
-    Prandtl,
-    /// Bouc-Wen with a cubic gain.
-    BoucWen,
-    /// Relays at quasi-random places of the triangle.
-    Relays {
-        /// Of another set of places.
-        seed: u32,
+    /// Plays of other half-widths: with cubic maps (generalised play), or straight with a cubic envelope
+    /// (Prandtl-Ishlinskii).
+    Plays {
+        /// Whether the maps are cubic.
+        cubic: bool,
     },
+    /// Bouc-Wen with a cubic gain.
+    BoucWen {
+        /// Rise of the state, over the half range.
+        rise: f64,
+    },
+    /// Relays at quasi-random places of the triangle: up and down thresholds and half-width.
+    Relays(Vec<[f64; 3]>),
 }
 
 /// What the base model leaves of each surrogate on the measured runs.
@@ -46,91 +50,80 @@ pub(crate) fn structures(
     measured: &[&Record],
     range: (f64, f64),
 ) -> Vec<Vec<Vec<f64>>> {
-    let families = [
-        (Family::GeneralisedPlay, 0.0),
-        (Family::Prandtl, STATE_PART),
-        (Family::BoucWen, 0.0),
-        (Family::Relays { seed: 1 }, -STATE_PART),
-        (Family::Relays { seed: 2 }, 0.0),
+    let rises = [0.1, 0.2, 0.35, 0.6].map(|rise| Family::BoucWen { rise });
+    let families = vec![
+        (vec![Family::Plays { cubic: true }], 0.0),
+        (vec![Family::Plays { cubic: false }], STATE_PART),
+        (rises.into(), 0.0),
+        (vec![Family::Relays(relays(1))], -STATE_PART),
+        (vec![Family::Relays(relays(2))], 0.0),
     ];
     families
-        .par_iter()
-        .filter_map(|&(family, state)| one(base, reference, measured, range, (family, state)))
+        .into_par_iter()
+        .filter_map(|(shapes, state)| {
+            let truth = Truth::best(shapes, base, reference, range)?;
+            left_of(&truth, state, base, reference, measured, range)
+        })
         .collect()
 }
 
-fn one(
+/// What the base model leaves of one surrogate, whose relaxation depends on its state by a part.
+fn left_of(
+    truth: &Truth,
+    state: f64,
     base: &BaseModel,
     reference: &[&Record],
     measured: &[&Record],
     range: (f64, f64),
-    (family, state): (Family, f64),
 ) -> Option<Vec<Vec<f64>>> {
-    let truth = Truth::fit(family, base, reference, range)?;
     let simulate = |run: &Record| -> Vec<f64> {
         let law = truth.outputs(&run.input);
-        let relaxed = base.relaxed(&law, run.step_s);
         let middle = law.first().copied().unwrap_or_default();
-        relaxed
-            .iter()
-            .zip(&law)
-            .map(|(y, h)| y + state * (y - h) * (h - middle) / base.spread)
-            .collect()
+        let relaxed = base.relaxed(&law, run.step_s);
+        let late = |(y, h): (&f64, &f64)| y + state * (y - h) * (h - middle) / base.spread;
+        relaxed.iter().zip(&law).map(late).collect()
     };
-    let copies: Vec<Record> = reference
-        .iter()
-        .enumerate()
-        .map(|(r, run)| {
+    let copies: Vec<Record> = (0x1234_5678_u64..)
+        .zip(reference)
+        .map(|(seed, run)| {
             let mut output = simulate(run);
-            let noise = NoiseDraw::SHARP
-                .again(&NoiseDraw::SHARP.noise_of(&base.residual(run)), 0x1234_5678 + r as u64);
+            let noise = NoiseDraw::SHARP.noise_of(&base.residual(run));
             let judged = output.iter_mut().skip(run.window.start);
-            judged.zip(noise).for_each(|(y, e)| *y += e);
+            judged.zip(NoiseDraw::SHARP.again(&noise, seed)).for_each(|(y, e)| *y += e);
             Record { output, ..(*run).clone() }
         })
         .collect();
     let copies: Vec<&Record> = copies.iter().collect();
     let again = BaseModel::fit(&copies, range, Some(base.prior))?;
     let scale = (base.floor / again.floor.max(1e-6)).clamp(LEAST_SCALE, LARGEST_SCALE);
-    Some(
-        measured
-            .iter()
-            .map(|run| {
-                let left = again.predict(&run.input, run.step_s);
-                simulate(run).iter().zip(left).map(|(a, b)| scale * (a - b)).collect()
-            })
-            .collect(),
-    )
+    let left = |run: &&Record| {
+        let left = less(&simulate(run), &again.predict(&run.input, run.step_s));
+        left.into_iter().map(|left| scale * left).collect()
+    };
+    Some(measured.iter().map(left).collect())
 }
 
 /// A surrogate: features of the input with weights.
 struct Truth {
     family: Family,
-    low: f64,
-    high: f64,
-    /// Rise of the Bouc-Wen state, over the half range; density of the relays.
-    shape: Shape,
+    /// Middle and half of the range of the input.
+    span: (f64, f64),
     weights: DVector<f64>,
 }
 
-enum Shape {
-    None,
-    Rise(f64),
-    Relays(Vec<[f64; 3]>),
-}
-
 impl Truth {
-    fn fit(family: Family, base: &BaseModel, runs: &[&Record], range: (f64, f64)) -> Option<Self> {
+    /// The one of some shapes that describes the static part of the base model best.
+    fn best(
+        shapes: Vec<Family>,
+        base: &BaseModel,
+        runs: &[&Record],
+        (low, high): (f64, f64),
+    ) -> Option<Self> {
         let targets: Vec<Vec<f64>> = runs.iter().map(|r| base.hysteresis(&r.input)).collect();
-        let (low, high) = range;
-        let shapes = match family {
-            Family::BoucWen => [0.1, 0.2, 0.35, 0.6].map(Shape::Rise).into_iter().collect(),
-            Family::Relays { seed } => vec![Shape::Relays(relays(seed))],
-            _ => vec![Shape::None],
-        };
         let mut best: Option<(f64, Self)> = None;
-        for shape in shapes {
-            let mut truth = Self { family, low, high, shape, weights: DVector::zeros(0) };
+        for family in shapes {
+            let span = (0.5 * (low + high), 0.5 * (high - low));
+            let mut truth = Self { family, span, weights: DVector::zeros(0) };
             let (mut gram, mut right) = (DMatrix::zeros(0, 0), DVector::zeros(0));
             for (run, target) in runs.iter().zip(&targets) {
                 truth.features(&run.input, |i, row| {
@@ -151,15 +144,10 @@ impl Truth {
                 gram[(i, i)] += ridge;
             }
             truth.weights = gram.cholesky()?.solve(&right);
-            let error: f64 = runs
-                .iter()
-                .zip(&targets)
-                .map(|(run, target)| {
-                    let out = truth.outputs(&run.input);
-                    let left: Vec<f64> = out.iter().zip(target).map(|(a, b)| a - b).collect();
-                    mean_square(&left)
-                })
-                .sum();
+            let left = |(run, target): (&&Record, &Vec<f64>)| {
+                mean_square(&less(&truth.outputs(&run.input), target))
+            };
+            let error = runs.iter().zip(&targets).map(left).sum();
             if best.as_ref().is_none_or(|b| error < b.0) {
                 best = Some((error, truth));
             }
@@ -176,11 +164,11 @@ impl Truth {
     }
 
     fn features(&self, inputs: &[f64], mut visit: impl FnMut(usize, &[f64])) {
-        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
+        let (middle, half) = self.span;
         let x: Vec<f64> = inputs.iter().map(|u| (u - middle) / half).collect();
         let Some(&first) = x.first() else { return };
-        match (&self.shape, self.family) {
-            (Shape::Rise(rise), _) => {
+        match &self.family {
+            Family::BoucWen { rise } => {
                 let mut z = 0.0_f64;
                 let mut before = first;
                 for (i, &u) in x.iter().enumerate() {
@@ -192,16 +180,13 @@ impl Truth {
                     visit(i, &[1.0, u, u * u, u * u * u, z, z * u]);
                 }
             }
-            (Shape::Relays(places), _) => {
+            Family::Relays(places) => {
                 // states by the sign of the distance to the middle of each relay, as after a long rest
                 let mut states: Vec<f64> =
                     places.iter().map(|p| (first - 0.5 * (p[0] + p[1])).signum()).collect();
-                let mut row = vec![0.0; 12];
                 for (i, &u) in x.iter().enumerate() {
-                    row.fill(0.0);
-                    row[0] = 1.0;
-                    row[1] = u;
-                    row[2] = u * u * u;
+                    let mut row = [0.0; 12];
+                    row[..3].copy_from_slice(&[1.0, u, u * u * u]);
                     for (state, p) in states.iter_mut().zip(places) {
                         if u >= p[0] {
                             *state = 1.0;
@@ -209,25 +194,22 @@ impl Truth {
                             *state = -1.0;
                         }
                         // nine patches of the triangle, each with its own weight
-                        let patch = bump(p[2]);
-                        row[3 + patch] += *state;
+                        row[3 + bump(p[2])] += *state;
                     }
                     visit(i, &row);
                 }
             }
-            (Shape::None, family) => {
-                let count = 11;
-                let width = |k: usize| 0.95 * (k as f64 + 0.5) / count as f64;
-                let mut states = vec![first; count];
+            Family::Plays { cubic } => {
+                let mut states = [first; PLAYS];
                 let mut row = Vec::new();
                 for (i, &u) in x.iter().enumerate() {
                     row.clear();
                     row.extend([1.0, u, u * u, u * u * u]);
                     for (k, p) in states.iter_mut().enumerate() {
-                        let r = width(k);
+                        let r = 0.95 * (k as f64 + 0.5) / PLAYS as f64;
                         *p = p.min(u + r).max(u - r);
                         row.push(*p);
-                        if family == Family::GeneralisedPlay {
+                        if *cubic {
                             row.extend([*p * *p, *p * *p * *p]);
                         }
                     }
@@ -263,25 +245,6 @@ fn relays(seed: u32) -> Vec<[f64; 3]> {
     places
 }
 
-/// Gaussian noise from a fixed seed.
-pub(crate) struct Noise(pub(crate) u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// A number of the standard normal distribution (Box and Muller).
-    pub(crate) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-}
-
 /// Slow changes of the measurement itself, alike in all runs: a zero and a gain that change at a steady rate, and a
 /// reading that returns to zero, as one that is coupled by a capacitor does.
 pub(crate) fn trends(law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
@@ -300,34 +263,41 @@ pub(crate) fn trends(law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
 /// Generic directions, along which structure may be left that no cause explains: powers of
 /// output, rate and their products, lags of them, trends.
 pub(crate) fn generic(inputs: &[f64], law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
-    let n = law.len();
     let middle = law.first().copied().unwrap_or_default();
     let x: Vec<f64> = law.iter().map(|h| (h - middle) / spread).collect();
-    let duration = step_s * n as f64;
+    let duration = step_s * law.len() as f64;
+    let of = |signal: &[f64], f: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        signal.iter().map(|v| f(*v)).collect()
+    };
+    let times = |a: &[f64], f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+        a.iter().zip(&x).map(|(a, v)| f(*a, *v)).collect()
+    };
     let mut all: Vec<Vec<f64>> = Vec::new();
     for power in [2, 3, 4, 5] {
-        all.push(x.iter().map(|v| v.powi(power)).collect());
+        all.push(of(&x, &|v| v.powi(power)));
     }
     for tau in [1e-3, 5e-3, 0.03, 0.2, 2.0] {
-        let late: Vec<f64> = lagged(&x, tau, step_s).iter().zip(&x).map(|(a, b)| a - b).collect();
-        all.push(late.iter().zip(&x).map(|(d, v)| d * v).collect());
-        all.push(late.iter().zip(&x).map(|(d, v)| d * v * v).collect());
-        all.push(late.iter().map(|d| d * d.abs()).collect());
-        all.push(late.iter().map(|d| d * d).collect());
-        all.push(late.iter().map(|d| d.powi(3)).collect());
-        let twice: Vec<f64> = lagged(&late, tau, step_s);
-        all.push(twice);
-        all.push(late);
+        let late = less(&lagged(&x, tau, step_s), &x);
+        all.extend([
+            times(&late, &|d, v| d * v),
+            times(&late, &|d, v| d * v * v),
+            of(&late, &|d| d * d.abs()),
+            of(&late, &|d| d * d),
+            of(&late, &|d| d.powi(3)),
+            lagged(&late, tau, step_s),
+            late,
+        ]);
     }
-    let trend = |i: usize| i as f64 * step_s / duration - 0.5;
-    all.push(x.iter().enumerate().map(|(i, v)| trend(i) * v).collect());
-    all.push((0..n).map(trend).collect());
+    let trend: Vec<f64> = (0..law.len()).map(|i| i as f64 * step_s / duration - 0.5).collect();
     let middle_in = inputs.first().copied().unwrap_or_default();
     let scale = inputs.iter().map(|u| (u - middle_in).abs()).fold(1e-300, f64::max);
-    all.push(inputs.iter().map(|u| ((u - middle_in) / scale).powi(3)).collect());
-    all.push(inputs.iter().map(|u| ((u - middle_in) / scale).powi(2)).collect());
-    let dose: Vec<f64> =
-        lagged(&x.iter().map(|v| v * v).collect::<Vec<_>>(), 0.3 * duration, step_s);
-    all.push(dose.iter().zip(&x).map(|(d, v)| d * v).collect());
+    let dose = lagged(&of(&x, &|v| v * v), 0.3 * duration, step_s);
+    all.extend([
+        times(&trend, &|t, v| t * v),
+        trend,
+        of(inputs, &|u| ((u - middle_in) / scale).powi(3)),
+        of(inputs, &|u| ((u - middle_in) / scale).powi(2)),
+        times(&dose, &|d, v| d * v),
+    ]);
     all
 }

@@ -63,7 +63,7 @@ pub enum AeroError {
         /// Column of the line, from 1.
         column: usize,
         /// What should have been there.
-        expected: &'static str,
+        expected: String,
     },
     /// An axis of a table does not ascend, is empty, or has a number that is none.
     #[error("C81 table: the {what} must ascend, entry {index} (from 0) does not; sort them")]
@@ -108,4 +108,16 @@ pub enum AeroError {
         /// What it should have been.
         expected: &'static str,
     },
+}
+
+/// Refuses the first of some named numbers that does not fit.
+pub(crate) fn check(
+    numbers: &[(&'static str, f64)],
+    expected: &'static str,
+    fits: impl Fn(f64) -> bool,
+) -> Result<(), AeroError> {
+    match numbers.iter().find(|(_, value)| !fits(*value)) {
+        Some(&(quantity, value)) => Err(AeroError::BadInput { quantity, value, expected }),
+        None => Ok(()),
+    }
 }

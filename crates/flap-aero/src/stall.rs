@@ -1,5 +1,6 @@
 //! Dynamic stall after Leishman and Beddoes, on top of any attached-flow model. Off unless it is used.
 
+use crate::error::check;
 use crate::motion::decay::{LANES, decay};
 use crate::{AeroError, FlapChord, FlapEffectiveness, Load, Mach, Mode, TheodorsenFunctions};
 use std::f64::consts::{PI, TAU};
@@ -119,7 +120,7 @@ impl StallParameters {
     }
 
     fn check(&self) -> Result<(), AeroError> {
-        for (quantity, value) in [
+        let positive = [
             ("alpha1 of the stall", self.alpha1_rad),
             ("S1 of the stall", self.s1_rad),
             ("S2 of the stall", self.s2_rad),
@@ -128,19 +129,11 @@ impl StallParameters {
             ("Tf of the stall", self.tf),
             ("Tv of the stall", self.tv),
             ("Tvl of the stall", self.tvl),
-        ] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(AeroError::BadInput { quantity, value, expected: "a number above 0" });
-            }
-        }
-        for (quantity, value) in
-            [("k0", self.k0), ("k1", self.k1), ("k2", self.k2), ("eta", self.eta), ("Df", self.df)]
-        {
-            if !value.is_finite() {
-                return Err(AeroError::BadInput { quantity, value, expected: "a finite number" });
-            }
-        }
-        Ok(())
+        ];
+        check(&positive, "a number above 0", |value| value.is_finite() && value > 0.0)?;
+        let finite =
+            [("k0", self.k0), ("k1", self.k1), ("k2", self.k2), ("eta", self.eta), ("Df", self.df)];
+        check(&finite, "a finite number", f64::is_finite)
     }
 }
 
@@ -351,15 +344,14 @@ impl StallState {
         modes: &[f64; 4],
         semichords: f64,
     ) -> Result<StalledLoads, AeroError> {
-        let numbers = attached.iter().chain(modes).chain([&semichords]);
-        if let Some(value) = numbers.copied().find(|x| !x.is_finite()) {
-            let quantity = "input of the stalling section";
-            return Err(AeroError::BadInput { quantity, value, expected: "a finite number" });
+        for number in attached.iter().chain(modes).chain([&semichords]) {
+            check(
+                &[("input of the stalling section", *number)],
+                "a finite number",
+                f64::is_finite,
+            )?;
         }
-        if semichords < 0.0 {
-            let (quantity, value) = ("step, semichords", semichords);
-            return Err(AeroError::BadInput { quantity, value, expected: "0 or more" });
-        }
+        check(&[("step, semichords", semichords)], "0 or more", |step| step >= 0.0)?;
         let p = &section.parameters;
         let z = section.poles.map(|pole| pole * semichords);
         let downwash = section.downwash(modes);
@@ -426,18 +418,14 @@ impl StallState {
         let (was, now) = (self.beyond, self.delayed.abs() - p.cn1);
         self.beyond = now;
         let crossing = ds * (was / (was - now)).clamp(0.0, 1.0);
-        match (was > 0.0, now > 0.0) {
-            (true, true) => self.travel_on(p, feed, true, ds),
-            (true, false) => {
-                self.travel_on(p, feed, true, crossing);
-                self.travel_on(p, feed, false, ds - crossing);
-            }
-            (false, true) => {
-                self.travel_on(p, feed, false, crossing);
+        if (was > 0.0) == (now > 0.0) {
+            self.travel_on(p, feed, now > 0.0, ds);
+        } else {
+            self.travel_on(p, feed, was > 0.0, crossing);
+            if now > 0.0 {
                 self.release(p);
-                self.travel_on(p, feed, true, ds - crossing);
             }
-            (false, false) => self.travel_on(p, feed, false, ds),
+            self.travel_on(p, feed, now > 0.0, ds - crossing);
         }
         self.shed = shed;
     }

@@ -50,48 +50,43 @@ impl BiasSolver {
         self.check()?;
         let [low_volt, high_volt] = self.range_volt;
         let mut evaluations = 0;
-        let mut ask = |bias_volt: f64| -> Result<(f64, ()), RunError<E>> {
+        let mut trial = |x: f64| -> Result<Trial<()>, RunError<E>> {
             evaluations += 1;
-            let angle = mean_flap_deg(bias_volt)
-                .map_err(RunError::plant("asked for its mean flap angle", &[bias_volt]))?;
-            error::check_vector("mean flap angle (deg)", &[angle], 1)?;
-            Ok((angle, ()))
+            let f =
+                mean_flap_deg(x).map_err(RunError::plant("asked for its mean flap angle", &[x]))?;
+            error::check_vector("mean flap angle (deg)", &[f], 1)?;
+            Ok(Trial { x, f, state: () })
         };
-        let mut trial = |x: f64| ask(x).map(|(f, state)| Trial { x, f, state });
         let good = |t: &Trial<()>| t.f.abs() <= self.tolerance_deg;
 
         let first = trial(self.guess_volt.clamp(low_volt, high_volt))?;
-        let mut bracket = None;
-        let mut found = good(&first).then(|| first.clone());
-        if found.is_none() {
-            // A step a quarter longer than the slope asks for brackets the root if the slope is fair.
-            let step = -1.25 * first.f / self.slope_deg_per_volt;
-            let aimed = (first.x + step).clamp(low_volt, high_volt);
-            let ends = if step > 0.0 { [high_volt, low_volt] } else { [low_volt, high_volt] };
+        // A step a quarter longer than the slope asks for brackets the root if the slope is fair.
+        let step = -1.25 * first.f / self.slope_deg_per_volt;
+        let aimed = (first.x + step).clamp(low_volt, high_volt);
+        let ends = if step > 0.0 { [high_volt, low_volt] } else { [low_volt, high_volt] };
+        let root = 'search: {
+            if good(&first) {
+                break 'search first;
+            }
             for x in [aimed, ends[0], ends[1]] {
                 let other = trial(x)?;
                 if good(&other) {
-                    found = Some(other);
-                    break;
+                    break 'search other;
                 }
                 if other.f.is_sign_negative() != first.f.is_sign_negative() {
-                    bracket = Some((first.clone(), other));
-                    break;
+                    match root_between((first, other), self.tolerance_deg, &mut trial)? {
+                        Bracketed::Root(root) => break 'search root,
+                        Bracketed::Jump { negative, positive } => {
+                            return Err(RunError::Control(ControlError::BiasJump {
+                                bias_volt: negative.x,
+                                below_deg: negative.f,
+                                above_deg: positive.f,
+                                tolerance_deg: self.tolerance_deg,
+                            }));
+                        }
+                    }
                 }
             }
-        }
-        if let (None, Some(ends)) = (&found, bracket) {
-            match root_between(ends, self.tolerance_deg, |x| trial(x).map(|t| (t.f, t.state)))? {
-                Bracketed::Root(root) => found = Some(root),
-                Bracketed::Jump { negative, positive } => Err(ControlError::BiasJump {
-                    bias_volt: negative.x,
-                    below_deg: negative.f,
-                    above_deg: positive.f,
-                    tolerance_deg: self.tolerance_deg,
-                })?,
-            }
-        }
-        let Some(root) = found else {
             let (low_deg, high_deg) = (trial(low_volt)?.f, trial(high_volt)?.f);
             return Err(
                 ControlError::BiasOutOfRange { low_volt, high_volt, low_deg, high_deg }.into()

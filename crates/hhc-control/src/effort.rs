@@ -2,7 +2,7 @@
 
 use crate::root::{Bracketed, Trial, root_between};
 use crate::sensitivity::Sensitivity;
-use crate::{ControlError, ControlStep, Plant, RunError};
+use crate::{ControlError, ControlStep, Plant, RunError, error};
 
 /// Where the larger stroke ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +31,6 @@ pub(crate) struct Weighted<S> {
     pub(crate) rho: f64,
     pub(crate) ratio: f64,
     pub(crate) state: S,
-    pub(crate) status: StrokeStatus,
 }
 
 /// `ln rho` of the unweighted control.
@@ -58,21 +57,18 @@ pub(crate) fn track_effort<P: Plant>(
     let found = find_effort(strokes.accepted(0.2), guess, from_norm, |rho| {
         Ok((strokes.ratio(plant, &law.optimum_of(rho, &target))?, ()))
     })?;
-    Ok(found.rho)
+    Ok(found.0.rho)
 }
 
 impl StrokeLimits {
     pub(crate) fn of<P: Plant>(plant: &P, tolerance: f64) -> Result<Self, ControlError> {
         let limits_deg = plant.stroke_limits_deg();
+        let what = "stroke limit (deg)";
         for (index, &value) in limits_deg.iter().enumerate() {
-            if value.is_nan() || value <= 0.0 {
-                let what = "stroke limit (deg)";
-                return Err(if value.is_nan() {
-                    ControlError::NotFinite { what, index, value }
-                } else {
-                    ControlError::OutOfRange { what, value, expected: "above 0" }
-                });
+            if value.is_nan() {
+                return Err(ControlError::NotFinite { what, index, value });
             }
+            error::check_range(value > 0.0, what, value, "above 0")?;
         }
         Ok(Self { limits_deg, target: 1.0 - 0.5 * tolerance, tolerance })
     }
@@ -91,10 +87,7 @@ impl StrokeLimits {
         let strokes_deg = plant
             .strokes_deg(control_volt)
             .map_err(RunError::plant("asked for its strokes", control_volt))?;
-        let (what, found, expected) = ("strokes", strokes_deg.len(), self.limits_deg.len());
-        if found != expected {
-            Err(ControlError::Length { what, found, expected })?;
-        }
+        error::check_length("strokes", strokes_deg.len(), self.limits_deg.len())?;
         if let Some(index) = strokes_deg.iter().position(|stroke| stroke.is_nan()) {
             let (what, value) = ("stroke (deg)", strokes_deg[index]);
             Err(ControlError::NotFinite { what, index, value })?;
@@ -126,49 +119,47 @@ pub(crate) fn find_effort<S, E: std::error::Error + 'static>(
     guess: Option<f64>,
     first_guess: impl FnOnce(f64) -> f64,
     mut evaluate: impl FnMut(f64) -> Result<(f64, S), RunError<E>>,
-) -> Result<Weighted<S>, RunError<E>> {
-    let mut at = |x: f64| -> Result<Trial<(f64, S)>, RunError<E>> {
-        let (ratio, state) = evaluate(x.exp())?;
-        Ok(Trial { x, f: (ratio / target).ln(), state: (ratio, state) })
-    };
-    let weighted = |t: Trial<(f64, S)>, status| {
-        let (ratio, state) = t.state;
-        Weighted { rho: t.x.exp(), ratio, state, status }
+) -> Result<(Weighted<S>, StrokeStatus), RunError<E>> {
+    let mut at = |x: f64| -> Result<Trial<Weighted<S>>, RunError<E>> {
+        let rho = x.exp();
+        let (ratio, state) = evaluate(rho)?;
+        Ok(Trial { x, f: (ratio / target).ln(), state: Weighted { rho, ratio, state } })
     };
     let guessed = guess.map(|rho| at(rho.ln())).transpose()?;
     let mut here = match guessed {
         Some(guessed) if guessed.f >= -tolerance => guessed,
         below => {
             let free = at(UNWEIGHTED)?;
-            if free.state.0 <= 1.0 {
-                return Ok(weighted(free, StrokeStatus::Free));
+            let ratio = free.state.ratio;
+            if ratio <= 1.0 {
+                return Ok((free.state, StrokeStatus::Free));
             }
-            below.map_or_else(|| at(first_guess(free.state.0).ln()), Ok)?
+            below.map_or_else(|| at(first_guess(ratio).ln()), Ok)?
         }
     };
     let mut stride: f64 = 0.1;
     let mut trials = 1;
     loop {
         if here.f.abs() <= tolerance {
-            return Ok(weighted(here, StrokeStatus::AtLimit));
+            return Ok((here.state, StrokeStatus::AtLimit));
         }
         let upward = here.f > 0.0;
         if upward && here.x > LARGEST_LN_RHO {
-            let (rho, stroke_ratio) = (here.x.exp(), here.state.0);
+            let Weighted { rho, ratio: stroke_ratio, .. } = here.state;
             Err(ControlError::StrokeNotMet { rho, stroke_ratio, trials })?;
         }
         if !upward && here.x < -LARGEST_LN_RHO {
             // runs that go on from the one before may end below the limit with any weight
-            return Ok(weighted(here, StrokeStatus::BelowJump));
+            return Ok((here.state, StrokeStatus::BelowJump));
         }
         // The stroke of a linear actuator falls no faster than 1 / rho: the root is |f| away or more.
         stride = (2.0 * stride).max(if here.f.is_finite() { 1.5 * here.f.abs() } else { 1.0 });
         let next = at(if upward { here.x + stride } else { here.x - stride })?;
         if next.f.abs() > tolerance && (next.f > 0.0) != upward {
-            let found = root_between((here, next), tolerance, |x| at(x).map(|t| (t.f, t.state)))?;
+            let found = root_between((here, next), tolerance, &mut at)?;
             return Ok(match found {
-                Bracketed::Root(root) => weighted(root, StrokeStatus::AtLimit),
-                Bracketed::Jump { negative, .. } => weighted(negative, StrokeStatus::BelowJump),
+                Bracketed::Root(root) => (root.state, StrokeStatus::AtLimit),
+                Bracketed::Jump { negative, .. } => (negative.state, StrokeStatus::BelowJump),
             });
         }
         here = next;
@@ -185,7 +176,7 @@ mod tests {
     #[test]
     fn a_stroke_that_stays_below_its_limit_ends_the_search() {
         let mut runs = 0;
-        let found: Result<Weighted<()>, RunError<Infallible>> = find_effort(
+        let found: Result<_, RunError<Infallible>> = find_effort(
             [1.0, 1e-3],
             Some(1.0),
             |_| 1.0,
@@ -195,7 +186,7 @@ mod tests {
                 Ok((if runs == 2 { 2.0 } else { 0.5 }, ()))
             },
         );
-        let found = found.unwrap();
-        assert_eq!((found.status, found.ratio), (StrokeStatus::BelowJump, 0.5));
+        let (found, status) = found.unwrap();
+        assert_eq!((status, found.ratio), (StrokeStatus::BelowJump, 0.5));
     }
 }

@@ -188,35 +188,44 @@ impl<E: std::error::Error + 'static> RunError<E> {
     }
 }
 
+/// Accepts a count that is the expected one.
+pub(crate) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), ControlError> {
+    if found == expected { Ok(()) } else { Err(ControlError::Length { what, found, expected }) }
+}
+
 /// Accepts a vector of the expected length whose elements are finite.
 pub(crate) fn check_vector(
     what: &'static str,
     values: &[f64],
     expected: usize,
 ) -> Result<(), ControlError> {
-    if values.len() != expected {
-        return Err(ControlError::Length { what, found: values.len(), expected });
-    }
+    check_length(what, values.len(), expected)?;
     match values.iter().position(|v| !v.is_finite()) {
         Some(index) => Err(ControlError::NotFinite { what, index, value: values[index] }),
         None => Ok(()),
     }
 }
 
+/// Accepts a number that fits its range.
+pub(crate) fn check_range(
+    fits: bool,
+    what: &'static str,
+    value: f64,
+    expected: &'static str,
+) -> Result<(), ControlError> {
+    if fits { Ok(()) } else { Err(ControlError::OutOfRange { what, value, expected }) }
+}
+
 /// Accepts a finite number above zero.
 pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<(), ControlError> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(ControlError::OutOfRange { what, value, expected: "a finite number above 0" })
-    }
+    check_range(value.is_finite() && value > 0.0, what, value, "a finite number above 0")
 }
 
 /// Accepts a finite number, zero or above.
 pub(crate) fn check_not_negative(what: &'static str, value: f64) -> Result<(), ControlError> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(())
-    } else {
-        Err(ControlError::OutOfRange { what, value, expected: "a finite number, 0 or above" })
-    }
+    check_range(value.is_finite() && value >= 0.0, what, value, "a finite number, 0 or above")
 }

@@ -30,29 +30,15 @@ pub fn identify_t<P: Plant>(
     Ok(differences(plant, about, step_volt, |_, _| true)?.0)
 }
 
-/// `T = dZ/du` about a control vector whose loads are known, and the measurements it took.
+/// `T = dZ/du` about a control vector whose loads are known (those about zero are not needed), and the measurements it
+/// took.
 ///
-/// Central differences where the plant admits both sides of a control, one-sided ones to the
-/// admitted side at the edge of its range.
-///
-/// | argument | symbol | unit | range |
-/// |---|---|---|---|
-/// | `about` | `u`, `Z(u)` | V, nondimensional | measured |
-/// | `step_volt` | `h_j` | V | > 0, one per control |
+/// Central differences where both sides of a control are admitted, one-sided ones to the admitted side at the edge of
+/// the plant's range.
 ///
 /// # Errors
 /// As [`identify_t`]; [`ControlError::NoRoomToIdentify`] if neither side of a control is admitted.
-pub fn identify_t_about<P: Plant>(
-    plant: &mut P,
-    about: OperatingPoint<'_>,
-    step_volt: &[f64],
-) -> Result<(TMatrix, usize), RunError<P::Error>> {
-    plant.layout().check(about.control_volt)?;
-    differences(plant, about, step_volt, P::admits)
-}
-
-/// T by differences to the sides of a control that are admitted, and the measurements it took.
-fn differences<P: Plant>(
+pub(crate) fn differences<P: Plant>(
     plant: &mut P,
     about: OperatingPoint<'_>,
     step_volt: &[f64],
@@ -64,13 +50,12 @@ fn differences<P: Plant>(
     let mut sides = Vec::with_capacity(control_volt.len());
     for (control, &step) in step_volt.iter().enumerate() {
         error::check_positive("voltage step of the T matrix (volt)", step)?;
-        let moved = |signed: f64| {
+        let admitted = [step, -step].map(|signed| {
             let mut moved = control_volt.to_vec();
             moved[control] += signed;
-            moved
-        };
-        let admitted = [moved(step), moved(-step)].map(|u| admits(plant, &u).then_some(u));
-        if admitted.iter().all(Option::is_none) {
+            admits(plant, &moved).then_some(moved)
+        });
+        if admitted == [None, None] {
             return Err(ControlError::NoRoomToIdentify { control, step_volt: step }.into());
         }
         sides.push(admitted.each_ref().map(Option::is_some));
@@ -79,25 +64,19 @@ fn differences<P: Plant>(
     let call = "measured for T, step by step about the control";
     let measurements =
         plant.measure_many(&controls).map_err(RunError::plant(call, control_volt))?;
-    let (what, found) = ("measurements for the T matrix", measurements.len());
-    if found != controls.len() {
-        Err(ControlError::Length { what, found, expected: controls.len() })?;
-    }
+    let what = "measurements for the T matrix";
+    error::check_length(what, measurements.len(), controls.len())?;
     let loads = measurements.first().map_or(0, |m| m.outputs.len());
     for measurement in &measurements {
         error::check_vector("measured outputs", &measurement.outputs, loads)?;
     }
     let mut found = measurements.iter().map(|m| m.outputs.as_slice());
-    let columns: Vec<Vec<f64>> = sides
-        .iter()
-        .zip(step_volt)
-        .map(|(&[up, down], step)| {
-            let mut side = |there: bool| if there { found.next() } else { None };
-            let (high, low) = (side(up), side(down));
-            let width = step * (f64::from(u8::from(up)) + f64::from(u8::from(down)));
-            let (high, low) = (high.unwrap_or(outputs), low.unwrap_or(outputs));
-            high.iter().zip(low).map(|(h, l)| (h - l) / width).collect()
-        })
-        .collect();
+    let column = |(sides, step): ([bool; 2], &f64)| -> Vec<f64> {
+        let mut side = |is_measured: bool| if is_measured { found.next() } else { None };
+        let [high, low] = sides.map(|is_measured| side(is_measured).unwrap_or(outputs));
+        let width = if sides == [true, true] { 2.0 * step } else { *step };
+        high.iter().zip(low).map(|(h, l)| (h - l) / width).collect()
+    };
+    let columns: Vec<Vec<f64>> = sides.into_iter().zip(step_volt).map(column).collect();
     Ok((TMatrix::from_columns(&columns)?, controls.len()))
 }

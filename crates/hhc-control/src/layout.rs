@@ -1,6 +1,6 @@
 //! How the control vector is laid out.
 
-use crate::ControlError;
+use crate::{ControlError, error};
 use rotor_base::{Harmonic, wrap_degrees};
 
 /// The order of the control vector `u`: per flap, per controlled harmonic, cosine then sine voltage.
@@ -25,18 +25,14 @@ impl ControlLayout {
     /// [`ControlError::OutOfRange`] without flap or harmonic, for harmonic 0 (that is the bias, which is solved
     /// for) or one given twice.
     pub fn new(flaps: usize, harmonics: Vec<u32>) -> Result<Self, ControlError> {
-        if flaps == 0 || harmonics.is_empty() {
-            let (what, value) = ("pairs of a control layout", 0.0);
-            let expected = "a flap and a harmonic at least";
-            return Err(ControlError::OutOfRange { what, value, expected });
-        }
+        let (what, expected) = ("pairs of a control layout", "a flap and a harmonic at least");
+        error::check_range(flaps > 0 && !harmonics.is_empty(), what, 0.0, expected)?;
         for (index, &harmonic) in harmonics.iter().enumerate() {
-            if harmonic == 0 || harmonics[..index].contains(&harmonic) {
-                let (what, value) = ("controlled harmonic (per rev)", f64::from(harmonic));
-                let expected =
-                    "1/rev or more, each once (the steady bias is solved for, it is not a control)";
-                return Err(ControlError::OutOfRange { what, value, expected });
-            }
+            let (what, value) = ("controlled harmonic (per rev)", f64::from(harmonic));
+            let expected =
+                "1/rev or more, each once (the steady bias is solved for, it is not a control)";
+            let fits = harmonic > 0 && !harmonics[..index].contains(&harmonic);
+            error::check_range(fits, what, value, expected)?;
         }
         Ok(Self { flaps, harmonics })
     }
@@ -103,13 +99,8 @@ impl ControlLayout {
     /// # Errors
     /// [`ControlError::Length`] if there is not one harmonic per pair.
     pub fn control_volt(&self, voltages_volt: &[Harmonic]) -> Result<Vec<f64>, ControlError> {
-        if voltages_volt.len() != self.pairs() {
-            return Err(ControlError::Length {
-                what: "harmonics of a control vector",
-                found: voltages_volt.len(),
-                expected: self.pairs(),
-            });
-        }
+        let found = voltages_volt.len();
+        error::check_length("harmonics of a control vector", found, self.pairs())?;
         Ok(voltages_volt.iter().flat_map(|h| [h.cosine, h.sine]).collect())
     }
 
@@ -118,7 +109,7 @@ impl ControlLayout {
     /// # Errors
     /// [`ControlError::Length`], [`ControlError::NotFinite`].
     pub fn check(&self, control_volt: &[f64]) -> Result<(), ControlError> {
-        crate::error::check_vector("control vector (volt)", control_volt, self.len())
+        error::check_vector("control vector (volt)", control_volt, self.len())
     }
 }
 

@@ -63,11 +63,14 @@ pub struct PowerLimit {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlLimits {
     layout: ControlLayout,
-    amplitude_volt: Vec<f64>,
+    /// Largest amplitude of every pair.
+    pub(crate) amplitude_volt: Vec<f64>,
     /// With the cosines and sines of the harmonics at every sample.
     voltage: Option<(VoltageRange, Vec<f64>)>,
-    flaps: Vec<Option<FlapCircle>>,
-    power: Option<(PowerLimit, DMatrix<f64>)>,
+    /// Of every pair.
+    pub(crate) flaps: Vec<Option<FlapCircle>>,
+    /// With a root `F` of its form, `F' F = P`.
+    pub(crate) power: Option<(PowerLimit, DMatrix<f64>)>,
 }
 
 impl ControlLimits {
@@ -89,14 +92,9 @@ impl ControlLimits {
     /// [`ControlError::Length`]; [`ControlError::OutOfRange`] unless every amplitude is positive.
     pub fn with_amplitudes_volt(self, amplitude_volt: Vec<f64>) -> Result<Self, ControlError> {
         let (what, expected) = ("voltage amplitudes", self.layout.pairs());
-        if amplitude_volt.len() != expected {
-            return Err(ControlError::Length { what, found: amplitude_volt.len(), expected });
-        }
-        for &value in &amplitude_volt {
-            if value.is_nan() || value <= 0.0 {
-                let what = "largest voltage amplitude (V)";
-                return Err(ControlError::OutOfRange { what, value, expected: "above 0" });
-            }
+        error::check_length(what, amplitude_volt.len(), expected)?;
+        for &volt in &amplitude_volt {
+            error::check_range(volt > 0.0, "largest voltage amplitude (V)", volt, "above 0")?;
         }
         Ok(Self { amplitude_volt, ..self })
     }
@@ -115,15 +113,11 @@ impl ControlLimits {
         }
         let [low, high] = voltage.range_volt;
         for &bias in &voltage.bias_volt {
-            error::check_positive(
-                "room between bias and range (V)",
-                (high - bias).min(bias - low),
-            )?;
+            let room = (high - bias).min(bias - low);
+            error::check_positive("room between bias and range (V)", room)?;
         }
-        if voltage.azimuths < 8 {
-            let (what, value) = ("azimuth samples of the voltage", voltage.azimuths as f64);
-            return Err(ControlError::OutOfRange { what, value, expected: "8 or more" });
-        }
+        let (what, samples) = ("azimuth samples of the voltage", voltage.azimuths as f64);
+        error::check_range(samples >= 8.0, what, samples, "8 or more")?;
         let azimuths = uniform_azimuths_rad(voltage.azimuths);
         let harmonics = self.layout.harmonics();
         let waves = azimuths
@@ -146,11 +140,9 @@ impl ControlLimits {
         error::check_positive("largest flap amplitude (deg)", circle.limit_deg)?;
         let gains = circle.gain_deg_per_volt.concat();
         error::check_vector("gain of a flap (deg/V)", &gains, 4)?;
-        let Some(place) = self.flaps.get_mut(pair) else {
-            let (what, value) = ("pair of a flap limit", pair as f64);
-            return Err(ControlError::OutOfRange { what, value, expected: "a pair of the layout" });
-        };
-        *place = Some(circle);
+        let (pairs, expected) = (self.flaps.len(), "a pair of the layout");
+        error::check_range(pair < pairs, "pair of a flap limit", pair as f64, expected)?;
+        self.flaps[pair] = Some(circle);
         Ok(self)
     }
 
@@ -167,10 +159,8 @@ impl ControlLimits {
         let symmetric = (&power.quadratic + power.quadratic.transpose()) * 0.5;
         let eigen = SymmetricEigen::new(symmetric);
         let (least, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.amax());
-        if least < -1e-12 * largest {
-            let (what, expected) = ("least eigenvalue of the power", "0 or above");
-            return Err(ControlError::OutOfRange { what, value: least, expected });
-        }
+        let fits = least >= -1e-12 * largest;
+        error::check_range(fits, "least eigenvalue of the power", least, "0 or above")?;
         let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| v.max(0.0).sqrt()))
             * eigen.eigenvectors.transpose();
         Ok(Self { power: Some((power, root)), ..self })
@@ -235,21 +225,6 @@ impl ControlLimits {
             }
         }
         rows
-    }
-
-    /// Largest amplitude of every pair, V.
-    pub(crate) fn amplitudes_volt(&self) -> &[f64] {
-        &self.amplitude_volt
-    }
-
-    /// Flap limit of every pair.
-    pub(crate) fn flap_circles(&self) -> &[Option<FlapCircle>] {
-        &self.flaps
-    }
-
-    /// The power limit with a root `F` of its form, `F' F = P`.
-    pub(crate) fn power(&self) -> Option<&(PowerLimit, DMatrix<f64>)> {
-        self.power.as_ref()
     }
 
     /// A voltage of the size the limits allow, V; none without limit in volt.

@@ -87,8 +87,11 @@ impl LoopEnd {
     /// Whether a run has converged there: the step is within its tolerance, relative to the largest voltage, and,
     /// with a tolerance of the cost above 0, its predicted decrease within that part of the cost at the start. The
     /// step is then the damped one.
-    pub fn is_converged(&self, tolerances: Tolerances, start_cost: f64) -> bool {
-        let Tolerances { step, cost } = tolerances;
+    ///
+    /// `tolerances` are those of the step and of the cost, [`crate::FeedbackSettings::step_tolerance`] and
+    /// [`crate::FeedbackSettings::cost_tolerance`].
+    pub fn is_converged(&self, tolerances: [f64; 2], start_cost: f64) -> bool {
+        let [step, cost] = tolerances;
         let within = |volt: f64| volt <= (step * self.size_volt).max(SMALLEST_CHANGE_VOLT);
         if cost > 0.0 {
             within(self.next_volt) && self.promise <= cost * start_cost
@@ -96,16 +99,6 @@ impl LoopEnd {
             within(self.asked_volt)
         }
     }
-}
-
-/// Tolerances of convergence.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerances {
-    /// Of the step, relative to the largest voltage harmonic: [`crate::FeedbackSettings::step_tolerance`].
-    pub step: f64,
-    /// Of its predicted decrease of the cost, relative to the cost at the start:
-    /// [`crate::FeedbackSettings::cost_tolerance`].
-    pub cost: f64,
 }
 
 /// Why a control run stopped.

@@ -27,7 +27,7 @@ pub(crate) enum Bracketed<S> {
 pub(crate) fn root_between<S, E>(
     ends: (Trial<S>, Trial<S>),
     tolerance: f64,
-    mut evaluate: impl FnMut(f64) -> Result<(f64, S), E>,
+    mut evaluate: impl FnMut(f64) -> Result<Trial<S>, E>,
 ) -> Result<Bracketed<S>, E> {
     let (mut held, mut fresh) = ends;
     let mut held_weight = 1.0;
@@ -52,9 +52,8 @@ pub(crate) fn root_between<S, E>(
         if bisect {
             (slow_steps, width_before) = (0, width);
         }
-        let x = if bisect { middle } else { secant };
-        let (f, state) = evaluate(x)?;
-        let trial = Trial { x, f, state };
+        let trial = evaluate(if bisect { middle } else { secant })?;
+        let f = trial.f;
         if f.abs() <= tolerance {
             return Ok(Bracketed::Root(trial));
         }
@@ -85,7 +84,7 @@ mod tests {
         let found: Result<_, Infallible> =
             root_between((trial(low), trial(high)), tolerance, |x| {
                 evaluations += 1;
-                Ok((f(x), ()))
+                Ok(trial(x))
             });
         (found.unwrap(), evaluations)
     }

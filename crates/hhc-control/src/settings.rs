@@ -1,6 +1,6 @@
 //! Settings of the feedback loop.
 
-use crate::{ControlError, Tolerances, error};
+use crate::{ControlError, error};
 
 /// Settings of the feedback loop.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,21 +46,13 @@ impl Default for FeedbackSettings {
 }
 
 impl FeedbackSettings {
-    /// The tolerances of convergence.
-    pub fn tolerances(&self) -> Tolerances {
-        Tolerances { step: self.step_tolerance, cost: self.cost_tolerance }
-    }
-
     pub(crate) fn check(&self) -> Result<(), ControlError> {
         error::check_positive("step tolerance", self.step_tolerance)?;
         error::check_not_negative("cost tolerance", self.cost_tolerance)?;
         error::check_not_negative("allowed increase of the cost", self.allowed_increase)?;
         error::check_not_negative("largest cost of a non-monotone search", self.non_monotone_cost)?;
         error::check_positive("stroke tolerance", self.stroke_tolerance)?;
-        let (value, expected) = (f64::from(self.max_backtracks), "0 to 60");
-        if self.max_backtracks > 60 {
-            return Err(ControlError::OutOfRange { what: "number of backtracks", value, expected });
-        }
-        Ok(())
+        let backtracks = f64::from(self.max_backtracks);
+        error::check_range(backtracks <= 60.0, "number of backtracks", backtracks, "0 to 60")
     }
 }

@@ -101,7 +101,7 @@ impl FeedbackController {
         }
         let otherwise = |_| 1e-3 * self.law.largest_authority();
         let mut trials: Vec<EffortTrial> = Vec::new();
-        let found = find_effort(strokes.accepted(0.45), predicted, otherwise, |rho| {
+        let (found, status) = find_effort(strokes.accepted(0.45), predicted, otherwise, |rho| {
             let run = match self.iterate(plant, &start, taken.clone(), Weighting::Fixed(rho)) {
                 // a control out of range is one too large
                 Err(RunError::Control(ControlError::NotAdmitted { .. })) => {
@@ -126,7 +126,7 @@ impl FeedbackController {
             );
         };
         run.measurements += 1;
-        let status = match (found.status, strokes.met(rho, largest_stroke_ratio)) {
+        let status = match (status, strokes.met(rho, largest_stroke_ratio)) {
             (StrokeStatus::AtLimit, None) => StrokeStatus::BelowJump,
             (status, _) => status,
         };

@@ -29,12 +29,11 @@ fn main() -> Result<(), Problems> {
         let table = &run.table;
         // the last half: the start from rest is over
         let half = table.time_s.len() / 2;
-        let (volt, um) =
-            (amplitude(&table.command_volt[half..]), amplitude(&table.displacement_um[half..]));
-        let paper = PAPER.iter().find(|(id, _)| *id == run.id).map_or("", |(_, deg)| deg);
+        let (volt, um) = (amplitude(&table.input[half..]), amplitude(&table.output[half..]));
+        let paper = PAPER.iter().find(|(id, _)| *id == run.entry.id).map_or("", |(_, deg)| deg);
         println!(
             "{:20} {:7} {:9.2} {volt:13.1} {um:7.1} {:10.2}  {paper}",
-            run.id,
+            run.entry.id,
             table.time_s.len(),
             1e3 * table.time_step_s,
             gain * um,

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 pub enum DataError {
     /// Files with problems, every one of them.
     #[error("{0}")]
-    Rejected(Problems),
+    Rejected(#[from] Problems),
     /// A file is in the way.
     #[error("{} exists already and is not overwritten; give another name, or remove it first", .path.display())]
     WouldOverwrite {
@@ -29,12 +29,6 @@ pub enum DataError {
         /// What the operating system said.
         reason: String,
     },
-}
-
-impl From<Problems> for DataError {
-    fn from(problems: Problems) -> Self {
-        Self::Rejected(problems)
-    }
 }
 
 impl From<Problem> for DataError {

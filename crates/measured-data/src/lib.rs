@@ -17,8 +17,8 @@ mod tables;
 
 pub use dataset::{
     BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet, DatasetFile,
-    DatasetKind, Fitting, InputRange, LoopData, ReversalCurve, Run, RunFile, RunRole, RunUse,
-    Sensor, Timed, read_bench, read_curves, read_dataset, read_loops, samples_within,
+    DatasetKind, Fitting, LoopData, ReversalCurve, Run, RunFile, RunRole, RunUse, Sensor,
+    read_bench, read_curves, read_dataset, read_loops,
 };
 pub use error::DataError;
 pub use files::{
@@ -26,8 +26,8 @@ pub use files::{
     refuse_inside, refuse_unwritable, ron_text, write_atomic, write_folder, write_new,
 };
 pub use tables::{
-    Channel, ChannelFile, Channels, Dimension, LoopTable, MeasuredTable, RESAMPLED_JITTER,
-    ROUNDING_JITTER, Sampling, UNITS, Unit, parse_measured_csv, resample, significant,
+    Channel, ChannelFile, Channels, Dimension, MeasuredTable, UNITS, Unit, limits,
+    parse_measured_csv, significant,
 };
 
 /// The example of the crate's README, run as a documentation test.

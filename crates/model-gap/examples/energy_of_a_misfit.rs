@@ -8,7 +8,7 @@
 //! ```
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
-use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, NoiseEstimate};
+use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, noise_variance};
 use std::f64::consts::TAU;
 
 const TIME_STEP_S: f64 = 1.0 / 3000.0;
@@ -30,8 +30,8 @@ fn noise() -> impl Iterator<Item = f64> {
 fn main() -> Result<(), GapError> {
     let measured: Vec<f64> =
         wave(4.0, 41.0, 0.05).iter().zip(noise()).map(|(y, n)| y + n).collect();
-    let noise = NoiseEstimate::from_cycles(&measured, TIME_STEP_S, FREQUENCY_HZ)?;
-    println!("noise from repeated cycles: {:.4} deg (planted 0.0200)", noise.std());
+    let variance = noise_variance(&measured, TIME_STEP_S, FREQUENCY_HZ)?;
+    println!("noise from repeated cycles: {:.4} deg (planted 0.0200)", variance.sqrt());
     println!(
         "simulation lacks    NRMSE %  exact %  gain error %  phase error  noise %  structured %"
     );
@@ -44,7 +44,7 @@ fn main() -> Result<(), GapError> {
     ] {
         let misfit = Misfit::of(&measured, &simulated)?;
         let first = FirstHarmonicError::of(&measured, &simulated, TIME_STEP_S, FREQUENCY_HZ)?;
-        let energy = EnergySplit::of(&measured, &simulated, noise.variance)?;
+        let energy = EnergySplit::of(&measured, &simulated, variance)?;
         println!(
             "{lacks:16} {:10.2} {:8.2} {:11.2} {:10.1} deg {:9.4} {:11.4}",
             100.0 * misfit.nrmse,

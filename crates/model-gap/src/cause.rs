@@ -1,16 +1,17 @@
 //! What could be missing: causes as values.
 
 /// How a parameter is searched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Scale {
     /// On a straight scale.
+    #[default]
     Linear,
     /// On a logarithmic scale; the range lies above zero.
     Log,
 }
 
 /// A parameter of a cause: name, unit and physical range, which is its prior.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Parameter {
     /// Name in every report.
     pub name: &'static str,
@@ -96,9 +97,9 @@ impl Parameter {
     }
 }
 
-/// A cause: an effect the simulation may lack, in physical terms.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cause {
+/// A cause, an effect the simulation may lack, made ready for one data set.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Candidate {
     /// Name in every report, such as `electrical-lag`.
     pub id: &'static str,
     /// The physics, one or two sentences with the equation.
@@ -114,13 +115,6 @@ pub struct Cause {
     pub confused_with: &'static [&'static str],
     /// Experiments that distinguish it from those.
     pub separating: &'static [&'static str],
-}
-
-/// A cause made ready for one data set.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Candidate {
-    /// The cause.
-    pub cause: Cause,
     /// Where the search starts: values of the parameters, weak effects first. Several, because a lazy
     /// search makes false names.
     pub starts: Vec<Vec<f64>>,

@@ -1,7 +1,8 @@
 //! The measured energy: explained, noise, structured.
 
-use crate::misfit::{mean_square, residual, variance};
-use crate::{GapError, error};
+use crate::GapError;
+use crate::misfit::compared;
+use rotor_base::mean_square;
 
 /// Where the energy of a measured record about its mean goes, as fractions that sum to 1.
 ///
@@ -23,12 +24,12 @@ pub struct EnergySplit {
 
 impl EnergySplit {
     /// The split of one record, given the variance of the measurement noise (output's unit squared),
-    /// from [`crate::NoiseEstimate`] and never from the residual itself.
+    /// from [`crate::noise_variance`] and never from the residual itself.
     ///
     /// # Errors
     /// As [`crate::Misfit::of`], and [`GapError::OutOfRange`] for a negative variance.
     pub fn of(measured: &[f64], simulated: &[f64], noise_variance: f64) -> Result<Self, GapError> {
-        error::check_pair(measured, simulated, 2)?;
+        let (residual, variance) = compared(measured, simulated)?;
         if !(noise_variance.is_finite() && noise_variance >= 0.0) {
             return Err(GapError::OutOfRange {
                 what: "noise variance",
@@ -36,13 +37,17 @@ impl EnergySplit {
                 expected: "a finite number, 0 or above",
             });
         }
-        let total = variance(measured)?;
-        let left = mean_square(&residual(measured, simulated));
+        Ok(Self::of_residual(&residual, variance, noise_variance))
+    }
+
+    /// The split of a record of a variance about its mean, above 0, from its residual.
+    pub fn of_residual(residual: &[f64], variance: f64, noise_variance: f64) -> Self {
+        let left = mean_square(residual);
         let noise = noise_variance.min(left);
-        Ok(Self {
-            explained: 1.0 - left / total,
-            noise: noise / total,
-            structured: (left - noise) / total,
-        })
+        Self {
+            explained: 1.0 - left / variance,
+            noise: noise / variance,
+            structured: (left - noise) / variance,
+        }
     }
 }

@@ -3,10 +3,10 @@
 //! A record of an output is compared with a simulation of the same input. This crate knows neither actuator nor rotor: it is handed
 //! numbers with their unit and gives numbers back.
 //!
-//! - [`Misfit`]: NRMSE, rms, bias and largest error of one record;
+//! - [`Misfit`]: NRMSE, rms and bias of one record;
 //! - [`HarmonicFit`], [`FirstHarmonicError`]: mean and harmonics of a record, and how far amplitude and
 //!   phase of the first one are off;
-//! - [`NoiseEstimate`]: measurement noise from repeated cycles, never from the residual;
+//! - [`noise_variance`]: measurement noise from repeated cycles, never from the residual;
 //! - [`EnergySplit`]: which part of the measured energy is explained, which is noise, and which is
 //!   structure that the simulation misses;
 //! - [`discovery`]: which of given causes explain a misfit, if any does.
@@ -39,20 +39,19 @@ mod harmonics;
 mod memo;
 mod misfit;
 mod noise;
+mod quantile;
 mod resampling;
-mod run_error;
-mod stimulus;
+mod sine;
 
-pub use cause::{Candidate, Cause, Effect, Parameter, Scale};
+pub use cause::{Candidate, Effect, Parameter, Scale};
 pub use energy::EnergySplit;
 pub use error::GapError;
 pub use harmonics::{FirstHarmonicError, HarmonicFit};
 pub use memo::Memo;
 pub use misfit::Misfit;
-pub use noise::NoiseEstimate;
-pub use resampling::NoiseDraw;
-pub use run_error::{RunError, Use};
-pub use stimulus::Stimulus;
+pub use noise::noise_variance;
+pub use resampling::{NoiseDraw, SplitMix};
+pub use sine::Sine;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -63,11 +63,12 @@ impl NoiseDraw {
     }
 }
 
-/// A small generator of random numbers with a fixed seed: resampling is part of the result.
+/// A small generator of random numbers from a fixed seed: what is drawn is part of the result.
 ///
 /// Source: G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*,
 /// OOPSLA (2014).
-pub(crate) struct SplitMix(pub(crate) u64);
+#[derive(Debug)]
+pub struct SplitMix(pub u64);
 
 impl SplitMix {
     fn next(&mut self) -> u64 {
@@ -82,6 +83,13 @@ impl SplitMix {
     #[expect(clippy::cast_possible_truncation, reason = "the remainder is below a usize")]
     pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.next() % count as u64) as usize
+    }
+
+    /// A number of the standard normal distribution (Box and Muller).
+    pub fn normal(&mut self) -> f64 {
+        let mut uniform = || (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
+        let radius = (-2.0 * (1.0 - uniform()).ln()).sqrt();
+        radius * (std::f64::consts::TAU * uniform()).cos()
     }
 }
 

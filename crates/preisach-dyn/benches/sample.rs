@@ -9,10 +9,10 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen, BoucWenParameters, Calibration,
-    CurrentLimit, Drive, DynamicParameters, DynamicPreisach, Envelope, Lag, LinkageStage, LogCreep,
-    OutputHistory, PlayMap, PlayMemory, PrandtlIshlinskii, PrandtlParameters, PrandtlStop,
-    PreisachError, PreisachGrid, RateForm, Resonance, StartState, StaticPreisach, StepCounts,
-    StopParameters, TimeOrder, VoltageRange, WeightedPlay, WeightedStop,
+    CurrentLimit, Drive, DynamicParameters, DynamicPreisach, Envelope, HysteresisLaw, Lag,
+    LinkageStage, LogCreep, PlayMap, PlayMemory, PrandtlIshlinskii, PrandtlParameters, PrandtlStop,
+    PreisachError, PreisachGrid, RateForm, Resonance, StartState, StaticPreisach, StopParameters,
+    TimeOrder, VoltageRange, WeightedPlay, WeightedStop,
 };
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -223,16 +223,14 @@ fn samples(c: &mut Criterion) {
     });
     report("static", best, STATIC_BAR_NS);
 
-    let mut memory = PlayMemory::new(dynamic.grid(), 65.0, StartState::Rest);
-    let mut history = OutputHistory::at_rest(0.0);
-    let mut counts = StepCounts::default();
+    let (mut memory, _) = dynamic.start(65.0, StartState::Rest);
     let mut best = f64::INFINITY;
     group.bench_function("dynamic", |b| {
         b.iter_custom(|rounds| {
             timed(rounds, volts.len(), &mut best, || {
                 for &u in &volts {
                     let u = black_box(u);
-                    black_box(dynamic.step(&mut memory, &mut history, &mut counts, u, TIME_STEP_S));
+                    black_box(dynamic.step(&mut memory, u, TIME_STEP_S));
                 }
             })
         });

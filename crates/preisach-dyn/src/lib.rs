@@ -50,11 +50,11 @@ pub use laws::envelope::Envelope;
 pub use laws::grid::{PreisachGrid, VoltageRange};
 pub use laws::hysteresis::{HysteresisLaw, LinearGain, StepCounts};
 pub use laws::law::{ActuatorLaw, LawMemory};
-pub use laws::memory::{PlayMemory, StartState};
+pub use laws::memory::{PlayMemory, StartState, WidthsMemory};
 pub use laws::play_map::PlayMap;
-pub use laws::prandtl::{PrandtlIshlinskii, PrandtlMemory, PrandtlParameters, WeightedPlay};
+pub use laws::prandtl::{PrandtlIshlinskii, PrandtlParameters, WeightedPlay};
 pub use laws::statics::StaticPreisach;
-pub use laws::stop::{PrandtlStop, StopMemory, StopParameters, WeightedStop};
+pub use laws::stop::{PrandtlStop, StopParameters, WeightedStop};
 pub use stages::{
     Accommodation, AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
     DielectricHeating, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep,

@@ -4,9 +4,9 @@
 
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, OutputHistory,
-    OutputRate, PlayMap, PlayMemory, PreisachError, PreisachGrid, RateForm, StartState, StepCounts,
-    TimeOrder, VoltageRange, output_rate,
+    ActuatorLaw, ActuatorModel, Calibration, Drive, DynamicParameters, DynamicPreisach,
+    HysteresisLaw, OutputRate, PlayMap, PlayMemory, PreisachError, PreisachGrid, RateForm,
+    StartState, StepCounts, TimeOrder, VoltageRange, output_rate,
 };
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
@@ -83,14 +83,11 @@ fn with_the_voltage_held_the_state_relaxes_with_minus_g1() {
         ..p
     })
     .unwrap();
-    let mut memory = PlayMemory::new(model.grid(), 30.0, StartState::Rest);
-    let [start, ..] = model.maps(&memory);
-    let mut history = OutputHistory::at_rest(start);
-    let mut counts = StepCounts::default();
-    let [settled, g1, _] = model.apply(&mut memory, 110.0);
+    let (mut memory, start) = model.start(30.0, StartState::Rest);
+    let [settled, g1, _] = model.apply(&mut memory.plays, 110.0);
     let step_s = 1e-5;
     for i in 1..=4000 {
-        let output = model.step(&mut memory, &mut history, &mut counts, 110.0, step_s);
+        let output = model.step(&mut memory, 110.0, step_s);
         let exact = settled + (start - settled) * (f64::from(i) * step_s / g1).exp();
         assert_abs_diff_eq!(output, exact, epsilon = 1e-3 * (settled - start).abs());
     }
@@ -167,7 +164,7 @@ fn uneven_steps_keep_the_second_order() {
             let step_s = 0.2 / f64::from(count) * (1.0 + 0.5 * (f64::from(i % 3) - 1.0));
             t += step_s;
             let u = 25.0 + 40.0 * (1.0 - (omega * t).cos());
-            let y = model.step(&mut memory, u, step_s).unwrap();
+            let y = model.stepper(step_s).unwrap().step(&mut memory, u, 0.0).unwrap();
             worst = worst.max((y + 4.0 - exact_lag(4.0, lag_s, omega, t)).abs());
         }
         worst
@@ -180,19 +177,17 @@ fn uneven_steps_keep_the_second_order() {
 fn the_step_satisfies_equation_5() {
     let p = parameters(TimeOrder::First);
     let model = DynamicPreisach::new(p).unwrap();
-    let mut memory = PlayMemory::new(model.grid(), 65.0, StartState::Rest);
-    let mut history = OutputHistory::at_rest(model.maps(&memory)[0]);
-    let mut counts = StepCounts::default();
+    let (mut memory, _) = model.start(65.0, StartState::Rest);
     let step_s = 5e-4;
     for i in 0..2000_u32 {
         let u = 65.0 + 80.0 * (TAU * 12.0 * step_s * f64::from(i)).sin();
-        let before = history.output_deg;
-        let output = model.step(&mut memory, &mut history, &mut counts, u, step_s);
-        let [g0, g1, g2] = model.maps(&memory);
+        let before = memory.history.output_deg;
+        let output = model.step(&mut memory, u, step_s);
+        let [g0, g1, g2] = model.maps(&memory.plays);
         let d = (output - before) / step_s;
         assert_abs_diff_eq!(output, g0 + d * g1 + d * d * g2, epsilon = 1e-10);
     }
-    assert_eq!(counts, StepCounts { steps: 2000, g1_not_negative: 0, folds: 0 });
+    assert_eq!(memory.counts, StepCounts { steps: 2000, g1_not_negative: 0, folds: 0 });
 }
 
 #[test]
@@ -231,7 +226,7 @@ fn what_is_not_well_posed_is_refused_or_counted() {
     let broken = DynamicParameters { g1_s: g1_s.clone(), ..p.clone() };
     assert!(matches!(
         DynamicPreisach::new(broken.clone()),
-        Err(PreisachError::NotWellPosed { largest_g1_s }) if largest_g1_s > 0.01
+        Err(PreisachError::OutOfRange { quantity: "largest G1 (s)", value, .. }) if value > 0.01
     ));
     let literal = actuator(DynamicParameters { form: RateForm::Literal, ..broken });
     let volts: Vec<f64> =
@@ -250,7 +245,7 @@ fn what_is_not_well_posed_is_refused_or_counted() {
     let early = DynamicParameters { unfolded_rate_deg_s: 1e5, ..p };
     assert!(matches!(
         DynamicPreisach::new(early),
-        Err(PreisachError::FoldsTooEarly { excess_s, .. }) if excess_s > 0.0
+        Err(PreisachError::OutOfRange { value, .. }) if value > 0.0
     ));
 }
 
@@ -285,9 +280,9 @@ proptest! {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in 1..len")]
         let at = 1 + (cut * (volts.len() - 1) as f64) as usize;
         let mut memory = model.start(volts[0], StartState::Rest).unwrap();
-        let first = model.continue_from(&mut memory, &volts[1..at], 1e-3).unwrap();
+        let first = model.continue_drive(&mut memory, &Drive::new(&volts[1..at], 1e-3)).unwrap();
         let mut restored = memory.clone();
-        let second = model.continue_from(&mut restored, &volts[at..], 1e-3).unwrap();
+        let second = model.continue_drive(&mut restored, &Drive::new(&volts[at..], 1e-3)).unwrap();
         let parts = [vec![whole.output_deg[0]], first, second].concat();
         prop_assert_eq!(parts, whole.output_deg);
         prop_assert_eq!(restored.counts(), whole.counts);
@@ -301,22 +296,20 @@ fn a_million_random_steps(
     mut each: impl FnMut([f64; 3], f64, f64, OutputRate),
 ) -> StepCounts {
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(20_260_117);
-    let mut memory = PlayMemory::new(model.grid(), 65.0, StartState::Rest);
-    let mut history = OutputHistory::at_rest(model.maps(&memory)[0]);
-    let mut counts = StepCounts::default();
+    let (mut memory, _) = model.start(65.0, StartState::Rest);
     let mut u = 65.0_f64;
     for _ in 0..1_000_000 {
         let reach = 10.0_f64.powf(random.random_range(-2.0..2.0));
         u = (u + reach * random.random_range(-1.0..1.0)).clamp(-20.0, 150.0);
         let step_s = 5e-5 * 10.0_f64.powf(random.random_range(0.0..2.0));
-        let before = history.output_deg;
-        let output = model.step(&mut memory, &mut history, &mut counts, u, step_s);
+        let before = memory.history.output_deg;
+        let output = model.step(&mut memory, u, step_s);
         assert!(output.is_finite());
         // implicit Euler, so base and weight are the output before and the step
-        let g = model.maps(&memory);
+        let g = model.maps(&memory.plays);
         each(g, before, step_s, output_rate(g, before, step_s));
     }
-    counts
+    memory.counts
 }
 
 #[test]
@@ -376,7 +369,7 @@ fn without_the_bound_on_g2_the_same_walk_folds_below_the_rate() {
     let g2_s2_per_deg = PlayMap::constant(&p.grid, 6e-5);
     let larger = DynamicParameters { g2_s2_per_deg, ..p };
     let refused = DynamicPreisach::new(larger.clone());
-    assert!(matches!(refused, Err(PreisachError::FoldsTooEarly { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(PreisachError::OutOfRange { .. })), "{refused:?}");
     let literal = DynamicParameters { form: RateForm::Literal, ..larger };
     let literal = DynamicPreisach::new(literal).unwrap();
     let (mut below, mut folds) = (0, 0);
@@ -418,10 +411,10 @@ fn a_literal_actuator_written_by_hand_runs_and_is_taken_up_again() {
             whole.counts
         );
         let mut memory = model.start(volts[0], StartState::Rest).unwrap();
-        let first = model.continue_from(&mut memory, &volts[1..333], 1e-3).unwrap();
+        let first = model.continue_drive(&mut memory, &Drive::new(&volts[1..333], 1e-3)).unwrap();
         let file = serde_json::to_string(&memory).unwrap();
         let mut restored: preisach_dyn::ActuatorMemory = serde_json::from_str(&file).unwrap();
-        let second = model.continue_from(&mut restored, &volts[333..], 1e-3).unwrap();
+        let second = model.continue_drive(&mut restored, &Drive::new(&volts[333..], 1e-3)).unwrap();
         assert_eq!([vec![whole.output_deg[0]], first, second].concat(), whole.output_deg);
         assert_eq!(restored.counts(), whole.counts);
         let again: ActuatorModel =
@@ -441,20 +434,18 @@ fn the_literal_form_reports_what_it_meets() {
     )
     .unwrap();
     let refused = DynamicPreisach::new(DynamicParameters { g1_s: g1_s.clone(), ..p.clone() });
-    assert!(matches!(refused, Err(PreisachError::NotWellPosed { .. })));
+    assert!(matches!(refused, Err(PreisachError::OutOfRange { .. })));
     let literal =
         DynamicPreisach::new(DynamicParameters { g1_s, form: RateForm::Literal, ..p }).unwrap();
-    let mut memory = PlayMemory::new(literal.grid(), -20.0, StartState::Rest);
-    let mut history = OutputHistory::at_rest(literal.maps(&memory)[0]);
-    let mut counts = StepCounts::default();
+    let (mut memory, _) = literal.start(-20.0, StartState::Rest);
     let mut positive = 0;
     for i in 0..2000_u32 {
         let u = 65.0 - 85.0 * (TAU * f64::from(i) / 2000.0).cos();
-        literal.step(&mut memory, &mut history, &mut counts, u, 5e-3);
-        positive += usize::from(literal.maps(&memory)[1] >= 0.0);
+        literal.step(&mut memory, u, 5e-3);
+        positive += usize::from(literal.maps(&memory.plays)[1] >= 0.0);
     }
     assert!(positive > 0, "no step met G1 >= 0");
-    assert_eq!((counts.steps, counts.g1_not_negative), (2000, positive));
+    assert_eq!((memory.counts.steps, memory.counts.g1_not_negative), (2000, positive));
 }
 
 #[test]
@@ -469,8 +460,11 @@ fn bad_input_is_an_error_with_its_place() {
     assert!(model.simulate(&[65.0, 66.0], f64::NAN).is_err());
     let mut foreign =
         linear_with_lag(0.02, TimeOrder::First).start(65.0, StartState::Rest).unwrap();
-    let error = model.step(&mut foreign, 65.0, 1e-3).unwrap_err();
-    assert!(matches!(error, PreisachError::MemoryMismatch { found: 4, expected: 16 }), "{error}");
+    let error = model.stepper(1e-3).unwrap().step(&mut foreign, 65.0, 0.0).unwrap_err();
+    assert!(
+        matches!(error, PreisachError::MemoryMismatch { found: 4, expected: 16, .. }),
+        "{error}"
+    );
 }
 
 #[test]
@@ -480,17 +474,17 @@ fn models_and_memories_survive_being_stored() {
     let restored: ActuatorModel = serde_json::from_str(&text).unwrap();
     assert_eq!(restored, model);
     let mut memory = model.start(65.0, StartState::Rest).unwrap();
-    model.continue_from(&mut memory, &[80.0, 20.0, 130.0], 1e-3).unwrap();
+    model.continue_drive(&mut memory, &Drive::new(&[80.0, 20.0, 130.0], 1e-3)).unwrap();
     let stored = serde_json::to_string(&memory).unwrap();
     let mut taken_up = serde_json::from_str(&stored).unwrap();
     assert_eq!(memory, taken_up);
     assert_eq!(
-        model.step(&mut memory, 50.0, 1e-3).unwrap(),
-        restored.step(&mut taken_up, 50.0, 1e-3).unwrap()
+        model.stepper(1e-3).unwrap().step(&mut memory, 50.0, 0.0).unwrap(),
+        restored.stepper(1e-3).unwrap().step(&mut taken_up, 50.0, 0.0).unwrap()
     );
     // what is stored is checked when it is read: a relaxation time below zero is refused
     let broken = text.replace("\"constant\":-0.02", "\"constant\":0.5");
     assert_ne!(broken, text);
     let error = serde_json::from_str::<ActuatorModel>(&broken).unwrap_err().to_string();
-    assert!(error.contains("G1 reaches"), "{error}");
+    assert!(error.contains("largest G1 (s) is 0.5"), "{error}");
 }

@@ -2,7 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use preisach_dyn::identify::{
-    BenchRecord, Finding, Identification, RecordUse, RecordWindows, Settings, Severity, identify,
+    BenchRecord, Channel, Finding, Identification, RecordUse, RecordWindows, Settings, Severity,
+    identify,
 };
 use preisach_dyn::{ActuatorLaw, PreisachError, VoltageRange};
 use std::f64::consts::TAU;
@@ -161,7 +162,7 @@ fn clipped_records_are_suspect() {
     records[0].output_deg.iter_mut().for_each(|y| *y = y.min(5.0));
     let identified = found(&records);
     let clipped = |f: &Finding| {
-        matches!(f, Finding::ClippedOutput { id, level_deg, share_percent }
+        matches!(f, Finding::Clipped { id, channel: Channel::Output, level: level_deg, share_percent }
             if id == "0.2 Hz 85 V" && (*level_deg - 5.0).abs() < 1e-12 && *share_percent > 5.0)
     };
     assert!(identified.summary.findings.iter().any(clipped), "{:?}", identified.summary);
@@ -171,7 +172,7 @@ fn clipped_records_are_suspect() {
     records[2] = record("clipped", 5.0, 1e-3, clip);
     let identified = found(&records);
     let clipped = |f: &Finding| {
-        matches!(f, Finding::ClippedCommand { id, level_volt, .. }
+        matches!(f, Finding::Clipped { id, channel: Channel::Command, level: level_volt, .. }
             if id == "clipped" && (level_volt - 120.0).abs() < 1e-9)
     };
     assert!(identified.summary.findings.iter().any(clipped), "{:?}", identified.summary);
@@ -185,7 +186,7 @@ fn a_clipped_record_is_suspect_through_noise() {
         *y = y.min(5.0) + 0.02 * (0.7 * (i * i) as f64).sin();
     }
     let clipped = |f: &Finding| {
-        matches!(f, Finding::ClippedOutput { id, level_deg, share_percent }
+        matches!(f, Finding::Clipped { id, channel: Channel::Output, level: level_deg, share_percent }
             if id == "0.2 Hz 85 V" && (*level_deg - 5.0).abs() < 0.05 && *share_percent > 5.0)
     };
     let findings = found(&records).summary.findings;
@@ -203,14 +204,18 @@ fn spikes_are_named_and_left_out() {
     let spoilt = found(&records);
     let has = |f: &dyn Fn(&Finding) -> bool| spoilt.summary.findings.iter().any(f);
     assert!(
-        has(&|f| matches!(f, Finding::OutputSpikes { id, samples: 1, index: 700, time_s, .. }
-            if *id == records[0].id && (*time_s - 3.5).abs() < 1e-9)),
+        has(
+            &|f| matches!(f, Finding::Spikes { id, channel: Channel::Output, samples: 1, index: 700, time_s, .. }
+            if *id == records[0].id && (*time_s - 3.5).abs() < 1e-9)
+        ),
         "{:?}",
         spoilt.summary
     );
     assert!(
-        has(&|f| matches!(f, Finding::CommandSpikes { id, samples: 1, index: 500, .. }
-            if *id == records[slow].id)),
+        has(
+            &|f| matches!(f, Finding::Spikes { id, channel: Channel::Command, samples: 1, index: 500, .. }
+            if *id == records[slow].id)
+        ),
         "{:?}",
         spoilt.summary
     );
@@ -278,13 +283,13 @@ fn single_samples_empty_sets_and_bad_windows_are_errors() {
         output_deg: vec![1.0],
         ..BenchRecord::default()
     };
-    assert!(matches!(identify(&[one], &settings()), Err(PreisachError::TooFew { .. })));
+    assert!(matches!(identify(&[one], &settings()), Err(PreisachError::OutOfRange { .. })));
     assert!(matches!(identify(&[], &settings()), Err(PreisachError::NoTrainingRecord { .. })));
     for window in [5..10, 10..900_000] {
         let mut records = full();
         records[0].windows.train = Some(window);
         let error = identify(&records, &settings()).unwrap_err();
-        assert!(matches!(error, PreisachError::BadWindow { .. }), "{error}");
+        assert!(matches!(error, PreisachError::BadRecord { .. }), "{error}");
     }
 }
 

@@ -137,7 +137,7 @@ fn senseless_targets_are_refused() {
     let mut memory = PlayMemory::new(model.grid(), 65.0, StartState::Rest);
     assert!(model.inverse(&mut memory, f64::NAN).is_err());
     let error = model.inverse(&mut memory, 1e3).unwrap_err();
-    assert!(matches!(error, PreisachError::OutputOutOfReach { .. }), "{error}");
+    assert!(matches!(error, PreisachError::OutOfRange { .. }), "{error}");
     let mut other = PlayMemory::new(static_model(9).grid(), 65.0, StartState::Rest);
     assert!(matches!(model.inverse(&mut other, 0.0), Err(PreisachError::MemoryMismatch { .. })));
 }
@@ -318,10 +318,9 @@ fn an_amplifier_that_saturates_ends_the_reach() {
     model.amplifier.push(AmplifierStage::Saturation(limits));
     let settings = InverseSettings { voltage_harmonics: 8, ..InverseSettings::default() };
     let error = model.periodic_inverse(&target(8.0), REV_HZ, &settings).unwrap_err();
-    let PreisachError::MotionOutOfReach { lowest_volt, highest_volt, reachable_deg, .. } = error
-    else {
+    let PreisachError::MotionOutOfReach { range, reachable_deg, .. } = error else {
         panic!("{error}");
     };
-    assert_eq!((lowest_volt, highest_volt), (0.0, 130.0));
+    assert_eq!(range, VoltageRange::new(0.0, 130.0).unwrap());
     assert!(reachable_deg > 3.0, "{reachable_deg}");
 }

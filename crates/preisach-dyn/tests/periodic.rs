@@ -4,10 +4,10 @@
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{
     Accommodation, ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Calibration, CurrentLimit,
-    Delay, DielectricHeating, DynamicParameters, DynamicPreisach, KelvinVoigt, KelvinVoigtElement,
-    Lag, LinkageStage, LoadStiffness, LogCreep, MainsHum, PeriodicSettings, PlayMap, PreisachError,
-    PreisachGrid, RateForm, Resonance, SensorStage, StartState, StaticPreisach, TimeOrder,
-    VoltageRange,
+    Delay, DielectricHeating, Drive, DynamicParameters, DynamicPreisach, KelvinVoigt,
+    KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep, MainsHum, PeriodicSettings,
+    PlayMap, PreisachError, PreisachGrid, RateForm, Resonance, SensorStage, StartState,
+    StaticPreisach, TimeOrder, VoltageRange,
 };
 use rotor_base::{Harmonic, HarmonicSeries};
 use std::f64::consts::TAU;
@@ -207,7 +207,7 @@ fn marched(
     let step_s = 1.0 / (rev_hz * steps as f64);
     let mut orbit = Vec::new();
     for _ in 0..revolutions {
-        orbit = model.continue_from(&mut memory, &commands, step_s).unwrap();
+        orbit = model.continue_drive(&mut memory, &Drive::new(&commands, step_s)).unwrap();
     }
     orbit
 }

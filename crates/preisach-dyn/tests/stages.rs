@@ -311,8 +311,9 @@ fn creep_is_the_sum_of_its_lags_and_the_logarithm_between_them() {
     // any step gives the same samples
     let coarse: Vec<f64> = input[1..].iter().step_by(100).copied().collect();
     let mut memory = model.start(0.0, StartState::Rest).unwrap();
-    model.step(&mut memory, 100.0, step_s).unwrap();
-    let late = model.continue_from(&mut memory, &coarse[1..], 100.0 * step_s).unwrap();
+    model.stepper(step_s).unwrap().step(&mut memory, 100.0, 0.0).unwrap();
+    let late =
+        model.continue_drive(&mut memory, &Drive::new(&coarse[1..], 100.0 * step_s)).unwrap();
     let fine: Vec<f64> = output[1..].iter().step_by(100).copied().collect();
     assert!(largest_difference(&late, &fine[1..]) < 1e-10);
 }

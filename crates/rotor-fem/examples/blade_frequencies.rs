@@ -5,7 +5,9 @@
 //! ```
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
-use rotor_fem::{BladeProperties, BladeSpec, FemError, ModeCount, ModeKind, uncoupled_modes};
+use rotor_fem::{
+    BladeProperties, BladeSpec, FemError, ModalBasis, ModeCount, ModeKind, uncoupled_modes,
+};
 
 /// Per rev: power series in 60 digits, `fixtures/reference/rotor/bo105_uniform_frequencies.csv`; torsion in
 /// closed form with the paper's radii of gyration.
@@ -26,8 +28,9 @@ fn main() -> Result<(), FemError> {
                     &blade,
                     elements,
                     ModeCount { flap: 4, lag: 4, torsion: 1, axial: 0 },
+                    ModalBasis::Natural,
                 )?;
-                Ok(100.0 * (set.of(kind)[mode].per_rev() / per_rev - 1.0))
+                Ok(100.0 * (set.of(kind)[mode].per_rev / per_rev - 1.0))
             });
             let name = format!("{kind:?} {}", mode + 1);
             print!("{name:10} {per_rev:12.6}");

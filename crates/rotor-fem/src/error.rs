@@ -24,12 +24,12 @@ pub enum FemError {
         /// What was expected.
         expected: &'static str,
     },
-    /// A number that describes the whole blade is out of range.
+    /// A number that describes the whole blade, a mesh or a solver is out of range.
     #[error("{field} is {value}: expected {expected}")]
     Parameter {
         /// Name of the field.
         field: &'static str,
-        /// The value found, in rotor units or rad.
+        /// The value found; of a blade in rotor units or rad.
         value: f64,
         /// What was expected.
         expected: &'static str,
@@ -78,41 +78,11 @@ pub enum FemError {
         /// Number of values expected.
         expected: usize,
     },
-    /// The number of blade elements is out of range.
-    #[error("{found} blade elements asked for: expected 1 to {most}")]
-    ElementCount {
-        /// Number asked for.
-        found: usize,
-        /// Largest number allowed.
-        most: usize,
-    },
     /// A station lies off the blade.
     #[error("station {station} (r/R) lies outside the rotor radius: expected 0 to 1")]
     Station {
         /// The station r/R.
         station: f64,
-    },
-    /// The mesh in time is not usable.
-    #[error("time elements: {name} is {found}, expected {least} to {most}")]
-    TimeMesh {
-        /// Name of the argument.
-        name: &'static str,
-        /// Value found.
-        found: usize,
-        /// Least value allowed.
-        least: usize,
-        /// Largest value allowed.
-        most: usize,
-    },
-    /// A setting of the orbit solver is not usable.
-    #[error("orbit solver setting {name} is {value}: expected {expected}")]
-    SolverSetting {
-        /// Name of the setting.
-        name: &'static str,
-        /// Value found.
-        value: f64,
-        /// What was expected.
-        expected: &'static str,
     },
     /// More modes asked for than the mesh has.
     #[error("{wanted} {kind} modes asked for, {available} found: use more blade elements")]
@@ -164,21 +134,6 @@ pub enum FemError {
         /// Number of degrees of freedom.
         expected: usize,
     },
-    /// The step of a free motion was not found.
-    #[error(
-        "free motion: step {step} left {residual:e} of the momentum out of balance after \
-         {iterations} iterations; use a smaller time step than {time_step}"
-    )]
-    FreeMotionStep {
-        /// Number of the step, from 1.
-        step: usize,
-        /// Iterations done.
-        iterations: usize,
-        /// Momentum out of balance over the largest momentum.
-        residual: f64,
-        /// Time step, rad.
-        time_step: f64,
-    },
     /// Shapes and stations of a modal blade do not match in number.
     #[error("mode {mode} has {found} section shapes, the blade {expected} stations")]
     ShapeCount {
@@ -221,4 +176,14 @@ pub enum FemError {
         /// Order of the eigenproblem.
         size: usize,
     },
+}
+
+/// Refuses the first parameter that is not good; each with its value, whether it is good, and what was expected.
+pub(crate) fn check_parameters<const N: usize>(
+    parameters: [(&'static str, f64, bool, &'static str); N],
+) -> Result<(), FemError> {
+    match parameters.into_iter().find(|(_, _, good, _)| !good) {
+        Some((field, value, _, expected)) => Err(FemError::Parameter { field, value, expected }),
+        None => Ok(()),
+    }
 }

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | What is the blade? | [`BladeSpec`], checked by [`BladeProperties`] |
 //! | What are its matrices? | [`BladeModel`] |
-//! | At which frequencies does it vibrate? | [`modes`], [`fan_plot`] |
+//! | At which frequencies does it vibrate? | [`modes`] |
 //! | How does it deflect, and vibrate about that? | [`ModerateModel`], [`deflected_modes`] |
 //! | What are its modal equations then? | [`ModalBlade`] |
 //! | Which shapes does the response use? | [`uncoupled_modes`] and its [`ModeSet`] |
@@ -20,13 +20,15 @@
 //!
 //! # Example
 //! ```
-//! use rotor_fem::{BladeProperties, BladeSpec, ModeCount, ModeKind, uncoupled_modes};
+//! use rotor_fem::{
+//!     BladeProperties, BladeSpec, ModalBasis, ModeCount, ModeKind, uncoupled_modes,
+//! };
 //!
 //! // flap, lag, torsion and axial stiffness of a hingeless blade
 //! let blade = BladeProperties::new(BladeSpec::uniform(0.0108, 0.0268, 0.00615, 200.0))?;
-//! let set = uncoupled_modes(&blade, 20, ModeCount::default())?;
+//! let set = uncoupled_modes(&blade, 20, ModeCount::default(), ModalBasis::Natural)?;
 //! let first_flap = &set.of(ModeKind::Flap)[0];
-//! assert!((first_flap.per_rev() - 1.125_79).abs() < 1e-5);
+//! assert!((first_flap.per_rev - 1.125_79).abs() < 1e-5);
 //! assert_eq!(first_flap.shape(1.0)?[0], 1.0);
 //! # Ok::<(), rotor_fem::FemError>(())
 //! ```
@@ -40,30 +42,26 @@ mod stability;
 
 pub use beam::assembly::{BladeModel, SectionMotion};
 pub use beam::distribution::Distribution;
-pub use beam::mode_kind::ModeKind;
+pub use beam::mode_kind::{ModeKind, PerFamily};
 pub use beam::properties::{BladeProperties, BladeSpec, Twist};
 pub use beam::root_support::{Joint, RootSupport};
 pub use error::FemError;
 pub use moderate::{
-    AxialMotion, FreeMotion, ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape,
-    ModalTangent, ModerateBlade, ModerateModel, ModerateSpec, MotionState, NodalMotion,
-    PitchMotion, RotaryInertia, SectionShape, StaticSettings, StaticState, Tangents, TorsionTerms,
-    TwistAngle, Untwist, deflected_fan, deflected_modes,
+    AxialMotion, ModalBlade, ModalLoads, ModalMotion, ModalShape, ModerateBlade, ModerateModel,
+    ModerateSpec, NodalMotion, PitchMotion, SectionShape, StaticSettings, StaticState, Tangents,
+    TorsionTerms, TwistAngle, Untwist, deflected_modes,
 };
-pub use modes::coupled::{CoupledMode, EnergyShares, FanPoint, GyroscopicTerms, fan_plot, modes};
-pub use modes::mode_set::{
-    ModalBasis, ModeCount, ModeSet, UncoupledMode, modal_basis, uncoupled_modes,
-};
+pub use modes::coupled::{CoupledMode, EnergyShares, GyroscopicTerms, modes};
+pub use modes::mode_set::{ModalBasis, ModeCount, ModeSet, UncoupledMode, uncoupled_modes};
 pub use periodic::acceleration::Anderson;
 pub use periodic::error::PeriodicError;
-pub use periodic::linear::{LinearCoefficients, LinearPeriodic};
 pub use periodic::linear_response::LinearResponse;
 pub use periodic::orbit_memory::OrbitMemory;
-pub use periodic::solver::{Acceleration, PeriodicSettings, PeriodicSolution, PeriodicSolver};
+pub use periodic::solver::{PeriodicSettings, PeriodicSolution, PeriodicSolver};
 pub use periodic::system::{LocalTangent, PeriodicSystem};
 pub use periodic::time_elements::{Orbit, OrbitSamples, TimeElements};
 pub use stability::floquet::{Floquet, FloquetMode};
-pub use stability::floquet_lag::{LagChannel, LagPlace};
+pub use stability::monodromy::{LagChannel, LagPlace};
 pub use stability::oscillations::{Oscillation, oscillations};
 
 #[cfg(doctest)]

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail by unwrapping")]
 
 mod common;
+mod linear;
 
 use std::path::Path;
 

@@ -1,9 +1,12 @@
 //! Free motion of the undamped rotating blade in a vacuum keeps its energy.
 #![expect(clippy::unwrap_used, reason = "a test may fail by unwrapping")]
 
+mod free_motion;
+
+use free_motion::FreeMotion;
 use rotor_fem::{
-    BladeSpec, FreeMotion, Joint, ModerateBlade, ModerateModel, ModerateSpec, RootSupport,
-    StaticSettings, Twist,
+    BladeSpec, Joint, ModerateBlade, ModerateModel, ModerateSpec, RootSupport, StaticSettings,
+    Twist,
 };
 
 /// A blade that couples everything, bent by a load that is then let go.
@@ -34,10 +37,10 @@ fn drift(time_step: f64, revolutions: f64) -> [f64; 2] {
     let settings = StaticSettings::default();
     let bent = model.static_state(&load, &settings).unwrap();
     let rest = model.static_state(&none, &settings).unwrap();
-    let mut motion = FreeMotion::new(&model, time_step).unwrap();
+    let motion = FreeMotion::new(&model, time_step);
     let mut state = motion.at_rest(bent.dof);
-    let start = motion.energy(&state);
-    let size = start - motion.energy(&motion.at_rest(rest.dof));
+    let start = motion.energy(&state).unwrap();
+    let size = start - motion.energy(&motion.at_rest(rest.dof)).unwrap();
     assert!(size > 1e-4);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a step count")]
     let steps = (revolutions * std::f64::consts::TAU / time_step) as usize;
@@ -47,7 +50,7 @@ fn drift(time_step: f64, revolutions: f64) -> [f64; 2] {
         if step % 4 != 0 {
             continue;
         }
-        let gap = (motion.energy(&state) - start).abs() / size;
+        let gap = (motion.energy(&state).unwrap() - start).abs() / size;
         if step < steps / 4 {
             worst[0] = worst[0].max(gap);
         } else if step >= 3 * steps / 4 {
@@ -76,13 +79,4 @@ fn energy_stays_in_a_band_that_falls_with_the_square_of_the_step() {
     let [first, last] = drift(0.08, 40.0);
     println!("forty revolutions: first quarter {first:.3e}, last quarter {last:.3e}");
     assert!(first < 1e-4 && last < 1.1 * first);
-}
-
-#[test]
-fn a_bad_time_step_is_named() {
-    let model = model();
-    for step in [0.0, -0.1, f64::NAN] {
-        let text = FreeMotion::new(&model, step).unwrap_err().to_string();
-        assert!(text.contains("time_step"), "{text}");
-    }
 }

@@ -26,12 +26,6 @@ fn remedy(frequency_per_rev: f64) -> &'static str {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ResponseError {
-    /// The number of Gauss points per spanwise piece is out of range.
-    #[error("span_points_per_piece is {found}, expected 1 to 16")]
-    SpanPoints {
-        /// The number found.
-        found: usize,
-    },
     /// Loads are asked for at a station where there is no blade.
     #[error("loads at {station} R: the blade reaches from {root} to 1 R")]
     LoadStation {
@@ -150,4 +144,14 @@ pub enum ResponseError {
     /// The inflow model refused its input or has no solution.
     #[error(transparent)]
     Wake(#[from] rotor_wake::WakeError),
+}
+
+/// Refuses a parameter that is not good.
+pub(crate) fn check(
+    field: &'static str,
+    value: f64,
+    good: bool,
+    expected: &'static str,
+) -> Result<(), ResponseError> {
+    if good { Ok(()) } else { Err(ResponseError::Parameter { field, value, expected }) }
 }

@@ -8,7 +8,7 @@ mod response;
 mod sections;
 mod structure;
 
-pub use answers::coupled_modes::{CoupledBladeMode, HARDLY_DAMPED, RESONANCE_PER_REV};
+pub use answers::coupled_modes::{CoupledBladeMode, LOW_DAMPING_RATIO, RESONANCE_PER_REV};
 pub use answers::dissimilar::{OtherBlade, dissimilar_hub_loads};
 pub use answers::linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
 pub use answers::section_lift::SectionLift;

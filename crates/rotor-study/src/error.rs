@@ -56,7 +56,7 @@ pub enum StudyError {
         source: TrimError,
     },
     /// The control loop or the plant inside it.
-    #[error("control of {harmonics:?}/rev with the {actuator} actuator: {source}")]
+    #[error("control at {}/rev with the {actuator} actuator: {source}", together(harmonics))]
     Control {
         /// Harmonics under control, per rev.
         harmonics: Vec<usize>,
@@ -96,8 +96,13 @@ pub enum StudyError {
     },
 }
 
+/// Harmonics in one word: `2+3`.
+fn together(harmonics: &[usize]) -> String {
+    harmonics.iter().map(usize::to_string).collect::<Vec<_>>().join("+")
+}
+
 /// What is said of a pitch spring that does not hold its blade.
-pub fn soft_pitch_text(stiffness: f64, frequency_per_rev: f64, source: &TrimError) -> String {
+fn soft_pitch_text(stiffness: f64, frequency_per_rev: f64, source: &TrimError) -> String {
     format!(
         "a pitch spring of {stiffness} leaves the blade a pitch frequency of about {frequency_per_rev:.1} per rev, too soft for the loads it holds: {source}. Remedy: a stiffer spring (a pitch link gives 3 per rev and more), or Locked"
     )
@@ -117,6 +122,20 @@ impl StudyError {
             | Self::Robustness { .. }
             | Self::Range(_)
             | Self::NoActuator { .. } => "control",
+        }
+    }
+
+    /// What went wrong, without the field.
+    pub fn cause(&self) -> String {
+        match self {
+            Self::Refused { message, .. } => message.clone(),
+            Self::Blade { source, .. } => source.to_string(),
+            Self::Response { source, .. } => source.to_string(),
+            Self::Trim { source, .. } => source.to_string(),
+            Self::SoftPitch { stiffness, frequency_per_rev, source, .. } => {
+                soft_pitch_text(*stiffness, *frequency_per_rev, source)
+            }
+            other => other.to_string(),
         }
     }
 

@@ -27,30 +27,13 @@ mod sensitivity;
 mod series;
 mod wake;
 
-pub use blade::{
-    AboutState, FAN_SPEEDS, LoadLine, MeanLoads, ModeLine, ModesQuestion, ModesResult, MomentLine,
-    MotionLine, StabilityLine, StationLine, SteadyTip, UnlikeBladeLine, UnlikeLine,
-    each_unlike_blade, numbered, rotating_modes, station_lines, unlike_lines,
-};
-pub use control::{
-    ControlStudy, Disturbance, Drives, Forecast, ForecastLine, ForecastRecord, RobustnessCell,
-    RobustnessLine, control_all, control_set, control_status, forecasts, robustness,
-    robustness_maps,
-};
-pub use error::{StudyError, soft_pitch_text};
-pub use flaps::{
-    COUPLING_TOLERANCE_DEG, CouplingResidual, FlapDrive, FlapMotion, FullScale, HingeCoupling,
-    HingePower, MEAN_FLAP_TOLERANCE_DEG, PlantError,
-};
+pub use blade::*;
+pub use control::*;
+pub use error::StudyError;
+pub use flaps::*;
 pub use loads::{HubLoads, Setting, is_still, loads_cost};
-pub use plant::{
-    HUB_OUTPUTS, PlantState, PowerOutputs, RotorPlant, given_watt_per_rad2, hub_outputs,
-    output_weights,
-};
-pub use rotor::{
-    FlapAuthority, ReconvergedAuthority, SettledTrim, TrimmedRotor, UnlikeSolver, WakeStatus,
-    continued_trim, refuse_resonance, settled_trim, wake_status, wake_warnings,
-};
+pub use plant::*;
+pub use rotor::*;
 pub use sensitivity::{
     Assumptions, Sensitivity, SensitivityLine, SensitivityRecord, most_moved, sensitivities,
     sensitivity_lines,

@@ -60,18 +60,6 @@ pub struct SensitivityRecord {
 }
 
 impl Sensitivity {
-    fn new((id, assumption): (&str, &str), record: SensitivityRecord) -> Self {
-        let (id, assumption) = (id.to_owned(), assumption.to_owned());
-        Self { id, assumption, record: Some(record), ..Self::default() }
-    }
-
-    /// A row without an answer.
-    fn failed((id, assumption): (&str, &str), error: &StudyError) -> Self {
-        let (id, assumption, failure) =
-            (id.to_owned(), assumption.to_owned(), Some(error.to_string()));
-        Self { id, assumption, failure, ..Self::default() }
-    }
-
     /// The reductions from the loads, with the weights as the row has them.
     fn reductions(&self, case: &Setting) -> Vec<f64> {
         let Some(record) = &self.record else { return Vec::new() };
@@ -128,45 +116,17 @@ pub fn sensitivity_lines(rows: &[Sensitivity], setting: &Setting) -> Vec<Sensiti
     rows.iter().zip(&reductions).map(line).collect()
 }
 
-/// Whether an assumption changes the rotor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum RotorOf {
-    /// The rotor and its trim are those of the case.
-    TheCase,
-    /// They are built and trimmed anew.
-    TheChange,
-}
-
-/// The stroke an assumption leaves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum StrokeOf {
-    /// That of the case, times a factor.
-    TheCase(f64),
-    /// Found anew: the actuator is used in another way.
-    TheChange,
-}
-
 /// A change of the case and of the stroke.
 struct Assumption {
     id: &'static str,
     text: &'static str,
-    stroke: StrokeOf,
-    rotor: RotorOf,
-    change: Box<dyn Fn(&mut Case) + Sync + Send>,
+    /// Factor on every stroke limit.
+    stroke: f64,
+    change: fn(&mut Case),
 }
 
-fn assume(
-    (id, text): (&'static str, &'static str),
-    change: impl Fn(&mut Case) + Sync + Send + 'static,
-) -> Assumption {
-    let change = Box::new(change);
-    let stroke = StrokeOf::TheCase(1.0);
-    Assumption { id, text, stroke, rotor: RotorOf::TheChange, change }
-}
-
-/// No change: rotor and stroke of the case.
-fn as_it_is(name: (&'static str, &'static str)) -> Assumption {
-    Assumption { rotor: RotorOf::TheCase, ..assume(name, |_| {}) }
+fn assume(id: &'static str, text: &'static str, change: fn(&mut Case)) -> Assumption {
+    Assumption { id, text, stroke: 1.0, change }
 }
 
 /// A linear twist in place of whatever the blade has.
@@ -195,136 +155,127 @@ fn free_wake(case: &Case) -> FreeWakeValues {
     case.inflow.model.free_wake().unwrap_or_default()
 }
 
+/// The free wake of a case with other choices, in place of its inflow.
+fn fly_in_wake(case: &mut Case, change: fn(FreeWakeValues) -> FreeWakeValues) {
+    case.inflow.model = InflowChoice::FreeWake(change(free_wake(case)));
+}
+
 /// The free wake instead of the case's inflow, and its near part in other ways.
-fn of_the_wake() -> Vec<Assumption> {
-    let of_rotor = |id, text, change: fn(&mut Case)| assume((id, text), change);
-    vec![
-        of_rotor(FREE_WAKE, "free wake", |c| {
-            c.inflow.model = InflowChoice::FreeWake(free_wake(c));
+fn of_the_wake() -> [Assumption; 3] {
+    [
+        assume(FREE_WAKE, "free wake", |c| fly_in_wake(c, |wake| wake)),
+        assume("wake-near-convected", "near wake convected", |c| {
+            fly_in_wake(c, |w| FreeWakeValues { near_wake: Some(NearWakeMotion::Convected), ..w });
         }),
-        of_rotor("wake-near-convected", "near wake convected", |c| {
-            let near_wake = NearWakeMotion::Convected;
-            c.inflow.model = InflowChoice::FreeWake(FreeWakeValues { near_wake, ..free_wake(c) });
-        }),
-        of_rotor("wake-near-plane-30", "near wake of 30 deg in the blade plane", |c| {
-            let near_wake = NearWakeMotion::BladePlane;
-            let file = FreeWakeValues { near_wake, near_wake_deg: 30.0, ..free_wake(c) };
-            c.inflow.model = InflowChoice::FreeWake(file);
+        assume("wake-near-plane-30", "near wake of 30 deg in the blade plane", |c| {
+            fly_in_wake(c, |w| FreeWakeValues {
+                near_wake: Some(NearWakeMotion::BladePlane),
+                near_wake_deg: Some(30.0),
+                ..w
+            });
         }),
     ]
 }
 
 impl Assumption {
-    /// Whether it changes anything of a case: not where the case has it so already, or makes no use of the field.
-    fn concerns(&self, case: &Case, has_model: bool) -> bool {
+    /// Its row of the table.
+    fn row(
+        &self,
+        compared_with: &str,
+        found: Result<SensitivityRecord, StudyError>,
+    ) -> Sensitivity {
+        let failure = found.as_ref().err().map(StudyError::to_string);
+        Sensitivity {
+            id: self.id.to_owned(),
+            assumption: self.text.to_owned(),
+            compared_with: compared_with.to_owned(),
+            failure,
+            record: found.ok(),
+        }
+    }
+
+    /// The case with the change.
+    fn of(&self, case: &Case) -> Case {
         let mut varied = case.clone();
         (self.change)(&mut varied);
-        let stroke = match self.stroke {
-            // that of an ideal actuator is the same at any speed
-            StrokeOf::TheChange => has_model,
-            StrokeOf::TheCase(factor) => factor.to_bits() != 1.0_f64.to_bits(),
-        };
+        varied
+    }
+
+    /// Whether it changes anything of a case: not where the case has it so already, or makes no use of the field.
+    fn concerns(&self, case: &Case, has_model: bool) -> bool {
+        let mut varied = self.of(case);
         // the polar of a section with tables is theirs
         if case.aerodynamics.tables.is_some() {
             varied.aerodynamics.drag_coefficient = case.aerodynamics.drag_coefficient;
         }
-        if self.stroke == StrokeOf::TheChange { stroke } else { stroke || &varied != case }
+        // the stroke of an ideal actuator is the same at any speed
+        if varied.actuator != case.actuator {
+            return has_model;
+        }
+        self.stroke.to_bits() != 1.0_f64.to_bits() || varied != *case
     }
 }
 
 /// The changes, one at a time.
 fn assumptions() -> Vec<Assumption> {
-    let of_rotor = |id, text, change: fn(&mut Case)| assume((id, text), change);
-    let of_case = |id, text, change: fn(&mut Case)| Assumption {
-        change: Box::new(change),
-        ..as_it_is((id, text))
-    };
-    let stroke = |id, text, factor| Assumption {
-        stroke: StrokeOf::TheCase(factor),
-        ..of_case(id, text, |_| {})
-    };
+    let stroke = |id, text, stroke| Assumption { stroke, ..assume(id, text, |_| {}) };
     vec![
-        of_rotor("flaps-in-05", "flaps .05 R further in", |c| shift_flaps(c, -0.05)),
-        of_rotor("flaps-out-05", "flaps .05 R further out", |c| shift_flaps(c, 0.05)),
-        of_rotor("flaps-out-02", "flaps .02 R further out", |c| shift_flaps(c, 0.02)),
-        of_rotor("twist-4", "twist -4 deg", |c| twist(&mut c.rotor, -4.0)),
-        of_rotor("twist-12", "twist -12 deg", |c| twist(&mut c.rotor, -12.0)),
-        of_rotor("gj-80", "GJ -20 % (first torsion -10 %)", |c| {
-            let blade = &mut c.rotor;
-            times(&mut blade.gj, &mut blade.tables.gj, 0.8);
+        assume("flaps-in-05", "flaps .05 R further in", |c| shift_flaps(c, -0.05)),
+        assume("flaps-out-05", "flaps .05 R further out", |c| shift_flaps(c, 0.05)),
+        assume("flaps-out-02", "flaps .02 R further out", |c| shift_flaps(c, 0.02)),
+        assume("twist-4", "twist -4 deg", |c| twist(&mut c.rotor, -4.0)),
+        assume("twist-12", "twist -12 deg", |c| twist(&mut c.rotor, -12.0)),
+        assume("gj-80", "GJ -20 % (first torsion -10 %)", |c| {
+            times(&mut c.rotor.gj, &mut c.rotor.tables.gj, 0.8);
         }),
-        of_rotor("gj-120", "GJ +20 % (first torsion +9 %)", |c| {
-            let blade = &mut c.rotor;
-            times(&mut blade.gj, &mut blade.tables.gj, 1.2);
+        assume("gj-120", "GJ +20 % (first torsion +9 %)", |c| {
+            times(&mut c.rotor.gj, &mut c.rotor.tables.gj, 1.2);
         }),
-        of_rotor("gyration-110", "radii of gyration +10 % (first torsion -9 %)", |c| {
-            let blade = &mut c.rotor;
-            times(&mut blade.km1_r, &mut blade.tables.km1_r, 1.1);
-            times(&mut blade.km2_r, &mut blade.tables.km2_r, 1.1);
+        assume("gyration-110", "radii of gyration +10 % (first torsion -9 %)", |c| {
+            times(&mut c.rotor.km1_r, &mut c.rotor.tables.km1_r, 1.1);
+            times(&mut c.rotor.km2_r, &mut c.rotor.tables.km2_r, 1.1);
         }),
-        of_rotor("damping-002", "modal damping .2 % of critical", |c| {
-            c.rotor.modal_damping = 0.002;
-        }),
-        of_rotor("damping-010", "modal damping 1 % of critical", |c| {
-            c.rotor.modal_damping = 0.01;
-        }),
-        of_rotor("precone-2.5", "precone 2.5 deg", |c| {
-            c.rotor.precone_deg = 2.5;
-        }),
-        of_rotor("cutout-15", "root cut-out .15 R", |c| c.rotor.root_cutout_r = 0.15),
-        of_rotor("drag-008", "profile drag .008", |c| c.aerodynamics.drag_coefficient = 0.008),
-        of_rotor("fuselage-70", "fuselage drag area -30 %", |c| {
+        assume("damping-002", "modal damping .2 % of critical", |c| c.rotor.modal_damping = 0.002),
+        assume("damping-010", "modal damping 1 % of critical", |c| c.rotor.modal_damping = 0.01),
+        assume("precone-2.5", "precone 2.5 deg", |c| c.rotor.precone_deg = 2.5),
+        assume("cutout-15", "root cut-out .15 R", |c| c.rotor.root_cutout_r = 0.15),
+        assume("drag-008", "profile drag .008", |c| c.aerodynamics.drag_coefficient = 0.008),
+        assume("fuselage-70", "fuselage drag area -30 %", |c| {
             if let TrimValues::Propulsive(level) = &mut c.trim {
                 level.drag_area *= 0.7;
             }
         }),
-        of_rotor("inflow-uniform", "uniform inflow", |c| {
-            c.inflow.model = InflowChoice::Uniform;
-        }),
-        of_rotor("inflow-pitt-peters", "inflow of Pitt and Peters", |c| {
+        assume("inflow-uniform", "uniform inflow", |c| c.inflow.model = InflowChoice::Uniform),
+        assume("inflow-pitt-peters", "inflow of Pitt and Peters", |c| {
             c.inflow.model = InflowChoice::PittPeters;
         }),
-        of_rotor("sections-quasi-steady", "quasi-steady sections", |c| {
+        assume("sections-quasi-steady", "quasi-steady sections", |c| {
             c.aerodynamics.model = AttachedFlowModel::QuasiSteady;
         }),
-        of_rotor("flap-lift-80", "flap lift 80 % of thin-aerofoil theory", |c| {
-            for flap in &mut c.flaps {
-                flap.effectiveness.lift *= 0.8;
-            }
+        assume("flap-lift-80", "flap lift 80 % of thin-aerofoil theory", |c| {
+            c.flaps.iter_mut().for_each(|flap| flap.effectiveness.lift *= 0.8);
         }),
-        Assumption {
-            rotor: RotorOf::TheCase,
-            ..assume((BY_BASELINE, "each load weighted by its own baseline"), |c| {
-                c.control.load_scale = LoadScaleChoice::Baseline;
-            })
-        },
-        of_case(
+        assume(BY_BASELINE, "each load weighted by its own baseline", |c| {
+            c.control.load_scale = LoadScaleChoice::Baseline;
+        }),
+        assume(
             "effort",
             "stroke met by a tuned weight for the cone program (or the reverse)",
             |c| {
-                let effort = &mut c.control.effort;
-                *effort = match effort {
-                    EffortChoice::Limits => EffortChoice::MeetStroke,
-                    _ => EffortChoice::Limits,
-                };
-                if c.control.effort == EffortChoice::MeetStroke {
+                if c.control.effort == EffortChoice::Limits {
+                    c.control.effort = EffortChoice::MeetStroke;
                     c.control.controller = ControllerChoice::Global;
+                } else {
+                    c.control.effort = EffortChoice::Limits;
                 }
             },
         ),
         stroke("stroke-50", "half the stroke", 0.5),
         stroke("stroke-125", "stroke +25 %", 1.25),
-        Assumption {
-            stroke: StrokeOf::TheChange,
-            ..of_case(
-                "bench-speed",
-                "one bench second = 6.383 revolutions for 5 (or 5 for 6.383)",
-                |c| {
-                    let rev_hz = &mut c.actuator.bench_rev_hz;
-                    *rev_hz = if *rev_hz < 5.7 { 6.383 } else { 5.0 };
-                },
-            )
-        },
+        assume("bench-speed", "one bench second = 6.383 revolutions for 5 (or 5 for 6.383)", |c| {
+            let rev_hz = &mut c.actuator.bench_rev_hz;
+            *rev_hz = if *rev_hz < 5.7 { 6.383 } else { 5.0 };
+        }),
     ]
 }
 
@@ -352,13 +303,14 @@ pub fn sensitivities(
         _ => None,
     };
     let bench = Bench { drives, model, sets: &sets, done };
-    let mut table = vec![bench.row(case, base, &as_it_is((AS_THE_CASE, "as the case")))?];
+    let as_it_is = assume(AS_THE_CASE, "as the case", |_| {});
+    let mut table = vec![as_it_is.row(AS_THE_CASE, Ok(bench.record(case, base, &as_it_is)?))];
     if which.about_drees(case) {
         let mut drees = case.clone();
         drees.inflow.model = InflowChoice::Drees;
         let near = TrimmedRotor::new(&drees, Some(base.trim()))?;
-        let name = (DREES, "inflow of Drees, as in the rows below");
-        table.push(bench.row(&drees, &near, &as_it_is(name))?);
+        let as_it_is = assume(DREES, "inflow of Drees, as in the rows below", |_| {});
+        table.push(as_it_is.row(AS_THE_CASE, Ok(bench.record(&drees, &near, &as_it_is)?)));
         table.extend(bench.changed(&drees, &near, assumptions(), DREES));
     } else {
         let rows = bench.changed(case, base, assumptions(), AS_THE_CASE);
@@ -376,11 +328,6 @@ pub fn sensitivities(
     }
     let baseline = base.trim().rotor.hub.harmonic(case.rotor.blades);
     let setting = Setting::of_case(case, &HubLoads::from_parts(baseline));
-    for row in &mut table {
-        if row.compared_with.is_empty() {
-            AS_THE_CASE.clone_into(&mut row.compared_with);
-        }
-    }
     let changes = sensitivity_lines(&table, &setting);
     let size = |k: usize| changes[k].largest_change.unwrap_or(-1.0);
     let first = if table.iter().any(|row| row.id == DREES) { 2 } else { 1 };
@@ -432,33 +379,33 @@ impl Bench<'_> {
                 }
                 concerns
             })
-            .map(|change| {
-                let row = self
-                    .row(case, base, &change)
-                    .unwrap_or_else(|error| Sensitivity::failed((change.id, change.text), &error));
-                Sensitivity { compared_with: compared_with.to_owned(), ..row }
-            })
+            .map(|change| change.row(compared_with, self.record(case, base, &change)))
             .collect()
     }
 
-    fn row(
+    fn record(
         &self,
         case: &Case,
         base: &TrimmedRotor,
         assumption: &Assumption,
-    ) -> Result<Sensitivity, StudyError> {
-        let mut varied = case.clone();
-        (assumption.change)(&mut varied);
-        let limited = match assumption.stroke {
-            StrokeOf::TheCase(factor) => self.drives.with_strokes_scaled(factor),
-            StrokeOf::TheChange => Drives::new(&varied, self.model.clone())?,
+    ) -> Result<SensitivityRecord, StudyError> {
+        let mut varied = assumption.of(case);
+        // an actuator used in another way has another stroke
+        let limited = if varied.actuator == case.actuator {
+            self.drives.with_strokes_scaled(assumption.stroke)
+        } else {
+            Drives::new(&varied, self.model.clone())?
         };
+        let (actuator, control) = (&case.actuator, &case.control);
+        let rotor_case =
+            Case { actuator: actuator.clone(), control: control.clone(), ..varied.clone() };
         varied.tolerances.trim = TABLE_TRIM_TOLERANCE;
         varied.tolerances.periodicity = TABLE_PERIODICITY_TOLERANCE;
         varied.tolerances.inflow = TABLE_INFLOW_TOLERANCE;
-        let rotor = match assumption.rotor {
-            RotorOf::TheCase => base.clone(),
-            RotorOf::TheChange => TrimmedRotor::new(&varied, Some(base.trim()))?,
+        let rotor = if rotor_case == *case {
+            base.clone()
+        } else {
+            TrimmedRotor::new(&varied, Some(base.trim()))?
         };
         let blades = varied.rotor.blades;
         let loads = self.sets.iter().map(|set| {
@@ -468,8 +415,7 @@ impl Bench<'_> {
         let loads = loads.collect::<Result<Vec<HubLoads>, StudyError>>();
         (self.done)();
         let baseline = HubLoads::from_parts(rotor.trim().rotor.hub.harmonic(blades));
-        let name = (assumption.id, assumption.text);
-        Ok(Sensitivity::new(name, SensitivityRecord { baseline, hub_nb_per_rev: loads? }))
+        Ok(SensitivityRecord { baseline, hub_nb_per_rev: loads? })
     }
 }
 
@@ -527,7 +473,7 @@ mod tests {
         assert_eq!(left_out(&case, true), none);
         // in a free wake the row of the wake is the case
         let mut case = controllers_case();
-        let near_wake = NearWakeMotion::Convected;
+        let near_wake = Some(NearWakeMotion::Convected);
         case.inflow.model =
             InflowChoice::FreeWake(FreeWakeValues { near_wake, ..FreeWakeValues::default() });
         assert_eq!(left_out(&case, true), ["wake-free", "wake-near-convected"]);

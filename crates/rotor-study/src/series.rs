@@ -2,13 +2,14 @@
 
 use rotor_base::{Harmonic, HarmonicSeries};
 
+/// A harmonic times a factor.
+pub(crate) fn times(harmonic: Harmonic, factor: f64) -> Harmonic {
+    Harmonic { cosine: factor * harmonic.cosine, sine: factor * harmonic.sine }
+}
+
 /// A series times a factor.
 pub(crate) fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
-    let harmonics = series
-        .harmonics
-        .iter()
-        .map(|h| Harmonic { cosine: factor * h.cosine, sine: factor * h.sine })
-        .collect();
+    let harmonics = series.harmonics.iter().map(|h| times(*h, factor)).collect();
     HarmonicSeries { mean: factor * series.mean, harmonics }
 }
 
@@ -27,4 +28,32 @@ pub(crate) fn added(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> Harm
         out.set_harmonic(n, Harmonic { cosine, sine });
     }
     out
+}
+
+/// Coefficients of a series to `count` harmonics: mean, then cosine and sine of each.
+pub(crate) fn coefficients(series: &HarmonicSeries, count: usize) -> impl Iterator<Item = f64> {
+    let harmonics = (1..=count).flat_map(|n| {
+        let h = series.harmonic(n);
+        [h.cosine, h.sine]
+    });
+    std::iter::once(series.mean).chain(harmonics)
+}
+
+/// The series of these coefficients.
+pub(crate) fn series(coefficients: &[f64]) -> HarmonicSeries {
+    let pairs = coefficients[1..].chunks_exact(2);
+    let harmonics = pairs.map(|pair| Harmonic { cosine: pair[0], sine: pair[1] }).collect();
+    HarmonicSeries { mean: coefficients[0], harmonics }
+}
+
+/// The series of which only the coefficient `k` is not zero.
+pub(crate) fn only(k: usize, coefficient: f64) -> HarmonicSeries {
+    let mut coefficients = vec![0.0; 2 * k.div_ceil(2) + 1];
+    coefficients[k] = coefficient;
+    series(&coefficients)
+}
+
+/// Place of the cosine, or the sine, of a harmonic among the coefficients of a series.
+pub(crate) fn place(harmonic: usize, sine: bool) -> usize {
+    2 * harmonic - usize::from(!sine)
 }

@@ -5,6 +5,7 @@ use crate::case::{
     InflowValues, PrescribedCirculation,
 };
 use crate::error::StudyError;
+use crate::loads::HubLoads;
 use crate::rotor::{TrimmedRotor, descent_warning, passage_warning, wake_warnings};
 use rotor_wake::{
     BladeLines, CirculationMap, ClosestPassage, FlightState, FreeWake, InducedInflow, WakeError,
@@ -62,8 +63,8 @@ pub struct WakeResult {
     pub advance_ratio: f64,
     /// Whether inflow, geometry and trim agree to the tolerances.
     pub settled: bool,
-    /// Whether wake and trim have parted: what is given is the last good state, no solution.
-    pub parted: bool,
+    /// Whether wake and trim diverged: what is given is the last good state, no solution.
+    pub diverged: bool,
     /// Collective, lateral and longitudinal cyclic, shaft tilt, deg; none for a prescribed circulation.
     pub controls_deg: Option<[f64; 4]>,
     /// Thrust coefficient over solidity.
@@ -151,19 +152,15 @@ fn result_of(case: &Case, wake: &WakeTrim) -> WakeResult {
     let mean = trim.rotor.inflow.mean();
     let c = &trim.controls;
     let angles = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad, trim.attitude.shaft_tilt_rad];
-    let hub = trim.rotor.hub.harmonic(case.rotor.blades);
-    let mut hub_amplitudes = [0.0; 6];
-    for (amplitude, pair) in hub_amplitudes.iter_mut().zip(hub.chunks_exact(2)) {
-        *amplitude = pair[0].hypot(pair[1]);
-    }
+    let hub = HubLoads::from_parts(trim.rotor.hub.harmonic(case.rotor.blades));
     WakeResult {
         settled: wake.outcome == WakeOutcome::Settled,
-        parted: wake.outcome.ran_away(),
+        diverged: wake.outcome.is_diverged(),
         controls_deg: Some(angles.map(f64::to_degrees)),
         ct_sigma: ct / case.rotor_model().solidity(),
         mean_inflow: mean,
         mean_over_glauert: momentum_inflow(&trim.flight, ct).map_or(f64::NAN, |g| mean / g),
-        hub_amplitudes: Some(hub_amplitudes),
+        hub_amplitudes: Some(hub.amplitudes()),
         closest_passage: wake.closest_passage.map(PassageLine::from),
         updates: wake
             .updates

@@ -78,19 +78,6 @@ pub enum WakeError {
         /// RMS displacement of the step, unit `R`.
         displacement: f64,
     },
-    /// The sweeps of the free wake run away from each other.
-    #[error(
-        "the free wake diverges: RMS displacement {displacement:.3e} R in sweep {iteration}, at best \
-         {least:.3e} R; the best geometry is kept; use more relaxation, a larger core or a march in time"
-    )]
-    WakeDiverged {
-        /// Sweep that was given up.
-        iteration: usize,
-        /// Its RMS displacement, unit `R`.
-        displacement: f64,
-        /// Smallest RMS displacement met, unit `R`.
-        least: f64,
-    },
     /// Inflow and circulation drive each other beyond what a rotor's wake induces.
     #[error(
         "wake and blades run away from each other: the inflow changes by {change:.2} of the tip speed in update {update} (at \
@@ -104,30 +91,20 @@ pub enum WakeError {
         /// The largest that is accepted.
         largest: f64,
     },
-    /// The sweeps of the free wake do not settle.
-    #[error(
-        "the free wake has not settled after {iterations} sweeps: RMS displacement {displacement:.3e} R, \
-         asked {tolerance:.1e} R; the best geometry is kept; allow more sweeps or march in time"
-    )]
-    WakeNotSettled {
-        /// Sweeps done.
-        iterations: usize,
-        /// Smallest RMS displacement met, unit `R`.
-        displacement: f64,
-        /// Displacement asked for, unit `R`.
-        tolerance: f64,
-    },
-    /// The circulation of the blades and the inflow of the wake do not agree.
-    #[error(
-        "circulation and inflow do not agree after {iterations} iterations: largest change {change:.3e} of \
-         the tip speed, asked {tolerance:.1e}"
-    )]
-    CirculationNotConverged {
-        /// Iterations done.
-        iterations: usize,
-        /// Largest change of the inflow in the last one, tip speed.
-        change: f64,
-        /// Change asked for, tip speed.
-        tolerance: f64,
-    },
+}
+
+/// Refuses an input that does not fit.
+pub(crate) fn ensure(
+    fits: bool,
+    quantity: &'static str,
+    value: f64,
+    expected: &'static str,
+) -> Result<(), WakeError> {
+    if fits { Ok(()) } else { Err(WakeError::BadInput { quantity, value, expected }) }
+}
+
+/// Refuses the first of some numbers that is not finite.
+pub(crate) fn ensure_finite(quantity: &'static str, values: &[f64]) -> Result<(), WakeError> {
+    let bad = values.iter().find(|v| !v.is_finite());
+    bad.map_or(Ok(()), |&value| ensure(false, quantity, value, "a finite number"))
 }

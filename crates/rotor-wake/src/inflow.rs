@@ -1,6 +1,7 @@
 //! What every inflow model shares: its inputs, its answer and the trait.
 
 use crate::WakeError;
+use crate::error::{ensure, ensure_finite};
 use crate::{CirculationMap, InflowMap, WakeRotor};
 
 /// State of flight of the rotor's hub in still air, in the shaft frame.
@@ -31,14 +32,11 @@ impl FlightState {
     /// [`WakeError::BadInput`] for an advance ratio that is negative or not finite, or a tilt of
     /// 90 deg or more.
     pub fn validated(self) -> Result<Self, WakeError> {
-        let bad = |quantity, value, expected| WakeError::BadInput { quantity, value, expected };
-        if !(self.advance_ratio.is_finite() && self.advance_ratio >= 0.0) {
-            return Err(bad("advance_ratio", self.advance_ratio, "a finite number, 0 or more"));
-        }
-        if self.shaft_tilt_rad.is_nan() || self.shaft_tilt_rad.abs() >= std::f64::consts::FRAC_PI_2
-        {
-            return Err(bad("shaft_tilt_rad", self.shaft_tilt_rad, "less than pi/2 either way"));
-        }
+        let Self { advance_ratio: mu, shaft_tilt_rad: tilt } = self;
+        let is_flight = mu.is_finite() && mu >= 0.0;
+        ensure(is_flight, "advance_ratio", mu, "a finite number, 0 or more")?;
+        let is_tilt = tilt.abs() < std::f64::consts::FRAC_PI_2;
+        ensure(is_tilt, "shaft_tilt_rad", tilt, "less than pi/2 either way")?;
         Ok(self)
     }
 }
@@ -148,13 +146,7 @@ impl InducedInflow {
     /// [`WakeError::ParameterCount`] if the count differs from that of `self`;
     /// [`WakeError::BadInput`] if a number is not finite.
     pub fn with_parameters(&self, parameters: &[f64]) -> Result<Self, WakeError> {
-        if let Some(&value) = parameters.iter().find(|p| !p.is_finite()) {
-            return Err(WakeError::BadInput {
-                quantity: "inflow parameter",
-                value,
-                expected: "a finite number",
-            });
-        }
+        ensure_finite("inflow parameter", parameters)?;
         match (self, parameters) {
             (Self::Linear { .. }, &[mean, cosine, sine]) => Ok(Self::Linear { mean, cosine, sine }),
             (Self::Linear { .. }, _) => {

@@ -54,15 +54,14 @@ pub use kernel::{
 pub use linear::{LinearInflow, drees_factors};
 pub use momentum::{
     VORTEX_RING_TRANSPORT, WAKE_BREAKDOWN_TRANSPORT, descent_transport, momentum_inflow,
-    momentum_residual, wake_skew_rad,
+    wake_skew_rad,
 };
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
     ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers, FilamentStates, FreeWake,
     FreeWakeSettings, FrozenWake, LineInduction, NearWakeMotion, ReleasePoint, SegmentState,
-    ShedVorticity, WakeConvergence, WakeFilament, WakeMarch, WakeMethod, WakeSymmetry,
-    contraction_drift,
+    ShedVorticity, WakeFilament, WakeMarch, WakeMethod, WakeSymmetry,
 };
 
 /// The example of the crate's README, run as a documentation test.

@@ -1,10 +1,8 @@
 //! Models whose induced inflow is linear over the disk.
 
-use crate::momentum::{momentum_inflow, wake_skew_rad};
+use crate::error::ensure_finite;
+use crate::momentum::{modelled_skew_rad, momentum_inflow};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
-
-/// Largest wake skew angle for which Drees's factors are used, deg.
-const DREES_LIMIT_DEG: f64 = 135.0;
 
 /// The linear inflow models.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,27 +69,16 @@ impl InflowModel for LinearInflow {
     ) -> Result<InducedInflow, WakeError> {
         let flight = flight.validated()?;
         match *self {
-            Self::Prescribed { induced_inflow } if induced_inflow.is_finite() => {
+            Self::Prescribed { induced_inflow } => {
+                ensure_finite("prescribed induced_inflow", &[induced_inflow])?;
                 Ok(InducedInflow::uniform(induced_inflow))
             }
-            Self::Prescribed { induced_inflow } => Err(WakeError::BadInput {
-                quantity: "prescribed induced_inflow",
-                value: induced_inflow,
-                expected: "a finite number",
-            }),
             Self::Uniform => {
                 momentum_inflow(&flight, loading.thrust_coefficient).map(InducedInflow::uniform)
             }
             Self::Drees => {
                 let mean = momentum_inflow(&flight, loading.thrust_coefficient)?;
-                let skew_deg = wake_skew_rad(&flight, mean).to_degrees();
-                if skew_deg > DREES_LIMIT_DEG {
-                    return Err(WakeError::WakeAboveDisk {
-                        model: self.name(),
-                        skew_deg,
-                        limit_deg: DREES_LIMIT_DEG,
-                    });
-                }
+                modelled_skew_rad(self.name(), &flight, mean)?;
                 let [k_x, k_y] = drees_factors(flight.advance_ratio, flight.normal_inflow() + mean);
                 Ok(InducedInflow::Linear { mean, cosine: mean * k_x, sine: mean * k_y })
             }

@@ -1,5 +1,6 @@
 //! Glauert's momentum theory of a lifting rotor in axial, inclined and forward flight.
 
+use crate::error::ensure_finite;
 use crate::{FlightState, WakeError};
 
 /// Smallest wake transport speed, over the hover induced velocity, that is accepted in descent.
@@ -19,32 +20,14 @@ pub const WAKE_BREAKDOWN_TRANSPORT: f64 = 0.74;
 /// Share of the stream along the disk that carries the wake away.
 const EDGEWISE_SHARE: f64 = 0.65;
 
+/// Largest wake skew angle for which inflow with gradients is modelled, deg.
+const LARGEST_SKEW_DEG: f64 = 135.0;
+
 /// Relative residual at which the momentum equation counts as solved.
 const TOLERANCE: f64 = 2e-15;
 
 /// Bisection alone would need about 60 steps from the widest bracket.
 const MAX_ITERATIONS: usize = 200;
-
-/// Residual of the momentum equation, in units of inflow.
-///
-/// ```text
-/// lambda_i - C_T / (2 sqrt(mu^2 + lambda^2)),      lambda = mu tan(alpha_s) + lambda_i
-/// ```
-/// | argument | symbol | unit |
-/// |---|---|---|
-/// | `flight` | `mu`, `alpha_s` | -, rad |
-/// | `thrust_coefficient` | `C_T` | - |
-/// | `induced_inflow` | `lambda_i` | -, down + |
-///
-/// Infinite or NaN if there is no flow at all through and past the disk.
-pub fn momentum_residual(
-    flight: &FlightState,
-    thrust_coefficient: f64,
-    induced_inflow: f64,
-) -> f64 {
-    let lambda = flight.normal_inflow() + induced_inflow;
-    induced_inflow - thrust_coefficient / (2.0 * flight.advance_ratio.hypot(lambda))
-}
 
 /// Mean induced inflow of a rotor by momentum theory.
 ///
@@ -66,13 +49,7 @@ pub fn momentum_residual(
 /// Source: Glauert, ARC R&M 1111 (1926).
 pub fn momentum_inflow(flight: &FlightState, thrust_coefficient: f64) -> Result<f64, WakeError> {
     let flight = flight.validated()?;
-    if !thrust_coefficient.is_finite() {
-        return Err(WakeError::BadInput {
-            quantity: "thrust_coefficient",
-            value: thrust_coefficient,
-            expected: "a finite number",
-        });
-    }
+    ensure_finite("thrust_coefficient", &[thrust_coefficient])?;
     if thrust_coefficient == 0.0 {
         return Ok(0.0);
     }
@@ -124,6 +101,23 @@ pub fn descent_transport(flight: &FlightState, thrust_coefficient: f64) -> Optio
 /// ```
 pub fn wake_skew_rad(flight: &FlightState, induced_inflow: f64) -> f64 {
     flight.advance_ratio.atan2(flight.normal_inflow() + induced_inflow)
+}
+
+/// [`wake_skew_rad`] for a model of inflow with gradients.
+///
+/// # Errors
+/// [`WakeError::WakeAboveDisk`] beyond 135 deg.
+pub(crate) fn modelled_skew_rad(
+    model: &'static str,
+    flight: &FlightState,
+    induced_inflow: f64,
+) -> Result<f64, WakeError> {
+    let skew = wake_skew_rad(flight, induced_inflow);
+    let (skew_deg, limit_deg) = (skew.to_degrees(), LARGEST_SKEW_DEG);
+    if skew_deg > limit_deg {
+        return Err(WakeError::WakeAboveDisk { model, skew_deg, limit_deg });
+    }
+    Ok(skew)
 }
 
 /// The interval `(low, high)` that holds the smallest positive root of

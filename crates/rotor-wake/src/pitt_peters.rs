@@ -1,11 +1,8 @@
 //! Pitt and Peters's inflow: mean and gradients follow the thrust and its first harmonics.
 
-use crate::momentum::{momentum_inflow, wake_skew_rad};
+use crate::momentum::{modelled_skew_rad, momentum_inflow};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use std::f64::consts::PI;
-
-/// Largest wake skew angle for which the model is used, deg.
-const LIMIT_DEG: f64 = 135.0;
 
 /// The three-state model of Pitt and Peters, settled: in a periodic flight condition its states are
 /// constant.
@@ -41,14 +38,7 @@ impl InflowModel for PittPeters {
         let ct = loading.thrust_coefficient;
         let uniform = momentum_inflow(&flight, ct)?;
         let lambda = flight.normal_inflow() + uniform;
-        let chi = wake_skew_rad(&flight, uniform);
-        if chi.to_degrees() > LIMIT_DEG {
-            return Err(WakeError::WakeAboveDisk {
-                model: self.name(),
-                skew_deg: chi.to_degrees(),
-                limit_deg: LIMIT_DEG,
-            });
-        }
+        let chi = modelled_skew_rad(self.name(), &flight, uniform)?;
         let transport = flight.advance_ratio.hypot(lambda);
         if transport == 0.0 {
             return Ok(InducedInflow::uniform(0.0));

@@ -2,9 +2,14 @@
 
 use proptest::prelude::*;
 use rotor_wake::{
-    FlightState, InducedInflow, InflowModel, LinearInflow, RotorLoading, WakeError,
-    momentum_inflow, momentum_residual,
+    FlightState, InducedInflow, InflowModel, LinearInflow, RotorLoading, WakeError, momentum_inflow,
 };
+
+/// Residual of the momentum equation, `lambda_i - C_T / (2 sqrt(mu^2 + lambda^2))`.
+fn momentum_residual(flight: &FlightState, thrust_coefficient: f64, induced_inflow: f64) -> f64 {
+    let lambda = flight.normal_inflow() + induced_inflow;
+    induced_inflow - thrust_coefficient / (2.0 * flight.advance_ratio.hypot(lambda))
+}
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]

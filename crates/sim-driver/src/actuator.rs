@@ -3,12 +3,13 @@
 use crate::SimError;
 use crate::case::{ActuatorSource, LoadedCase};
 use crate::files::{BenchData, RonIndex, Source, read_bench};
-use crate::identification::{BenchIdentification, identify_bench};
+use crate::identification::{BenchIdentification, dataset_place, identify_bench};
 use crate::problem::{Fault, Place, Problem};
 use crate::stored_actuator::{StoredActuator, StoredFit, actuator_warnings, read_actuator};
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries};
+use std::collections::BTreeSet;
 
 /// The actuators of a case.
 #[derive(Debug, Clone)]
@@ -29,6 +30,21 @@ pub struct CaseActuators {
     pub warnings: Vec<String>,
 }
 
+impl CaseActuators {
+    /// The ideal actuator alone.
+    pub(crate) fn new(ideal: ActuatorModel) -> Self {
+        Self {
+            ideal,
+            real: None,
+            data_title: String::new(),
+            fits: vec![],
+            bench: None,
+            inputs: vec![],
+            warnings: vec![],
+        }
+    }
+}
+
 /// Gets the actuators of a case: identifies, reads or makes them.
 ///
 /// # Errors
@@ -44,29 +60,19 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     // the case gives the amplitude at full scale, the model wants it at the ends of the range
     let full_scale = 2.0 * case.control.amplitude_volt / range.span_volt();
     let ideal = ActuatorModel::linear(range, values.ideal_amplitude_deg / full_scale, 1.0);
-    let mut actuators = CaseActuators {
-        ideal,
-        real: None,
-        data_title: String::new(),
-        fits: vec![],
-        bench: None,
-        inputs: vec![],
-        warnings: vec![],
-    };
-    match &loaded.actuator_source() {
-        ActuatorSource::Ideal => {}
+    let mut actuators = CaseActuators::new(ideal);
+    let stored = match &loaded.actuator_source() {
+        ActuatorSource::Ideal => None,
         ActuatorSource::Bench(folder) => {
             let data = read_bench(folder)?;
             actuators.warnings.extend(data.warnings.iter().map(Problem::to_string));
             let found = identify_bench(&data, &Settings::default())?;
             let stored = found.stored();
-            let place = |_: &str| Place::file(format!("{}/dataset.ron", data.folder));
+            let place = |_: &str| dataset_place(&data.folder);
             actuators.warnings.extend(actuator_warnings(&stored, place));
             actuators.inputs.push(data.content_hash.clone());
-            actuators.data_title = stored.title;
-            actuators.fits = stored.runs;
-            actuators.real = Some(stored.model);
             actuators.bench = Some((data, found));
+            Some(stored)
         }
         ActuatorSource::Stored { folder, file } => {
             let source = folder.read(file)?;
@@ -75,19 +81,15 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
             let index = RonIndex::new(&source.name, &source.text);
             actuators.warnings.extend(actuator_warnings(&stored, |field| index.place(field)));
             actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
-            actuators.data_title = stored.title;
-            actuators.fits = stored.runs;
-            actuators.real = Some(stored.model);
+            Some(stored)
         }
-    }
-    if let Some(model) = &actuators.real {
+    };
+    if let Some(StoredActuator { title, runs, model, .. }) = stored {
         within_model(loaded, model.range_volt)?;
+        actuators.warnings.extend(extrapolation_warnings(loaded, &model));
+        actuators.warnings.extend(gain_warning(loaded, &model));
+        (actuators.data_title, actuators.fits, actuators.real) = (title, runs, Some(model));
     }
-    let place = loaded.index.place("actuator.bench_rev_hz");
-    actuators.warnings.extend(extrapolation_warnings(loaded, actuators.real.as_ref(), &place));
-    actuators
-        .warnings
-        .extend(actuators.real.as_ref().and_then(|model| gain_warning(loaded, model)));
     Ok(actuators)
 }
 
@@ -119,13 +121,12 @@ fn within_model(loaded: &LoadedCase, known: VoltageRange) -> Result<(), Problem>
     if [low_volt, high_volt].iter().all(|&volt| known.excess_volt(volt) <= slack) {
         return Ok(());
     }
-    let fault = Fault::RangeBeyondRecords {
-        low_volt,
-        high_volt,
-        known_low_volt: known.lowest_volt(),
-        known_high_volt: known.highest_volt(),
-    };
-    Err(Problem::new(loaded.index.place("actuator.range_V"), fault))
+    let message = format!(
+        "({low_volt}, {high_volt}) V reaches beyond the ({}, {}) V the actuator was identified over; narrow the range, or record wider ones",
+        known.lowest_volt(),
+        known.highest_volt()
+    );
+    Err(Problem::new(loaded.index.place("actuator.range_V"), Fault::Other(message)))
 }
 
 /// Difference of the gains beyond which the ideal actuator is not the identified one without its
@@ -154,18 +155,11 @@ fn gain_warning(loaded: &LoadedCase, model: &ActuatorModel) -> Option<String> {
 }
 
 /// One warning per harmonic whose frequency lies above everything the bench has seen.
-fn extrapolation_warnings(
-    loaded: &LoadedCase,
-    real: Option<&ActuatorModel>,
-    place: &Place,
-) -> Vec<String> {
-    let Some(trained) = real.and_then(|model| model.trained) else {
-        return vec![];
-    };
+fn extrapolation_warnings(loaded: &LoadedCase, model: &ActuatorModel) -> Vec<String> {
+    let Some(trained) = model.trained else { return vec![] };
+    let place = loaded.index.place("actuator.bench_rev_hz");
     let case = &loaded.case;
-    let mut harmonics: Vec<usize> = case.control.harmonics.iter().flatten().copied().collect();
-    harmonics.sort_unstable();
-    harmonics.dedup();
+    let harmonics: BTreeSet<usize> = case.control.harmonics.iter().flatten().copied().collect();
     harmonics
         .into_iter()
         .map(|harmonic| (harmonic, case.bench_frequency_hz(harmonic)))

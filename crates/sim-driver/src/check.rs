@@ -4,7 +4,8 @@ use crate::SimError;
 use crate::actuator::fits_case;
 use crate::case::{ActuatorSource, LoadedCase, read_case};
 use crate::files::{
-    BenchData, Channel, DATASET, DataSet, Folder, RonIndex, Source, read_bench, read_dataset,
+    BenchData, Channel, Channels, DATASET, DataSet, Folder, RonIndex, Source, missing_file,
+    read_bench, read_dataset,
 };
 use crate::identification::gain;
 use crate::output::Printable;
@@ -54,70 +55,42 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
     }
     let source = Source::read(path)?;
     let index = RonIndex::new(&source.name, &source.text);
-    match kind_of(&source, &index) {
-        Some(FileKind::Bench | FileKind::GenericLoop | FileKind::ReversalCurves) => {
-            check_data(&Folder::of_file(path), name)
-        }
-        Some(FileKind::Actuator) => {
-            let stored = read_actuator(&source)?;
-            let summary = format!("{}, {} runs", stored.title, stored.runs.len());
-            let warnings = actuator_warnings(&stored, |field| index.place(field));
-            Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings })
-        }
-        Some(FileKind::Case) => {
-            let loaded = read_case(&source, &Folder::of_file(path))?;
-            let mut warnings = loaded.warnings.clone();
-            warnings.extend(check_actuator_source(&loaded)?);
-            let doubts = rotor_study::refuse_resonance(&loaded.case)
-                .and_then(|()| loaded.case.plausibility_warnings());
-            let doubts = doubts.map_err(|error| loaded.located(error));
-            let doubts = doubts.map_err(|error| {
-                let (place, message) = match error {
-                    SimError::Response { place, source } => (place, source.to_string()),
-                    SimError::Blade { place, source } => (place, source.to_string()),
-                    error => (loaded.index.place("rotor"), error.to_string()),
-                };
-                Problem::new(place, Fault::Refused { message })
-            })?;
-            warnings.extend(loaded.in_words(doubts));
-            let summary = loaded.case.title;
-            Ok(CheckResult { file: name, kind: FileKind::Case, summary, warnings })
-        }
-        None => {
-            let mut problems = Problems::default();
-            problems.push(Place::file(name), Fault::UnknownKind);
-            problems.into_result(None)
-        }
-    }
-}
-
-/// What a RON file is, from its first keys.
-fn kind_of(source: &Source, index: &RonIndex) -> Option<FileKind> {
-    if let Some(kind) = index.value_text("kind") {
-        return if kind.starts_with("Actuator") && !kind.starts_with("ActuatorBench") {
-            Some(FileKind::Actuator)
-        } else {
-            Some(FileKind::Bench)
-        };
-    }
-    if index.contains("runs") {
-        return Some(FileKind::Bench);
-    }
+    let kind = index.value_text("kind");
     // any other text in brackets is taken for a case, whose reader then names what is wrong
-    let begins = source.text.lines().map(str::trim).any(|line| line.starts_with('('));
-    begins.then_some(FileKind::Case)
+    let has_brackets = || source.text.lines().any(|line| line.trim().starts_with('('));
+    if kind.is_some_and(|kind| kind.starts_with("Actuator") && !kind.starts_with("ActuatorBench")) {
+        let stored = read_actuator(&source)?;
+        let summary = format!("{}, {} runs", stored.title, stored.runs.len());
+        let warnings = actuator_warnings(&stored, |field| index.place(field));
+        Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings })
+    } else if kind.is_some() || index.contains("runs") {
+        check_data(&Folder::of_file(path), name)
+    } else if has_brackets() {
+        let loaded = read_case(&source, &Folder::of_file(path))?;
+        let mut warnings = loaded.warnings.clone();
+        warnings.extend(check_actuator_source(&loaded)?);
+        let doubts = rotor_study::refuse_resonance(&loaded.case)
+            .and_then(|()| loaded.case.plausibility_warnings());
+        let doubts = doubts.map_err(|error| {
+            let (place, message) = match loaded.located(error) {
+                SimError::Study { place, source } => (place, source.cause()),
+                error => (loaded.index.place("rotor"), error.to_string()),
+            };
+            Problem::new(place, Fault::Refused { message })
+        })?;
+        warnings.extend(loaded.in_words(doubts));
+        Ok(CheckResult { file: name, kind: FileKind::Case, summary: loaded.case.title, warnings })
+    } else {
+        let message = "is neither a case, a dataset.ron nor an actuator file; a case has sections such as rotor: and trim:, a data set begins with kind: ActuatorBench, GenericLoop or ReversalCurves, an actuator file with kind: Actuator";
+        Err(Problem::new(Place::file(name), Fault::Other(message.to_owned())).into())
+    }
 }
 
 /// Checks the data folder or actuator file a case names; warnings about it.
 fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
     let missing = |folder: &Folder, file: &str| {
         let place = loaded.index.place("actuator.model");
-        let folder = match folder.display("") {
-            here if here.is_empty() => "this folder".to_owned(),
-            folder => folder,
-        };
-        let fault = Fault::MissingFile { file: file.to_owned(), folder };
-        Problems::from(Problem::new(place, fault))
+        Problems::from(Problem::new(place, missing_file(folder, file)))
     };
     match &loaded.actuator_source() {
         ActuatorSource::Ideal => Ok(vec![]),
@@ -142,7 +115,7 @@ fn bench_warnings(data: &BenchData) -> Vec<String> {
     if gain(data, &Settings::default()).1 == GainRule::Assumed {
         let place = Place::file(format!("{}/{DATASET}", data.folder)).field("flap_deg_per_um");
         let message = "is not given and no run is a slow loop to scale by: 1 deg/um will be assumed, expected the gain of the linkage; give it, or a full loop at 0.2 Hz".to_owned();
-        warnings.push(Problem::new(place, Fault::Doubtful { message }).to_string());
+        warnings.push(Problem::new(place, Fault::Other(message)).to_string());
     }
     warnings
 }
@@ -154,6 +127,7 @@ fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
         other => other.warnings().iter().map(Problem::to_string).collect(),
     };
     let runs = data.run_count();
+    let labels = |channels: &Channels| channels.both().map(Channel::label).join(" to ");
     let (kind, summary) = match &data {
         DataSet::Bench(data) => {
             let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
@@ -162,18 +136,16 @@ fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
         DataSet::Loops(data) => {
             let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
             let [input, output] = data.channels.both().map(Channel::label);
-            let (low, high) = data.input_range.limits();
+            let (low, high) = data.input_range;
             let summary = format!(
                 "{}: {input} to {output}, {runs} runs, {samples} samples, input {low} to {high} ({})",
-                data.title,
-                data.input_range.rule()
+                data.title, data.range_rule
             );
             (FileKind::GenericLoop, summary)
         }
         DataSet::Curves(data) => {
             let curves: usize = data.runs.iter().map(|run| run.curves.len()).sum();
-            let [input, output] = data.channels.both().map(Channel::label);
-            let summary = format!("{}: {input} to {output}, {curves} curves", data.title);
+            let summary = format!("{}: {}, {curves} curves", data.title, labels(&data.channels));
             (FileKind::ReversalCurves, summary)
         }
     };

@@ -5,12 +5,12 @@ use rotor_study::case::variant_names;
 use serde::de::value::{Error, StrDeserializer};
 use serde::de::{DeserializeOwned, IntoDeserializer};
 
-/// `hariharan-leishman` for `HariharanLeishman`.
-fn kebab(name: &str) -> String {
+/// A name in lower case, its words set apart: `hariharan-leishman` for `HariharanLeishman`.
+pub(crate) fn spelt(name: &str, separator: char) -> String {
     let mut text = String::new();
     for c in name.chars() {
         if c.is_ascii_uppercase() && !text.is_empty() {
-            text.push('-');
+            text.push(separator);
         }
         text.push(c.to_ascii_lowercase());
     }
@@ -23,13 +23,11 @@ where
     T: DeserializeOwned + Clone + Send + Sync + 'static,
 {
     // the parser keeps its names as long as the program runs
-    let spelt: Vec<(&'static str, &'static str)> =
-        variant_names::<T>().iter().map(|name| (&*kebab(name).leak(), *name)).collect();
-    let possible: Vec<&'static str> = spelt.iter().map(|(given, _)| *given).collect();
-    PossibleValuesParser::new(possible).try_map(move |given| {
-        let known = spelt.iter().find(|(spelling, _)| *spelling == given);
-        let name = known.map(|(_, name)| *name).unwrap_or_default();
-        let name: StrDeserializer<'_, Error> = name.into_deserializer();
+    let possible = variant_names::<T>().iter().map(|name| &*spelt(name, '-').leak());
+    PossibleValuesParser::new(possible).try_map(|given| {
+        let name = variant_names::<T>().iter().find(|name| spelt(name, '-') == given);
+        let name: StrDeserializer<'_, Error> =
+            name.copied().unwrap_or_default().into_deserializer();
         T::deserialize(name)
     })
 }
@@ -43,7 +41,7 @@ mod tests {
     fn a_choice_is_spelt_in_lower_case_with_hyphens() {
         for (model, name) in AttachedFlowModel::ALL.iter().zip(variant_names::<AttachedFlowModel>())
         {
-            assert_eq!(kebab(name), model.name());
+            assert_eq!(spelt(name, '-'), model.name());
         }
     }
 }

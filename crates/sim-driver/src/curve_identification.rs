@@ -3,16 +3,15 @@
 
 use crate::SimError;
 use crate::figures::{density_csv, diagram_csv};
-use crate::files::{Channel, CurveData};
+use crate::files::{Channel, Channels, CurveData};
+use crate::identification::dataset_place;
 use crate::output::{Printable, Sheet, table};
-use crate::problem::Place;
 use crate::stored_actuator::{StoredActuator, StoredChannels, StoredKind};
 use preisach_dyn::forc::{
-    CalibrationPoint, CurveMisfit, DriftKind, ForcCurve, ForcData, ForcFit, ForcSettings,
-    HeldOutCurves, diagram, fit, held_out,
+    CalibrationPoint, DriftKind, ForcCurve, ForcData, ForcFit, ForcSettings, diagram, fit, held_out,
 };
 use preisach_dyn::identify::Settings;
-use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, PreisachError};
+use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration};
 use serde::Serialize;
 
 /// Every so many curves one is held out to judge the fit; the stored model is fitted to all.
@@ -25,15 +24,11 @@ const SMOOTHING_FACTOR: usize = 3;
 /// A static model from reversal curves, with the data it came from.
 #[derive(Debug, Clone)]
 pub struct CurveIdentification {
-    title: String,
-    folder: String,
     content_hash: String,
-    input: Channel,
-    output: Channel,
+    channels: Channels,
     data: ForcData,
-    drift_corrected: bool,
     fit: ForcFit,
-    held_out: HeldOutCurves,
+    result: CurvesResult,
 }
 
 /// Identifies a static model from a data set of reversal curves: drift taken off by the calibration
@@ -42,8 +37,7 @@ pub struct CurveIdentification {
 /// # Errors
 /// [`SimError::Actuator`] at the place of the data set.
 pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, SimError> {
-    let place = || Place::file(format!("{}/dataset.ron", data.folder));
-    let fail = |source: PreisachError| SimError::Actuator { place: place(), source };
+    let fail = |source| SimError::Actuator { place: dataset_place(&data.folder), source };
     let all: Vec<_> = data.runs.iter().flat_map(|run| &run.curves).collect();
     let readings: Vec<CalibrationPoint> = all
         .iter()
@@ -62,36 +56,39 @@ pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, SimError
     let settings = ForcSettings::default();
     let held_out = held_out(&corrected, &settings, HELD_OUT_EVERY, 1).map_err(fail)?;
     let fit = fit(&corrected, &settings).map_err(fail)?;
-    let [input, output] = data.channels.both().map(Clone::clone);
-    Ok(CurveIdentification {
+    let [input, output] = data.channels.both().map(Channel::label);
+    let result = CurvesResult {
         title: data.title.clone(),
-        folder: data.folder.clone(),
-        content_hash: data.content_hash.clone(),
+        dataset: data.folder.clone(),
         input,
         output,
-        data: corrected,
         drift_corrected,
-        fit,
-        held_out,
-    })
+        curves: corrected.curves.len(),
+        fitted_worst_percent: fit.curves.iter().map(|c| c.rms_percent).fold(0.0, f64::max),
+        held_out_curves: held_out.curves.len(),
+        held_out_rms_percent: held_out.rms_percent,
+        held_out_worst_percent: held_out.worst_curve_percent,
+        written_to: None,
+    };
+    let (content_hash, channels) = (data.content_hash.clone(), data.channels.clone());
+    Ok(CurveIdentification { content_hash, channels, data: corrected, fit, result })
 }
 
 impl CurveIdentification {
     /// The model file of this identification.
     pub fn stored(&self) -> StoredActuator {
+        let CurvesResult { title, dataset, input, output, .. } = &self.result;
+        let channels = StoredChannels { input: input.clone(), output: output.clone() };
         let range = self.fit.model.grid().range();
         let law = ActuatorLaw::StaticPreisach(self.fit.model.clone());
         let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
         StoredActuator {
             kind: StoredKind::Actuator,
-            title: self.title.clone(),
-            dataset: self.folder.clone(),
+            title: title.clone(),
+            dataset: dataset.clone(),
             data_hash: self.content_hash.clone(),
             program_version: crate::VERSION.to_owned(),
-            channels: Some(StoredChannels {
-                input: self.input.label(),
-                output: self.output.label(),
-            }),
+            channels: Some(channels),
             gain: None,
             settings: Settings::default(),
             runs: vec![],
@@ -104,39 +101,21 @@ impl CurveIdentification {
     /// # Errors
     /// [`SimError::Actuator`] if the family is too small for a diagram.
     pub fn figure_files(&self) -> Result<Vec<(String, String)>, SimError> {
-        let points =
-            diagram(&self.data, SMOOTHING_FACTOR).map_err(|source| SimError::Actuator {
-                place: Place::file(format!("{}/dataset.ron", self.folder)),
-                source,
-            })?;
-        let (input, unit) = (self.input.label(), format!("_{}", self.output.unit.symbol));
+        let fail =
+            |source| SimError::Actuator { place: dataset_place(&self.result.dataset), source };
+        let points = diagram(&self.data, SMOOTHING_FACTOR).map_err(fail)?;
+        let (input, unit) = (&self.result.input, format!("_{}", self.channels.output.unit.symbol));
         let model = &self.fit.model;
         Ok(vec![
-            ("forc_diagram.csv".to_owned(), diagram_csv(&points, &input)),
-            ("density.csv".to_owned(), density_csv(model.grid(), model.map(), &input, &unit)),
+            ("forc_diagram.csv".to_owned(), diagram_csv(&points, input)),
+            ("density.csv".to_owned(), density_csv(model.grid(), model.map(), input, &unit)),
         ])
     }
 
     /// What `hhc identify` prints.
     pub fn summary(&self, written_to: Option<String>) -> CurvesResult {
-        CurvesResult {
-            title: self.title.clone(),
-            dataset: self.folder.clone(),
-            input: self.input.label(),
-            output: self.output.label(),
-            drift_corrected: self.drift_corrected,
-            curves: self.data.curves.len(),
-            fitted_worst_percent: worst(&self.fit.curves),
-            held_out_curves: self.held_out.curves.len(),
-            held_out_rms_percent: self.held_out.rms_percent,
-            held_out_worst_percent: self.held_out.worst_curve_percent,
-            written_to,
-        }
+        CurvesResult { written_to, ..self.result.clone() }
     }
-}
-
-fn worst(curves: &[CurveMisfit]) -> f64 {
-    curves.iter().map(|c| c.rms_percent).fold(0.0, f64::max)
 }
 
 /// What `hhc identify` prints of reversal curves. Errors are root mean squares over the range of all

@@ -1,13 +1,13 @@
 //! The errors of the driver and the exit code of each.
 
 use crate::problem::{Fault, Place, Problem, Problems};
+use actuator_gap::DiagnosisError;
 use flap_aero::AeroError;
 use measured_data::DataError;
-use model_gap::GapError;
 use preisach_dyn::PreisachError;
 use rotor_fem::FemError;
 use rotor_response::ResponseError;
-use rotor_study::{StudyError, soft_pitch_text};
+use rotor_study::StudyError;
 use std::path::PathBuf;
 use trim::TrimError;
 
@@ -19,30 +19,9 @@ use trim::TrimError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
-    // ---- rejected input ----
-    /// Files with problems, every one of them.
-    #[error("{0}")]
-    Rejected(Problems),
-    /// A file is in the way.
-    #[error("{} exists already and is not overwritten; give another name, or remove it first", .path.display())]
-    WouldOverwrite {
-        /// The file.
-        path: PathBuf,
-    },
-    /// What is written would replace what is read.
-    #[error("{} is a file this command reads; name another to write", .path.display())]
-    WouldOverwriteInput {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file cannot be written.
-    #[error("{} cannot be written ({reason}); check the folder, its permissions and the space left", .path.display())]
-    NotWritten {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system said.
-        reason: String,
-    },
+    /// Files with problems, every one of them; a file that cannot be written.
+    #[error(transparent)]
+    Data(#[from] DataError),
 
     // ---- models; the family depends on the source ----
     /// The actuator model or its identification.
@@ -63,56 +42,30 @@ pub enum SimError {
         /// The same as the model says it.
         source: PreisachError,
     },
-    /// A diagnosis of data in which nothing is to be explained.
-    #[error(
-        "{place}: no run has the role Measured: all {runs} are references; write `role: Measured` for those to be explained"
-    )]
-    NothingMeasured {
+    /// The misfit of a record, its diagnosis, or data in which nothing is to be explained.
+    #[error("{place}: {source}")]
+    Diagnosis {
         /// The data.
         place: Place,
-        /// Runs there.
-        runs: usize,
-    },
-    /// The misfit of a record.
-    #[error("{place}: {source}")]
-    Misfit {
-        /// The record.
-        place: Place,
         /// What went wrong.
-        source: GapError,
-    },
-    /// The blade and its modes.
-    #[error("{place}: {source}")]
-    Blade {
-        /// Case that asked for it.
-        place: Place,
-        /// What went wrong.
-        source: FemError,
+        source: DiagnosisError,
     },
     /// The section aerodynamics.
     #[error("section: {0}")]
     Section(#[from] AeroError),
-    /// The periodic response of the rotor.
-    #[error("{place}: {source}")]
-    Response {
-        /// Case that asked for it.
+    /// The rotor of a case: its blade, response, trim or control.
+    #[error("{place}: {}", .source.cause())]
+    Study {
+        /// Field of the case that asked for it.
         place: Place,
         /// What went wrong.
-        source: ResponseError,
+        source: StudyError,
     },
-    /// The trim.
-    #[error("{place}: {source}")]
-    Trim {
-        /// The trim section of the case.
-        place: Place,
-        /// What went wrong.
-        source: TrimError,
-    },
-    /// A free wake that parted from its rotor: what is given is a state on the way, no solution.
+    /// A free wake that diverged: what is given is a state on the way, no solution.
     #[error(
-        "{place}: wake and trim have parted, there is no solution: what is given is the last good state, without control; the warning says where and what may help"
+        "{place}: wake and trim diverged, there is no solution: what is given is the last good state, without control; the warning says where and what may help"
     )]
-    WakeParted {
+    WakeDiverged {
         /// The wake of the case.
         place: Place,
     },
@@ -123,18 +76,6 @@ pub enum SimError {
         source: Box<SimError>,
         /// The doubts, each with its place.
         doubts: Vec<String>,
-    },
-    /// The trim of a blade whose pitch link is so soft that it holds no pitch.
-    #[error("{place}: {}", soft_pitch_text(*.stiffness, *.frequency_per_rev, .source))]
-    SoftPitch {
-        /// The spring in the case.
-        place: Place,
-        /// Its stiffness, `m0 Omega^2 R^3`.
-        stiffness: f64,
-        /// Frequency of the rigid blade on it, propeller moment included.
-        frequency_per_rev: f64,
-        /// What went wrong.
-        source: TrimError,
     },
     /// A stored figure does not follow from the stored loads, controls and motions.
     #[error(
@@ -160,14 +101,6 @@ pub enum SimError {
         /// What went wrong there.
         source: Box<SimError>,
     },
-    /// The control study.
-    #[error("{place}: {source}")]
-    Study {
-        /// The control section of the case.
-        place: Place,
-        /// What went wrong.
-        source: StudyError,
-    },
 }
 
 /// What is said of the advance ratios before the one that failed.
@@ -180,26 +113,15 @@ fn found_before(found: &[f64]) -> String {
     }
 }
 
-/// The families of errors.
+/// The families of errors, by the exit code of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Family {
-    /// The user's input is at fault.
-    RejectedInput,
+enum Family {
     /// The numerics failed on good input.
-    NumericalFailure,
+    NumericalFailure = 1,
+    /// The user's input is at fault.
+    RejectedInput = 2,
     /// A comparison failed.
-    DataMismatch,
-}
-
-impl Family {
-    /// Exit code of the program.
-    pub fn exit_code(self) -> u8 {
-        match self {
-            Self::NumericalFailure => 1,
-            Self::RejectedInput => 2,
-            Self::DataMismatch => 3,
-        }
-    }
+    DataMismatch = 3,
 }
 
 fn listed(doubts: &[String]) -> String {
@@ -211,7 +133,7 @@ impl SimError {
     pub(crate) fn in_doubt(self, doubts: Vec<String>) -> Self {
         match self {
             // what is rejected says itself what is wrong
-            Self::Rejected(_) => self,
+            Self::Data(_) => self,
             _ if doubts.is_empty() => self,
             _ => Self::InDoubt { source: Box::new(self), doubts },
         }
@@ -223,42 +145,33 @@ impl SimError {
             StudyError::Refused { field, message } => {
                 Problem::new(place(&field), Fault::Refused { message }).into()
             }
-            StudyError::Blade { field, source } => Self::Blade { place: place(&field), source },
-            StudyError::Response { field, source } => {
-                Self::Response { place: place(&field), source }
-            }
-            StudyError::Trim { field, source } => Self::Trim { place: place(&field), source },
-            StudyError::SoftPitch { field, stiffness, frequency_per_rev, source } => {
-                Self::SoftPitch { place: place(&field), stiffness, frequency_per_rev, source }
-            }
             source => Self::Study { place: place(source.field()), source },
         }
     }
 
-    /// Family of the error.
-    pub fn family(&self) -> Family {
+    /// A text that cannot be written, such as a value that its format cannot express.
+    pub(crate) fn not_written(path: impl Into<PathBuf>, reason: &dyn std::fmt::Display) -> Self {
+        DataError::NotWritten { path: path.into(), reason: reason.to_string() }.into()
+    }
+
+    fn family(&self) -> Family {
         match self {
-            Self::Rejected(_)
-            | Self::WouldOverwrite { .. }
-            | Self::WouldOverwriteInput { .. }
-            | Self::NotWritten { .. }
-            | Self::Section(_)
-            | Self::NothingMeasured { .. }
-            | Self::Misfit { .. } => Family::RejectedInput,
-            Self::WakeParted { .. } => Family::NumericalFailure,
+            Self::WakeDiverged { .. } => Family::NumericalFailure,
             Self::NotReproduced { .. } => Family::DataMismatch,
             Self::SweepEnded { source, .. } | Self::InDoubt { source, .. } => source.family(),
-            Self::Actuator { source, .. } | Self::Loop { source, .. } => actuator_family(source),
-            Self::Blade { source, .. } => blade_family(source),
-            Self::Response { source, .. } => response_family(source),
-            Self::Trim { source, .. } | Self::SoftPitch { source, .. } => trim_family(source),
+            Self::Actuator { source, .. }
+            | Self::Loop { source, .. }
+            | Self::Diagnosis { source: DiagnosisError::Actuator(source), .. } => {
+                actuator_family(source)
+            }
+            Self::Data(_) | Self::Section(_) | Self::Diagnosis { .. } => Family::RejectedInput,
             Self::Study { source, .. } => study_family(source),
         }
     }
 
     /// Exit code of the program: 1 numerical failure, 2 rejected input, 3 data mismatch.
     pub fn exit_code(&self) -> u8 {
-        self.family().exit_code()
+        self.family() as u8
     }
 }
 
@@ -293,7 +206,12 @@ fn response_family(error: &ResponseError) -> Family {
 
 fn study_family(error: &StudyError) -> Family {
     match error {
-        StudyError::NoActuator { .. } => Family::RejectedInput,
+        StudyError::Refused { .. } | StudyError::NoActuator { .. } => Family::RejectedInput,
+        StudyError::Blade { source, .. } => blade_family(source),
+        StudyError::Response { source, .. } => response_family(source),
+        StudyError::Trim { source, .. } | StudyError::SoftPitch { source, .. } => {
+            trim_family(source)
+        }
         _ => Family::NumericalFailure,
     }
 }
@@ -314,24 +232,13 @@ fn trim_family(error: &TrimError) -> Family {
 
 impl From<Problems> for SimError {
     fn from(problems: Problems) -> Self {
-        Self::Rejected(problems)
+        Self::Data(problems.into())
     }
 }
 
 impl From<Problem> for SimError {
     fn from(problem: Problem) -> Self {
-        Self::Rejected(problem.into())
-    }
-}
-
-impl From<DataError> for SimError {
-    fn from(error: DataError) -> Self {
-        match error {
-            DataError::Rejected(problems) => Self::Rejected(problems),
-            DataError::WouldOverwrite { path } => Self::WouldOverwrite { path },
-            DataError::WouldOverwriteInput { path } => Self::WouldOverwriteInput { path },
-            DataError::NotWritten { path, reason } => Self::NotWritten { path, reason },
-        }
+        Self::Data(problem.into())
     }
 }
 

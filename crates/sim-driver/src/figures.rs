@@ -73,13 +73,9 @@ fn density_table(found: &BenchIdentification) -> Result<Option<(String, String)>
         ActuatorLaw::DynamicPreisach(model) => model.static_part().map(Some),
         _ => Ok(None),
     };
-    let model = match of(&found.model.law)? {
-        Some(model) => model,
-        None => match of(&found.identification.static_only.law)? {
-            Some(model) => model,
-            None => return Ok(None),
-        },
-    };
+    let beside = || of(&found.identification.static_only.law);
+    let model = of(&found.model.law)?.map_or_else(beside, |model| Ok(Some(model)))?;
+    let Some(model) = model else { return Ok(None) };
     let (input, _, unit) = labels(found);
     let text = density_csv(model.grid(), model.map(), &input, &unit);
     Ok(Some(("density.csv".to_owned(), text)))

@@ -8,7 +8,7 @@ impl Printable for ImportResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!(
-            "{}: data set of kind {}, \"{}\"",
+            "{}: data set of kind {:?}, \"{}\"",
             self.folder, self.kind, self.title
         ));
         for run in &self.runs {

@@ -39,7 +39,7 @@ pub mod stored_actuator;
 pub mod sweep;
 mod terminal;
 
-pub use error::{Family, SimError};
+pub use error::SimError;
 pub use measured_data::problem;
 
 /// Version of the program, part of every result and its key.

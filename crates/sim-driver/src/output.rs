@@ -2,6 +2,7 @@
 
 use crate::SimError;
 use serde::Serialize;
+use std::fmt::Display;
 use std::io::Write;
 
 /// Form of what a command prints.
@@ -30,13 +31,12 @@ pub trait Printable: Serialize {
     /// The text of a format, ending in a line end. Numbers that are not finite are `null` in JSON.
     ///
     /// # Errors
-    /// [`SimError::NotWritten`] if JSON cannot express the result.
+    /// [`SimError::Data`] if JSON cannot express the result.
     fn render(&self, format: Format) -> Result<String, SimError> {
         let mut text = match format {
             Format::Text => self.text(),
             Format::Details => self.details(),
-            Format::Json => serde_json::to_string_pretty(self)
-                .map_err(|e| SimError::NotWritten { path: "JSON".into(), reason: e.to_string() })?,
+            Format::Json => json(self)?,
         };
         if !text.ends_with('\n') {
             text.push('\n');
@@ -45,19 +45,31 @@ pub trait Printable: Serialize {
     }
 }
 
+/// A value as JSON for people to read, ending in a line end.
+///
+/// # Errors
+/// [`SimError::Data`] if JSON cannot express it.
+pub fn json(value: &(impl Serialize + ?Sized)) -> Result<String, SimError> {
+    let text = serde_json::to_string_pretty(value);
+    Ok(text.map_err(|e| SimError::not_written("JSON", &e))? + "\n")
+}
+
 /// Prints to standard output; a reader that has gone away (`| head`) is no error.
 ///
 /// # Errors
-/// [`SimError::NotWritten`] if standard output cannot take the text.
+/// [`SimError::Data`] if standard output cannot take the text.
 pub fn print(text: &str) -> Result<(), SimError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(SimError::NotWritten { path: "standard output".into(), reason: e.to_string() })
+            Err(SimError::not_written("standard output", &e))
         }
         _ => Ok(()),
     }
 }
+
+/// Width and height of a terminal that a summary fits.
+pub const SCREEN: [usize; 2] = [100, 45];
 
 /// Text that grows by lines and tables.
 #[derive(Debug, Clone, Default)]
@@ -66,8 +78,8 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Adds a line: `sheet.line(format_args!(...))`.
-    pub fn line(&mut self, line: std::fmt::Arguments<'_>) {
+    /// Adds a line, or several: a text, or `format_args!(...)`.
+    pub fn line(&mut self, line: impl Display) {
         self.text.push_str(&line.to_string());
         self.text.push('\n');
     }
@@ -77,45 +89,16 @@ impl Sheet {
         self.text.push_str(text);
     }
 
-    /// The text.
-    pub fn finish(self) -> String {
-        self.text
-    }
-}
-
-/// Width and height of a terminal that a summary fits.
-pub const SCREEN: [usize; 2] = [100, 45];
-
-/// Text of one screen: lines of at most 100 columns, at most 45 of them.
-#[derive(Debug, Clone, Default)]
-pub struct Screen {
-    lines: Vec<String>,
-}
-
-impl Screen {
-    /// Adds a line, or several.
-    pub fn line(&mut self, text: &str) {
-        self.lines.extend(text.split('\n').map(str::to_owned));
-    }
-
-    /// Adds a table.
-    pub fn block(&mut self, text: &str) {
-        self.lines.extend(text.lines().map(str::to_owned));
-    }
-
-    /// Adds a sentence, broken into lines.
-    pub fn wrapped(&mut self, text: &str) {
-        self.lines.extend(wrap(text, SCREEN[0]));
-    }
-
     /// Adds lines, each broken where it is too long; what follows keeps its indentation.
     pub fn paragraphs(&mut self, text: &str) {
         for line in text.lines() {
             let indent = line.len() - line.trim_start().len();
             let broken = wrap(line, SCREEN[0] - indent);
-            self.lines.extend(broken.iter().map(|part| format!("{:indent$}{part}", "")));
+            for part in &broken {
+                self.line(format_args!("{:indent$}{part}", ""));
+            }
             if broken.is_empty() {
-                self.lines.push(String::new());
+                self.line("");
             }
         }
     }
@@ -124,20 +107,26 @@ impl Screen {
     pub fn labelled(&mut self, label: &str, text: &str) {
         for (k, line) in wrap(text, SCREEN[0] - LABEL).into_iter().enumerate() {
             let label = if k == 0 { label } else { "" };
-            self.lines.push(format!("{label:LABEL$}{line}"));
+            self.line(format_args!("{label:LABEL$}{line}"));
         }
     }
 
-    /// The text; what does not fit is left out, which the last line says.
-    pub fn finish(mut self) -> String {
+    /// The whole text.
+    pub fn finish(self) -> String {
+        self.text
+    }
+
+    /// The text as one screen: what does not fit is left out, which the last line says.
+    pub fn screen(&self) -> String {
         let [width, height] = SCREEN;
-        let more = self.lines.len().saturating_sub(height);
+        let mut lines: Vec<&str> = self.text.lines().collect();
+        let more = lines.len().saturating_sub(height);
+        let rest = format!("... {} more lines with --details", more + 1);
         if more > 0 {
-            self.lines.truncate(height - 1);
-            self.lines.push(format!("... {} more lines with --details", more + 1));
+            lines.truncate(height - 1);
+            lines.push(&rest);
         }
-        let fitted = self.lines.iter().map(|line| clipped(line, width) + "\n");
-        fitted.collect()
+        lines.into_iter().map(|line| clipped(line, width) + "\n").collect()
     }
 }
 
@@ -172,36 +161,71 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
 const WARNING_LINES: usize = 2;
 const MOST_WARNINGS: usize = 5;
 
-/// Warnings for standard error, each once and short; `rest` says where all of them are.
-pub fn warnings_text<T: std::fmt::Display>(warnings: &[T], format: Format, rest: &str) -> String {
-    let mut all: Vec<String> = Vec::new();
-    for warning in warnings.iter().map(T::to_string) {
-        if !all.contains(&warning) {
-            all.push(warning);
-        }
+/// A warning in two lines: how it begins, and its last sentence, which is the remedy.
+fn short_warning(warning: &str) -> Vec<String> {
+    let lines = wrap(warning, SCREEN[0]);
+    if lines.len() <= WARNING_LINES {
+        return lines;
     }
+    let cut = |text: &str, width: usize| -> String {
+        let kept: String = text.chars().take(width - 4).collect();
+        let whole = text.chars().count() <= width - 4;
+        if whole { kept } else { format!("{} ...", kept.trim_end()) }
+    };
+    let begins = cut(&format!("{} {}", lines[0], lines[1]), SCREEN[0]);
+    match warning.trim_end_matches('.').rsplit_once(". ") {
+        Some((_, remedy)) => vec![begins, format!("  {}", cut(remedy, SCREEN[0] - 2))],
+        None => vec![lines[0].clone(), cut(&lines[1], SCREEN[0])],
+    }
+}
+
+/// Warnings for standard error, each once and short; `rest` says where all of them are.
+pub fn warnings_text<T: Display>(warnings: &[T], format: Format, rest: &str) -> String {
+    let all = unique(warnings.iter().map(T::to_string));
+    let is_short = format == Format::Text;
+    let most = if is_short { MOST_WARNINGS } else { all.len() };
     let mut shown: Vec<String> = Vec::new();
-    let most = if format == Format::Text { MOST_WARNINGS } else { all.len() };
-    for warning in all.iter().take(most) {
-        let warning = format!("warning: {warning}");
-        if format != Format::Text {
-            shown.push(warning);
-            continue;
-        }
-        let mut lines = wrap(&warning, SCREEN[0]);
-        if lines.len() > WARNING_LINES {
-            lines.truncate(WARNING_LINES);
-            if let Some(last) = lines.last_mut() {
-                let kept: String = last.chars().take(SCREEN[0] - 4).collect();
-                *last = format!("{} ...", kept.trim_end());
-            }
-        }
-        shown.extend(lines);
+    for warning in all.iter().take(most).map(|warning| format!("warning: {warning}")) {
+        shown.extend(if is_short { short_warning(&warning) } else { vec![warning] });
     }
     if let more @ 1.. = all.len().saturating_sub(most) {
         shown.push(format!("warning: {more} more {rest}"));
     }
-    shown.iter().map(|line| line.to_owned() + "\n").collect()
+    shown.into_iter().map(|line| line + "\n").collect()
+}
+
+/// Items in their order, each once.
+pub(crate) fn unique<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    items.into_iter().fold(Vec::new(), |mut kept, item| {
+        if !kept.contains(&item) {
+            kept.push(item);
+        }
+        kept
+    })
+}
+
+/// A column of a table: its head, and its cell in the row of an item.
+pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
+
+/// A table with a row for each item.
+pub(crate) fn table_of<T>(items: impl IntoIterator<Item = T>, columns: &[Column<'_, T>]) -> String {
+    let header: Vec<&str> = columns.iter().map(|(head, _)| *head).collect();
+    table(&header, cells(items, columns))
+}
+
+/// The same as CSV text.
+pub(crate) fn csv_of<T>(items: impl IntoIterator<Item = T>, columns: &[Column<'_, T>]) -> String {
+    let header = columns.iter().map(|(head, _)| (*head).to_owned()).collect();
+    let rows = std::iter::once(header).chain(cells(items, columns));
+    rows.map(|row: Vec<String>| row.join(",") + "\n").collect()
+}
+
+fn cells<T>(
+    items: impl IntoIterator<Item = T>,
+    columns: &[Column<'_, T>],
+) -> impl Iterator<Item = Vec<String>> {
+    let row = move |item| columns.iter().map(|(_, cell)| cell(&item)).collect();
+    items.into_iter().map(row)
 }
 
 /// A plain table with a header and aligned columns.
@@ -218,4 +242,20 @@ pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> St
         }
     }
     table.lines().map(|line| line.trim_end().to_owned() + "\n").collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_warning_keeps_its_beginning_and_its_remedy() {
+        let long = format!("a value is strange: {}. Give another one", "very ".repeat(60));
+        let text = warnings_text(&[long], Format::Text, "elsewhere");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 2, "{text}");
+        assert!(lines[0].starts_with("warning: a value is strange:"), "{text}");
+        assert!(lines[0].ends_with(" ...") && lines[0].chars().count() <= SCREEN[0], "{text}");
+        assert_eq!(lines[1], "  Give another one");
+    }
 }

@@ -31,6 +31,15 @@ impl Progress {
         Self { bar: ProgressBar::hidden() }
     }
 
+    /// Does a work of one step, and says so.
+    pub fn during<T>(what: impl Into<String>, work: impl FnOnce() -> T) -> T {
+        let progress = Self::new(1);
+        progress.doing(what);
+        let done = work();
+        progress.finish();
+        done
+    }
+
     /// Says what is being done.
     pub fn doing(&self, what: impl Into<String>) {
         self.bar.set_message(what.into());

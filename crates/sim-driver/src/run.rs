@@ -10,7 +10,7 @@ use crate::results::{
 use crate::sweep::continued_trim;
 use rotor_response::StationLoads;
 use rotor_study::{
-    ControlStudy, Drives, HubLoads, Setting, StabilityLine, TrimmedRotor, control_all,
+    ControlStudy, Drives, HubLoads, Setting, StabilityLine, StudyError, TrimmedRotor, control_all,
     each_unlike_blade, forecasts, station_lines, unlike_lines, wake_status, wake_warnings,
 };
 use std::sync::Arc;
@@ -75,50 +75,44 @@ pub fn run_trimmed(
     progress.doing("control");
     let failed = |error| loaded.located(error);
     let drives = Drives::new(&loaded.case, actuators.real.clone().map(Arc::new)).map_err(failed)?;
-    let stability = StabilityLine::from(&trimmed.stability().map_err(|source| {
-        let place = loaded.index.place("rotor");
-        SimError::Response { place, source }
-    })?);
+    let at = |field: &str, source| {
+        loaded.located(StudyError::Response { field: field.to_owned(), source })
+    };
+    let stability = trimmed.stability().map_err(|source| at("rotor", source))?;
+    let stability = StabilityLine::from(&stability);
+    let unstable = || stability.warnings(trimmed.trim().flight.advance_ratio);
     // without a converged trim nothing is controlled
-    let controlled = !trimmed.wake_parted();
-    let studies = if controlled {
-        control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
-            .map_err(|error| failed(error).in_doubt(unstable(&stability, &trimmed)))?
+    let (studies, forecasts) = if trimmed.wake_diverged() {
+        (Vec::new(), Vec::new())
     } else {
-        Vec::new()
+        let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
+            .map_err(|error| failed(error).in_doubt(unstable()))?;
+        (studies, forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?)
     };
-    let forecasts = if controlled {
-        forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?
-    } else {
-        Vec::new()
-    };
-    let blade_loads = trimmed.station_loads(&loaded.case.load_stations_r()).map_err(|source| {
-        let place = loaded.index.place("response.load_stations_r");
-        SimError::Response { place, source }
-    })?;
+    let blade_loads = trimmed
+        .station_loads(&loaded.case.load_stations_r())
+        .map_err(|source| at("response.load_stations_r", source))?;
     let mut warnings = loaded.warnings.clone();
     warnings.extend(actuators.warnings.iter().cloned());
     let found = trimmed.trim();
     let about = (found.controls.theta0_rad, &found.rotor);
     let most = trimmed.largest_section_lift();
     let warned = loaded.case.warnings_in_flight(trimmed.rotor(), about, most);
-    warnings.extend(loaded.in_words(warned.map_err(|error| loaded.located(error))?));
+    warnings.extend(loaded.in_words(warned.map_err(failed)?));
     warnings.extend(trimmed.wake().into_iter().flat_map(wake_warnings));
-    let advance_ratio = found.flight.advance_ratio;
-    warnings.extend(unstable(&stability, &trimmed));
+    warnings.extend(unstable());
     let each_unlike = each_unlike_blade(&loaded.case, &trimmed).map_err(failed)?;
-    warnings.extend(each_unlike.iter().flat_map(|line| line.warnings(advance_ratio)));
-    let baseline =
-        HubLoads::from_parts(trimmed.trim().rotor.hub.harmonic(loaded.case.rotor.blades));
+    warnings.extend(each_unlike.iter().flat_map(|line| line.warnings(found.flight.advance_ratio)));
+    let baseline = HubLoads::from_parts(found.rotor.hub.harmonic(loaded.case.rotor.blades));
     let setting = Setting::of_case(&loaded.case, &baseline);
     let unlike_blades = unlike_lines(&loaded.case, &trimmed, &studies).map_err(failed)?;
     // flaps at rest stand first; with every blade alike there is no line
     let mean = unlike_blades.first().map_or_else(|| found.rotor.hub.mean(), |rest| rest.mean);
     let result = RunResult {
         mean_loads: Some(MeanHubLoads { hub: mean }),
-        trim: trim_line(loaded, trimmed.trim()),
+        trim: trim_line(loaded, found),
         wake: trimmed.wake().map(wake_status),
-        residuals: residuals(trimmed.trim()),
+        residuals: residuals(found),
         baseline: Baseline { hub_nb_per_rev: baseline },
         blade_loads: station_lines(&blade_loads, &loaded.case.scales()),
         stability,
@@ -130,11 +124,6 @@ pub fn run_trimmed(
         ..RunResult::default()
     };
     Ok(RunOutcome { result, setting, actuators, trimmed, blade_loads, drives, studies })
-}
-
-/// What the stability of the trimmed rotor warns of.
-fn unstable(stability: &StabilityLine, trimmed: &TrimmedRotor) -> Vec<String> {
-    stability.warnings(trimmed.trim().flight.advance_ratio)
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {

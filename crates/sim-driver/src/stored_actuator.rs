@@ -21,7 +21,7 @@ pub fn actuator_warnings(stored: &StoredActuator, place: impl Fn(&str) -> Place)
         warnings.push(("model.calibration.deg_per_um".into(), message));
     }
     let said = |(field, message): (String, String)| {
-        Problem::new(place(&field).field(field), Fault::Doubtful { message }).to_string()
+        Problem::new(place(&field).field(field), Fault::Other(message)).to_string()
     };
     warnings.into_iter().map(said).collect()
 }
@@ -29,10 +29,9 @@ pub fn actuator_warnings(stored: &StoredActuator, place: impl Fn(&str) -> Place)
 /// Writes an actuator file atomically.
 ///
 /// # Errors
-/// [`SimError::NotWritten`].
+/// [`SimError::Data`].
 pub fn write_actuator(stored: &StoredActuator, path: &Path) -> Result<(), SimError> {
-    let text = ron_text(stored)
-        .map_err(|e| SimError::NotWritten { path: path.to_path_buf(), reason: e.to_string() })?;
+    let text = ron_text(stored).map_err(|e| SimError::not_written(path, &e))?;
     let (what, units) = match &stored.channels {
         Some(channels) => (
             format!("Model of {} to {}", channels.input, channels.output),
@@ -233,7 +232,7 @@ mod tests {
         for (good, bad, name) in [
             ("tau_s: 0.0005", "tau_s: -0.0005", "tau_s"),
             ("damping_ratio: 0.02", "damping_ratio: 0", "damping_ratio"),
-            ("sigma: 0.8", "sigma: 0.3", "dissipative"),
+            ("sigma: 0.8", "sigma: 0.3", "less gives energy"),
             ("width_um: 1)", "breadth_um: 1)", "breadth_um"),
         ] {
             let text = BY_HAND.replacen(good, bad, 1);

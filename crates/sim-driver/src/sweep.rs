@@ -66,14 +66,14 @@ impl SweepRow {
         let angles = [t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg];
         cells.extend(angles.map(|a| format!("{a:.3}")));
         cells.push(format!("{:.5}", t.induced_inflow));
-        let power =
-            r.mean_loads.as_ref().map(|loads| format!("{:.2}", 1e-3 * loads.shaft_power_watt));
+        let loads = r.mean_loads.as_ref();
+        let power = loads.map(|loads| format!("{:.2}", 1e-3 * loads.shaft_power_watt));
         cells.push(power.unwrap_or_default());
         cells.extend(r.baseline.hub_nb_per_rev.amplitudes().map(|a| format!("{a:.3e}")));
         let least = r.stability.least_damped.as_ref();
         cells.push(least.map_or_else(String::new, |m| format!("{:.4}", m.damping_ratio)));
-        let best = r.control.iter().map(|c| c.reduction_percent).fold(f64::NAN, f64::max);
-        cells.push(if best.is_nan() { "-".to_owned() } else { format!("{best:.1}") });
+        let best = r.control.iter().map(|c| c.reduction_percent).reduce(f64::max);
+        cells.push(best.map_or_else(|| "-".to_owned(), |best| format!("{best:.1}")));
         cells
     }
 }
@@ -86,15 +86,15 @@ const HEADER: [&str; 16] = [
 impl Printable for SweepResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
-        sheet.line(format_args!(
-            "Trim (deg), power of the shaft, hub loads at the blade number per rev without control, least damping ratio, best reduction of J"
-        ));
+        sheet.line(
+            "Trim (deg), power of the shaft, hub loads at the blade number per rev without control, least damping ratio, best reduction of J",
+        );
         sheet.block(&table(&HEADER, self.rows.iter().map(SweepRow::cells)));
         let mut notes: Vec<&str> = self.rows.iter().filter_map(|row| Some(row.mark()?.1)).collect();
         notes.sort_unstable();
         notes.dedup();
         for note in notes {
-            sheet.line(format_args!("{note}"));
+            sheet.line(note);
         }
         sheet.finish()
     }
@@ -108,18 +108,12 @@ pub fn sweep_csv(sweep: &SweepResult) -> String {
     for row in &sweep.rows {
         let t = &row.result.trim;
         let least = row.result.stability.least_damped.as_ref();
-        let numbers = [
-            row.advance_ratio,
-            t.theta0_deg,
-            t.theta1c_deg,
-            t.theta1s_deg,
-            t.alpha_s_deg,
-            t.phi_s_deg,
-            t.induced_inflow,
-        ]
-        .into_iter()
-        .chain(row.result.baseline.hub_nb_per_rev.amplitudes())
-        .chain([least.map_or(f64::NAN, |m| m.damping_ratio)]);
+        let angles = [t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg];
+        let numbers = std::iter::once(row.advance_ratio)
+            .chain(angles)
+            .chain([t.induced_inflow])
+            .chain(row.result.baseline.hub_nb_per_rev.amplitudes())
+            .chain([least.map_or(f64::NAN, |m| m.damping_ratio)]);
         let power = row.result.mean_loads.as_ref().map_or(f64::NAN, |loads| loads.shaft_power_watt);
         let wake = row.result.wake.map_or("", WakeStatus::name);
         let cells: Vec<String> = numbers.map(|n| format!("{n:e}")).collect();

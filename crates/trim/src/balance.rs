@@ -4,6 +4,7 @@ use crate::TrimError;
 use crate::vehicle::{AirframeLoads, Attitude, Vehicle, equilibrium};
 use nalgebra::DVector;
 use rotor_response::{Controls, RotorSolution, RotorSolver};
+use rotor_wake::FlightState;
 
 /// What the rotor is trimmed to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,28 +69,31 @@ impl Balance {
             TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad } => (*ct_sigma, 3, *shaft_tilt_rad),
             TrimTarget::Prescribed { shaft_tilt_rad, .. } => (0.07, 0, *shaft_tilt_rad),
         };
-        if !(loading > 0.0 && loading <= 0.5) {
-            let (field, expected) = ("ct_sigma", "more than 0 and at most 0.5");
-            return Err(TrimError::Parameter { field, value: loading, expected });
+        let attitude = -ATTITUDE_LIMIT..=ATTITUDE_LIMIT;
+        for (field, value, is_good, expected) in [
+            ("ct_sigma", loading, loading > 0.0 && loading <= 0.5, "more than 0 and at most 0.5"),
+            ("shaft_tilt_rad", tilt, attitude.contains(&tilt), "-0.8 to 0.8 rad"),
+            ("advance_ratio", advance_ratio, (0.0..=0.5).contains(&advance_ratio), "0 to 0.5"),
+        ] {
+            if !is_good {
+                return Err(TrimError::Parameter { field, value, expected });
+            }
         }
-        if !(-ATTITUDE_LIMIT..=ATTITUDE_LIMIT).contains(&tilt) {
-            let (field, expected) = ("shaft_tilt_rad", "-0.8 to 0.8 rad");
-            return Err(TrimError::Parameter { field, value: tilt, expected });
-        }
-        if !(0.0..=0.5).contains(&advance_ratio) {
-            let (field, expected) = ("advance_ratio", "0 to 0.5");
-            return Err(TrimError::Parameter { field, value: advance_ratio, expected });
-        }
+        let weight = model.thrust_of_loading(loading);
         Ok(Self {
             advance_ratio,
             target: *target,
-            weight: model.thrust_of_loading(loading),
-            thrust_coefficient: model.thrust_coefficient(model.thrust_of_loading(loading)),
+            weight,
+            thrust_coefficient: model.thrust_coefficient(weight),
             blades_weight: solver.rotor().blades_weight(),
             density_chord: model.density_chord(),
             chord: model.chord,
             unknowns,
         })
+    }
+
+    pub(crate) fn flight(&self, shaft_tilt_rad: f64) -> FlightState {
+        FlightState { advance_ratio: self.advance_ratio, shaft_tilt_rad }
     }
 
     /// Drag and tail lift of the airframe; none but in level flight.
@@ -108,18 +112,17 @@ impl Balance {
 
     /// Controls and attitude of the unknowns.
     pub(crate) fn state(&self, x: &DVector<f64>) -> (Controls, Attitude) {
+        let found = || Controls { theta0_rad: x[0], theta1c_rad: x[1], theta1s_rad: x[2] };
         match self.target {
             TrimTarget::Prescribed { controls, shaft_tilt_rad } => {
                 (controls, Attitude { shaft_tilt_rad, ..Attitude::default() })
             }
-            TrimTarget::WindTunnel { shaft_tilt_rad, .. } => (
-                Controls { theta0_rad: x[0], theta1c_rad: x[1], theta1s_rad: x[2] },
-                Attitude { shaft_tilt_rad, ..Attitude::default() },
-            ),
-            TrimTarget::Propulsive { .. } => (
-                Controls { theta0_rad: x[0], theta1c_rad: x[1], theta1s_rad: x[2] },
-                Attitude { shaft_tilt_rad: x[3], roll_rad: x[4], tail_thrust: x[5] },
-            ),
+            TrimTarget::WindTunnel { shaft_tilt_rad, .. } => {
+                (found(), Attitude { shaft_tilt_rad, ..Attitude::default() })
+            }
+            TrimTarget::Propulsive { .. } => {
+                (found(), Attitude { shaft_tilt_rad: x[3], roll_rad: x[4], tail_thrust: x[5] })
+            }
         }
     }
 

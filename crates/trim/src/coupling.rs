@@ -13,23 +13,19 @@ use rotor_wake::{
 /// Halvings of the part of a sweep that is gone, at most.
 const MOST_HALVINGS: u32 = 3;
 /// A change above this share of the least so far halves the part.
-const PAYING: f64 = 0.9;
+const LEAST_GAIN: f64 = 0.9;
 /// Share of a change of circulation that moves the wake: near passages of vortices answer strongly.
 pub(crate) const MIXED: f64 = 0.5;
 /// Sweeps over those asked for where they go in part or the wake still moves.
 const MORE_SWEEPS: usize = 3;
 /// Updates without gain at the least part, after which a stage ends, unless the last one still fell from that before.
-const PATIENCE: usize = 10;
+const MOST_STAGNANT: usize = 10;
 /// Change of the inflow in one update, tip speed, that no rotor's wake makes: vortices and blades run away from each other.
 const RUNAWAY: f64 = 0.3;
 /// Change of the inflow, tip speed, above which a state is not kept as a good one.
 const TRUSTED: f64 = 0.1;
 /// Updates in turn that may fail, each with half of the part before.
 const FAILURES: usize = 3;
-
-pub(crate) fn wrong(source: WakeError) -> TrimError {
-    TrimError::from(ResponseError::from(source))
-}
 
 /// Lifting lines and circulation of a response on the grid of a wake; in an axial wake, those that turn with the
 /// blades.
@@ -92,8 +88,7 @@ impl Coupling<'_> {
     ) -> Result<State, TrimError> {
         let chord = self.solver.rotor().model().chord;
         let mu = start.flight.advance_ratio;
-        let induction = wake.line_induction(&moving).map_err(wrong)?;
-        let frozen = FrozenWake::new(induction, &moving, chord, mu).map_err(wrong)?;
+        let frozen = FrozenWake::new(wake.line_induction(&moving)?, &moving, chord, mu)?;
         let trim = self.trimmed(&frozen, mu, Some(start))?;
         let (inflow_change, displacement) = (f64::INFINITY, f64::INFINITY);
         Ok(State { trim, wake, frozen, moving, inflow_change, displacement })
@@ -110,22 +105,17 @@ impl Coupling<'_> {
         let settings = self.settings.wake.with_azimuths(azimuths);
         let (lines, circulation) =
             on_the_grid(&self.solver, &start.rotor, &start.controls, panels, &settings)?;
-        let wake = match before {
-            Some(wake) => wake.on_grid(azimuths, lines),
-            None => FreeWake::undistorted(
-                panels.clone(),
-                settings,
-                start.flight,
-                momentum_inflow(&start.flight, start.rotor.thrust_coefficient).map_err(wrong)?,
-                lines,
-            ),
-        }
-        .map_err(wrong)?;
+        let wake = if let Some(wake) = before {
+            wake.on_grid(azimuths, lines)?
+        } else {
+            let mean = momentum_inflow(&start.flight, start.rotor.thrust_coefficient)?;
+            FreeWake::undistorted(panels.clone(), settings, start.flight, mean, lines)?
+        };
         self.in_still_wake(wake, circulation, start)
     }
 
     /// How far a state is from rest: what is left of inflow and geometry over what may be.
-    fn unrest(&self, state: &State) -> f64 {
+    fn normalised_residual(&self, state: &State) -> f64 {
         let inflow = state.inflow_change / self.settings.inflow_tolerance;
         inflow.max(state.displacement / self.settings.displacement_tolerance)
     }
@@ -138,49 +128,52 @@ impl Coupling<'_> {
         let first = self.updates.len();
         let mut best = start.clone();
         let mut now = start;
-        let (mut halvings, mut least, mut idle, mut failures) = (0, f64::INFINITY, 0, 0);
+        let (mut halvings, mut least, mut stagnant, mut failures) = (0, f64::INFINITY, 0, 0);
         let mut least_change = f64::INFINITY;
         for _ in 0..self.settings.updates {
             match self.update(&now, halvings) {
                 Ok(next) => {
-                    let before = self.unrest(&now);
+                    let before = self.normalised_residual(&now);
                     now = next;
                     failures = 0;
-                    let unrest = self.unrest(&now);
-                    let falls = unrest < PAYING * before;
-                    idle = if unrest > PAYING * least {
+                    let normalised_residual = self.normalised_residual(&now);
+                    let falls = normalised_residual < LEAST_GAIN * before;
+                    stagnant = if normalised_residual > LEAST_GAIN * least {
                         halvings = MOST_HALVINGS.min(halvings + 1);
-                        idle + 1
+                        stagnant + 1
                     } else {
                         0
                     };
-                    least = least.min(unrest);
+                    least = least.min(normalised_residual);
                     least_change = least_change.min(now.inflow_change);
-                    if now.inflow_change < TRUSTED && unrest < self.unrest(&best) {
+                    if now.inflow_change < TRUSTED
+                        && normalised_residual < self.normalised_residual(&best)
+                    {
                         best.clone_from(&now);
                     }
-                    if unrest <= enough {
+                    if normalised_residual <= enough {
                         return (now, WakeOutcome::Settled);
                     }
-                    if idle >= PATIENCE && halvings == MOST_HALVINGS && !falls {
+                    if stagnant >= MOST_STAGNANT && halvings == MOST_HALVINGS && !falls {
                         break;
                     }
                 }
-                Err(failure) => {
+                Err(error) => {
                     failures += 1;
                     halvings = MOST_HALVINGS.min(halvings + 1);
                     if failures == FAILURES {
-                        let (updates, change) = (self.updates.len() - first, best.inflow_change);
-                        return (best, failure.outcome(updates, change));
+                        let updates = self.updates.len() - first;
+                        let inflow_change = best.inflow_change;
+                        return (best, WakeOutcome::Failed { updates, inflow_change, error });
                     }
                 }
             }
         }
         let done = &self.updates[first..];
         if least_change > TRUSTED {
-            let (update, change) = (done.len(), least_change);
-            let error = WakeError::InflowRunsAway { update, change, largest: TRUSTED };
-            return (best, Failure::Wake(error).outcome(done.len(), f64::INFINITY));
+            let (updates, inflow_change) = (done.len(), f64::INFINITY);
+            let error = runaway(updates, least_change, TRUSTED);
+            return (best, WakeOutcome::Failed { updates, inflow_change, error });
         }
         // the state kept is one of those the band is of
         let angles = done[done.len() / 2..].iter().map(|u| u.theta0_rad);
@@ -199,7 +192,7 @@ impl Coupling<'_> {
     }
 
     /// One update: the wake moved with the circulation of the trim, and the trim in it.
-    fn update(&mut self, now: &State, halvings: u32) -> Result<State, Failure> {
+    fn update(&mut self, now: &State, halvings: u32) -> Result<State, TrimError> {
         let part = 0.5_f64.powf(f64::from(halvings));
         let panels = now.wake.rotor();
         let (lines, circulation) = on_the_grid(
@@ -208,8 +201,7 @@ impl Coupling<'_> {
             &now.trim.controls,
             panels,
             now.wake.settings(),
-        )
-        .map_err(TrimError::from)?;
+        )?;
         let share = MIXED * f64::max(part, 0.4);
         let circulation = circulation.mixed(&now.moving, share)?;
         let mean = momentum_inflow(&now.trim.flight, now.trim.rotor.thrust_coefficient)?;
@@ -220,8 +212,7 @@ impl Coupling<'_> {
         next.displacement = displacement;
         next.inflow_change = largest_change(&next.trim.rotor.inflow, &now.trim.rotor.inflow) / gone;
         if next.inflow_change > RUNAWAY {
-            let (update, change) = (self.updates.len() + 1, next.inflow_change);
-            return Err(WakeError::InflowRunsAway { update, change, largest: RUNAWAY }.into());
+            return Err(runaway(self.updates.len() + 1, next.inflow_change, RUNAWAY));
         }
         self.updates.push(WakeUpdate {
             azimuths: next.wake.settings().azimuths,
@@ -257,31 +248,8 @@ impl Coupling<'_> {
     }
 }
 
-/// Why an update failed.
-enum Failure {
-    Wake(WakeError),
-    Trim(TrimError),
-}
-
-impl From<WakeError> for Failure {
-    fn from(error: WakeError) -> Self {
-        Self::Wake(error)
-    }
-}
-
-impl From<TrimError> for Failure {
-    fn from(error: TrimError) -> Self {
-        Self::Trim(error)
-    }
-}
-
-impl Failure {
-    fn outcome(self, updates: usize, inflow_change: f64) -> WakeOutcome {
-        match self {
-            Self::Wake(error) => WakeOutcome::WakeFailed { updates, inflow_change, error },
-            Self::Trim(error) => WakeOutcome::TrimFailed { updates, inflow_change, error },
-        }
-    }
+fn runaway(update: usize, change: f64, largest: f64) -> TrimError {
+    WakeError::InflowRunsAway { update, change, largest }.into()
 }
 
 fn largest_change(a: &InducedInflow, b: &InducedInflow) -> f64 {

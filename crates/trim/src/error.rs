@@ -1,12 +1,11 @@
 //! The errors of this crate.
 
+use rotor_response::ResponseError;
+use rotor_wake::WakeError;
+
 /// All residuals, for a message: a search has few, and where it got stuck is seen from its beginning.
 fn show(history: &[f64]) -> String {
-    if history.is_empty() {
-        return "none".to_owned();
-    }
-    let shown: Vec<String> = history.iter().map(|r| format!("{r:.1e}")).collect();
-    shown.join(" ")
+    history.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>().join(" ")
 }
 
 /// The most thrust of a search, for a message.
@@ -84,7 +83,7 @@ pub enum TrimError {
         theta0_deg: f64,
         /// How the response ended, its residual history included.
         #[source]
-        cause: Box<rotor_response::ResponseError>,
+        cause: Box<ResponseError>,
     },
     /// Sections that never stall give a thrust that no aerofoil gives.
     #[error(
@@ -145,13 +144,18 @@ pub enum TrimError {
     },
     /// The rotor could not be solved.
     #[error("rotor response inside the trim: {0}")]
-    Response(#[from] rotor_response::ResponseError),
+    Response(#[from] ResponseError),
+}
+
+impl From<WakeError> for TrimError {
+    fn from(error: WakeError) -> Self {
+        Self::Response(error.into())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rotor_response::ResponseError;
 
     /// A search that fails at its first response has no residual of its own: it tells that of the response.
     #[test]

@@ -101,17 +101,12 @@ struct Progress {
 }
 
 impl Progress {
-    fn note(
-        &mut self,
-        (rotor, residual): &(RotorSolution, DVector<f64>),
-        solidity: f64,
-        controls: Controls,
-    ) {
-        self.history.push(if residual.is_empty() { 0.0 } else { residual.amax() });
-        self.last_theta0_rad = controls.theta0_rad;
+    fn note(&mut self, (rotor, residual): &Iterate, solidity: f64, theta0_rad: f64) {
+        self.history.push(residual.amax());
+        self.last_theta0_rad = theta0_rad;
         let ct_sigma = rotor.thrust_coefficient / solidity;
         if ct_sigma > self.reached {
-            (self.reached, self.theta0_deg) = (ct_sigma, controls.theta0_rad.to_degrees());
+            (self.reached, self.theta0_deg) = (ct_sigma, theta0_rad.to_degrees());
         }
     }
 
@@ -122,8 +117,8 @@ impl Progress {
     }
 }
 
-/// A step that lowers the residuals, with the response and the residuals after it.
-type Descent = (DVector<f64>, (RotorSolution, DVector<f64>));
+/// A response, and the trim residuals that it leaves over the weight.
+type Iterate = (RotorSolution, DVector<f64>);
 
 const VARIABLES: [&str; 6] = ["theta0", "theta1c", "theta1s", "shaft tilt", "bank", "tail thrust"];
 
@@ -152,6 +147,11 @@ pub fn trim(
     problem.solve(solver, settings, start.or(damped.as_ref()))
 }
 
+/// Largest size of one of the first five unknowns, rad.
+fn limit(unknown: usize) -> f64 {
+    if unknown < 3 { PITCH_LIMIT } else { ATTITUDE_LIMIT }
+}
+
 /// The search for balance at one advance ratio.
 struct Problem<'a> {
     inflow: &'a dyn InflowModel,
@@ -172,7 +172,7 @@ impl Problem<'_> {
             TrimTarget::WindTunnel { shaft_tilt_rad, .. }
             | TrimTarget::Prescribed { shaft_tilt_rad, .. } => shaft_tilt_rad,
         };
-        let flight = FlightState { advance_ratio: mu, shaft_tilt_rad: tilt };
+        let flight = balance.flight(tilt);
         let hover = (0.5 * balance.thrust_coefficient).sqrt();
         let induced = momentum_inflow(&flight, balance.thrust_coefficient).unwrap_or(hover);
         let lambda = flight.normal_inflow() + induced;
@@ -189,15 +189,14 @@ impl Problem<'_> {
         solver: &mut RotorSolver,
         x: &DVector<f64>,
         start: Option<&RotorSolution>,
-    ) -> Result<(RotorSolution, DVector<f64>), TrimError> {
+    ) -> Result<Iterate, TrimError> {
         let (controls, attitude) = self.balance.state(x);
-        let flight = FlightState {
-            advance_ratio: self.balance.advance_ratio,
-            shaft_tilt_rad: attitude.shaft_tilt_rad,
+        let condition = Condition {
+            flight: self.balance.flight(attitude.shaft_tilt_rad),
+            bank_rad: attitude.roll_rad,
+            controls,
+            flap_angles_rad: vec![HarmonicSeries::default(); self.flaps],
         };
-        let flap_angles_rad = vec![HarmonicSeries::default(); self.flaps];
-        let condition =
-            Condition { flight, bank_rad: attitude.roll_rad, controls, flap_angles_rad };
         let found = solver.solve(&condition, self.inflow, start);
         let rotor =
             found.map_err(|error| solver.rotor().blame_resonance(controls.theta0_rad, error))?;
@@ -210,7 +209,7 @@ impl Problem<'_> {
         &self,
         solver: &RotorSolver,
         x: &DVector<f64>,
-        base: &(RotorSolution, DVector<f64>),
+        base: &Iterate,
     ) -> Result<DMatrix<f64>, TrimError> {
         let columns = (0..self.balance.unknowns)
             .into_par_iter()
@@ -227,8 +226,7 @@ impl Problem<'_> {
     /// The part of a step, at most 1, after which the first unknown meets its limit, and which.
     fn part_within_limits(x: &DVector<f64>, step: &DVector<f64>) -> (f64, usize) {
         let ratios = x.iter().zip(step).enumerate().take(5).map(|(j, (&value, &change))| {
-            let limit = if j < 3 { PITCH_LIMIT } else { ATTITUDE_LIMIT };
-            let room = (limit - value * change.signum()).max(0.0);
+            let room = (limit(j) - value * change.signum()).max(0.0);
             (if change == 0.0 { f64::INFINITY } else { room / change.abs() }, j)
         });
         ratios.fold((1.0, 0), |least, ratio| if ratio.0 < least.0 { ratio } else { least })
@@ -267,41 +265,28 @@ impl Problem<'_> {
         let mut progress = Progress::default();
         let found = self.search(solver, settings, start, &mut progress);
         let model = solver.rotor().model();
-        let solidity = model.solidity();
-        let within_stall = |ct_sigma: f64, trimmed: TrimSolution| {
-            let lift_coefficient =
-                mean_lift_coefficient(ct_sigma.abs(), self.balance.advance_ratio);
-            if !model.nonlinear.is_linear() || lift_coefficient <= LARGEST_LIFT_COEFFICIENT {
-                return Ok(trimmed);
-            }
-            Err(TrimError::BeyondStall {
-                wanted: ct_sigma,
-                lift_coefficient,
-                largest: LARGEST_LIFT_COEFFICIENT,
-                history: trimmed.residual_history,
-            })
-        };
-        if self.balance.unknowns == 0 {
-            let found = found.and_then(|trimmed| {
-                within_stall(trimmed.rotor.thrust_coefficient / solidity, trimmed)
-            });
-            return found.map_err(|error| match error {
-                TrimError::Response(
-                    cause @ (ResponseError::PeriodicStall(_)
-                    | ResponseError::StallNotPeriodic { .. }),
-                ) => {
-                    let theta0_deg = progress.last_theta0_rad.to_degrees();
-                    TrimError::StalledControls { theta0_deg, cause: Box::new(cause) }
-                }
-                error => error,
-            });
-        }
-        let wanted = self.balance.thrust_coefficient / model.solidity();
+        let (solidity, given) = (model.solidity(), self.balance.unknowns == 0);
+        let stalls = !model.nonlinear.is_linear();
+        let wanted = self.balance.thrust_coefficient / solidity;
         match found {
-            Ok(trimmed) => within_stall(wanted, trimmed),
-            Err(cause)
-                if !model.nonlinear.is_linear() && progress.reached < STALLED_SHARE * wanted =>
-            {
+            Ok(trimmed) => {
+                let wanted =
+                    if given { trimmed.rotor.thrust_coefficient / solidity } else { wanted };
+                let lift_coefficient =
+                    mean_lift_coefficient(wanted.abs(), self.balance.advance_ratio);
+                if stalls || lift_coefficient <= LARGEST_LIFT_COEFFICIENT {
+                    return Ok(trimmed);
+                }
+                let (largest, history) = (LARGEST_LIFT_COEFFICIENT, trimmed.residual_history);
+                Err(TrimError::BeyondStall { wanted, lift_coefficient, largest, history })
+            }
+            Err(TrimError::Response(
+                cause @ (ResponseError::PeriodicStall(_) | ResponseError::StallNotPeriodic { .. }),
+            )) if given => {
+                let theta0_deg = progress.last_theta0_rad.to_degrees();
+                Err(TrimError::StalledControls { theta0_deg, cause: Box::new(cause) })
+            }
+            Err(cause) if stalls && !given && progress.reached < STALLED_SHARE * wanted => {
                 Err(TrimError::Stalled {
                     wanted,
                     reached: progress.reached,
@@ -314,10 +299,10 @@ impl Problem<'_> {
                 cause @ (TrimError::OutOfReach { .. }
                 | TrimError::NoDescent { .. }
                 | TrimError::NotConverged { .. }),
-            ) => Err(solver
-                .rotor()
-                .likely_resonance(progress.last_theta0_rad)
-                .map_or(cause, TrimError::Response)),
+            ) => {
+                let resonance = solver.rotor().likely_resonance(progress.last_theta0_rad);
+                Err(resonance.map_or(cause, TrimError::Response))
+            }
             Err(cause) => Err(cause),
         }
     }
@@ -330,21 +315,30 @@ impl Problem<'_> {
         start: Option<&TrimSolution>,
         progress: &mut Progress,
     ) -> Result<TrimSolution, TrimError> {
+        let theta0_rad = |x: &DVector<f64>| self.balance.state(x).0.theta0_rad;
         let mut x = start.map_or_else(|| self.first_guess(solver), |s| self.unknowns_of(s));
-        progress.last_theta0_rad = self.balance.state(&x).0.theta0_rad;
+        progress.last_theta0_rad = theta0_rad(&x);
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
         let solidity = solver.rotor().model().solidity();
         let stalls = !solver.rotor().model().nonlinear.is_linear();
-        progress.note(&current, solidity, self.balance.state(&x).0);
+        progress.note(&current, solidity, theta0_rad(&x));
         let mut jacobian: Option<DMatrix<f64>> =
             start.and_then(|s| s.jacobian.clone()).filter(|j| j.nrows() == self.balance.unknowns);
         for iteration in 0..=settings.max_iterations {
             let residual = current.1.amax();
             if self.balance.unknowns == 0 || residual <= settings.tolerance {
-                let theta0 = self.balance.state(&x).0.theta0_rad;
-                solver.rotor().refuse_resonance_in_flight(theta0, &current.0)?;
-                let history = progress.history.clone();
-                return Ok(self.finish(&x, current, (history, iteration), jacobian));
+                solver.rotor().refuse_resonance_in_flight(theta0_rad(&x), &current.0)?;
+                let (controls, attitude) = self.balance.state(&x);
+                return Ok(TrimSolution {
+                    controls,
+                    attitude,
+                    flight: self.balance.flight(attitude.shaft_tilt_rad),
+                    rotor: current.0,
+                    residual,
+                    residual_history: progress.history.clone(),
+                    iterations: iteration,
+                    jacobian,
+                });
             }
             let (matrix, fresh) = match jacobian.take() {
                 Some(kept) => (kept, false),
@@ -360,10 +354,16 @@ impl Problem<'_> {
                 if !fresh {
                     continue;
                 }
-                let history = progress.history.clone();
-                return Err(Self::out_of_reach(limited, x[limited], iteration, history));
+                return Err(TrimError::OutOfReach {
+                    variable: VARIABLES[limited],
+                    value_deg: x[limited].to_degrees(),
+                    limit_deg: limit(limited).to_degrees().round(),
+                    iteration,
+                    residual,
+                    history: progress.history.clone(),
+                });
             }
-            let theta0_deg = self.balance.state(&x).0.theta0_rad.to_degrees();
+            let theta0_deg = theta0_rad(&x).to_degrees();
             let no_descent = |progress: &Progress| TrimError::NoDescent {
                 iteration,
                 residual,
@@ -387,14 +387,14 @@ impl Problem<'_> {
             jacobian = (gained || fresh).then_some(updated);
             x += &step;
             current = new;
-            progress.note(&current, solidity, self.balance.state(&x).0);
+            progress.note(&current, solidity, theta0_rad(&x));
         }
         Err(TrimError::NotConverged {
             iterations: settings.max_iterations,
             residual: current.1.amax(),
             tolerance: settings.tolerance,
             history: progress.history.clone(),
-            theta0_deg: self.balance.state(&x).0.theta0_rad.to_degrees(),
+            theta0_deg: theta0_rad(&x).to_degrees(),
         })
     }
 
@@ -406,9 +406,9 @@ impl Problem<'_> {
         solver: &mut RotorSolver,
         x: &DVector<f64>,
         step: &DVector<f64>,
-        current: &(RotorSolution, DVector<f64>),
+        current: &Iterate,
         progress: &mut Progress,
-    ) -> Result<Option<Descent>, TrimError> {
+    ) -> Result<Option<(DVector<f64>, Iterate)>, TrimError> {
         let norm = current.1.norm();
         let mut failure = None;
         for halvings in 0..=LARGEST_HALVINGS {
@@ -428,54 +428,11 @@ impl Problem<'_> {
         failure.map_or(Ok(None), Err)
     }
 
-    fn out_of_reach(limited: usize, value: f64, iteration: usize, history: Vec<f64>) -> TrimError {
-        let limit: f64 = if limited < 3 { PITCH_LIMIT } else { ATTITUDE_LIMIT };
-        TrimError::OutOfReach {
-            variable: VARIABLES[limited],
-            value_deg: value.to_degrees(),
-            limit_deg: limit.to_degrees().round(),
-            iteration,
-            residual: history.last().copied().unwrap_or(f64::NAN),
-            history,
-        }
-    }
-
     fn unknowns_of(&self, solution: &TrimSolution) -> DVector<f64> {
         let (c, a) = (&solution.controls, &solution.attitude);
-        let all = [
-            c.theta0_rad,
-            c.theta1c_rad,
-            c.theta1s_rad,
-            a.shaft_tilt_rad,
-            a.roll_rad,
-            a.tail_thrust,
-        ];
+        let pitch = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad];
+        let all = [pitch, [a.shaft_tilt_rad, a.roll_rad, a.tail_thrust]].concat();
         DVector::from_column_slice(&all[..self.balance.unknowns])
-    }
-
-    fn finish(
-        &self,
-        x: &DVector<f64>,
-        (rotor, residual): (RotorSolution, DVector<f64>),
-        (residual_history, iterations): (Vec<f64>, usize),
-        jacobian: Option<DMatrix<f64>>,
-    ) -> TrimSolution {
-        let (controls, attitude) = self.balance.state(x);
-        let flight = FlightState {
-            advance_ratio: self.balance.advance_ratio,
-            shaft_tilt_rad: attitude.shaft_tilt_rad,
-        };
-        let residual = if self.balance.unknowns == 0 { 0.0 } else { residual.amax() };
-        TrimSolution {
-            controls,
-            attitude,
-            flight,
-            rotor,
-            residual,
-            residual_history,
-            iterations,
-            jacobian,
-        }
     }
 }
 
@@ -492,6 +449,5 @@ pub fn imbalance(
     response: &RotorSolution,
 ) -> Result<f64, TrimError> {
     let problem = Balance::new(solver, trimmed.flight.advance_ratio, target)?;
-    let residual = problem.residual(response, &trimmed.attitude);
-    Ok(if residual.is_empty() { 0.0 } else { residual.amax() })
+    Ok(problem.residual(response, &trimmed.attitude).amax())
 }

@@ -66,27 +66,25 @@ impl Vehicle {
     /// # Errors
     /// [`TrimError::Parameter`] for the first value out of range.
     pub fn validate(&self) -> Result<(), TrimError> {
-        let check = |field, value: f64, low: f64, high: f64, expected| {
-            if value >= low && value <= high {
-                Ok(())
-            } else {
-                Err(TrimError::Parameter { field, value, expected })
-            }
-        };
-        check("drag_area", self.drag_area, 0.0, 1.0, "0 to 1 disk area")?;
-        check("cg_below_hub", self.cg_below_hub, 0.0, 2.0, "0 to 2 R")?;
-        check("hub_aft_of_cg", self.hub_aft_of_cg, -1.0, 1.0, "-1 to 1 R")?;
-        check("hub_starboard_of_cg", self.hub_starboard_of_cg, -1.0, 1.0, "-1 to 1 R")?;
-        check("tail_rotor_arm", self.tail_rotor_arm, 0.1, 5.0, "0.1 to 5 R")?;
-        check("tail_rotor_height", self.tail_rotor_height, -2.0, 2.0, "-2 to 2 R")?;
         let tail = &self.horizontal_tail;
-        check("horizontal_tail.area", tail.area, 0.0, 0.2, "0 to 0.2 disk areas")?;
-        check("horizontal_tail.arm", tail.arm, -5.0, 5.0, "-5 to 5 R")?;
-        check("horizontal_tail.height", tail.height, -2.0, 2.0, "-2 to 2 R")?;
-        let angle = tail.incidence_rad;
-        check("horizontal_tail.incidence_rad", angle, -0.5, 0.5, "-0.5 to 0.5 rad")?;
-        let slope = tail.lift_slope;
-        check("horizontal_tail.lift_slope", slope, 0.0, 10.0, "0 to 10 per rad")
+        for (field, value, [low, high], expected) in [
+            ("drag_area", self.drag_area, [0.0, 1.0], "0 to 1 disk area"),
+            ("cg_below_hub", self.cg_below_hub, [0.0, 2.0], "0 to 2 R"),
+            ("hub_aft_of_cg", self.hub_aft_of_cg, [-1.0, 1.0], "-1 to 1 R"),
+            ("hub_starboard_of_cg", self.hub_starboard_of_cg, [-1.0, 1.0], "-1 to 1 R"),
+            ("tail_rotor_arm", self.tail_rotor_arm, [0.1, 5.0], "0.1 to 5 R"),
+            ("tail_rotor_height", self.tail_rotor_height, [-2.0, 2.0], "-2 to 2 R"),
+            ("horizontal_tail.area", tail.area, [0.0, 0.2], "0 to 0.2 disk areas"),
+            ("horizontal_tail.arm", tail.arm, [-5.0, 5.0], "-5 to 5 R"),
+            ("horizontal_tail.height", tail.height, [-2.0, 2.0], "-2 to 2 R"),
+            ("horizontal_tail.incidence_rad", tail.incidence_rad, [-0.5, 0.5], "-0.5 to 0.5 rad"),
+            ("horizontal_tail.lift_slope", tail.lift_slope, [0.0, 10.0], "0 to 10 per rad"),
+        ] {
+            if !(value >= low && value <= high) {
+                return Err(TrimError::Parameter { field, value, expected });
+            }
+        }
+        Ok(())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Trim and free wake together.
 
-use crate::coupling::{Coupling, State, wrong};
+use crate::coupling::{Coupling, State};
 use crate::{
     TrimError, TrimSettings, TrimSolution, TrimTarget, WakeOutcome, WakeTrimSettings, WakeUpdate,
     trim,
@@ -62,8 +62,8 @@ pub fn trim_in_free_wake(
 ) -> Result<WakeTrim, TrimError> {
     let model = solver.rotor().model();
     let (cutout, blades) = (model.root_cutout, model.blades);
-    let panels = WakeRotor::uniform(blades, cutout, settings.panels).map_err(wrong)?;
-    settings.wake.validate(blades).map_err(wrong)?;
+    let panels = WakeRotor::uniform(blades, cutout, settings.panels)?;
+    settings.wake.validate(blades)?;
     let exact = solver.tolerances();
     let iterations = exact.inflow_iterations.max(WAKE_ITERATIONS);
     // between updates the trim need not be better than the wake
@@ -103,8 +103,7 @@ pub fn trim_in_free_wake(
             (Ok(begun), _) => begun,
             (Err(error), None) => return Err(error),
             (Err(error), Some((_, outcome))) => {
-                *outcome =
-                    WakeOutcome::TrimFailed { updates: 0, inflow_change: f64::INFINITY, error };
+                *outcome = WakeOutcome::Failed { updates: 0, inflow_change: f64::INFINITY, error };
                 break;
             }
         };
@@ -122,14 +121,14 @@ pub fn trim_in_free_wake(
     match trim(&mut fine, &state.frozen, advance_ratio, target, trim_settings, last) {
         Ok(trimmed) => state.trim = trimmed,
         // the reason why it has not settled comes first
-        Err(_) if outcome.ran_away() => {}
+        Err(_) if outcome.is_diverged() => {}
         Err(error) => {
             let (updates, inflow_change) = (coupling.updates.len(), state.inflow_change);
-            outcome = WakeOutcome::TrimFailed { updates, inflow_change, error };
+            outcome = WakeOutcome::Failed { updates, inflow_change, error };
         }
     }
     Ok(WakeTrim {
-        closest_passage: state.wake.closest_passage(&state.moving).map_err(wrong)?,
+        closest_passage: state.wake.closest_passage(&state.moving)?,
         trim: state.trim,
         wake: state.wake,
         moving: state.moving,

@@ -6,20 +6,10 @@ use crate::wake_settings::WakeTrimSettings;
 use rotor_response::{Condition, ResponseError, RotorSolution, RotorSolver};
 use rotor_wake::{CirculationMap, FreeWake, FrozenWake, momentum_inflow};
 
-/// How far the wake is converged anew under a change of the flaps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WakeDifferenceSettings {
-    /// Updates of the geometry at most, 1 or more.
-    pub updates: usize,
-    /// Change of the difference of the hub loads in one update, over the difference, at which it has settled.
-    pub tolerance: f64,
-}
-
-impl Default for WakeDifferenceSettings {
-    fn default() -> Self {
-        Self { updates: 20, tolerance: 1e-3 }
-    }
-}
+/// Updates of the geometry at most.
+const UPDATES: usize = 20;
+/// Change of the difference of the hub loads in one update, over the difference, at which it has settled.
+const TOLERANCE: f64 = 1e-3;
 
 /// Hub loads of two conditions, each in a wake of its own, one less the other.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,8 +19,6 @@ pub struct WakeDifference {
     pub hub: Vec<[f64; 12]>,
     /// Change of that difference in the last update, over its size.
     pub change: f64,
-    /// Whether `change` meets the tolerance.
-    pub settled: bool,
 }
 
 impl WakeDifference {
@@ -98,18 +86,13 @@ impl<'a> WakeResponse<'a> {
 /// held still whose inflow follows the circulation at once. Pilot controls are those of the conditions.
 ///
 /// # Errors
-/// Those of the response and of the wake, which may run away; settings that are none.
+/// Those of the response and of the wake, which may run away.
 pub fn wake_difference(
     about: &WakeTrim,
     solver: &RotorSolver,
     coupling: &WakeTrimSettings,
     [plus, minus]: [&Condition; 2],
-    settings: WakeDifferenceSettings,
 ) -> Result<WakeDifference, ResponseError> {
-    if settings.updates == 0 {
-        let (field, expected) = ("updates of the wake", "1 or more");
-        return Err(ResponseError::Parameter { field, value: 0.0, expected });
-    }
     let blades = solver.rotor().model().blades;
     let mut plus = WakeResponse::new(about, solver, plus)?;
     let mut minus = WakeResponse::new(about, solver, minus)?;
@@ -118,20 +101,15 @@ pub fn wake_difference(
         std::array::from_fn(|k| a[k] - b[k])
     };
     let size = |z: &[f64; 12]| z.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let mut found = WakeDifference {
-        hub: vec![difference(&plus, &minus)],
-        change: f64::INFINITY,
-        settled: false,
-    };
-    for _ in 0..settings.updates {
+    let mut found = WakeDifference { hub: vec![difference(&plus, &minus)], change: f64::INFINITY };
+    for _ in 0..UPDATES {
         plus.update(solver, coupling)?;
         minus.update(solver, coupling)?;
         let (before, here) = (found.last(), difference(&plus, &minus));
         let moved: [f64; 12] = std::array::from_fn(|k| here[k] - before[k]);
         found.hub.push(here);
         found.change = size(&moved) / size(&here).max(f64::MIN_POSITIVE);
-        found.settled = found.change <= settings.tolerance;
-        if found.settled {
+        if found.change <= TOLERANCE {
             break;
         }
     }

@@ -1,7 +1,7 @@
 //! How a trim is coupled with a free wake, and how the coupling ended.
 
 use crate::TrimError;
-use rotor_wake::{FreeWakeSettings, WakeError, WakeMethod};
+use rotor_wake::{FreeWakeSettings, WakeMethod};
 
 /// How a trim is coupled with a free wake.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,17 +78,8 @@ pub enum WakeOutcome {
         /// Least and largest collective of the second half of these updates and of the state kept, rad.
         theta0_band_rad: [f64; 2],
     },
-    /// The wake ran away; the state of the least change before is kept.
-    WakeFailed {
-        /// Updates of the last grid.
-        updates: usize,
-        /// Largest change of the inflow in the state kept, tip speed; infinite if it is the start of a grid.
-        inflow_change: f64,
-        /// Why.
-        error: WakeError,
-    },
-    /// The rotor found no trim in its moving wake; the state of the least change before is kept.
-    TrimFailed {
+    /// The wake ran away, or the rotor found no trim in it; the state of the least change before is kept.
+    Failed {
         /// Updates of the last grid.
         updates: usize,
         /// Largest change of the inflow in the state kept, tip speed; infinite if it is the start of a grid.
@@ -99,8 +90,8 @@ pub enum WakeOutcome {
 }
 
 impl WakeOutcome {
-    /// Whether wake and trim have parted: what is given is a state on the way, no solution.
-    pub fn ran_away(&self) -> bool {
-        matches!(self, Self::WakeFailed { .. } | Self::TrimFailed { .. })
+    /// Whether wake and trim diverged: what is given is a state on the way, no solution.
+    pub fn is_diverged(&self) -> bool {
+        matches!(self, Self::Failed { .. })
     }
 }

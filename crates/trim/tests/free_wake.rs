@@ -3,7 +3,7 @@
 
 use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
-    Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+    Couplings, Discretisation, ResponseError, ResponseTolerances, Rotor, RotorModel, RotorSolver,
 };
 use rotor_wake::{
     CoreModel, FarTrailers, FreeWakeSettings, InducedInflow, WakeError, WakeMethod, WakeSymmetry,
@@ -65,10 +65,10 @@ fn a_wake_at_low_speed_settles_or_says_where_it_stopped() {
     else {
         unreachable!("{:?}", stopped.outcome)
     };
-    let unrest =
+    let normalised_residual =
         |change: f64, moved: f64| f64::max(change / tolerance, moved / displacement_tolerance);
-    let each = stopped.updates.iter().map(|u| unrest(u.inflow_change, u.displacement));
-    let kept = unrest(inflow_change, displacement);
+    let each = stopped.updates.iter().map(|u| normalised_residual(u.inflow_change, u.displacement));
+    let kept = normalised_residual(inflow_change, displacement);
     assert_eq!(kept.to_bits(), each.fold(f64::INFINITY, f64::min).to_bits());
     assert!(updates == 2 && kept > 1.0 && is_finite(&stopped));
     let angle = stopped.trim.controls.theta0_rad;
@@ -155,14 +155,19 @@ fn a_coupling_that_runs_away_keeps_its_last_good_state() {
         let lost = coupled(0.0, &settings, ct_sigma).unwrap();
         assert!(is_finite(&lost));
         match &lost.outcome {
-            WakeOutcome::WakeFailed {
-                error: WakeError::InflowRunsAway { change, largest, .. },
+            WakeOutcome::Failed {
+                error:
+                    TrimError::Response(ResponseError::Wake(WakeError::InflowRunsAway {
+                        change,
+                        largest,
+                        ..
+                    })),
                 ..
             } => {
                 assert!(change > largest);
                 runaways += 1;
             }
-            WakeOutcome::TrimFailed { error, .. } => assert!(!error.to_string().is_empty()),
+            WakeOutcome::Failed { error, .. } => assert!(!error.to_string().is_empty()),
             WakeOutcome::NotSettled { inflow_change, tolerance, .. } => {
                 assert!(inflow_change > tolerance);
             }

@@ -190,7 +190,7 @@ impl BladeElementRotor<'_> {
     /// Circulation that agrees with the inflow it makes in a still wake.
     ///
     /// # Errors
-    /// [`WakeError::CirculationNotConverged`].
+    /// [`WakeError::InflowRunsAway`] if they do not agree after the last step.
     pub fn circulation_in(
         &self,
         flight: &FlightState,
@@ -241,11 +241,8 @@ impl BladeElementRotor<'_> {
             inflow += down * part;
             in_plane += along * part;
         }
-        Err(WakeError::CirculationNotConverged {
-            iterations: NEWTON_STEPS,
-            change,
-            tolerance: NEWTON_TOLERANCE,
-        })
+        let (update, largest) = (NEWTON_STEPS, NEWTON_TOLERANCE);
+        Err(WakeError::InflowRunsAway { update, change, largest })
     }
 
     /// The same at all azimuths of a wake; in an axial one, one azimuth is solved for all.
@@ -302,7 +299,7 @@ impl BladeElementRotor<'_> {
     /// so on until the inflow stays.
     ///
     /// # Errors
-    /// [`WakeError::CirculationNotConverged`] and the errors of the sweeps; `wake` keeps its last good
+    /// [`WakeError::InflowRunsAway`] after the last update, and the errors of the sweeps; `wake` keeps its last good
     /// geometry.
     pub fn solve(
         &self,
@@ -342,11 +339,8 @@ impl BladeElementRotor<'_> {
             induction = wake.line_induction(&circulation)?;
             moving = Some(circulation);
         }
-        Err(WakeError::CirculationNotConverged {
-            iterations: coupling.updates,
-            change,
-            tolerance: coupling.inflow_tolerance,
-        })
+        let (update, largest) = (coupling.updates, coupling.inflow_tolerance);
+        Err(WakeError::InflowRunsAway { update, change, largest })
     }
 
     /// The same with the wake marched in time, revolution by revolution: hover and low speed.
@@ -382,11 +376,8 @@ impl BladeElementRotor<'_> {
             circulation = still.circulation;
             history.extend(march.revolutions(coupling.sweeps, &circulation)?);
         }
-        Err(WakeError::CirculationNotConverged {
-            iterations: coupling.updates,
-            change,
-            tolerance: coupling.inflow_tolerance,
-        })
+        let (update, largest) = (coupling.updates, coupling.inflow_tolerance);
+        Err(WakeError::InflowRunsAway { update, change, largest })
     }
 
     /// Integrates the loads.

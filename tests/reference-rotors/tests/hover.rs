@@ -4,11 +4,12 @@
 mod common;
 
 use reference_rotors::{BladeElementRotor, BladeElementSolution, CouplingSettings};
-use reference_rotors::{CARADONNA_TUNG_THRUST, Landgrebe, caradonna_tung, slender};
+use reference_rotors::{
+    CARADONNA_TUNG_THRUST, Landgrebe, caradonna_tung, contraction_drift, slender,
+};
 use rotor_wake::{
     BladeLines, CirculationMap, ControlPoint, CoreModel, CoreSettings, FarTrailers, FlightState,
     FreeWake, FreeWakeSettings, NearWakeMotion, WakeError, WakeMarch, WakeRotor, WakeSymmetry,
-    contraction_drift,
 };
 use std::f64::consts::TAU;
 

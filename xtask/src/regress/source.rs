@@ -99,7 +99,7 @@ impl Program {
                     ("trim_iterations", trim.iterations),
                     ("inflow_iterations", counts.inflow_iterations),
                     ("control_steps", study.steps()),
-                    ("control_halvings", study.halvings() as usize),
+                    ("control_halvings", study.backtracks() as usize),
                 ])
                 .collect(),
         })

@@ -29,15 +29,6 @@ pub const LISTS: &[(&str, &str)] = &[
     ("tests/truth/src/hidden", "one file for each part of a synthetic set"),
 ];
 
-/// Crates to which the room rule does not apply yet, each with what is missing.
-pub const UNFINISHED: &[(&str, &str)] = &[
-    (
-        "crates/preisach-dyn",
-        "longer than a crate may be while it holds the reference forms of its laws",
-    ),
-    ("crates/sim-driver", "data, figure and paper of the report use one another"),
-];
-
 /// A breach of the room rule.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -76,24 +67,13 @@ pub enum RoomFault {
 
 /// All breaches of the room rule in a tree.
 pub fn check(tree: &Tree) -> Vec<RoomFault> {
-    check_but(tree, LISTS, UNFINISHED)
+    check_but(tree, LISTS)
 }
 
-/// [`check`] with exceptions of its own: folders that are lists, and crates that are not finished.
-pub fn check_but(
-    tree: &Tree,
-    lists: &[(&str, &str)],
-    unfinished: &[(&str, &str)],
-) -> Vec<RoomFault> {
-    let mut faults = Vec::new();
-    for (member, files) in members(tree) {
-        let found = faults_of(member, &files, lists);
-        match (found.is_empty(), unfinished.iter().any(|(path, _)| *path == member)) {
-            (true, true) => faults.push(RoomFault::Needless { path: member.to_owned() }),
-            (false, true) => {}
-            (_, false) => faults.extend(found),
-        }
-    }
+/// [`check`] with other folders that are lists.
+pub fn check_but(tree: &Tree, lists: &[(&str, &str)]) -> Vec<RoomFault> {
+    let mut faults: Vec<RoomFault> =
+        members(tree).iter().flat_map(|(member, files)| faults_of(member, files, lists)).collect();
     let held = |folder: &str| files_of_folders(tree).get(folder).copied().unwrap_or(0);
     let needless = lists.iter().filter(|(folder, _)| held(folder) <= FILES_OF_A_FOLDER);
     faults.extend(needless.map(|(path, _)| RoomFault::Needless { path: (*path).to_owned() }));

@@ -1,6 +1,7 @@
 //! Normal equations of the base model and their solution under its prior.
 
-use crate::plays::{Plays, lagged, solve};
+use crate::numbers::less;
+use crate::plays::{Plays, lagged};
 use crate::record::Record;
 use nalgebra::{DMatrix, DVector};
 
@@ -33,12 +34,11 @@ pub(super) fn equations(
     taus: &[f64],
     stride: usize,
 ) -> Equations {
+    // without the law's output there is nothing that relaxes
     let relaxing: Vec<Vec<f64>> = if law.is_empty() {
         Vec::new()
     } else {
-        taus.iter()
-            .map(|&tau| lagged(law, tau, run.step_s).iter().zip(law).map(|(x, u)| x - u).collect())
-            .collect()
+        taus.iter().map(|&tau| less(&lagged(law, tau, run.step_s), law)).collect()
     };
     let count = plays.count();
     let width = 1 + count + taus.len();
@@ -99,46 +99,52 @@ pub(super) fn precision(
     Some(precision)
 }
 
+impl Equations {
+    /// Sum of squares that a solution leaves.
+    pub(super) fn left_by(&self, solution: &DVector<f64>) -> f64 {
+        self.square - 2.0 * self.right.dot(solution)
+            + (solution.transpose() * &self.gram * solution)[0]
+    }
+}
+
+/// Solves for the coefficients of a Gaussian prior and Gaussian data of the runs that count.
 pub(super) fn fit_of(
     equations: &[Equations],
-    skip: Option<usize>,
+    counts: impl Fn(usize) -> bool,
     precision: &DMatrix<f64>,
     noise: f64,
 ) -> Option<DVector<f64>> {
     let weight = 1.0 / (noise * noise);
     let mut gram = precision.clone();
     let mut right = DVector::zeros(precision.nrows());
-    for (r, own) in equations.iter().enumerate() {
-        if Some(r) != skip {
-            gram += &own.gram * weight;
-            right += &own.right * weight;
-        }
+    for (_, own) in equations.iter().enumerate().filter(|(run, _)| counts(*run)) {
+        gram += &own.gram * weight;
+        right += &own.right * weight;
     }
-    solve(&gram, &right)
+    gram.cholesky().map(|c| c.solve(&right))
 }
 
-/// As [`fit_of`], with some weights held at zero.
-pub(super) fn fit_held(
+/// As [`fit_of`] of all runs, with the weights from `first` on held at zero, one after another, that would be
+/// negative.
+pub(super) fn fit_positive(
     equations: &[Equations],
     precision: &DMatrix<f64>,
     noise: f64,
-    held: &[usize],
+    first: usize,
 ) -> Option<DVector<f64>> {
     let mut stiff = precision.clone();
-    for &k in held {
-        stiff[(k, k)] += 1e14;
+    let mut held: Vec<usize> = Vec::new();
+    loop {
+        let mut solution = fit_of(equations, |_| true, &stiff, noise)?;
+        for &k in &held {
+            solution[k] = 0.0;
+        }
+        let negative = (first..solution.len()).filter(|&k| solution[k] < 0.0);
+        let worst = negative.min_by(|&a, &b| solution[a].total_cmp(&solution[b]));
+        let Some(worst) = worst else { return Some(solution) };
+        stiff[(worst, worst)] += 1e14;
+        held.push(worst);
     }
-    let mut solution = fit_of(equations, None, &stiff, noise)?;
-    for &k in held {
-        solution[k] = 0.0;
-    }
-    Some(solution)
-}
-
-pub(super) fn most_negative(solution: &DVector<f64>, first: usize) -> Option<usize> {
-    (first..solution.len())
-        .filter(|&k| solution[k] < 0.0)
-        .min_by(|&a, &b| solution[a].total_cmp(&solution[b]))
 }
 
 /// The prior whose fits predict left-out runs best; mean logarithm of the relative error.
@@ -156,20 +162,9 @@ pub(super) fn best_prior(
         let mut score = 0.0;
         if equations.len() > 1 {
             for fold in 0..folds {
-                let weight = 1.0 / (noise * noise);
-                let mut gram = precision.clone();
-                let mut right = DVector::zeros(precision.nrows());
-                for (r, own) in equations.iter().enumerate() {
-                    if r % folds != fold {
-                        gram += &own.gram * weight;
-                        right += &own.right * weight;
-                    }
-                }
-                let solution = solve(&gram, &right)?;
-                for own in equations.iter().enumerate().filter(|(r, _)| r % folds == fold) {
-                    let own = own.1;
-                    let square = own.square - 2.0 * own.right.dot(&solution)
-                        + (solution.transpose() * &own.gram * &solution)[0];
+                let solution = fit_of(equations, |run| run % folds != fold, &precision, noise)?;
+                for own in equations.iter().skip(fold).step_by(folds) {
+                    let square = own.left_by(&solution);
                     score += (square.max(0.0) / own.count + 1e-8 * spread * spread).ln();
                 }
             }

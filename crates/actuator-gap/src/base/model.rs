@@ -2,10 +2,11 @@
 //! its weights, with the covariance that the reference runs leave them.
 
 use super::equations::{
-    Equations, PRIORS, best_prior, covariance_root, equations, fit_held, fit_of, most_negative,
-    precision, time_constants_s,
+    Equations, PRIORS, best_prior, covariance_root, equations, fit_of, fit_positive, precision,
+    time_constants_s,
 };
 use super::errors::{ErrorModel, correlation_samples, pooled_spread, white_noise};
+use crate::numbers::less;
 use crate::plays::{OutputMap, Plays, behind_lags, lagged};
 use crate::record::Record;
 use nalgebra::{DMatrix, DVector};
@@ -76,16 +77,13 @@ impl BaseModel {
             }
             let prior = chosen?;
             let precision = precision(&plays, prior, spread, taus.len())?;
-            let mut solution = fit_of(&equations, None, &precision, noise)?;
-            let mut held: Vec<usize> = Vec::new();
             let first_share = 1 + rises.ncols();
-            // shares below zero are no relaxation: they are held at zero one after another
-            if round > 0 {
-                while let Some(worst) = most_negative(&solution, first_share) {
-                    held.push(worst);
-                    solution = fit_held(&equations, &precision, noise, &held)?;
-                }
-            }
+            let solution = if round > 0 {
+                // shares below zero are no relaxation
+                fit_positive(&equations, &precision, noise, first_share)?
+            } else {
+                fit_of(&equations, |_| true, &precision, noise)?
+            };
             let coefficients = &rises * solution.rows(1, rises.ncols());
             let map = plays.map(solution[0], coefficients.as_slice());
             history = runs.iter().map(|run| plays.outputs(&map, &run.input)).collect();
@@ -94,21 +92,9 @@ impl BaseModel {
                 .enumerate()
                 .map(|(i, &tau)| (tau, if round > 0 { solution[first_share + i] } else { 0.0 }))
                 .collect();
-            let mut model = Self {
-                plays: plays.clone(),
-                map,
-                relaxation,
-                floor: 0.0,
-                noise,
-                structure: 0.0,
-                correlation_s: 0.0,
-                root: DMatrix::zeros(0, 0),
-                spread,
-                weights: solution,
-                prior,
-            };
-            let errors = model.measure_errors(runs, &equations, &precision)?;
-            noise = errors;
+            let mut model = Self::exact(plays.clone(), map, spread, solution);
+            (model.relaxation, model.prior) = (relaxation, prior);
+            noise = model.measure_errors(runs, &equations, &precision)?;
             if round + 1 == ROUNDS {
                 model.root = covariance_root(&equations, &precision, noise)?;
             }
@@ -130,11 +116,19 @@ impl BaseModel {
         let (rises, offset) = plays.line(slope, my - slope * mu);
         let coefficients = plays.rises_to_coefficients() * &rises;
         let map = plays.map(offset, coefficients.as_slice());
-        let width = 1 + rises.len();
-        let mut weights = DVector::zeros(width);
-        weights[0] = offset;
-        weights.rows_mut(1, rises.len()).copy_from(&rises);
-        let mut model = Self {
+        let weights = rises.insert_row(0, offset);
+        let mut model = Self::exact(plays, map, pooled_spread(runs), weights);
+        let noise2: f64 = runs
+            .iter()
+            .map(|r| white_noise(&model.residual(r)).powi(2) * r.judged_input().len() as f64)
+            .sum();
+        model.noise = (noise2 / count).sqrt();
+        model
+    }
+
+    /// A model without relaxation or errors, none of whose weights may move.
+    fn exact(plays: Plays, map: OutputMap, spread: f64, weights: DVector<f64>) -> Self {
+        Self {
             plays,
             map,
             relaxation: Vec::new(),
@@ -142,17 +136,11 @@ impl BaseModel {
             noise: 0.0,
             structure: 0.0,
             correlation_s: 0.0,
-            root: DMatrix::zeros(width, width),
-            spread: pooled_spread(runs),
+            root: DMatrix::zeros(weights.len(), weights.len()),
+            spread,
             weights,
             prior: PRIORS[0],
-        };
-        let noise2: f64 = runs
-            .iter()
-            .map(|r| white_noise(&model.residual(r)).powi(2) * r.judged_input().len() as f64)
-            .sum();
-        model.noise = (noise2 / count).sqrt();
-        model
+        }
     }
 
     /// Estimates noise, structure and floor; returns the effective noise of the next round.
@@ -184,12 +172,10 @@ impl BaseModel {
         let (mut left, mut all) = (0.0, 0.0);
         if equations.len() > 1 {
             for skip in 0..equations.len() {
-                let solution =
-                    fit_of(equations, Some(skip), precision, sigma.max(trained * self.spread))?;
+                let noise = sigma.max(trained * self.spread);
+                let solution = fit_of(equations, |run| run != skip, precision, noise)?;
                 let own = &equations[skip];
-                let square = own.square - 2.0 * own.right.dot(&solution)
-                    + (solution.transpose() * &own.gram * &solution)[0];
-                left += (square / own.count - self.noise.powi(2)).max(0.0);
+                left += (own.left_by(&solution) / own.count - self.noise.powi(2)).max(0.0);
                 all += variance(runs[skip].judged_output());
             }
         }
@@ -222,7 +208,7 @@ impl BaseModel {
     /// What it leaves of a run where that is judged.
     pub(crate) fn residual(&self, run: &Record) -> Vec<f64> {
         let predicted = self.predict(&run.input, run.step_s);
-        run.judged_output().iter().zip(run.judged(&predicted)).map(|(a, b)| a - b).collect()
+        less(run.judged_output(), run.judged(&predicted))
     }
 
     /// How the error of a run is made, its noise estimated from the run itself.
@@ -266,7 +252,6 @@ impl BaseModel {
         let first_share = 1 + rises.ncols();
         runs.iter()
             .map(|run| {
-                let mut columns = DMatrix::zeros(run.input.len(), kept.len());
                 let law = self.hysteresis(&run.input);
                 // row by row of the transpose: its columns lie together in memory
                 let mut transposed = DMatrix::zeros(kept.len(), run.input.len());
@@ -279,13 +264,12 @@ impl BaseModel {
                 });
                 for (t, &tau) in taus.iter().enumerate() {
                     let weights = basis.row(first_share + t).transpose();
-                    for (i, x) in lagged(&law, tau, run.step_s).iter().enumerate() {
-                        let deviation = x - law[i];
+                    let relaxing = less(&lagged(&law, tau, run.step_s), &law);
+                    for (i, deviation) in relaxing.into_iter().enumerate() {
                         transposed.column_mut(i).axpy(deviation, &weights, 1.0);
                     }
                 }
-                transposed.transpose_to(&mut columns);
-                columns
+                transposed.transpose()
             })
             .collect()
     }

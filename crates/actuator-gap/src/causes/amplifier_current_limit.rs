@@ -1,47 +1,27 @@
 //! Current limit of the amplifier.
 
-use super::cause::{BenchCause, FORM_ERROR, logarithmic};
-use super::chain::Chain;
-use super::design::Design;
-use model_gap::Cause;
+use super::cause::{BenchCause, logarithmic, singles, usual};
+use model_gap::Candidate;
 use preisach_dyn::{AmplifierStage, CurrentLimit};
 
 /// Current limit of the amplifier.
-pub(super) struct AmplifierCurrentLimit;
-
-impl BenchCause for AmplifierCurrentLimit {
-    fn cause(&self, design: &Design) -> Cause {
-        Cause {
+pub(super) const CAUSE: BenchCause = BenchCause {
+    candidate: |design| {
+        let fast_rate = design.fast_rate.max(1.0);
+        Candidate {
             id: "amplifier-current-limit",
             physics: "The amplifier's current is limited into the capacitance, |V'| <= I / C.",
-            parameters: vec![logarithmic(
-                "slew_rate",
-                "V/s",
-                0.02 * design.fast_rate.max(1.0),
-                50.0 * design.fast_rate.max(1.0),
-            )],
-            form_error: FORM_ERROR,
+            parameters: vec![logarithmic("slew_rate", "V/s", 0.02 * fast_rate, 50.0 * fast_rate)],
             fingerprint: "nothing below a threshold of amplitude times frequency, then triangular, third harmonic",
             confused_with: &["electrical-lag", "voltage-saturation", "rate-dependence"],
             separating: &["amplifier-monitor", "amplitude-sweep"],
+            starts: singles([1.8, 1.2, 0.9, 0.6, 0.4, 0.25].map(|part| part * fast_rate)),
+            blocked: design.one_frequency(),
+            ..usual()
         }
-    }
-
-    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        [1.8, 1.2, 0.9, 0.6, 0.4, 0.25]
-            .iter()
-            .map(|part| vec![part * design.fast_rate.max(1.0)])
-            .collect()
-    }
-
-    fn blocked(&self, design: &Design) -> Option<String> {
-        design.one_frequency()
-    }
-
-    fn apply(&self, chain: &mut Chain, values: &[f64]) {
-        chain
-            .front
-            .amplifier
-            .push(AmplifierStage::CurrentLimit(CurrentLimit { slew_rate_volt_per_s: values[0] }));
-    }
-}
+    },
+    apply: |chain, values| {
+        let limit = CurrentLimit { slew_rate_volt_per_s: values[0] };
+        chain.front.amplifier.push(AmplifierStage::CurrentLimit(limit));
+    },
+};

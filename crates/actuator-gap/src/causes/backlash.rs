@@ -1,37 +1,25 @@
 //! Backlash in the lever.
 
-use super::cause::{BenchCause, FORM_ERROR, logarithmic};
-use super::chain::Chain;
-use super::design::Design;
-use model_gap::Cause;
+use super::cause::{BenchCause, logarithmic, singles, usual};
+use model_gap::Candidate;
 use preisach_dyn::{Backlash, LinkageStage};
 
 /// Backlash in the lever.
-pub(super) struct BacklashInLever;
-
-impl BenchCause for BacklashInLever {
-    fn cause(&self, design: &Design) -> Cause {
-        Cause {
+pub(super) const CAUSE: BenchCause = BenchCause {
+    candidate: |design| {
+        let of_stroke = |part: f64| part * design.half_stroke;
+        Candidate {
             id: "backlash",
             physics: "Lost motion in a joint: the output stands until the gap is taken up; a free density absorbs it.",
-            parameters: vec![logarithmic(
-                "width",
-                "um",
-                1e-4 * design.half_stroke,
-                0.5 * design.half_stroke,
-            )],
-            form_error: FORM_ERROR,
+            parameters: vec![logarithmic("width", "um", of_stroke(1e-4), of_stroke(0.5))],
             fingerprint: "flat after every reversal, relatively larger at small motion",
             confused_with: &["coulomb-friction"],
             separating: &["preload", "small-motion"],
+            starts: singles([0.005, 0.015, 0.04, 0.1].map(of_stroke)),
+            ..usual()
         }
-    }
-
-    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        [0.005, 0.015, 0.04, 0.1].iter().map(|part| vec![part * design.half_stroke]).collect()
-    }
-
-    fn apply(&self, chain: &mut Chain, values: &[f64]) {
+    },
+    apply: |chain, values| {
         chain.rear.linkage.push(LinkageStage::Backlash(Backlash { width_um: values[0] }));
-    }
-}
+    },
+};

@@ -2,32 +2,22 @@
 
 use super::chain::Chain;
 use super::design::Design;
-use model_gap::{Cause, Parameter, Scale};
-
-/// Part of its effect by which the model of a cause is usually wrong: no lag is of one pole, no joint dry
-/// alone.
-pub(super) const FORM_ERROR: f64 = 0.05;
+use model_gap::{Candidate, Parameter, Scale};
 
 /// One cause of the bench.
-pub(crate) trait BenchCause: Sync + Send {
-    /// What it is.
-    fn cause(&self, design: &Design) -> Cause;
-    /// Where a search begins.
-    fn starts(&self, design: &Design) -> Vec<Vec<f64>>;
-    /// Why these data cannot show it, seen before any fit.
-    fn blocked(&self, _: &Design) -> Option<String> {
-        None
-    }
-    /// Why these data show that it is not there, seen before any fit.
-    fn refuted(&self, _: &Design) -> Option<String> {
-        None
-    }
-    /// What it would be, where it is a decoy and no cause of the library.
-    fn decoy(&self) -> Option<&'static str> {
-        None
-    }
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BenchCause {
+    /// What it is for data of a design: parameters, starts of a search, and why these data cannot show it or
+    /// show that it is not there.
+    pub(super) candidate: fn(&Design) -> Candidate,
     /// Switches it on in a chain: the one place where it enters the model.
-    fn apply(&self, chain: &mut Chain, values: &[f64]);
+    pub(super) apply: fn(&mut Chain, &[f64]),
+}
+
+/// A candidate that any data may show, whose model is as wrong as that of a cause usually is: no lag is of
+/// one pole, no joint dry alone.
+pub(super) fn usual() -> Candidate {
+    Candidate { form_error: 0.05, ..Candidate::default() }
 }
 
 /// A parameter searched on a logarithmic scale.
@@ -42,18 +32,7 @@ pub(super) fn logarithmic(
 
 /// A parameter searched on a straight scale.
 pub(super) fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
-    Parameter {
-        name,
-        unit,
-        low,
-        high,
-        scale: Scale::Linear,
-        is_shape: false,
-        is_amount: false,
-        needs: None,
-        held: None,
-        step: None,
-    }
+    Parameter { name, unit, low, high, ..Parameter::default() }
 }
 
 /// An amount of an effect, which is none at zero.
@@ -66,12 +45,10 @@ pub(super) fn shape(parameter: Parameter) -> Parameter {
     Parameter { is_shape: true, ..parameter }
 }
 
-/// A parameter that is taken and not fitted, with its standard deviation.
-pub(super) fn held(parameter: Parameter, std: f64) -> Parameter {
-    Parameter { held: Some(std), ..shape(parameter) }
+/// Starts of a single parameter.
+pub(super) fn singles<const N: usize>(values: [f64; N]) -> Vec<Vec<f64>> {
+    values.map(|value| vec![value]).to_vec()
 }
 
-/// Starts of a single parameter.
-pub(super) fn singles(values: &[f64]) -> Vec<Vec<f64>> {
-    values.iter().map(|&v| vec![v]).collect()
-}
+/// Time constants that a search for a lag or a delay begins at, s.
+pub(super) const LAGS_S: [f64; 4] = [2e-4, 1e-3, 4e-3, 0.015];

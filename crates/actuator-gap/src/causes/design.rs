@@ -1,16 +1,14 @@
 //! What measured runs contain: what a cause is judged observable by.
 
+use crate::numbers::{mean, range};
 use crate::record::Record;
-use model_gap::Stimulus;
-use rotor_base::variance;
+use model_gap::Sine;
 
 /// What the measured runs of a diagnosis contain.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Design {
     /// Lowest and highest input of the measured runs.
     pub(crate) input: (f64, f64),
-    /// Spread of the output over the measured runs.
-    pub(crate) spread: f64,
     /// Lowest and highest output of the measured runs.
     pub(crate) output: (f64, f64),
     /// Half the range of the output over the measured runs.
@@ -37,39 +35,26 @@ pub(crate) struct Design {
 
 impl Design {
     pub(crate) fn of(runs: &[&Record], is_bench: bool, has_reference: bool) -> Self {
-        let all = |f: fn(&Record) -> &[f64]| runs.iter().flat_map(move |r| f(r).iter().copied());
-        let range = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
-        };
-        let input = range(&mut all(Record::judged_input));
-        let output = range(&mut all(Record::judged_output));
-        let count: usize = runs.iter().map(|r| r.judged_output().len()).sum();
-        let square = |r: &&Record| variance(r.judged_output()) * r.judged_output().len() as f64;
-        let spread2 = runs.iter().map(square).sum::<f64>();
+        let output = range(runs.iter().flat_map(|r| r.judged_output()));
         let mut rates: Vec<f64> = runs
             .iter()
             .flat_map(|r| r.judged_input().windows(2).map(|w| (w[1] - w[0]).abs() / r.step_s))
             .collect();
         rates.sort_by(f64::total_cmp);
-        let fast_rate = rates.get(rates.len() * 19 / 20).copied().unwrap_or_default();
         let frequencies: Vec<Option<f64>> = runs
             .iter()
-            .map(|r| match Stimulus::of(r.judged_input(), r.step_s) {
-                Stimulus::Sine { frequency_hz, .. } => Some(frequency_hz),
-                Stimulus::Other => None,
-            })
+            .map(|r| Sine::of(r.judged_input(), r.step_s).map(|sine| sine.frequency_hz))
             .collect();
         let first = frequencies.first().copied().flatten();
         let only_hz = first
             .filter(|f| frequencies.iter().all(|g| g.is_some_and(|g| (g - f).abs() < 0.05 * f)));
         Self {
-            input,
-            spread: (spread2 / count.max(1) as f64).sqrt(),
+            input: range(runs.iter().flat_map(|r| r.judged_input())),
             output,
             half_stroke: 0.5 * (output.1 - output.0),
             longest_s: runs.iter().map(|r| r.duration_s()).fold(0.0, f64::max),
             nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(0.0, f64::max),
-            fast_rate,
+            fast_rate: rates.get(rates.len() * 19 / 20).copied().unwrap_or_default(),
             only_hz,
             monitored_runs: runs.iter().filter(|r| r.amplifier.is_some()).count(),
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
@@ -85,13 +70,20 @@ impl Design {
             format!("every run is a sine of {hz:.3} Hz: nothing that depends on rate shows at one frequency")
         })
     }
+
+    /// Nothing about a gain can be said without reference runs.
+    pub(super) fn no_reference(&self) -> Option<String> {
+        (!self.has_reference).then(|| {
+            "without reference runs a pure gain cannot be told from the actuator's own".to_owned()
+        })
+    }
 }
 
 /// Slope of the load against the displacement over all runs with a load cell, each about its means, and its
 /// standard error.
 fn load_per_um(runs: &[&Record]) -> Option<(f64, f64)> {
     let centred = |v: &[f64]| -> Vec<f64> {
-        let mean = v.iter().sum::<f64>() / v.len().max(1) as f64;
+        let mean = mean(v);
         v.iter().map(|x| x - mean).collect()
     };
     let pairs: Vec<(f64, f64)> = runs
@@ -102,12 +94,11 @@ fn load_per_um(runs: &[&Record]) -> Option<(f64, f64)> {
         })
         .flat_map(|(y, load)| y.into_iter().zip(load))
         .collect();
-    let sum = |f: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(f).sum::<f64>();
-    let square = sum(&|p| p.0 * p.0);
+    let square: f64 = pairs.iter().map(|p| p.0 * p.0).sum();
     if square <= 0.0 {
         return None;
     }
-    let slope = sum(&|p| p.0 * p.1) / square;
-    let left = sum(&|p| (p.1 - slope * p.0).powi(2));
+    let slope = pairs.iter().map(|p| p.0 * p.1).sum::<f64>() / square;
+    let left: f64 = pairs.iter().map(|p| (p.1 - slope * p.0).powi(2)).sum();
     Some((slope, (left / pairs.len() as f64 / square).sqrt()))
 }

@@ -1,45 +1,34 @@
 //! Hysteresis itself: what a model without memory lacks.
 
-use super::cause::{BenchCause, FORM_ERROR, amount, logarithmic, shape};
-use super::chain::{Chain, Loops};
-use super::design::Design;
-use model_gap::Cause;
+use super::cause::{BenchCause, amount, logarithmic, shape, usual};
+use super::chain::Loops;
+use model_gap::Candidate;
 
 /// Static hysteresis, a candidate where the base model has none.
-pub(crate) struct StaticHysteresis;
-
-/// Plays of the candidate.
-const PLAYS: u32 = 12;
-
-impl BenchCause for StaticHysteresis {
-    fn cause(&self, design: &Design) -> Cause {
-        Cause {
+pub(crate) const CAUSE: BenchCause = BenchCause {
+    candidate: |design| {
+        let of_stroke = |part: f64| part * design.half_stroke;
+        Candidate {
             id: "hysteresis",
             physics: "The output depends on where the input turned, at any speed: y = h - share (h - mean of plays of h).",
             parameters: vec![
                 amount("share", "1", 0.0, 1.5),
-                shape(logarithmic(
-                    "widest",
-                    "um",
-                    0.02 * design.half_stroke,
-                    2.0 * design.half_stroke,
-                )),
+                shape(logarithmic("widest", "um", of_stroke(0.02), of_stroke(2.0))),
             ],
-            form_error: FORM_ERROR,
             fingerprint: "loops as wide when slow as when fast, wider than in proportion at large amplitude",
             confused_with: &["backlash", "coulomb-friction", "creep"],
             separating: &["amplitude-sweep", "frequency-sweep"],
+            starts: [0.15, 0.5, 1.2].map(|part| vec![0.1, of_stroke(part)]).to_vec(),
+            ..usual()
         }
-    }
-
-    fn starts(&self, design: &Design) -> Vec<Vec<f64>> {
-        [0.15, 0.5, 1.2].iter().map(|part| vec![0.1, part * design.half_stroke]).collect()
-    }
-
-    fn apply(&self, chain: &mut Chain, values: &[f64]) {
+    },
+    apply: |chain, values| {
         chain.front.loops = Some(Loops { share: values[0], widest: values[1] });
-    }
-}
+    },
+};
+
+/// Plays of the candidate.
+const PLAYS: u32 = 12;
 
 /// A law's output with loops: part of it follows through plays, evenly up to the widest.
 ///

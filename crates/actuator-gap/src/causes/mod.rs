@@ -31,66 +31,53 @@ mod voltage_saturation;
 pub(crate) use cause::BenchCause;
 pub(crate) use chain::{Chain, Command, FrontStages, Loops, Rate, RearStages};
 pub(crate) use design::Design;
-pub(crate) use hysteresis::{StaticHysteresis, looped};
+pub(crate) use hysteresis::looped;
 pub(crate) use rate_dependence::rate_dependent;
 
 use model_gap::{Candidate, Effect};
 
 /// Every cause of the library.
-pub(crate) fn library() -> Vec<Box<dyn BenchCause>> {
-    vec![
-        Box::new(creep::Creep),
-        Box::new(rate_dependence::RateDependence),
-        Box::new(electrical_lag::ElectricalLag),
-        Box::new(amplifier_current_limit::AmplifierCurrentLimit),
-        Box::new(voltage_saturation::VoltageSaturation),
-        Box::new(mechanical_resonance::MechanicalResonance),
-        Box::new(transport_delay::TransportDelay),
-        Box::new(backlash::BacklashInLever),
-        Box::new(coulomb_friction::DryFriction),
-        Box::new(dielectric_heating::Heating),
-        Box::new(load_stiffness::Load),
-        Box::new(depolarisation::ReverseVoltage),
-        Box::new(sensor_filter::SensorFilter),
-        Box::new(sensor_nonlinearity::SensorNonlinearity),
-        Box::new(mains_hum::Hum),
-    ]
-}
+pub(crate) const LIBRARY: [BenchCause; 15] = [
+    creep::CAUSE,
+    rate_dependence::CAUSE,
+    electrical_lag::CAUSE,
+    amplifier_current_limit::CAUSE,
+    voltage_saturation::CAUSE,
+    mechanical_resonance::CAUSE,
+    transport_delay::CAUSE,
+    backlash::CAUSE,
+    coulomb_friction::CAUSE,
+    dielectric_heating::CAUSE,
+    load_stiffness::CAUSE,
+    depolarisation::CAUSE,
+    sensor_filter::CAUSE,
+    sensor_nonlinearity::CAUSE,
+    mains_hum::CAUSE,
+];
 
 /// Decoys: what can be wrong on a bench without being a cause of the library. They are candidates too, so that data
 /// which show one of them are not given the name of a similar cause.
-pub(crate) fn decoys() -> Vec<Box<dyn BenchCause>> {
-    vec![
-        Box::new(gain_rise::GainRise),
-        Box::new(amplifier_gain::AmplifierGain),
-        Box::new(reading_range::ReadingRange),
-        Box::new(reading_rate::ReadingRate),
-    ]
+pub(crate) const DECOYS: [BenchCause; 4] =
+    [gain_rise::CAUSE, amplifier_gain::CAUSE, reading_range::CAUSE, reading_rate::CAUSE];
+
+/// Hysteresis, a candidate where the base model has none.
+pub(crate) const HYSTERESIS: BenchCause = hysteresis::CAUSE;
+
+/// Causes made ready for one data set; a search begins nowhere for those that it cannot show.
+pub(crate) fn candidates(causes: &[BenchCause], design: &Design) -> Vec<Candidate> {
+    let one = |cause: &BenchCause| {
+        let own = (cause.candidate)(design);
+        let starts = if own.blocked.is_some() { Vec::new() } else { own.starts };
+        Candidate { starts, ..own }
+    };
+    causes.iter().map(one).collect()
 }
 
-/// The library made ready for one data set.
-pub(crate) fn candidates(library: &[Box<dyn BenchCause>], design: &Design) -> Vec<Candidate> {
-    library
-        .iter()
-        .map(|cause| {
-            let blocked = cause.blocked(design);
-            let starts = if blocked.is_some() { Vec::new() } else { cause.starts(design) };
-            Candidate {
-                cause: cause.cause(design),
-                starts,
-                blocked,
-                refuted: cause.refuted(design),
-                decoy: cause.decoy(),
-            }
-        })
-        .collect()
-}
-
-/// The chain under effects of a library.
-pub(crate) fn chain_under(library: &[Box<dyn BenchCause>], effects: &[Effect]) -> Chain {
+/// The chain under effects of causes.
+pub(crate) fn chain_under(causes: &[BenchCause], effects: &[Effect]) -> Chain {
     let mut chain = Chain::default();
     for effect in effects {
-        library[effect.candidate].apply(&mut chain, &effect.values);
+        (causes[effect.candidate].apply)(&mut chain, &effect.values);
     }
     chain
 }
@@ -131,10 +118,9 @@ mod tests {
     #[test]
     fn every_cause_has_its_name_units_and_starts_inside_its_range() {
         let design = design();
-        let library = library();
+        let library = candidates(&LIBRARY, &design);
         assert_eq!(library.len(), REPORTED.len());
-        for (cause, (id, parameters)) in library.iter().zip(REPORTED) {
-            let own = cause.cause(&design);
+        for (own, (id, parameters)) in library.iter().zip(REPORTED) {
             assert_eq!(own.id, id);
             let reported: Vec<(&str, &str)> =
                 own.parameters.iter().filter(|p| !p.is_shape).map(|p| (p.name, p.unit)).collect();
@@ -142,12 +128,11 @@ mod tests {
             for other in own.confused_with {
                 assert!(REPORTED.iter().any(|r| r.0 == *other), "{id}: {other}");
             }
-            if cause.blocked(&design).is_some() {
+            if own.blocked.is_some() {
                 continue;
             }
-            let starts = cause.starts(&design);
-            assert!(!starts.is_empty(), "{id}");
-            for start in starts {
+            assert!(!own.starts.is_empty(), "{id}");
+            for start in &own.starts {
                 assert_eq!(start.len(), own.parameters.len(), "{id}");
                 for (value, p) in start.iter().zip(&own.parameters) {
                     assert!((p.low..=p.high).contains(value), "{id}: {} = {value}", p.name);
@@ -167,10 +152,11 @@ mod tests {
                 load: Some(load.collect()),
                 ..Record::new("a", 0.01, output.clone(), output.clone())
             };
-            load_stiffness::Load.refuted(&Design::of(&[&run], true, true)).is_some()
+            (load_stiffness::CAUSE.candidate)(&Design::of(&[&run], true, true)).refuted.is_some()
         };
         assert_eq!([0.0, 0.002, -0.002].map(refuted), [true, false, false]);
-        assert!(load_stiffness::Load.refuted(&design()).is_none(), "no load cell says nothing");
+        let unseen = (load_stiffness::CAUSE.candidate)(&design());
+        assert!(unseen.refuted.is_none(), "no load cell says nothing");
     }
 
     #[test]
@@ -178,8 +164,7 @@ mod tests {
         let input: Vec<f64> = (0..4000).map(|i| 150.0 * (0.0628 * f64::from(i)).sin()).collect();
         let run = Record::new("a", 0.01, input.clone(), input);
         let design = Design::of(&[&run], true, false);
-        for cause in library() {
-            let id = cause.cause(&design).id;
+        for cause in candidates(&LIBRARY, &design) {
             let about_rate = [
                 "creep",
                 "rate-dependence",
@@ -189,8 +174,8 @@ mod tests {
                 "transport-delay",
                 "sensor-filter",
             ];
-            if about_rate.contains(&id) {
-                assert!(cause.blocked(&design).is_some(), "{id}");
+            if about_rate.contains(&cause.id) {
+                assert!(cause.blocked.is_some(), "{}", cause.id);
             }
         }
     }

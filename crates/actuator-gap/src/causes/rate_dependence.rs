@@ -1,44 +1,29 @@
 //! Rate dependence of the hysteresis.
 
-use super::cause::{BenchCause, FORM_ERROR, linear, logarithmic, shape};
-use super::chain::{Chain, Rate};
-use super::design::Design;
-use model_gap::Cause;
+use super::cause::{BenchCause, LAGS_S, linear, logarithmic, shape, usual};
+use super::chain::Rate;
+use model_gap::Candidate;
 
 /// Rate dependence of the hysteresis.
-pub(super) struct RateDependence;
-
-impl BenchCause for RateDependence {
-    fn cause(&self, _: &Design) -> Cause {
-        Cause {
-            id: "rate-dependence",
-            physics: "Domains take time: the law relaxes towards its static value, with a time that depends on its state.",
-            parameters: vec![
-                logarithmic("tau", "s", 1e-5, 0.05),
-                shape(linear("position", "1", -0.6, 0.6)),
-            ],
-            form_error: FORM_ERROR,
-            fingerprint: "phase and loop area grow with frequency and depend on amplitude and place; odd harmonics",
-            confused_with: &["electrical-lag", "transport-delay", "sensor-filter"],
-            separating: &["multisine-5-181Hz", "amplitude-sweep", "laser-cross-check"],
-        }
-    }
-
-    fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        [2e-4, 1e-3, 4e-3, 0.015]
-            .iter()
-            .flat_map(|tau| [vec![*tau, 0.1], vec![*tau, -0.1]])
-            .collect()
-    }
-
-    fn blocked(&self, design: &Design) -> Option<String> {
-        design.one_frequency()
-    }
-
-    fn apply(&self, chain: &mut Chain, values: &[f64]) {
+pub(super) const CAUSE: BenchCause = BenchCause {
+    candidate: |design| Candidate {
+        id: "rate-dependence",
+        physics: "Domains take time: the law relaxes towards its static value, with a time that depends on its state.",
+        parameters: vec![
+            logarithmic("tau", "s", 1e-5, 0.05),
+            shape(linear("position", "1", -0.6, 0.6)),
+        ],
+        fingerprint: "phase and loop area grow with frequency and depend on amplitude and place; odd harmonics",
+        confused_with: &["electrical-lag", "transport-delay", "sensor-filter"],
+        separating: &["multisine-5-181Hz", "amplitude-sweep", "laser-cross-check"],
+        starts: LAGS_S.map(|tau| [vec![tau, 0.1], vec![tau, -0.1]]).concat(),
+        blocked: design.one_frequency(),
+        ..usual()
+    },
+    apply: |chain, values| {
         chain.front.rate = Some(Rate { tau_s: values[0], position: values[1] });
-    }
-}
+    },
+};
 
 /// The law's output relaxing towards its static value.
 ///

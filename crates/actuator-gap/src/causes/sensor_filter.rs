@@ -1,63 +1,46 @@
 //! Filter of the sensor.
 
-use super::cause::{BenchCause, FORM_ERROR, linear, logarithmic, shape};
-use super::chain::Chain;
-use super::design::Design;
-use model_gap::Cause;
+use super::cause::{BenchCause, LAGS_S, linear, logarithmic, shape, usual};
+use model_gap::Candidate;
 use preisach_dyn::{Lag, SensorStage};
 
 /// Filter of the sensor.
 ///
 /// Two real poles share the delay at low frequency, `tau`: one alone at a share of 0, two alike at 0.5.
 /// A conditioner rarely has one pole, and a filter that is taken for one is taken for a delay.
-pub(super) struct SensorFilter;
-
-impl BenchCause for SensorFilter {
-    fn cause(&self, _: &Design) -> Cause {
-        Cause {
-            id: "sensor-filter",
-            physics: "Low-pass filter of the displacement sensor, (1 + (1 - c) tau s)(1 + c tau s) y = x.",
-            parameters: vec![
-                logarithmic("tau", "s", 1e-5, 0.05),
-                shape(linear("second_share", "1", 0.0, 0.5)),
-            ],
-            form_error: FORM_ERROR,
-            fingerprint: "a lag of the reading behind everything else, amplitude and phase",
-            confused_with: &["transport-delay", "electrical-lag", "rate-dependence"],
-            separating: &["laser-cross-check", "multisine-5-181Hz"],
-        }
-    }
-
-    fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        [2e-4, 1e-3, 4e-3, 0.015]
-            .iter()
-            .flat_map(|&tau| [vec![tau, 0.02], vec![tau, 0.3]])
-            .collect()
-    }
-
-    fn blocked(&self, design: &Design) -> Option<String> {
-        design.one_frequency()
-    }
-
-    fn apply(&self, chain: &mut Chain, values: &[f64]) {
+pub(super) const CAUSE: BenchCause = BenchCause {
+    candidate: |design| Candidate {
+        id: "sensor-filter",
+        physics: "Low-pass filter of the displacement sensor, (1 + (1 - c) tau s)(1 + c tau s) y = x.",
+        parameters: vec![
+            logarithmic("tau", "s", 1e-5, 0.05),
+            shape(linear("second_share", "1", 0.0, 0.5)),
+        ],
+        fingerprint: "a lag of the reading behind everything else, amplitude and phase",
+        confused_with: &["transport-delay", "electrical-lag", "rate-dependence"],
+        separating: &["laser-cross-check", "multisine-5-181Hz"],
+        starts: LAGS_S.map(|tau| [vec![tau, 0.02], vec![tau, 0.3]]).concat(),
+        blocked: design.one_frequency(),
+        ..usual()
+    },
+    apply: |chain, values| {
         let (tau_s, second) = (values[0], values[1]);
-        let pole = |share: f64| SensorStage::Filter(Lag { tau_s: share * tau_s });
-        chain.rear.sensor.push(pole(1.0 - second));
-        if second > 0.0 {
-            chain.rear.sensor.push(pole(second));
-        }
-    }
-}
+        let poles = [1.0 - second, second].into_iter().filter(|share| *share > 0.0);
+        let stage = |share: f64| SensorStage::Filter(Lag { tau_s: share * tau_s });
+        chain.rear.sensor.extend(poles.map(stage));
+    },
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::causes::Chain;
 
     #[test]
     fn both_poles_share_the_delay_and_two_fall_off_faster() {
         let poles = |second: f64| {
             let mut chain = Chain::default();
-            SensorFilter.apply(&mut chain, &[2e-3, second]);
+            (CAUSE.apply)(&mut chain, &[2e-3, second]);
             let tau = |s: &SensorStage| {
                 if let SensorStage::Filter(lag) = s { Some(lag.tau_s) } else { None }
             };

@@ -1,13 +1,14 @@
 //! Characteristic of the sensor.
 
-use super::cause::{BenchCause, amount, linear, shape};
-use super::chain::Chain;
-use super::design::Design;
-use model_gap::Cause;
+use super::cause::{BenchCause, amount, linear, shape, usual};
+use model_gap::Candidate;
 use preisach_dyn::{Nonlinearity, NonlinearityShape, SensorStage};
 
 /// Half the measuring range of a displacement sensor for amplified stacks, um.
 const HALF_RANGE_UM: f64 = 250.0;
+
+/// Amplitude at which a search begins, um.
+const START_UM: f64 = 0.004 * HALF_RANGE_UM;
 
 /// A real characteristic is no cubic: its largest error over the range is known from a part of the range to
 /// so much.
@@ -17,38 +18,29 @@ const CHARACTERISTIC: f64 = 0.15;
 ///
 /// A cubic bend about a line that is fitted with it: sheets state linearity from the line through the ends,
 /// from the best line or from the tangent, and each calls another gain the sensor's own.
-pub(super) struct SensorNonlinearity;
-
-impl BenchCause for SensorNonlinearity {
-    fn cause(&self, _: &Design) -> Cause {
-        Cause {
-            id: "sensor-nonlinearity",
-            physics: "Error of the sensor's characteristic, y = x + amplitude (x^3 - c x) over the largest of that, within +-250 um.",
-            parameters: vec![
-                amount("amplitude", "um", -0.2 * HALF_RANGE_UM, 0.2 * HALF_RANGE_UM),
-                shape(linear("straight", "1", 0.0, 1.0)),
-            ],
-            form_error: CHARACTERISTIC,
-            fingerprint: "a static function of the reading, the same at every rate",
-            confused_with: &["voltage-saturation", "depolarisation", "load-stiffness"],
-            separating: &["laser-cross-check", "bias-sweep"],
-        }
-    }
-
-    fn starts(&self, _: &Design) -> Vec<Vec<f64>> {
-        let amplitude = 0.004 * HALF_RANGE_UM;
-        [0.75, 0.95, 0.2].iter().flat_map(|&s| [vec![amplitude, s], vec![-amplitude, s]]).collect()
-    }
-
-    fn blocked(&self, design: &Design) -> Option<String> {
-        (!design.is_bench).then(|| "the range of the sensor is not known".to_owned())
-    }
-
-    fn apply(&self, chain: &mut Chain, values: &[f64]) {
+pub(super) const CAUSE: BenchCause = BenchCause {
+    candidate: |design| Candidate {
+        id: "sensor-nonlinearity",
+        physics: "Error of the sensor's characteristic, y = x + amplitude (x^3 - c x) over the largest of that, within +-250 um.",
+        parameters: vec![
+            amount("amplitude", "um", -0.2 * HALF_RANGE_UM, 0.2 * HALF_RANGE_UM),
+            shape(linear("straight", "1", 0.0, 1.0)),
+        ],
+        form_error: CHARACTERISTIC,
+        fingerprint: "a static function of the reading, the same at every rate",
+        confused_with: &["voltage-saturation", "depolarisation", "load-stiffness"],
+        separating: &["laser-cross-check", "bias-sweep"],
+        starts: [0.75, 0.95, 0.2]
+            .map(|straight| [START_UM, -START_UM].map(|um| vec![um, straight]))
+            .concat(),
+        blocked: (!design.is_bench).then(|| "the range of the sensor is not known".to_owned()),
+        ..usual()
+    },
+    apply: |chain, values| {
         chain.rear.sensor.push(SensorStage::Nonlinearity(Nonlinearity {
             amplitude_um: values[0],
             half_range_um: HALF_RANGE_UM,
             shape: NonlinearityShape::CubicAbout { straight: values[1] },
         }));
-    }
-}
+    },
+};

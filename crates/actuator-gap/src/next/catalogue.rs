@@ -2,32 +2,8 @@
 
 use super::excitation::Span;
 use crate::record::Record;
-use measured_data::{Fitting, Sensor};
-
-/// A run: name, time between samples, input.
-pub(super) struct Planned {
-    pub(super) id: String,
-    pub(super) step_s: f64,
-    pub(super) input: Vec<f64>,
-    pub(super) sensor: Sensor,
-    pub(super) fitting: Fitting,
-}
-
-/// What an experiment measures.
-pub(super) enum Measured {
-    /// The output on further runs.
-    Runs(Vec<Planned>),
-    /// The difference between the sensor and an ideal one on the runs there are.
-    Again(Vec<Planned>),
-    /// The output on further runs, by both sensors.
-    Twice(Vec<Planned>),
-    /// The terminal voltage on the runs there are.
-    Amplifier,
-    /// The temperature on the runs there are.
-    Temperature,
-    /// The output on further runs, and the temperature.
-    Warm(Vec<Planned>),
-}
+use crate::simulator::ChannelKind;
+use measured_data::Fitting;
 
 /// One experiment.
 pub(super) struct Experiment {
@@ -35,24 +11,31 @@ pub(super) struct Experiment {
     pub(super) id: &'static str,
     /// What to do, for a reader.
     pub(super) what: &'static str,
-    pub(super) measured: Measured,
+    /// Runs to be done, without their outputs; none where the runs at hand only get a further column.
+    pub(super) runs: Vec<Record>,
+    /// What is measured on them. A comparison asks for each run to be read by an ideal sensor too.
+    pub(super) shown: &'static [ChannelKind],
 }
 
 const BAND: (f64, f64) = (1.0, 35.0);
 const WIDE: (f64, f64) = (5.0, 181.0);
 
-fn run(id: &str, step_s: f64, input: Vec<f64>) -> Planned {
-    let (sensor, fitting) = (Sensor::Bench, Fitting::Plain);
-    Planned { id: id.to_owned(), step_s, input, sensor, fitting }
+fn run(id: &str, step_s: f64, input: Vec<f64>) -> Record {
+    Record::new(id, step_s, input, Vec::new())
 }
 
-fn preloaded(id: &str, step_s: f64, input: Vec<f64>) -> Planned {
-    Planned { fitting: Fitting::Preloaded, ..run(id, step_s, input) }
+fn preloaded(id: &str, step_s: f64, input: Vec<f64>) -> Record {
+    Record { fitting: Fitting::Preloaded, ..run(id, step_s, input) }
 }
 
-/// An experiment of one further run.
+/// An experiment that measures the output on runs.
+fn experiment(id: &'static str, what: &'static str, runs: Vec<Record>) -> Experiment {
+    Experiment { id, what, runs, shown: &[ChannelKind::Output] }
+}
+
+/// The same of one further run.
 fn one(id: &'static str, what: &'static str, step_s: f64, input: Vec<f64>) -> Experiment {
-    Experiment { id, what, measured: Measured::Runs(vec![run(id, step_s, input)]) }
+    experiment(id, what, vec![run(id, step_s, input)])
 }
 
 /// Every experiment that can be worked out, for the measured runs at hand.
@@ -67,7 +50,7 @@ pub(super) fn catalogue(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Exp
 }
 
 /// Two multisines that carry all frequencies a bench sensor has to follow.
-fn wide_multisines(span: Span) -> Vec<Planned> {
+fn wide_multisines(span: Span) -> Vec<Record> {
     let wide = |peak| span.multisine(WIDE, 2.0, peak, 2.0, 5e-4);
     vec![run("wide_small", 5e-4, wide(0.14)), run("wide_large", 5e-4, wide(0.35))]
 }
@@ -76,30 +59,24 @@ fn wide_multisines(span: Span) -> Vec<Planned> {
 fn fast(span: Span) -> Vec<Experiment> {
     let sines =
         [(0.5, 2.0), (1.0, 2.0), (2.0, 4.0), (5.0, 8.0), (10.0, 12.0), (20.0, 20.0), (40.0, 40.0)];
+    let sine = |(hz, cycles)| run("sine", 1e-3, span.bursts(hz, 0.0, &[(0.47, cycles)], 1e-3));
     vec![
-        Experiment {
-            id: "multisine-5-181Hz",
-            what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each",
-            measured: Measured::Runs(wide_multisines(span)),
-        },
+        experiment(
+            "multisine-5-181Hz",
+            "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each",
+            wide_multisines(span),
+        ),
         one(
             "amplitude-sweep",
             "10 Hz at 0.1 to 0.95 of the half range",
             1e-3,
             span.bursts(10.0, 0.0, &[0.12, 0.24, 0.47, 0.7, 0.94].map(|a| (a, 6.0)), 1e-3),
         ),
-        Experiment {
-            id: "frequency-sweep",
-            what: "half the half range, sines from 0.5 to 40 Hz",
-            measured: Measured::Runs(
-                sines
-                    .iter()
-                    .map(|&(hz, cycles)| {
-                        run("sine", 1e-3, span.bursts(hz, 0.0, &[(0.47, cycles)], 1e-3))
-                    })
-                    .collect(),
-            ),
-        },
+        experiment(
+            "frequency-sweep",
+            "half the half range, sines from 0.5 to 40 Hz",
+            sines.map(sine).into(),
+        ),
         one(
             "ring-down",
             "small steps read at 2 kHz",
@@ -147,28 +124,30 @@ fn slow_and_small(span: Span) -> Vec<Experiment> {
 /// Experiments with something else on the bench.
 fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
     let mut catalogue = vec![
-        Experiment {
-            id: "preload",
-            what: "a triangle and a multisine with the lever preloaded: play goes, friction stays",
-            measured: Measured::Runs(vec![
+        experiment(
+            "preload",
+            "a triangle and a multisine with the lever preloaded: play goes, friction stays",
+            vec![
                 preloaded("preload_triangle", 2e-3, span.triangles(1.0, &[1.0, 0.7, 0.35], 2e-3)),
                 preloaded("preload_band", 1e-3, span.multisine(BAND, 0.5, 0.7, 3.0, 1e-3)),
-            ]),
-        },
+            ],
+        ),
         Experiment {
             id: "multisine-5-181Hz+laser-cross-check",
             what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each, read by \
                    the sensor and by a second, ideal one",
-            measured: Measured::Twice(wide_multisines(span)),
+            runs: wide_multisines(span),
+            shown: &[ChannelKind::Output, ChannelKind::Comparison],
         },
     ];
     if !runs.iter().any(|r| r.has_ideal_sensor()) {
         let again =
-            |r: &&Record| Planned { fitting: r.fitting, ..run(&r.id, r.step_s, r.input.clone()) };
+            |r: &&Record| Record { fitting: r.fitting, ..run(&r.id, r.step_s, r.input.clone()) };
         catalogue.push(Experiment {
             id: "laser-cross-check",
             what: "the same runs read by a second, ideal displacement sensor",
-            measured: Measured::Again(runs.iter().map(again).collect()),
+            runs: runs.iter().map(again).collect(),
+            shown: &[ChannelKind::Comparison],
         });
     }
     catalogue
@@ -176,27 +155,27 @@ fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
 
 /// Further columns, and what needs them.
 fn monitors(span: Span, runs: &[&Record]) -> Vec<Experiment> {
+    let bursts = [(0.35, 40.0), (0.94, 1200.0), (0.35, 800.0)];
     let mut catalogue = vec![Experiment {
         id: "cold-hot-cold",
         what: "a small sine, a minute of full drive, the small sine again; temperature recorded",
-        measured: Measured::Warm(vec![run(
-            "hot",
-            5e-3,
-            span.bursts(20.0, 0.0, &[(0.35, 40.0), (0.94, 1200.0), (0.35, 800.0)], 5e-3),
-        )]),
+        runs: vec![run("hot", 5e-3, span.bursts(20.0, 0.0, &bursts, 5e-3))],
+        shown: &[ChannelKind::Output, ChannelKind::Temperature],
     }];
     if runs.iter().all(|r| r.amplifier.is_none()) {
         catalogue.push(Experiment {
             id: "amplifier-monitor",
             what: "the terminal voltage beside every run",
-            measured: Measured::Amplifier,
+            runs: Vec::new(),
+            shown: &[ChannelKind::Amplifier],
         });
     }
     if runs.iter().all(|r| r.temperature.is_none()) {
         catalogue.push(Experiment {
             id: "temperature-monitor",
             what: "the temperature beside every run",
-            measured: Measured::Temperature,
+            runs: Vec::new(),
+            shown: &[ChannelKind::Temperature],
         });
     }
     catalogue

@@ -7,18 +7,17 @@
 //! proposed, among equals the one whose smallest distance is largest (T-optimality); where none
 //! resolves all, two or three together that do better.
 
-use super::catalogue::{Experiment, Measured, Planned, catalogue};
+use super::catalogue::{Experiment, catalogue};
 use super::excitation::Span;
 use crate::base::BaseModel;
 use crate::causes::{BenchCause, Design, chain_under};
 use crate::record::{Record, frequency_hz};
 use crate::simulator::{BenchSimulator, ChannelKind};
-use crate::surrogate::Noise;
 use measured_data::Sensor;
 use model_gap::discovery::{
-    Finding, Found, Rival, Separation, Settings, Simulator, Verdict, separations,
+    Finding, Found, Rival, Separation, Verdict, needed_to_separate, separations,
 };
-use model_gap::{Candidate, Effect, GapError};
+use model_gap::{Candidate, Effect, GapError, SplitMix};
 use preisach_dyn::AmplifierStage;
 use rayon::prelude::*;
 
@@ -39,7 +38,7 @@ pub struct Proposal {
 /// What a proposal is worked out from.
 pub(crate) struct Bench<'a> {
     pub(crate) base: &'a BaseModel,
-    pub(crate) library: &'a [Box<dyn BenchCause>],
+    pub(crate) library: &'a [BenchCause],
     pub(crate) candidates: &'a [Candidate],
     pub(crate) runs: &'a [&'a Record],
     pub(crate) design: &'a Design,
@@ -114,10 +113,9 @@ struct Parting(Vec<Vec<f64>>);
 
 impl Parting {
     fn of(found: &Separation, drop: f64) -> Self {
-        let Settings { separation, form_error, .. } = Settings::default();
         let count = found.energy.len();
         let ratio = |a: usize, b: usize| {
-            let asked = MARGIN * separation + MARGIN * form_error * (drop + found.energy[a]);
+            let asked = MARGIN * needed_to_separate(drop + found.energy[a]);
             if a == b { f64::INFINITY } else { found.distance[(a, b)] / asked }
         };
         Self((0..count).map(|a| (0..count).map(|b| ratio(a, b)).collect()).collect())
@@ -141,83 +139,44 @@ impl Parting {
 }
 
 fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<Parting, GapError> {
-    let by_second_sensor = |planned: &Planned| {
-        let record = undisturbed(bench, planned);
-        let twin = Planned {
-            id: format!("laser_{}", planned.id),
-            input: planned.input.clone(),
-            sensor: Sensor::Ideal,
-            ..*planned
-        };
-        [record, undisturbed(bench, &twin)]
-    };
-    let mut records: Vec<Record> = match &experiment.measured {
-        Measured::Runs(runs) | Measured::Warm(runs) => {
-            runs.iter().map(|planned| undisturbed(bench, planned)).collect()
+    let shows = |kind| experiment.shown.contains(&kind);
+    let mut records: Vec<Record> = Vec::new();
+    if experiment.runs.is_empty() {
+        records.extend(bench.runs.iter().map(|&r| Record { load: None, ..r.clone() }));
+    }
+    for planned in &experiment.runs {
+        records.push(undisturbed(bench, planned));
+        if shows(ChannelKind::Comparison) {
+            let (id, sensor) = (format!("laser_{}", planned.id), Sensor::Ideal);
+            records.push(undisturbed(bench, &Record { id, sensor, ..planned.clone() }));
         }
-        Measured::Again(runs) | Measured::Twice(runs) => {
-            runs.iter().flat_map(by_second_sensor).collect()
-        }
-        Measured::Amplifier | Measured::Temperature => {
-            bench.runs.iter().map(|&r| Record { load: None, ..r.clone() }).collect()
-        }
-    };
-    let shown = match experiment.measured {
-        Measured::Runs(_) => &[ChannelKind::Output][..],
-        Measured::Again(_) => &[ChannelKind::Comparison],
-        Measured::Twice(_) => &[ChannelKind::Output, ChannelKind::Comparison],
-        Measured::Warm(_) => &[ChannelKind::Output, ChannelKind::Temperature],
-        Measured::Amplifier => &[ChannelKind::Amplifier],
-        Measured::Temperature => &[ChannelKind::Temperature],
-    };
+    }
     for record in &mut records {
-        if shown.contains(&ChannelKind::Amplifier) {
+        if shows(ChannelKind::Amplifier) {
             record.amplifier = Some(record.input.clone());
         }
-        if shown.contains(&ChannelKind::Temperature) {
+        if shows(ChannelKind::Temperature) {
             record.temperature = Some(warmth(bench, &open.rivals, record)?);
         }
     }
     let runs: Vec<&Record> = records.iter().collect();
-    let whole = BenchSimulator::new(bench.base, runs, bench.library, bench.range)?;
-    let places: Vec<usize> =
-        (0..whole.channels.len()).filter(|&t| shown.contains(&whole.channels[t].1)).collect();
-    let channels: Vec<_> = places.iter().map(|&t| whole.channels[t]).collect();
-    let traces = whole.traces_of(&channels);
-    let simulator = Shown { whole: &whole, places };
-    let found = separations(&simulator, &traces, bench.candidates, &open.rivals)?;
+    let mut simulator = BenchSimulator::new(bench.base, runs, bench.library, bench.range)?;
+    simulator.channels.retain(|channel| shows(channel.kind));
+    let found = separations(&simulator, &simulator.traces(), bench.candidates, &open.rivals)?;
     Ok(Parting::of(&found, open.output_drop))
 }
 
-/// Some of the channels of a bench.
-struct Shown<'a> {
-    whole: &'a BenchSimulator<'a>,
-    places: Vec<usize>,
-}
-
-impl Simulator for Shown<'_> {
-    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
-        let all = self.whole.predict(effects)?;
-        Ok(self.places.iter().map(|&t| all[t].clone()).collect())
-    }
-}
-
 /// A planned run of the base model, with its noise: that noise is what a distance is measured by.
-fn undisturbed(bench: &Bench<'_>, planned: &Planned) -> Record {
+fn undisturbed(bench: &Bench<'_>, planned: &Record) -> Record {
     // another draw for every run: two sensors on one motion do not share their noise
     let of_name =
         planned.id.bytes().fold(0, |sum: u64, b| sum.wrapping_mul(31).wrapping_add(b.into()));
-    let mut noise = Noise(0x0F1E_2D3C ^ of_name);
+    let mut noise = SplitMix(0x0F1E_2D3C ^ of_name);
     let mut output = bench.base.predict(&planned.input, planned.step_s);
     for y in &mut output {
         *y += bench.base.noise * noise.normal();
     }
-    let id = planned.id.clone();
-    Record {
-        sensor: planned.sensor,
-        fitting: planned.fitting,
-        ..Record::new(id, planned.step_s, planned.input.clone(), output)
-    }
+    Record { window: 0..output.len(), output, ..planned.clone() }
 }
 
 /// The temperature that a rival expects: a thermometer shows the heat of the one that has any.
@@ -255,7 +214,7 @@ fn usual<'m>(
 ) -> Option<&'m Experiment> {
     let of = |id: &str| catalogue.iter().find(|experiment| experiment.id == id);
     let first = finding.causes.first().map(|found| found.candidate).or(finding.looks_like);
-    let named = first.map(|candidate| &bench.candidates[candidate].cause);
+    let named = first.map(|candidate| &bench.candidates[candidate]);
     // what was measured already is no longer on the catalogue
     let separating = named.and_then(|cause| cause.separating.iter().find_map(|id| of(id)));
     separating.or_else(|| {
@@ -287,8 +246,7 @@ mod tests {
         let run = Record::new("a", 1e-3, input.clone(), input);
         let design = Design::of(&[&run], true, true);
         let catalogue = catalogue(Span { middle: 0.0, half: 80.0 }, &[&run], true);
-        for cause in crate::causes::library() {
-            let cause = cause.cause(&design);
+        for cause in crate::causes::candidates(&crate::causes::LIBRARY, &design) {
             assert!(!cause.separating.is_empty(), "{}", cause.id);
             for id in cause.separating {
                 assert!(catalogue.iter().any(|e| e.id == *id), "{}: {id}", cause.id);

@@ -6,4 +6,3 @@ mod smooth;
 mod traces;
 
 pub(crate) use bench::{BenchSimulator, ChannelKind, averaged};
-pub(crate) use response::slope;

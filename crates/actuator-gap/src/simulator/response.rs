@@ -9,12 +9,13 @@ use crate::causes::{
     BenchCause, Chain, Command, FrontStages, Loops, Rate, RearStages, chain_under, looped,
     rate_dependent,
 };
+use crate::numbers::{less, slope};
 use crate::plays::behind_lags;
 use crate::record::Record;
 use model_gap::{Effect, GapError, Memo};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, BenchSimulation, Calibration, DielectricHeating,
-    Drive, Lag, LinearGain, LinkageStage, LogCreep, MainsHum, SensorStage, VoltageRange,
+    Drive, LinearGain, LinkageStage, LogCreep, MainsHum, SensorStage, VoltageRange,
 };
 use std::sync::Arc;
 
@@ -24,61 +25,37 @@ const KEPT: usize = 6;
 /// Chords for each step of a relaxation.
 const FINER: u32 = 4;
 
+/// A signal on every run.
+type OnRuns = Arc<Vec<Vec<f64>>>;
+
 /// What has passed the law, on every run.
 #[derive(Debug)]
-struct Front {
+pub(super) struct Front {
     /// Terminal voltage; none where it is the command.
-    terminals: Vec<Option<Vec<f64>>>,
-    rises_k: Vec<Option<Vec<f64>>>,
-    outputs: Arc<Vec<Vec<f64>>>,
+    pub(super) terminals: Vec<Option<Vec<f64>>>,
+    /// Temperature rise; none where nothing warms.
+    pub(super) rises_k: Vec<Option<Vec<f64>>>,
+    outputs: OnRuns,
 }
 
 /// Signals of all runs under effects.
 pub(super) struct Response {
-    front: Arc<Front>,
-    outputs: Arc<Vec<Vec<f64>>>,
-    hum: Vec<Option<Vec<f64>>>,
+    pub(super) front: Arc<Front>,
+    pub(super) outputs: OnRuns,
+    /// Outputs without the hum of their reading.
+    pub(super) steady: OnRuns,
     /// Whether a load spring is among the effects.
     pub(super) is_loaded: bool,
-}
-
-impl Response {
-    /// Output of a run.
-    pub(super) fn output(&self, run: usize) -> Vec<f64> {
-        let own = &self.outputs[run];
-        match &self.hum[run] {
-            Some(hum) => {
-                let hum = hum.iter().copied().chain(std::iter::repeat(0.0));
-                own.iter().zip(hum).map(|(y, h)| y + h).collect()
-            }
-            None => own.clone(),
-        }
-    }
-
-    /// Output of a run without the hum of its reading.
-    pub(super) fn steady_output(&self, run: usize) -> &[f64] {
-        &self.outputs[run]
-    }
-
-    /// Terminal voltage of a run; none where it is the command.
-    pub(super) fn terminal(&self, run: usize) -> Option<&[f64]> {
-        self.front.terminals[run].as_deref()
-    }
-
-    /// Temperature rise of a run; none where nothing warms.
-    pub(super) fn rise_k(&self, run: usize) -> Option<&[f64]> {
-        self.front.rises_k[run].as_deref()
-    }
 }
 
 /// The base model on runs, with the stages of causes.
 pub(super) struct Plant<'a> {
     base: &'a BaseModel,
     runs: Vec<&'a Record>,
-    causes: &'a [Box<dyn BenchCause>],
+    causes: &'a [BenchCause],
     /// Output of the base's static part, and behind its relaxation, on the plain command.
-    pub(super) laws: Vec<Vec<f64>>,
-    pub(super) plain: Arc<Vec<Vec<f64>>>,
+    laws: Vec<Vec<f64>>,
+    pub(super) plain: OnRuns,
     /// How smooth commands and plain outputs are: most candidates act on one of them.
     commands: Vec<Weights>,
     plain_outputs: Vec<Weights>,
@@ -87,38 +64,32 @@ pub(super) struct Plant<'a> {
     /// Stages that only see signals: any value may pass.
     wide: VoltageRange,
     fronts: Memo<FrontStages, Front>,
-    rears: Memo<(FrontStages, RearStages), Arc<Vec<Vec<f64>>>>,
+    rears: Memo<(FrontStages, RearStages), OnRuns>,
 }
 
 impl<'a> Plant<'a> {
     pub(super) fn new(
         base: &'a BaseModel,
         runs: Vec<&'a Record>,
-        causes: &'a [Box<dyn BenchCause>],
+        causes: &'a [BenchCause],
         range: (f64, f64),
     ) -> Result<Self, GapError> {
         let laws: Vec<Vec<f64>> = runs.iter().map(|r| base.hysteresis(&r.input)).collect();
         let plain: Vec<Vec<f64>> =
             runs.iter().zip(&laws).map(|(r, law)| base.relaxed(law, r.step_s)).collect();
-        let commands = runs.iter().map(|r| Smooth::weights(&r.input)).collect();
-        let plain_outputs = plain.iter().map(|y| Smooth::weights(y)).collect();
         let at = |volt: f64| base.hysteresis(&[volt]).first().copied().unwrap_or_default();
-        let neutral = (at(0.0), at(f64::midpoint(range.0, range.1)));
-        let wide = VoltageRange::new(-1e9, 1e9).map_err(|e| failed("the range of signals", &e))?;
-        let (fronts, rears) = (Memo::new(KEPT), Memo::new(KEPT));
-        let plain = Arc::new(plain);
         Ok(Self {
             base,
+            commands: runs.iter().map(|r| Smooth::weights(&r.input)).collect(),
+            plain_outputs: plain.iter().map(|y| Smooth::weights(y)).collect(),
+            neutral: (at(0.0), at(f64::midpoint(range.0, range.1))),
+            wide: VoltageRange::new(-1e9, 1e9).map_err(|e| failed("the range of signals", &e))?,
+            fronts: Memo::new(KEPT),
+            rears: Memo::new(KEPT),
             runs,
             causes,
             laws,
-            plain,
-            commands,
-            plain_outputs,
-            neutral,
-            wide,
-            fronts,
-            rears,
+            plain: Arc::new(plain),
         })
     }
 
@@ -130,11 +101,15 @@ impl<'a> Plant<'a> {
         let front = self.fronts.get(stages.clone(), || self.front(&stages))?;
         let is_loaded = rear.linkage.iter().any(|s| matches!(s, LinkageStage::LoadStiffness(_)));
         let make = || self.rear(&front, &rear);
-        let outputs = self.rears.get((stages, rear.clone()), make)?;
-        let hum = (0..self.runs.len())
-            .map(|run| hum.and_then(|hum| self.hum_of(run, &outputs[run], hum)))
-            .collect();
-        Ok(Response { front, outputs: Arc::clone(&outputs), hum, is_loaded })
+        let steady = Arc::clone(&*self.rears.get((stages, rear.clone()), make)?);
+        let outputs = match hum {
+            Some(hum) => {
+                let pairs = self.runs.iter().zip(steady.iter());
+                Arc::new(pairs.map(|(run, output)| humming(run, output, hum)).collect())
+            }
+            None => Arc::clone(&steady),
+        };
+        Ok(Response { front, outputs, steady, is_loaded })
     }
 
     fn front(&self, stages: &FrontStages) -> Result<Front, GapError> {
@@ -156,11 +131,10 @@ impl<'a> Plant<'a> {
                 terminal = Some(match stage {
                     AmplifierStage::Lag(lag) => {
                         let known = terminal.is_none().then(|| &self.commands[number]);
-                        behind_lag(&smooth(input, known), *lag, run.step_s)
+                        Smooth::new(input, known).lagged(lag.tau_s, run.step_s)
                     }
                     other => {
-                        let chain = amplifier_alone(*other);
-                        self.through(chain, input, run)?.terminal_volt
+                        self.through(|own| own.amplifier.push(*other), input, run)?.terminal_volt
                     }
                 });
             }
@@ -213,14 +187,14 @@ impl<'a> Plant<'a> {
         if let Some(Rate { tau_s, position }) = stages.rate {
             let place = (middle, self.base.spread);
             // the relaxation time follows the state: no closed form for a curved input, so short chords
-            let fine = Smooth::new(law).refined(FINER);
+            let fine = Smooth::new(law, None).refined(FINER);
             let late = rate_dependent(&fine, tau_s, position, place, step_s / f64::from(FINER));
             *law = late.into_iter().step_by(FINER as usize).collect();
         }
         Ok(rise_k)
     }
 
-    fn rear(&self, front: &Front, stages: &RearStages) -> Result<Arc<Vec<Vec<f64>>>, GapError> {
+    fn rear(&self, front: &Front, stages: &RearStages) -> Result<OnRuns, GapError> {
         if *stages == RearStages::default() {
             return Ok(Arc::clone(&front.outputs));
         }
@@ -234,14 +208,14 @@ impl<'a> Plant<'a> {
             for stage in stages.linkage.iter().filter(|s| !(run.is_preloaded() && has_play(s))) {
                 let known = known.take();
                 signal = match stage {
-                    LinkageStage::Resonance(mode) if mode.damping_ratio < 1.0 => smooth(
-                        &signal, known,
-                    )
-                    .through_mode(mode.frequency_hz, mode.damping_ratio, run.step_s),
+                    LinkageStage::Resonance(mode) if mode.damping_ratio < 1.0 => {
+                        let smooth = Smooth::new(&signal, known);
+                        smooth.through_mode(mode.frequency_hz, mode.damping_ratio, run.step_s)
+                    }
                     LinkageStage::LogCreep(creep) => crept(&signal, creep, run.step_s),
                     other => {
-                        let linkage = vec![other.clone()];
-                        self.pass(run, &signal, RearStages { linkage, ..Default::default() })?
+                        let add = |own: &mut ActuatorModel| own.linkage.push(other.clone());
+                        self.through(add, &signal, run)?.measured_deg
                     }
                 };
             }
@@ -250,14 +224,14 @@ impl<'a> Plant<'a> {
                     let known = known.take();
                     signal = match stage {
                         SensorStage::Filter(lag) => {
-                            behind_lag(&smooth(&signal, known), *lag, run.step_s)
+                            Smooth::new(&signal, known).lagged(lag.tau_s, run.step_s)
                         }
                         SensorStage::Delay(delay) => {
-                            smooth(&signal, known).late_by(delay.delay_s / run.step_s)
+                            Smooth::new(&signal, known).late_by(delay.delay_s / run.step_s)
                         }
                         other => {
-                            let sensor = vec![*other];
-                            self.pass(run, &signal, RearStages { sensor, ..Default::default() })?
+                            let add = |own: &mut ActuatorModel| own.sensor.push(*other);
+                            self.through(add, &signal, run)?.measured_deg
                         }
                     };
                 }
@@ -270,35 +244,17 @@ impl<'a> Plant<'a> {
         Ok(Arc::new(outputs))
     }
 
-    fn hum_of(&self, number: usize, output: &[f64], hum: MainsHum) -> Option<Vec<f64>> {
-        let run = self.runs[number];
-        if run.has_ideal_sensor() {
-            return None;
-        }
-        let pairs = run.judged_output().iter().zip(run.judged(output));
-        let residual: Vec<f64> = pairs.map(|(measured, y)| measured - y).collect();
-        let line = line(hum.amplitude_um, hum.frequency_hz * run.step_s, &residual);
-        // where nothing is judged there is no hum to tell
-        Some([vec![0.0; run.window.start], line].concat())
-    }
-
-    /// A signal through stages behind the law.
-    fn pass(&self, run: &Record, signal: &[f64], rear: RearStages) -> Result<Vec<f64>, GapError> {
-        let simulated = self.through(Chain { rear, ..Chain::default() }, signal, run)?;
-        Ok(simulated.measured_deg)
-    }
-
-    /// A signal through stages alone: a law of gain 1 between them, degrees standing for the output's unit.
+    /// A signal through added stages alone: a law of gain 1 between them, degrees standing for the output's unit.
     fn through(
         &self,
-        chain: Chain,
+        add: impl FnOnce(&mut ActuatorModel),
         signal: &[f64],
         run: &Record,
     ) -> Result<BenchSimulation, GapError> {
         let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 1.0, bias_volt: 0.0 });
         let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
         let mut model = ActuatorModel::new(law, self.wide, calibration);
-        chain.extend(&mut model);
+        add(&mut model);
         let drive = Drive::new(signal, run.step_s);
         model.simulate_bench(&drive).map_err(|e| failed(&run.id, &e))
     }
@@ -311,16 +267,23 @@ impl<'a> Plant<'a> {
         volt: &[f64],
     ) -> Result<(Vec<f64>, f64), GapError> {
         let run = self.runs[number];
-        let chain = amplifier_alone(AmplifierStage::DielectricHeating(stage));
-        let rise = self.through(chain, volt, run)?.temperature_k;
+        let heating = AmplifierStage::DielectricHeating(stage);
+        let rise = self.through(|own| own.amplifier.push(heating), volt, run)?.temperature_k;
         let factor = run.temperature.as_ref().map_or(1.0, |measured| slope(&rise, measured));
         Ok((rise, factor.max(0.0)))
     }
 }
 
-/// A signal as a smooth one, by its weights where they are known.
-fn smooth<'s>(signal: &'s [f64], known: Option<&'s Weights>) -> Smooth<'s> {
-    known.map_or_else(|| Smooth::new(signal), |weights| Smooth::known(signal, weights))
+/// The reading of an output with hum of the phase that the measured output asks for.
+fn humming(run: &Record, output: &[f64], hum: MainsHum) -> Vec<f64> {
+    let mut read = output.to_vec();
+    if !run.has_ideal_sensor() {
+        let residual = less(run.judged_output(), run.judged(output));
+        let line = line(hum.amplitude_um, hum.frequency_hz * run.step_s, &residual);
+        // where nothing is judged there is no hum to tell
+        read.iter_mut().skip(run.window.start).zip(line).for_each(|(y, hum)| *y += hum);
+    }
+    read
 }
 
 /// A signal with its creep, `u + sum_i w_i (lag_i[u] - u_start)`.
@@ -334,18 +297,6 @@ fn crept(signal: &[f64], creep: &LogCreep, step_s: f64) -> Vec<f64> {
         *y += whole * (u - start);
     }
     output
-}
-
-/// A signal behind a lag; one of no time constant changes nothing.
-fn behind_lag(signal: &Smooth<'_>, lag: Lag, step_s: f64) -> Vec<f64> {
-    if lag.tau_s > 0.0 { signal.lagged(lag.tau_s, step_s) } else { signal.samples().to_vec() }
-}
-
-/// A chain of one stage of the amplifier.
-fn amplifier_alone(stage: AmplifierStage) -> Chain {
-    let mut chain = Chain::default();
-    chain.front.amplifier.push(stage);
-    chain
 }
 
 /// Whether a stage acts on the gain of the law and not on the voltage before it.
@@ -382,18 +333,6 @@ pub(super) fn line(amplitude: f64, turns_per_sample: f64, residual: &[f64]) -> V
     }
     let size = amplitude / c.hypot(s).max(1e-300);
     waves.iter().map(|(cos, sin)| size * (c * cos + s * sin)).collect()
-}
-
-/// Slope of `y` against `x` by least squares, both about their means; 0 where `x` is constant.
-pub(crate) fn slope(x: &[f64], y: &[f64]) -> f64 {
-    let n = x.len().max(1) as f64;
-    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
-    let (mut xy, mut xx) = (0.0, 0.0);
-    for (a, b) in x.iter().zip(y) {
-        xy += (a - mx) * (b - my);
-        xx += (a - mx).powi(2);
-    }
-    if xx > 0.0 { xy / xx } else { 0.0 }
 }
 
 fn failed(what: &str, error: &preisach_dyn::PreisachError) -> GapError {

@@ -5,6 +5,7 @@
 //! of the input at the sampling frequency. Here the input is the quintic through six neighbouring samples
 //! where they lie on a smooth curve, and the chord where they do not (corners, steps).
 
+use crate::numbers::range;
 use nalgebra::Complex;
 use std::borrow::Cow;
 
@@ -34,28 +35,17 @@ pub(super) struct Smooth<'a> {
 pub(super) type Weights = Vec<f64>;
 
 impl<'a> Smooth<'a> {
-    /// Looks at fourth over second differences: those of a sine of seven samples a cycle and more lie below
+    /// A record with its weights, known or found: looks at fourth over second differences: those of a sine of seven samples a cycle and more lie below
     /// 1, those of a corner at 2 and above.
-    pub(super) fn new(samples: &'a [f64]) -> Self {
-        Self { samples, weights: Cow::Owned(Self::weights(samples)) }
-    }
-
-    /// A record whose weights are known.
-    pub(super) fn known(samples: &'a [f64], weights: &'a Weights) -> Self {
-        Self { samples, weights: Cow::Borrowed(weights) }
-    }
-
-    /// The record itself.
-    pub(super) fn samples(&self) -> &'a [f64] {
-        self.samples
+    pub(super) fn new(samples: &'a [f64], known: Option<&'a Weights>) -> Self {
+        let weights = known.map_or_else(|| Self::weights(samples).into(), Cow::from);
+        Self { samples, weights }
     }
 
     /// The weights of a record.
     pub(super) fn weights(samples: &[f64]) -> Weights {
-        let range = samples
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-        let least = 1e-9 * (range.1 - range.0);
+        let (low, high) = range(samples);
+        let least = 1e-9 * (high - low);
         let count = samples.len();
         if count < 2 {
             return Vec::new();
@@ -90,48 +80,40 @@ impl<'a> Smooth<'a> {
 
     /// The record late by so many samples; before its first sample it is at rest.
     pub(super) fn late_by(&self, samples: f64) -> Vec<f64> {
-        let polynomials = polynomials();
         // one place in every interval
         let whole = samples.ceil();
-        let s = whole - samples;
-        let quintic: [f64; POINTS] =
-            std::array::from_fn(|j| polynomials[j].iter().rev().fold(0.0, |sum, c| sum * s + c));
+        let place = Place::at(whole - samples);
         let first = self.samples.first().copied().unwrap_or_default();
         (0..self.samples.len())
             .map(|i| {
                 let Some(k) = back(i, whole) else { return first };
-                let Some(weight) = self.weights.get(k) else { return self.samples[k] };
-                let chord = self.samples[k] + s * (self.samples[k + 1] - self.samples[k]);
-                let smooth: f64 = quintic.iter().zip(self.about(k)).map(|(c, u)| c * u).sum();
-                chord + weight * (smooth - chord)
+                if k < self.weights.len() { self.between(k, &place) } else { self.samples[k] }
             })
             .collect()
     }
 
     /// The record at a step finer by a whole factor; every so many samples are its own.
     pub(super) fn refined(&self, factor: u32) -> Vec<f64> {
-        let polynomials = polynomials();
-        let quintics: Vec<(f64, [f64; POINTS])> = (0..factor)
-            .map(|part| {
-                let s = f64::from(part) / f64::from(factor);
-                (s, polynomials.map(|p| p.iter().rev().fold(0.0, |sum, c| sum * s + c)))
-            })
-            .collect();
-        let mut all = Vec::with_capacity(self.samples.len() * factor as usize);
-        for (k, weight) in self.weights.iter().enumerate() {
-            let about = self.about(k);
-            for (s, quintic) in &quintics {
-                let chord = about[2] + s * (about[3] - about[2]);
-                let smooth: f64 = quintic.iter().zip(about).map(|(c, u)| c * u).sum();
-                all.push(chord + weight * (smooth - chord));
-            }
-        }
-        all.extend(self.samples.last());
-        all
+        let places: Vec<Place> =
+            (0..factor).map(|part| Place::at(f64::from(part) / f64::from(factor))).collect();
+        let intervals = 0..self.weights.len();
+        let inside = |k: usize| places.iter().map(move |place| self.between(k, place));
+        intervals.flat_map(inside).chain(self.samples.last().copied()).collect()
     }
 
-    /// Behind a first-order lag, at rest at first: `tau y' = u - y`.
+    /// The record at a place inside an interval.
+    fn between(&self, interval: usize, place: &Place) -> f64 {
+        let about = self.about(interval);
+        let chord = about[2] + place.part * (about[3] - about[2]);
+        let smooth: f64 = place.quintic.iter().zip(about).map(|(c, u)| c * u).sum();
+        chord + self.weights[interval] * (smooth - chord)
+    }
+
+    /// Behind a first-order lag, at rest at first: `tau y' = u - y`; one of no time constant changes nothing.
     pub(super) fn lagged(&self, tau_s: f64, step_s: f64) -> Vec<f64> {
+        if tau_s <= 0.0 {
+            return self.samples.to_vec();
+        }
         let exponent = Complex::new(-step_s / tau_s, 0.0);
         let start = self.samples.first().copied().unwrap_or_default();
         self.follow(exponent, -exponent, Complex::new(start, 0.0)).map(|z| z.re).collect()
@@ -181,6 +163,21 @@ impl<'a> Smooth<'a> {
             }
             z
         })
+    }
+}
+
+/// A place inside every interval.
+struct Place {
+    /// Part of the interval before it.
+    part: f64,
+    /// Weights of the six samples there.
+    quintic: [f64; POINTS],
+}
+
+impl Place {
+    fn at(part: f64) -> Self {
+        let value = |p: [f64; POINTS]| p.iter().rev().fold(0.0, |sum, c| sum * part + c);
+        Self { part, quintic: polynomials().map(value) }
     }
 }
 
@@ -263,7 +260,7 @@ mod tests {
     #[test]
     fn a_sine_of_ten_samples_a_cycle_comes_late_without_losing_amplitude() {
         let samples = samples();
-        let smooth = Smooth::new(&samples);
+        let smooth = Smooth::new(&samples, None);
         for delay in [0.4, 0.5, 1.0, 2.3] {
             let left = error(&smooth.late_by(delay), |t| wave(t - delay * STEP_S));
             assert!(left < 5e-4, "{left} for {delay}");
@@ -276,7 +273,7 @@ mod tests {
     #[test]
     fn a_finer_record_keeps_its_samples_and_follows_the_sine_between() {
         let samples = samples();
-        let fine = Smooth::new(&samples).refined(4);
+        let fine = Smooth::new(&samples, None).refined(4);
         assert_eq!(fine.len(), 4 * (samples.len() - 1) + 1);
         for (i, y) in fine.iter().enumerate().skip(40).take(1500) {
             assert!((y - wave(0.25 * STEP_S * i as f64)).abs() < 5e-4, "{i}");
@@ -287,7 +284,7 @@ mod tests {
     #[test]
     fn a_lag_and_a_mode_answer_a_sine_as_theory_says() {
         let samples = samples();
-        let smooth = Smooth::new(&samples);
+        let smooth = Smooth::new(&samples, None);
         let omega = TAU * HZ;
         for tau in [1e-5, 2e-4, 1e-3, 0.02] {
             let answer = Complex::new(1.0, omega * tau).inv();
@@ -313,10 +310,10 @@ mod tests {
         let mut samples = vec![0.0; 40];
         samples.extend((0..40).map(f64::from));
         samples.extend(vec![100.0; 40]);
-        let late = Smooth::new(&samples).late_by(0.5);
+        let late = Smooth::new(&samples, None).late_by(0.5);
         let overshoot = late.iter().fold(0.0_f64, |most, v| most.max(v - 100.0).max(-v));
         assert!(overshoot < 1.0, "{overshoot}");
-        let lagged = Smooth::new(&samples).lagged(1e-4, 1e-3);
+        let lagged = Smooth::new(&samples, None).lagged(1e-4, 1e-3);
         assert!(lagged.iter().all(|v| (-0.5..100.5).contains(v)));
     }
 
@@ -345,7 +342,7 @@ mod tests {
     fn records_of_few_samples_pass() {
         for n in 1..5 {
             let samples = vec![1.0; n];
-            let smooth = Smooth::new(&samples);
+            let smooth = Smooth::new(&samples, None);
             assert_eq!(smooth.late_by(1.5).len(), n);
             assert_eq!(smooth.lagged(0.1, 0.1).len(), n);
         }

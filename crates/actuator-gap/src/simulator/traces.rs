@@ -1,9 +1,11 @@
 //! The measured signals as the engine weighs them: noise, structure, and what the base model may still
 //! move by.
 
-use super::bench::{BenchSimulator, ChannelKind, averaged};
+use super::bench::{BenchSimulator, Channel, ChannelKind, averaged};
 use crate::base::{ErrorModel, white_noise};
+use crate::numbers::less;
 use crate::record::Record;
+use model_gap::Sine;
 use model_gap::discovery::Trace;
 use nalgebra::DMatrix;
 use rotor_base::variance;
@@ -20,98 +22,73 @@ const ZERO_ERROR: f64 = 2e-3;
 impl BenchSimulator<'_> {
     /// The traces with their noise and the covariance of the base model.
     pub(crate) fn traces(&self) -> Vec<Trace> {
-        self.traces_of(&self.channels)
-    }
-
-    /// The traces of some channels: run and kind of each.
-    pub(crate) fn traces_of(&self, channels: &[(usize, ChannelKind)]) -> Vec<Trace> {
         let errors: Vec<_> = self.runs.iter().map(|r| self.base.errors(r)).collect();
         let sigmas: Vec<f64> = errors.iter().map(ErrorModel::effective).collect();
-        let moving = if channels.iter().any(|channel| channel.1 == ChannelKind::Output) {
+        let moving = if self.channels.iter().any(|channel| channel.kind == ChannelKind::Output) {
             self.base.nuisance(&self.runs, &sigmas, MOST_DIRECTIONS)
         } else {
             // the base model moves the output alone
             Vec::new()
         };
-        let directions = moving.first().map_or(0, DMatrix::ncols);
-        let width = directions + self.runs.len();
-        channels
-            .iter()
-            .map(|&(number, kind)| {
-                let run = self.runs[number];
-                let measured = averaged(self.measured(number, kind), self.block);
-                let block = self.block as f64;
-                let columns = if kind == ChannelKind::Output { width } else { 0 };
-                let mut nuisance = DMatrix::zeros(measured.len(), columns);
-                let (noise, sigma) = match kind {
-                    ChannelKind::Output => {
-                        let own = &moving[number];
-                        for k in 0..directions {
-                            let column: Vec<f64> = own.column(k).iter().copied().collect();
-                            for (i, v) in
-                                averaged(run.judged(&column), self.block).iter().enumerate()
-                            {
-                                nuisance[(i, k)] = *v;
-                            }
-                        }
-                        nuisance
-                            .column_mut(directions + number)
-                            .fill(ZERO_ERROR * self.base.spread);
-                        let e = errors[number];
-                        let white = e.noise.powi(2) / block;
-                        let left = (e.correlation / block).max(1.0) * e.structure.powi(2);
-                        (white.sqrt(), (white + left).sqrt())
-                    }
-                    ChannelKind::Comparison => {
-                        let white = white_noise(self.measured(number, kind)) / block.sqrt();
-                        (white, white)
-                    }
-                    ChannelKind::Amplifier => {
-                        let off: Vec<f64> = self
-                            .measured(number, kind)
-                            .iter()
-                            .zip(run.judged_input())
-                            .map(|(a, b)| a - b)
-                            .collect();
-                        let least = MONITOR_ERROR * (self.range.1 - self.range.0);
-                        (white_noise(&off), white_noise(&off).max(least))
-                    }
-                    ChannelKind::Temperature => {
-                        let white = white_noise(self.measured(number, kind));
-                        (white, white.max(THERMOMETER_ERROR_K))
-                    }
-                    ChannelKind::Load => {
-                        let own = self.measured(number, kind);
-                        let white = white_noise(own);
-                        (white, (3.0 * white).max(0.3 * variance(own).sqrt()))
-                    }
-                };
-                Trace {
-                    experiment: number,
-                    block: block_of(run, measured.len()),
-                    measured,
-                    sigma: sigma.max(1e-12),
-                    noise,
-                    nuisance,
-                    role: kind.role(),
+        let block = self.block as f64;
+        let one = |channel: &Channel| {
+            let (run, own) = (self.runs[channel.run], &channel.measured);
+            let white = white_noise(own);
+            let (noise, sigma) = match channel.kind {
+                ChannelKind::Output => {
+                    let e = errors[channel.run];
+                    let white = e.noise.powi(2) / block;
+                    let left = (e.correlation / block).max(1.0) * e.structure.powi(2);
+                    (white.sqrt(), (white + left).sqrt())
                 }
-            })
-            .collect()
+                ChannelKind::Comparison => (white / block.sqrt(), white / block.sqrt()),
+                ChannelKind::Amplifier => {
+                    let white = white_noise(&less(own, run.judged_input()));
+                    (white, white.max(MONITOR_ERROR * (self.range.1 - self.range.0)))
+                }
+                ChannelKind::Temperature => (white, white.max(THERMOMETER_ERROR_K)),
+                ChannelKind::Load => (white, (3.0 * white).max(0.3 * variance(own).sqrt())),
+            };
+            let measured = averaged(own, self.block);
+            Trace {
+                experiment: channel.run,
+                block: block_of(run, measured.len()),
+                nuisance: match channel.kind {
+                    ChannelKind::Output => self.nuisance(&moving[channel.run], channel.run),
+                    _ => DMatrix::zeros(measured.len(), 0),
+                },
+                measured,
+                sigma: sigma.max(1e-12),
+                noise,
+                role: channel.kind.role(),
+            }
+        };
+        self.channels.iter().map(one).collect()
+    }
+
+    /// What the output of a run may move by: the directions of the base model, and the zeros of the runs.
+    fn nuisance(&self, directions: &DMatrix<f64>, number: usize) -> DMatrix<f64> {
+        let column = |k: usize| {
+            let own = directions.column(k);
+            averaged(self.runs[number].judged(own.as_slice()), self.block)
+        };
+        let columns: Vec<Vec<f64>> = (0..directions.ncols()).map(column).collect();
+        let samples = averaged(self.runs[number].judged_output(), self.block).len();
+        DMatrix::from_fn(samples, columns.len() + self.runs.len(), |i, k| match columns.get(k) {
+            Some(column) => column[i],
+            None if k == columns.len() + number => ZERO_ERROR * self.base.spread,
+            None => 0.0,
+        })
     }
 }
 
 /// Block of the bootstrap: a period where the input has one, else a tenth of the run.
 fn block_of(run: &Record, samples: usize) -> usize {
-    let tenth = (samples / 10).max(1);
-    match model_gap::Stimulus::of(run.judged_input(), run.step_s) {
-        model_gap::Stimulus::Sine { frequency_hz, .. } => {
-            let period = run.judged_input().len() as f64 * run.step_s * frequency_hz;
-            let cycles = period.max(1.0);
-            let per_cycle = samples as f64 / cycles;
-            whole(per_cycle).clamp(1, samples.max(1))
-        }
-        model_gap::Stimulus::Other => tenth,
-    }
+    let Some(sine) = Sine::of(run.judged_input(), run.step_s) else {
+        return (samples / 10).max(1);
+    };
+    let cycles = (run.judged_input().len() as f64 * run.step_s * sine.frequency_hz).max(1.0);
+    whole(samples as f64 / cycles).clamp(1, samples.max(1))
 }
 
 #[expect(

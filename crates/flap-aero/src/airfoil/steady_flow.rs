@@ -1,7 +1,12 @@
 //! Steady nonlinear section from tables: any direction of flow, reverse and yawed included.
 
-use crate::{AeroError, AirfoilSpan, FlapChord, FlapEffectiveness, Mach, TheodorsenFunctions};
+use crate::error::check;
+use crate::{
+    AeroError, AirfoilSpan, FlapChord, FlapEffectiveness, Mach, SteadyCoefficients,
+    TheodorsenFunctions,
+};
 use std::f64::consts::PI;
+use std::ops::{Add, Mul, Sub};
 
 /// Where the Prandtl-Glauert factor of the flap's increments is held.
 const MACH_LIMIT: f64 = 0.9;
@@ -80,16 +85,10 @@ impl TabulatedSection {
         chord: f64,
         friction: f64,
     ) -> Result<Self, AeroError> {
-        for (quantity, value, fits) in [
-            ("chord", chord, chord.is_finite() && chord > 0.0),
-            ("friction drag coefficient", friction, friction.is_finite() && friction >= 0.0),
-            ("station", station, station.is_finite()),
-        ] {
-            if !fits {
-                let expected = "a finite number in its range";
-                return Err(AeroError::BadInput { quantity, value, expected });
-            }
-        }
+        check(&[("chord", chord)], "a finite number above 0", |x| x.is_finite() && x > 0.0)?;
+        let part = [("friction drag coefficient", friction)];
+        check(&part, "a finite number, 0 or more", |x| x.is_finite() && x >= 0.0)?;
+        check(&[("station", station)], "a finite number", f64::is_finite)?;
         Ok(Self { airfoils, station, chord, friction, flap: [0.0; 4] })
     }
 
@@ -131,145 +130,132 @@ impl TabulatedSection {
     /// # Errors
     /// [`AeroError::BadInput`] if a number is not finite, or density or speed of sound not positive.
     pub fn forces(&self, flow: &SectionFlow) -> Result<LinearisedForces, AeroError> {
-        check(flow)?;
-        let (u, w, s) = (flow.chordwise, flow.normal, flow.spanwise);
-        let plane = u.hypot(w);
-        if plane <= NO_FLOW * flow.sound_speed {
+        check_flow(flow)?;
+        if flow.chordwise.hypot(flow.normal) <= NO_FLOW * flow.sound_speed {
             return Ok(LinearisedForces::default());
         }
-        let mach = plane / flow.sound_speed;
-        let point = self.airfoils.at(self.station, w.atan2(u), mach);
-        let state = State::new(self, flow, plane);
+        let (u, w) = (Sloped::variable(flow.chordwise, 0), Sloped::variable(flow.normal, 1));
+        let (s, delta) = (Sloped::variable(flow.spanwise, 2), Sloped::variable(flow.flap_rad, 3));
+        let plane = u.hypot(w);
         let whole = plane.hypot(s);
-        // derivatives with respect to u, w, s and the flap angle
-        let d_plane = [u / plane, w / plane, 0.0, 0.0];
-        let d_whole = [u / whole, w / whole, s / whole, 0.0];
-        let d_incidence = [-w / (plane * plane), u / (plane * plane), 0.0, 0.0];
-        let (q, friction) = (0.5 * flow.density * self.chord, self.friction);
-        let [c0, c1, c2] = [0, 1, 2].map(|i| {
-            // value and four derivatives of Cl, Cm, Ch
-            let (value, per_alpha, per_mach) = match i {
-                0 => (point.value.lift, point.per_incidence.lift, point.per_mach.lift),
-                1 => (point.value.moment, point.per_incidence.moment, point.per_mach.moment),
-                _ => (0.0, 0.0, 0.0),
-            };
-            let [add, d_add] = state.increment(i);
-            let slopes: [f64; 4] = std::array::from_fn(|n| {
-                per_alpha * d_incidence[n] + per_mach * d_plane[n] / flow.sound_speed + d_add[n]
-            });
-            (value + add[0], slopes)
-        });
-        let drag = point.value.drag - friction;
-        let d_drag: [f64; 4] = std::array::from_fn(|n| {
-            point.per_incidence.drag * d_incidence[n]
-                + point.per_mach.drag * d_plane[n] / flow.sound_speed
-        });
-        let unit = |i: usize, n: usize| if i == n { 1.0 } else { 0.0 };
-        let part = |n: usize| {
-            let (du, dw, ds) = (unit(0, n), unit(1, n), unit(2, n));
-            let normal = c0.0 * u + drag * w;
-            let chord = c0.0 * w - drag * u;
-            let d_normal = c0.1[n] * u + c0.0 * du + d_drag[n] * w + drag * dw;
-            let d_chord = c0.1[n] * w + c0.0 * dw - d_drag[n] * u - drag * du;
-            let rub = |v: f64, dv: f64| friction * (d_whole[n] * v + whole * dv);
-            let pressure =
-                |c: f64, dc: f64| q * self.chord * plane * (2.0 * d_plane[n] * c + plane * dc);
-            SectionForces {
-                normal: q * (d_plane[n] * normal + plane * d_normal + rub(w, dw)),
-                chordwise: q * (d_plane[n] * chord + plane * d_chord - rub(u, du)),
-                spanwise: q * rub(s, ds),
-                moment: pressure(c1.0, c1.1[n]),
-                hinge: pressure(c2.0, c2.1[n]),
-            }
+        let mach = plane * (1.0 / flow.sound_speed).into();
+        let square = plane.value * plane.value;
+        let incidence =
+            Sloped::of(w.value.atan2(u.value), [(-w.value / square, u), (u.value / square, w)]);
+        let point = self.airfoils.at(self.station, incidence.value, mach.value);
+        let table = |pick: fn(&SteadyCoefficients) -> f64| {
+            let slopes = [(pick(&point.per_incidence), incidence), (pick(&point.per_mach), mach)];
+            Sloped::of(pick(&point.value), slopes)
         };
-        let value = SectionForces {
-            normal: q * (plane * (c0.0 * u + drag * w) + friction * whole * w),
-            chordwise: q * (plane * (c0.0 * w - drag * u) - friction * whole * u),
-            spanwise: q * friction * whole * s,
-            moment: q * self.chord * plane * plane * c1.0,
-            hinge: q * self.chord * plane * plane * c2.0,
+        let flap = flap_factor(u, plane, mach);
+        let [per_lift, per_moment, hinge_per_sin, per_hinge] = self.flap.map(Sloped::from);
+        let lift = table(|c| c.lift) + per_lift * delta * flap;
+        let moment = table(|c| c.moment) + per_moment * delta * flap;
+        let hinge = (hinge_per_sin * w * plane.inverse() + per_hinge * delta) * flap;
+        let drag = table(|c| c.drag) - self.friction.into();
+        let scale = Sloped::from(0.5 * flow.density * self.chord);
+        let rub = whole * self.friction.into();
+        let pressure = scale * plane * plane * self.chord.into();
+        let normal = scale * (plane * (lift * u + drag * w) + rub * w);
+        let chordwise = scale * (plane * (lift * w - drag * u) - rub * u);
+        let spanwise = scale * rub * s;
+        let (moment, hinge) = (pressure * moment, pressure * hinge);
+        let each = |pick: &dyn Fn(Sloped) -> f64| SectionForces {
+            normal: pick(normal),
+            chordwise: pick(chordwise),
+            spanwise: pick(spanwise),
+            moment: pick(moment),
+            hinge: pick(hinge),
         };
         Ok(LinearisedForces {
-            value,
-            per_velocity: [part(0), part(1), part(2)],
-            per_flap_rad: part(3),
+            value: each(&|force| force.value),
+            per_velocity: [0, 1, 2].map(|n| each(&|force| force.slopes[n])),
+            per_flap_rad: each(&|force| force.slopes[3]),
         })
     }
 }
 
-/// What the flap's increments need.
-struct State {
-    flap: [f64; 4],
-    delta: f64,
-    cos: f64,
-    sin: f64,
-    compress: f64,
-    /// Derivatives with respect to `u`, `w`, `s`, flap angle.
-    d_cos: [f64; 4],
-    d_sin: [f64; 4],
-    d_compress: [f64; 4],
+/// `max(cos(alpha), 0) / beta`, which the increments of the flap are multiplied with.
+fn flap_factor(u: Sloped, plane: Sloped, mach: Sloped) -> Sloped {
+    if u.value <= 0.0 {
+        return 0.0.into();
+    }
+    let held = mach.value.min(MACH_LIMIT);
+    let compress = (1.0 - held * held).sqrt().recip();
+    let slope = if mach.value < MACH_LIMIT { held * compress.powi(3) } else { 0.0 };
+    u * plane.inverse() * Sloped::of(compress, [(slope, mach), (0.0, mach)])
 }
 
-impl State {
-    fn new(section: &TabulatedSection, flow: &SectionFlow, plane: f64) -> Self {
-        let (u, w) = (flow.chordwise, flow.normal);
-        let mach = plane / flow.sound_speed;
-        let held = mach.min(MACH_LIMIT);
-        let beta2 = 1.0 - held * held;
-        let compress = beta2.sqrt().recip();
-        let slope =
-            if mach < MACH_LIMIT { held * compress / beta2 / flow.sound_speed } else { 0.0 };
-        let (cos, sin) = (u / plane, w / plane);
-        Self {
-            flap: section.flap,
-            delta: flow.flap_rad,
-            cos,
-            sin,
-            compress,
-            d_cos: [sin * sin / plane, -sin * cos / plane, 0.0, 0.0],
-            d_sin: [-sin * cos / plane, cos * cos / plane, 0.0, 0.0],
-            d_compress: [slope * cos, slope * sin, 0.0, 0.0],
-        }
+/// A number with its derivatives with respect to chordwise, normal and spanwise velocity and flap angle.
+#[derive(Debug, Clone, Copy)]
+struct Sloped {
+    value: f64,
+    slopes: [f64; 4],
+}
+
+impl Sloped {
+    /// One of the four variables.
+    fn variable(value: f64, index: usize) -> Self {
+        let slopes = std::array::from_fn(|n| if n == index { 1.0 } else { 0.0 });
+        Self { value, slopes }
     }
 
-    /// Increment of `Cl`, `Cm` or `Ch` (first entry of the first array) and its four derivatives.
-    fn increment(&self, load: usize) -> [[f64; 4]; 2] {
-        if self.cos <= 0.0 {
-            return [[0.0; 4]; 2];
-        }
-        let [lift, moment, hinge_alpha, hinge] = self.flap;
-        let (per_delta, per_sin) = match load {
-            0 => (lift, 0.0),
-            1 => (moment, 0.0),
-            _ => (hinge, hinge_alpha),
-        };
-        let shape = per_sin * self.sin + per_delta * self.delta;
-        let slopes = std::array::from_fn(|n| {
-            let d_shape = per_sin * self.d_sin[n] + if n == 3 { per_delta } else { 0.0 };
-            self.compress * (self.d_cos[n] * shape + self.cos * d_shape)
-                + self.d_compress[n] * self.cos * shape
-        });
-        [[self.compress * self.cos * shape, 0.0, 0.0, 0.0], slopes]
+    /// A function of two numbers, from its value and its slopes.
+    fn of(value: f64, [(a, x), (b, y)]: [(f64, Self); 2]) -> Self {
+        let slopes = std::array::from_fn(|n| a * x.slopes[n] + b * y.slopes[n]);
+        Self { value, slopes }
+    }
+
+    fn hypot(self, other: Self) -> Self {
+        let value = self.value.hypot(other.value);
+        Self::of(value, [(self.value / value, self), (other.value / value, other)])
+    }
+
+    fn inverse(self) -> Self {
+        let value = self.value.recip();
+        Self::of(value, [(-value * value, self), (0.0, self)])
     }
 }
 
-fn check(flow: &SectionFlow) -> Result<(), AeroError> {
-    for (quantity, value) in [
+impl From<f64> for Sloped {
+    fn from(value: f64) -> Self {
+        Self { value, slopes: [0.0; 4] }
+    }
+}
+
+impl Add for Sloped {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::of(self.value + other.value, [(1.0, self), (1.0, other)])
+    }
+}
+
+impl Sub for Sloped {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self::of(self.value - other.value, [(1.0, self), (-1.0, other)])
+    }
+}
+
+impl Mul for Sloped {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self::of(self.value * other.value, [(other.value, self), (self.value, other)])
+    }
+}
+
+fn check_flow(flow: &SectionFlow) -> Result<(), AeroError> {
+    let positive = [("air density", flow.density), ("speed of sound", flow.sound_speed)];
+    check(&positive, "a number above 0", |value| value.is_finite() && value > 0.0)?;
+    let finite = [
         ("chordwise velocity", flow.chordwise),
         ("normal velocity", flow.normal),
         ("spanwise velocity", flow.spanwise),
         ("flap angle", flow.flap_rad),
-        ("air density", flow.density),
-        ("speed of sound", flow.sound_speed),
-    ] {
-        if !value.is_finite() {
-            return Err(AeroError::BadInput { quantity, value, expected: "a finite number" });
-        }
-    }
-    for (quantity, value) in [("air density", flow.density), ("speed of sound", flow.sound_speed)] {
-        if value <= 0.0 {
-            return Err(AeroError::BadInput { quantity, value, expected: "a number above 0" });
-        }
-    }
+    ];
+    check(&finite, "a finite number", f64::is_finite)?;
     Mach::limited(flow.chordwise / flow.sound_speed, MACH_LIMIT).map(|_| ())
 }

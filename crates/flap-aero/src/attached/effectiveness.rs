@@ -1,5 +1,6 @@
 //! How much of thin-aerofoil theory's flap a real flap is.
 
+use crate::error::check;
 use crate::{AeroError, LagChannel, Load, Mode, SectionCoefficients};
 
 /// Factors on the loads a flap makes: 1 is theory's. The boundary layer takes part of the lift of a
@@ -32,19 +33,12 @@ impl FlapEffectiveness {
     /// # Errors
     /// [`AeroError::BadInput`] unless each is 0 to 2.
     pub fn new(lift: f64, moment: f64, hinge: f64) -> Result<Self, AeroError> {
-        for (quantity, value) in [
+        let factors = [
             ("flap effectiveness in lift", lift),
             ("flap effectiveness in moment", moment),
             ("flap effectiveness in hinge moment", hinge),
-        ] {
-            if !(0.0..=2.0).contains(&value) {
-                return Err(AeroError::BadInput {
-                    quantity,
-                    value,
-                    expected: "0 to 2, 1 is theory",
-                });
-            }
-        }
+        ];
+        check(&factors, "0 to 2, 1 is theory", |factor| (0.0..=2.0).contains(&factor))?;
         Ok(Self { lift, moment, hinge })
     }
 

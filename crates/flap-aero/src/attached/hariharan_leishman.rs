@@ -70,44 +70,6 @@ pub fn initial_slopes(mach: Mach, flap: FlapChord) -> [[f64; 4]; 3] {
     ]
 }
 
-/// What one indicial function settles to: a part at once and a part with the circulation.
-#[derive(Debug, Clone, Copy)]
-struct Settling {
-    at_once: f64,
-    circulatory: f64,
-}
-
-/// Slope-matched time constants and where they had to be replaced.
-struct TimeConstants {
-    floor: f64,
-    unmatched: [[bool; 4]; 3],
-}
-
-impl TimeConstants {
-    /// Time constant, in semichords, of the exponential from the start value to the settled one.
-    ///
-    /// ```text
-    /// Phi(S) = start e^(-S/T) + at_once (1 - e^(-S/T)) + circulatory phi(S)
-    /// Phi'(0) = slope:   T = (at_once - start) / (slope - circulatory phi'(0))
-    /// ```
-    fn matched(
-        &mut self,
-        load: Load,
-        mode: Mode,
-        start: f64,
-        settling: Settling,
-        slopes: [f64; 2],
-    ) -> f64 {
-        let [slope, circulatory_slope] = slopes;
-        let time = (settling.at_once - start) / (slope - settling.circulatory * circulatory_slope);
-        if time >= self.floor {
-            return time;
-        }
-        self.unmatched[load.index()][mode.index()] = true;
-        self.floor
-    }
-}
-
 /// Coefficients of the compressible model.
 ///
 /// Each input's indicial functions start at the exact piston value, leave it with the exact initial
@@ -146,8 +108,7 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
     let beta = mach.beta();
     let beta2 = beta * beta;
     let compress = 1.0 / beta;
-    let floored = mach.value() < MIN_NONCIRCULATORY_MACH;
-    let noncirculatory = if floored { Mach::noncirculatory_floor() } else { mach };
+    let noncirculatory = Mach::within(mach, MIN_NONCIRCULATORY_MACH, Mach::MAX);
     let m = noncirculatory.value();
 
     let circulation = t.circulatory_input();
@@ -157,8 +118,9 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
     let held_moment = t.held_moment();
     let held_hinge = t.held_hinge();
 
-    let mut times =
-        TimeConstants { floor: 0.5 * flap.ratio() * m / (1.0 + m), unmatched: [[false; 4]; 3] };
+    // shortest time constant, semichords, and the pairs whose slope asks for a shorter one
+    let floor = 0.5 * flap.ratio() * m / (1.0 + m);
+    let mut slope_unmatched = [[false; 4]; 3];
     let mut lags = Vec::with_capacity(16);
     for (a, b) in BEDDOES {
         lags.push(LagChannel {
@@ -190,21 +152,21 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
                     lags.push(single(load, mode, 1.0 / pole, held_moment[j] * compress));
                 }
                 _ => {
-                    let settling = match load {
-                        Load::Lift => {
-                            Settling { at_once: 0.0, circulatory: TAU * compress * circulation[j] }
-                        }
-                        Load::Moment => {
-                            Settling { at_once: held_moment[j] * compress, circulatory: 0.0 }
-                        }
-                        Load::Hinge => Settling {
-                            at_once: held_hinge[j] * compress,
-                            circulatory: t.circulatory_hinge() * compress * circulation[j],
-                        },
+                    // what the function settles to, at once and with the circulation
+                    let [at_once, circulatory] = match load {
+                        Load::Lift => [0.0, TAU * compress * circulation[j]],
+                        Load::Moment => [held_moment[j] * compress, 0.0],
+                        Load::Hinge => [
+                            held_hinge[j] * compress,
+                            t.circulatory_hinge() * compress * circulation[j],
+                        ],
                     };
-                    let time =
-                        times.matched(load, mode, i0, settling, [slopes[o][j], circulatory_slope]);
-                    lags.push(single(load, mode, time, settling.at_once - i0));
+                    // Phi'(0) = slope:   T = (at_once - start) / (slope - circulatory phi'(0))
+                    let time = (at_once - i0) / (slopes[o][j] - circulatory * circulatory_slope);
+                    let is_matched = time >= floor;
+                    slope_unmatched[o][j] = !is_matched;
+                    let time = if is_matched { time } else { floor };
+                    lags.push(single(load, mode, time, at_once - i0));
                 }
             }
         }
@@ -214,9 +176,9 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
         rate: [[0.0; 4]; 3],
         lags,
         remarks: ModelRemarks {
-            mach_floored: floored,
-            slope_unmatched: times.unmatched,
-            ..ModelRemarks::default()
+            mach_floored: mach < noncirculatory,
+            slope_unmatched,
+            ..Default::default()
         },
     }
 }

@@ -50,11 +50,6 @@ impl Mach {
         Self(mach.0.clamp(low, high))
     }
 
-    /// The Mach number below which noncirculatory compressible loads are not formed.
-    pub(crate) fn noncirculatory_floor() -> Self {
-        Self(MIN_NONCIRCULATORY_MACH)
-    }
-
     /// The number.
     pub fn value(self) -> f64 {
         self.0

@@ -1,5 +1,6 @@
 //! Section coefficients laid out for marching: four lags side by side, or poles that all inputs share.
 
+use crate::error::check;
 use crate::motion::decay::{Decay, LANES, Lanes, decay};
 use crate::{AeroError, LagChannel, SectionCoefficients};
 
@@ -214,12 +215,6 @@ impl StepFactors {
 }
 
 pub(crate) fn check_step(semichords: f64) -> Result<(), AeroError> {
-    if semichords.is_finite() && semichords >= 0.0 {
-        return Ok(());
-    }
-    Err(AeroError::BadInput {
-        quantity: "step, semichords",
-        value: semichords,
-        expected: "a finite number, 0 or more",
-    })
+    let fits = |step: f64| step.is_finite() && step >= 0.0;
+    check(&[("step, semichords", semichords)], "a finite number, 0 or more", fits)
 }

@@ -7,7 +7,7 @@ use crate::law::{OperatingPoint, Proximal, Quadratic};
 use crate::limits::ControlLimits;
 use crate::{ControlError, FeedbackLaw, error};
 use nalgebra::DVector;
-use program::{Cone, Kind, Program};
+use program::{Cone, Program};
 
 /// How far an optimum is from the conditions of Karush, Kuhn and Tucker, each relative to the size of
 /// its terms.
@@ -111,23 +111,16 @@ impl FeedbackLaw {
         proximal: Proximal<'_>,
         limits: &ControlLimits,
     ) -> Result<ConstrainedOptimum, ControlError> {
-        let (found, expected) = (limits.layout().len(), self.shape().1);
-        if found != expected {
-            return Err(ControlError::Length { what: "controls of the limits", found, expected });
-        }
+        let controls = self.shape().1;
+        error::check_length("controls of the limits", limits.layout().len(), controls)?;
         let free = self.optimum_near(rho, target, proximal);
         let volt = limits.typical_volt().unwrap_or_else(|| largest(&free).max(f64::MIN_POSITIVE));
         let Quadratic { hessian, linear } = self.quadratic(rho, target).with(proximal).scaled(volt);
         let mut program = Program { hessian, linear, cones: Vec::new() };
         if limits.usage(&free)? <= 1.0 {
             let point = DVector::from_column_slice(&free) / volt;
-            let kkt = program.kkt(&point, &[]);
-            return Ok(ConstrainedOptimum {
-                control_volt: free,
-                kkt,
-                binding: false,
-                iterations: 0,
-            });
+            let (kkt, binding, iterations) = (program.kkt(&point, &[]), false, 0);
+            return Ok(ConstrainedOptimum { control_volt: free, kkt, binding, iterations });
         }
         program.add_circles(limits, volt);
         program.add_power(limits, volt);
@@ -141,24 +134,19 @@ impl FeedbackLaw {
             let mut round = program.clone();
             for (row, room) in rows.iter().zip(&held).filter(|(_, held)| **held).map(|(r, _)| r) {
                 let scaled = row.iter().map(|&(column, v)| (column, v * volt / room)).collect();
-                round.cones.push(Cone { kind: Kind::Linear, rows: vec![(scaled, 1.0)] });
+                round.cones.push(Cone { rows: vec![(scaled, 1.0)] });
             }
             let (x, z, used) = round.solve_best()?;
             iterations += used;
             let control: Vec<f64> = x.iter().map(|v| v * volt).collect();
-            let exceeded: Vec<usize> = rows
-                .iter()
-                .enumerate()
-                .filter(|(k, (row, room))| {
-                    let value: f64 = row.iter().map(|&(column, v)| v * control[column]).sum();
-                    !held[*k] && value > room * (1.0 + ROW_ROUNDING)
-                })
-                .map(|(k, _)| k)
-                .collect();
-            if !exceeded.is_empty() {
-                for k in exceeded {
-                    held[k] = true;
+            let mut is_exceeded = false;
+            for ((row, room), held) in rows.iter().zip(&mut held) {
+                let value: f64 = row.iter().map(|&(column, v)| v * control[column]).sum();
+                if !*held && value > room * (1.0 + ROW_ROUNDING) {
+                    (*held, is_exceeded) = (true, true);
                 }
+            }
+            if is_exceeded {
                 continue;
             }
             // rounding of the solver, taken back toward zero control, which keeps every limit
@@ -170,12 +158,8 @@ impl FeedbackLaw {
                 let status = ConeStatus::Inaccurate;
                 return Err(ControlError::ConeProgram { status, iterations, kkt });
             }
-            return Ok(ConstrainedOptimum {
-                control_volt,
-                kkt: round.kkt_of_binding(&point, &z),
-                binding: true,
-                iterations,
-            });
+            let (kkt, binding) = (round.kkt_of_binding(&point, &z), true);
+            return Ok(ConstrainedOptimum { control_volt, kkt, binding, iterations });
         }
         let (status, kkt) = (ConeStatus::Azimuths, f64::NAN);
         Err(ControlError::ConeProgram { status, iterations, kkt })

@@ -1,6 +1,6 @@
 //! Newton's method on the limits that bind, where the interior point stops short.
 
-use super::program::{Cone, GOOD_KKT, Kind, NO_MULTIPLIER, Program, norm};
+use super::program::{Cone, GOOD_KKT, NO_MULTIPLIER, Program, norm};
 use nalgebra::{DMatrix, DVector};
 
 /// Sets of binding cones that Newton's method is tried on, and its steps on each.
@@ -25,7 +25,7 @@ impl Cone {
             out
         };
         let first = dense(&self.rows[0].0);
-        if self.kind == Kind::Linear {
+        if self.rows.len() == 1 {
             return (-slack[0], first, None);
         }
         let size = norm(&slack[1..]).max(f64::MIN_POSITIVE);
@@ -149,12 +149,9 @@ mod tests {
     /// Two pairs of controls whose optimum lies on a circle and on a row of the range of voltages, beside which a
     /// neighbour says nearly the same.
     fn program() -> Program {
-        let circle = Cone {
-            kind: Kind::SecondOrder,
-            rows: vec![(vec![], 1.0), (vec![(0, -1.0)], 0.0), (vec![(1, -1.0)], 0.0)],
-        };
-        let row =
-            |slope: f64| Cone { kind: Kind::Linear, rows: vec![(vec![(2, 1.0), (3, slope)], 1.0)] };
+        let circle =
+            Cone { rows: vec![(vec![], 1.0), (vec![(0, -1.0)], 0.0), (vec![(1, -1.0)], 0.0)] };
+        let row = |slope: f64| Cone { rows: vec![(vec![(2, 1.0), (3, slope)], 1.0)] };
         let mut hessian = DMatrix::identity(4, 4);
         (hessian[(0, 2)], hessian[(2, 0)]) = (0.3, 0.3);
         Program {

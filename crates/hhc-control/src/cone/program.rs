@@ -41,19 +41,9 @@ pub(super) fn norm(values: &[f64]) -> f64 {
     values.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// What a cone is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// `s >= 0`, one row.
-    Linear,
-    /// `s_0 >= |(s_1, s_2, ...)|`.
-    SecondOrder,
-}
-
-/// One cone: `s = bound - row x` by row, each row sparse.
+/// One cone: `s_0 >= |(s_1, s_2, ...)|` with `s = bound - row x` by row, each row sparse; of one row, `s_0 >= 0`.
 #[derive(Debug, Clone)]
 pub(super) struct Cone {
-    pub(super) kind: Kind,
     pub(super) rows: Vec<(Vec<(usize, f64)>, f64)>,
 }
 
@@ -64,15 +54,11 @@ impl Cone {
             |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(column, a)| a * x[column]).sum() };
         self.rows.iter().map(|(row, bound)| bound - along(row)).collect()
     }
+}
 
-    /// How far a vector lies outside the cone, which is its own dual.
-    fn outside(&self, s: &[f64]) -> f64 {
-        let rest = norm(&s[1..]);
-        match self.kind {
-            Kind::Linear => (-s[0]).max(0.0),
-            Kind::SecondOrder => (rest - s[0]).max(0.0),
-        }
-    }
+/// How far a vector lies outside a cone, which is its own dual.
+fn outside(s: &[f64]) -> f64 {
+    (norm(&s[1..]) - s[0]).max(0.0)
 }
 
 /// `min x' P x / 2 + q' x` subject to cones; `x` is the control over a typical voltage.
@@ -85,13 +71,13 @@ pub(super) struct Program {
 
 impl Program {
     pub(super) fn add_circles(&mut self, limits: &ControlLimits, volt: f64) {
-        for (pair, &amplitude) in limits.amplitudes_volt().iter().enumerate() {
+        for (pair, &amplitude) in limits.amplitude_volt.iter().enumerate() {
             if amplitude.is_finite() {
                 let share = volt / amplitude;
                 self.add_circle(pair, [[share, 0.0], [0.0, share]]);
             }
         }
-        for (pair, circle) in limits.flap_circles().iter().enumerate() {
+        for (pair, circle) in limits.flaps.iter().enumerate() {
             if let Some(circle) = circle {
                 let share = volt / circle.limit_deg;
                 self.add_circle(pair, circle.gain_deg_per_volt.map(|row| row.map(|g| g * share)));
@@ -103,12 +89,12 @@ impl Program {
     fn add_circle(&mut self, pair: usize, gain: [[f64; 2]; 2]) {
         let mut rows = vec![(Vec::new(), 1.0)];
         rows.extend(gain.map(|[c, s]| (vec![(2 * pair, -c), (2 * pair + 1, -s)], 0.0)));
-        self.cones.push(Cone { kind: Kind::SecondOrder, rows });
+        self.cones.push(Cone { rows });
     }
 
     /// `u' P u / room <= t = 1 - p' u / room` as `|(2 F u / sqrt(room), 1 - t)| <= 1 + t`.
     pub(super) fn add_power(&mut self, limits: &ControlLimits, volt: f64) {
-        let Some((power, root)) = limits.power() else { return };
+        let Some((power, root)) = &limits.power else { return };
         let room = power.limit - power.constant;
         let linear: Vec<(usize, f64)> =
             power.linear.iter().map(|p| p * volt / room).enumerate().collect();
@@ -119,7 +105,7 @@ impl Program {
             root.row_iter().map(|row| (row.iter().map(|f| factor * f).enumerate().collect(), 0.0)),
         );
         rows.push((opposite, 0.0));
-        self.cones.push(Cone { kind: Kind::SecondOrder, rows });
+        self.cones.push(Cone { rows });
     }
 
     /// [`Self::solve`] with one regularisation after the other, until the conditions hold as they should: the
@@ -148,14 +134,9 @@ impl Program {
                 Err(error) => failure = failure.or(Some(error)),
             }
         }
-        match (best, failure) {
-            (Some((_, x, z)), _) => Ok((x, z, iterations)),
-            (None, Some(error)) => Err(error),
-            (None, None) => {
-                let (status, kkt) = (ConeStatus::Refused, f64::NAN);
-                Err(ControlError::ConeProgram { status, iterations, kkt })
-            }
-        }
+        let (status, kkt) = (ConeStatus::Refused, f64::NAN);
+        let refused = ControlError::ConeProgram { status, iterations, kkt };
+        best.map(|(_, x, z)| (x, z, iterations)).ok_or_else(|| failure.unwrap_or(refused))
     }
 
     /// Minimum, multipliers by row, iterations.
@@ -165,25 +146,20 @@ impl Program {
     ) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
         let n = self.linear.len();
         let refused = |status| ControlError::ConeProgram { status, iterations: 0, kkt: f64::NAN };
-        let upper: Vec<(usize, usize, f64)> = (0..n)
-            .flat_map(|column| (0..=column).map(move |row| (row, column)))
-            .map(|(row, column)| (row, column, self.hessian[(row, column)]))
-            .collect();
-        let hessian = sparse(n, n, &upper);
+        let upper = (0..n).flat_map(|column| (0..=column).map(move |row| (row, column)));
+        let hessian = sparse(n, n, upper.map(|(i, j)| (i, j, self.hessian[(i, j)])));
         let rows: Vec<_> = self.cones.iter().flat_map(|cone| &cone.rows).collect();
-        let entries: Vec<(usize, usize, f64)> = rows
-            .iter()
-            .enumerate()
-            .flat_map(|(k, (row, _))| row.iter().map(move |&(column, a)| (k, column, a)))
-            .collect();
-        let matrix = sparse(rows.len(), n, &entries);
+        let entries = rows.iter().enumerate();
+        let entries =
+            entries.flat_map(|(k, (row, _))| row.iter().map(move |&(column, a)| (k, column, a)));
+        let matrix = sparse(rows.len(), n, entries);
         let bounds: Vec<f64> = rows.iter().map(|(_, bound)| *bound).collect();
         let cones: Vec<SupportedConeT<f64>> = self
             .cones
             .iter()
-            .map(|cone| match cone.kind {
-                Kind::Linear => NonnegativeConeT(1),
-                Kind::SecondOrder => SecondOrderConeT(cone.rows.len()),
+            .map(|cone| match cone.rows.len() {
+                1 => NonnegativeConeT(1),
+                rows => SecondOrderConeT(rows),
             })
             .collect();
         let settings = DefaultSettingsBuilder::default()
@@ -240,10 +216,10 @@ impl Program {
         let mut at = 0;
         for cone in &self.cones {
             let slack = cone.slack(x);
-            residual.primal = residual.primal.max(cone.outside(&slack));
+            residual.primal = residual.primal.max(outside(&slack));
             let Some(z) = z.get(at..at + slack.len()) else { break };
             at += slack.len();
-            residual.dual = residual.dual.max(cone.outside(z));
+            residual.dual = residual.dual.max(outside(z));
             product += slack.iter().zip(z).map(|(s, z)| s * z).sum::<f64>();
             for ((row, _), multiplier) in cone.rows.iter().zip(z) {
                 for &(column, a) in row {
@@ -257,20 +233,13 @@ impl Program {
     }
 }
 
-/// A sparse matrix from `(row, column, value)` with rows ascending inside a column.
-fn sparse(rows: usize, columns: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64> {
-    let mut starts = vec![0];
-    let (mut row_numbers, mut values) = (Vec::new(), Vec::new());
-    let mut by_column: Vec<Vec<(usize, f64)>> = vec![Vec::new(); columns];
-    for &(row, column, value) in entries {
-        by_column[column].push((row, value));
-    }
-    for column in by_column {
-        for (row, value) in column {
-            row_numbers.push(row);
-            values.push(value);
-        }
-        starts.push(row_numbers.len());
-    }
-    CscMatrix::new(rows, columns, starts, row_numbers, values)
+/// A sparse matrix from `(row, column, value)`.
+fn sparse(
+    rows: usize,
+    columns: usize,
+    entries: impl Iterator<Item = (usize, usize, f64)>,
+) -> CscMatrix<f64> {
+    let (places, values): (Vec<_>, Vec<_>) = entries.map(|(i, j, v)| ((i, j), v)).unzip();
+    let (i, j) = places.into_iter().unzip();
+    CscMatrix::new_from_triplets(rows, columns, i, j, values)
 }

@@ -1,6 +1,6 @@
 //! Measurements of the plant, checked, and their cost.
 
-use crate::{AllowedIncrease, ControlError, ControlStep, Cost, FeedbackLaw, Measurement, Plant};
+use crate::{AllowedIncrease, ControlStep, Cost, FeedbackLaw, Measurement, Plant};
 use crate::{RunError, error};
 
 impl FeedbackLaw {
@@ -10,11 +10,8 @@ impl FeedbackLaw {
         plant: &mut P,
         start_volt: &[f64],
     ) -> Result<ControlStep, RunError<P::Error>> {
-        let (_, expected) = self.shape();
-        let (what, found) = ("controls of the plant, against columns of T", plant.layout().len());
-        if found != expected {
-            Err(ControlError::Length { what, found, expected })?;
-        }
+        let what = "controls of the plant, against columns of T";
+        error::check_length(what, plant.layout().len(), self.shape().1)?;
         plant.layout().check(start_volt)?;
         let measurement = self.measured(plant, start_volt, Vec::new)?;
         Ok(ControlStep {
@@ -43,10 +40,8 @@ impl FeedbackLaw {
         })?;
         error::check_vector("measured outputs", &measurement.outputs, self.shape().0)?;
         let layout = plant.layout();
-        let (what, found) = ("measured flap harmonics", measurement.flap_motion_deg.len());
-        if found != layout.pairs() {
-            Err(ControlError::Length { what, found, expected: layout.pairs() })?;
-        }
+        let flaps = measurement.flap_motion_deg.len();
+        error::check_length("measured flap harmonics", flaps, layout.pairs())?;
         error::check_vector("mean flap angle (deg)", &measurement.mean_flap_deg, layout.flaps())?;
         Ok(measurement)
     }

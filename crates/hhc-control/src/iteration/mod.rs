@@ -19,7 +19,7 @@ use crate::{
     KktResidual, LoopEnd, OperatingPoint, Plant, RunError, StopReason,
 };
 use cycling::CycleDamping;
-use line_search::{Acceptance, Bound, COST_ROUNDING, LineSearch, Searched};
+use line_search::{Bound, COST_ROUNDING, Searched};
 use stagnation::Stagnation;
 use subproblem::{Subproblem, Target, limits_at};
 use trust_region::{Experience, TrustRegion};
@@ -137,10 +137,10 @@ impl<'a, P: Plant> Iteration<'a, P> {
             stop,
             start: self.method.law.weighed(self.start, self.here.rho),
             steps: self.path.steps,
-            measurements: self.measurements + self.model.measurements,
+            measurements: self.measurements + self.model.counts.measurements,
             backtracks: self.path.backtracks,
-            identifications: self.model.identifications,
-            t: self.model.law.t()?,
+            identifications: self.model.counts.identifications,
+            t: self.model.law.t().clone(),
             end: self.end,
             kkt: self.kkt,
         })
@@ -185,7 +185,8 @@ impl<'a, P: Plant> Iteration<'a, P> {
                 }
                 None => false,
             };
-            if self.end.is_converged(settings.tolerances(), start_cost) {
+            let tolerances = [settings.step_tolerance, settings.cost_tolerance];
+            if self.end.is_converged(tolerances, start_cost) {
                 match self.model.verify(self.plant, &here, &undamped.control_volt)? {
                     Verified::Yes => return Ok(StopReason::Converged),
                     Verified::Anew => continue,
@@ -204,18 +205,8 @@ impl<'a, P: Plant> Iteration<'a, P> {
             if problem.limits.is_some() {
                 self.cycles.shorten(&mut step, &self.path.steps);
             }
-            let search = LineSearch {
-                law,
-                problem: &problem,
-                here: &here,
-                step: &step,
-                asked_volt: largest_amplitude(&step),
-                start_cost,
-                acceptance: self.acceptance(&problem, restores),
-                max_backtracks: settings.max_backtracks,
-            };
-            let history = || std::iter::once(self.start).chain(&self.path.steps).cloned().collect();
-            let found = search.run(self.plant, &mut self.model, history)?;
+            let acceptance = self.acceptance(&problem, restores);
+            let found = self.search(&problem, &step, acceptance, start_cost)?;
             self.measurements += found.measurements;
             if found.taken.is_some() {
                 self.accept(found, predicted);
@@ -236,7 +227,7 @@ impl<'a, P: Plant> Iteration<'a, P> {
 
     /// The step from the present state to a target.
     fn next_step(&self, problem: &Subproblem, target: &Target) -> Result<LoopEnd, ControlError> {
-        let outputs = self.model.seen_outputs(&self.here);
+        let outputs = self.model.seen_outputs(self.here.point());
         let from = OperatingPoint { outputs: &outputs, ..self.here.point() };
         LoopEnd::new(&self.model.law, problem.rho, from, &target.control_volt)
     }
@@ -247,7 +238,7 @@ impl<'a, P: Plant> Iteration<'a, P> {
     }
 
     /// What the next line search accepts.
-    fn acceptance(&self, problem: &Subproblem, restores: bool) -> Acceptance {
+    fn acceptance(&self, problem: &Subproblem, restores: bool) -> (AllowedIncrease, Bound) {
         let settings = self.method.settings;
         let allowed_increase = match (restores, &self.watchdog) {
             (true, _) => AllowedIncrease::Restoration,
@@ -260,7 +251,7 @@ impl<'a, P: Plant> Iteration<'a, P> {
             (_, true, Some(_)) => Bound::Increase(settings.cost_tolerance),
             (_, true, None) => Bound::Increase(0.0),
         };
-        Acceptance { allowed_increase, bound }
+        (allowed_increase, bound)
     }
 
     /// Takes the part of a step that a line search accepted, `predicted` being the decrease of the whole.

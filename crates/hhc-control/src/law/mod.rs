@@ -24,7 +24,7 @@ use nalgebra::{DMatrix, DVector, SVD};
 /// Differs from source: the printed sign and grouping are garbled; this is what (7)-(9) give.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeedbackLaw {
-    t: DMatrix<f64>,
+    t: TMatrix,
     load_weights: Vec<f64>,
     left: DMatrix<f64>,
     singular_values: Vec<f64>,
@@ -88,8 +88,7 @@ impl FeedbackLaw {
     /// decomposition fails, and what [`LoadWeights::diagonal`] refuses.
     pub fn new(t: &TMatrix, load_weights: &LoadWeights) -> Result<Self, ControlError> {
         let load_weights = load_weights.diagonal(t.loads())?;
-        let t = t.as_matrix().clone();
-        let mut weighted = t.clone();
+        let mut weighted = t.as_matrix().clone();
         for (mut row, weight) in weighted.row_iter_mut().zip(&load_weights) {
             row *= weight.sqrt();
         }
@@ -107,7 +106,7 @@ impl FeedbackLaw {
             return Err(failed);
         };
         let singular_values = svd.singular_values.iter().map(|s| s * size).collect();
-        Ok(Self { t, load_weights, left, singular_values, right_transposed })
+        Ok(Self { t: t.clone(), load_weights, left, singular_values, right_transposed })
     }
 
     /// The optimal control `u*` (volt) as seen from one measurement.
@@ -144,10 +143,7 @@ impl FeedbackLaw {
         let controls = self.shape().1;
         error::check_vector("control vector aimed at (volt)", target_volt, controls)?;
         let Quadratic { hessian, linear } = self.quadratic(rho, &self.modal_target(from)?);
-        let (from, to) = (
-            DVector::from_column_slice(from.control_volt),
-            DVector::from_column_slice(target_volt),
-        );
+        let [from, to] = [from.control_volt, target_volt].map(DVector::from_column_slice);
         // a difference of squares: the step first, then what it is multiplied with
         let step = &from - &to;
         Ok(step.dot(&(hessian * (&from + &to))) + 2.0 * linear.dot(&step))
@@ -157,14 +153,6 @@ impl FeedbackLaw {
     /// combination of controls. Their squares are the scale of `rho`.
     pub fn singular_values(&self) -> &[f64] {
         &self.singular_values
-    }
-
-    /// Largest over smallest singular value; infinite if some combination of controls has no effect.
-    pub fn condition_number(&self) -> f64 {
-        match (self.singular_values.first(), self.singular_values.last()) {
-            (Some(largest), Some(smallest)) => largest / smallest,
-            _ => f64::INFINITY,
-        }
     }
 
     /// Whether there are more controls than loads, so that the optimum without a weight is one of many.
@@ -179,18 +167,8 @@ impl FeedbackLaw {
     }
 
     /// The T matrix of the law.
-    ///
-    /// # Errors
-    /// Never for a law that could be made.
-    pub fn t(&self) -> Result<TMatrix, ControlError> {
-        let columns: Vec<Vec<f64>> =
-            self.t.column_iter().map(|column| column.iter().copied().collect()).collect();
-        TMatrix::from_columns(&columns)
-    }
-
-    /// The T matrix, loads x controls, 1/V.
-    pub(crate) fn matrix(&self) -> DMatrix<f64> {
-        self.t.clone()
+    pub fn t(&self) -> &TMatrix {
+        &self.t
     }
 
     /// The law of another T matrix with the same load weights.
@@ -200,7 +178,7 @@ impl FeedbackLaw {
 
     /// Number of loads and of controls.
     pub(crate) fn shape(&self) -> (usize, usize) {
-        self.t.shape()
+        self.t.as_matrix().shape()
     }
 
     /// `U' W_Z^(1/2) (T u - Z)`.
@@ -211,7 +189,7 @@ impl FeedbackLaw {
         let (loads, controls) = self.shape();
         error::check_vector("control vector (volt)", at.control_volt, controls)?;
         error::check_vector("measured outputs", at.outputs, loads)?;
-        let mut target = &self.t * DVector::from_column_slice(at.control_volt);
+        let mut target = self.t.as_matrix() * DVector::from_column_slice(at.control_volt);
         for ((value, load), weight) in target.iter_mut().zip(at.outputs).zip(&self.load_weights) {
             *value = (*value - load) * weight.sqrt();
         }
@@ -220,21 +198,18 @@ impl FeedbackLaw {
 
     /// The optimum for a modal target, volt.
     pub(crate) fn optimum_of(&self, rho: f64, target: &DVector<f64>) -> Vec<f64> {
-        let scaled = DVector::from_iterator(
-            target.len(),
-            target.iter().zip(self.gains(rho)).map(|(value, gain)| value * gain),
-        );
+        let gains = DVector::from_iterator(target.len(), self.gains(rho));
+        let scaled = target.component_mul(&gains);
         self.right_transposed.tr_mul(&scaled).iter().copied().collect()
     }
 
     /// The predicted cost, halved and without its constant, as a form of the control (volt):
     /// `u' P u / 2 + q' u`.
     pub(crate) fn quadratic(&self, rho: f64, target: &DVector<f64>) -> Quadratic {
-        let scaled = DMatrix::from_fn(
-            self.right_transposed.nrows(),
-            self.right_transposed.ncols(),
-            |k, j| self.singular_values[k] * self.right_transposed[(k, j)],
-        );
+        let mut scaled = self.right_transposed.clone();
+        for (mut row, s) in scaled.row_iter_mut().zip(&self.singular_values) {
+            row *= *s;
+        }
         let n = scaled.ncols();
         let hessian = scaled.tr_mul(&scaled) + DMatrix::identity(n, n) * rho;
         Quadratic { hessian, linear: -scaled.tr_mul(target) }
@@ -263,7 +238,7 @@ impl FeedbackLaw {
         if square == 0.0 {
             return 0.0;
         }
-        let image = &self.t * &step;
+        let image = self.t.as_matrix() * &step;
         let loads = image.iter().zip(&self.load_weights).map(|(z, w)| w * z * z);
         loads.sum::<f64>() / square + rho
     }
@@ -295,7 +270,7 @@ impl FeedbackLaw {
     /// `s_k / (s_k^2 + rho)`, volt per unit of load.
     fn gains(&self, rho: f64) -> impl Iterator<Item = f64> {
         let largest = self.singular_values.first().copied().unwrap_or_default();
-        let size = self.t.nrows().max(self.t.ncols()) as f64;
+        let size = self.t.loads().max(self.t.controls()) as f64;
         let floor = largest * f64::EPSILON * size;
         self.singular_values.iter().map(move |&s| if s > floor { s / (s * s + rho) } else { 0.0 })
     }

@@ -30,28 +30,14 @@ impl FeedbackLaw {
     ) -> Result<f64, ControlError> {
         error::check_not_negative("control weight rho (1/V^2)", rho)?;
         let (loads, controls) = self.shape();
-        let (what, found) = ("controls of the true T", there.controls());
-        if found != controls {
-            return Err(ControlError::Length { what, found, expected: controls });
-        }
-        let (what, found) = ("loads of the true T", there.loads());
-        if found != loads {
-            return Err(ControlError::Length { what, found, expected: loads });
-        }
+        error::check_length("controls of the true T", there.controls(), controls)?;
+        error::check_length("loads of the true T", there.loads(), loads)?;
         // column by column: where eq. (10) goes to from a unit error, less the unit
-        let zero = vec![0.0; controls];
-        let columns: Result<Vec<Vec<f64>>, ControlError> = there
-            .columns()
-            .iter()
-            .enumerate()
-            .map(|(j, change)| {
-                let mut unit = zero.clone();
-                unit[j] = 1.0;
-                self.optimum_volt(rho, &unit, change)
-            })
-            .collect();
-        let columns = columns?;
-        let iteration = DMatrix::from_fn(controls, controls, |i, j| columns[j][i]);
+        let mut iteration = DMatrix::identity(controls, controls);
+        for (mut column, change) in iteration.column_iter_mut().zip(there.columns()) {
+            let unit: Vec<f64> = column.iter().copied().collect();
+            column.copy_from_slice(&self.optimum_volt(rho, &unit, &change)?);
+        }
         let (rows, iterations) = (controls, EIGENVALUE_ITERATIONS);
         let schur = Schur::try_new(iteration, f64::EPSILON, iterations)
             .ok_or(ControlError::SingularValues { rows, columns: controls, iterations })?;

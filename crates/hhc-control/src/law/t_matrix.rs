@@ -20,17 +20,18 @@ impl TMatrix {
     /// different length, [`ControlError::NotFinite`].
     pub fn from_columns(columns: &[Vec<f64>]) -> Result<Self, ControlError> {
         let loads = columns.first().map_or(0, Vec::len);
-        if loads == 0 {
-            return Err(ControlError::OutOfRange {
-                what: "size of the T matrix",
-                value: 0.0,
-                expected: "a column and a load at least",
-            });
-        }
+        let (what, expected) = ("size of the T matrix", "a column and a load at least");
+        error::check_range(loads > 0, what, 0.0, expected)?;
         for column in columns {
             error::check_vector("column of the T matrix (1/V)", column, loads)?;
         }
         let matrix = DMatrix::from_fn(loads, columns.len(), |load, control| columns[control][load]);
+        Ok(Self { matrix })
+    }
+
+    /// The same from loads x controls.
+    pub(crate) fn from_matrix(matrix: DMatrix<f64>) -> Result<Self, ControlError> {
+        error::check_vector("T matrix (1/V)", matrix.as_slice(), matrix.len())?;
         Ok(Self { matrix })
     }
 
@@ -73,11 +74,6 @@ impl TMatrix {
         self.matrix.norm()
     }
 
-    /// Norm of each column, 1/V: the authority of each control.
-    pub fn column_norms(&self) -> Vec<f64> {
-        self.matrix.column_iter().map(|column| column.norm()).collect()
-    }
-
     /// The same with the voltage harmonic of every pair multiplied by a complex factor `g exp(i phi)`: what an
     /// actuator of another gain and phase makes of it.
     ///
@@ -94,10 +90,8 @@ impl TMatrix {
     pub fn turned(&self, gain: f64, phase_rad: f64) -> Result<Self, ControlError> {
         error::check_vector("gain and phase of T", &[gain, phase_rad], 2)?;
         let controls = self.controls();
-        if !controls.is_multiple_of(2) {
-            let (what, value) = ("controls of the T matrix", controls as f64);
-            return Err(ControlError::OutOfRange { what, value, expected: "pairs" });
-        }
+        let is_paired = controls.is_multiple_of(2);
+        error::check_range(is_paired, "controls of the T matrix", controls as f64, "pairs")?;
         let (sin, cos) = phase_rad.sin_cos();
         let mut matrix = self.matrix.clone();
         for c in (0..controls).step_by(2) {
@@ -117,14 +111,8 @@ impl TMatrix {
     /// [`ControlError::Length`] for matrices of different shape, [`ControlError::NoAuthority`] for a
     /// zero reference.
     pub fn relative_difference(&self, reference: &Self) -> Result<f64, ControlError> {
-        for (what, found, expected) in [
-            ("rows of the T matrix", self.loads(), reference.loads()),
-            ("columns of the T matrix", self.controls(), reference.controls()),
-        ] {
-            if found != expected {
-                return Err(ControlError::Length { what, found, expected });
-            }
-        }
+        error::check_length("rows of the T matrix", self.loads(), reference.loads())?;
+        error::check_length("columns of the T matrix", self.controls(), reference.controls())?;
         let norm = reference.frobenius_norm();
         if norm == 0.0 {
             return Err(ControlError::NoAuthority);
@@ -146,7 +134,6 @@ mod tests {
         assert_eq!(t.at(3, 0), None);
         assert_eq!(t.columns()[1], vec![0.0, 0.0, -2.0]);
         assert_abs_diff_eq!(t.frobenius_norm(), 3.0, epsilon = 1e-15);
-        assert_abs_diff_eq!(t.column_norms()[1], 2.0, epsilon = 1e-15);
         assert_eq!(t.loads_for(&[3.0, 0.5]).unwrap(), vec![3.0, 6.0, -1.0]);
         assert!(t.loads_for(&[3.0]).is_err());
     }

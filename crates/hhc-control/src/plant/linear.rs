@@ -33,13 +33,7 @@ impl LinearPlant {
         t: TMatrix,
     ) -> Result<Self, ControlError> {
         error::check_vector("baseline loads", &baseline_loads, t.loads())?;
-        if t.controls() != layout.len() {
-            return Err(ControlError::Length {
-                what: "columns of the T matrix",
-                found: t.controls(),
-                expected: layout.len(),
-            });
-        }
+        error::check_length("columns of the T matrix", t.controls(), layout.len())?;
         let (gain_deg_per_volt, lag_rad, stroke_limit_deg) = (1.0, 0.0, f64::INFINITY);
         Ok(Self { layout, baseline_loads, t, gain_deg_per_volt, lag_rad, stroke_limit_deg })
     }
@@ -86,9 +80,9 @@ impl Plant for LinearPlant {
 
     fn measure(&mut self, control_volt: &[f64]) -> Result<Measurement, Self::Error> {
         let mut hub_loads = self.baseline_loads.clone();
-        for (control, volt) in control_volt.iter().enumerate() {
-            for (row, load) in hub_loads.iter_mut().enumerate() {
-                *load += self.t.at(row, control).unwrap_or_default() * volt;
+        for (column, volt) in self.t.columns().iter().zip(control_volt) {
+            for (load, t) in hub_loads.iter_mut().zip(column) {
+                *load += t * volt;
             }
         }
         Ok(Measurement {

@@ -1,7 +1,7 @@
 //! T followed by a Kalman filter on every measured pair.
 
 use super::kalman::Kalman;
-use super::{AdaptiveSettings, Verified};
+use super::{AdaptiveSettings, Counts, Verified};
 use crate::{ControlStep, FeedbackLaw, Plant, RunError};
 
 /// Times that T may be verified where the loop would end.
@@ -29,11 +29,17 @@ impl Filtered {
         }
     }
 
-    /// After a step that was rejected in full. The rejected measurements may have changed T already; the controls
-    /// are probed where the target is still much the same.
-    pub(super) fn rejected(&mut self, here: &ControlStep, target_volt: &[f64]) -> Rejected {
+    /// After a step that was rejected in full: whether another one is worth computing. The rejected measurements may
+    /// have changed T already; the controls are probed where the target is still much the same.
+    pub(super) fn learn<P: Plant>(
+        &mut self,
+        plant: &mut P,
+        here: &ControlStep,
+        target_volt: &[f64],
+        counts: &mut Counts,
+    ) -> Result<bool, RunError<P::Error>> {
         if self.probes_left == 0 {
-            return Rejected::Nothing;
+            return Ok(false);
         }
         self.probes_left -= 1;
         let away = |other: &[f64]| -> f64 {
@@ -44,32 +50,43 @@ impl Filtered {
             .rejected_volt
             .replace(target_volt.to_vec())
             .is_some_and(|before| away(&before) < 0.5 * away(&here.control_volt));
-        if is_repeated { Rejected::Probe } else { Rejected::Learnt }
+        if is_repeated {
+            self.probe(plant, here, target_volt, counts)?;
+        }
+        Ok(true)
     }
 
-    /// Whether T is that of a control where the loop would end. A filter that has followed a path knows T along
-    /// it only.
-    pub(super) fn verify(&mut self, here: &ControlStep) -> Verified {
-        if self.probed_at.as_ref() == Some(&here.control_volt) {
-            return Verified::Yes;
-        }
-        if self.verifications_left == 0 {
-            return Verified::Cannot;
-        }
-        self.verifications_left -= 1;
-        self.probed_at = Some(here.control_volt.clone());
-        Verified::Anew
-    }
-
-    /// Moves every control once toward the target and lets the filter observe the outputs; the measurements made.
-    pub(super) fn probe<P: Plant>(
+    /// Whether T is that of a control where the loop would end; it is probed there if not. A filter that has followed
+    /// a path knows T along it only.
+    pub(super) fn verify<P: Plant>(
         &mut self,
         plant: &mut P,
         here: &ControlStep,
         target_volt: &[f64],
-    ) -> Result<usize, RunError<P::Error>> {
+        counts: &mut Counts,
+    ) -> Result<Verified, RunError<P::Error>> {
+        if self.probed_at.as_ref() == Some(&here.control_volt) {
+            return Ok(Verified::Yes);
+        }
+        if self.verifications_left == 0 {
+            return Ok(Verified::Cannot);
+        }
+        self.verifications_left -= 1;
+        self.probed_at = Some(here.control_volt.clone());
+        self.probe(plant, here, target_volt, counts)?;
+        Ok(Verified::Anew)
+    }
+
+    /// Moves every control once toward the target and lets the filter observe the outputs.
+    fn probe<P: Plant>(
+        &mut self,
+        plant: &mut P,
+        here: &ControlStep,
+        target_volt: &[f64],
+        counts: &mut Counts,
+    ) -> Result<(), RunError<P::Error>> {
+        counts.identifications += 1;
         let probe_volt = self.filter.probe_volt();
-        let mut measurements = 0;
         for control in 0..target_volt.len() {
             let mut moved = here.control_volt.clone();
             let side = if target_volt[control] < moved[control] { -1.0 } else { 1.0 };
@@ -81,21 +98,11 @@ impl Filtered {
                 }
             }
             let measurement = plant.measure(&moved).map_err(RunError::plant("measured", &moved))?;
-            measurements += 1;
+            counts.measurements += 1;
             self.filter.observe(&moved, &measurement.outputs);
         }
         // the last pair is that of the state itself
         self.filter.observe(&here.control_volt, &here.measurement.outputs);
-        Ok(measurements)
+        Ok(())
     }
-}
-
-/// What a step that was rejected in full asks of the filter.
-pub(super) enum Rejected {
-    /// No probe is left.
-    Nothing,
-    /// T has learnt from the rejected measurements.
-    Learnt,
-    /// It has not: the controls are to be probed.
-    Probe,
 }

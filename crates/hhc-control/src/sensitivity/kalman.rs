@@ -72,7 +72,7 @@ pub(crate) struct Kalman {
 
 impl Kalman {
     pub(crate) fn new(settings: &AdaptiveSettings, law: &FeedbackLaw, start: &ControlStep) -> Self {
-        let t = law.matrix() * settings.full_scale_volt;
+        let t = law.t().as_matrix() * settings.full_scale_volt;
         let loads = DVector::from_column_slice(&start.measurement.outputs);
         let u = DVector::from_column_slice(&start.control_volt) / settings.full_scale_volt;
         let z0 = &loads - &t * &u;
@@ -148,13 +148,7 @@ impl Kalman {
 
     /// The estimate of T, 1/V.
     pub(crate) fn t(&self) -> Result<TMatrix, ControlError> {
-        let columns: Vec<Vec<f64>> = self
-            .theta
-            .column_iter()
-            .skip(1)
-            .map(|c| c.iter().map(|v| v / self.settings.full_scale_volt).collect())
-            .collect();
-        TMatrix::from_columns(&columns)
+        TMatrix::from_matrix(self.theta.columns_range(1..) / self.settings.full_scale_volt)
     }
 
     /// Size of a move that excites a control, V.

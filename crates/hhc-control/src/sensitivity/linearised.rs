@@ -10,35 +10,14 @@ pub(super) struct Linearised<'a> {
     /// The control it is the T of; none where it has to be found anew.
     known_at: Option<Vec<f64>>,
     /// What was measured since T was identified.
-    tried: Vec<Tried>,
+    tried: Vec<Measured>,
     corrections_left: usize,
-    source: Source,
+    /// Whether the plant is asked for a linearised solution; not once it had none or led nowhere.
+    is_offered: bool,
 }
 
-/// Where T comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Source {
-    /// The plant's linearised solution, if it has one.
-    Offered,
-    /// Differences: there is no linearised solution, or it led nowhere.
-    Differences,
-}
-
-/// A measured pair.
-struct Tried {
-    control_volt: Vec<f64>,
-    outputs: Vec<f64>,
-}
-
-/// What follows from a rejected step.
-pub(super) enum Correction {
-    /// T corrected along the step.
-    Corrected(TMatrix),
-    /// T is to be identified by differences.
-    ByDifferences,
-    /// Nothing was learnt.
-    Nothing,
-}
+/// A control and the outputs measured there.
+type Measured = [DVector<f64>; 2];
 
 impl<'a> Linearised<'a> {
     /// T0 is that of zero control.
@@ -48,7 +27,7 @@ impl<'a> Linearised<'a> {
             known_at: Some(vec![0.0; controls]),
             tried: Vec::new(),
             corrections_left: controls,
-            source: Source::Offered,
+            is_offered: true,
         }
     }
 
@@ -65,45 +44,38 @@ impl<'a> Linearised<'a> {
         }
         self.tried.clear();
         self.corrections_left = control.len();
-        let offered = match self.source {
-            Source::Differences => None,
-            Source::Offered => {
-                plant.linearised_t(control).map_err(RunError::plant("linearised", control))?
-            }
-        };
         self.known_at = Some(control.clone());
-        if let Some(t) = offered {
-            return Ok(Some(Identified { t, measurements: 0 }));
+        if self.is_offered {
+            let found = plant.linearised_t(control);
+            if let Some(t) = found.map_err(RunError::plant("linearised", control))? {
+                return Ok(Some((t, 0)));
+            }
         }
-        self.source = Source::Differences;
+        self.is_offered = false;
         by_differences(plant, here.point(), self.step_volt)
     }
 
     pub(super) fn observe(&mut self, at: OperatingPoint<'_>) {
-        let (control_volt, outputs) = (at.control_volt.to_vec(), at.outputs.to_vec());
-        self.tried.push(Tried { control_volt, outputs });
+        self.tried.push([at.control_volt, at.outputs].map(DVector::from_column_slice));
     }
 
-    /// After a step that was rejected in full: T corrected along it, as often as there are controls, and then by
-    /// differences.
+    /// After a step that was rejected in full: whether another one is worth computing, and T corrected along the step.
+    /// As often as there are controls; after that T is to be identified by differences.
     pub(super) fn correct(
         &mut self,
         t: &DMatrix<f64>,
         here: &ControlStep,
         target_volt: &[f64],
-    ) -> Result<Correction, ControlError> {
+    ) -> Result<(bool, Option<TMatrix>), ControlError> {
         if self.corrections_left == 0 {
-            let was_offered = self.source == Source::Offered;
-            (self.source, self.known_at) = (Source::Differences, None);
-            return Ok(if was_offered { Correction::ByDifferences } else { Correction::Nothing });
+            let was_offered = std::mem::take(&mut self.is_offered);
+            self.known_at = None;
+            return Ok((was_offered, None));
         }
         self.corrections_left -= 1;
-        let corrected = corrected(t, here, target_volt, &self.tried);
-        self.tried.clear();
-        Ok(match corrected {
-            Some(t) => Correction::Corrected(t?),
-            None => Correction::Nothing,
-        })
+        let corrected = corrected(t, here, target_volt, &std::mem::take(&mut self.tried));
+        let corrected = corrected.map(TMatrix::from_matrix).transpose()?;
+        Ok((corrected.is_some(), corrected))
     }
 }
 
@@ -121,16 +93,16 @@ fn corrected(
     t: &DMatrix<f64>,
     here: &ControlStep,
     target_volt: &[f64],
-    tried: &[Tried],
-) -> Option<Result<TMatrix, ControlError>> {
+    tried: &[Measured],
+) -> Option<DMatrix<f64>> {
     let from = DVector::from_column_slice(&here.control_volt);
     let loads = DVector::from_column_slice(&here.measurement.outputs);
     let step = DVector::from_column_slice(target_volt) - &from;
     let square = step.norm_squared();
     let (mut moments, mut sums) = ([0.0; 3], [loads.clone() * 0.0, loads.clone() * 0.0]);
-    for pair in tried {
-        let part = (DVector::from_column_slice(&pair.control_volt) - &from).dot(&step) / square;
-        let change = DVector::from_column_slice(&pair.outputs) - &loads;
+    for [control, outputs] in tried {
+        let part = (control - &from).dot(&step) / square;
+        let change = outputs - &loads;
         for (k, moment) in moments.iter_mut().enumerate() {
             *moment += part.powi(2 + i32::try_from(k).unwrap_or(0));
         }
@@ -146,8 +118,5 @@ fn corrected(
     } else {
         return None;
     };
-    let corrected = t + (slope - t * &step) * step.transpose() / square;
-    let columns: Vec<Vec<f64>> =
-        corrected.column_iter().map(|c| c.iter().copied().collect()).collect();
-    Some(TMatrix::from_columns(&columns))
+    Some(t + (slope - t * &step) * step.transpose() / square)
 }

@@ -4,13 +4,11 @@ mod filtered;
 mod kalman;
 mod linearised;
 
-use crate::{
-    ControlError, ControlStep, FeedbackLaw, OperatingPoint, Plant, RunError, TMatrix,
-    identify_t_about,
-};
-use filtered::{Filtered, Rejected};
+use crate::identify::differences;
+use crate::{ControlError, ControlStep, FeedbackLaw, OperatingPoint, Plant, RunError, TMatrix};
+use filtered::Filtered;
 pub use kalman::AdaptiveSettings;
-use linearised::{Correction, Linearised};
+use linearised::Linearised;
 use nalgebra::DVector;
 
 /// How a controller holds the sensitivity `T` of the loads to its voltages. Everything else is one method for
@@ -36,7 +34,8 @@ pub enum Controller {
     /// T identified again about the present control before every step: from the plant's linearised
     /// solution if it has one, else by differences. If no part of a step lowers the cost all the same,
     /// T is corrected along that step by what was measured there, and the next step asked for; once as many
-    /// corrections as controls have led nowhere, T is found by differences from there on. Where the plant admits neither side of a control, at the edge of its range, the T known so far stays.
+    /// corrections as controls have led nowhere, T is found by differences from there on. Where the plant
+    /// admits neither side of a control, at the edge of its range, the T known so far stays.
     Local {
         /// Voltage step of each control for the differences, V.
         step_volt: Vec<f64>,
@@ -62,7 +61,13 @@ impl Controller {
 pub(crate) struct Sensitivity<'a> {
     pub(crate) law: FeedbackLaw,
     policy: Policy<'a>,
-    /// Measurements made to identify T, beyond those of the steps.
+    pub(crate) counts: Counts,
+}
+
+/// What learning T took.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Counts {
+    /// Measurements beyond those of the steps.
     pub(crate) measurements: usize,
     /// Times that T was identified again or probed.
     pub(crate) identifications: usize,
@@ -78,12 +83,8 @@ enum Policy<'a> {
     Filtered(Box<Filtered>),
 }
 
-/// T identified about a control.
-struct Identified {
-    t: TMatrix,
-    /// Measurements it took.
-    measurements: usize,
-}
+/// T identified about a control, and the measurements it took.
+type Identified = (TMatrix, usize);
 
 /// T by differences about a state; none where the range leaves no room.
 fn by_differences<P: Plant>(
@@ -91,10 +92,9 @@ fn by_differences<P: Plant>(
     at: OperatingPoint<'_>,
     step_volt: &[f64],
 ) -> Result<Option<Identified>, RunError<P::Error>> {
-    match identify_t_about(plant, at, step_volt) {
-        Ok((t, measurements)) => Ok(Some(Identified { t, measurements })),
+    match differences(plant, at, step_volt, P::admits) {
         Err(RunError::Control(ControlError::NoRoomToIdentify { .. })) => Ok(None),
-        Err(error) => Err(error),
+        found => found.map(Some),
     }
 }
 
@@ -123,7 +123,7 @@ impl<'a> Sensitivity<'a> {
                 Policy::Filtered(Box::new(Filtered::new(settings, law, start)))
             }
         };
-        Self { law: law.clone(), policy, measurements: 0, identifications: 0 }
+        Self { law: law.clone(), policy, counts: Counts::default() }
     }
 
     /// Brings T up to date before a step from a measured state.
@@ -145,10 +145,10 @@ impl<'a> Sensitivity<'a> {
 
     /// Takes up a T; whether there is one.
     fn take_up(&mut self, found: Option<Identified>) -> Result<bool, ControlError> {
-        let Some(Identified { t, measurements }) = found else { return Ok(false) };
-        self.measurements += measurements;
+        let Some((t, measurements)) = found else { return Ok(false) };
         self.law = self.law.with_t(&t)?;
-        self.identifications += 1;
+        self.counts.measurements += measurements;
+        self.counts.identifications += 1;
         Ok(true)
     }
 
@@ -191,20 +191,15 @@ impl<'a> Sensitivity<'a> {
         &self,
         at: OperatingPoint<'_>,
     ) -> Result<DVector<f64>, ControlError> {
-        match &self.policy {
-            Policy::Filtered(policy) => {
-                let outputs = policy.filter.loads_at(at.control_volt);
-                self.law.modal_target(OperatingPoint { outputs: &outputs, ..at })
-            }
-            _ => self.law.modal_target(at),
-        }
+        let outputs = self.seen_outputs(at);
+        self.law.modal_target(OperatingPoint { outputs: &outputs, ..at })
     }
 
     /// The outputs that the law aims from: those measured, or the filter's estimate.
-    pub(crate) fn seen_outputs(&self, here: &ControlStep) -> Vec<f64> {
+    pub(crate) fn seen_outputs(&self, at: OperatingPoint<'_>) -> Vec<f64> {
         match &self.policy {
-            Policy::Filtered(policy) => policy.filter.loads_at(&here.control_volt),
-            _ => here.measurement.outputs.clone(),
+            Policy::Filtered(policy) => policy.filter.loads_at(at.control_volt),
+            _ => at.outputs.to_vec(),
         }
     }
 
@@ -215,7 +210,7 @@ impl<'a> Sensitivity<'a> {
         here: &ControlStep,
         target_volt: &[f64],
     ) -> Result<f64, ControlError> {
-        let outputs = self.seen_outputs(here);
+        let outputs = self.seen_outputs(here.point());
         self.law.promise(rho, OperatingPoint { outputs: &outputs, ..here.point() }, target_volt)
     }
 
@@ -231,23 +226,12 @@ impl<'a> Sensitivity<'a> {
         match &mut self.policy {
             Policy::Held { .. } => Ok(false),
             Policy::Linearised(policy) => {
-                match policy.correct(&self.law.matrix(), here, target_volt)? {
-                    Correction::Corrected(t) => {
-                        Ok(self.take_up(Some(Identified { t, measurements: 0 }))?)
-                    }
-                    Correction::ByDifferences => Ok(true),
-                    Correction::Nothing => Ok(false),
-                }
+                let t = self.law.t().as_matrix();
+                let (is_learnt, corrected) = policy.correct(t, here, target_volt)?;
+                self.take_up(corrected.map(|t| (t, 0)))?;
+                Ok(is_learnt)
             }
-            Policy::Filtered(policy) => match policy.rejected(here, target_volt) {
-                Rejected::Nothing => Ok(false),
-                Rejected::Learnt => Ok(true),
-                Rejected::Probe => {
-                    self.identifications += 1;
-                    self.measurements += policy.probe(plant, here, target_volt)?;
-                    Ok(true)
-                }
-            },
+            Policy::Filtered(policy) => policy.learn(plant, here, target_volt, &mut self.counts),
         }
     }
 
@@ -258,12 +242,9 @@ impl<'a> Sensitivity<'a> {
         here: &ControlStep,
         target_volt: &[f64],
     ) -> Result<Verified, RunError<P::Error>> {
-        let Policy::Filtered(policy) = &mut self.policy else { return Ok(Verified::Yes) };
-        let verified = policy.verify(here);
-        if verified == Verified::Anew {
-            self.identifications += 1;
-            self.measurements += policy.probe(plant, here, target_volt)?;
+        match &mut self.policy {
+            Policy::Filtered(policy) => policy.verify(plant, here, target_volt, &mut self.counts),
+            _ => Ok(Verified::Yes),
         }
-        Ok(verified)
     }
 }

@@ -18,22 +18,22 @@ pub enum DataSet {
 }
 
 impl DataSet {
+    fn runs_and_warnings(&self) -> (usize, &[Problem]) {
+        match self {
+            Self::Bench(data) => (data.runs.len(), &data.warnings),
+            Self::Loops(data) => (data.runs.len(), &data.warnings),
+            Self::Curves(data) => (data.runs.len(), &[]),
+        }
+    }
+
     /// What a reader should know about the data.
     pub fn warnings(&self) -> &[Problem] {
-        match self {
-            Self::Bench(data) => &data.warnings,
-            Self::Loops(data) => &data.warnings,
-            Self::Curves(data) => &data.warnings,
-        }
+        self.runs_and_warnings().1
     }
 
     /// Number of runs.
     pub fn run_count(&self) -> usize {
-        match self {
-            Self::Bench(data) => data.runs.len(),
-            Self::Loops(data) => data.runs.len(),
-            Self::Curves(data) => data.runs.len(),
-        }
+        self.runs_and_warnings().0
     }
 }
 

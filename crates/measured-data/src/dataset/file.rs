@@ -15,21 +15,11 @@ pub enum DatasetKind {
     ReversalCurves,
 }
 
-impl DatasetKind {
-    /// The word in `dataset.ron`.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::ActuatorBench => "ActuatorBench",
-            Self::GenericLoop => "GenericLoop",
-            Self::ReversalCurves => "ReversalCurves",
-        }
-    }
-}
-
 /// What a run is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum RunRole {
     /// A record of the actuator as it is: models are identified from it.
+    #[default]
     Reference,
     /// A record to be explained: simulations are compared with it.
     Measured,
@@ -95,7 +85,7 @@ pub struct DatasetFile {
 }
 
 /// One record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunFile {
     /// Name of the run, unique in the data set.

@@ -9,12 +9,12 @@ mod open;
 mod run;
 
 pub use any::{DataSet, read_dataset};
-pub(crate) use bench::check_bench_record;
 pub use bench::{BenchData, read_bench};
+pub(crate) use bench::{check_bench_record, range_unused};
 pub use curves::{CurveData, CurveRun, ReversalCurve, read_curves};
 pub use file::{
     DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, Fitting, RunFile, RunRole, RunUse, Sensor,
 };
-pub use loops::{InputRange, LoopData, read_loops};
+pub use loops::{LoopData, read_loops};
 pub use open::DATASET;
-pub use run::{Run, Timed, samples_within};
+pub use run::Run;

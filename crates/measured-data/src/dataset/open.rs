@@ -1,10 +1,10 @@
 //! Opening a data folder: `dataset.ron`, the checks all kinds share, and the files it names.
 
-use super::file::{DatasetFile, DatasetKind, RunFile};
-use super::run::{meant_by_id, samples_within};
+use super::file::{DatasetFile, DatasetKind};
+use super::run::{Run, meant_by_id, samples_within};
 use crate::files::{Folder, RonIndex, Source, read_ron};
-use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
-use crate::tables::{Channel, Unit};
+use crate::problem::{Fault, Place, Problem, Problems};
+use crate::tables::{Channel, Declared, MeasuredTable, unknown_unit};
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
@@ -14,6 +14,19 @@ pub const DATASET: &str = "dataset.ron";
 const LARGEST_RECORD_MB: u64 = 64;
 /// Fewest samples of a window.
 const LEAST_WINDOW: usize = 16;
+
+/// Keys that not all kinds have, of the data set or its runs, with the kinds that have them.
+const KEYS: [(&str, &str); 9] = [
+    ("flap_deg_per_um", "ActuatorBench"),
+    ("command_range_V", "ActuatorBench"),
+    ("input", "GenericLoop and ReversalCurves"),
+    ("output", "GenericLoop and ReversalCurves"),
+    ("input_range", "GenericLoop and ReversalCurves"),
+    ("window_s", "ActuatorBench and GenericLoop"),
+    ("sensor", "ActuatorBench and GenericLoop"),
+    ("fitting", "ActuatorBench and GenericLoop"),
+    ("calibration", "ReversalCurves"),
+];
 
 /// Reads the text of `dataset.ron`.
 pub(crate) fn read_description(folder: &Folder) -> Result<Source, Problem> {
@@ -31,6 +44,7 @@ pub(crate) struct OpenDataset<'a> {
     pub(crate) dataset: DatasetFile,
     pub(crate) index: RonIndex,
     pub(crate) problems: Problems,
+    pub(crate) warnings: Vec<Problem>,
     hash: blake3::Hasher,
 }
 
@@ -44,14 +58,14 @@ impl<'a> OpenDataset<'a> {
         let Some(dataset) = file.value else {
             return file.problems.into_result(None);
         };
-        let mut open = Self { folder, dataset, index: file.index, problems: file.problems, hash };
+        let (index, problems, warnings) = (file.index, file.problems, vec![]);
+        let mut open = Self { folder, dataset, index, problems, warnings, hash };
         if open.dataset.kind != kind {
-            let fault = RecordFault::OtherKind {
-                found: open.dataset.kind.word(),
-                expected: kind.word(),
-                remedy: "this command or case works on that kind only",
-            };
-            open.problems.push(open.index.place("kind"), fault.into());
+            let message = format!(
+                "is {:?}, expected {kind:?}; this command or case works on that kind only",
+                open.dataset.kind
+            );
+            open.problems.push(open.index.place("kind"), Fault::Other(message));
             return open.problems.into_result(None);
         }
         open.check_title_and_runs();
@@ -59,64 +73,88 @@ impl<'a> OpenDataset<'a> {
         Ok(open)
     }
 
-    /// Folder for messages and results.
-    pub(crate) fn folder_name(&self) -> String {
-        self.folder.display("").trim_end_matches('/').to_owned()
+    /// Folder, for messages and results, and hash of everything read.
+    pub(crate) fn origin(&self) -> (String, String) {
+        let folder = self.folder.display("").trim_end_matches('/').to_owned();
+        (folder, self.hash.finalize().to_hex().to_string())
+    }
+
+    /// What is said of the columns of input and output.
+    pub(crate) fn declared(&self) -> Declared {
+        [self.dataset.input.clone(), self.dataset.output.clone()]
+    }
+
+    /// The runs with their tables: `table` makes and checks one of a file.
+    pub(crate) fn runs(
+        &mut self,
+        mut table: impl FnMut(&mut Self, &Source) -> Result<MeasuredTable, Problems>,
+    ) -> Vec<Run> {
+        let mut runs = Vec::with_capacity(self.dataset.runs.len());
+        for (number, run) in self.dataset.runs.clone().into_iter().enumerate() {
+            let source = self.read(&run.file, &run_field(number, "file"));
+            match source.map(|source| table(self, &source)) {
+                Some(Ok(table)) => {
+                    self.check_window(number, &table.time_s);
+                    self.check_run(number);
+                    runs.push(Run::new(run, table));
+                }
+                Some(Err(more)) => self.problems.append(more),
+                None => {}
+            }
+        }
+        runs
     }
 
     /// Reads a file of a run; `path` is its field in `dataset.ron`.
     pub(crate) fn read(&mut self, file: &str, path: &str) -> Option<Source> {
-        let place = self.index.place(path);
-        if !is_plain(file) {
-            self.problems.push(place, Fault::NotPlainFile { path: file.to_owned() });
-            return None;
+        let source = self.checked(file, path);
+        let source = self.problems.note(source)?;
+        self.hash.update(source.text.as_bytes());
+        Some(source)
+    }
+
+    fn checked(&self, file: &str, path: &str) -> Result<Source, Problem> {
+        let refused = |fault| Err(Problem::new(self.index.place(path), fault));
+        let mut parts = Path::new(file).components();
+        if file.is_empty() || !parts.all(|part| matches!(part, Component::Normal(_))) {
+            return refused(Fault::Other(format!(
+                "{file} is not a plain file name inside the data folder; give the name of a file beside dataset.ron"
+            )));
         }
         if !self.folder.contains(file) {
             let folder = self.folder.display("");
-            self.problems.push(place, Fault::MissingFile { file: file.to_owned(), folder });
-            return None;
+            return refused(Fault::MissingFile { file: file.to_owned(), folder });
         }
         let megabytes = self.folder.size_bytes(file) / 1_000_000;
         if megabytes > LARGEST_RECORD_MB {
-            let limit_megabytes = LARGEST_RECORD_MB;
-            let fault = RecordFault::TooLarge { megabytes, limit_megabytes };
-            self.problems.push(Place::file(self.folder.display(file)), fault.into());
-            return None;
+            let fault = Fault::TooLarge { megabytes, limit_megabytes: LARGEST_RECORD_MB };
+            return Err(Problem::new(Place::file(self.folder.display(file)), fault));
         }
-        match self.folder.read(file) {
-            Ok(source) => {
-                self.hash.update(source.text.as_bytes());
-                Some(source)
-            }
-            Err(problem) => {
-                self.problems.push(problem.place, problem.fault);
-                None
-            }
-        }
+        self.folder.read(file)
     }
 
     /// Checks the window of run `number` against its times.
-    pub(crate) fn check_window(&mut self, number: usize, time_s: &[f64]) {
-        let Some(window_s) = self.dataset.runs[number].window_s else { return };
-        let samples = samples_within(time_s, Some(window_s)).len();
-        let (from_s, to_s) = window_s;
+    fn check_window(&mut self, number: usize, time_s: &[f64]) {
+        let Some((from_s, to_s)) = self.dataset.runs[number].window_s else { return };
+        let samples = samples_within(time_s, Some((from_s, to_s))).len();
         if let (Some(&first_s), Some(&last_s)) = (time_s.first(), time_s.last())
             && (samples < LEAST_WINDOW || from_s < first_s || to_s > last_s)
         {
-            let least = LEAST_WINDOW;
-            let fault = RecordFault::Window { from_s, to_s, samples, first_s, last_s, least };
-            self.problems.push(self.index.place(&format!("runs[{number}].window_s")), fault.into());
+            let message = format!(
+                "the window ({from_s}, {to_s}) s holds {samples} samples of the record, which runs from {first_s} to {last_s} s; give (t0, t1) with t0 < t1 inside the record and at least {LEAST_WINDOW} samples"
+            );
+            let place = self.index.place(&run_field(number, "window_s"));
+            self.problems.push(place, Fault::Other(message));
         }
     }
 
     /// Checks the conditions of run `number`; warns where its id stands for a sensor or a fitting.
-    pub(crate) fn check_run(&mut self, number: usize, warnings: &mut Vec<Problem>) {
+    fn check_run(&mut self, number: usize) {
         let run = &self.dataset.runs[number];
         for (name, value) in &run.conditions {
-            let place = || self.index.place(&format!("runs[{number}].conditions.{name}"));
+            let place = || self.index.place(&run_field(number, &format!("conditions.{name}")));
             if Channel::parse(name).is_none() {
-                let (found, known) = (name.clone(), Unit::known());
-                self.problems.push(place(), RecordFault::UnknownUnit { found, known }.into());
+                self.problems.push(place(), unknown_unit(name));
             }
             if !value.is_finite() {
                 self.problems.push(place(), Fault::NotFinite { value: *value });
@@ -128,26 +166,23 @@ impl<'a> OpenDataset<'a> {
             (fitting.is_some() && run.fitting.is_none(), "fitting: Preloaded"),
         ] {
             if is_meant {
-                let fault = RecordFault::MeantById { key };
+                let message = format!(
+                    "the id says how the run was measured; write `{key}` beside it: ids will lose that meaning"
+                );
                 let place = self.index.place(&run_field(number, "id"));
-                warnings.push(Problem::new(place, fault.into()));
+                self.warnings.push(Problem::new(place, Fault::Other(message)));
             }
         }
-    }
-
-    /// Hash of everything read.
-    pub(crate) fn content_hash(&self) -> String {
-        self.hash.finalize().to_hex().to_string()
     }
 
     fn check_title_and_runs(&mut self) {
         let Self { dataset, index, problems, .. } = self;
         if dataset.title.trim().is_empty() {
             let of = "one line about the data: what was measured, where, on what";
-            problems.push(index.place("title"), Fault::EmptyText { of });
+            problems.push(index.place("title"), Fault::Empty { of });
         }
         if dataset.runs.is_empty() {
-            problems.push(index.place("runs"), Fault::EmptyList { of: "run" });
+            problems.push(index.place("runs"), Fault::Empty { of: "at least one run" });
         }
         let mut ids = BTreeMap::new();
         let mut files = BTreeMap::new();
@@ -159,61 +194,49 @@ impl<'a> OpenDataset<'a> {
                 ("id", &run.id, &run.id, &mut ids, "run"),
                 ("file", &run.file, &record, &mut files, "run file"),
             ] {
-                let path = format!("runs[{i}].{key}");
+                let path = run_field(i, key);
                 if value.trim().is_empty() {
-                    problems.push(index.place(&path), Fault::EmptyText { of: "a name" });
+                    problems.push(index.place(&path), Fault::Empty { of: "a name" });
                     continue;
                 }
                 let line = index.line(&path).unwrap_or_default();
                 if let Some(first_line) = seen.insert(unique.clone(), line) {
-                    let fault = Fault::Repeated { name: value.clone(), of, first_line };
-                    problems.push(index.place(&path), fault);
+                    let message = format!(
+                        "`{value}` is used already on line {first_line}; give every {of} its own"
+                    );
+                    problems.push(index.place(&path), Fault::Other(message));
                 }
             }
             if let Some(value) = run.start_s.filter(|v| !(v.is_finite() && *v >= 0.0)) {
                 let (low, high, unit) = (0.0, 1e9, "s");
                 let remedy = "give the seconds since switch-on, or leave it out";
                 let fault = Fault::OutOfRange { value, low, high, unit, remedy };
-                problems.push(index.place(&format!("runs[{i}].start_s")), fault);
+                problems.push(index.place(&run_field(i, "start_s")), fault);
             }
         }
     }
 
     /// Keys that belong to another kind.
     fn check_keys(&mut self, kind: DatasetKind) {
-        use DatasetKind::{ActuatorBench, ReversalCurves};
-        let d = &self.dataset;
-        let both = "GenericLoop and ReversalCurves";
-        let mut keys = vec![
-            ("flap_deg_per_um".to_owned(), d.flap_deg_per_um.is_some(), ActuatorBench.word()),
-            ("command_range_V".to_owned(), d.command_range_volt.is_some(), ActuatorBench.word()),
-            ("input".to_owned(), d.input.is_some(), both),
-            ("output".to_owned(), d.output.is_some(), both),
-            ("input_range".to_owned(), d.input_range.is_some(), both),
-        ];
-        for (i, run) in d.runs.iter().enumerate() {
-            let windows = "ActuatorBench and GenericLoop";
-            keys.push((format!("runs[{i}].window_s"), run.window_s.is_some(), windows));
-            keys.push((run_field(i, "sensor"), run.sensor.is_some(), windows));
-            keys.push((run_field(i, "fitting"), run.fitting.is_some(), windows));
-            let curves = ReversalCurves.word();
-            keys.push((format!("runs[{i}].calibration"), run.calibration.is_some(), curves));
-        }
-        for (key, given, belongs) in keys {
-            if given && !belongs.contains(kind.word()) {
-                let fault = RecordFault::KeyOfOtherKind { belongs, kind: kind.word() };
-                self.problems.push(self.index.place(&key), fault.into());
+        let runs = 0..self.dataset.runs.len();
+        let kind = format!("{kind:?}");
+        for (key, belongs) in KEYS.into_iter().filter(|(_, of)| !of.contains(&kind)) {
+            let of_runs = runs.clone().map(|run| run_field(run, key));
+            for path in std::iter::once(key.to_owned()).chain(of_runs) {
+                if self.index.contains(&path) {
+                    let message = format!(
+                        "belongs to kind {belongs}, the data set is {kind}; remove it, or change the kind"
+                    );
+                    self.problems.push(self.index.place(&path), Fault::Other(message));
+                }
             }
         }
     }
 
     /// A range of `dataset.ron`, checked.
     pub(crate) fn check_range(&mut self, key: &str, range: (f64, f64)) -> Option<(f64, f64)> {
-        let (low, high) = range;
-        if low.is_finite() && high.is_finite() && low < high {
-            return Some(range);
-        }
-        self.problems.push(self.index.place(key), Fault::EmptyRange { low, high });
+        let Some(fault) = Fault::of_range(range) else { return Some(range) };
+        self.problems.push(self.index.place(key), fault);
         None
     }
 }
@@ -221,15 +244,4 @@ impl<'a> OpenDataset<'a> {
 /// What the records of all kinds share in `dataset.ron`.
 pub(crate) fn run_field(number: usize, key: &str) -> String {
     format!("runs[{number}].{key}")
-}
-
-fn is_plain(file: &str) -> bool {
-    let mut components = Path::new(file).components();
-    matches!(components.next(), Some(Component::Normal(_)))
-        && components.all(|c| matches!(c, Component::Normal(_)))
-}
-
-/// The runs of a data set with their numbers.
-pub(crate) fn numbered(runs: &[RunFile]) -> Vec<(usize, RunFile)> {
-    runs.iter().cloned().enumerate().collect()
 }

@@ -1,79 +1,34 @@
 //! One experiment: what was done, how, and the table of its record.
 
-use super::file::{Fitting, RunFile, RunRole, RunUse, Sensor};
-use crate::tables::{LoopTable, MeasuredTable};
-use std::collections::BTreeMap;
+use super::file::{Fitting, RunFile, Sensor};
+use crate::tables::MeasuredTable;
 use std::ops::Range;
 
 /// One experiment with its table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run<T> {
-    /// Name of the run.
-    pub id: String,
-    /// File name.
-    pub file: String,
-    /// What it is for.
-    pub role: RunRole,
-    /// What was done.
-    pub note: String,
-    /// Seconds since switch-on at which the record begins, if known.
-    pub start_s: Option<f64>,
-    /// Side of the split, if the data set fixes it.
-    pub use_as: Option<RunUse>,
-    /// Times of the record, s, between which it trains or is judged; none: all of it.
-    pub window_s: Option<(f64, f64)>,
-    /// Sensor that read the output.
-    pub sensor: Sensor,
-    /// How the system was fitted.
-    pub fitting: Fitting,
-    /// What was held constant: names with unit, and numbers.
-    pub conditions: BTreeMap<String, f64>,
+pub struct Run {
+    /// What `dataset.ron` says of it.
+    pub entry: RunFile,
     /// The numbers.
-    pub table: T,
+    pub table: MeasuredTable,
 }
 
-/// A table whose rows have times.
-pub trait Timed {
-    /// Times of the rows, s, increasing.
-    fn time_s(&self) -> &[f64];
-}
-
-impl Timed for MeasuredTable {
-    fn time_s(&self) -> &[f64] {
-        &self.time_s
+impl Run {
+    /// A run with the sensor and the fitting that its id may stand for.
+    pub(super) fn new(entry: RunFile, table: MeasuredTable) -> Self {
+        let (sensor, fitting) = meant_by_id(&entry.id);
+        let (sensor, fitting) = (entry.sensor.or(sensor), entry.fitting.or(fitting));
+        Self { entry: RunFile { sensor, fitting, ..entry }, table }
     }
-}
 
-impl Timed for LoopTable {
-    fn time_s(&self) -> &[f64] {
-        &self.time_s
-    }
-}
-
-impl<T: Timed> Run<T> {
     /// The samples that train or are judged.
     pub fn window(&self) -> Range<usize> {
-        samples_within(self.table.time_s(), self.window_s)
+        samples_within(&self.table.time_s, self.entry.window_s)
     }
-}
 
-impl<T> Run<T> {
-    /// A run of `dataset.ron` with its table.
-    pub(super) fn new(run: RunFile, table: T) -> Self {
-        let (sensor, fitting) = meant_by_id(&run.id);
-        Self {
-            sensor: run.sensor.or(sensor).unwrap_or_default(),
-            fitting: run.fitting.or(fitting).unwrap_or_default(),
-            id: run.id,
-            file: run.file,
-            role: run.role,
-            note: run.note,
-            start_s: run.start_s,
-            use_as: run.use_as,
-            window_s: run.window_s,
-            conditions: run.conditions,
-            table,
-        }
+    /// Sensor that read the output, and how the system was fitted.
+    pub fn setup(&self) -> (Sensor, Fitting) {
+        (self.entry.sensor.unwrap_or_default(), self.entry.fitting.unwrap_or_default())
     }
 }
 
@@ -86,7 +41,7 @@ pub(super) fn meant_by_id(id: &str) -> (Option<Sensor>, Option<Fitting>) {
 }
 
 /// The samples of a window, ends included; all without one.
-pub fn samples_within(time_s: &[f64], window_s: Option<(f64, f64)>) -> Range<usize> {
+pub(super) fn samples_within(time_s: &[f64], window_s: Option<(f64, f64)>) -> Range<usize> {
     let Some((from_s, to_s)) = window_s else {
         return 0..time_s.len();
     };
@@ -103,7 +58,7 @@ mod tests {
     use std::fmt::Write;
 
     /// The runs `entries` of one record, and the warnings.
-    fn read(entries: &str) -> Result<(Vec<Run<MeasuredTable>>, String), String> {
+    fn read(entries: &str) -> Result<(Vec<Run>, String), String> {
         let mut table = "time_s,command_V,displacement_um\n".to_owned();
         for i in 0..200 {
             let volt = 65.0 + 60.0 * (0.1 * f64::from(i)).sin();
@@ -122,20 +77,20 @@ mod tests {
     #[test]
     fn sensor_and_fitting_have_keys_and_are_still_read_from_the_id_with_a_warning() {
         let (runs, warnings) = read("(id: \"laser_a\", file: \"a.csv\", role: Measured)").unwrap();
-        assert_eq!((runs[0].sensor, runs[0].fitting), (Sensor::Ideal, Fitting::Plain));
+        assert_eq!(runs[0].setup(), (Sensor::Ideal, Fitting::Plain));
         assert!(
             warnings.contains("runs[0].id: ") && warnings.contains("`sensor: Ideal`"),
             "{warnings}"
         );
         let (runs, warnings) =
             read("(id: \"preload_a\", file: \"a.csv\", role: Measured)").unwrap();
-        assert_eq!((runs[0].sensor, runs[0].fitting), (Sensor::Bench, Fitting::Preloaded));
+        assert_eq!(runs[0].setup(), (Sensor::Bench, Fitting::Preloaded));
         assert!(warnings.contains("`fitting: Preloaded`"), "{warnings}");
         let (runs, warnings) = read(
             "(id: \"laser_a\", file: \"a.csv\", role: Measured, sensor: Bench, fitting: Preloaded)",
         )
         .unwrap();
-        assert_eq!((runs[0].sensor, runs[0].fitting), (Sensor::Bench, Fitting::Preloaded));
+        assert_eq!(runs[0].setup(), (Sensor::Bench, Fitting::Preloaded));
         assert_eq!(warnings, "");
     }
 
@@ -147,7 +102,7 @@ mod tests {
             ))
         };
         let (runs, _) = with("\"temperature_C\": 40, \"load_N\": 12.5").unwrap();
-        assert_eq!(runs[0].conditions["load_N"].to_bits(), 12.5_f64.to_bits());
+        assert_eq!(runs[0].entry.conditions["load_N"].to_bits(), 12.5_f64.to_bits());
         let text = with("\"temperature\": 40").unwrap_err();
         assert!(text.contains("runs[0].conditions.temperature: "), "{text}");
         let text = with("\"load_N\": inf").unwrap_err();

@@ -86,19 +86,14 @@ impl Folder {
     /// [`Fault::Unreadable`], [`Fault::NotText`] or [`Fault::NotShipped`].
     pub fn read(&self, file: &str) -> Result<Source, Problem> {
         let name = self.display(file);
+        let refused = |fault| Problem::new(Place::file(&name), fault);
+        let not_shipped = || refused(Fault::NotShipped { path: name.clone() });
         let bytes = match self {
             Self::Disk(folder) => read_bytes(&folder.join(file), &name)?,
-            Self::Embedded(folder) => folder
-                .content(file)
-                .ok_or_else(|| {
-                    Problem::new(Place::file(&name), Fault::NotShipped { path: name.clone() })
-                })?
-                .to_vec(),
+            Self::Embedded(folder) => folder.content(file).ok_or_else(not_shipped)?.to_vec(),
         };
-        let text = String::from_utf8(bytes).map_err(|e| {
-            let offset = e.utf8_error().valid_up_to();
-            Problem::new(Place::file(&name), Fault::NotText { offset })
-        })?;
+        let text = String::from_utf8(bytes)
+            .map_err(|e| refused(Fault::NotText { offset: e.utf8_error().valid_up_to() }))?;
         // a byte-order mark belongs to no format read here
         let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
         Ok(Source { name, text })
@@ -143,21 +138,18 @@ impl Source {
 /// [`Fault::Unreadable`].
 #[expect(clippy::disallowed_methods, reason = "beside `read_bytes` the one place that reads files")]
 pub fn open_reader(path: &Path) -> Result<std::io::BufReader<std::fs::File>, Problem> {
-    let name = path.display().to_string();
-    let unreadable =
-        |reason: String| Problem::new(Place::file(&name), Fault::Unreadable { reason });
-    let file = std::fs::File::open(path).map_err(|e| unreadable(e.to_string()))?;
+    let unreadable = |fault| Problem::new(Place::file(path.display().to_string()), fault);
+    let file = std::fs::File::open(path).map_err(|e| unreadable(e.into()))?;
     // a folder opens but cannot be read
     if file.metadata().is_ok_and(|m| m.is_dir()) {
-        return Err(unreadable("it is a folder".into()));
+        return Err(unreadable(Fault::Unreadable { reason: "it is a folder".into() }));
     }
     Ok(std::io::BufReader::with_capacity(1 << 16, file))
 }
 
 #[expect(clippy::disallowed_methods, reason = "the one place of the program that reads files")]
 fn read_bytes(path: &Path, name: &str) -> Result<Vec<u8>, Problem> {
-    std::fs::read(path)
-        .map_err(|e| Problem::new(Place::file(name), Fault::Unreadable { reason: e.to_string() }))
+    std::fs::read(path).map_err(|e| Problem::new(Place::file(name), e.into()))
 }
 
 /// A path with `.` and `..` resolved and `/` between its parts.

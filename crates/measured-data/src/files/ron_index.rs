@@ -22,7 +22,6 @@ pub(crate) struct Entry {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RonIndex {
     file: String,
-    line_starts: Vec<usize>,
     text: String,
     entries: Vec<Entry>,
 }
@@ -33,10 +32,11 @@ impl RonIndex {
         let mut scanner = Scanner { bytes: text.as_bytes(), at: 0, entries: Vec::new(), depth: 0 };
         scanner.skip_blank();
         scanner.value("");
-        let line_starts = std::iter::once(0)
-            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1))
-            .collect();
-        Self { file: file.to_owned(), line_starts, text: text.to_owned(), entries: scanner.entries }
+        Self { file: file.to_owned(), text: text.to_owned(), entries: scanner.entries }
+    }
+
+    fn entry(&self, path: &str) -> Option<&Entry> {
+        self.entries.iter().find(|e| e.path == path)
     }
 
     /// The name of the file.
@@ -46,32 +46,28 @@ impl RonIndex {
 
     /// The place of a field; of a field the text leaves out, the nearest section around it.
     pub fn place(&self, path: &str) -> Place {
-        let mut ancestor = path;
-        loop {
-            if let Some(entry) = self.entries.iter().find(|e| e.path == ancestor) {
-                return self.place_of_byte(entry.start).field(path);
-            }
-            match ancestor.rfind(['.', '[']) {
-                Some(cut) => ancestor = &ancestor[..cut],
-                None => return Place::file(&self.file).field(path),
-            }
-        }
+        let mut sections =
+            std::iter::successors(Some(path), |path| Some(&path[..path.rfind(['.', '['])?]));
+        let place = match sections.find_map(|path| self.entry(path)) {
+            Some(entry) => self.place_of_byte(entry.start),
+            None => Place::file(&self.file),
+        };
+        place.field(path)
     }
 
     /// Line of a field, from 1, if the text has it.
     pub fn line(&self, path: &str) -> Option<usize> {
-        let entry = self.entries.iter().find(|e| e.path == path)?;
-        self.place_of_byte(entry.start).line
+        self.place_of_byte(self.entry(path)?.start).line
     }
 
     /// The text of a field's value.
     pub fn value_text(&self, path: &str) -> Option<&str> {
-        self.entries.iter().find(|e| e.path == path).map(|e| self.text(&e.value))
+        self.entry(path).map(|e| self.text(&e.value))
     }
 
     /// Whether the text has a field.
     pub fn contains(&self, path: &str) -> bool {
-        self.entries.iter().any(|e| e.path == path)
+        self.entry(path).is_some()
     }
 
     /// Gives a field, and all inside it, another path.
@@ -87,18 +83,17 @@ impl RonIndex {
 
     /// The place of a byte.
     pub(crate) fn place_of_byte(&self, byte: usize) -> Place {
-        let line = self.line_starts.partition_point(|&start| start <= byte);
-        let start = self.line_starts[line - 1];
-        let column = self.text.get(start..byte).map_or(byte - start, |t| t.chars().count()) + 1;
-        Place::at(&self.file, line, column)
+        let before = &self.text.as_bytes()[..byte];
+        let lines = before.split(|b| *b == b'\n');
+        let last = lines.clone().next_back().unwrap_or_default();
+        let column = String::from_utf8_lossy(last).chars().count() + 1;
+        Place::at(&self.file, lines.count(), column)
     }
 
     /// The byte of a line and column, both from 1.
     pub(crate) fn byte(&self, line: usize, column: usize) -> usize {
-        let start = line.checked_sub(1).and_then(|i| self.line_starts.get(i)).copied();
-        let Some(start) = start else {
-            return self.text.len();
-        };
+        let lines_before = self.text.split_inclusive('\n').take(line.saturating_sub(1));
+        let start = lines_before.map(str::len).sum();
         let into = self.text[start..].char_indices().nth(column.saturating_sub(1));
         into.map_or(self.text.len(), |(i, _)| start + i)
     }
@@ -130,11 +125,6 @@ struct Scanner<'a> {
 impl Scanner<'_> {
     fn peek(&self) -> Option<u8> {
         self.bytes.get(self.at).copied()
-    }
-
-    /// One byte on, never past the end.
-    fn step(&mut self) {
-        self.at = (self.at + 1).min(self.bytes.len());
     }
 
     /// Skips blanks, comments and `#![enable(...)]`.
@@ -180,8 +170,7 @@ impl Scanner<'_> {
             Some(b'(') => self.items(path, b')'),
             Some(b'[') => self.items(path, b']'),
             Some(b'{') => self.items(path, b'}'),
-            Some(b'"') => self.string(),
-            Some(b'\'') => self.character(),
+            Some(quote @ (b'"' | b'\'')) => self.quoted(quote),
             Some(_) => {
                 self.word();
                 let end = self.at;
@@ -214,13 +203,15 @@ impl Scanner<'_> {
         }
     }
 
-    fn string(&mut self) {
+    /// A string or character between quotes.
+    fn quoted(&mut self, quote: u8) {
         self.at += 1;
         while let Some(b) = self.peek() {
             self.at += 1;
             match b {
-                b'\\' => self.step(),
-                b'"' => return,
+                // one byte on, never past the end
+                b'\\' => self.at = (self.at + 1).min(self.bytes.len()),
+                b if b == quote => return,
                 _ => {}
             }
         }
@@ -234,18 +225,6 @@ impl Scanner<'_> {
         let rest = self.bytes.get(self.at..).unwrap_or_default();
         let length = rest.windows(end.len()).position(|w| w == end);
         self.at += length.map_or(rest.len(), |l| l + end.len());
-    }
-
-    fn character(&mut self) {
-        self.at += 1;
-        while let Some(b) = self.peek() {
-            self.at += 1;
-            match b {
-                b'\\' => self.step(),
-                b'\'' => return,
-                _ => {}
-            }
-        }
     }
 
     /// The items between a bracket and `close`, each `key: value` or `value`.
@@ -286,7 +265,7 @@ impl Scanner<'_> {
         let start = self.at;
         let key = match self.peek()? {
             b'"' => {
-                self.string();
+                self.quoted(b'"');
                 self.bytes.get(start + 1..self.at.saturating_sub(1))
             }
             b if b.is_ascii_alphabetic() || b == b'_' => {

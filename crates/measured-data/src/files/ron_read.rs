@@ -39,20 +39,14 @@ pub fn read_ron<T: DeserializeOwned>(source: &Source) -> RonFile<T> {
     let mut blanked: Vec<String> = Vec::new();
     let options = options();
     for _ in 0..MOST_PROBLEMS {
-        match options.from_str::<T>(&text) {
-            Ok(value) => {
-                return RonFile { value: Some(value), index, problems };
-            }
-            Err(error) => {
-                let field = note(&error, &index, &blanked, &mut problems);
-                let Some((path, range)) = field else { break };
-                if blanked.contains(&path) {
-                    break;
-                }
-                blanked.push(path);
-                blank(&mut text, range);
-            }
-        }
+        let error = match options.from_str::<T>(&text) {
+            Ok(value) => return RonFile { value: Some(value), index, problems },
+            Err(error) => error,
+        };
+        let field = note(&error, &index, &blanked, &mut problems);
+        let Some((path, range)) = field.filter(|(path, _)| !blanked.contains(path)) else { break };
+        blanked.push(path);
+        blank(&mut text, range);
     }
     RonFile { value: None, index, problems }
 }
@@ -78,7 +72,7 @@ fn note(
     let end = index.byte(error.span.end.line, error.span.end.col).max(start);
     let ranges = [start..end, start..start, end..end];
     let entry = ranges.iter().find_map(|r| index.innermost(r));
-    let section = || match entry {
+    let section = match entry {
         Some(entry) => index.place_of_byte(entry.start).field(&entry.path),
         None => index.place_of_byte(start),
     };
@@ -89,49 +83,43 @@ fn note(
             let suffix = format!(".{field}");
             // a field blanked out above is not missing
             if !blanked.iter().any(|b| b == name || b.ends_with(&suffix)) {
-                problems.push(section(), Fault::MissingKey { key: (*field).to_owned() });
+                let message = format!("the key `{field}` is missing; add `{field}: ...`");
+                problems.push(section, Fault::Other(message));
             }
-            None
+            return None;
         }
         (RonError::DuplicateStructField { field, .. }, _) => {
-            problems.push(section(), Fault::RepeatedKey { key: (*field).to_owned() });
-            None
+            let message = format!("the key `{field}` is given twice; remove one of them");
+            problems.push(section, Fault::Other(message));
+            return None;
         }
         (code, Some(entry)) => {
             // the reader may take the front part of a number for the whole: 4 of 4.5
             let value = index.text(&entry.value);
             let inside = entry.value.start < start && start < entry.value.end;
             let front = inside && !value.contains(['(', '[', '{', '"']);
-            let Some(fault) = field_fault(code).or_else(|| {
-                let message = format!("`{value}` is not a value of the kind expected here");
-                front.then_some(Fault::WrongType { message })
-            }) else {
-                problems.push(index.place_of_byte(start), syntax(code));
-                return None;
-            };
-            problems.push(section(), fault);
-            Some((entry.path.clone(), entry.start..entry.value.end))
+            let part =
+                || wrong_type(&format!("`{value}` is not a value of the kind expected here"));
+            if let Some(fault) = field_fault(code).or_else(|| front.then(part)) {
+                problems.push(section, fault);
+                return Some((entry.path.clone(), entry.start..entry.value.end));
+            }
         }
-        (code, None) => {
-            problems.push(index.place_of_byte(start), syntax(code));
-            None
-        }
+        (_, None) => {}
     }
+    problems.push(index.place_of_byte(start), Fault::Syntax { message: sentence(&error.code) });
+    None
 }
 
 /// What is wrong with a field, if the error is about one field alone.
 fn field_fault(code: &RonError) -> Option<Fault> {
     match code {
-        RonError::NoSuchStructField { expected, found, .. } => Some(Fault::UnknownKey {
-            found: found.clone(),
-            known: expected.join(", "),
-            nearest: nearest(found, expected.iter().copied()),
-        }),
-        RonError::NoSuchEnumVariant { expected, found, .. } => Some(Fault::UnknownChoice {
-            found: found.clone(),
-            known: expected.join(", "),
-            nearest: nearest(found, expected.iter().copied()),
-        }),
+        RonError::NoSuchStructField { expected, found, .. } => {
+            Some(unknown("key", found, expected))
+        }
+        RonError::NoSuchEnumVariant { expected, found, .. } => {
+            Some(unknown("choice", found, expected))
+        }
         RonError::InvalidValueForType { .. }
         | RonError::ExpectedDifferentLength { .. }
         | RonError::ExpectedFloat
@@ -145,23 +133,28 @@ fn field_fault(code: &RonError) -> Option<Fault> {
         | RonError::ExpectedOption
         | RonError::ExpectedUnit
         | RonError::IntegerOutOfBounds
-        | RonError::InvalidIntegerDigit { .. } => {
-            Some(Fault::WrongType { message: sentence(code) })
-        }
+        | RonError::InvalidIntegerDigit { .. } => Some(wrong_type(&sentence(code))),
         RonError::Message(message) => Some(Fault::Refused { message: message.clone() }),
         _ => None,
     }
 }
 
-fn syntax(code: &RonError) -> Fault {
-    Fault::Syntax { message: sentence(code) }
+fn unknown(what: &'static str, found: &str, expected: &[&'static str]) -> Fault {
+    let nearest = nearest(found, expected.iter().copied());
+    Fault::Unknown { what, found: found.to_owned(), known: expected.join(", "), nearest }
+}
+
+fn wrong_type(message: &str) -> Fault {
+    Fault::Other(format!(
+        "has the wrong type: {message}; write a value of the type shown by `hhc init`"
+    ))
 }
 
 /// The RON reader's own words, beginning in lower case.
 fn sentence(code: &RonError) -> String {
     let text = code.to_string();
     let mut chars = text.chars();
-    chars.next().map(|c| c.to_lowercase().collect::<String>() + chars.as_str()).unwrap_or_default()
+    chars.next().into_iter().flat_map(char::to_lowercase).chain(chars).collect()
 }
 
 /// Replaces bytes and the comma behind them by blanks; lines stay where they are.

@@ -73,12 +73,15 @@ fn own_descriptor(path: &Path) -> Option<u32> {
 /// # Errors
 /// [`DataError::WouldOverwriteInput`] if both paths lead to the same regular file.
 pub fn refuse_input(input: &Path, output: &Path) -> Result<(), DataError> {
-    match (input.canonicalize(), output.canonicalize()) {
-        (Ok(input), Ok(same)) if input == same && same.is_file() => {
-            Err(DataError::WouldOverwriteInput { path: output.to_path_buf() })
-        }
-        _ => Ok(()),
+    if is_same(input, output) && output.is_file() {
+        return Err(DataError::WouldOverwriteInput { path: output.to_path_buf() });
     }
+    Ok(())
+}
+
+/// Whether two paths lead to the same file or folder.
+fn is_same(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Refuses a folder that no file can be written to, before what is to be written is computed. Leaves nothing behind: of a
@@ -92,11 +95,7 @@ pub fn refuse_unwritable(folder: &Path) -> Result<(), DataError> {
         Some(above) if !above.as_os_str().is_empty() => above,
         _ => Path::new("."),
     };
-    tempfile::Builder::new()
-        .prefix(".hhc-")
-        .tempfile_in(tried)
-        .map(|_| ())
-        .map_err(|e| not_written(folder, &e))
+    temporary(0o666).tempfile_in(tried).map(|_| ()).map_err(|e| not_written(folder, &e))
 }
 
 /// Like [`write_atomic`], but refuses to replace a file.
@@ -123,11 +122,7 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
 /// # Errors
 /// [`DataError::WouldOverwrite`] if `path` is a file that lies directly in `data`.
 pub fn refuse_inside(data: &Path, path: &Path) -> Result<(), DataError> {
-    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    };
-    if path.exists() && same(data, parent_of(path)) {
+    if path.exists() && is_same(data, parent_of(path)) {
         return Err(DataError::WouldOverwrite { path: path.to_path_buf() });
     }
     Ok(())
@@ -144,14 +139,7 @@ pub fn write_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Data
     let parent = parent_of(path);
     let whole = || -> std::io::Result<()> {
         std::fs::create_dir_all(parent)?;
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".hhc-");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o777));
-        }
-        let folder = builder.tempdir_in(parent)?;
+        let folder = temporary(0o777).tempdir_in(parent)?;
         for (name, bytes) in files {
             prepare(&folder.path().join(name), bytes)?
                 .persist_noclobber(folder.path().join(name))
@@ -172,18 +160,23 @@ fn parent_of(path: &Path) -> &Path {
     }
 }
 
-fn prepare(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> {
-    let folder = parent_of(path);
-    std::fs::create_dir_all(folder)?;
+/// What makes temporary files and folders: the user's umask applies to `mode` as to any new one.
+#[cfg_attr(not(unix), expect(unused_variables, reason = "there are no modes"))]
+fn temporary(mode: u32) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hhc-");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // the user's umask applies to this as to any new file
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
+        builder.permissions(std::fs::Permissions::from_mode(mode));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    builder
+}
+
+fn prepare(path: &Path, bytes: &[u8]) -> std::io::Result<tempfile::NamedTempFile> {
+    let folder = parent_of(path);
+    std::fs::create_dir_all(folder)?;
+    let mut file = temporary(0o666).tempfile_in(folder)?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
     Ok(file)

@@ -1,7 +1,9 @@
 //! Which columns of a source are taken, under which name, in which unit.
 
-use crate::problem::RecordFault;
-use crate::tables::{Channel, Dimension, Unit};
+use super::ImportKind;
+use super::gather::{Gather, Reduction};
+use crate::problem::Fault;
+use crate::tables::{Channel, Dimension, QUANTITIES, Unit, input_and_output, unknown_unit};
 
 /// A column that is taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,32 +29,30 @@ pub struct ColumnOptions {
     pub convert: Option<String>,
 }
 
-/// The columns of a source that are named, before they are chosen from.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Named {
-    pub(super) columns: Vec<(usize, Channel)>,
-    /// Columns left out because they have no known unit.
-    pub(super) left_out: Vec<String>,
-}
+/// The columns of a source that are named, before they are chosen from, and those left out because
+/// they have no known unit.
+type Named = (Vec<(usize, Channel)>, Vec<String>);
 
 /// Names the columns of a source of `count` columns with the names it gives itself, if any.
 pub(super) fn name_columns(
     options: &ColumnOptions,
     own: Option<&[String]>,
     count: usize,
-) -> Result<Named, RecordFault> {
+) -> Result<Named, Fault> {
     let Some(text) = &options.columns else {
         let Some(own) = own else {
-            return Err(RecordFault::NoHeader { count });
+            return Err(Fault::Other(format!(
+                "the {count} columns have no names; name them: --columns time_s,... with units, - for a column to leave out"
+            )));
         };
-        let mut named = Named { columns: vec![], left_out: vec![] };
+        let (mut columns, mut left_out) = Named::default();
         for (i, name) in own.iter().enumerate() {
             match Channel::parse(name) {
-                Some(channel) => named.columns.push((i, channel)),
-                None => named.left_out.push(name.clone()),
+                Some(channel) => columns.push((i, channel)),
+                None => left_out.push(name.clone()),
             }
         }
-        return Ok(named);
+        return Ok((columns, left_out));
     };
     let entries: Vec<&str> = text.split(',').map(str::trim).collect();
     let find = |source: &str| -> Option<usize> {
@@ -61,44 +61,30 @@ pub(super) fn name_columns(
         }
         own?.iter().position(|name| name == source || Channel::plain_name(name) == source)
     };
-    let parts = |entry: &str| -> Result<(Channel, Option<String>), RecordFault> {
-        let (name, source) = match entry.split_once('=') {
-            Some((name, source)) => (name, Some(source.trim().to_owned())),
-            None => (entry, None),
-        };
-        let unknown = || RecordFault::ColumnEntry { entry: entry.to_owned() };
-        Channel::parse(name).map(|channel| (channel, source)).ok_or_else(unknown)
-    };
     let by_name = entries.iter().any(|e| e.contains('='))
         || (own.is_some() && entries.iter().all(|e| *e == "-" || find(e).is_some()));
     if !by_name && entries.len() != count {
-        return Err(RecordFault::ColumnCount { named: entries.len(), found: count });
+        let named = entries.len();
+        let message = format!("--columns names {named} columns, the file has {count}");
+        return Err(Fault::Other(message));
     }
     let mut columns = Vec::new();
     for (i, entry) in entries.iter().enumerate().filter(|(_, e)| **e != "-") {
-        let (channel, source) = parts(entry)?;
-        let at = if by_name {
-            let wanted = source.unwrap_or_else(|| (*entry).to_owned());
-            find(&wanted).ok_or_else(|| RecordFault::NoSuchColumn {
-                wanted,
-                found: own.map_or_else(|| format!("#1 to #{count}"), |own| own.join(", ")),
-                remedy: "correct --columns",
-            })?
-        } else {
-            i
+        let (name, source) = entry.split_once('=').unwrap_or((*entry, *entry));
+        let channel = Channel::parse(name).ok_or_else(|| {
+            Fault::Other(format!(
+                "the entry `{entry}` of --columns is not understood; write NAME_UNIT, NAME_UNIT=SOURCE (a header, a MAT field or #number), or - for a column to leave out"
+            ))
+        })?;
+        let missing = || Fault::MissingColumn {
+            wanted: source.trim().to_owned(),
+            found: own.map_or_else(|| format!("#1 to #{count}"), |own| own.join(", ")),
+            remedy: "correct --columns",
         };
+        let at = if by_name { find(source.trim()).ok_or_else(missing)? } else { i };
         columns.push((at, channel));
     }
-    Ok(Named { columns, left_out: vec![] })
-}
-
-/// What the columns make up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shape {
-    /// `command` and `displacement` of an actuator.
-    Bench,
-    /// Any input and any output.
-    Loop,
+    Ok((columns, vec![]))
 }
 
 /// The columns taken: the time first (none if the source has none), then input and output, then what
@@ -106,7 +92,7 @@ pub(super) enum Shape {
 pub(super) struct Choice {
     pub(super) time: Option<Taken>,
     pub(super) columns: Vec<Taken>,
-    pub(super) shape: Shape,
+    pub(super) kind: ImportKind,
     pub(super) left_out: Vec<String>,
 }
 
@@ -118,69 +104,74 @@ impl Choice {
             .collect()
     }
 
-    /// Takes the columns out of a row of the source; `index` stands for the time where there is none.
-    pub(super) fn take(&self, row: &[f64], step_s: f64, index: usize, into: &mut Vec<f64>) {
-        into.clear();
-        into.push(match &self.time {
-            Some(time) => time.factor * row[time.source],
-            None => step_s * index as f64,
-        });
-        into.extend(self.columns.iter().map(|c| c.factor * row[c.source]));
+    /// The columns taken, the time first if the source has one.
+    pub(super) fn taken(&self) -> impl Iterator<Item = &Taken> {
+        self.time.iter().chain(&self.columns)
+    }
+
+    /// The numbers of the columns taken, in the units written.
+    pub(super) fn converted(
+        &self,
+        numbers: impl IntoIterator<Item = f64>,
+    ) -> impl Iterator<Item = f64> {
+        self.taken().zip(numbers).map(|(taken, number)| taken.factor * number)
+    }
+
+    /// An empty record of these columns.
+    pub(super) fn gather(&self, file: &str, reduction: Reduction) -> Gather {
+        let sampling_hz = reduction.sampling_hz.filter(|_| self.time.is_none());
+        Gather::new(file, self.labels(), Reduction { sampling_hz, ..reduction })
     }
 }
 
-/// Chooses from the named columns. `wanted` forces the shape.
+/// Chooses from the named columns. `wanted` forces the kind of data folder.
 pub(super) fn choose(
-    named: Named,
+    (columns, mut left_out): Named,
     options: &ColumnOptions,
-    wanted: Option<Shape>,
+    wanted: Option<ImportKind>,
     sampling_hz: Option<f64>,
-) -> Result<Choice, RecordFault> {
-    let Named { columns, mut left_out } = named;
+) -> Result<Choice, Fault> {
     let (times, data): (Vec<_>, Vec<_>) = columns.into_iter().partition(|(_, c)| c.is_time());
-    let second = Unit::find("s").ok_or(RecordFault::NoTime)?;
     let time = match times.first() {
         Some((source, channel)) => {
-            let factor = channel.unit.factor_to(second).ok_or(RecordFault::NoTime)?;
-            let channel = Channel { name: "time".to_owned(), unit: second };
-            Some(Taken { source: *source, channel, factor })
+            let time = converted(*source, channel, "s")?;
+            Some(Taken { channel: Channel { name: "time".to_owned(), ..time.channel }, ..time })
         }
         None if sampling_hz.is_some() => None,
         None => {
             // a time without unit is the likelier flaw than no time
-            return Err(match left_out.iter().find(|n| n.trim().to_lowercase().starts_with('t')) {
-                Some(found) if Channel::plain_name(found) == "time" || found.trim() == "t" => {
-                    RecordFault::UnknownUnit { found: found.clone(), known: Unit::known() }
-                }
-                _ => RecordFault::NoTime,
-            });
+            let unitless =
+                |name: &&String| Channel::plain_name(name) == "time" || name.trim() == "t";
+            let message = "there is no time column; name one `time_s`, or give --sampling-hz";
+            let no_time = || Fault::Other(message.to_owned());
+            return Err(left_out.iter().find(unitless).map_or_else(no_time, |n| unknown_unit(n)));
         }
     };
-    let is = |channel: &Channel, name: &str, dimension: Dimension| {
-        channel.name == name && channel.unit.dimension == dimension
+    let has = |name: &str, dimension: Dimension| {
+        data.iter().any(|(_, c)| c.name == name && c.unit.dimension == dimension)
     };
-    let has = |name: &str, d: Dimension| data.iter().any(|(_, c)| is(c, name, d));
     let bench = has("command", Dimension::Voltage) && has("displacement", Dimension::Length);
-    let shape =
-        wanted.unwrap_or(if bench && options.input.is_none() && options.response.is_none() {
-            Shape::Bench
-        } else {
-            Shape::Loop
-        });
-    let columns = match shape {
-        Shape::Bench => bench_columns(&data, &mut left_out)?,
-        Shape::Loop => loop_columns(&data, options, &mut left_out)?,
+    let is_loop = !bench || options.input.is_some() || options.response.is_some();
+    let found = if is_loop { ImportKind::GenericLoop } else { ImportKind::ActuatorBench };
+    let kind = wanted.unwrap_or(found);
+    let columns = match kind {
+        ImportKind::ActuatorBench => bench_columns(&data)?,
+        ImportKind::GenericLoop => loop_columns(&data, options)?,
     };
-    for taken in time.iter().chain(&columns) {
-        let name = &taken.channel.name;
-        let alike =
-            |c: &Channel| if taken.channel.is_time() { c.is_time() } else { c.name == *name };
+    let is_taken = |source: usize| columns.iter().any(|taken| taken.source == source);
+    left_out.extend(data.iter().filter(|(i, _)| !is_taken(*i)).map(|(_, c)| c.label()));
+    let choice = Choice { time, columns, kind, left_out };
+    for Taken { channel, .. } in choice.taken() {
+        let name = &channel.name;
+        let alike = |c: &Channel| if channel.is_time() { c.is_time() } else { c.name == *name };
         let count = times.iter().chain(&data).filter(|(_, c)| alike(c)).count();
         if count > 1 {
-            return Err(RecordFault::RepeatedName { name: name.clone(), count });
+            return Err(Fault::Other(format!(
+                "{count} columns are called `{name}`: say which one is meant by its number, --columns time_s=#1,{name}_UNIT=#2,... (the others are then left out), or rename them in the header"
+            )));
         }
     }
-    Ok(Choice { time, columns, shape, left_out })
+    Ok(choice)
 }
 
 fn names(data: &[(usize, Channel)]) -> String {
@@ -188,91 +179,57 @@ fn names(data: &[(usize, Channel)]) -> String {
 }
 
 /// The columns of an actuator's bench, in its units.
-fn bench_columns(
-    data: &[(usize, Channel)],
-    left_out: &mut Vec<String>,
-) -> Result<Vec<Taken>, RecordFault> {
-    let known = [
-        ("command", "V", true),
-        ("displacement", "um", true),
-        ("amplifier", "V", false),
-        ("temperature", "C", false),
-        ("load", "N", false),
-    ];
+fn bench_columns(data: &[(usize, Channel)]) -> Result<Vec<Taken>, Fault> {
     let mut taken = Vec::new();
-    for (name, unit, required) in known {
-        let Some((source, channel)) = data.iter().find(|(_, c)| c.name == name) else {
-            if required {
-                return Err(RecordFault::NoSuchColumn {
-                    wanted: format!("{name}_{unit}"),
-                    found: names(data),
-                    remedy: "name it with --columns, or import with --kind generic-loop",
-                });
+    for (name, unit, required) in &QUANTITIES[1..] {
+        match data.iter().find(|(_, c)| c.name == *name) {
+            Some((source, channel)) => taken.push(converted(*source, channel, unit)?),
+            None if *required => {
+                let (wanted, found) = (format!("{name}_{unit}"), names(data));
+                let remedy = "name it with --columns, or import with --kind generic-loop";
+                return Err(Fault::MissingColumn { wanted, found, remedy });
             }
-            continue;
-        };
-        taken.push(converted(*source, channel, unit)?);
+            None => {}
+        }
     }
-    left_out.extend(
-        data.iter().filter(|(i, _)| taken.iter().all(|t| t.source != *i)).map(|(_, c)| c.label()),
-    );
     Ok(taken)
 }
 
-fn converted(source: usize, channel: &Channel, unit: &str) -> Result<Taken, RecordFault> {
+fn converted(source: usize, channel: &Channel, unit: &str) -> Result<Taken, Fault> {
     let from = channel.unit;
-    let unknown = || RecordFault::UnknownUnit { found: unit.to_owned(), known: Unit::known() };
-    let unit = Unit::find(unit).ok_or_else(unknown)?;
-    let factor = from
-        .factor_to(unit)
-        .ok_or(RecordFault::NoConversion { from: from.symbol, to: unit.symbol })?;
+    let unit = Unit::find(unit).ok_or_else(|| unknown_unit(unit))?;
+    let factor = from.factor_to(unit).ok_or_else(|| {
+        Fault::Other(format!(
+            "{} cannot be converted into {}: they measure different things",
+            from.symbol, unit.symbol
+        ))
+    })?;
     Ok(Taken { source, channel: Channel { name: channel.name.clone(), unit }, factor })
 }
 
 /// Input and output of a generic loop, in their own units or those asked for.
-fn loop_columns(
-    data: &[(usize, Channel)],
-    options: &ColumnOptions,
-    left_out: &mut Vec<String>,
-) -> Result<Vec<Taken>, RecordFault> {
+fn loop_columns(data: &[(usize, Channel)], options: &ColumnOptions) -> Result<Vec<Taken>, Fault> {
+    let missing = |wanted: &str, remedy| Fault::MissingColumn {
+        wanted: wanted.to_owned(),
+        found: names(data),
+        remedy,
+    };
     let find = |wanted: &String| {
-        let matches = |c: &Channel| c.name == *wanted || c.label() == *wanted;
-        data.iter().position(|(_, c)| matches(c)).ok_or_else(|| RecordFault::NoSuchColumn {
-            wanted: wanted.clone(),
-            found: names(data),
-            remedy: "correct --input or --response",
-        })
+        let at = data.iter().position(|(_, c)| c.name == *wanted || c.label() == *wanted);
+        at.ok_or_else(|| missing(wanted, "correct --input or --response"))
     };
     let input = options.input.as_ref().map(find).transpose()?;
     let output = options.response.as_ref().map(find).transpose()?;
-    let other = |taken: usize| (data.len() == 2).then_some(1 - taken);
-    let (input, output) = match (input, output) {
-        (Some(i), Some(o)) => (Some(i), Some(o)),
-        (Some(i), None) => (Some(i), other(i)),
-        (None, Some(o)) => (other(o), Some(o)),
-        (None, None) if data.len() == 2 => (Some(0), Some(1)),
-        (None, None) => (None, None),
-    };
-    let (Some(input), Some(output)) = (input, output) else {
+    let all: Vec<usize> = (0..data.len()).collect();
+    let pair = input_and_output(&all, [input, output]).ok_or_else(|| {
         let remedy = "--input NAME --response NAME";
-        return Err(RecordFault::AmbiguousColumns { columns: names(data), remedy });
-    };
+        Fault::AmbiguousColumns { columns: names(data), remedy }
+    })?;
     let wanted = wanted_units(options)?;
     if let Some(unknown) = wanted.iter().find(|w| data.iter().all(|(_, c)| c.name != w.name)) {
-        return Err(RecordFault::NoSuchColumn {
-            wanted: unknown.name.clone(),
-            found: names(data),
-            remedy: "correct --convert",
-        });
+        return Err(missing(&unknown.name, "correct --convert"));
     }
-    left_out.extend(
-        data.iter()
-            .enumerate()
-            .filter(|(i, _)| *i != input && *i != output)
-            .map(|(_, (_, c))| c.label()),
-    );
-    [input, output]
-        .into_iter()
+    pair.into_iter()
         .map(|i| {
             let (source, channel) = &data[i];
             let unit =
@@ -283,19 +240,9 @@ fn loop_columns(
 }
 
 /// The units of `--convert`.
-pub(super) fn wanted_units(options: &ColumnOptions) -> Result<Vec<Channel>, RecordFault> {
-    let Some(text) = &options.convert else {
-        return Ok(vec![]);
-    };
-    text.split(',')
-        .map(|entry| {
-            let unknown = || RecordFault::UnknownUnit {
-                found: entry.trim().to_owned(),
-                known: Unit::known(),
-            };
-            Channel::parse(entry).ok_or_else(unknown)
-        })
-        .collect()
+fn wanted_units(options: &ColumnOptions) -> Result<Vec<Channel>, Fault> {
+    let entries = options.convert.iter().flat_map(|text| text.split(','));
+    entries.map(|entry| Channel::parse(entry).ok_or_else(|| unknown_unit(entry.trim()))).collect()
 }
 
 #[cfg(test)]
@@ -306,11 +253,10 @@ mod tests {
         ColumnOptions { columns: Some(columns.to_owned()), ..ColumnOptions::default() }
     }
 
-    fn named(columns: &str, own: Option<&[&str]>, count: usize) -> Result<String, RecordFault> {
+    fn named(columns: &str, own: Option<&[&str]>, count: usize) -> Result<String, Fault> {
         let own: Option<Vec<String>> = own.map(|o| o.iter().map(|s| (*s).to_owned()).collect());
         let named = name_columns(&options(columns), own.as_deref(), count)?;
-        let text: Vec<String> =
-            named.columns.iter().map(|(i, c)| format!("{i}:{}", c.label())).collect();
+        let text: Vec<String> = named.0.iter().map(|(i, c)| format!("{i}:{}", c.label())).collect();
         Ok(text.join(" "))
     }
 
@@ -328,20 +274,21 @@ mod tests {
 
     #[test]
     fn entries_that_make_no_sense() {
-        assert!(matches!(named("time_s,x", None, 2), Err(RecordFault::ColumnEntry { .. })));
-        assert!(matches!(named("time_s", None, 2), Err(RecordFault::ColumnCount { .. })));
-        assert!(matches!(named("time_s=#9", None, 2), Err(RecordFault::NoSuchColumn { .. })));
-        let none = name_columns(&ColumnOptions::default(), None, 4);
-        assert!(matches!(none, Err(RecordFault::NoHeader { count: 4 })));
+        let said = |columns| named(columns, None, 2).unwrap_err().to_string();
+        assert!(said("time_s,x").contains("the entry `x` of --columns is not understood"));
+        assert!(said("time_s").contains("--columns names 1 columns, the file has 2"));
+        assert!(said("time_s=#9").contains("the column `#9` is missing, the header has #1 to #2"));
+        let none = name_columns(&ColumnOptions::default(), None, 4).unwrap_err().to_string();
+        assert!(none.contains("the 4 columns have no names"), "{none}");
     }
 
-    fn chosen(columns: &str, more: &ColumnOptions) -> Result<String, RecordFault> {
+    fn chosen(columns: &str, more: &ColumnOptions) -> Result<String, Fault> {
         let count = columns.split(',').count();
         let named = name_columns(&options(columns), None, count)?;
         let choice = choose(named, more, None, None)?;
         let taken: Vec<String> =
             choice.columns.iter().map(|c| format!("{} {}", c.channel.label(), c.factor)).collect();
-        Ok(format!("{:?} {}", choice.shape, taken.join(", ")))
+        Ok(format!("{:?} {}", choice.kind, taken.join(", ")))
     }
 
     #[test]
@@ -349,31 +296,27 @@ mod tests {
         let none = ColumnOptions::default();
         assert_eq!(
             chosen("time_ms,displacement_mm,command_mV,load_lb", &none).unwrap(),
-            "Bench command_V 0.001, displacement_um 1000, load_N 4.4482216152605"
+            "ActuatorBench command_V 0.001, displacement_um 1000, load_N 4.4482216152605"
         );
         assert_eq!(
             chosen("time_s,displacement_in,force_kip", &none).unwrap(),
-            "Loop displacement_in 1, force_kip 1"
+            "GenericLoop displacement_in 1, force_kip 1"
         );
         let turned = ColumnOptions { input: Some("force".into()), ..none.clone() };
         assert_eq!(
             chosen("time_s,displacement_in,force_kip", &turned).unwrap(),
-            "Loop force_kip 1, displacement_in 1"
+            "GenericLoop force_kip 1, displacement_in 1"
         );
         let si = ColumnOptions { convert: Some("displacement_mm".into()), ..none.clone() };
         assert_eq!(
             chosen("time_s,displacement_in,force_kip", &si).unwrap(),
-            "Loop displacement_mm 25.4, force_kip 1"
+            "GenericLoop displacement_mm 25.4, force_kip 1"
         );
         let wrong = ColumnOptions { convert: Some("displacement_N".into()), ..none.clone() };
-        assert!(matches!(
-            chosen("time_s,displacement_in,force_kip", &wrong),
-            Err(RecordFault::NoConversion { .. })
-        ));
-        assert!(matches!(
-            chosen("time_s,a_V,b_V,c_V", &none),
-            Err(RecordFault::AmbiguousColumns { .. })
-        ));
-        assert!(matches!(chosen("a_V,b_V", &none), Err(RecordFault::NoTime)));
+        let text = chosen("time_s,displacement_in,force_kip", &wrong).unwrap_err().to_string();
+        assert!(text.contains("in cannot be converted into N"), "{text}");
+        assert!(matches!(chosen("time_s,a_V,b_V,c_V", &none), Err(Fault::AmbiguousColumns { .. })));
+        let text = chosen("a_V,b_V", &none).unwrap_err().to_string();
+        assert!(text.contains("there is no time column"), "{text}");
     }
 }

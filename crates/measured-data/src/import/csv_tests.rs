@@ -30,6 +30,10 @@ fn separators_headers_and_units() {
         ("0 1 10\n1 2 20\n2 3 40\n", "time_ms,u_V,x_um"),
         ("\u{feff},10,1,0\r\n,20,2,0.001\r\n,40,3,0.002\r\n", "-,x_um,u_V,time_s"),
         (
+            "\"time (s)\",\"u (V)\",x_um,\"a, b\"\r\n#\r\n0,1,10,\"c, d\"\r\n0.001,2,20,e\r\n0.002,3,40,f\r\n",
+            "",
+        ),
+        (
             "t,volts,travel,spare\n0,1,10,a\n0.001,2,20,b\n0.002,3,40,c\n",
             "time_s=t,u_V=volts,x_um=#3",
         ),
@@ -64,8 +68,8 @@ fn bad_rows_are_named() {
     let good = "time_s,u_V,x_um\n0,1,10\n1,2,20\n2,3,40\n3,3,41\n";
     let changed = |from: &str, to: &str| error(&good.replacen(from, to, 1), "");
     assert!(changed("1,2,20", "1,2").contains("r.csv:3:1: the row has 2 fields, the header has 3"));
-    assert!(changed("1,2,20", "1,NaN,20").contains("r.csv:3:1: u_V: the value is NaN"));
-    assert!(changed("1,2,20", "1,2,2O").contains("r.csv:3:1: x_um: `2O` is not a number"));
+    assert!(changed("1,2,20", "1,NaN,20").contains("r.csv:3:3: u_V: the value is NaN"));
+    assert!(changed("1,2,20", "1,2,2O").contains("r.csv:3:5: x_um: `2O` is not a number"));
     assert!(changed("2,3,40", "0.5,3,40").contains("r.csv:4:1: time_s: time 0.5 s follows 1 s"));
     assert!(changed("3,3,41", "9,3,41").contains("r.csv:5:1: time_s: the time step is 7 s"));
     assert!(error("time_s,u_V,x_um\n0,1,10\n", "").contains("has 1 rows of numbers"));

@@ -2,20 +2,16 @@
 
 use super::gather::Gathered;
 use super::micromag::MicroMag;
-use super::{ImportRequest, Imported, ReadSource, SourceKind, Table, folder_kind};
+use super::{ImportKind, ImportRequest, Imported, ReadSource, SourceKind, Table, folder_kind};
 use crate::dataset::{
-    DATASET, DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, RunFile, RunRole,
-    check_bench_record,
+    DATASET, DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, RunFile, check_bench_record,
+    range_unused,
 };
 use crate::error::DataError;
 use crate::files::{ron_text, write_folder};
-use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
-use crate::tables::{
-    Channel, ChannelFile, MeasuredTable, Record, check_record, check_unit, significant,
-};
+use crate::problem::{Fault, Place, Problem, Problems};
+use crate::tables::{Channel, ChannelFile, Record, check_record, check_unit, limits, significant};
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 
 /// Significant digits of the numbers written.
@@ -32,7 +28,7 @@ pub struct ImportResult {
     /// Folder written.
     pub folder: String,
     /// Kind of the data set.
-    pub kind: &'static str,
+    pub kind: DatasetKind,
     /// Title of the data set.
     pub title: String,
     /// The runs.
@@ -87,9 +83,8 @@ pub struct ColumnSpan {
     pub largest: f64,
 }
 
-fn span(label: &str, values: impl Iterator<Item = f64>) -> ColumnSpan {
-    let (least, largest) =
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+fn span(label: &str, values: &[f64]) -> ColumnSpan {
+    let (least, largest) = limits(values);
     ColumnSpan { column: label.to_owned(), least, largest }
 }
 
@@ -109,36 +104,37 @@ pub(super) fn write(
     sources: Vec<ReadSource>,
 ) -> Result<ImportResult, DataError> {
     let kind = sources.first().map_or(DatasetKind::GenericLoop, |s| folder_kind(&s.imported));
+    let not_written = |reason: String| DataError::NotWritten { path: request.out.clone(), reason };
     let mut parts = Parts::default();
     let mut title = request.title.clone();
     let mut channels: Option<Vec<String>> = None;
     for source in sources {
-        let name = source.path.display().to_string();
         let found = folder_kind(&source.imported);
         if found != kind {
-            let fault = RecordFault::MixedKinds { found: found.word(), expected: kind.word() };
-            parts.problems.push(Place::file(name), fault.into());
+            let message = format!(
+                "holds {found:?}, the files before it {kind:?}; import them into folders of their own"
+            );
+            parts.problems.push(source.place(), Fault::Other(message));
             continue;
         }
         let id = parts.new_id(&source.path);
-        match source.imported {
-            Imported::Record(ref table) => {
-                if kind == DatasetKind::GenericLoop {
-                    let labels = table.choice.labels();
-                    let expected = channels.get_or_insert_with(|| labels.clone());
-                    if *expected != labels {
-                        let (found, expected) = (labels.join(", "), expected.join(", "));
-                        let fault = RecordFault::OtherColumns { found, expected };
-                        parts.problems.push(Place::file(&name), fault.into());
-                    }
+        match &source.imported {
+            Imported::Record(table) => {
+                let labels = table.choice.labels();
+                let expected = channels.get_or_insert_with(|| labels.clone());
+                if kind == DatasetKind::GenericLoop && *expected != labels {
+                    let (found, expected) = (labels.join(", "), expected.join(", "));
+                    parts.problems.push(source.place(), Fault::OtherColumns { found, expected });
                 }
-                parts.record(request, &source, table, id);
+                let record = parts.record(request.range, &source, table, id);
+                record.map_err(|e| not_written(e.to_string()))?;
             }
-            Imported::Curves(ref curves) => {
+            Imported::Curves(curves) => {
                 if title.is_none() && !curves.title.is_empty() {
                     title = Some(curves.title.clone());
                 }
-                parts.curves(&source, curves, id);
+                let written = parts.curves(&source, curves, id);
+                written.map_err(|e| not_written(e.to_string()))?;
             }
         }
     }
@@ -149,9 +145,23 @@ pub(super) fn write(
         format!("imported from {}", names.join(", "))
     });
     let (range, range_rule) = range_of(request, kind, &runs);
-    let dataset = dataset(kind, &title, entries, &runs, request.range, range);
-    let text = ron_text(&dataset)
-        .map_err(|e| DataError::NotWritten { path: request.out.clone(), reason: e.to_string() })?;
+    let is_loop = kind != DatasetKind::ActuatorBench;
+    let column = |i: usize| {
+        let column = runs.first().filter(|_| is_loop)?.columns.get(i)?.column.clone();
+        Some(ChannelFile { column, unit: None })
+    };
+    let dataset = DatasetFile {
+        kind,
+        title: title.clone(),
+        runs: entries,
+        flap_deg_per_um: None,
+        // a bench without a range would get the default one
+        command_range_volt: range.filter(|_| !is_loop),
+        input: column(0),
+        output: column(1),
+        input_range: request.range.filter(|_| kind == DatasetKind::GenericLoop),
+    };
+    let text = ron_text(&dataset).map_err(|e| not_written(e.to_string()))?;
     let comment = format!(
         "// Written by `hhc import` {}: what was done stands in the notes of the runs.\n",
         env!("CARGO_PKG_VERSION")
@@ -161,7 +171,7 @@ pub(super) fn write(
     write_folder(&request.out, &files)?;
     Ok(ImportResult {
         folder: request.out.display().to_string(),
-        kind: kind.word(),
+        kind,
         title,
         runs,
         range,
@@ -187,34 +197,32 @@ fn range_of(
         return (request.range, "given by --range");
     }
     let inputs = runs.iter().filter_map(|r| r.columns.first());
-    let (low, high) = inputs
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c.least), h.max(c.largest)));
-    (Some((low, high)), "from the smallest to the largest input of all runs")
+    let ends: Vec<f64> = inputs.flat_map(|input| [input.least, input.largest]).collect();
+    (Some(limits(&ends)), "from the smallest to the largest input of all runs")
 }
 
-fn dataset(
-    kind: DatasetKind,
-    title: &str,
-    runs: Vec<RunFile>,
-    imported: &[ImportedRun],
-    given: Option<(f64, f64)>,
-    range: Option<(f64, f64)>,
-) -> DatasetFile {
-    let column = |i: usize| {
-        let column = imported.first()?.columns.get(i)?.column.clone();
-        Some(ChannelFile { column, unit: None })
-    };
-    let is_loop = kind != DatasetKind::ActuatorBench;
-    DatasetFile {
-        kind,
-        title: title.to_owned(),
-        runs,
-        flap_deg_per_um: None,
-        // a bench without a range would get the default one
-        command_range_volt: if is_loop { None } else { range },
-        input: is_loop.then(|| column(0)).flatten(),
-        output: is_loop.then(|| column(1)).flatten(),
-        input_range: if kind == DatasetKind::GenericLoop { given } else { None },
+impl ReadSource {
+    fn place(&self) -> Place {
+        Place::file(self.path.display().to_string())
+    }
+
+    /// A run of the numbers of samples read and written, not yet described.
+    fn run(&self, id: String, [samples_read, samples_written]: [usize; 2]) -> ImportedRun {
+        ImportedRun {
+            source: self.path.display().to_string(),
+            source_kind: self.kind,
+            recognised: self.recognised.clone(),
+            file: format!("{id}.csv"),
+            id,
+            samples_read,
+            samples_written,
+            block: 1,
+            step_s: None,
+            jitter_percent: None,
+            curves: None,
+            columns: vec![],
+            left_out: vec![],
+        }
     }
 }
 
@@ -228,191 +236,130 @@ impl Parts {
             .collect();
         let plain = if plain.trim_matches('.').is_empty() { "run".to_owned() } else { plain };
         let taken = |id: &str| self.entries.iter().any(|e| e.id == id);
-        if !taken(&plain) {
-            return plain;
-        }
-        // one of one more name than there are runs is free
-        (2..self.entries.len() + 3)
-            .map(|n| format!("{plain}_{n}"))
-            .find(|id| !taken(id))
-            .unwrap_or(plain)
+        let numbered = (2..).map(|n| format!("{plain}_{n}"));
+        let mut ids = std::iter::once(plain.clone()).chain(numbered);
+        ids.find(|id| !taken(id)).unwrap_or_default()
     }
 
-    fn record(&mut self, request: &ImportRequest, source: &ReadSource, record: &Table, id: String) {
-        let Table { gathered, choice } = record;
-        let name = source.path.display().to_string();
+    fn record(
+        &mut self,
+        range: Option<(f64, f64)>,
+        source: &ReadSource,
+        table: &Table,
+        id: String,
+    ) -> Result<(), csv::Error> {
+        let Table { gathered, choice } = table;
         self.warnings.extend(gathered.warnings.iter().cloned());
         let before = self.problems.as_slice().len();
-        if choice.shape == super::Shape::Bench {
-            self.check_bench(&name, gathered, request.range);
-        } else {
-            self.check_loop(&name, record, request.range);
-        }
+        self.check(source, table, range);
         if self.problems.as_slice().len() > before {
-            return;
+            return Ok(());
         }
         let labels = choice.labels();
-        let file = format!("{id}.csv");
-        let columns = labels[1..]
-            .iter()
-            .zip(&gathered.columns)
-            .map(|(label, values)| span(label, values.iter().copied()))
-            .collect();
-        self.files.push((file.clone(), record_csv(&labels, gathered)));
-        let samples_written = gathered.time_s.len();
-        let step_s = significant(gathered.sampling.step_s * gathered.block as f64, 9);
-        self.runs.push(ImportedRun {
-            source: name,
-            source_kind: source.kind,
-            recognised: source.recognised.clone(),
-            id: id.clone(),
-            file: file.clone(),
-            samples_read: gathered.count,
-            samples_written,
-            block: gathered.block,
-            step_s: Some(step_s),
-            jitter_percent: Some(significant(100.0 * gathered.sampling.jitter, 3)),
-            curves: None,
-            columns,
-            left_out: choice.left_out.clone(),
-        });
+        let columns = labels[1..].iter().zip(&gathered.columns);
         let from = file_name(&source.path);
-        let note = if gathered.block == 1 {
-            format!("{from}, every sample")
-        } else {
-            format!("{from}, means of {} samples", gathered.block)
+        let note = match gathered.block {
+            1 => format!("{from}, every sample"),
+            block => format!("{from}, means of {block} samples"),
         };
-        self.entries.push(entry(id, file, note, None));
+        let step_s = gathered.sampling.step_s * gathered.block as f64;
+        let run = ImportedRun {
+            block: gathered.block,
+            step_s: Some(significant(step_s, 9)),
+            jitter_percent: Some(significant(100.0 * gathered.sampling.jitter, 3)),
+            left_out: choice.left_out.clone(),
+            columns: columns.map(|(label, values)| span(label, values)).collect(),
+            ..source.run(id, [gathered.count, gathered.time_s.len()])
+        };
+        self.files.push((run.file.clone(), csv_table(&labels, record_rows(gathered))?));
+        self.push(run, note, None);
+        Ok(())
     }
 
-    fn check_bench(&mut self, name: &str, gathered: &Gathered, range: Option<(f64, f64)>) {
-        let measured = MeasuredTable {
-            time_s: vec![],
-            time_step_s: gathered.sampling.step_s,
-            command_volt: gathered.columns[0].clone(),
-            displacement_um: gathered.columns[1].clone(),
-            amplifier_volt: None,
-            temperature_celsius: None,
-            load_newton: None,
-            lines: gathered.lines.clone(),
-            warnings: vec![],
-        };
+    /// Adds a run to the folder and its description.
+    fn push(&mut self, run: ImportedRun, note: String, calibration: Option<String>) {
+        let (id, file) = (run.id.clone(), run.file.clone());
+        self.entries.push(RunFile { id, file, note, calibration, ..RunFile::default() });
+        self.runs.push(run);
+    }
+
+    fn check(&mut self, source: &ReadSource, table: &Table, range: Option<(f64, f64)>) {
         let Self { problems, warnings, .. } = self;
-        check_bench_record(name, &measured, range, problems, warnings);
-        if range.is_some() {
-            return;
-        }
-        // without a range, what piezo actuators see at all tells volts from their thousandths, and the
-        // range of a common stack from their thousands
-        let record = Record {
-            file: name,
-            lines: &measured.lines,
-            input: ("command_V", "V", &measured.command_volt),
-            output: ("displacement_um", "um", &measured.displacement_um),
-        };
-        if check_unit(&record, PLAUSIBLE_RANGE_VOLT, problems) {
-            let (low, high) = DEFAULT_COMMAND_RANGE_VOLT;
-            let command = span("", measured.command_volt.iter().copied());
-            let percent = 100.0 * (command.largest - command.least) / (high - low);
-            if percent < 0.5 && percent > 0.0 {
-                let fault = RecordFault::RangeUnused { percent, low, high };
-                warnings.push(Problem::new(Place::file(name).field("command_V"), fault.into()));
-            }
-        }
-    }
-
-    fn check_loop(&mut self, name: &str, record: &Table, range: Option<(f64, f64)>) {
-        let Table { gathered, choice } = record;
+        let Table { gathered, choice } = table;
+        let name = source.path.display().to_string();
         let channels: [&Channel; 2] = [&choice.columns[0].channel, &choice.columns[1].channel];
         let labels = channels.map(Channel::label);
         let part =
             |i: usize| (labels[i].as_str(), channels[i].unit.symbol, &gathered.columns[i][..]);
-        let record = Record { file: name, lines: &gathered.lines, input: part(0), output: part(1) };
-        check_record(&record, &mut self.problems, &mut self.warnings);
-        if let Some((low, high)) = range {
-            let input = span("", gathered.columns[0].iter().copied());
-            for value in [input.least, input.largest] {
-                if value < low || value > high {
-                    let unit = channels[0].unit.symbol;
-                    let remedy = "correct --range, or its unit";
-                    let fault = Fault::OutOfRange { value, low, high, unit, remedy };
-                    self.problems.push(Place::file(name).field(&labels[0]), fault);
+        let (input, output) = (part(0), part(1));
+        let record = Record { file: &name, lines: &gathered.lines, input, output };
+        let place = || source.place().field(&labels[0]);
+        let (least, largest) = limits(&gathered.columns[0]);
+        match choice.kind {
+            ImportKind::GenericLoop => {
+                check_record(&record, problems, warnings);
+                let (unit, remedy) = (channels[0].unit.symbol, "correct --range, or its unit");
+                let outside =
+                    |value: f64| range.filter(|(low, high)| value < *low || value > *high);
+                for value in [least, largest] {
+                    if let Some((low, high)) = outside(value) {
+                        let fault = Fault::OutOfRange { value, low, high, unit, remedy };
+                        problems.push(place(), fault);
+                    }
+                }
+            }
+            ImportKind::ActuatorBench => {
+                check_bench_record(&record, range, problems, warnings);
+                // without a range, what piezo actuators see at all tells volts from their
+                // thousandths, and the range of a common stack from their thousands
+                if range.is_none() && check_unit(&record, PLAUSIBLE_RANGE_VOLT, problems) {
+                    let unused = range_unused(largest - least, DEFAULT_COMMAND_RANGE_VOLT);
+                    warnings.extend(unused.map(|fault| Problem::new(place(), fault)));
                 }
             }
         }
     }
 
-    fn curves(&mut self, source: &ReadSource, found: &MicroMag, id: String) {
-        let labels = [found.input.label(), found.output.label()];
-        let points = || found.curves.iter().flat_map(|c| c.points.iter().copied());
-        let count = points().count();
-        let calibrations: Vec<(usize, (f64, f64))> = found
-            .curves
-            .iter()
-            .enumerate()
-            .filter_map(|(i, c)| Some((i, c.calibration?)))
-            .collect();
-        let header = format!("curve,{},{}\n", labels[0], labels[1]);
-        let mut text = header.clone();
-        for (i, curve) in found.curves.iter().enumerate() {
-            for (h, m) in &curve.points {
-                push_row(&mut text, &[(i + 1).to_string(), number(*h), number(*m)]);
-            }
-        }
-        let file = format!("{id}.csv");
-        self.files.push((file.clone(), text.into_bytes()));
-        let mut calibration = None;
-        // fewer than three would be no table, and no drift could be told from them
-        if calibrations.len() > 2 {
-            let mut text = header;
-            for (i, (h, m)) in &calibrations {
-                push_row(&mut text, &[(i + 1).to_string(), number(*h), number(*m)]);
-            }
-            let file = format!("{id}_calibration.csv");
-            self.files.push((file.clone(), text.into_bytes()));
-            calibration = Some(file);
-        }
+    fn curves(
+        &mut self,
+        source: &ReadSource,
+        found: &MicroMag,
+        id: String,
+    ) -> Result<(), csv::Error> {
+        let labels = ["curve".to_owned(), found.input.label(), found.output.label()];
+        let row = |(curve, (field, moment)): (usize, (f64, f64))| {
+            vec![(curve + 1).to_string(), number(field), number(moment)]
+        };
+        let curves = || found.curves.iter().enumerate();
+        let points: Vec<(usize, (f64, f64))> =
+            curves().flat_map(|(i, c)| c.points.iter().map(move |point| (i, *point))).collect();
+        let calibrations: Vec<(usize, (f64, f64))> =
+            curves().filter_map(|(i, c)| Some((i, c.calibration?))).collect();
         let note = format!(
             "{}, {} curves, {} drift calibrations, drift not taken off",
             file_name(&source.path),
             found.curves.len(),
             calibrations.len()
         );
-        self.runs.push(ImportedRun {
-            source: source.path.display().to_string(),
-            source_kind: source.kind,
+        let fields: Vec<f64> = points.iter().map(|(_, (field, _))| *field).collect();
+        let moments: Vec<f64> = points.iter().map(|(_, (_, moment))| *moment).collect();
+        let run = ImportedRun {
             recognised: format!("{}, {} drift calibrations", source.recognised, calibrations.len()),
-            id: id.clone(),
-            file: file.clone(),
-            samples_read: count + calibrations.len(),
-            samples_written: count,
-            block: 1,
-            step_s: None,
-            jitter_percent: None,
             curves: Some(found.curves.len()),
-            columns: vec![
-                span(&labels[0], points().map(|p| p.0)),
-                span(&labels[1], points().map(|p| p.1)),
-            ],
-            left_out: vec![],
-        });
-        self.entries.push(entry(id, file, note, calibration));
-    }
-}
-
-fn entry(id: String, file: String, note: String, calibration: Option<String>) -> RunFile {
-    RunFile {
-        id,
-        file,
-        role: RunRole::Reference,
-        note,
-        start_s: None,
-        use_as: None,
-        window_s: None,
-        sensor: None,
-        fitting: None,
-        conditions: BTreeMap::new(),
-        calibration,
+            columns: vec![span(&labels[1], &fields), span(&labels[2], &moments)],
+            ..source.run(id, [points.len() + calibrations.len(), points.len()])
+        };
+        self.files.push((run.file.clone(), csv_table(&labels, points.into_iter().map(row))?));
+        let mut calibration = None;
+        // fewer than three would be no table, and no drift could be told from them
+        if calibrations.len() > 2 {
+            let file = format!("{}_calibration.csv", run.id);
+            let table = csv_table(&labels, calibrations.into_iter().map(row))?;
+            self.files.push((file.clone(), table));
+            calibration = Some(file);
+        }
+        self.push(run, note, calibration);
+        Ok(())
     }
 }
 
@@ -420,24 +367,27 @@ fn number(value: f64) -> String {
     significant(value, DIGITS).to_string()
 }
 
-fn push_row(text: &mut String, fields: &[String]) {
-    text.push_str(&fields.join(","));
-    text.push('\n');
+/// The text of a table.
+fn csv_table(
+    labels: &[String],
+    rows: impl Iterator<Item = Vec<String>>,
+) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(labels)?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    writer.into_inner().map_err(|e| e.into_error().into())
 }
 
-fn record_csv(labels: &[String], gathered: &Gathered) -> Vec<u8> {
-    let mut text = labels.join(",") + "\n";
-    let step = (gathered.time_s[gathered.time_s.len() - 1] - gathered.time_s[0])
-        / (gathered.time_s.len() - 1) as f64;
-    for (i, time) in gathered.time_s.iter().enumerate() {
-        // digits beyond a millionth of the step are noise of the sums
-        let grain = significant(step, 1) * 1e-7;
-        let time = (time / grain).round() * grain;
-        let _ = write!(text, "{}", significant(time, TIME_DIGITS));
-        for column in &gathered.columns {
-            let _ = write!(text, ",{}", number(column[i]));
-        }
-        text.push('\n');
-    }
-    text.into_bytes()
+fn record_rows(gathered: &Gathered) -> impl Iterator<Item = Vec<String>> {
+    let time_s = &gathered.time_s;
+    let step = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+    // digits beyond a millionth of the step are noise of the sums
+    let grain = significant(step, 1) * 1e-7;
+    time_s.iter().enumerate().map(move |(i, time)| {
+        let time = significant((time / grain).round() * grain, TIME_DIGITS);
+        let numbers = gathered.columns.iter().map(|column| number(column[i]));
+        std::iter::once(time.to_string()).chain(numbers).collect()
+    })
 }

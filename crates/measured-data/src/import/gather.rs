@@ -1,8 +1,10 @@
 //! Samples as they stream in: counted, checked in time, averaged into blocks so that memory stays
 //! bounded.
 
-use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
-use crate::tables::{Listing, RESAMPLED_JITTER, ROUNDING_JITTER, Sampling, resample, resampled};
+use super::whole;
+use crate::problem::{Fault, Place, Problem, Problems};
+use crate::tables::{LEAST_ROWS, Listing, RESAMPLED_JITTER, ROUNDING_JITTER, Sampling};
+use crate::tables::{note_swapped, resample, resampled, too_few_rows};
 
 /// How much of a record is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,7 +14,7 @@ pub(super) struct Reduction {
     /// Sampling frequency the record is reduced to, Hz; it is not reduced further than to
     /// `most_samples` without one.
     pub(super) reduce_to_hz: Option<f64>,
-    /// Sampling frequency of sources without a time, Hz.
+    /// Sampling frequency of a source without a time, Hz; none where it has one.
     pub(super) sampling_hz: Option<f64>,
 }
 
@@ -90,9 +92,8 @@ impl Gather {
         }
     }
 
-    /// Samples so far.
-    pub(super) fn count(&self) -> usize {
-        self.count
+    fn place(&self, line: usize) -> Place {
+        if line > 0 { Place::at(&self.file, line, 1) } else { Place::file(&self.file) }
     }
 
     /// Tells of a row that cannot be read: the time steps across it say nothing.
@@ -100,14 +101,23 @@ impl Gather {
         (self.time.hole, self.time.holes) = (true, true);
     }
 
-    /// Takes one sample up: the time, s, and the other columns. `line` is 0 where there are none.
-    pub(super) fn push(&mut self, row: &[f64], line: usize, problems: &mut Problems) {
-        self.track_time(row[0], line, problems);
+    /// Takes one sample up: the time, s, if the source has one, and the other columns. `line` is 0
+    /// where there are none.
+    pub(super) fn push(
+        &mut self,
+        row: impl IntoIterator<Item = f64>,
+        line: usize,
+        problems: &mut Problems,
+    ) {
+        let time_s = self.reduction.sampling_hz.map(|hz| 1.0 / hz * self.count as f64);
+        let mut row = time_s.into_iter().chain(row);
+        let Some(time_s) = row.next() else { return };
+        self.track_time(time_s, line, problems);
         self.count += 1;
         if self.in_block == 0 {
             self.block_line = line;
         }
-        for (sum, value) in self.sums.iter_mut().zip(row) {
+        for (sum, value) in self.sums.iter_mut().zip(std::iter::once(time_s).chain(row)) {
             *sum += value;
         }
         self.in_block += 1;
@@ -129,16 +139,13 @@ impl Gather {
     }
 
     fn track_time(&mut self, time_s: f64, line: usize, problems: &mut Problems) {
+        let place = self.place(line);
         let track = &mut self.time;
         if self.count == 0 {
             track.first_s = time_s;
         } else if !track.hole {
             let step = time_s - track.last_s;
             if step <= 0.0 {
-                let place = match line {
-                    0 => Place::file(&self.file),
-                    line => Place::at(&self.file, line, 1),
-                };
                 let fault = Fault::TimeNotIncreasing { time_s, before_s: track.last_s };
                 track.backward.push(problems, place.field(&self.labels[0]), fault);
                 track.faulty = true;
@@ -169,9 +176,8 @@ impl Gather {
     pub(super) fn finish(mut self, problems: &mut Problems) -> Option<Gathered> {
         std::mem::take(&mut self.time.backward).finish(problems);
         let label = self.labels[0].clone();
-        if self.count < 3 {
-            let fault = Fault::TooFewRows { rows: self.count, least: 3 };
-            problems.push(Place::file(&self.file), fault);
+        if self.count < LEAST_ROWS {
+            problems.push(Place::file(&self.file), too_few_rows(self.count));
             return None;
         }
         let step_s = (self.time.last_s - self.time.first_s) / (self.count - 1) as f64;
@@ -179,33 +185,32 @@ impl Gather {
         let sampling = Sampling { step_s, jitter };
         if !problems.is_empty() {
             if self.time.faulty {
-                self.swapped(&label, problems);
+                let others = self.labels.iter().map(String::as_str).zip(&self.columns).skip(1);
+                note_swapped(&Place::file(&self.file).field(label), others, problems);
             }
             return None;
         }
         if let Some(wanted_hz) = self.reduction.reduce_to_hz {
             let rate_hz = 1.0 / (step_s * self.block as f64);
             // a rate a hair below a whole multiple is that multiple
-            let factor = (rate_hz / wanted_hz * (1.0 + 1e-6)).floor().clamp(1.0, 1e9);
-            let mut whole = 1;
-            while ((whole + 1) as f64) <= factor {
-                whole += 1;
-            }
-            if whole > 1 {
-                self.average(whole);
+            let factor = whole((rate_hz / wanted_hz * (1.0 + 1e-6)).floor().clamp(1.0, 1e9));
+            if factor > 1 {
+                self.average(factor);
             }
         }
         let mut warnings = Vec::new();
         let left_out = self.count - self.block * self.columns[0].len();
         if left_out > 0 {
-            let fault = RecordFault::Remainder { count: left_out, block: self.block };
-            warnings.push(Problem::new(Place::file(&self.file), fault.into()));
+            let message = format!(
+                "{left_out} samples at the end fill no block of {} and are left out",
+                self.block
+            );
+            warnings.push(Problem::new(Place::file(&self.file), Fault::Other(message)));
         }
         let mut columns = self.columns;
         let mut time_s = columns.remove(0);
-        if time_s.len() < 3 {
-            let fault = Fault::TooFewRows { rows: time_s.len(), least: 3 };
-            problems.push(Place::file(&self.file), fault);
+        if time_s.len() < LEAST_ROWS {
+            problems.push(Place::file(&self.file), too_few_rows(time_s.len()));
             return None;
         }
         if sampling.jitter > ROUNDING_JITTER {
@@ -239,24 +244,11 @@ impl Gather {
         let (step_s, line) = worst;
         // steps that go back are reported already
         if deviation(worst) > RESAMPLED_JITTER && shortest.0 > 0.0 {
-            let place = match line {
-                0 => Place::file(&self.file),
-                line => Place::at(&self.file, line, 1),
-            };
-            problems.push(place.field(label), Fault::TimeStepUneven { step_s, usual_s });
+            let place = self.place(line).field(label);
+            problems.push(place, Fault::TimeStepUneven { step_s, usual_s });
             self.time.faulty = true;
         }
         deviation(worst)
-    }
-
-    /// Says it if another column than the time looks like the time.
-    fn swapped(&self, label: &str, problems: &mut Problems) {
-        for (column, other) in self.columns.iter().zip(&self.labels).skip(1) {
-            if crate::tables::increases_evenly(column) {
-                let fault = RecordFault::TimeSwapped { other: other.clone() };
-                problems.push(Place::file(&self.file).field(label), fault.into());
-            }
-        }
     }
 }
 
@@ -270,7 +262,7 @@ mod tests {
         let mut problems = Problems::default();
         for i in 0..samples {
             let time = i as f64 * 1e-3 + if i % 2 == 1 { jitter * 1e-3 } else { 0.0 };
-            gather.push(&[time, 2.0 * time], i + 2, &mut problems);
+            gather.push([time, 2.0 * time], i + 2, &mut problems);
         }
         let found = gather.finish(&mut problems);
         problems.into_result(found)
@@ -322,7 +314,7 @@ mod tests {
         let mut problems = Problems::default();
         let mut largest = 0;
         for i in 0..10_000_000_usize {
-            gather.push(&[i as f64 * 1e-4, (i % 7) as f64], i + 1, &mut problems);
+            gather.push([i as f64 * 1e-4, (i % 7) as f64], i + 1, &mut problems);
             largest = largest.max(gather.columns[0].capacity() + gather.lines.capacity());
         }
         assert!(largest <= 4 * 4096, "{largest} numbers kept");

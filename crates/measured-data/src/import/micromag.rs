@@ -4,8 +4,9 @@
 //! blank lines, then a closing line. A block of one row at the calibration field `HCal` is the drift
 //! calibration taken before the curve that follows; every other block is a curve.
 
+use super::whole;
 use crate::files::Source;
-use crate::problem::{Fault, Place, Problems, RecordFault};
+use crate::problem::{Fault, Place, Problem, Problems};
 use crate::tables::{Channel, Unit};
 
 /// Deviation from `HCal` within which a single row is a calibration.
@@ -42,32 +43,31 @@ pub(super) fn is_micromag(start: &[u8]) -> bool {
     start.starts_with(BEGIN.as_bytes())
 }
 
+/// The lines before the data, and the file they are from.
 struct Header<'a> {
-    lines: Vec<(usize, &'a str)>,
-    /// Line the data begin at, from 0.
-    data: usize,
+    file: &'a str,
+    lines: &'a [&'a str],
 }
 
 impl<'a> Header<'a> {
-    /// The text behind `key` and its `=` or `:`.
-    fn value(&self, key: &str) -> Option<(usize, &'a str)> {
-        self.lines.iter().find_map(|(number, line)| {
-            let rest = line.strip_prefix(key)?.trim_start();
-            Some((*number, rest.strip_prefix(['=', ':'])?.trim()))
+    /// The text behind `key` and its `=` or `:`, and its place.
+    fn value(&self, key: &str) -> Result<(Place, &'a str), Problem> {
+        let found = self.lines.iter().enumerate().find_map(|(i, line)| {
+            let rest = line.strip_prefix(key)?.trim_start().strip_prefix(['=', ':'])?;
+            Some((Place::at(self.file, i + 1, 1).field(key), rest.trim()))
+        });
+        found.ok_or_else(|| {
+            let message = format!(
+                "the MicroMag header has no line `{key}`; it is no FORC file, or it is damaged"
+            );
+            Problem::new(Place::file(self.file), Fault::Other(message))
         })
     }
 
-    fn number(&self, file: &str, key: &'static str, problems: &mut Problems) -> Option<f64> {
-        let Some((line, text)) = self.value(key) else {
-            problems.push(Place::file(file), RecordFault::MicroMagHeader { key }.into());
-            return None;
-        };
+    fn number(&self, key: &str) -> Result<f64, Problem> {
+        let (place, text) = self.value(key)?;
         let number = text.parse::<f64>().ok().filter(|v| v.is_finite());
-        if number.is_none() {
-            let fault = Fault::NotANumber { text: text.to_owned() };
-            problems.push(Place::at(file, line, 1).field(key), fault);
-        }
-        number
+        number.ok_or_else(|| Problem::new(place, Fault::NotANumber { text: text.to_owned() }))
     }
 }
 
@@ -85,18 +85,16 @@ pub(super) fn read_micromag(source: &Source) -> Result<MicroMag, Problems> {
             && line.contains(',')
     };
     let data = all.iter().position(is_row).unwrap_or(all.len());
-    let lines = all[..data].iter().enumerate().map(|(i, l)| (i + 1, *l)).collect();
-    let header = Header { lines, data };
-    let curves_promised = header.number(file, "NCrv", &mut problems);
-    let rows_promised = header.number(file, "NData", &mut problems);
-    let calibration_field = header.number(file, "HCal", &mut problems);
-    let units = units(&header, file, &mut problems);
+    let header = Header { file, lines: &all[..data] };
+    let [promised, rows, field] =
+        ["NCrv", "NData", "HCal"].map(|key| problems.note(header.number(key)));
+    let units = problems.note(units(&header)).flatten();
     let (Some(promised), Some(rows), Some(field), Some((field_unit, moment_unit))) =
-        (curves_promised, rows_promised, calibration_field, units)
+        (promised, rows, field, units)
     else {
         return problems.into_result(None);
     };
-    let blocks = blocks(&all, header.data, file, &mut problems);
+    let blocks = blocks(&all, data, file, &mut problems);
     let found_rows: usize = blocks.iter().map(Vec::len).sum();
     let mut curves: Vec<Curve> = Vec::new();
     let mut calibration = None;
@@ -111,45 +109,37 @@ pub(super) fn read_micromag(source: &Source) -> Result<MicroMag, Problems> {
         ("rows of numbers are there", found_rows, rows),
     ] {
         if (found as f64 - promised).abs() > 0.5 {
-            let promised = whole(promised);
-            let fault = RecordFault::MicroMagCount { of, found, promised };
-            problems.push(Place::at(file, all.len().max(1), 1), fault.into());
+            let message = format!(
+                "{found} {of}, the header promises {}: the file is truncated or damaged; copy it again from the instrument",
+                whole(promised)
+            );
+            problems.push(Place::at(file, all.len().max(1), 1), Fault::Other(message));
         }
     }
     let title = header
         .lines
         .iter()
-        .find(|(_, l)| l.len() > 2 && l.starts_with('"') && l.ends_with('"'))
-        .map(|(_, l)| l.trim_matches('"').to_owned())
+        .find(|l| l.len() > 2 && l.starts_with('"') && l.ends_with('"'))
+        .map(|l| l.trim_matches('"').to_owned())
         .unwrap_or_default();
     let channel = |name: &str, unit| Channel { name: name.to_owned(), unit };
     let (input, output) = (channel("field", field_unit), channel("moment", moment_unit));
     problems.into_result(Some(MicroMag { title, input, output, curves }))
 }
 
-/// A count that was written as a decimal number.
-fn whole(value: f64) -> usize {
-    format!("{value:.0}").parse().unwrap_or(usize::MAX)
-}
-
 /// Units of field and moment: `cgs` is Oe and emu, `SI` is T (`mu0 H`) and A m^2.
-fn units(header: &Header<'_>, file: &str, problems: &mut Problems) -> Option<(Unit, Unit)> {
-    let key = "Units of measure";
-    let Some((line, text)) = header.value(key) else {
-        problems.push(Place::file(file), RecordFault::MicroMagHeader { key }.into());
-        return None;
-    };
+fn units(header: &Header<'_>) -> Result<Option<(Unit, Unit)>, Problem> {
+    let (place, text) = header.value("Units of measure")?;
     let (field, moment) = match text.to_lowercase().as_str() {
         "cgs" => ("Oe", "emu"),
         "si" | "hybrid si" => ("T", "A_m2"),
         _ => {
-            let known = "cgs, SI, Hybrid SI".to_owned();
-            let fault = Fault::UnknownChoice { found: text.to_owned(), known, nearest: None };
-            problems.push(Place::at(file, line, 1).field(key), fault);
-            return None;
+            let (found, known) = (text.to_owned(), "cgs, SI, Hybrid SI".to_owned());
+            let fault = Fault::Unknown { what: "choice", found, known, nearest: None };
+            return Err(Problem::new(place, fault));
         }
     };
-    Unit::find(field).zip(Unit::find(moment))
+    Ok(Unit::find(field).zip(Unit::find(moment)))
 }
 
 /// The rows between blank lines.
@@ -159,40 +149,29 @@ fn blocks(
     file: &str,
     problems: &mut Problems,
 ) -> Vec<Vec<(f64, f64)>> {
-    let mut blocks: Vec<Vec<(f64, f64)>> = vec![vec![]];
-    let mut closed = false;
-    for (i, line) in lines.iter().enumerate().skip(data) {
-        if line.contains(END) {
-            closed = true;
-            break;
-        }
-        if line.is_empty() {
-            blocks.push(vec![]);
-            continue;
-        }
-        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-        let numbers: Vec<f64> =
-            fields.iter().filter_map(|f| f.parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    let closing = lines.iter().skip(data).position(|line| line.contains(END));
+    let end = closing.map_or(lines.len(), |at| data + at);
+    let rows: Vec<(usize, &str)> = (data..end).map(|i| (i + 1, lines[i])).collect();
+    let mut point = |(line, text): &(usize, &str)| {
+        let fields = text.split(',').map(|field| field.trim().parse::<f64>().ok());
+        let numbers: Option<Vec<f64>> = fields.map(|v| v.filter(|v| v.is_finite())).collect();
         // a third column holds the temperature
-        match numbers.as_slice() {
-            [h, m] | [h, m, _] if numbers.len() == fields.len() => {
-                if let Some(block) = blocks.last_mut() {
-                    block.push((*h, *m));
-                }
-            }
-            _ if problems.as_slice().len() < 5 => {
-                let fault = Fault::NotANumber { text: (*line).to_owned() };
-                problems.push(Place::at(file, i + 1, 1).field("field,moment"), fault);
-            }
-            _ => {}
+        if let Some([h, m] | [h, m, _]) = numbers.as_deref() {
+            return Some((*h, *m));
         }
-    }
-    if !closed {
+        if problems.as_slice().len() < 5 {
+            let fault = Fault::NotANumber { text: (*text).to_owned() };
+            problems.push(Place::at(file, *line, 1).field("field,moment"), fault);
+        }
+        None
+    };
+    let blocks = rows.split(|(_, text)| text.is_empty()).filter(|block| !block.is_empty());
+    let blocks = blocks.map(|block| block.iter().filter_map(&mut point).collect()).collect();
+    if closing.is_none() {
         let text = lines.last().copied().unwrap_or_default().to_owned();
-        problems
-            .push(Place::at(file, lines.len().max(1), 1), Fault::Truncated { text, expected: 2 });
+        let place = Place::at(file, lines.len().max(1), 1);
+        problems.push(place, Fault::Truncated { text, expected: 2 });
     }
-    blocks.retain(|block| !block.is_empty());
     blocks
 }
 

@@ -17,16 +17,15 @@ pub use folder::{ImportResult, ImportedRun};
 use crate::dataset::DatasetKind;
 use crate::error::DataError;
 use crate::files::{Folder, Source, open_reader};
-use crate::problem::{Place, Problem, Problems, RecordFault};
-use columns::{Choice, Shape};
+use crate::problem::{Fault, Place, Problem, Problems};
+use columns::Choice;
 use gather::{Gathered, Reduction};
-use mat::MatLevel;
-use serde::Serialize;
-use std::io::{BufRead, Read};
+use serde::{Deserialize, Serialize};
+use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 
 /// The formats data are imported from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SourceKind {
     /// Text table, with or without a header.
@@ -38,18 +37,6 @@ pub enum SourceKind {
 }
 
 impl SourceKind {
-    /// Every format.
-    pub const ALL: [Self; 3] = [Self::Csv, Self::Mat, Self::MicromagForc];
-
-    /// The word that names the format.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Mat => "mat",
-            Self::MicromagForc => "micromag-forc",
-        }
-    }
-
     /// The format in words.
     pub fn words(self) -> &'static str {
         match self {
@@ -61,25 +48,12 @@ impl SourceKind {
 }
 
 /// The kinds of data folder records can be imported into.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum ImportKind {
     /// Command, V, to displacement, um, of an actuator.
     ActuatorBench,
     /// Any input to any output, in their own units.
     GenericLoop,
-}
-
-impl ImportKind {
-    /// Every kind.
-    pub const ALL: [Self; 2] = [Self::ActuatorBench, Self::GenericLoop];
-
-    /// The word that names the kind.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::ActuatorBench => "actuator-bench",
-            Self::GenericLoop => "generic-loop",
-        }
-    }
 }
 
 /// What to import and how.
@@ -158,7 +132,6 @@ pub fn import(request: &ImportRequest) -> Result<ImportResult, DataError> {
 
 /// Refuses numbers no import can be done with.
 fn check_request(request: &ImportRequest) -> Result<(), Problems> {
-    use crate::problem::Fault;
     let mut problems = Problems::default();
     let place = |option: &str| Place::file("hhc import").field(option);
     for (option, value) in
@@ -172,42 +145,32 @@ fn check_request(request: &ImportRequest) -> Result<(), Problems> {
     }
     let (low, high) = (64, 1 << 24);
     if !(low..=high).contains(&request.most_samples) {
-        let (value, remedy) = (request.most_samples, "leave it out for 262144");
-        let fault = Fault::CountOutOfRange { value, low, high, remedy };
+        let (value, remedy) = (request.most_samples as f64, "leave it out for 262144");
+        let (low, high, unit) = (low as f64, high as f64, "");
+        let fault = Fault::OutOfRange { value, low, high, unit, remedy };
         problems.push(place("--max-samples"), fault);
     }
-    if let Some((low, high)) = request.range
-        && !(low.is_finite() && high.is_finite() && low < high)
-    {
-        problems.push(place("--range"), Fault::EmptyRange { low, high });
+    if let Some(fault) = request.range.and_then(Fault::of_range) {
+        problems.push(place("--range"), fault);
     }
     problems.into_result(Some(()))
 }
 
 /// Bytes by which a source is recognised.
-const START: usize = 1024;
+const START: u64 = 1024;
 /// Most bytes of a source that is read whole.
 const LARGEST_WHOLE: u64 = 1 << 30;
 
 fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Problems> {
     let name = path.display().to_string();
-    let refused = |fault: RecordFault| Problem::new(Place::file(&name), fault.into());
+    let refused = |fault| Problem::new(Place::file(&name), fault);
     let mut reader = open_reader(path)?;
-    let start = {
-        let mut start = Vec::new();
-        let read = (&mut reader).take(START as u64).read_to_end(&mut start);
-        read.map_err(|e| {
-            let fault = crate::problem::Fault::Unreadable { reason: e.to_string() };
-            Problem::new(Place::file(&name), fault)
-        })?;
-        start
-    };
-    let recognised = recognise(&start, path);
-    if let Some(Err(fault)) = &recognised {
-        return Err(refused(fault.clone()).into());
-    }
-    let ((Some(kind), _) | (None, Some(Ok(kind)))) = (request.source, recognised) else {
-        return Err(refused(RecordFault::UnknownSource).into());
+    let start = read_at_most(&mut reader, START).map_err(|e| refused(e.into()))?;
+    let recognised = recognise(&start, path).transpose().map_err(refused)?;
+    let Some(kind) = request.source.or(recognised) else {
+        let message =
+            "is not recognised as CSV, MAT v5 or a MicroMag FORC file; say what it is with --as";
+        return Err(refused(Fault::Other(message.to_owned())).into());
     };
     let reduction = Reduction {
         // halving needs an even number
@@ -215,60 +178,49 @@ fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Probl
         reduce_to_hz: request.reduce_to_hz,
         sampling_hz: request.sampling_hz,
     };
-    let shape = request.kind.map(|kind| match kind {
-        ImportKind::ActuatorBench => Shape::Bench,
-        ImportKind::GenericLoop => Shape::Loop,
-    });
     let mut recognised = kind.words().to_owned();
-    let mut whole = start.chain(reader);
-    let imported = match kind {
-        SourceKind::Csv => {
-            let table = csv_source::read_csv(whole, &name, &request.columns, shape, reduction)?;
-            Imported::Record(Box::new(table))
+    let mut whole = Cursor::new(start).chain(reader);
+    let imported = if kind == SourceKind::Csv {
+        let (columns, kind) = (&request.columns, request.kind);
+        let table = csv_source::read_csv(whole, &name, columns, kind, reduction)?;
+        Imported::Record(Box::new(table))
+    } else {
+        let bytes = read_at_most(&mut whole, LARGEST_WHOLE + 1).map_err(|e| refused(e.into()))?;
+        if bytes.len() as u64 > LARGEST_WHOLE {
+            let [megabytes, limit_megabytes] =
+                [bytes.len() as u64, LARGEST_WHOLE].map(|bytes| bytes / 1_000_000);
+            return Err(refused(Fault::TooLarge { megabytes, limit_megabytes }).into());
         }
-        SourceKind::Mat => {
-            let bytes = read_whole(&mut whole, &name)?;
+        if kind == SourceKind::Mat {
             let which = (&request.columns, request.variable.as_deref());
-            let (table, taken) = mat::read_mat(&bytes, &name, which, shape, reduction)?;
+            let (table, taken) = mat::read_mat(&bytes, &name, which, request.kind, reduction)?;
             recognised = format!("{recognised}, {taken}");
             Imported::Record(Box::new(table))
-        }
-        SourceKind::MicromagForc => {
-            let bytes = read_whole(&mut whole, &name)?;
-            let text = String::from_utf8(bytes).map_err(|e| {
-                let offset = e.utf8_error().valid_up_to();
-                Problem::new(Place::file(&name), crate::problem::Fault::NotText { offset })
-            })?;
-            Imported::Curves(micromag::read_micromag(&Source { name: name.clone(), text })?)
+        } else {
+            let text = String::from_utf8(bytes)
+                .map_err(|e| refused(Fault::NotText { offset: e.utf8_error().valid_up_to() }))?;
+            Imported::Curves(micromag::read_micromag(&Source { name, text })?)
         }
     };
     Ok(ReadSource { path: path.to_path_buf(), kind, recognised, imported })
 }
 
-fn read_whole(reader: &mut impl BufRead, name: &str) -> Result<Vec<u8>, Problem> {
+fn read_at_most(reader: &mut impl Read, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let read = reader.take(LARGEST_WHOLE + 1).read_to_end(&mut bytes);
-    read.map_err(|e| {
-        let fault = crate::problem::Fault::Unreadable { reason: e.to_string() };
-        Problem::new(Place::file(name), fault)
-    })?;
-    if bytes.len() as u64 > LARGEST_WHOLE {
-        let (megabytes, limit_megabytes) =
-            (bytes.len() as u64 / 1_000_000, LARGEST_WHOLE / 1_000_000);
-        let fault = RecordFault::TooLarge { megabytes, limit_megabytes };
-        return Err(Problem::new(Place::file(name), fault.into()));
-    }
+    reader.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
+/// A whole number that was computed or written as a decimal one.
+fn whole(value: f64) -> usize {
+    format!("{value:.0}").parse().unwrap_or(usize::MAX)
+}
+
 /// The format by the first bytes; an error for formats that are known but not read.
-fn recognise(start: &[u8], path: &Path) -> Option<Result<SourceKind, RecordFault>> {
+fn recognise(start: &[u8], path: &Path) -> Option<Result<SourceKind, Fault>> {
     let named_mat = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mat"));
-    match mat::mat_level(start, named_mat) {
-        Some(MatLevel::Five { .. }) => return Some(Ok(SourceKind::Mat)),
-        Some(MatLevel::Four) => return Some(Err(RecordFault::Mat4)),
-        Some(MatLevel::Hdf5) => return Some(Err(RecordFault::Hdf5)),
-        None => {}
+    if let Some(byte_order) = mat::byte_order(start, named_mat) {
+        return Some(byte_order.map(|_| SourceKind::Mat));
     }
     if micromag::is_micromag(start) {
         return Some(Ok(SourceKind::MicromagForc));
@@ -284,9 +236,9 @@ fn recognise(start: &[u8], path: &Path) -> Option<Result<SourceKind, RecordFault
 fn folder_kind(imported: &Imported) -> DatasetKind {
     match imported {
         Imported::Curves(_) => DatasetKind::ReversalCurves,
-        Imported::Record(table) => match table.choice.shape {
-            Shape::Bench => DatasetKind::ActuatorBench,
-            Shape::Loop => DatasetKind::GenericLoop,
+        Imported::Record(table) => match table.choice.kind {
+            ImportKind::ActuatorBench => DatasetKind::ActuatorBench,
+            ImportKind::GenericLoop => DatasetKind::GenericLoop,
         },
     }
 }

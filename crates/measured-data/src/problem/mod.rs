@@ -1,8 +1,5 @@
 //! Problems of user files: what is wrong, where, what was expected and the remedy.
 
-mod record_fault;
-
-pub use record_fault::RecordFault;
 use std::fmt;
 
 /// A place in a file.
@@ -51,9 +48,22 @@ impl fmt::Display for Place {
 }
 
 /// What is wrong at a place, what was expected there, and the remedy.
+///
+/// A variant is what is found in several places; what one check alone finds is said by
+/// [`Fault::Other`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
+    /// What was found, what is expected, what to do.
+    #[error("{0}")]
+    Other(String),
+    /// A value was read but makes no sense: what its own check said.
+    #[error("is refused: {message}")]
+    Refused {
+        /// What was found, what is expected, what to do.
+        message: String,
+    },
+
     // ---- files ----
     /// A file or folder cannot be read.
     #[error("cannot be read ({reason}); check the path and the permissions")]
@@ -69,6 +79,16 @@ pub enum Fault {
         /// First offending byte, from 0.
         offset: usize,
     },
+    /// A file is too large to be read whole.
+    #[error(
+        "has {megabytes} MB, more than the {limit_megabytes} MB read at once; `hhc import FILE -o DIR` streams it and averages it to fewer samples"
+    )]
+    TooLarge {
+        /// Size, MB.
+        megabytes: u64,
+        /// Limit, MB.
+        limit_megabytes: u64,
+    },
     /// A named file does not exist in the data folder.
     #[error("names the file {file}, which is not in {folder}; correct the name or add the file")]
     MissingFile {
@@ -83,13 +103,6 @@ pub enum Fault {
         /// The path asked for.
         path: String,
     },
-    /// A file is of no kind the program knows.
-    #[error(
-        "is neither a case, a dataset.ron nor an actuator file; a case has sections such as rotor: and trim:, a data set begins with kind: ActuatorBench, GenericLoop or ReversalCurves, an actuator file with kind: Actuator"
-    )]
-    UnknownKind,
-
-    // ---- RON ----
     /// The text is not RON.
     #[error(
         "is not valid RON: {message}; check brackets, commas and quotes just before this place"
@@ -98,64 +111,17 @@ pub enum Fault {
         /// What the reader said.
         message: String,
     },
-    /// A key the file format does not have.
-    #[error("unknown key `{found}`{}; known here: {known}", suggestion(.nearest.as_ref()))]
-    UnknownKey {
-        /// The key found.
-        found: String,
-        /// The keys known there.
-        known: String,
-        /// The known key it resembles most.
-        nearest: Option<String>,
-    },
-    /// A choice the file format does not have.
-    #[error("unknown choice `{found}`{}; known here: {known}", suggestion(.nearest.as_ref()))]
-    UnknownChoice {
+    /// A key, choice or column that is not known.
+    #[error("unknown {what} `{found}`{}; known here: {known}", suggestion(.nearest.as_ref()))]
+    Unknown {
+        /// `key`, `choice` or `column`.
+        what: &'static str,
         /// The word found.
         found: String,
-        /// The choices known there.
+        /// The words known there.
         known: String,
-        /// The known choice it resembles most.
+        /// The known word it resembles most.
         nearest: Option<String>,
-    },
-    /// A required key is missing.
-    #[error("the key `{key}` is missing; add `{key}: ...`")]
-    MissingKey {
-        /// The key.
-        key: String,
-    },
-    /// A key is given twice.
-    #[error("the key `{key}` is given twice; remove one of them")]
-    RepeatedKey {
-        /// The key.
-        key: String,
-    },
-    /// A value has the wrong type.
-    #[error("has the wrong type: {message}; write a value of the type shown by `hhc init`")]
-    WrongType {
-        /// What the reader said.
-        message: String,
-    },
-
-    /// A value was read but makes no sense.
-    #[error("is refused: {message}")]
-    Refused {
-        /// What the value's own check said.
-        message: String,
-    },
-
-    /// A value of a case that is out of range or goes against another one.
-    #[error("{message}")]
-    Value {
-        /// What was found, what is expected, what to do.
-        message: String,
-    },
-
-    /// A value can be, but hardly is.
-    #[error("{message}")]
-    Doubtful {
-        /// What was found, what would be expected, the remedy.
-        message: String,
     },
 
     // ---- values ----
@@ -183,136 +149,41 @@ pub enum Fault {
         /// What to do.
         remedy: &'static str,
     },
-    /// A count lies outside its range.
-    #[error("is {value}, expected {low} to {high}; {remedy}")]
-    CountOutOfRange {
-        /// The count found.
-        value: usize,
-        /// Smallest accepted.
-        low: usize,
-        /// Largest accepted.
-        high: usize,
+    /// A list or text is empty.
+    #[error("is empty; give {of}")]
+    Empty {
+        /// What it should hold.
+        of: &'static str,
+    },
+
+    // ---- tables ----
+    /// A column is not there.
+    #[error("the column `{wanted}` is missing, the header has {found}; {remedy}")]
+    MissingColumn {
+        /// The column wanted.
+        wanted: String,
+        /// The columns found.
+        found: String,
         /// What to do.
         remedy: &'static str,
     },
-    /// A list is empty.
-    #[error("is empty; give at least one {of}")]
-    EmptyList {
-        /// What the list holds.
-        of: &'static str,
-    },
-    /// A text is empty.
-    #[error("is empty; give {of}")]
-    EmptyText {
-        /// What it should say.
-        of: &'static str,
-    },
-    /// A name that must be unique is used twice.
-    #[error("`{name}` is used already on line {first_line}; give every {of} its own")]
-    Repeated {
-        /// The name.
-        name: String,
-        /// What the name stands for.
-        of: &'static str,
-        /// Line of its first use.
-        first_line: usize,
-    },
-    /// A range of voltages reaches beyond what the actuator's records cover.
+    /// It is not said which columns are input and output.
     #[error(
-        "({low_volt}, {high_volt}) V reaches beyond the ({known_low_volt}, {known_high_volt}) V the actuator was identified over; narrow the range, or record wider ones"
+        "the columns {columns} leave open which is the input and which the output; say it: {remedy}"
     )]
-    RangeBeyondRecords {
-        /// Lower limit, V.
-        low_volt: f64,
-        /// Upper limit, V.
-        high_volt: f64,
-        /// Lower limit of the actuator model, V.
-        known_low_volt: f64,
-        /// Upper limit of the actuator model, V.
-        known_high_volt: f64,
+    AmbiguousColumns {
+        /// The columns besides the time.
+        columns: String,
+        /// How to say it.
+        remedy: &'static str,
     },
-    /// A range is upside down.
-    #[error("({low}, {high}) is no range; give the lower limit first, both finite")]
-    EmptyRange {
-        /// Lower limit.
-        low: f64,
-        /// Upper limit.
-        high: f64,
-    },
-    /// A path is absolute or leads out of its folder.
-    #[error(
-        "{path} is not a plain file name inside the data folder; give the name of a file beside dataset.ron"
-    )]
-    NotPlainFile {
-        /// The path.
-        path: String,
-    },
-    // ---- tables ----
-    /// A required column is missing.
-    #[error(
-        "the column `{column}` is missing, the header has {found}; add the column, or correct its name"
-    )]
-    MissingColumn {
-        /// The column wanted, with its unit.
-        column: &'static str,
-        /// The columns found.
+    /// Two runs of a data set have different columns.
+    #[error("the columns are {found}, those of the runs before {expected}; convert one of them")]
+    OtherColumns {
+        /// Columns found.
         found: String,
-    },
-    /// A column has no unit.
-    #[error(
-        "the column `{found}` has no unit; name it `{expected}` (or `name [unit]`, or give a second row of units in brackets)"
-    )]
-    MissingUnit {
-        /// The column found.
-        found: String,
-        /// The name expected.
-        expected: &'static str,
-    },
-    /// A column has the wrong unit.
-    #[error("the unit is {found}, expected {expected}; {}", unit_remedy(*.factor, .column))]
-    WrongUnit {
-        /// The full name expected.
-        column: &'static str,
-        /// The unit found.
-        found: String,
-        /// The unit expected.
-        expected: &'static str,
-        /// Factor that converts one into the other, if there is one.
-        factor: Option<f64>,
-    },
-    /// A column nobody knows.
-    #[error("unknown column `{found}`{}; known: {known}", suggestion(.nearest.as_ref()))]
-    UnknownColumn {
-        /// The column found.
-        found: String,
-        /// All columns known.
-        known: String,
-        /// The one it resembles most.
-        nearest: Option<String>,
-    },
-    /// A column is there twice.
-    #[error("the column `{column}` is there twice; remove one of them")]
-    RepeatedColumn {
-        /// The column.
-        column: &'static str,
-    },
-    /// A table has too few rows.
-    #[error("has {rows} rows of numbers, expected at least {least}; the record may be cut off")]
-    TooFewRows {
-        /// Rows found.
-        rows: usize,
-        /// Rows wanted.
-        least: usize,
-    },
-    /// A row has the wrong number of fields.
-    #[error(
-        "the row has {found} fields, the header has {expected}; check separators and decimal commas"
-    )]
-    FieldCount {
-        /// Fields found.
-        found: usize,
-        /// Fields wanted.
-        expected: usize,
+        /// Columns of the runs before.
+        expected: String,
     },
     /// The last line stops early.
     #[error(
@@ -341,16 +212,6 @@ pub enum Fault {
         /// The value.
         value: f64,
     },
-    /// A number beyond anything that is measured.
-    #[error(
-        "the value is {value:e}, expected no more than {most:e} in size: no channel of a bench reads so much; remove the record's bad samples at the source, they are not interpolated here"
-    )]
-    TooLarge {
-        /// The number.
-        value: f64,
-        /// Largest size.
-        most: f64,
-    },
     /// Time does not increase.
     #[error(
         "time {time_s} s follows {before_s} s, expected increasing time; sort the rows or split the record"
@@ -368,30 +229,25 @@ pub enum Fault {
     TimeStepUneven {
         /// The step, s.
         step_s: f64,
-        /// Median step of the record, s.
+        /// Usual step of the record, s.
         usual_s: f64,
     },
-    /// A command lies outside the actuator's range.
-    #[error(
-        "the command {voltage_volt} V lies outside command_range_V ({low_volt}, {high_volt}) of dataset.ron; correct the range, or remove the record"
-    )]
-    CommandOutsideRange {
-        /// Command, V.
-        voltage_volt: f64,
-        /// Lower limit, V.
-        low_volt: f64,
-        /// Upper limit, V.
-        high_volt: f64,
-    },
-    /// A measured record or its import.
-    #[error(transparent)]
-    Record(#[from] RecordFault),
-    /// Problems of one kind that are not listed one by one.
-    #[error("{count} more problems of this kind follow")]
-    More {
-        /// How many.
-        count: usize,
-    },
+}
+
+impl From<std::io::Error> for Fault {
+    fn from(error: std::io::Error) -> Self {
+        Self::Unreadable { reason: error.to_string() }
+    }
+}
+
+impl Fault {
+    /// The fault of a range that is none: upside down, or not finite.
+    pub(crate) fn of_range((low, high): (f64, f64)) -> Option<Self> {
+        let is_range = low.is_finite() && high.is_finite() && low < high;
+        let message =
+            format!("({low}, {high}) is no range; give the lower limit first, both finite");
+        (!is_range).then_some(Self::Other(message))
+    }
 }
 
 fn suggestion(nearest: Option<&String>) -> String {
@@ -402,15 +258,9 @@ fn suffix(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
-fn unit_remedy(factor: Option<f64>, column: &str) -> String {
-    match factor {
-        Some(factor) => format!("multiply the column by {factor} and name it `{column}`"),
-        None => format!("give the column as `{column}`"),
-    }
-}
-
 /// One problem.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{place}: {fault}")]
 pub struct Problem {
     /// Where.
     pub place: Place,
@@ -425,14 +275,9 @@ impl Problem {
     }
 }
 
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.fault)
-    }
-}
-
 /// Every problem found in a file or a data folder.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, thiserror::Error)]
+#[error("{}", listed(.0))]
 pub struct Problems(Vec<Problem>);
 
 impl Problems {
@@ -451,6 +296,11 @@ impl Problems {
         self.0.extend(other.0);
     }
 
+    /// The value of a result; without one, its problem is added.
+    pub fn note<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
+        result.map_err(|problem| self.0.push(problem)).ok()
+    }
+
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -464,9 +314,8 @@ impl Problems {
         match value {
             Some(value) if self.0.is_empty() => Ok(value),
             _ => {
-                self.0.sort_by(|a, b| {
-                    let key = |p: &Problem| (p.place.line, p.place.column);
-                    a.place.file.cmp(&b.place.file).then(key(a).cmp(&key(b)))
+                self.0.sort_by_cached_key(|Problem { place, .. }| {
+                    (place.file.clone(), place.line, place.column)
                 });
                 self.0.dedup();
                 Err(self)
@@ -487,22 +336,12 @@ impl FromIterator<Problem> for Problems {
     }
 }
 
-impl std::error::Error for Problems {}
-
-impl fmt::Display for Problems {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let count = self.0.len();
-        for (index, problem) in self.0.iter().enumerate() {
-            if index > 0 {
-                writeln!(f)?;
-            }
-            write!(f, "{problem}")?;
-        }
-        if count > 1 {
-            write!(f, "\n{count} problems")?;
-        }
-        Ok(())
+fn listed(problems: &[Problem]) -> String {
+    let mut lines: Vec<String> = problems.iter().map(Problem::to_string).collect();
+    if lines.len() > 1 {
+        lines.push(format!("{} problems", lines.len()));
     }
+    lines.join("\n")
 }
 
 /// The candidate nearest to a word, if it is near enough to be what was meant.
@@ -514,26 +353,10 @@ pub(crate) fn nearest<'a>(
     let allowed = (found.chars().count() / 3).max(2);
     candidates
         .into_iter()
-        .map(|c| (edit_distance(&found, &c.to_lowercase()), c))
+        .map(|c| (strsim::levenshtein(&found, &c.to_lowercase()), c))
         .filter(|(distance, _)| *distance <= allowed)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, c)| c.to_owned())
-}
-
-/// Levenshtein distance: insertions, deletions and replacements that turn `a` into `b`.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, &cb) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(ca != cb);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]
@@ -542,7 +365,6 @@ mod tests {
 
     #[test]
     fn near_words_are_found_and_far_ones_are_not() {
-        assert_eq!(edit_distance("kitten", "sitting"), 3);
         assert_eq!(nearest("radius", ["radius_m", "blades"]).unwrap(), "radius_m");
         assert_eq!(nearest("uniform", ["Uniform", "Drees"]).unwrap(), "Uniform");
         assert_eq!(nearest("temperature", ["blades", "chord_r"]), None);
@@ -551,10 +373,11 @@ mod tests {
     #[test]
     fn problems_are_listed_by_line() {
         let mut problems = Problems::default();
-        problems.push(Place::at("a.ron", 9, 2), Fault::UnknownKind);
-        problems.push(Place::at("a.ron", 3, 4).field("rotor.blades"), Fault::UnknownKind);
+        problems.push(Place::at("a.ron", 9, 2), Fault::Empty { of: "a name" });
+        let place = Place::at("a.ron", 3, 4).field("rotor.blades");
+        problems.push(place, Fault::Empty { of: "a number" });
         let text = problems.into_result(Some(())).unwrap_err().to_string();
-        assert!(text.starts_with("a.ron:3:4: rotor.blades: is neither"), "{text}");
+        assert!(text.starts_with("a.ron:3:4: rotor.blades: is empty; give"), "{text}");
         assert!(text.ends_with("2 problems"), "{text}");
     }
 }

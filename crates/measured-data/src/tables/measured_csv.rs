@@ -1,109 +1,47 @@
-//! Measured tables: CSV with a header that carries units.
+//! Records of an actuator bench: CSV whose columns are known by name, each with its unit.
 
-use super::table_text::{
-    LEAST_ROWS, Line, ROUNDING_JITTER, Rows, check_time, increases_evenly, other_separator,
-    resample, resampled, split_lines,
-};
+use super::sampling::{ROUNDING_JITTER, check_time, note_swapped, resample, resampled};
+use super::text::{HeaderCell, TextTable, columns};
+use super::units::{Unit, strip_brackets};
 use crate::files::Source;
-use crate::problem::{Fault, Place, Problem, Problems, RecordFault, nearest};
+use crate::problem::{Fault, Place, Problem, Problems, nearest};
 
-/// A quantity a measured table may hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Quantity {
-    /// Name without unit.
-    name: &'static str,
-    /// Name with unit, the form the program writes.
-    column: &'static str,
-    /// Unit.
-    unit: &'static str,
-    /// Spellings of the same unit.
-    spellings: &'static [&'static str],
-    /// Other units of the quantity and the factor into `unit`; none where a shift is needed too.
-    others: &'static [(&'static str, Option<f64>)],
-    required: bool,
-}
+/// A quantity a bench may record: its name, the unit it is in, and whether it has to be there.
+pub(crate) type Quantity = (&'static str, &'static str, bool);
 
-const VOLTS: &[(&str, Option<f64>)] = &[("mV", Some(1e-3)), ("kV", Some(1e3)), ("uV", Some(1e-6))];
-
-const QUANTITIES: [Quantity; 6] = [
-    Quantity {
-        name: "time",
-        column: "time_s",
-        unit: "s",
-        spellings: &["s", "sec"],
-        others: &[("ms", Some(1e-3)), ("us", Some(1e-6)), ("min", Some(60.0)), ("h", Some(3600.0))],
-        required: true,
-    },
-    Quantity {
-        name: "command",
-        column: "command_V",
-        unit: "V",
-        spellings: &["V"],
-        others: VOLTS,
-        required: true,
-    },
-    Quantity {
-        name: "displacement",
-        column: "displacement_um",
-        unit: "um",
-        spellings: &["um", "µm", "μm"],
-        others: &[("nm", Some(1e-3)), ("mm", Some(1e3)), ("cm", Some(1e4)), ("m", Some(1e6))],
-        required: true,
-    },
-    Quantity {
-        name: "amplifier",
-        column: "amplifier_V",
-        unit: "V",
-        spellings: &["V"],
-        others: VOLTS,
-        required: false,
-    },
-    Quantity {
-        name: "temperature",
-        column: "temperature_C",
-        unit: "C",
-        spellings: &["C", "degC", "°C"],
-        others: &[("K", None), ("F", None), ("degF", None), ("°F", None)],
-        required: false,
-    },
-    Quantity {
-        name: "load",
-        column: "load_N",
-        unit: "N",
-        spellings: &["N"],
-        others: &[
-            ("mN", Some(1e-3)),
-            ("kN", Some(1e3)),
-            ("kgf", Some(9.806_65)),
-            ("lbf", Some(4.448_222)),
-        ],
-        required: false,
-    },
+/// Every quantity of a bench: time, input and output first.
+pub(crate) const QUANTITIES: [Quantity; 6] = [
+    ("time", "s", true),
+    ("command", "V", true),
+    ("displacement", "um", true),
+    ("amplifier", "V", false),
+    ("temperature", "C", false),
+    ("load", "N", false),
 ];
 
-/// Position of each quantity in [`QUANTITIES`].
-const TIME: usize = 0;
-const COMMAND: usize = 1;
-const DISPLACEMENT: usize = 2;
+/// Name and unit of a quantity, the form the program writes.
+fn label((name, unit, _): Quantity) -> String {
+    format!("{name}_{unit}")
+}
 
 /// A measured record, uniformly sampled, every number finite.
 ///
 /// All columns have the same length.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeasuredTable {
     /// Time, s, increasing in equal steps.
     pub time_s: Vec<f64>,
     /// Sampling step, s.
     pub time_step_s: f64,
-    /// Command, V.
-    pub command_volt: Vec<f64>,
-    /// Displacement, um.
-    pub displacement_um: Vec<f64>,
-    /// Amplifier output, V, if measured.
+    /// Input, in the unit of its channel: of a bench the command, V.
+    pub input: Vec<f64>,
+    /// Output, in the unit of its channel: of a bench the displacement, um.
+    pub output: Vec<f64>,
+    /// Amplifier output of a bench, V, if measured.
     pub amplifier_volt: Option<Vec<f64>>,
-    /// Temperature, degrees Celsius, if measured.
+    /// Temperature of a bench, degrees Celsius, if measured.
     pub temperature_celsius: Option<Vec<f64>>,
-    /// Load on the actuator, N, if measured.
+    /// Load on the actuator of a bench, N, if measured.
     pub load_newton: Option<Vec<f64>>,
     /// Line of every row in its file, from 1.
     pub lines: Vec<usize>,
@@ -111,7 +49,45 @@ pub struct MeasuredTable {
     pub warnings: Vec<Problem>,
 }
 
-/// Reads a measured table.
+impl MeasuredTable {
+    /// A table of time, input, output and what a bench has besides; `labels` name the first three.
+    /// Times that are nearly even are brought onto even steps.
+    pub(super) fn new(
+        file: &str,
+        labels: [&str; 3],
+        columns: [Option<Vec<f64>>; 6],
+        lines: Vec<usize>,
+        problems: &mut Problems,
+    ) -> Self {
+        let [time, input, output, mut amplifier, mut temperature, mut load] = columns;
+        let [mut time_s, mut input, mut output] =
+            [time, input, output].map(Option::unwrap_or_default);
+        let sampling = check_time(file, labels[0], &time_s, &lines, problems);
+        let mut warnings = Vec::new();
+        if !problems.is_empty() {
+            let place = Place::at(file, lines[0], 1).field(labels[0]);
+            note_swapped(&place, [(labels[1], &input), (labels[2], &output)], problems);
+        } else if sampling.jitter > ROUNDING_JITTER {
+            let mut all = vec![&mut input, &mut output];
+            all.extend([&mut amplifier, &mut temperature, &mut load].into_iter().flatten());
+            resample(&mut time_s, &mut all);
+            warnings.push(resampled(file, labels[0], sampling));
+        }
+        Self {
+            time_step_s: sampling.step_s,
+            time_s,
+            input,
+            output,
+            amplifier_volt: amplifier,
+            temperature_celsius: temperature,
+            load_newton: load,
+            lines,
+            warnings,
+        }
+    }
+}
+
+/// Reads a record of an actuator bench.
 ///
 /// The header names every column with its unit: `time_s`, `time [s]`, or `time` with a second row
 /// `(s)`. Required: `time_s`, `command_V`, `displacement_um`; known besides: `amplifier_V`,
@@ -120,145 +96,102 @@ pub struct MeasuredTable {
 /// # Errors
 /// Every problem found, with line and column; of many alike, the first five and their number.
 pub fn parse_measured_csv(source: &Source) -> Result<MeasuredTable, Problems> {
+    let table = TextTable::of_folder(source)?;
     let mut problems = Problems::default();
-    let lines = split_lines(&source.text);
-    let (columns, first_row) = read_header(source, &lines, &mut problems);
+    let mut found: Vec<usize> = Vec::new();
+    for cell in &table.header {
+        if let Some(quantity) = known_quantity(cell, &found, &mut problems) {
+            found.push(quantity);
+        }
+    }
+    for (index, quantity) in QUANTITIES.into_iter().enumerate() {
+        if quantity.2 && !found.contains(&index) {
+            let fault = missing_column(label(quantity), table.names());
+            problems.push(table.header_place(), fault);
+        }
+    }
     if !problems.is_empty() {
         return problems.into_result(None);
     }
-    let labels: Vec<&str> = columns.iter().map(|&c| QUANTITIES[c].column).collect();
-    let rows = Rows::read(source, &lines[first_row..], &labels, &mut problems);
-    let table = finish(rows, source, &columns, &mut problems);
-    problems.into_result(table)
+    let labels = QUANTITIES.map(label);
+    let wanted: Vec<_> =
+        found.iter().map(|quantity| labels[*quantity].clone()).enumerate().collect();
+    let (mut values, lines) = columns(table, &wanted, &mut problems);
+    // rows that are no numbers tear holes into the time: nothing can be said about its steps
+    if !problems.is_empty() {
+        return problems.into_result(None);
+    }
+    let columns = std::array::from_fn(|quantity| {
+        let column = found.iter().position(|q| *q == quantity)?;
+        Some(std::mem::take(&mut values[column]))
+    });
+    let labels = [labels[0].as_str(), &labels[1], &labels[2]];
+    let table = MeasuredTable::new(&source.name, labels, columns, lines, &mut problems);
+    problems.into_result(Some(table))
 }
 
-/// For every column of the file its index in [`QUANTITIES`], and the number of header lines.
-fn read_header(
-    source: &Source,
-    lines: &[Line<'_>],
-    problems: &mut Problems,
-) -> (Vec<usize>, usize) {
-    let Some(header) = lines.first() else {
-        let fault = Fault::TooFewRows { rows: 0, least: LEAST_ROWS };
-        problems.push(Place::file(&source.name), fault);
-        return (vec![], 0);
+/// The fault of a header that lacks a column.
+pub(super) fn missing_column(wanted: String, found: String) -> Fault {
+    Fault::MissingColumn { wanted, found, remedy: "add the column, or correct its name" }
+}
+
+/// The quantity of a header cell, with what is wrong with its unit; none if it names none.
+fn known_quantity(cell: &HeaderCell, before: &[usize], problems: &mut Problems) -> Option<usize> {
+    let (found, place) = (cell.text.clone(), cell.place.clone());
+    let Some((index, unit)) = split_name(&cell.full) else {
+        let labels = QUANTITIES.map(label);
+        let words = labels.iter().map(String::as_str).chain(QUANTITIES.map(|q| q.0));
+        let nearest = nearest(&found, words);
+        let fault = Fault::Unknown { what: "column", found, known: labels.join(", "), nearest };
+        problems.push(place, fault);
+        return None;
     };
-    if let Some(fault) = other_separator(header.text) {
-        problems.push(Place::at(&source.name, header.number, 1), fault.into());
-        return (vec![], 0);
+    let expected = label(QUANTITIES[index]);
+    let has_unit = problems.note(check_unit_of(cell, unit, &expected, QUANTITIES[index].1));
+    if has_unit.is_some() && before.contains(&index) {
+        let message = format!("the column `{expected}` is there twice; remove one of them");
+        problems.push(place, Fault::Other(message));
     }
-    let names = header.fields();
-    let units = lines.get(1).map(|l| l.fields()).filter(|f| f.iter().all(|(t, _)| is_unit_cell(t)));
-    let first_row = if units.is_some() { 2 } else { 1 };
-    let place = |at: usize| Place::at(&source.name, header.number, at);
-    let known = || QUANTITIES.map(|q| q.column).join(", ");
-    let mut columns = Vec::new();
-    for (index, (name, at)) in names.iter().enumerate() {
-        let second = units.as_ref().and_then(|u| u.get(index)).map(|(t, _)| strip_brackets(t));
-        let Some((quantity, unit)) = split_name(name, second) else {
-            let nearest = nearest(name, QUANTITIES.iter().flat_map(|q| [q.column, q.name]));
-            let fault = Fault::UnknownColumn { found: (*name).into(), known: known(), nearest };
-            problems.push(place(*at), fault);
-            continue;
-        };
-        let q = &QUANTITIES[quantity];
-        match unit {
-            None => {
-                let fault = Fault::MissingUnit { found: (*name).into(), expected: q.column };
-                problems.push(place(*at), fault);
-            }
-            Some(unit) if !q.spellings.contains(&unit) => {
-                let factor = q.others.iter().find(|(u, _)| *u == unit).and_then(|(_, f)| *f);
-                let (column, expected) = (q.column, q.unit);
-                let fault = Fault::WrongUnit { column, found: unit.into(), expected, factor };
-                problems.push(place(*at).field(*name), fault);
-            }
-            Some(_) if columns.contains(&quantity) => {
-                problems.push(place(*at), Fault::RepeatedColumn { column: q.column });
-            }
-            Some(_) => {}
-        }
-        columns.push(quantity);
-    }
-    for (index, quantity) in QUANTITIES.iter().enumerate() {
-        if quantity.required && !columns.contains(&index) {
-            let found = names.iter().map(|(n, _)| *n).collect::<Vec<_>>().join(", ");
-            problems.push(place(1), Fault::MissingColumn { column: quantity.column, found });
-        }
-    }
-    (columns, first_row)
+    Some(index)
 }
 
-pub(crate) fn is_unit_cell(text: &str) -> bool {
-    (text.starts_with('(') && text.ends_with(')')) || (text.starts_with('[') && text.ends_with(']'))
-}
-
-pub(crate) fn strip_brackets(text: &str) -> &str {
-    text.trim_matches(['(', ')', '[', ']']).trim()
+/// Checks the unit of a column that is to be `label`, in `expected`.
+pub(super) fn check_unit_of(
+    cell: &HeaderCell,
+    found: Option<&str>,
+    label: &str,
+    expected: &str,
+) -> Result<(), Problem> {
+    let Some(unit) = found else {
+        let message = format!(
+            "the column `{}` has no unit; name it `{label}` (or `name [unit]`, or give a second row of units in brackets)",
+            cell.text
+        );
+        return Err(Problem::new(cell.place.clone(), Fault::Other(message)));
+    };
+    let (from, to) = (Unit::find(unit), Unit::find(expected));
+    if from == to {
+        return Ok(());
+    }
+    let remedy = match from.zip(to).and_then(|(from, to)| from.factor_to(to)) {
+        Some(factor) => format!("multiply the column by {factor} and name it `{label}`"),
+        None => format!("give the column as `{label}`"),
+    };
+    let message = format!("the unit is {unit}, expected {expected}; {remedy}");
+    Err(Problem::new(cell.place.clone().field(&cell.text), Fault::Other(message)))
 }
 
 /// The quantity and unit of a header cell; none if it names no known quantity.
-fn split_name<'a>(cell: &'a str, second_row: Option<&'a str>) -> Option<(usize, Option<&'a str>)> {
-    let find = |name: &str| QUANTITIES.iter().position(|q| q.name.eq_ignore_ascii_case(name));
-    if let Some(open) = cell.find(['[', '(']) {
-        return find(cell[..open].trim()).map(|q| (q, Some(strip_brackets(&cell[open..]))));
+fn split_name(cell: &str) -> Option<(usize, Option<&str>)> {
+    let find = |name: &str| QUANTITIES.iter().position(|q| q.0.eq_ignore_ascii_case(name.trim()));
+    match (cell.find(['[', '(']), find(cell)) {
+        (Some(open), _) => Some((find(&cell[..open])?, Some(strip_brackets(&cell[open..])))),
+        (None, Some(quantity)) => Some((quantity, None)),
+        (None, None) => {
+            let (name, unit) = cell.split_once('_')?;
+            Some((find(name)?, Some(unit)))
+        }
     }
-    if let Some(q) = find(cell) {
-        return Some((q, second_row));
-    }
-    let (name, unit) = cell.split_once('_')?;
-    find(name).map(|q| (q, Some(unit)))
-}
-
-/// Checks the time column and hands out the columns by name.
-fn finish(
-    mut rows: Rows,
-    source: &Source,
-    columns: &[usize],
-    problems: &mut Problems,
-) -> Option<MeasuredTable> {
-    let count = rows.lines.len();
-    if count < LEAST_ROWS {
-        let fault = Fault::TooFewRows { rows: count, least: LEAST_ROWS };
-        problems.push(Place::file(&source.name), fault);
-    }
-    // rows that are no numbers tear holes into the time: nothing can be said about its steps
-    if !problems.is_empty() {
-        return None;
-    }
-    let mut take = |quantity: usize| {
-        let column = columns.iter().position(|c| *c == quantity)?;
-        Some(std::mem::take(&mut rows.values[column]))
-    };
-    let mut time_s = take(TIME)?;
-    let label = QUANTITIES[TIME].column;
-    let mut command_volt = take(COMMAND)?;
-    let sampling = check_time(&source.name, label, &time_s, &rows.lines, problems);
-    if !problems.is_empty() && increases_evenly(&command_volt) {
-        let fault =
-            RecordFault::TimeSwapped { other: QUANTITIES[COMMAND].column.to_owned() }.into();
-        problems.push(Place::at(&source.name, rows.lines[0], 1).field(label), fault);
-    }
-    let mut displacement_um = take(DISPLACEMENT)?;
-    let (mut amplifier, mut temperature, mut load) = (take(3), take(4), take(5));
-    let mut warnings = Vec::new();
-    if problems.is_empty() && sampling.jitter > ROUNDING_JITTER {
-        let mut all = vec![&mut command_volt, &mut displacement_um];
-        all.extend([&mut amplifier, &mut temperature, &mut load].into_iter().flatten());
-        resample(&mut time_s, &mut all);
-        warnings.push(resampled(&source.name, label, sampling));
-    }
-    Some(MeasuredTable {
-        time_step_s: sampling.step_s,
-        command_volt,
-        displacement_um,
-        amplifier_volt: amplifier,
-        temperature_celsius: temperature,
-        load_newton: load,
-        time_s,
-        lines: rows.lines,
-        warnings,
-    })
 }
 
 #[cfg(test)]

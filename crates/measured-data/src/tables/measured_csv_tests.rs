@@ -26,7 +26,7 @@ fn three_ways_to_give_units() {
     )
     .unwrap();
     assert_eq!(b.unwrap(), a);
-    assert_eq!((c.time_s, c.displacement_um), (a.time_s.clone(), a.displacement_um.clone()));
+    assert_eq!((c.time_s, c.output), (a.time_s.clone(), a.output.clone()));
     assert_eq!(a.lines, [2, 3, 4]);
     assert!((a.time_step_s - 0.1).abs() < 1e-15);
     assert_eq!(a.load_newton, None);

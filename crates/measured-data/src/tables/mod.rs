@@ -3,13 +3,18 @@
 mod loop_csv;
 mod measured_csv;
 mod record_checks;
-mod table_text;
+mod sampling;
+mod text;
 mod units;
 
-pub use loop_csv::{ChannelFile, Channels, LoopTable};
-pub(crate) use loop_csv::{CurveRows, Declared, parse_curve_csv, parse_loop_csv};
+pub use loop_csv::{ChannelFile, Channels};
+pub(crate) use loop_csv::{Declared, Rows, input_and_output, parse_loop_csv, parse_rows};
+pub(crate) use measured_csv::QUANTITIES;
 pub use measured_csv::{MeasuredTable, parse_measured_csv};
+pub use record_checks::limits;
 pub(crate) use record_checks::{Record, check_lag, check_record, check_unit};
-pub(crate) use table_text::{Listing, increases_evenly, resampled};
-pub use table_text::{RESAMPLED_JITTER, ROUNDING_JITTER, Sampling, resample};
+pub(crate) use sampling::{Listing, RESAMPLED_JITTER, ROUNDING_JITTER, Sampling};
+pub(crate) use sampling::{note_swapped, resample, resampled};
+pub(crate) use text::{LEAST_ROWS, TextTable, too_few_rows};
+pub(crate) use units::unknown_unit;
 pub use units::{Channel, Dimension, UNITS, Unit, significant};

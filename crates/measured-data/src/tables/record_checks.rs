@@ -1,6 +1,6 @@
 //! Checks of a measured record against what hysteretic systems and their recorders can do.
 
-use crate::problem::{Place, Problem, Problems, RecordFault};
+use crate::problem::{Fault, Place, Problem, Problems};
 
 /// A record to be checked: input and output with label, unit and samples.
 pub(crate) struct Record<'a> {
@@ -12,7 +12,8 @@ pub(crate) struct Record<'a> {
 }
 
 impl Record<'_> {
-    fn place(&self, sample: usize, label: &str) -> Place {
+    /// The place of a sample.
+    pub(crate) fn place(&self, sample: usize, label: &str) -> Place {
         match self.lines.get(sample) {
             Some(&line) => Place::at(self.file, line, 1).field(label),
             None => Place::file(self.file).field(label),
@@ -36,7 +37,8 @@ const LEAST_PATH: f64 = 0.5;
 /// Half-width of the play that tells the path of an input from its noise, as a share of the range.
 const PATH_GAP: f64 = 0.01;
 
-fn limits(values: &[f64]) -> (f64, f64) {
+/// Smallest and largest of the values; infinite of none.
+pub fn limits(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)))
 }
 
@@ -51,8 +53,11 @@ pub(crate) fn check_record(
         let (low, high) = limits(values);
         if low >= high {
             // minus zero is zero
-            let fault = RecordFault::Constant { value: low + 0.0, unit, role };
-            problems.push(record.place(0, label), fault.into());
+            let message = format!(
+                "every sample is {} {unit}: nothing can be learnt from a constant {role}; check that the right column was recorded",
+                low + 0.0
+            );
+            problems.push(record.place(0, label), Fault::Other(message));
             moves = false;
         }
     }
@@ -73,24 +78,25 @@ fn clipped(record: &Record<'_>) -> Vec<Problem> {
     let (input_low, input_high) = limits(input);
     let mut found = Vec::new();
     for (end, limit) in [("largest", high), ("smallest", low)] {
-        let mut longest: Option<(usize, usize, f64)> = None;
-        let mut at = 0;
         let is_limit = |v: &f64| v.total_cmp(&limit).is_eq();
-        for flat in output.chunk_by(|a, b| is_limit(a) == is_limit(b)) {
-            let samples = flat.len();
-            if is_limit(&flat[0]) && samples >= CLIPPED_SAMPLES {
-                let (l, h) = limits(&input[at..at + samples]);
-                let movement = (h - l) / (input_high - input_low);
-                if movement > CLIPPED_MOVEMENT && longest.is_none_or(|best| best.1 < samples) {
-                    longest = Some((at, samples, movement));
-                }
-            }
-            at += samples;
-        }
+        let flats = output.chunk_by(|a, b| is_limit(a) == is_limit(b)).scan(0, |end, flat| {
+            let start = *end;
+            *end += flat.len();
+            Some((is_limit(&flat[0]) && flat.len() >= CLIPPED_SAMPLES).then_some(start..*end))
+        });
+        let moved = flats.flatten().map(|flat| {
+            let (low, high) = limits(&input[flat.clone()]);
+            (flat.start, flat.len(), (high - low) / (input_high - input_low))
+        });
+        let longest = moved
+            .filter(|(.., movement)| *movement > CLIPPED_MOVEMENT)
+            .reduce(|best, next| if next.1 > best.1 { next } else { best });
         if let Some((sample, samples, movement)) = longest {
-            let input_percent = 100.0 * movement;
-            let fault = RecordFault::Clipped { end, value: limit, unit, samples, input_percent };
-            found.push(Problem::new(record.place(sample, label), fault.into()));
+            let message = format!(
+                "the output stays at its {end} {limit} {unit} for {samples} samples while the input moves through {:.0} % of its range: the record looks clipped; check the range of sensor and amplifier (a wide backlash looks the same)",
+                100.0 * movement
+            );
+            found.push(Problem::new(record.place(sample, label), Fault::Other(message)));
         }
     }
     found
@@ -117,18 +123,10 @@ pub(crate) fn check_unit(
     if times < UNIT_EXCESS || !fits {
         return true;
     }
-    let column = "command";
-    let fault = RecordFault::UnitByRange {
-        column,
-        reached,
-        unit,
-        low,
-        high,
-        times,
-        likely: "mV",
-        factor: 1e-3,
-    };
-    problems.push(record.place(at, label), fault.into());
+    let message = format!(
+        "reaches {reached} {unit}, {times:.0} times the largest of the range ({low}, {high}) {unit}, and would fit as mV: name the column `command_mV` and convert it with `hhc import`, or multiply it by 0.001"
+    );
+    problems.push(record.place(at, label), Fault::Other(message));
     false
 }
 
@@ -137,7 +135,10 @@ pub(crate) fn check_lag(record: &Record<'_>, problems: &mut Problems) {
     let lead_deg = lead_deg(record.input.2, record.output.2);
     if lead_deg > LEAST_LEAD_DEG {
         let label = record.input.0;
-        problems.push(record.place(0, label), RecordFault::OutputLeads { lead_deg }.into());
+        let message = format!(
+            "the displacement leads the command by {lead_deg:.1} deg over the record, expected a lag: an actuator at rest does not move before it is driven; command and displacement are swapped, or one has the wrong delay. Swap their names in the header; if it is no actuator, make the data set a GenericLoop"
+        );
+        problems.push(record.place(0, label), Fault::Other(message));
     }
 }
 

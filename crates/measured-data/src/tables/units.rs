@@ -1,5 +1,7 @@
 //! Units of measured columns, and the factors between them.
 
+use crate::problem::Fault;
+
 /// What a unit measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
@@ -132,11 +134,19 @@ impl Unit {
         let factor = if (short / exact - 1.0).abs() <= 4.0 * f64::EPSILON { short } else { exact };
         (self.dimension != Dimension::Temperature).then_some(factor)
     }
+}
 
-    /// Symbols of every unit, for messages.
-    pub fn known() -> String {
-        UNITS.map(|u| u.symbol).join(", ")
-    }
+/// The fault of a column that has no unit, or one that is not known.
+pub(crate) fn unknown_unit(column: &str) -> Fault {
+    Fault::Other(format!(
+        "the column `{column}` has no known unit; name it `NAME_UNIT` with a unit of: {}",
+        UNITS.map(|unit| unit.symbol).join(", ")
+    ))
+}
+
+/// The text inside brackets.
+pub(super) fn strip_brackets(text: &str) -> &str {
+    text.trim_matches(['(', ')', '[', ']']).trim()
 }
 
 /// A measured quantity with its unit: a column of a table.
@@ -160,10 +170,7 @@ impl Channel {
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.trim();
         let (name, unit) = match text.find(['[', '(']) {
-            Some(open) => {
-                let unit = text[open..].trim_matches(['(', ')', '[', ']']).trim();
-                (text[..open].trim(), Unit::find(unit)?)
-            }
+            Some(open) => (text[..open].trim(), Unit::find(strip_brackets(&text[open..]))?),
             // the longest ending that is a unit: field_A_per_m
             None => text
                 .match_indices('_')

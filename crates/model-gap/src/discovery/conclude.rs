@@ -3,22 +3,14 @@
 use super::decide::{Notes, Search};
 use super::fit::Fitted;
 use super::gain::gain;
-use super::judge::{drift, parameters};
+use super::judge::drift;
 use super::thresholds::{
-    DRIFT_COSTS, DRIFTING, LEAST_SHARE, LEAST_SHARE_OF_RUNS, STRONG, WRONG_NAME,
+    DRIFT_COSTS, DRIFTING, EXPLAINED, LEAST_SHARE, LEAST_SHARE_OF_RUNS, STRONG, WRONG_NAME,
 };
 use super::{
     Compared, Confidence, Finding, Found, Reason, Screened, Simulator, StandsOut, Verdict,
 };
 use crate::{GapError, Scale};
-
-/// What the causes found leave open.
-#[derive(Default)]
-struct Shortcomings {
-    reasons: Vec<Reason>,
-    /// Whether they cannot be what is missing.
-    is_wrong: bool,
-}
 
 impl<S: Simulator> Search<'_, S> {
     pub(super) fn conclude(
@@ -26,20 +18,18 @@ impl<S: Simulator> Search<'_, S> {
         chosen: &[usize],
         current: &Fitted,
         singles: &[Option<Fitted>],
-        single_drops: Vec<Option<f64>>,
         notes: Notes,
     ) -> Result<Finding, GapError> {
         let settings = self.discovery.settings;
         let Notes { mut reasons, looks_like, in_some_runs } = notes;
         let before = self.generic.along(self.evidence, &self.base.residual);
         let after = self.generic.along(self.evidence, &current.residual);
-        let mut causes = self.found(chosen, current, singles)?;
+        let mut causes: Vec<Found> = (0..chosen.len())
+            .map(|at| self.found(chosen, at, current, singles))
+            .collect::<Result<_, GapError>>()?;
         let ambiguous = causes.iter().any(|c| !c.alternatives.is_empty());
-        let Shortcomings { reasons: found, is_wrong } = if chosen.is_empty() {
-            Shortcomings::default()
-        } else {
-            self.shortcomings(current, after)
-        };
+        let (found, is_wrong) =
+            if chosen.is_empty() { (Vec::new(), false) } else { self.shortcomings(current, after) };
         let doubts = !chosen.is_empty() && (!found.is_empty() || looks_like.is_some());
         reasons.extend(found);
         let gain = gain(self.evidence, &self.base, current, settings.resamplings);
@@ -55,7 +45,7 @@ impl<S: Simulator> Search<'_, S> {
             reasons.push(Reason::NameDropped);
             let base = self.base.clone();
             let notes = Notes { reasons, looks_like, in_some_runs };
-            let mut finding = self.conclude(&[], &base, singles, single_drops, notes)?;
+            let mut finding = self.conclude(&[], &base, singles, notes)?;
             finding.confidence = Confidence::Tentative;
             return Ok(finding);
         }
@@ -92,8 +82,6 @@ impl<S: Simulator> Search<'_, S> {
             effects: current.effects.clone(),
             reasons,
             screen: self.screened.clone(),
-            single_drops,
-            excess: [before, after],
             gain,
             structure_remains: doubts,
             looks_like,
@@ -104,13 +92,14 @@ impl<S: Simulator> Search<'_, S> {
         })
     }
 
-    /// What causes as fitted together leave open; `after` is the chi-square they leave along the generic directions.
-    fn shortcomings(&self, current: &Fitted, after: f64) -> Shortcomings {
+    /// What causes as fitted together leave open, and whether they cannot be what is missing; `after` is the
+    /// chi-square they leave along the generic directions.
+    fn shortcomings(&self, current: &Fitted, after: f64) -> (Vec<Reason>, bool) {
         let (mut reasons, worst_drift) = self.doubts(current);
         let drop = self.base.cost - current.cost;
         let lack = (after - self.generic.threshold).max(0.0);
         let explained = if drop > 0.0 { drop / (drop + lack) } else { 0.0 };
-        if explained < self.discovery.settings.explained {
+        if explained < EXPLAINED {
             let floor = self.generic.threshold;
             reasons.push(Reason::StructureLeft { share: explained, chi2: after, floor });
         }
@@ -133,30 +122,7 @@ impl<S: Simulator> Search<'_, S> {
             || whole < LEAST_SHARE
             || of_runs < LEAST_SHARE_OF_RUNS
             || worst_drift > WRONG_NAME;
-        Shortcomings { reasons, is_wrong }
-    }
-
-    /// Every chosen cause with what was found about it.
-    fn found(
-        &self,
-        chosen: &[usize],
-        current: &Fitted,
-        singles: &[Option<Fitted>],
-    ) -> Result<Vec<Found>, GapError> {
-        let one = |at: usize| {
-            let place = self.alternatives(chosen, at, current, singles)?;
-            Ok(Found {
-                candidate: chosen[at],
-                parameters: parameters(self.discovery, self.evidence, current, at, &place.rest)?,
-                drop: place.drop,
-                output_drop: self.output_drop(&place.rest, current),
-                held_out_drop: self.held_out_drop(&place.rest, current),
-                alternatives: place.alternatives,
-                rivals: place.rivals,
-                compared: place.compared,
-            })
-        };
-        (0..chosen.len()).map(one).collect()
+        (reasons, is_wrong)
     }
 
     /// Why the names of these causes are tentative, if they are.
@@ -177,7 +143,7 @@ impl<S: Simulator> Search<'_, S> {
         let mut worst = 0.0_f64;
         for (k, &(effect, p)) in current.free.iter().enumerate() {
             let own = &current.effects[effect];
-            let parameter = &self.discovery.candidates[own.candidate].cause.parameters[p];
+            let parameter = &self.discovery.candidates[own.candidate].parameters[p];
             if parameter.is_shape {
                 continue;
             }
@@ -218,7 +184,7 @@ impl<S: Simulator> Search<'_, S> {
     /// Reason for a tentative name: no parameter is known. Each interval contains zero effect, or spans the
     /// whole range.
     fn undetermined(&self, found: &Found) -> Option<Reason> {
-        let cause = &self.discovery.candidates[found.candidate].cause;
+        let cause = &self.discovery.candidates[found.candidate];
         let own = found.parameters.iter().zip(&cause.parameters);
         let mut judged = own.filter(|(v, p)| !v.is_shape && p.needs.is_none()).peekable();
         judged.peek()?;
@@ -231,7 +197,7 @@ impl<S: Simulator> Search<'_, S> {
     /// above the tested frequencies.
     fn open_ended(&self, found: &Found) -> Option<Reason> {
         let cause = self.id(found.candidate);
-        let parameters = &self.discovery.candidates[found.candidate].cause.parameters;
+        let parameters = &self.discovery.candidates[found.candidate].parameters;
         let own = found.parameters.iter().zip(parameters).filter(|p| !p.0.is_shape);
         own.filter(|(value, parameter)| parameter.is_open_ended(value.ci95))
             .map(|(value, _)| Reason::OpenEnded { cause, parameter: value.name })

@@ -3,71 +3,16 @@
 use super::evidence::{Evidence, Seen, difference};
 use super::fit::{Fitted, Fitter};
 use super::gain::held_out_residual;
-use super::judge::{Generic, paired, parameters};
+use super::judge::{Generic, drop_error, parameters};
 use super::screen::screen;
 use super::thresholds::{
-    CONFUSED_SHARE, HELD_OUT_SHARE, NEXT_SHARE, PROMISE, RIVAL_PROMISE, STRONG, SWAY_SHARE,
+    CONFUSED_SHARE, HELD_OUT_SHARE, NEXT_SHARE, PARAMETER_PENALTY, PROMISE, RIVAL_PROMISE,
+    SEPARATION, STRONG, STRUCTURE_MARGIN, SWAY_SHARE, needed_to_separate,
 };
-use super::{Alternative, Compared, Discovery, Finding, Reason, Rival, Screened, Simulator};
+use super::{Alternative, Compared, Discovery, Finding, Found, Reason, Rival, Screened, Simulator};
 use crate::{Effect, GapError, Memo};
 use rayon::prelude::*;
 use std::sync::Arc;
-
-pub(super) fn decide<S: Simulator>(
-    discovery: &Discovery<'_, S>,
-    evidence: &Evidence<'_>,
-) -> Result<Finding, GapError> {
-    Search::new(discovery, evidence)?.run()
-}
-
-/// The candidates given, all of them, as the data fit them.
-pub(super) fn refit<S: Simulator>(
-    discovery: &Discovery<'_, S>,
-    evidence: &Evidence<'_>,
-    given: &[usize],
-) -> Result<Finding, GapError> {
-    let search = Search::new(discovery, evidence)?;
-    let mut current = search.base.clone();
-    let mut chosen = Vec::new();
-    for &candidate in given {
-        let starts = &discovery.candidates[candidate].starts;
-        if let Some(found) = search.fitter.fit_with(&current, candidate, starts, 0.0)? {
-            current = found;
-            chosen.push(candidate);
-        }
-    }
-    let none = vec![None; discovery.candidates.len()];
-    search.conclude(&chosen, &current, &none, none.iter().map(|_| None).collect(), Notes::default())
-}
-
-impl<'a, S: Simulator> Search<'a, S> {
-    fn new(discovery: &'a Discovery<'a, S>, evidence: &'a Evidence<'a>) -> Result<Self, GapError> {
-        let base_prediction = discovery.simulator.predict(&[])?;
-        let fitter =
-            Fitter { simulator: discovery.simulator, evidence, candidates: discovery.candidates };
-        let base = fitter.refine(Vec::new())?;
-        let screened = screen(discovery, evidence, &base_prediction, &base.residual)?;
-        let generic = Generic::new(discovery, evidence, discovery.generic);
-        let trends = Generic::new(discovery, evidence, discovery.trends);
-        let kept = Memo::new(discovery.settings.most_causes);
-        let columns: Vec<&[Vec<f64>]> = discovery.structures.iter().map(Vec::as_slice).collect();
-        let structures = evidence.seen(&columns);
-        let energy = |s: &Seen<'_>| evidence.inner(s, s);
-        let structure_energy = structures.iter().map(energy).fold(0.0, f64::max);
-        Ok(Self {
-            discovery,
-            evidence,
-            fitter,
-            screened,
-            generic,
-            trends,
-            base,
-            structures,
-            structure_energy,
-            kept,
-        })
-    }
-}
 
 /// What a search noted on its way.
 #[derive(Debug, Default)]
@@ -78,19 +23,6 @@ pub(super) struct Notes {
     pub(super) looks_like: Option<usize>,
     /// Whether a cause explains much where it is fitted and little where it is held out.
     pub(super) in_some_runs: bool,
-}
-
-/// One of the causes found, judged against the fit without it.
-pub(super) struct Place {
-    /// The fit without it.
-    pub(super) rest: Fitted,
-    /// The candidates as likely in its place, best first.
-    pub(super) alternatives: Vec<Alternative>,
-    /// It and those that cannot be excluded, as fitted.
-    pub(super) rivals: Vec<Rival>,
-    /// Everything fitted in its place, the smallest `delta_chi2` first.
-    pub(super) compared: Vec<Compared>,
-    pub(super) drop: f64,
 }
 
 /// The fit without one of the causes, and every candidate fitted in its place.
@@ -114,12 +46,50 @@ pub(super) struct Search<'a, S> {
     kept: Memo<(Vec<Effect>, usize), TakenOut>,
 }
 
-impl<S: Simulator> Search<'_, S> {
-    fn run(self) -> Result<Finding, GapError> {
+impl<'a, S: Simulator> Search<'a, S> {
+    pub(super) fn new(
+        discovery: &'a Discovery<'a, S>,
+        evidence: &'a Evidence<'a>,
+    ) -> Result<Self, GapError> {
+        let Discovery { simulator, candidates, generic, trends, structures, .. } = *discovery;
+        let fitter = Fitter { simulator, evidence, candidates };
+        let base = fitter.refine(Vec::new())?;
+        let screened = screen(discovery, evidence, &simulator.predict(&[])?, &base.residual)?;
+        let seen = evidence.seen(&structures.iter().collect::<Vec<_>>());
+        let energy = |s: &Seen<'_>| evidence.inner(s, s);
+        Ok(Self {
+            discovery,
+            evidence,
+            fitter,
+            screened,
+            generic: Generic::new(evidence, generic, structures),
+            trends: Generic::new(evidence, trends, structures),
+            base,
+            structure_energy: seen.iter().map(energy).fold(0.0, f64::max),
+            structures: seen,
+            kept: Memo::new(discovery.settings.most_causes),
+        })
+    }
+
+    /// The candidates given, all of them, as the data fit them.
+    pub(super) fn refit(&self, given: &[usize]) -> Result<Finding, GapError> {
+        let mut current = self.base.clone();
+        let mut chosen = Vec::new();
+        for &candidate in given {
+            let starts = &self.discovery.candidates[candidate].starts;
+            if let Some(found) = self.fitter.fit_with(&current, candidate, starts, 0.0)? {
+                current = found;
+                chosen.push(candidate);
+            }
+        }
+        let none = vec![None; self.discovery.candidates.len()];
+        self.conclude(&chosen, &current, &none, Notes::default())
+    }
+
+    /// Searches for what is missing.
+    pub(super) fn run(&self) -> Result<Finding, GapError> {
         let mut notes = Notes::default();
         let singles = self.fits_after(&self.base, &[], 0.0)?;
-        let single_drops: Vec<Option<f64>> =
-            singles.iter().map(|f| f.as_ref().map(|f| self.base.cost - f.cost)).collect();
         let mut current = self.base.clone();
         let mut chosen: Vec<usize> = Vec::new();
         let mut fits = singles.clone();
@@ -163,7 +133,7 @@ impl<S: Simulator> Search<'_, S> {
             }
         }
         self.check_backward(&mut chosen, &mut current)?;
-        self.conclude(&chosen, &current, &singles, single_drops, notes)
+        self.conclude(&chosen, &current, &singles, notes)
     }
 
     /// Whether a candidate is a cause that may be there.
@@ -184,7 +154,7 @@ impl<S: Simulator> Search<'_, S> {
             return Ok(None);
         };
         let delta_chi2 = found.cost - fit.cost + self.penalty(candidate) - self.penalty(decoy);
-        let is_as_good = delta_chi2 < self.discovery.settings.parameter_penalty
+        let is_as_good = delta_chi2 < PARAMETER_PENALTY
             && self.enters(rest, candidate, &found).is_ok()
             && self.contradicted(&found)?.is_none();
         Ok(is_as_good.then_some((candidate, found)))
@@ -198,10 +168,6 @@ impl<S: Simulator> Search<'_, S> {
         }
     }
 
-    fn allowed(&self, candidate: usize) -> bool {
-        self.discovery.candidates[candidate].blocked.is_none()
-    }
-
     /// Every further candidate fitted after the effects of `current`, if it promises a part of its
     /// threshold and a drop of `least`.
     fn fits_after(
@@ -213,20 +179,20 @@ impl<S: Simulator> Search<'_, S> {
         (0..self.discovery.candidates.len())
             .into_par_iter()
             .map(|candidate| {
-                if !self.allowed(candidate) || chosen.contains(&candidate) {
+                let own = &self.discovery.candidates[candidate];
+                if own.blocked.is_some() || chosen.contains(&candidate) {
                     return Ok(None);
                 }
-                let starts = &self.discovery.candidates[candidate].starts;
                 let least = least.max(PROMISE * self.screened[candidate].threshold);
-                self.fitter.fit_with(current, candidate, starts, least)
+                self.fitter.fit_with(current, candidate, &own.starts, least)
             })
             .collect()
     }
 
     fn penalty(&self, candidate: usize) -> f64 {
-        let parameters = &self.discovery.candidates[candidate].cause.parameters;
+        let parameters = &self.discovery.candidates[candidate].parameters;
         let free = parameters.iter().filter(|p| p.held.is_none()).count();
-        self.discovery.settings.parameter_penalty * free as f64
+        PARAMETER_PENALTY * free as f64
     }
 
     /// The candidate with the largest drop of a kind, its parameters paid for, of some of them.
@@ -249,7 +215,7 @@ impl<S: Simulator> Search<'_, S> {
 
     /// Share of the drop by given effects that a candidate beside them must add.
     fn share_beside(&self, candidate: usize, effects: &[Effect]) -> f64 {
-        let cause = |c: usize| &self.discovery.candidates[c].cause;
+        let cause = |c: usize| &self.discovery.candidates[c];
         let own = cause(candidate);
         let is_confused = effects.iter().map(|e| cause(e.candidate)).any(|other| {
             own.confused_with.contains(&other.id) || other.confused_with.contains(&own.id)
@@ -276,7 +242,7 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     pub(super) fn id(&self, candidate: usize) -> &'static str {
-        self.discovery.candidates[candidate].cause.id
+        self.discovery.candidates[candidate].id
     }
 
     /// Both acceptance tests: the drop of chi-square exceeds what surrogates reach, and most of it shows on
@@ -379,8 +345,7 @@ impl<S: Simulator> Search<'_, S> {
                 && self.contradicted(&found)?.is_none()
             {
                 let better = current.cost - found.cost
-                    > self.discovery.settings.separation + self.penalty(candidate)
-                        - self.penalty(chosen[at]);
+                    > SEPARATION + self.penalty(candidate) - self.penalty(chosen[at]);
                 if better {
                     // effects keep the order of the chosen: the new one stands last
                     chosen[at..].rotate_left(1);
@@ -421,45 +386,38 @@ impl<S: Simulator> Search<'_, S> {
         Ok(())
     }
 
-    /// What the structure that a base model may leave with nothing missing can do to the difference of
-    /// two misfits: `2 |<z, r_a - r_b>|` of the worst surrogate `z`, with the margin of the floors; at most
-    /// [`SWAY_SHARE`] of the drop.
-    fn swayed(&self, a: &Fitted, b: &Fitted) -> f64 {
-        let apart = difference(&a.residual, &b.residual);
-        let apart = self.evidence.see(&apart);
-        let along = |z: &Seen<'_>| 2.0 * self.evidence.inner(z, &apart).abs();
-        let worst = self.structures.iter().map(along).fold(0.0, f64::max);
-        let most = SWAY_SHARE * self.output_drop(&self.base, b);
-        (self.discovery.settings.structure_margin * worst).min(most)
-    }
-
-    /// What the better of two fits leaves along the difference of both says of the difference of their misfits:
-    /// `separation (x^2 - 1)`, `x = <r_b, d> / |d|`, `d = r_a - r_b`.
+    /// Difference of the misfits of two fits, `b` the better, that structure of the base model can make: the
+    /// larger of what surrogates could, `2 |<z, d>|` of the worst of them `z`, `d = r_a - r_b`, with the margin of
+    /// the floors and at most [`SWAY_SHARE`] of the drop; and of what the data show,
+    /// `separation (x^2 - 1)`, `x = <r_b, d> / |d|`.
     ///
-    /// Whichever of them is right, structure of at least the size `x` lies there, where noise alone would leave 1.
-    /// With its variance beside that of the noise the difference of the misfits weighs `1 / (1 + x^2)` as much.
-    /// A base model without surrogates is assumed exact: the result is 0.
-    fn left_between(&self, a: &Fitted, b: &Fitted) -> f64 {
+    /// Whichever of the fits is right, structure of at least the size `x` lies along `d`, where noise alone would
+    /// leave 1. With its variance beside that of the noise the difference of the misfits weighs `1 / (1 + x^2)` as
+    /// much. A base model without surrogates is assumed exact: the result is 0.
+    fn structure_between(&self, a: &Fitted, b: &Fitted) -> f64 {
         if self.structures.is_empty() {
             return 0.0;
         }
         let apart = difference(&a.residual, &b.residual);
         let apart = self.evidence.see(&apart);
+        let along = |z: &Seen<'_>| 2.0 * self.evidence.inner(z, &apart).abs();
+        let worst = self.structures.iter().map(along).fold(0.0, f64::max);
+        let most = SWAY_SHARE * self.output_drop(&self.base, b);
         let energy = self.evidence.inner(&apart, &apart);
         // |r_a|^2 - |r_b|^2 = |d|^2 + 2 <r_b, d>
         let along = 0.5 * (a.cost - b.cost - energy);
         let squared = if energy > 0.0 { along * along / energy } else { 0.0 };
-        self.discovery.settings.separation * (squared - 1.0).max(0.0)
+        (STRUCTURE_MARGIN * worst).min(most).max(SEPARATION * (squared - 1.0).max(0.0))
     }
 
-    /// The candidates that do about as well in the place of a chosen one, best first.
-    pub(super) fn alternatives(
+    /// A chosen cause with what was found about it, and the candidates that do about as well in its place.
+    pub(super) fn found(
         &self,
         chosen: &[usize],
         at: usize,
         current: &Fitted,
         singles: &[Option<Fitted>],
-    ) -> Result<Place, GapError> {
+    ) -> Result<Found, GapError> {
         let out = if chosen.len() == 1 {
             Arc::new(TakenOut { rest: self.base.clone(), fits: singles.to_vec() })
         } else {
@@ -467,15 +425,15 @@ impl<S: Simulator> Search<'_, S> {
         };
         let TakenOut { rest, fits } = &*out;
         let drop = rest.cost - current.cost;
-        let settings = self.discovery.settings;
-        let margin = settings.separation + settings.form_error * self.output_drop(rest, current);
+        let output_drop = self.output_drop(rest, current);
+        let margin = needed_to_separate(output_drop);
         let mut compared: Vec<(Compared, &Fitted)> = Vec::new();
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
             let delta_chi2 = fit.cost - current.cost + penalty;
-            let (_, error) = paired(self.evidence, fit, current);
-            let open = margin + self.swayed(fit, current).max(self.left_between(fit, current));
+            let error = drop_error(self.evidence, fit, current);
+            let open = margin + self.structure_between(fit, current);
             let discrimination_threshold = open.max((2.0 * error).min(0.2 * drop));
             let compared_with = Compared { candidate, delta_chi2, discrimination_threshold };
             // one that fits far worse is excluded already
@@ -501,8 +459,15 @@ impl<S: Simulator> Search<'_, S> {
                 Ok(Alternative { candidate: c.candidate, parameters })
             })
             .collect::<Result<_, GapError>>()?;
-        let compared: Vec<Compared> = compared.iter().map(|c| c.0).collect();
-        let drop = self.proven_drop(rest, current);
-        Ok(Place { rest: rest.clone(), alternatives, rivals, compared, drop })
+        Ok(Found {
+            candidate: chosen[at],
+            parameters: parameters(self.discovery, self.evidence, current, at, rest)?,
+            drop: self.proven_drop(rest, current),
+            output_drop,
+            held_out_drop: self.held_out_drop(rest, current),
+            alternatives,
+            rivals,
+            compared: compared.iter().map(|c| c.0).collect(),
+        })
     }
 }

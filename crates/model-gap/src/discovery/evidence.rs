@@ -1,7 +1,7 @@
 //! Sums of squares with the nuisance projected out.
 
 use super::thresholds::NOISE_DOUBT;
-use super::{Trace, TraceRole};
+use super::{Signal, Trace, TraceRole};
 use crate::GapError;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -21,20 +21,12 @@ impl Products {
             with_nuisance: DMatrix::zeros(nuisance, columns),
         }
     }
-
-    fn add(&mut self, other: &Self) {
-        self.own += &other.own;
-        self.with_nuisance += &other.with_nuisance;
-    }
 }
-
-/// Columns over all traces: `columns[c][t]` is column `c` on trace `t`.
-pub(crate) type Columns<'a> = [&'a [Vec<f64>]];
 
 /// A signal as all experiments together see it: with its products with the nuisance.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen<'s> {
-    signal: &'s [Vec<f64>],
+    signal: &'s Signal,
     /// Products with the nuisance, and those solved for what the nuisance takes.
     cross: DVector<f64>,
     solved: DVector<f64>,
@@ -94,13 +86,13 @@ impl<'a> Evidence<'a> {
     }
 
     /// Products over the noise of two signals, all experiments together.
-    pub(crate) fn dot(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    pub(crate) fn dot(&self, a: &Signal, b: &Signal) -> f64 {
         let pairs = self.traces.iter().zip(a.iter().zip(b));
         pairs.map(|(t, (a, b))| product(a, b) / (t.sigma * t.sigma)).sum()
     }
 
     /// Signals with their products with the nuisance.
-    pub(crate) fn seen<'s>(&self, signals: &[&'s [Vec<f64>]]) -> Vec<Seen<'s>> {
+    pub(crate) fn seen<'s>(&self, signals: &[&'s Signal]) -> Vec<Seen<'s>> {
         let mut crosses = DMatrix::zeros(self.width(), signals.len());
         for number in 0..self.traces.len() {
             self.add_crosses(&mut crosses, signals, number);
@@ -118,14 +110,8 @@ impl<'a> Evidence<'a> {
     }
 
     /// One signal with its products with the nuisance.
-    pub(crate) fn see<'s>(&self, signal: &'s [Vec<f64>]) -> Seen<'s> {
-        let mut crosses = DMatrix::zeros(self.width(), 1);
-        for number in 0..self.traces.len() {
-            self.add_crosses(&mut crosses, &[signal], number);
-        }
-        let cross = crosses.column(0).clone_owned();
-        let solved = self.all.solve(&cross);
-        Seen { signal, cross, solved }
+    pub(crate) fn see<'s>(&self, signal: &'s Signal) -> Seen<'s> {
+        self.seen(&[signal]).swap_remove(0)
     }
 
     /// Product of two signals with the nuisance projected out.
@@ -134,12 +120,17 @@ impl<'a> Evidence<'a> {
     }
 
     /// Products of signals with each other, the nuisance projected out.
-    pub(crate) fn inners(&self, signals: &[&Seen<'_>]) -> DMatrix<f64> {
+    pub(crate) fn gram(&self, signals: &[&Signal]) -> DMatrix<f64> {
+        self.inners(&self.seen(signals))
+    }
+
+    /// As [`Self::gram`], of signals whose products with the nuisance are known.
+    pub(crate) fn inners(&self, signals: &[Seen<'_>]) -> DMatrix<f64> {
         let n = signals.len();
         let mut gram = DMatrix::zeros(n, n);
         for a in 0..n {
             for b in 0..=a {
-                gram[(a, b)] = self.inner(signals[a], signals[b]);
+                gram[(a, b)] = self.inner(&signals[a], &signals[b]);
                 gram[(b, a)] = gram[(a, b)];
             }
         }
@@ -147,7 +138,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Adds the products of signals with the nuisance on one trace.
-    fn add_crosses(&self, into: &mut DMatrix<f64>, signals: &Columns<'_>, number: usize) {
+    fn add_crosses(&self, into: &mut DMatrix<f64>, signals: &[&Signal], number: usize) {
         let trace = &self.traces[number];
         let weight = 1.0 / (trace.sigma * trace.sigma);
         let (rows, all) = (trace.nuisance.nrows(), trace.nuisance.as_slice());
@@ -164,12 +155,15 @@ impl<'a> Evidence<'a> {
         }
     }
 
+    /// The traces of a role, with their numbers.
+    pub(crate) fn of_role(&self, role: TraceRole) -> impl Iterator<Item = (usize, &'a Trace)> {
+        self.traces.iter().enumerate().filter(move |(_, trace)| trace.role == role)
+    }
+
     /// Energy of the outputs about their means, in units of the noise variance.
     pub(crate) fn output_energy(&self) -> f64 {
-        self.traces
-            .iter()
-            .filter(|t| t.role == TraceRole::Output)
-            .map(|t| {
+        self.of_role(TraceRole::Output)
+            .map(|(_, t)| {
                 let mean = t.measured.iter().sum::<f64>() / t.measured.len().max(1) as f64;
                 t.measured.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (t.sigma * t.sigma)
             })
@@ -177,7 +171,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Sum of squares of a residual over what it weighs with, on the channels of some roles.
-    fn energy_of(&self, residual: &[Vec<f64>], counts: impl Fn(TraceRole) -> bool) -> f64 {
+    fn energy_of(&self, residual: &Signal, counts: impl Fn(TraceRole) -> bool) -> f64 {
         self.traces
             .iter()
             .zip(residual)
@@ -187,34 +181,33 @@ impl<'a> Evidence<'a> {
     }
 
     /// The channels beside the output, which no nuisance touches: part of every cost.
-    pub(crate) fn beside_output(&self, residual: &[Vec<f64>]) -> f64 {
+    pub(crate) fn beside_output(&self, residual: &Signal) -> f64 {
         self.energy_of(residual, |role| role != TraceRole::Output)
     }
 
     /// The part of [`Self::beside_output`] of the covariates.
-    pub(crate) fn of_covariates(&self, residual: &[Vec<f64>]) -> f64 {
+    pub(crate) fn of_covariates(&self, residual: &Signal) -> f64 {
         self.energy_of(residual, |role| role == TraceRole::Covariate)
     }
 
     /// Whether a covariate was measured.
     pub(crate) fn has_covariates(&self) -> bool {
-        self.traces.iter().any(|t| t.role == TraceRole::Covariate)
+        self.of_role(TraceRole::Covariate).next().is_some()
     }
 
     /// Sum of squares of the outputs that noise alone would leave, over what they weigh with.
     pub(crate) fn noise_energy(&self) -> f64 {
-        self.traces
-            .iter()
-            .filter(|t| t.role == TraceRole::Output)
-            .map(|t| t.measured.len() as f64 * (t.noise / t.sigma).powi(2))
+        self.of_role(TraceRole::Output)
+            .map(|(_, t)| t.measured.len() as f64 * (t.noise / t.sigma).powi(2))
             .sum()
     }
 
     /// Sum of squares of a signal on the outputs over what they weigh with, experiment by experiment.
-    pub(crate) fn by_experiment(&self, signal: &[Vec<f64>]) -> Vec<f64> {
+    pub(crate) fn by_experiment(&self, signal: &Signal) -> Vec<f64> {
         let mut all = vec![0.0; self.experiments];
-        for (t, r) in self.traces.iter().zip(signal).filter(|(t, _)| t.role == TraceRole::Output) {
-            all[t.experiment] += r.iter().map(|x| x * x).sum::<f64>() / (t.sigma * t.sigma);
+        for (number, t) in self.of_role(TraceRole::Output) {
+            let square: f64 = signal[number].iter().map(|x| x * x).sum();
+            all[t.experiment] += square / (t.sigma * t.sigma);
         }
         all
     }
@@ -222,7 +215,7 @@ impl<'a> Evidence<'a> {
     /// Such sums of a residual less what noise alone would leave, with the standard error of that.
     pub(crate) fn excess_by_experiment(&self, energies: &[f64]) -> Vec<(f64, f64)> {
         let mut all: Vec<(f64, f64)> = energies.iter().map(|energy| (*energy, 0.0)).collect();
-        for t in self.traces.iter().filter(|t| t.role == TraceRole::Output) {
+        for (_, t) in self.of_role(TraceRole::Output) {
             let (share, n) = ((t.noise / t.sigma).powi(2), t.measured.len() as f64);
             let own = &mut all[t.experiment];
             own.0 -= n * share;
@@ -232,66 +225,48 @@ impl<'a> Evidence<'a> {
     }
 
     /// Products of columns, experiment by experiment.
-    pub(crate) fn products(&self, columns: &Columns<'_>) -> Vec<Products> {
-        let mut all = vec![Products::zero(columns.len(), self.width()); self.experiments];
-        for (number, trace) in self.traces.iter().enumerate() {
-            let into = &mut all[trace.experiment];
-            let weight = 1.0 / (trace.sigma * trace.sigma);
-            for a in 0..columns.len() {
-                for b in 0..=a {
-                    let own = weight * product(&columns[a][number], &columns[b][number]);
-                    into.own[(a, b)] += own;
-                    if a != b {
-                        into.own[(b, a)] += own;
-                    }
-                }
-            }
-            self.add_crosses(&mut into.with_nuisance, columns, number);
-        }
-        all
+    pub(crate) fn products(&self, columns: &[&Signal]) -> Vec<Products> {
+        let zero = Products::zero(columns.len(), self.width());
+        self.added(vec![zero; self.experiments], columns, columns.len())
     }
 
     /// Products of columns whose first is another, the products of the others being known.
-    pub(crate) fn products_after(
-        &self,
-        first: &[Vec<f64>],
-        others: &Columns<'_>,
-        known: &[Products],
-    ) -> Vec<Products> {
+    pub(crate) fn products_after(&self, columns: &[&Signal], known: &[Products]) -> Vec<Products> {
         let mut all = known.to_vec();
         for own in &mut all {
             own.own.row_mut(0).fill(0.0);
             own.own.column_mut(0).fill(0.0);
             own.with_nuisance.column_mut(0).fill(0.0);
         }
+        self.added(all, columns, 1)
+    }
+
+    /// Products with those of the first `count` columns added.
+    fn added(&self, mut all: Vec<Products>, columns: &[&Signal], count: usize) -> Vec<Products> {
         for (number, trace) in self.traces.iter().enumerate() {
             let into = &mut all[trace.experiment];
             let weight = 1.0 / (trace.sigma * trace.sigma);
-            into.own[(0, 0)] += weight * product(&first[number], &first[number]);
-            for (c, other) in others.iter().enumerate() {
-                let own = weight * product(&first[number], &other[number]);
-                into.own[(0, c + 1)] += own;
-                into.own[(c + 1, 0)] += own;
+            for (a, column) in columns.iter().enumerate() {
+                for (b, other) in columns[..count].iter().enumerate().take(a + 1) {
+                    let own = weight * product(&column[number], &other[number]);
+                    into.own[(a, b)] += own;
+                    if a != b {
+                        into.own[(b, a)] += own;
+                    }
+                }
             }
-            self.add_crosses(&mut into.with_nuisance, &[first], number);
+            self.add_crosses(&mut into.with_nuisance, &columns[..count], number);
         }
         all
     }
 
-    /// The products with the nuisance projected out, over all experiments.
-    pub(crate) fn projected(&self, products: &[Products]) -> DMatrix<f64> {
-        self.project(products, None)
-    }
-
     fn sum(&self, products: &[Products], left_out: Option<usize>) -> Products {
-        let (columns, width) = match products.first() {
-            Some(p) => (p.own.ncols(), p.with_nuisance.nrows()),
-            None => (0, 0),
-        };
-        let mut sum = Products::zero(columns, width);
-        for (e, own) in products.iter().enumerate() {
+        let columns = products.first().map_or(0, |p| p.own.ncols());
+        let mut sum = Products::zero(columns, self.width());
+        for (e, one) in products.iter().enumerate() {
             if left_out != Some(self.folds[e]) {
-                sum.add(own);
+                sum.own += &one.own;
+                sum.with_nuisance += &one.with_nuisance;
             }
         }
         sum
@@ -301,17 +276,20 @@ impl<'a> Evidence<'a> {
         left_out.map_or(&self.all, |fold| &self.without[fold])
     }
 
-    /// The same with a fold left out.
+    /// The products with the nuisance projected out, over all experiments or with a fold left out.
     pub(crate) fn project(&self, products: &[Products], left_out: Option<usize>) -> DMatrix<f64> {
         let sum = self.sum(products, left_out);
         let solved = self.factor(left_out).solve(&sum.with_nuisance);
         sum.own - sum.with_nuisance.tr_mul(&solved)
     }
 
-    /// The nuisance information of one experiment, factorised.
-    pub(crate) fn alone(&self, experiment: usize) -> Option<Cholesky<f64, Dyn>> {
-        let own = &self.nuisance[experiment];
-        Cholesky::new(own + DMatrix::identity(own.nrows(), own.ncols()))
+    /// The products of one experiment with its own nuisance projected out.
+    pub(crate) fn project_alone(&self, products: &Products, experiment: usize) -> DMatrix<f64> {
+        let (own, cross) = (&self.nuisance[experiment], &products.with_nuisance);
+        match Cholesky::new(own + DMatrix::identity(own.nrows(), own.ncols())) {
+            Some(information) => &products.own - cross.tr_mul(&information.solve(cross)),
+            None => products.own.clone(),
+        }
     }
 
     /// What the nuisance leaves of a signal on the outputs of every experiment where it meets all of them but some:
@@ -331,7 +309,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Products of a signal with itself on the outputs.
-    pub(crate) fn output_products(&self, signal: &[Vec<f64>]) -> Vec<Products> {
+    pub(crate) fn output_products(&self, signal: &Signal) -> Vec<Products> {
         let mut all = self.products(&[signal]);
         for (own, energy) in all.iter_mut().zip(self.by_experiment(signal)) {
             own.own.fill(energy);
@@ -363,20 +341,16 @@ impl<'a> Evidence<'a> {
         let square = (nuisance.transpose() * &self.nuisance[experiment] * nuisance)[0];
         (own - 2.0 * cross + square).max(0.0)
     }
+}
 
-    /// Takes the nuisance out of a residual on all traces.
-    pub(crate) fn cleaned(&self, residual: &[Vec<f64>], nuisance: &DVector<f64>) -> Vec<Vec<f64>> {
+impl Trace {
+    /// Takes the nuisance out of a residual.
+    pub(super) fn cleaned(&self, mut residual: Vec<f64>, nuisance: &DVector<f64>) -> Vec<f64> {
+        if self.nuisance.ncols() > 0 {
+            let moved = &self.nuisance * nuisance;
+            residual.iter_mut().zip(moved.iter()).for_each(|(left, moved)| *left -= moved);
+        }
         residual
-            .iter()
-            .zip(self.traces)
-            .map(|(r, t)| {
-                if t.nuisance.ncols() == 0 {
-                    return r.clone();
-                }
-                let moved = &t.nuisance * nuisance;
-                r.iter().zip(moved.iter()).map(|(a, b)| a - b).collect()
-            })
-            .collect()
     }
 }
 
@@ -394,15 +368,37 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Measured less predicted, trace by trace.
-pub(crate) fn residual(traces: &[Trace], predicted: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    traces
-        .iter()
-        .zip(predicted)
-        .map(|(t, p)| t.measured.iter().zip(p).map(|(a, b)| a - b).collect())
-        .collect()
+pub(crate) fn residual(traces: &[Trace], predicted: &Signal) -> Signal {
+    traces.iter().zip(predicted).map(|(t, p)| less(&t.measured, p)).collect()
 }
 
 /// One signal less another, trace by trace.
-pub(crate) fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect()
+pub(crate) fn difference(a: &Signal, b: &Signal) -> Signal {
+    a.iter().zip(b).map(|(a, b)| less(a, b)).collect()
+}
+
+fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// A signal and further ones as columns.
+pub(crate) fn columns<'s>(first: &'s Signal, others: &'s [Signal]) -> Vec<&'s Signal> {
+    std::iter::once(first).chain(others).collect()
+}
+
+/// The normal matrix and right side of a fit, from the products of its residual, which stands first, and the
+/// slopes of that.
+pub(crate) fn normal_equations(gram: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let n = gram.nrows() - 1;
+    let right = -gram.view((1, 0), (n, 1)).column(0).clone_owned();
+    (gram.view((1, 1), (n, n)).clone_owned(), right)
+}
+
+/// A normal matrix with a part of its trace and a number added to its diagonal.
+pub(crate) fn ridged(mut normal: DMatrix<f64>, part: f64, number: f64) -> DMatrix<f64> {
+    let ridge = part * normal.trace() + number;
+    for i in 0..normal.nrows() {
+        normal[(i, i)] += ridge;
+    }
+    normal
 }

@@ -1,7 +1,9 @@
 //! Fits of the parameters of one or several causes, the nuisance projected out.
 
-use super::Simulator;
-use super::evidence::{Evidence, Products, residual};
+use super::evidence::{
+    Evidence, Products, columns, difference, normal_equations, residual, ridged,
+};
+use super::{Signal, Simulator};
 use crate::{Candidate, Effect, GapError, Parameter};
 use nalgebra::{DMatrix, DVector};
 
@@ -12,9 +14,9 @@ pub(crate) struct Fitted {
     /// Projected sum of squares over the noise.
     pub(crate) cost: f64,
     /// Measured less predicted, nuisance not taken out.
-    pub(crate) residual: Vec<Vec<f64>>,
+    pub(crate) residual: Signal,
     /// Change of the residual per coordinate, free coordinates only.
-    pub(crate) slopes: Vec<Vec<Vec<f64>>>,
+    pub(crate) slopes: Vec<Signal>,
     /// Which coordinates are free: effect and parameter.
     pub(crate) free: Vec<(usize, usize)>,
     /// Products of residual and slopes, experiment by experiment.
@@ -28,7 +30,7 @@ pub(crate) struct Fitted {
 struct Descent {
     effects: Vec<Effect>,
     free: Vec<(usize, usize)>,
-    residual: Vec<Vec<f64>>,
+    residual: Signal,
     cost: f64,
 }
 
@@ -55,14 +57,14 @@ const LARGEST_LOG_STEP: f64 = 0.7;
 
 impl<S: Simulator> Fitter<'_, S> {
     fn parameter(&self, effects: &[Effect], at: (usize, usize)) -> &Parameter {
-        &self.candidates[effects[at.0].candidate].cause.parameters[at.1]
+        &self.candidates[effects[at.0].candidate].parameters[at.1]
     }
 
-    pub(crate) fn residual(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError> {
+    pub(crate) fn residual(&self, effects: &[Effect]) -> Result<Signal, GapError> {
         Ok(residual(self.evidence.traces, &self.simulator.predict(effects)?))
     }
 
-    pub(crate) fn cost_of(&self, residual: &[Vec<f64>]) -> f64 {
+    pub(crate) fn cost_of(&self, residual: &Signal) -> f64 {
         let seen = self.evidence.see(residual);
         self.evidence.inner(&seen, &seen)
     }
@@ -129,9 +131,7 @@ impl<S: Simulator> Fitter<'_, S> {
     pub(crate) fn refine(&self, effects: Vec<Effect>) -> Result<Fitted, GapError> {
         let Descent { effects, free, residual, cost } = self.descend(effects, ITERATIONS)?;
         let slopes = self.slopes(&effects, &residual, &free)?;
-        let columns: Vec<&[Vec<f64>]> =
-            std::iter::once(residual.as_slice()).chain(slopes.iter().map(Vec::as_slice)).collect();
-        let products = self.evidence.products(&columns);
+        let products = self.evidence.products(&columns(&residual, &slopes));
         Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
     }
 
@@ -148,18 +148,12 @@ impl<S: Simulator> Fitter<'_, S> {
         let mut damping = 1e-3;
         for _ in 0..iterations {
             let slopes = self.slopes(&effects, &residual, &free)?;
-            let columns: Vec<&[Vec<f64>]> = std::iter::once(residual.as_slice())
-                .chain(slopes.iter().map(Vec::as_slice))
-                .collect();
-            let seen = self.evidence.seen(&columns);
-            let matrix = self.evidence.inners(&seen.iter().collect::<Vec<_>>());
-            let n = free.len();
-            let normal = matrix.view((1, 1), (n, n)).clone_owned();
-            let right: DVector<f64> = -matrix.view((1, 0), (n, 1)).column(0).clone_owned();
+            let gram = self.evidence.gram(&columns(&residual, &slopes));
+            let (normal, right) = normal_equations(&gram);
             let mut improved = None;
             for _ in 0..4 {
                 let mut damped = normal.clone();
-                for i in 0..n {
+                for i in 0..free.len() {
                     damped[(i, i)] += damping * normal[(i, i)] + 1e-12 + 1e-9 * normal.trace();
                 }
                 let Some(step) = damped.cholesky().map(|c| c.solve(&right)) else { break };
@@ -190,9 +184,9 @@ impl<S: Simulator> Fitter<'_, S> {
     pub(crate) fn slopes(
         &self,
         effects: &[Effect],
-        residual: &[Vec<f64>],
+        residual: &Signal,
         free: &[(usize, usize)],
-    ) -> Result<Vec<Vec<Vec<f64>>>, GapError> {
+    ) -> Result<Vec<Signal>, GapError> {
         free.iter()
             .map(|&at| {
                 let parameter = self.parameter(effects, at);
@@ -207,16 +201,14 @@ impl<S: Simulator> Fitter<'_, S> {
                 shifted[at.0].values[at.1] = parameter.value(x + step);
                 let change = parameter.coordinate(shifted[at.0].values[at.1]) - x;
                 let there = self.residual(&shifted)?;
-                Ok(there
-                    .iter()
-                    .zip(residual)
-                    .map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) / change).collect())
-                    .collect())
+                let mut slope = difference(&there, residual);
+                slope.iter_mut().flatten().for_each(|value| *value /= change);
+                Ok(slope)
             })
             .collect()
     }
 
-    pub(crate) fn moved(
+    fn moved(
         &self,
         effects: &[Effect],
         free: &[(usize, usize)],
@@ -243,21 +235,17 @@ impl Fitted {
     /// The products of the whole set weigh in with a fiftieth: a parameter that only the fold left out
     /// shows keeps the value of the whole fit, where the others alone would leave it anywhere. A step is
     /// cut back to where the residual may be taken as straight in the parameters.
-    pub(crate) fn shift(&self, matrix: &DMatrix<f64>, whole: &DMatrix<f64>) -> DVector<f64> {
+    fn shift(&self, matrix: &DMatrix<f64>, whole: &DMatrix<f64>) -> DVector<f64> {
         let n = matrix.nrows() - 1;
         let mut shift = zero_shift(n);
         if n == 0 {
             return shift;
         }
-        let mut normal = matrix.view((1, 1), (n, n)).clone_owned();
-        normal += whole.view((1, 1), (n, n)) * KEPT;
-        let trace = normal.trace();
-        for i in 0..n {
-            normal[(i, i)] += 1e-9 * trace + 1e-12;
-        }
-        let right: DVector<f64> = -matrix.view((1, 0), (n, 1)).column(0).clone_owned();
+        let (normal, right) = normal_equations(matrix);
+        let whole = whole.view((1, 1), (n, n));
+        let normal = ridged(normal + whole * KEPT, 1e-9, 1e-12);
         if let Some(mut step) = normal.cholesky().map(|c| c.solve(&right)) {
-            let rise = (step.transpose() * whole.view((1, 1), (n, n)) * &step)[0];
+            let rise = (step.transpose() * whole * &step)[0];
             if rise > self.trust {
                 step *= (self.trust / rise).sqrt();
             }
@@ -269,22 +257,37 @@ impl Fitted {
     /// Sums of squares over the noise on every experiment, each predicted by a fit that has not seen
     /// its fold.
     pub(crate) fn held_out(&self, evidence: &Evidence<'_>) -> Vec<f64> {
-        let whole = evidence.projected(&self.products);
-        (0..evidence.experiments)
-            .map(|e| {
-                let fold = (evidence.fold_count > 1).then_some(evidence.folds[e]);
-                let shift = self.shift(&evidence.project(&self.products, fold), &whole);
-                let nuisance = evidence.nuisance_of(&self.products, &shift, fold);
-                evidence.left_of(&self.products[e], &shift, &nuisance, e)
-            })
-            .collect()
+        let folds = self.folds(evidence, &self.products);
+        let left = |(e, products): (usize, &Products)| {
+            let (shift, nuisance) = &folds[evidence.folds[e]];
+            evidence.left_of(products, shift, nuisance, e)
+        };
+        self.products.iter().enumerate().map(left).collect()
+    }
+
+    /// Steps of the coordinates and nuisance of the fits that have not seen a fold, fold by fold, from products of
+    /// a residual with the slopes; one fold alone is its own judge.
+    pub(crate) fn folds(
+        &self,
+        evidence: &Evidence<'_>,
+        products: &[Products],
+    ) -> Vec<(DVector<f64>, DVector<f64>)> {
+        let whole = evidence.project(products, None);
+        let one = |fold| {
+            let left_out = (evidence.fold_count > 1).then_some(fold);
+            let shift = self.shift(&evidence.project(products, left_out), &whole);
+            let nuisance = evidence.nuisance_of(products, &shift, left_out);
+            (shift, nuisance)
+        };
+        (0..evidence.fold_count).map(one).collect()
     }
 
     /// The residual less the nuisance it asks for.
-    pub(crate) fn cleaned(&self, evidence: &Evidence<'_>) -> Vec<Vec<f64>> {
+    pub(crate) fn cleaned(&self, evidence: &Evidence<'_>) -> Signal {
         let shift = zero_shift(self.free.len());
         let nuisance = evidence.nuisance_of(&self.products, &shift, None);
-        evidence.cleaned(&self.residual, &nuisance)
+        let pairs = evidence.traces.iter().zip(&self.residual);
+        pairs.map(|(trace, own)| trace.cleaned(own.clone(), &nuisance)).collect()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::decide::Search;
 use super::fit::Fitted;
-use super::thresholds::{FORM_LEFT, RUN_MARGIN, STANDS_OUT};
+use super::thresholds::{FORM_LEFT, NOISE_DEVIATIONS, RUN_MARGIN, STANDS_OUT};
 use super::{Simulator, StandsOut};
 
 impl<S: Simulator> Search<'_, S> {
@@ -90,7 +90,7 @@ impl<S: Simulator> Search<'_, S> {
             self.discovery.structures.iter().map(|s| self.evidence.by_experiment(s)).collect();
         let own = |(experiment, (excess, error)): (usize, (f64, f64))| {
             let floor = floors.iter().map(|f| f[experiment]).fold(0.0, f64::max);
-            let beyond = RUN_MARGIN * floor + self.discovery.settings.noise_deviations * error;
+            let beyond = RUN_MARGIN * floor + NOISE_DEVIATIONS * error;
             Run { excess, floor: floor.max(error), beyond }
         };
         excess.into_iter().enumerate().map(own).collect()

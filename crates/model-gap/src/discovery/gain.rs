@@ -1,9 +1,9 @@
 //! What the extension is worth on data not used for it.
 
-use super::evidence::{Evidence, Products, difference};
+use super::evidence::{Evidence, Products, columns, difference};
 use super::fit::Fitted;
-use super::quantile::student_975;
 use super::{Signal, TraceRole};
+use crate::quantile::student_975;
 use crate::resampling::{NoiseDraw, SplitMix};
 use rayon::prelude::*;
 
@@ -38,10 +38,7 @@ pub(crate) fn gain(
     let before = held_out_residual(evidence, base);
     let after = held_out_residual(evidence, extended);
     let mut experiments: Vec<Vec<Block>> = vec![Vec::new(); evidence.experiments];
-    for (number, trace) in evidence.traces.iter().enumerate() {
-        if trace.role != TraceRole::Output {
-            continue;
-        }
+    for (number, trace) in evidence.of_role(TraceRole::Output) {
         let pairs = before[number].chunks(trace.block).zip(after[number].chunks(trace.block));
         for (a, b) in pairs {
             let square = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>();
@@ -116,8 +113,7 @@ fn repeated(
 /// RMS of the sum of two signals on the outputs; the second may be missing.
 fn output_rms(evidence: &Evidence<'_>, a: &Signal, b: &[Vec<f64>]) -> f64 {
     let (mut square, mut count) = (0.0, 0.0);
-    let outputs = evidence.traces.iter().enumerate().filter(|(_, t)| t.role == TraceRole::Output);
-    for (number, _) in outputs {
+    for (number, _) in evidence.of_role(TraceRole::Output) {
         square += match b.get(number) {
             Some(b) => a[number].iter().zip(b).map(|(a, b)| (a + b).powi(2)).sum::<f64>(),
             None => a[number].iter().map(|a| a * a).sum(),
@@ -129,8 +125,7 @@ fn output_rms(evidence: &Evidence<'_>, a: &Signal, b: &[Vec<f64>]) -> f64 {
 
 /// What held-out residuals change by when the measured signals change by `noise`.
 fn under(evidence: &Evidence<'_>, fitted: &Fitted, noise: &Signal) -> Signal {
-    let slopes: Vec<&[Vec<f64>]> = fitted.slopes.iter().map(Vec::as_slice).collect();
-    let products = evidence.products_after(noise, &slopes, &fitted.products);
+    let products = evidence.products_after(&columns(noise, &fitted.slopes), &fitted.products);
     held_out_of(evidence, fitted, noise, &products)
 }
 
@@ -162,15 +157,7 @@ fn held_out_of(
     residual: &Signal,
     products: &[Products],
 ) -> Signal {
-    let whole = evidence.projected(products);
-    let folds: Vec<_> = (0..evidence.fold_count)
-        .map(|fold| {
-            let left_out = (evidence.fold_count > 1).then_some(fold);
-            let shift = fitted.shift(&evidence.project(products, left_out), &whole);
-            let nuisance = evidence.nuisance_of(products, &shift, left_out);
-            (shift, nuisance)
-        })
-        .collect();
+    let folds = fitted.folds(evidence, products);
     evidence
         .traces
         .iter()
@@ -181,11 +168,7 @@ fn held_out_of(
             for (slope, s) in fitted.slopes.iter().zip(shift.iter().skip(1)) {
                 left.iter_mut().zip(&slope[number]).for_each(|(y, slope)| *y += slope * s);
             }
-            if trace.nuisance.ncols() > 0 {
-                let moved = &trace.nuisance * nuisance;
-                left.iter_mut().zip(moved.iter()).for_each(|(y, m)| *y -= m);
-            }
-            left
+            trace.cleaned(left, nuisance)
         })
         .collect()
 }

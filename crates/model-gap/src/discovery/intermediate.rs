@@ -18,8 +18,8 @@ impl<S: Simulator> Search<'_, S> {
     /// or of zero of a channel does not cancel the effect of a cause. The fit itself need not turn to it, since
     /// an output that is read finely outweighs a channel that is trusted less.
     pub(super) fn contradicted(&self, fit: &Fitted) -> Result<Option<Reason>, GapError> {
-        let traces = self.evidence.traces;
-        if !traces.iter().any(|t| t.role == TraceRole::IntermediateChannel) {
+        let channels = || self.evidence.of_role(TraceRole::IntermediateChannel);
+        if channels().next().is_none() {
             return Ok(None);
         }
         let Some((_, others)) = fit.effects.split_last() else { return Ok(None) };
@@ -27,9 +27,7 @@ impl<S: Simulator> Search<'_, S> {
         let effect = difference(&without, &fit.residual);
         let (mut both, mut own) = (0.0, 0.0);
         let mut blocks: Vec<(f64, f64)> = Vec::new();
-        let channels =
-            traces.iter().enumerate().filter(|(_, t)| t.role == TraceRole::IntermediateChannel);
-        for (number, trace) in channels {
+        for (number, trace) in channels() {
             let weight = 1.0 / (trace.sigma * trace.sigma);
             let pairs = without[number].chunks(trace.block).zip(effect[number].chunks(trace.block));
             for (m, e) in pairs {

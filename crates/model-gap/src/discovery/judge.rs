@@ -1,12 +1,12 @@
 //! The open set: what is left, whether parameters hold still, how well they are known.
 
 use super::FittedParameter;
-use super::evidence::{Evidence, Products, Seen, difference, residual};
+use super::evidence::{Evidence, Seen, columns, difference, normal_equations, residual, ridged};
 use super::fit::Fitted;
-use super::quantile::{NORMAL_975, student_975};
-use super::thresholds::GENERIC_MARGIN;
+use super::thresholds::{GENERIC_MARGIN, NOISE_DEVIATIONS};
 use super::{Discovery, Signal, Simulator};
 use crate::GapError;
+use crate::quantile::{NORMAL_975, student_975};
 use nalgebra::{DMatrix, DVector};
 
 /// The generic directions, ready to be tested against residuals.
@@ -19,20 +19,17 @@ pub(crate) struct Generic<'a> {
 }
 
 impl<'a> Generic<'a> {
-    pub(crate) fn new<S>(
-        discovery: &Discovery<'a, S>,
+    /// `structures` is what the base model leaves of surrogates with nothing missing.
+    pub(crate) fn new(
         evidence: &Evidence<'_>,
         directions: &'a [Signal],
+        structures: &[Signal],
     ) -> Self {
-        let columns: Vec<&[Vec<f64>]> = directions.iter().map(Vec::as_slice).collect();
-        let directions = evidence.seen(&columns);
-        let gram = evidence.inners(&directions.iter().collect::<Vec<_>>());
-        let (inverse, rank) = pseudo_inverse(&gram);
+        let directions = evidence.seen(&directions.iter().collect::<Vec<_>>());
+        let (inverse, rank) = pseudo_inverse(&evidence.inners(&directions));
         let mut own = Self { directions, inverse, threshold: 0.0 };
-        let settings = discovery.settings;
-        let structural =
-            discovery.structures.iter().map(|s| own.along(evidence, s)).fold(0.0, f64::max);
-        let noise = (rank.sqrt() + settings.noise_deviations).powi(2);
+        let structural = structures.iter().map(|s| own.along(evidence, s)).fold(0.0, f64::max);
+        let noise = (rank.sqrt() + NOISE_DEVIATIONS).powi(2);
         own.threshold = GENERIC_MARGIN * structural + noise;
         own
     }
@@ -56,11 +53,13 @@ fn pseudo_inverse(gram: &DMatrix<f64>) -> (DMatrix<f64>, f64) {
     }
     // columns of unit size first, so that the rank does not depend on units
     let size: Vec<f64> = (0..n).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
-    let scaled = DMatrix::from_fn(n, n, |i, j| {
-        let s = size[i] * size[j];
-        if s > 0.0 { gram[(i, j)] / s } else { 0.0 }
-    });
-    let eigen = scaled.symmetric_eigen();
+    let scaled = |matrix: &DMatrix<f64>| {
+        DMatrix::from_fn(n, n, |i, j| {
+            let s = size[i] * size[j];
+            if s > 0.0 { matrix[(i, j)] / s } else { 0.0 }
+        })
+    };
+    let eigen = scaled(gram).symmetric_eigen();
     let mut inverse = DMatrix::zeros(n, n);
     let mut rank = 0.0;
     for (k, &value) in eigen.eigenvalues.iter().enumerate() {
@@ -70,11 +69,7 @@ fn pseudo_inverse(gram: &DMatrix<f64>) -> (DMatrix<f64>, f64) {
             inverse += v * v.transpose() / value;
         }
     }
-    let back = DMatrix::from_fn(n, n, |i, j| {
-        let s = size[i] * size[j];
-        if s > 0.0 { inverse[(i, j)] / s } else { 0.0 }
-    });
-    (back, rank)
+    (scaled(&inverse), rank)
 }
 
 /// How one fitted coordinate varies from experiment to experiment.
@@ -103,7 +98,7 @@ impl Drift {
 pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize) -> Drift {
     let mut shifts = Vec::new();
     for (experiment, products) in fitted.products.iter().enumerate() {
-        let gram = evidence.projected_alone(products, experiment);
+        let gram = evidence.project_alone(products, experiment);
         let information = gram[(coordinate + 1, coordinate + 1)];
         shifts.push((-gram[(0, coordinate + 1)] / information.max(1e-300), information));
     }
@@ -130,7 +125,7 @@ pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize)
 /// held_k = <h, s_k'> / |s_k'|^2
 /// ```
 /// `e` is what the effect adds to the rest. No model of a cause is exact: what it lacks is taken to be
-/// along its own effect by a part `F` of it ([`crate::Cause::form_error`]), and each parameter moves as it would have to. `h` is what a standard
+/// along its own effect by a part `F` of it ([`crate::Candidate::form_error`]), and each parameter moves as it would have to. `h` is what a standard
 /// deviation of a parameter that is held adds. What the
 /// base model leaves of a surrogate with nothing missing moves a parameter likewise; `q` is Student's quantile
 /// for so many surrogates over the normal one, because a few draws tell a spread badly.
@@ -141,24 +136,16 @@ fn shifts<S: Simulator>(
     effect: usize,
     rest: &Fitted,
 ) -> Result<Option<DVector<f64>>, GapError> {
-    let cause = &discovery.candidates[fitted.effects[effect].candidate].cause;
+    let cause = &discovery.candidates[fitted.effects[effect].candidate];
     let added = difference(&rest.residual, &fitted.residual);
     let held = held_shifts(discovery, evidence, fitted, effect)?;
     let first = 1 + held.len();
     let others = first + discovery.structures.len();
-    let columns: Vec<&[Vec<f64>]> = std::iter::once(added.as_slice())
-        .chain(held.iter().map(Vec::as_slice))
-        .chain(discovery.structures.iter().map(Vec::as_slice))
-        .chain(fitted.slopes.iter().map(Vec::as_slice))
-        .collect();
-    let seen = evidence.seen(&columns);
-    let gram = evidence.inners(&seen.iter().collect::<Vec<_>>());
+    let mut columns = columns(&added, &held);
+    columns.extend(discovery.structures.iter().chain(&fitted.slopes));
+    let gram = evidence.gram(&columns);
     let n = fitted.slopes.len();
-    let mut normal = gram.view((others, others), (n, n)).clone_owned();
-    let ridge = 1e-12 * normal.trace();
-    for i in 0..n {
-        normal[(i, i)] += ridge;
-    }
+    let normal = ridged(gram.view((others, others), (n, n)).clone_owned(), 1e-12, 0.0);
     // regression on all slopes at once: each coefficient is <., s'> / |s'|^2
     let right = gram.view((others, 0), (n, others)).clone_owned();
     let Some(moved) = normal.cholesky().map(|c| c.solve(&right)) else { return Ok(None) };
@@ -181,7 +168,7 @@ fn held_shifts<S: Simulator>(
     effect: usize,
 ) -> Result<Vec<Signal>, GapError> {
     let own = &fitted.effects[effect];
-    let parameters = &discovery.candidates[own.candidate].cause.parameters;
+    let parameters = &discovery.candidates[own.candidate].parameters;
     let mut shifts = Vec::new();
     for (p, parameter) in parameters.iter().enumerate() {
         if let Some(std) = parameter.held {
@@ -207,16 +194,10 @@ pub(crate) fn parameters<S: Simulator>(
     rest: &Fitted,
 ) -> Result<Vec<FittedParameter>, GapError> {
     let own = &fitted.effects[effect];
-    let cause = &discovery.candidates[own.candidate].cause;
+    let cause = &discovery.candidates[own.candidate];
     let shifts = shifts(discovery, evidence, fitted, effect, rest)?;
-    let gram = evidence.projected(&fitted.products);
-    let n = fitted.free.len();
-    let mut normal = gram.view((1, 1), (n, n)).clone_owned();
-    let ridge = 1e-12 * normal.trace();
-    for i in 0..n {
-        normal[(i, i)] += ridge;
-    }
-    let covariance = normal.cholesky().map(|c| c.inverse());
+    let (normal, _) = normal_equations(&evidence.project(&fitted.products, None));
+    let covariance = ridged(normal, 1e-12, 0.0).cholesky().map(|c| c.inverse());
     let fitted = cause
         .parameters
         .iter()
@@ -248,8 +229,8 @@ pub(crate) fn parameters<S: Simulator>(
     Ok(fitted)
 }
 
-/// Drop of the misfit from one fit to another, with its standard error over the blocks.
-pub(crate) fn paired(evidence: &Evidence<'_>, worse: &Fitted, better: &Fitted) -> (f64, f64) {
+/// Standard error over the blocks of the drop of the misfit from one fit to another.
+pub(crate) fn drop_error(evidence: &Evidence<'_>, worse: &Fitted, better: &Fitted) -> f64 {
     let (a, b) = (worse.cleaned(evidence), better.cleaned(evidence));
     let mut square = 0.0;
     for ((a, b), trace) in a.iter().zip(&b).zip(evidence.traces) {
@@ -259,16 +240,5 @@ pub(crate) fn paired(evidence: &Evidence<'_>, worse: &Fitted, better: &Fitted) -
             square += ((sum(a) - sum(b)) * weight).powi(2);
         }
     }
-    (worse.cost - better.cost, square.sqrt())
-}
-
-impl Evidence<'_> {
-    /// The products of one experiment with its own nuisance projected out.
-    pub(crate) fn projected_alone(&self, products: &Products, experiment: usize) -> DMatrix<f64> {
-        let solved = self.alone(experiment).map(|c| c.solve(&products.with_nuisance));
-        solved.map_or_else(
-            || products.own.clone(),
-            |solved| &products.own - products.with_nuisance.tr_mul(&solved),
-        )
-    }
+    square.sqrt()
 }

@@ -8,7 +8,6 @@ mod floors;
 mod gain;
 mod intermediate;
 mod judge;
-mod quantile;
 mod reason;
 mod rival;
 mod screen;
@@ -20,13 +19,16 @@ pub use gain::Gain;
 pub use reason::Reason;
 pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
+pub use thresholds::needed_to_separate;
 pub use trace::{Simulator, Trace, TraceRole};
 pub use verdict::{
     Alternative, Compared, Confidence, Finding, FittedParameter, Found, StandsOut, Verdict,
 };
 
 use crate::{Candidate, GapError};
+use decide::Search;
 use evidence::Evidence;
+use thresholds::MOST_FOLDS;
 
 /// A signal on all traces.
 pub type Signal = Vec<Vec<f64>>;
@@ -47,52 +49,24 @@ pub struct Discovery<'a, S> {
     pub trends: &'a [Signal],
     /// What the base model leaves of surrogate systems of other kinds with nothing missing.
     pub structures: &'a [Signal],
-    /// Bounds of the decisions.
+    /// What depends on the data and on who asks.
     pub settings: Settings,
 }
 
-/// Bounds of the decisions.
+/// What of the decisions depends on the data and on who asks. Their bounds are the same for all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Standard deviations of the noise that a score must exceed; noise and structure add as squares.
-    pub noise_deviations: f64,
-    /// Factor on what surrogates reach.
-    pub structure_margin: f64,
-    /// Share of the excess that the named causes must explain.
-    pub explained: f64,
     /// Most causes named together.
     pub most_causes: usize,
-    /// Most folds of the split by experiment.
-    pub most_folds: usize,
-    /// Penalty on a free parameter, in units of the noise variance.
-    pub parameter_penalty: f64,
-    /// Drop of the misfit that separates two causes, in units of the noise variance.
-    pub separation: f64,
-    /// Share of a drop within which two causes are not discriminated: no model of a cause is better.
-    pub form_error: f64,
     /// Whether the base model rests on reference runs; without, nothing is said with confidence.
     pub has_reference: bool,
-    /// RMS of a weak effect over the standard deviation of the output.
-    pub weak_effect: f64,
     /// Resamplings of the gain's interval.
     pub resamplings: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self {
-            noise_deviations: 4.2,
-            structure_margin: 2.0,
-            explained: 0.9,
-            most_causes: 3,
-            most_folds: 8,
-            parameter_penalty: 3.0,
-            separation: 12.0,
-            form_error: 0.02,
-            has_reference: true,
-            weak_effect: 0.01,
-            resamplings: 1000,
-        }
+        Self { most_causes: 3, has_reference: true, resamplings: 1000 }
     }
 }
 
@@ -102,8 +76,8 @@ impl<S: Simulator> Discovery<'_, S> {
     /// # Errors
     /// [`GapError::Simulation`]; [`GapError::NotPositiveDefinite`] for bad nuisance columns.
     pub fn find(&self) -> Result<Finding, GapError> {
-        let evidence = Evidence::new(self.traces, self.settings.most_folds)?;
-        decide::decide(self, &evidence)
+        let evidence = Evidence::new(self.traces, MOST_FOLDS)?;
+        Search::new(self, &evidence)?.run()
     }
 
     /// Fits the candidates given together and refuses nothing: what a refit with the true causes gains.
@@ -111,7 +85,7 @@ impl<S: Simulator> Discovery<'_, S> {
     /// # Errors
     /// As [`Self::find`].
     pub fn refit(&self, given: &[usize]) -> Result<Finding, GapError> {
-        let evidence = Evidence::new(self.traces, self.settings.most_folds)?;
-        decide::refit(self, &evidence, given)
+        let evidence = Evidence::new(self.traces, MOST_FOLDS)?;
+        Search::new(self, &evidence)?.refit(given)
     }
 }

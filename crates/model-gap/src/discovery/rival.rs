@@ -1,8 +1,8 @@
 //! Explanations that the data leave open, and how far an experiment not yet done would part them.
 
-use super::evidence::{Evidence, difference};
+use super::evidence::{Evidence, columns, difference, normal_equations, ridged};
 use super::fit::{Fitted, Fitter};
-use super::{Simulator, Trace};
+use super::{Signal, Simulator, Trace};
 use crate::{Candidate, Effect, GapError};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -21,9 +21,7 @@ pub struct Rival {
 
 impl Rival {
     pub(super) fn of(evidence: &Evidence<'_>, fit: &Fitted, candidate: usize) -> Self {
-        let gram = evidence.projected(&fit.products);
-        let n = fit.free.len();
-        let information = gram.view((1, 1), (n, n)).clone_owned();
+        let (information, _) = normal_equations(&evidence.project(&fit.products, None));
         Self { candidate, effects: fit.effects.clone(), information, free: fit.free.clone() }
     }
 }
@@ -70,7 +68,7 @@ pub fn separations<S: Simulator>(
         })
         .collect::<Result<_, GapError>>()?;
     let on_outputs =
-        |effect: &[Vec<f64>]| (fitter.cost_of(effect) - evidence.beside_output(effect)).max(0.0);
+        |effect: &Signal| (fitter.cost_of(effect) - evidence.beside_output(effect)).max(0.0);
     let energy = looked_at.iter().map(|own| on_outputs(&difference(&base, &own.0))).collect();
     let count = rivals.len();
     let mut distance = DMatrix::zeros(count, count);
@@ -80,17 +78,9 @@ pub fn separations<S: Simulator>(
                 continue;
             }
             let apart = difference(residual, &truth.0);
-            let columns: Vec<&[Vec<f64>]> =
-                std::iter::once(apart.as_slice()).chain(slopes.iter().map(Vec::as_slice)).collect();
-            let seen = evidence.seen(&columns);
-            let gram = evidence.inners(&seen.iter().collect::<Vec<_>>());
-            let n = slopes.len();
-            let mut normal = gram.view((1, 1), (n, n)) + &rivals[b].information;
-            let ridge = 1e-9 * normal.trace() + 1e-12;
-            for i in 0..n {
-                normal[(i, i)] += ridge;
-            }
-            let along = gram.view((1, 0), (n, 1)).column(0).clone_owned();
+            let gram = evidence.gram(&columns(&apart, slopes));
+            let (normal, along) = normal_equations(&gram);
+            let normal = ridged(normal + &rivals[b].information, 1e-9, 1e-12);
             let taken = normal.cholesky().map_or(0.0, |c| along.dot(&c.solve(&along)));
             distance[(a, b)] = (gram[(0, 0)] - taken).max(0.0);
         }

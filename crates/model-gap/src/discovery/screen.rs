@@ -1,10 +1,9 @@
 //! What each candidate could explain, before any fit.
 
-use super::evidence::{Evidence, difference};
-use super::thresholds::OTHER_SIGN;
+use super::evidence::{Evidence, columns, difference};
+use super::thresholds::{NOISE_DEVIATIONS, OTHER_SIGN, STRUCTURE_MARGIN, WEAK_EFFECT};
 use super::{Discovery, Signal, Simulator};
 use crate::{Effect, GapError};
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// What the screening says of one candidate.
@@ -18,13 +17,11 @@ pub struct Screened {
     /// What surrogates without any missing effect reach, with a margin for noise: below it there is
     /// nothing to name.
     pub threshold: f64,
-    /// Drop of the misfit expected of a weak effect, [`super::Settings::weak_effect`] of the output, in
+    /// Drop of the misfit expected of a weak effect, a hundredth of the output, in
     /// units of the noise variance.
     pub weak_signal: f64,
     /// The candidate whose effect points the same way, with the cosine.
     pub most_confused: Option<(usize, f64)>,
-    /// Start of the largest score.
-    pub best_start: usize,
 }
 
 /// Of so many starts of an effect that adapts to each experiment, one is tried on every surrogate.
@@ -37,38 +34,24 @@ const RAYLEIGH_MEAN: f64 = 1.253_314_137_315_500_3;
 pub(crate) fn screen<S: Simulator>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
-    base: &[Vec<f64>],
-    misfit: &[Vec<f64>],
+    base: &Signal,
+    misfit: &Signal,
 ) -> Result<Vec<Screened>, GapError> {
-    let results: Vec<Result<(Screened, Option<Signal>), GapError>> =
-        (0..discovery.candidates.len())
-            .into_par_iter()
-            .map(|candidate| one(discovery, evidence, base, misfit, candidate))
-            .collect();
-    let mut screened = Vec::new();
-    let mut effects = Vec::new();
-    for result in results {
-        let (own, effect) = result?;
-        screened.push(own);
-        effects.push(effect);
-    }
+    let results: Vec<(Screened, Option<Signal>)> = (0..discovery.candidates.len())
+        .into_par_iter()
+        .map(|candidate| one(discovery, evidence, base, misfit, candidate))
+        .collect::<Result<_, GapError>>()?;
+    let (mut screened, effects): (Vec<Screened>, Vec<Option<Signal>>) = results.into_iter().unzip();
     let present: Vec<usize> = (0..effects.len()).filter(|&c| effects[c].is_some()).collect();
-    let columns: Vec<&[Vec<f64>]> = effects.iter().flatten().map(Vec::as_slice).collect();
-    let seen = evidence.seen(&columns);
-    let gram = evidence.inners(&seen.iter().collect::<Vec<_>>());
-    let mut cosines = DMatrix::identity(effects.len(), effects.len());
+    let gram = evidence.gram(&effects.iter().flatten().collect::<Vec<_>>());
     for (i, &a) in present.iter().enumerate() {
-        for (j, &b) in present.iter().enumerate() {
+        let cosine = |(j, &b): (usize, &usize)| {
             let size = (gram[(i, i)] * gram[(j, j)]).sqrt();
-            cosines[(a, b)] = if size > 0.0 { gram[(i, j)] / size } else { 0.0 };
-        }
-    }
-    for &a in &present {
-        screened[a].most_confused = present
-            .iter()
-            .filter(|&&b| b != a)
-            .map(|&b| (b, cosines[(a, b)]))
-            .max_by(|x, y| x.1.abs().total_cmp(&y.1.abs()));
+            (b, if size > 0.0 { gram[(i, j)] / size } else { 0.0 })
+        };
+        let others = present.iter().enumerate().filter(|(_, b)| **b != a);
+        screened[a].most_confused =
+            others.map(cosine).max_by(|x, y| x.1.abs().total_cmp(&y.1.abs()));
     }
     Ok(screened)
 }
@@ -76,47 +59,36 @@ pub(crate) fn screen<S: Simulator>(
 fn one<S: Simulator>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
-    base: &[Vec<f64>],
-    misfit: &[Vec<f64>],
+    base: &Signal,
+    misfit: &Signal,
     candidate: usize,
 ) -> Result<(Screened, Option<Signal>), GapError> {
-    let settings = discovery.settings;
     let nothing = Screened {
         score: 0.0,
         absorbed: 1.0,
-        threshold: settings.noise_deviations.powi(2),
+        threshold: NOISE_DEVIATIONS.powi(2),
         weak_signal: 0.0,
         most_confused: None,
-        best_start: 0,
     };
     let given = &discovery.candidates[candidate];
     if given.blocked.is_some() {
         return Ok((nothing, None));
     }
-    let mut signals: Vec<Signal> = Vec::with_capacity(given.starts.len());
-    for values in &given.starts {
-        let effect = Effect { candidate, values: values.clone() };
-        signals.push(difference(&discovery.simulator.predict(&[effect])?, base));
-    }
-    let known: Vec<&[Vec<f64>]> =
-        std::iter::once(misfit).chain(discovery.structures.iter().map(Vec::as_slice)).collect();
-    let known = evidence.seen(&known);
-    let columns: Vec<&[Vec<f64>]> = signals.iter().map(Vec::as_slice).collect();
-    let seen = evidence.seen(&columns);
-    let weak = settings.weak_effect.powi(2) * evidence.output_energy();
+    let effect_at = |start: usize| Effect { candidate, values: given.starts[start].clone() };
+    let mut signals: Vec<Signal> = (0..given.starts.len())
+        .map(|start| Ok(difference(&discovery.simulator.predict(&[effect_at(start)])?, base)))
+        .collect::<Result<_, GapError>>()?;
+    let known = evidence.seen(&columns(misfit, discovery.structures));
+    let seen = evidence.seen(&signals.iter().collect::<Vec<_>>());
+    let weak = WEAK_EFFECT.powi(2) * evidence.output_energy();
     let mut best = nothing;
     let mut found = None;
     let mut structural = 0.0_f64;
     // an effect that adapts to every experiment finds something to adapt to in noise too: the length of
     // a Rayleigh vector per experiment
-    let adapts = match given.starts.first() {
-        Some(values) => {
-            let effect = Effect { candidate, values: values.clone() };
-            discovery.simulator.adapted(&effect, misfit)?.is_some()
-        }
-        None => false,
-    };
-    let noise = settings.noise_deviations
+    let adapts =
+        !given.starts.is_empty() && discovery.simulator.adapted(&effect_at(0), misfit)?.is_some();
+    let noise = NOISE_DEVIATIONS
         + if adapts { RAYLEIGH_MEAN * (evidence.experiments as f64).sqrt() } else { 0.0 };
     for (start, signal) in seen.iter().enumerate() {
         let size = evidence.inner(signal, signal);
@@ -129,9 +101,8 @@ fn one<S: Simulator>(
             structural = structural.max(along).max(-OTHER_SIGN * along);
         }
         if adapts && start % ADAPTED_STARTS == 0 {
-            let effect = Effect { candidate, values: given.starts[start].clone() };
             for (structure, own) in discovery.structures.iter().zip(&known[1..]) {
-                if let Some(signal) = discovery.simulator.adapted(&effect, structure)? {
+                if let Some(signal) = discovery.simulator.adapted(&effect_at(start), structure)? {
                     let signal = evidence.see(&signal);
                     let size = evidence.inner(&signal, &signal).max(1e-300).sqrt();
                     structural = structural.max(evidence.inner(&signal, own) / size);
@@ -144,10 +115,9 @@ fn one<S: Simulator>(
         if score > best.score || found.is_none() {
             best.score = score;
             best.absorbed = 1.0 - size / whole;
-            best.best_start = start;
             found = Some(start);
         }
     }
-    best.threshold = (settings.structure_margin * structural).powi(2) + noise.powi(2);
+    best.threshold = (STRUCTURE_MARGIN * structural).powi(2) + noise.powi(2);
     Ok((best, found.map(|start| signals.swap_remove(start))))
 }

@@ -1,8 +1,17 @@
-//! Shares and margins of the decisions beside [`super::Settings`].
+//! Shares and margins of the decisions.
 //!
 //! No theory fixes them: they are choices, each with its meaning beside it, and `cargo xtask hidden-effects`
 //! scores what they do together. They are no probabilities: the weights of the samples count structure of the
 //! base model as if it were noise.
+
+// What noise and surrogates reach.
+
+/// Standard deviations of the noise that a score must exceed; noise and structure add as squares.
+pub(super) const NOISE_DEVIATIONS: f64 = 4.2;
+/// Factor on what surrogates reach.
+pub(super) const STRUCTURE_MARGIN: f64 = 2.0;
+/// RMS of a weak effect over the standard deviation of the output.
+pub(super) const WEAK_EFFECT: f64 = 0.01;
 
 // Which candidates are fitted.
 
@@ -15,6 +24,13 @@ pub(super) const OTHER_SIGN: f64 = 0.5;
 
 // What a cause must explain.
 
+/// Most folds of the split by experiment.
+pub(super) const MOST_FOLDS: usize = 8;
+/// Penalty on a free parameter, in units of the noise variance.
+pub(super) const PARAMETER_PENALTY: f64 = 3.0;
+/// Share of the excess that the named causes must explain.
+pub(super) const EXPLAINED: f64 = 0.9;
+
 /// Share of the drop by the causes before that the next one must add: below it, it mends their form.
 pub(super) const NEXT_SHARE: f64 = 0.04;
 /// The same for a candidate that is easily taken for one of the causes before: an error of their form is most of
@@ -26,6 +42,16 @@ pub(super) const STRONG: f64 = 2.0;
 pub(super) const HELD_OUT_SHARE: f64 = 0.3;
 
 // What discriminates two causes.
+
+/// Drop of the misfit that separates two causes, in units of the noise variance.
+pub(super) const SEPARATION: f64 = 12.0;
+/// Share of a drop within which two causes are not discriminated: no model of a cause is better.
+const FORM_ERROR: f64 = 0.02;
+
+/// Difference of chi-square from which on two causes are distinguished that take `drop` off it.
+pub fn needed_to_separate(drop: f64) -> f64 {
+    SEPARATION + FORM_ERROR * drop
+}
 
 /// Share of the drop beyond which structure of the base model does not make two causes change places.
 pub(super) const SWAY_SHARE: f64 = 0.1;

@@ -1,5 +1,6 @@
 //! Measured signals and what simulates them.
 
+use super::Signal;
 use crate::{Effect, GapError};
 use nalgebra::DMatrix;
 
@@ -50,7 +51,7 @@ pub trait Simulator: Sync {
     ///
     /// # Errors
     /// [`GapError::Simulation`] with the simulator's own words.
-    fn predict(&self, effects: &[Effect]) -> Result<Vec<Vec<f64>>, GapError>;
+    fn predict(&self, effects: &[Effect]) -> Result<Signal, GapError>;
 
     /// What an effect adds when what it adapts to each experiment, such as a phase, is fitted to a
     /// given residual instead of the measured one. None for effects that adapt to nothing: theirs is
@@ -58,11 +59,7 @@ pub trait Simulator: Sync {
     ///
     /// # Errors
     /// As [`Self::predict`].
-    fn adapted(
-        &self,
-        _effect: &Effect,
-        _residual: &[Vec<f64>],
-    ) -> Result<Option<Vec<Vec<f64>>>, GapError> {
+    fn adapted(&self, _effect: &Effect, _residual: &Signal) -> Result<Option<Signal>, GapError> {
         Ok(None)
     }
 }

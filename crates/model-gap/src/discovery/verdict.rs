@@ -141,10 +141,6 @@ pub struct Finding {
     pub reasons: Vec<Reason>,
     /// The screening, candidate by candidate.
     pub screen: Vec<Screened>,
-    /// Drop of chi-square by each candidate alone, fitted; none where it was not fitted.
-    pub single_drops: Vec<Option<f64>>,
-    /// Chi-square along the generic directions, before and after.
-    pub excess: [f64; 2],
     /// Held-out error before and after.
     pub gain: Gain,
     /// Residual of the base model, its nuisance taken out.

@@ -143,7 +143,7 @@ fn what_the_better_of_two_leaves_between_them_keeps_the_other_in_the_set() {
     let mut candidates = ["cubic", "lag", "cubic-twin", "fifth"].map(candidate);
     candidates[2].blocked = Some("no".into());
     // no second cause of the other sign may take the structure's place
-    candidates[3].cause.parameters[0].low = 0.0;
+    candidates[3].parameters[0].low = 0.0;
     candidates[3].starts = vec![vec![0.05]];
     let surrogate: Signal = vec![vec![0.0; SAMPLES]; EXPERIMENTS];
     let alternatives = |share: f64, structures: &[Signal]| -> Vec<usize> {
@@ -168,9 +168,9 @@ fn a_scale_that_is_open_to_one_end_of_its_range_makes_a_name_tentative() {
     let traces = traces(|e, i| added(1, 0.06, e, i), 4);
     let found = find(&traces, &candidates);
     let interval = found.causes[0].parameters[0].ci95;
-    candidates[1].cause.parameters[0].low = 0.999 * interval[0];
+    candidates[1].parameters[0].low = 0.999 * interval[0];
     let named = |scale, candidates: &mut [Candidate; 2]| {
-        candidates[1].cause.parameters[0].scale = scale;
+        candidates[1].parameters[0].scale = scale;
         let found = find(&traces, candidates);
         (found.causes[0].candidate, found.confidence)
     };
@@ -193,7 +193,7 @@ fn a_cause_none_of_whose_parameters_is_known_is_tentative() {
     assert!(said(&finding), "{:?}", finding.reasons);
     // a value that may be zero without the effect being none, as a threshold, is known
     let mut place = candidate("cubic");
-    place.cause.parameters[0].is_amount = false;
+    place.parameters[0].is_amount = false;
     assert!(!said(&find_beside(&traces, &[place], std::slice::from_ref(&left))));
 }
 
@@ -351,11 +351,7 @@ impl Simulator for Humming {
         Ok(self.traces.iter().enumerate().map(one).collect())
     }
 
-    fn adapted(
-        &self,
-        effect: &Effect,
-        residual: &[Vec<f64>],
-    ) -> Result<Option<Vec<Vec<f64>>>, GapError> {
+    fn adapted(&self, effect: &Effect, residual: &Signal) -> Result<Option<Signal>, GapError> {
         let own = || residual.iter().map(|r| line(effect.values[0], r)).collect();
         Ok(self.adapts.then(own))
     }
@@ -442,7 +438,7 @@ fn a_start_that_promises_much_and_costs_more_than_none_is_tried() {
     let traces = traces(|e, i| peaked(1.146, e, i), 12);
     let mut own = candidate("peaked");
     own.starts = vec![vec![-1.0], vec![-0.5], vec![1.03]];
-    own.cause.parameters[0].is_amount = false;
+    own.parameters[0].is_amount = false;
     let finding = find_by(&Peaked, &traces, &[own]);
     let value = finding.causes.first().map(|cause| cause.parameters[0].value);
     assert!(value.is_some_and(|v| (v - 1.146).abs() < 0.01), "{value:?} {:?}", finding.reasons);

@@ -64,7 +64,7 @@ fn strong_and_weak(confused: &'static [&'static str]) -> Finding {
     let mut candidates =
         [candidate("cubic"), candidate("lag"), candidate("other lag"), candidate("fifth power")];
     candidates[2].blocked = Some("not asked for".into());
-    candidates[3].cause.confused_with = confused;
+    candidates[3].confused_with = confused;
     let truth = |e: usize, i: usize| added(1, 0.3, e, i) + added(3, 0.07, e, i);
     find(&traces(truth, 5), &candidates)
 }

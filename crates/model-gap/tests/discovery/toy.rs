@@ -1,7 +1,7 @@
 //! A system whose answers are known: four sines, and what may act on them.
 
 use model_gap::discovery::{Discovery, Finding, Settings, Signal, Simulator, Trace, TraceRole};
-use model_gap::{Candidate, Cause, Effect, GapError, Parameter, Scale};
+use model_gap::{Candidate, Effect, GapError, Parameter};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
@@ -47,33 +47,13 @@ impl Simulator for Toy {
 }
 
 pub(crate) fn candidate(id: &'static str) -> Candidate {
-    let scale = Scale::Linear;
-    let cause = Cause {
-        id,
-        physics: "",
-        parameters: vec![Parameter {
-            name: "size",
-            unit: "1",
-            low: -2.0,
-            high: 2.0,
-            scale,
-            is_shape: false,
-            is_amount: true,
-            held: None,
-            needs: None,
-            step: None,
-        }],
-        form_error: 0.05,
-        fingerprint: "",
-        confused_with: &[],
-        separating: &[],
-    };
+    let size = Parameter { name: "size", unit: "1", low: -2.0, high: 2.0, ..Parameter::default() };
     Candidate {
-        cause,
+        id,
+        parameters: vec![Parameter { is_amount: true, ..size }],
+        form_error: 0.05,
         starts: vec![vec![0.05], vec![-0.05]],
-        blocked: None,
-        refuted: None,
-        decoy: None,
+        ..Candidate::default()
     }
 }
 

@@ -3,7 +3,7 @@
 mod energy_and_noise;
 mod harmonics;
 mod misfit;
-mod stimulus;
+mod sine;
 
 use std::f64::consts::TAU;
 

@@ -1,10 +1,9 @@
 //! One sample through the whole chain: command, amplifier, law, linkage, flap, sensor.
 
-use crate::check::check_positive;
-use crate::stages::{StageMemory, StageStep};
+use crate::check::{check_finite, check_positive};
+use crate::stages::{StageMemory, StageStep, Step};
 use crate::{
-    ActuatorModel, AmplifierStage, HysteresisLaw, LawMemory, LinkageStage, PlayMemory,
-    PreisachError, StartState, StepCounts,
+    ActuatorModel, HysteresisLaw, LawMemory, LinkageStage, PreisachError, StartState, StepCounts,
 };
 use serde::{Deserialize, Serialize};
 
@@ -44,23 +43,9 @@ impl ActuatorMemory {
     /// Temperature above the start, K; none without a heating stage.
     pub fn temperature_k(&self) -> Option<f64> {
         self.amplifier.iter().find_map(|memory| match memory {
-            StageMemory::Heating(memory) => Some(memory.temperature_k()),
+            StageMemory::Heating(memory) => Some(memory.temperature_k),
             _ => None,
         })
-    }
-
-    /// The memory of the law.
-    pub fn law(&self) -> &LawMemory {
-        &self.law
-    }
-
-    /// The plays of a Preisach law.
-    pub fn plays(&self) -> Option<&PlayMemory> {
-        match &self.law {
-            LawMemory::StaticPreisach(plays) => Some(plays),
-            LawMemory::DynamicPreisach(memory) => Some(&memory.plays),
-            _ => None,
-        }
     }
 
     /// Steps counted since this memory was made.
@@ -94,13 +79,11 @@ pub(crate) struct Chain {
 
 impl Chain {
     pub(crate) fn new(model: &ActuatorModel, step_s: f64) -> Self {
-        let scales = |stage: &AmplifierStage| {
-            matches!(
-                stage,
-                AmplifierStage::DielectricHeating(_) | AmplifierStage::Depolarisation(_)
-            )
-        };
-        let neutral_deg = model.amplifier.iter().any(scales).then(|| {
+        let amplifier: Vec<StageStep> =
+            model.amplifier.iter().map(|stage| stage.prepared(step_s)).collect();
+        let scales =
+            |step: &_| matches!(step, StageStep::Heating(_) | StageStep::Depolarisation(_));
+        let neutral_deg = amplifier.iter().any(scales).then(|| {
             let range = model.range_volt;
             let neutral_volt = 0.0_f64.clamp(range.lowest_volt(), range.highest_volt());
             model.law.start(neutral_volt, StartState::Rest).1
@@ -108,7 +91,7 @@ impl Chain {
         let calibration = &model.calibration;
         Self {
             step_s,
-            amplifier: model.amplifier.iter().map(|stage| stage.prepared(step_s)).collect(),
+            amplifier,
             linkage: model.linkage.iter().map(|s| s.prepared(step_s, calibration)).collect(),
             sensor: model.sensor.iter().map(|s| s.prepared(step_s, calibration)).collect(),
             neutral_deg,
@@ -123,14 +106,14 @@ impl Chain {
     ) -> Result<(), PreisachError> {
         model.law.check_memory(&memory.law)?;
         let parts = [
-            ("amplifier", &self.amplifier, &memory.amplifier),
-            ("linkage", &self.linkage, &memory.linkage),
-            ("sensor", &self.sensor, &memory.sensor),
+            ("amplifier stages", &self.amplifier, &memory.amplifier),
+            ("linkage stages", &self.linkage, &memory.linkage),
+            ("sensor stages", &self.sensor, &memory.sensor),
         ];
         for (part, steps, memories) in parts {
             let (found, expected) = (memories.len(), steps.len());
             if found != expected || steps.iter().zip(memories).any(|(step, m)| !step.owns(m)) {
-                return Err(PreisachError::StageMismatch { part, found, expected });
+                return Err(PreisachError::MemoryMismatch { part, found, expected });
             }
         }
         Ok(())
@@ -151,43 +134,40 @@ impl Chain {
         state: StartState,
     ) -> ActuatorMemory {
         let (mut volt, mut gain) = (voltage_volt, 1.0);
-        let mut amplifier = Vec::with_capacity(self.amplifier.len());
-        for step in &self.amplifier {
+        let amplifier = self.amplifier.iter().map(|step| {
             let (memory, output) = step.start(volt);
             gain *= step.gain(&memory);
             volt = output;
-            amplifier.push(memory);
-        }
+            memory
+        });
+        let amplifier = amplifier.collect();
         let (law, free_deg) = model.law.start(volt, state);
         let mut deg = self.scaled(free_deg, gain);
-        let mut linkage = Vec::with_capacity(self.linkage.len());
-        for step in &self.linkage {
+        let linkage = self.linkage.iter().map(|step| {
             let (memory, output) = step.start(deg);
-            deg = if let StageStep::Load(step) = step {
-                step.under(deg, load_newton)
-            } else {
-                output
+            deg = match step {
+                StageStep::Load(step) => step.under(deg, load_newton),
+                _ => output,
             };
-            linkage.push(memory);
-        }
+            memory
+        });
+        let linkage = linkage.collect();
         let mut measured_deg = deg;
-        let mut sensor = Vec::with_capacity(self.sensor.len());
-        for step in &self.sensor {
+        let sensor = self.sensor.iter().map(|step| {
             let (memory, output) = step.start(measured_deg);
             measured_deg = output;
-            sensor.push(memory);
-        }
-        let (terminal_volt, output_deg) = (volt, deg);
-        let counts = StepCounts::default();
+            memory
+        });
+        let sensor = sensor.collect();
         ActuatorMemory {
             law,
             amplifier,
             linkage,
             sensor,
-            terminal_volt,
-            output_deg,
+            terminal_volt: volt,
+            output_deg: deg,
             measured_deg,
-            counts,
+            counts: StepCounts::default(),
         }
     }
 
@@ -249,8 +229,7 @@ impl Stepper<'_> {
     /// # Errors
     /// [`PreisachError::NotFinite`], [`PreisachError::VoltageOutOfRange`],
     /// [`PreisachError::MemoryMismatch`], [`PreisachError::MemoryOfAnotherLaw`],
-    /// [`PreisachError::StageMismatch`], [`PreisachError::NoLoadStage`] or
-    /// [`PreisachError::Diverged`].
+    /// [`PreisachError::NoLoadStage`] or [`PreisachError::Diverged`].
     pub fn step(
         &self,
         memory: &mut ActuatorMemory,
@@ -311,33 +290,15 @@ impl ActuatorModel {
     /// The actuator made ready for samples `time_step_s` apart.
     ///
     /// # Errors
-    /// [`PreisachError::NotPositive`] for the time step, or a stage's parameters.
+    /// [`PreisachError::OutOfRange`] for the time step, or a stage's parameters.
     pub fn stepper(&self, time_step_s: f64) -> Result<Stepper<'_>, PreisachError> {
         Ok(Stepper { model: self, chain: self.chain(time_step_s)? })
-    }
-
-    /// One sample on: moves the memory to a new voltage and returns the flap angle, deg. For many
-    /// samples a [`Stepper`] is faster.
-    ///
-    /// # Errors
-    /// As [`Stepper::step`]; [`PreisachError::NotPositive`] for the time step.
-    pub fn step(
-        &self,
-        memory: &mut ActuatorMemory,
-        voltage_volt: f64,
-        time_step_s: f64,
-    ) -> Result<f64, PreisachError> {
-        self.stepper(time_step_s)?.step(memory, voltage_volt, 0.0)
     }
 }
 
 /// Refuses loads that are not finite, and loads that nothing feels.
 pub(crate) fn check_loads(model: &ActuatorModel, loads: &[f64]) -> Result<(), PreisachError> {
-    for (index, &value) in loads.iter().enumerate() {
-        if !value.is_finite() {
-            return Err(PreisachError::NotFinite { quantity: "load_newton", index, value });
-        }
-    }
+    check_finite("load_newton", loads.iter().copied())?;
     let feels = |stage: &LinkageStage| matches!(stage, LinkageStage::LoadStiffness(_));
     if loads.iter().any(|&load| load != 0.0) && !model.linkage.iter().any(feels) {
         return Err(PreisachError::NoLoadStage);

@@ -106,9 +106,9 @@ impl ActuatorModel {
     /// Every stage with a parameter outside its range, as [`PreisachError::Stage`], in the order of
     /// the chain.
     pub fn refused_stages(&self) -> impl Iterator<Item = PreisachError> {
-        let amplifier = self.amplifier.iter().map(|s| (s.name(), s.check())).enumerate();
-        let linkage = self.linkage.iter().map(|s| (s.name(), s.check())).enumerate();
-        let sensor = self.sensor.iter().map(|s| (s.name(), s.check())).enumerate();
+        let amplifier = self.amplifier.iter().map(AmplifierStage::checked).enumerate();
+        let linkage = self.linkage.iter().map(LinkageStage::checked).enumerate();
+        let sensor = self.sensor.iter().map(SensorStage::checked).enumerate();
         let amplifier = amplifier.map(|stage| ("amplifier", stage));
         let linkage = linkage.map(|stage| ("linkage", stage));
         let sensor = sensor.map(|stage| ("sensor", stage));
@@ -119,30 +119,18 @@ impl ActuatorModel {
         })
     }
 
-    pub(crate) fn check_samples(&self, voltages_volt: &[f64]) -> Result<(), PreisachError> {
-        voltages_volt.iter().enumerate().try_for_each(|(index, &u)| self.check_sample(index, u))
-    }
-
     pub(crate) fn check_sample(
         &self,
         index: usize,
         voltage_volt: f64,
     ) -> Result<(), PreisachError> {
         if !voltage_volt.is_finite() {
-            return Err(PreisachError::NotFinite {
-                quantity: "voltage_volt",
-                index,
-                value: voltage_volt,
-            });
+            let (quantity, value) = ("voltage_volt", voltage_volt);
+            return Err(PreisachError::NotFinite { quantity, index, value });
         }
         let range = self.range_volt;
         if range.excess_volt(voltage_volt) > SAMPLE_TOLERANCE * range.span_volt() {
-            return Err(PreisachError::VoltageOutOfRange {
-                index,
-                voltage_volt,
-                lowest_volt: range.lowest_volt(),
-                highest_volt: range.highest_volt(),
-            });
+            return Err(PreisachError::VoltageOutOfRange { index, voltage_volt, range });
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Response to a periodic command: closed orbits, the bias of zero mean, the stroke limit.
 
-use crate::check::check_positive;
+use crate::check::{check_count, check_finite, check_positive, largest_above};
 use crate::{ActuatorModel, Drive, PreisachError, StartState, StepCounts};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use serde::{Deserialize, Serialize};
@@ -82,11 +82,7 @@ impl ActuatorModel {
         settings: &PeriodicSettings,
     ) -> Result<PeriodicResponse, PreisachError> {
         check_positive("rev_hz", rev_hz)?;
-        let least = 2 * settings.harmonics + 2;
-        if settings.steps_per_rev < least {
-            let value = settings.steps_per_rev;
-            return Err(PreisachError::TooFew { quantity: "steps_per_rev", value, least });
-        }
+        check_count("steps_per_rev", settings.steps_per_rev, 2 * settings.harmonics + 2)?;
         let commands = self.sampled_command(voltage_volt, settings.steps_per_rev)?;
         let azimuths = uniform_azimuths_rad(settings.steps_per_rev);
         let loads: Vec<f64> = azimuths.iter().map(|&psi| load_newton.value(psi)).collect();
@@ -131,22 +127,14 @@ impl ActuatorModel {
         let range = self.range_volt;
         let azimuths = uniform_azimuths_rad(steps_per_rev);
         let commands: Vec<f64> = azimuths.iter().map(|&psi| voltage_volt.value(psi)).collect();
-        let mut worst = (0.0, 0);
-        for (index, &value) in commands.iter().enumerate() {
-            let excess = range.excess_volt(value);
-            if excess.is_nan() {
-                return Err(PreisachError::NotFinite { quantity: "voltage_volt", index, value });
-            }
-            if excess > worst.0 {
-                worst = (excess, index);
-            }
-        }
-        if worst.0 > COMMAND_TOLERANCE * range.span_volt() {
+        check_finite("voltage_volt", commands.iter().copied())?;
+        let (worst, excess) =
+            largest_above(0.0, commands.iter().map(|&volt| range.excess_volt(volt)));
+        if excess > COMMAND_TOLERANCE * range.span_volt() {
             return Err(PreisachError::CommandOutOfRange {
-                azimuth_deg: azimuths[worst.1].to_degrees(),
-                voltage_volt: commands[worst.1],
-                lowest_volt: range.lowest_volt(),
-                highest_volt: range.highest_volt(),
+                azimuth_deg: azimuths[worst].to_degrees(),
+                voltage_volt: commands[worst],
+                range,
             });
         }
         Ok(commands)

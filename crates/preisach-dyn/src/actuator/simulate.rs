@@ -1,7 +1,7 @@
 //! Whole histories through an actuator, one or many at a time.
 
 use crate::actuator::chain::{Chain, check_loads, diverged};
-use crate::check::check_positive;
+use crate::check::{check_count, check_positive, check_that};
 use crate::{ActuatorMemory, ActuatorModel, PreisachError, StartState, StepCounts};
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ pub struct Simulation {
 }
 
 /// A simulated bench record: what its channels would show.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct BenchSimulation {
     /// Flap angle, deg.
     pub output_deg: Vec<f64>,
@@ -52,12 +52,12 @@ impl<'a> Drive<'a> {
 
     fn check(&self, model: &ActuatorModel) -> Result<(), PreisachError> {
         let (voltages, loads) = (self.voltages_volt.len(), self.loads_newton.len());
-        if loads != 0 && loads != voltages {
-            return Err(PreisachError::UnequalLoads { voltages, loads });
-        }
+        let expected = format!("one for each of {voltages} voltages, or none");
+        check_that(loads == 0 || loads == voltages, "number of loads", loads as f64, expected)?;
         check_positive("time_step_s", self.time_step_s)?;
         check_loads(model, self.loads_newton)?;
-        model.check_samples(self.voltages_volt)
+        let mut voltages = self.voltages_volt.iter().enumerate();
+        voltages.try_for_each(|(index, &volt)| model.check_sample(index, volt))
     }
 }
 
@@ -65,7 +65,7 @@ impl ActuatorModel {
     /// The flap angle at every sample of a voltage history, starting at rest at its first sample.
     ///
     /// # Errors
-    /// As [`crate::Stepper::step`]; an empty history is [`PreisachError::TooFew`].
+    /// As [`crate::Stepper::step`]; an empty history is [`PreisachError::OutOfRange`].
     pub fn simulate(
         &self,
         voltages_volt: &[f64],
@@ -77,7 +77,7 @@ impl ActuatorModel {
     /// The flap angle at every sample of a command under its load, starting at rest at the first.
     ///
     /// # Errors
-    /// As [`Self::simulate`]; [`PreisachError::UnequalLoads`], [`PreisachError::NoLoadStage`].
+    /// As [`Self::simulate`]; [`PreisachError::OutOfRange`] for unequal numbers of loads, [`PreisachError::NoLoadStage`].
     pub fn simulate_drive(&self, drive: &Drive<'_>) -> Result<Simulation, PreisachError> {
         let mut output_deg = Vec::with_capacity(drive.voltages_volt.len());
         let memory = self.run(drive, |_, memory| output_deg.push(memory.output_deg()))?;
@@ -89,20 +89,15 @@ impl ActuatorModel {
     /// # Errors
     /// As [`Self::simulate_drive`].
     pub fn simulate_bench(&self, drive: &Drive<'_>) -> Result<BenchSimulation, PreisachError> {
-        let samples = drive.voltages_volt.len();
-        let mut output_deg = Vec::with_capacity(samples);
-        let mut measured_deg = Vec::with_capacity(samples);
-        let mut terminal_volt = Vec::with_capacity(samples);
-        let mut temperature_k = Vec::new();
+        let mut bench = BenchSimulation::default();
         let memory = self.run(drive, |chain, memory| {
-            output_deg.push(memory.output_deg());
-            terminal_volt.push(memory.terminal_volt());
-            temperature_k.extend(memory.temperature_k());
+            bench.output_deg.push(memory.output_deg());
+            bench.terminal_volt.push(memory.terminal_volt());
+            bench.temperature_k.extend(memory.temperature_k());
             let first = memory.counts().steps == 0;
-            measured_deg.push(if first { memory.measured_deg() } else { chain.read(memory) });
+            bench.measured_deg.push(if first { memory.measured_deg() } else { chain.read(memory) });
         })?;
-        let counts = memory.counts();
-        Ok(BenchSimulation { output_deg, measured_deg, terminal_volt, temperature_k, counts })
+        Ok(BenchSimulation { counts: memory.counts(), ..bench })
     }
 
     /// Many commands at once, on all cores. Every result is that of [`Self::simulate_drive`], to the
@@ -115,35 +110,10 @@ impl ActuatorModel {
         results.into_iter().collect()
     }
 
-    /// Many bench records at once, on all cores, as [`Self::simulate_batch`].
-    ///
-    /// # Errors
-    /// The error of the first drive, in their order, that has one.
-    pub fn simulate_bench_batch(
-        &self,
-        drives: &[Drive<'_>],
-    ) -> Result<Vec<BenchSimulation>, PreisachError> {
-        let results: Vec<_> = drives.par_iter().map(|drive| self.simulate_bench(drive)).collect();
-        results.into_iter().collect()
-    }
-
-    /// The flap angle at every sample of a voltage history that follows on a memory, without load.
-    ///
-    /// # Errors
-    /// As [`crate::Stepper::step`].
-    pub fn continue_from(
-        &self,
-        memory: &mut ActuatorMemory,
-        voltages_volt: &[f64],
-        time_step_s: f64,
-    ) -> Result<Vec<f64>, PreisachError> {
-        self.continue_drive(memory, &Drive::new(voltages_volt, time_step_s))
-    }
-
     /// The flap angle at every sample of a command that follows on a memory, under its load.
     ///
     /// # Errors
-    /// As [`crate::Stepper::step`]; [`PreisachError::UnequalLoads`].
+    /// As [`crate::Stepper::step`]; [`PreisachError::OutOfRange`] for unequal numbers of loads.
     pub fn continue_drive(
         &self,
         memory: &mut ActuatorMemory,
@@ -163,21 +133,17 @@ impl ActuatorModel {
         drive: &Drive<'_>,
         mut show: impl FnMut(&Chain, &mut ActuatorMemory),
     ) -> Result<ActuatorMemory, PreisachError> {
-        let first = *drive.voltages_volt.first().ok_or(PreisachError::TooFew {
-            quantity: "voltage samples",
-            value: 0,
-            least: 1,
-        })?;
+        check_count("voltage samples", drive.voltages_volt.len(), 1)?;
         drive.check(self)?;
         let chain = self.chain(drive.time_step_s)?;
-        let mut memory = chain.start(self, first, drive.load(0), StartState::Rest);
+        let mut memory = chain.start(self, drive.voltages_volt[0], drive.load(0), StartState::Rest);
         show(&chain, &mut memory);
         self.follow(&chain, &mut memory, drive, 1, show)?;
         Ok(memory)
     }
 
     /// Steps through the samples of a drive from `first` on and shows each.
-    pub(crate) fn follow(
+    fn follow(
         &self,
         chain: &Chain,
         memory: &mut ActuatorMemory,

@@ -59,37 +59,35 @@ impl ActuatorModel {
     pub fn doubts(&self) -> Vec<Doubt> {
         let mut doubts = Doubts::default();
         let per_um = self.calibration.deg_per_um;
-        doubts.place = "calibration.deg_per_um".into();
+        let gain = "calibration.deg_per_um";
         if !(per_um.is_finite() && per_um != 0.0) {
             let found = format!("{per_um} deg/um");
-            doubts.impossible("", found, "a number other than 0", "give the gain of the bench");
+            let remedy = "give the gain of the bench";
+            doubts.at(gain).impossible("", found, "a number other than 0", remedy);
         }
         let stroke_um = (self.law_doubts(&mut doubts) / per_um).abs();
-        doubts.place = "calibration.deg_per_um".into();
         let moves = stroke_um.is_finite() && stroke_um * per_um.abs() >= LEAST_TRAVEL_DEG;
         if moves && !(LEAST_STROKE_UM..=MOST_STROKE_UM).contains(&stroke_um) {
             let found = format!("a stroke of {stroke_um:.3} um");
-            doubts.unlikely("", found, "50 to 1000 um", "check deg_per_um and the law's unit");
+            let remedy = "check deg_per_um and the law's unit";
+            doubts.at(gain).unlikely("", found, "50 to 1000 um", remedy);
         }
         for (i, stage) in self.amplifier.iter().enumerate() {
-            doubts.place = format!("amplifier[{i}]");
-            stages::amplifier(stage, self.range_volt, &mut doubts);
+            stages::amplifier(stage, self.range_volt, doubts.at(format!("amplifier[{i}]")));
         }
         for (i, stage) in self.linkage.iter().enumerate() {
-            doubts.place = format!("linkage[{i}]");
-            stages::linkage(stage, stroke_um, &mut doubts);
+            stages::linkage(stage, stroke_um, doubts.at(format!("linkage[{i}]")));
         }
-        stages::gaps(&self.linkage, stroke_um, &mut doubts);
+        stages::gaps(&self.linkage, stroke_um, doubts.at("linkage"));
         let loads = |stage: &&LinkageStage| matches!(stage, LinkageStage::LoadStiffness(_));
         let count = self.linkage.iter().filter(loads).count();
         if count > 1 {
-            doubts.place = "linkage".into();
             let found = format!("{count} LoadStiffness stages");
-            doubts.impossible("", found, "one: each takes the whole load", "make them one");
+            let expected = "one: each takes the whole load";
+            doubts.at("linkage").impossible("", found, expected, "make them one");
         }
         for (i, stage) in self.sensor.iter().enumerate() {
-            doubts.place = format!("sensor[{i}]");
-            stages::sensor(stage, stroke_um, &mut doubts);
+            stages::sensor(stage, stroke_um, doubts.at(format!("sensor[{i}]")));
         }
         doubts.list
     }
@@ -105,30 +103,27 @@ impl ActuatorModel {
             ActuatorLaw::BoucWen(law) => law.parameters().range_volt,
             ActuatorLaw::PrandtlStop(law) => law.parameters().range_volt,
         };
-        doubts.place = "range_volt".into();
-        let found = format!("{} to {} V", range.lowest_volt(), range.highest_volt());
+        let [low, high] = [range.lowest_volt(), range.highest_volt()];
+        let found = format!("{low} to {high} V");
         let expected =
             format!("inside the law's {} to {} V", own.lowest_volt(), own.highest_volt());
-        let allowed = BEYOND * own.span_volt();
-        let excess =
-            own.excess_volt(range.lowest_volt()).max(own.excess_volt(range.highest_volt()));
-        let apart =
-            range.highest_volt() <= own.lowest_volt() || range.lowest_volt() >= own.highest_volt();
-        if apart {
-            doubts.impossible("", found, &expected, "give the range the law was fitted in");
-        } else if excess > allowed {
+        let excess = own.excess_volt(low).max(own.excess_volt(high));
+        if high <= own.lowest_volt() || low >= own.highest_volt() {
+            let remedy = "give the range the law was fitted in";
+            doubts.at("range_volt").impossible("", found, &expected, remedy);
+        } else if excess > BEYOND * own.span_volt() {
             let remedy = "the law has no numbers out there; narrow the range or fit again";
-            doubts.unlikely("", found, &expected, remedy);
+            doubts.at("range_volt").unlikely("", found, &expected, remedy);
         }
         // so slowly that no rate counts
-        let (mut memory, first) = self.law.start(range.lowest_volt(), StartState::RisingFromLowest);
+        let (mut memory, first) = self.law.start(low, StartState::RisingFromLowest);
         let mut last = first;
         for part in 1..=SWEEP {
-            let volt = range.lowest_volt() + range.span_volt() * f64::from(part) / f64::from(SWEEP);
+            let volt = low + range.span_volt() * f64::from(part) / f64::from(SWEEP);
             last = self.law.step(&mut memory, volt, SLOW_S);
         }
         let travel = last - first;
-        doubts.place = "law".into();
+        doubts.at("law");
         let found = format!("{travel:.3e} deg over the range of commands");
         if travel.is_nan() || travel.abs() < LEAST_TRAVEL_DEG {
             doubts.impossible("", found, "a flap that moves", "give the law a gain other than 0");
@@ -150,6 +145,12 @@ struct Doubts {
 }
 
 impl Doubts {
+    /// Goes on to another place.
+    fn at(&mut self, place: impl Into<String>) -> &mut Self {
+        self.place = place.into();
+        self
+    }
+
     fn push(&mut self, weight: Weight, field: &str, found: String, sound: (&str, &'static str)) {
         let dot = if field.is_empty() { "" } else { "." };
         let field = format!("{}{dot}{field}", self.place);
@@ -173,9 +174,12 @@ impl Doubts {
         }
     }
 
-    /// A stage that is the identity.
-    fn idle(&mut self, field: &str, found: String) {
-        self.unlikely(field, found, "a stage that acts", "leave the stage out or correct it");
+    /// A stage that is the identity, if it is.
+    fn idle(&mut self, is_idle: bool, field: &str, found: &str) {
+        if is_idle {
+            let remedy = "leave the stage out or correct it";
+            self.unlikely(field, found.into(), "a stage that acts", remedy);
+        }
     }
 }
 

@@ -18,16 +18,11 @@ pub(super) fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mu
         AmplifierStage::Lag(lag) => doubts.above("tau_s", lag.tau_s, "s", 0.5),
         AmplifierStage::Delay(delay) => doubts.above("delay_s", delay.delay_s, "s", 0.1),
         AmplifierStage::CurrentLimit(limit) => {
-            let sweep_s = span / limit.slew_rate_volt_per_s;
-            if sweep_s > 10.0 {
-                let found =
-                    format!("{} V/s: {sweep_s:.0} s for the range", limit.slew_rate_volt_per_s);
-                doubts.unlikely(
-                    "slew_rate_volt_per_s",
-                    found,
-                    "500 to 500 000 V/s",
-                    "check the unit",
-                );
+            let slew = limit.slew_rate_volt_per_s;
+            if span / slew > 10.0 {
+                let found = format!("{slew} V/s: {:.0} s for the range", span / slew);
+                let (field, expected) = ("slew_rate_volt_per_s", "500 to 500 000 V/s");
+                doubts.unlikely(field, found, expected, "check the unit");
             }
         }
         AmplifierStage::Saturation(limit) => {
@@ -43,24 +38,27 @@ pub(super) fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mu
             }
         }
         AmplifierStage::DielectricHeating(heat) => {
-            if heat.coefficient_per_k == 0.0 || heat.rise_k_per_volt2_hz == 0.0 {
-                doubts.idle("", "no change of gain with heat".into());
-            }
+            let idle = heat.coefficient_per_k == 0.0 || heat.rise_k_per_volt2_hz == 0.0;
+            doubts.idle(idle, "", "no change of gain with heat");
             doubts.above("coefficient_per_k", heat.coefficient_per_k.abs(), "1/K", 0.03);
         }
         AmplifierStage::Depolarisation(loss) => {
             let threshold = loss.threshold_volt;
             let loses = loss.loss_per_volt > 0.0 || loss.loss_per_volt_second > 0.0;
             doubts.above("loss_per_volt_second", loss.loss_per_volt_second, "1/(V s)", 1.0);
-            if !loses || threshold <= low {
-                doubts.idle("threshold_volt", format!("{threshold} V, never passed below"));
-            } else if loss.loss_per_volt * (threshold - high) >= 1.0 {
+            let idle = !loses || threshold <= low;
+            let field = "threshold_volt";
+            doubts.idle(idle, field, &format!("{threshold} V, never passed below"));
+            if idle {
+                return;
+            }
+            if loss.loss_per_volt * (threshold - high) >= 1.0 {
                 let found = format!("{threshold} V: nothing is left of the polarisation");
                 let expected = "about -0.2 of the highest voltage";
-                doubts.impossible("threshold_volt", found, expected, "correct the threshold");
+                doubts.impossible(field, found, expected, "correct the threshold");
             } else if threshold > 0.0 {
                 let found = format!("{threshold} V");
-                doubts.unlikely("threshold_volt", found, "a reverse voltage", "check the sign");
+                doubts.unlikely(field, found, "a reverse voltage", "check the sign");
             }
         }
     }
@@ -72,7 +70,7 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
         let found = format!("{width_um} um of a stroke of {stroke_um:.1} um");
         let expected = "0.1 to 3 % of the stroke";
         if width_um == 0.0 {
-            doubts.idle(field, "0 um".into());
+            doubts.idle(true, field, "0 um");
         } else if width_um >= stroke_um {
             doubts.impossible(field, found, expected, remedy);
         } else if width_um > WIDE_GAP * stroke_um {
@@ -81,27 +79,19 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
     };
     match stage {
         LinkageStage::LogCreep(creep) => {
-            if creep.rate_per_decade == 0.0 {
-                doubts.idle("rate_per_decade", "0".into());
-            }
+            doubts.idle(creep.rate_per_decade == 0.0, "rate_per_decade", "0");
             doubts.above("rate_per_decade", creep.rate_per_decade, "of a step", 0.1);
         }
         LinkageStage::KelvinVoigt(chain) => {
             let sum: f64 = chain.elements.iter().map(|e| e.compliance_ratio).sum();
-            if sum == 0.0 {
-                doubts.idle("elements", "no compliance".into());
-            }
+            doubts.idle(sum == 0.0, "elements", "no compliance");
             doubts.above("elements", sum, "of a step in all", 0.5);
         }
         LinkageStage::Relaxation(relaxation) => {
-            if relaxation.elements.iter().all(|e| e.share == 0.0) {
-                doubts.idle("elements", "no share".into());
-            }
+            doubts.idle(relaxation.elements.iter().all(|e| e.share == 0.0), "elements", "no share");
         }
         LinkageStage::Accommodation(late) => {
-            if late.share == 0.0 {
-                doubts.idle("share", "0".into());
-            }
+            doubts.idle(late.share == 0.0, "share", "0");
             doubts.above("share", late.share, "of the motion", 0.3);
             if late.travel_um > LONG_TRAVEL * stroke_um {
                 let found = format!("{} um of a stroke of {stroke_um:.1} um", late.travel_um);
@@ -121,28 +111,24 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
             gap(joint.width_um, "friction would hold the flap; correct the width", doubts);
         }
         LinkageStage::LoadStiffness(load) => {
-            if load.stiffness_ratio == 0.0 && load.compliance_um_per_newton == 0.0 {
-                doubts.idle("", "no stiffness and no compliance".into());
-            }
+            let idle = load.stiffness_ratio == 0.0 && load.compliance_um_per_newton == 0.0;
+            doubts.idle(idle, "", "no stiffness and no compliance");
             doubts.above("stiffness_ratio", load.stiffness_ratio, "of the actuator's", 10.0);
-            let compliance = load.compliance_um_per_newton;
-            doubts.above("compliance_um_per_newton", compliance, "um/N", 20.0);
+            doubts.above("compliance_um_per_newton", load.compliance_um_per_newton, "um/N", 20.0);
         }
     }
 }
 
 /// Gaps that each leave a motion and together leave none.
 pub(super) fn gaps(linkage: &[LinkageStage], stroke_um: f64, doubts: &mut Doubts) {
-    let widths: Vec<f64> = linkage
-        .iter()
-        .filter_map(|stage| match stage {
+    let widths = || {
+        linkage.iter().filter_map(|stage| match stage {
             LinkageStage::Backlash(gap) => Some(gap.width_um),
             _ => None,
         })
-        .collect();
-    let sum: f64 = widths.iter().sum();
-    if sum > 0.0 && sum >= stroke_um && widths.iter().all(|&width| width < stroke_um) {
-        doubts.place = "linkage".into();
+    };
+    let sum: f64 = widths().sum();
+    if sum > 0.0 && sum >= stroke_um && widths().all(|width| width < stroke_um) {
         let found = format!("gaps of {sum} um in all, a stroke of {stroke_um:.1} um");
         let remedy = "the flap would never move; correct the widths";
         doubts.impossible("", found, "0.1 to 3 % of the stroke", remedy);
@@ -154,9 +140,7 @@ pub(super) fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
         SensorStage::Filter(lag) => doubts.above("tau_s", lag.tau_s, "s", 0.5),
         SensorStage::Delay(delay) => doubts.above("delay_s", delay.delay_s, "s", 0.1),
         SensorStage::Nonlinearity(shape) => {
-            if shape.amplitude_um == 0.0 {
-                doubts.idle("amplitude_um", "0 um".into());
-            }
+            doubts.idle(shape.amplitude_um == 0.0, "amplitude_um", "0 um");
             doubts.above("amplitude_um", shape.amplitude_um.abs(), "um", SENSOR_ERROR * stroke_um);
             if 2.0 * shape.half_range_um < 0.5 * stroke_um {
                 let found = format!("{} um of a stroke of {stroke_um:.1} um", shape.half_range_um);
@@ -172,9 +156,7 @@ pub(super) fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
             }
         }
         SensorStage::MainsHum(hum) => {
-            if hum.amplitude_um == 0.0 {
-                doubts.idle("amplitude_um", "0 um".into());
-            }
+            doubts.idle(hum.amplitude_um == 0.0, "amplitude_um", "0 um");
             doubts.above("amplitude_um", hum.amplitude_um, "um", SENSOR_ERROR * stroke_um);
             if !MAINS_HZ.contains(&hum.frequency_hz) {
                 let found = format!("{} Hz", hum.frequency_hz);

@@ -2,6 +2,7 @@
 
 use super::{ForcCurve, ForcData};
 use crate::PreisachError;
+use crate::check::check_count;
 use nalgebra::{Matrix6, Vector6};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -36,20 +37,16 @@ pub struct DiagramPoint {
 /// Points come curve by curve in the order measured, whatever the number of threads.
 ///
 /// # Errors
-/// As [`ForcData::check`]; [`PreisachError::TooFew`] for `SF = 0` or fewer than `2 SF + 1` curves.
+/// As [`ForcData::check`]; [`PreisachError::OutOfRange`] for `SF = 0` or fewer than `2 SF + 1` curves.
 ///
 /// Source: Pike, Roberts and Verosub (1999), the polynomial and the factor; a curve of relays that
 /// jump by 2 has the density `rho` of the Preisach operator.
 pub fn diagram(data: &ForcData, smoothing: usize) -> Result<Vec<DiagramPoint>, PreisachError> {
     data.check()?;
-    if smoothing == 0 {
-        return Err(PreisachError::TooFew { quantity: "smoothing factor", value: 0, least: 1 });
-    }
-    let (value, least) = (data.curves.len(), 2 * smoothing + 1);
-    if value < least {
-        return Err(PreisachError::TooFew { quantity: "reversal curves", value, least });
-    }
-    let rows: Vec<Vec<DiagramPoint>> = (smoothing..value - smoothing)
+    check_count("smoothing factor", smoothing, 1)?;
+    let curves = data.curves.len();
+    check_count("reversal curves", curves, 2 * smoothing + 1)?;
+    let rows: Vec<Vec<DiagramPoint>> = (smoothing..curves - smoothing)
         .into_par_iter()
         .map(|index| {
             let window = &data.curves[index - smoothing..=index + smoothing];
@@ -76,11 +73,9 @@ fn point(
         if last >= curve.input.len() {
             return None;
         }
-        samples.extend(
-            (first..=last).map(|i| {
-                [curve.input[0] - reversal_input, curve.input[i] - input, curve.output[i]]
-            }),
-        );
+        let reversal = curve.input[0] - reversal_input;
+        let near = (first..=last).map(|i| [reversal, curve.input[i] - input, curve.output[i]]);
+        samples.extend(near);
     }
     let size = |axis: usize| samples.iter().fold(0.0_f64, |m, s| m.max(s[axis].abs()));
     let (a_size, b_size) = (size(0), size(1));

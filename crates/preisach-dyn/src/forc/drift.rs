@@ -2,6 +2,7 @@
 
 use super::ForcData;
 use crate::PreisachError;
+use crate::check::check_positive;
 use serde::{Deserialize, Serialize};
 
 /// What drifts.
@@ -26,7 +27,7 @@ impl ForcData {
     /// The corrected family carries no readings: they have been used.
     ///
     /// # Errors
-    /// As [`ForcData::check`]; [`PreisachError::NotPositive`] if the gain is asked for and a reading
+    /// As [`ForcData::check`]; [`PreisachError::OutOfRange`] if the gain is asked for and a reading
     /// has not the sign of their mean.
     pub fn without_drift(
         &self,
@@ -43,7 +44,7 @@ impl ForcData {
         if kind == DriftKind::Gain {
             for &reading in &readings {
                 let quantity = "calibration reading over the mean reading";
-                crate::check::check_positive(quantity, reading / mean)?;
+                check_positive(quantity, reading / mean)?;
             }
         }
         let smooth: Vec<f64> = (0..readings.len())

@@ -1,11 +1,12 @@
 //! Density of a static model from reversal curves, by constrained least squares.
 
-use super::everett_map::{corners, unknown, weights};
-use super::{EverettMap, ForcCurve, ForcData};
-use crate::check::check_positive;
+use super::everett_map::{corners, play_map, unknown, weights};
+use super::{ForcCurve, ForcData};
+use crate::check::{check_count, check_positive};
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
-use crate::identify::fit::static_fit::merged;
+use crate::identify::fit::static_fit::{merged, smooth_density};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach, VoltageRange};
+use rotor_base::mean_square;
 use serde::{Deserialize, Serialize};
 
 /// Settings of a fit to reversal curves.
@@ -43,8 +44,6 @@ pub struct CurveMisfit {
 pub struct ForcFit {
     /// The model; its grid is in the unit of the inputs, its output in that of the outputs.
     pub model: StaticPreisach,
-    /// The Everett values it was made of.
-    pub everett: EverettMap,
     /// How it reproduces the curves it was fitted to.
     pub curves: Vec<CurveMisfit>,
 }
@@ -70,10 +69,7 @@ pub fn fit(data: &ForcData, settings: &ForcSettings) -> Result<ForcFit, Preisach
     check_positive("smoothness", settings.smoothness)?;
     let [low, high] = data.input_range();
     let range = settings.range.map_or_else(|| VoltageRange::new(low, high), Ok)?;
-    if settings.levels < 2 {
-        let quantity = "levels";
-        return Err(PreisachError::TooFew { quantity, value: settings.levels, least: 2 });
-    }
+    check_count("levels", settings.levels, 2)?;
     let grid = PreisachGrid::new(range, settings.levels)?;
     let levels = grid.levels();
     let span = data.output_span();
@@ -90,27 +86,11 @@ pub fn fit(data: &ForcData, settings: &ForcSettings) -> Result<ForcFit, Preisach
     }
     let cells = levels * (levels + 1) / 2;
     let penalty = settings.smoothness * cells as f64;
-    for j in 0..levels {
-        for q in 0..levels - j {
-            program.at_least(rise(j, q, 1.0), 0.0);
-            let neighbours = match j {
-                0 => [Some((0, q + 1)), None],
-                _ => [Some((j + 1, q)), q.checked_sub(1).map(|lower| (j + 1, lower))],
-            };
-            for (j2, q2) in neighbours.into_iter().flatten() {
-                if j2 < levels && q2 < levels - j2 {
-                    let mut difference = rise(j, q, 1.0);
-                    difference.extend(rise(j2, q2, -1.0));
-                    program.add(&merged(difference), 0.0, penalty);
-                }
-            }
-        }
-    }
+    smooth_density(levels, penalty, rise, &mut program);
     let solution = program.solve("density of the reversal curves")?;
-    let everett = EverettMap::from_unknowns(grid, &solution, span);
-    let model = StaticPreisach::new(grid, everett.play_map())?;
+    let model = StaticPreisach::new(grid, play_map(levels, &solution, span))?;
     let curves = data.curves.iter().map(|curve| misfit(&model, curve, span)).collect();
-    Ok(ForcFit { model, everett, curves })
+    Ok(ForcFit { model, curves })
 }
 
 /// `scale` times the rise of a cell as a row.
@@ -125,15 +105,12 @@ pub fn misfit(model: &StaticPreisach, curve: &ForcCurve, span: f64) -> CurveMisf
     let grid = model.grid();
     let top = grid.range().highest_volt();
     let mut memory = PlayMemory::new(grid, top, StartState::FallingFromHighest);
-    let (mut squares, mut largest) = (0.0, 0.0_f64);
-    for (&u, &y) in curve.input.iter().zip(&curve.output) {
-        let error = model.apply(&mut memory, u) - y;
-        squares += error * error;
-        largest = largest.max(error.abs());
-    }
+    let pairs = curve.input.iter().zip(&curve.output);
+    let errors: Vec<f64> = pairs.map(|(&u, &y)| model.apply(&mut memory, u) - y).collect();
+    let largest = errors.iter().fold(0.0_f64, |most, error| most.max(error.abs()));
     CurveMisfit {
         reversal_input: curve.reversal_input().unwrap_or(f64::NAN),
-        rms_percent: 100.0 * (squares / curve.input.len() as f64).sqrt() / span,
+        rms_percent: 100.0 * mean_square(&errors).sqrt() / span,
         largest_percent: 100.0 * largest / span,
     }
 }
@@ -152,7 +129,7 @@ pub struct HeldOutCurves {
 /// Holds out every `every`-th curve, starting with the one at `first`, fits the others and compares.
 ///
 /// # Errors
-/// As [`fit`]; [`PreisachError::TooFew`] if nothing is held out.
+/// As [`fit`]; [`PreisachError::OutOfRange`] if nothing is held out.
 pub fn held_out(
     data: &ForcData,
     settings: &ForcSettings,
@@ -161,20 +138,17 @@ pub fn held_out(
 ) -> Result<HeldOutCurves, PreisachError> {
     data.check()?;
     let (tested, trained) = data.split_every(every, first);
-    if tested.curves.is_empty() {
-        let quantity = "held-out reversal curves";
-        return Err(PreisachError::TooFew { quantity, value: 0, least: 1 });
-    }
+    check_count("held-out reversal curves", tested.curves.len(), 1)?;
     let [low, high] = data.input_range();
     let range = Some(settings.range.unwrap_or(VoltageRange::new(low, high)?));
     let fitted = fit(&trained, &ForcSettings { range, ..*settings })?;
     let span = data.output_span();
     let curves: Vec<CurveMisfit> =
         tested.curves.iter().map(|curve| misfit(&fitted.model, curve, span)).collect();
-    let squares: f64 = curves.iter().map(|c| c.rms_percent.powi(2)).sum();
+    let errors: Vec<f64> = curves.iter().map(|c| c.rms_percent).collect();
     Ok(HeldOutCurves {
-        rms_percent: (squares / curves.len() as f64).sqrt(),
-        worst_curve_percent: curves.iter().fold(0.0, |m, c| c.rms_percent.max(m)),
+        rms_percent: mean_square(&errors).sqrt(),
+        worst_curve_percent: errors.iter().copied().fold(0.0, f64::max),
         curves,
     })
 }

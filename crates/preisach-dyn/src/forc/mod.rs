@@ -19,10 +19,11 @@ mod fit;
 
 pub use diagram::{DiagramPoint, diagram};
 pub use drift::DriftKind;
-pub use everett_map::EverettMap;
 pub use fit::{CurveMisfit, ForcFit, ForcSettings, HeldOutCurves, fit, held_out, misfit};
 
 use crate::PreisachError;
+use crate::check::{check_count, check_finite, check_positive, check_that, extremes, not_finite};
+use crate::identify::records::record::UNEQUAL;
 use serde::{Deserialize, Serialize};
 
 /// One first-order reversal curve.
@@ -83,58 +84,44 @@ impl ForcData {
     /// Checks lengths, numbers and the order of the inputs.
     ///
     /// # Errors
-    /// [`PreisachError::TooFew`] curves or points, [`PreisachError::ForcCurve`] for unequal columns,
+    /// [`PreisachError::OutOfRange`] curves or points, [`PreisachError::BadRecord`] for unequal columns,
     /// numbers that are not finite or a curve that falls below its reversal,
-    /// [`PreisachError::ForcCalibration`] unless there is one reading per curve or none,
-    /// [`PreisachError::NotPositive`] if input or output never change.
+    /// [`PreisachError::OutOfRange`] unless there is one reading per curve or none and input and output
+    /// change.
     pub fn check(&self) -> Result<(), PreisachError> {
         let (curves, readings) = (self.curves.len(), self.calibration.len());
-        if curves < FEWEST_CURVES {
-            let quantity = "reversal curves";
-            return Err(PreisachError::TooFew { quantity, value: curves, least: FEWEST_CURVES });
-        }
-        if readings != 0 && readings != curves {
-            return Err(PreisachError::ForcCalibration { readings, curves });
-        }
+        check_count("reversal curves", curves, FEWEST_CURVES)?;
+        let expected = format!("one before each of {curves} reversal curves, or none");
+        let paired = readings == 0 || readings == curves;
+        check_that(paired, "number of calibration readings", readings as f64, expected)?;
+        let bad = |curve: usize, index: usize, problem: &'static str, value: f64| {
+            let record = format!("reversal curve {curve}");
+            Err(PreisachError::BadRecord { record, index, problem, value })
+        };
         for (curve, ForcCurve { input, output }) in self.curves.iter().enumerate() {
-            let bad = |index: usize, problem: &'static str, value: f64| {
-                Err(PreisachError::ForcCurve { curve, index, problem, value })
-            };
             if input.len() != output.len() {
-                return bad(
-                    input.len(),
-                    "inputs and outputs differ in number",
-                    output.len() as f64,
-                );
+                return bad(curve, input.len(), UNEQUAL, output.len() as f64);
             }
             if input.len() < FEWEST_POINTS {
-                return bad(0, "a curve needs its reversal and a point above", input.len() as f64);
+                let problem = "a curve needs its reversal and a point above";
+                return bad(curve, 0, problem, input.len() as f64);
             }
             for (index, (&u, &y)) in input.iter().zip(output).enumerate() {
-                if !u.is_finite() {
-                    return bad(index, "the input is not a finite number", u);
-                }
-                if !y.is_finite() {
-                    return bad(index, "the output is not a finite number", y);
+                if let Some((problem, value)) = not_finite(u, y) {
+                    return bad(curve, index, problem, value);
                 }
             }
         }
-        for (index, point) in self.calibration.iter().enumerate() {
-            for value in [point.input, point.output] {
-                if !value.is_finite() {
-                    let quantity = "calibration reading";
-                    return Err(PreisachError::NotFinite { quantity, index, value });
-                }
-            }
-        }
+        check_finite("calibration input", self.calibration.iter().map(|point| point.input))?;
+        check_finite("calibration reading", self.calibration.iter().map(|point| point.output))?;
         let [low, high] = self.input_range();
-        crate::check::check_positive("range of the inputs of the curves", high - low)?;
-        crate::check::check_positive("range of the outputs of the curves", self.output_span())?;
+        check_positive("range of the inputs of the curves", high - low)?;
+        check_positive("range of the outputs of the curves", self.output_span())?;
         for (curve, ForcCurve { input, .. }) in self.curves.iter().enumerate() {
             let floor = input[0] - REVERSAL_NOISE * (high - low);
             if let Some((index, &value)) = input.iter().enumerate().find(|(_, u)| **u < floor) {
                 let problem = "the input falls below the reversal, which must come first";
-                return Err(PreisachError::ForcCurve { curve, index, problem, value });
+                return bad(curve, index, problem, value);
             }
         }
         Ok(())
@@ -152,9 +139,4 @@ impl ForcData {
         }
         (taken, left)
     }
-}
-
-/// Smallest and largest of some values.
-fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
 }

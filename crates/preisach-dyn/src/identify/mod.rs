@@ -20,12 +20,11 @@ pub use families::comparison::{
 pub use families::family::Family;
 pub use fit::compare::RecordFit;
 pub use fit::output_error::{Covariance, Estimate};
-pub use fit::program::QpStatus;
 pub use fit::refine::{Refinement, RefinementOutcome};
 pub use fit::stream::StaticAccumulator;
 pub use fit::validate::Validation;
 pub use records::drive::{Drive, Waveform};
-pub use records::findings::{Finding, Identifiability, Severity};
+pub use records::findings::{Channel, Finding, Identifiability, Severity};
 pub use records::noise::CycleNoise;
 pub use records::record::{BenchRecord, RecordUse, RecordWindows};
 pub use records::settings::{FlapZero, RateSmoothness, Settings};
@@ -34,9 +33,12 @@ pub use records::subject::Subject;
 
 use crate::{ActuatorLaw, ActuatorModel, PreisachError, PreisachGrid, StaticPreisach};
 use fit::output_error::Uncertainty;
-use fit::preisach::{RateFit, fit_linear, major_loop_mean, trained_range};
-use fit::roles::{Bench, Sorted};
+use fit::preisach::{RateFit, fit_linear, trained_range, zero_deg};
+use fit::refine::Refined;
+use fit::roles::Bench;
+use fit::training::Training;
 use fit::{compare, static_fit};
+use rotor_base::mean_square;
 
 /// What the identification says about one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,13 +89,6 @@ pub struct Identification {
     pub summary: Identifiability,
 }
 
-impl Identification {
-    /// The reports of the records of one use.
-    pub fn records_of(&self, record_use: RecordUse) -> impl Iterator<Item = &RecordReport> {
-        self.records.iter().filter(move |report| report.record_use == record_use)
-    }
-}
-
 /// Identifies an actuator from bench records.
 ///
 /// Where the training records say nothing about rate (one frequency, no periodic run beyond the slow
@@ -113,31 +108,34 @@ pub fn identify(
     let grid = PreisachGrid::new(settings.range_volt, settings.levels.max(1))?;
     let bench = Bench::new(records, settings)?;
     let prepared = bench.prepared(&grid, settings)?;
-    let Sorted { slow, fast } = Sorted::of(&prepared)?;
-    let mut summary = bench.summary(&grid, &prepared, settings);
+    let training = Training::of(&prepared, grid, settings)?;
+    let Training { slow, fast, .. } = &training;
+    let mut summary = bench.summary(&training);
 
-    let trained = Some(trained_range(&slow, &fast, &prepared));
+    let trained = Some(trained_range(&training, &prepared));
     let wrap = |law| ActuatorModel { trained, ..settings.actuator_of(law) };
-    let linear = wrap(ActuatorLaw::Linear(fit_linear(&slow)));
-    let measured: Vec<Vec<f64>> = slow.iter().map(|r| r.record.output_deg.clone()).collect();
-    let g0_deg = static_fit::fit(&grid, &slow, &measured, settings)?;
+    let linear = wrap(ActuatorLaw::Linear(fit_linear(slow)));
+    let g0_deg = static_fit::as_measured(&training)?;
     let statics = StaticPreisach::new(grid, g0_deg.clone())?;
     let static_only = wrap(ActuatorLaw::StaticPreisach(statics));
     let rate = if fast.is_empty() {
-        let errors = slow.iter().map(|r| Ok(compare::training_nrmse(&static_only, r)?.powi(2)));
-        let squares = errors.sum::<Result<f64, PreisachError>>()?;
+        let errors = slow.iter().map(|r| compare::training_nrmse(&static_only, r));
+        let nrmse = mean_square(&errors.collect::<Result<Vec<_>, _>>()?).sqrt();
         RateFit {
-            law: static_only.law.clone(),
             smoothness: 0.0,
             validation: Vec::new(),
-            refinement: Refinement::left_out((squares / slow.len() as f64).sqrt()),
-            parameters: Vec::new(),
-            covariance: None,
+            refined: Refined {
+                law: static_only.law.clone(),
+                refinement: Refinement::left_out(nrmse),
+                parameters: Vec::new(),
+                covariance: None,
+            },
         }
     } else {
-        RateFit::new(&grid, g0_deg, &slow, &fast, settings, Uncertainty::Wanted)?
+        RateFit::new(&training, g0_deg, Uncertainty::Wanted)?
     };
-    let dynamic = wrap(rate.law);
+    let Refined { law, refinement, parameters, covariance } = rate.refined;
+    let dynamic = wrap(law);
 
     let reports = prepared
         .iter()
@@ -153,14 +151,13 @@ pub fn identify(
             })
         })
         .collect::<Result<Vec<_>, PreisachError>>()?;
-    let unexplained = unexplained(&reports);
+    let trains = reports.iter().filter(|report| report.record_use == RecordUse::Train);
+    let errors: Vec<f64> = trains.map(|report| report.dynamic.nrmse).collect();
+    let unexplained = mean_square(&errors).sqrt();
     if unexplained > MOST_UNEXPLAINED {
         summary.findings.push(Finding::NotDescribed { nrmse_percent: 100.0 * unexplained });
     }
-    let zero_deg = match settings.zero {
-        FlapZero::AsRecorded => 0.0,
-        FlapZero::MajorLoopMean => major_loop_mean(&slow),
-    };
+    let zero_deg = zero_deg(&training);
     Ok(Identification {
         dynamic: dynamic.shifted(-zero_deg),
         static_only: static_only.shifted(-zero_deg),
@@ -169,9 +166,9 @@ pub fn identify(
         records: reports,
         rate_smoothness: rate.smoothness,
         validation: rate.validation,
-        refinement: rate.refinement,
-        parameters: rate.parameters,
-        covariance: rate.covariance,
+        refinement,
+        parameters,
+        covariance,
         summary,
     })
 }
@@ -179,34 +176,3 @@ pub fn identify(
 /// Share of the spread of the training records beyond which what a model leaves is no misfit of its
 /// numbers but of its kind.
 pub const MOST_UNEXPLAINED: f64 = 0.5;
-
-/// Root mean square of the NRMSE of the training records.
-fn unexplained(reports: &[RecordReport]) -> f64 {
-    let trained: Vec<f64> = reports
-        .iter()
-        .filter(|r| r.record_use == RecordUse::Train)
-        .map(|r| r.dynamic.nrmse.powi(2))
-        .collect();
-    (trained.iter().sum::<f64>() / trained.len().max(1) as f64).sqrt()
-}
-
-/// The bench gain that makes a displacement record reach `half_stroke_deg` either way.
-///
-/// ```text
-/// deg_per_um = half_stroke_deg / ((max x - min x) / 2)
-/// ```
-/// Source: Viswamurthy and Ganguli: the gain makes the quasi-static response +-10 deg and is kept.
-///
-/// # Errors
-/// [`PreisachError::NotPositive`] if the displacement never changes or is not finite.
-pub fn half_stroke_gain_deg_per_um(
-    displacement_um: &[f64],
-    half_stroke_deg: f64,
-) -> Result<f64, PreisachError> {
-    let (low, high) = displacement_um
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-    let half_um = 0.5 * (high - low);
-    crate::check::check_positive("half stroke (um)", half_um)?;
-    Ok(half_stroke_deg / half_um)
-}

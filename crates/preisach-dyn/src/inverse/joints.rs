@@ -32,7 +32,7 @@ impl LastJoint {
                     Joint::Gap { half_width_deg: half_deg(width_um) }
                 }
                 LinkageStage::CoulombFriction(CoulombFriction { width_um }) if width_um > 0.0 => {
-                    Joint::Friction(FrictionStep::new(half_deg(width_um)))
+                    Joint::Friction(FrictionStep { limit: half_deg(width_um) })
                 }
                 _ => return None,
             };
@@ -89,7 +89,12 @@ impl LastJoint {
         let periodic = PeriodicSettings { steps_per_rev: steps, ..settings.periodic };
         let fine = InverseSettings { periodic, voltage_harmonics, ..*settings };
         let count = fine.voltage_harmonics;
-        let input_deg = self.joint.input_of(&output_deg, output_deg.len() / count);
+        let input_deg = match self.joint {
+            Joint::Gap { half_width_deg } => {
+                gap_input(&output_deg, half_width_deg, output_deg.len() / count)
+            }
+            Joint::Friction(step) => friction_input(&output_deg, step),
+        };
         let input_deg = HarmonicSeries::from_uniform_samples(&input_deg, count)?;
         let linkage = model.linkage[..self.index].to_vec();
         let before = ActuatorModel { linkage, ..model.clone() };
@@ -133,18 +138,8 @@ const LEAST_HARMONICS: usize = 48;
 /// driven above its frequency asks for more.
 const AMPLE: f64 = 100.0;
 
-impl Joint {
-    /// The periodic input for which the output is as given, both deg; jumps spread over `spread`
-    /// samples.
-    fn input_of(self, output_deg: &[f64], spread: usize) -> Vec<f64> {
-        match self {
-            Self::Gap { half_width_deg } => gap_input(output_deg, half_width_deg, spread),
-            Self::Friction(step) => friction_input(output_deg, step),
-        }
-    }
-}
-
-/// `x = y + r sgn(dy)`, the sign averaged over `spread` samples about each.
+/// The periodic input of a gap for which the output is as given, both deg: `x = y + r sgn(dy)`, the sign
+/// averaged over `spread` samples about each, over which jumps are spread.
 fn gap_input(output_deg: &[f64], half_width_deg: f64, spread: usize) -> Vec<f64> {
     let count = output_deg.len();
     let before = |i: usize| output_deg[(i + count - 1) % count];
@@ -160,7 +155,7 @@ fn gap_input(output_deg: &[f64], half_width_deg: f64, spread: usize) -> Vec<f64>
     (0..count).map(|i| output_deg[i] + half_width_deg * mean(i)).collect()
 }
 
-/// The input sample by sample, each from the stretch that the last one left, until it closes.
+/// The same of friction, sample by sample, each from the stretch that the last one left, until it closes.
 fn friction_input(output_deg: &[f64], step: FrictionStep) -> Vec<f64> {
     let mut input_deg = output_deg.to_vec();
     let (mut stretch, mut last) = (0.0, output_deg.last().copied().unwrap_or(0.0));

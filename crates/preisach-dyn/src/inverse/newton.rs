@@ -1,11 +1,11 @@
 //! Newton's method on the harmonics of a voltage.
 
 use super::{InverseSettings, PeriodicInverse};
-use crate::check::check_positive;
+use crate::check::{check_count, check_finite, check_positive, extremes, largest_above};
 use crate::{ActuatorModel, PeriodicResponse, PreisachError};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use rotor_base::{Harmonic, HarmonicSeries, mean_square, uniform_azimuths_rad};
 
 /// Amplitudes closer than this share of the wanted one are not told apart when the reach is sought.
 pub(super) const REACH_RESOLUTION: f64 = 1.0 / 128.0;
@@ -20,27 +20,6 @@ const HALVINGS: usize = 7;
 struct Point {
     x: DVector<f64>,
     response: PeriodicResponse,
-}
-
-/// Why Newton's method stopped short.
-enum Stop {
-    /// The voltage range ended, at this azimuth and voltage.
-    Range { azimuth_deg: f64, voltage_volt: f64 },
-    /// It did not converge.
-    Stalled { iterations: usize, residual_deg: f64 },
-    /// The simulation failed.
-    Simulation(PreisachError),
-}
-
-impl From<PreisachError> for Stop {
-    fn from(error: PreisachError) -> Self {
-        match error {
-            PreisachError::CommandOutOfRange { azimuth_deg, voltage_volt, .. } => {
-                Self::Range { azimuth_deg, voltage_volt }
-            }
-            other => Self::Simulation(other),
-        }
-    }
 }
 
 /// The search for one periodic voltage.
@@ -66,22 +45,15 @@ impl<'a> Search<'a> {
     ) -> Result<Self, PreisachError> {
         check_positive("rev_hz", rev_hz)?;
         check_positive("tolerance_deg", settings.tolerance_deg)?;
-        let (value, least) = (settings.voltage_harmonics, wanted_deg.harmonics.len().max(1));
-        if value < least {
-            return Err(PreisachError::TooFew { quantity: "voltage_harmonics", value, least });
-        }
-        let solved = value;
-        let wanted = coefficients(wanted_deg, value);
-        if let Some((index, &value)) = wanted.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-            return Err(PreisachError::NotFinite { quantity: "wanted flap (deg)", index, value });
-        }
+        let solved = settings.voltage_harmonics;
+        check_count("voltage_harmonics", solved, wanted_deg.harmonics.len().max(1))?;
+        let wanted = coefficients(wanted_deg, solved);
+        check_finite("wanted flap (deg)", wanted.iter().copied())?;
         let mut settings = *settings;
-        settings.periodic.harmonics = settings.periodic.harmonics.max(value);
+        settings.periodic.harmonics = settings.periodic.harmonics.max(solved);
         let azimuths = uniform_azimuths_rad(settings.periodic.steps_per_rev);
         let wanted_samples: Vec<f64> = azimuths.iter().map(|&psi| wanted_deg.value(psi)).collect();
-        let [low, high] = wanted_samples
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
+        let [low, high] = extremes(wanted_samples.iter().copied());
         let amplitude_deg = 0.5 * (high - low);
         Ok(Self { model, wanted, wanted_samples, amplitude_deg, rev_hz, settings, solved })
     }
@@ -100,10 +72,10 @@ impl<'a> Search<'a> {
                     }
                     (at, share) = (found, next);
                 }
-                Err(stop) => {
+                Err(error) => {
                     step *= 0.5;
                     if step < REACH_RESOLUTION {
-                        return Err(self.failure(&at, share, stop));
+                        return Err(self.failure(&at, share, error));
                     }
                 }
             }
@@ -126,17 +98,16 @@ impl<'a> Search<'a> {
         // what is left of a command that had more harmonics may overshoot the range a little
         let start = STARTS.iter().find_map(|&share| shrunk(share).ok());
         let start = start.map_or_else(|| shrunk(1.0), Ok);
-        let start = match start.map_err(Stop::from) {
+        let start = match start {
             Ok(start) => start,
-            Err(Stop::Simulation(error)) => return Err(error),
-            Err(stop) => {
-                let rest = self.rest()?;
-                return Err(self.failure(&rest, 0.0, stop));
+            Err(error @ PreisachError::CommandOutOfRange { .. }) => {
+                return Err(self.failure(&self.rest()?, 0.0, error));
             }
+            Err(error) => return Err(error),
         };
         match self.newton(&start, 1.0) {
             Ok((found, iterations)) => Ok(self.solution(found, iterations)),
-            Err(stop) => Err(self.failure(&start, 1.0, stop)),
+            Err(error) => Err(self.failure(&start, 1.0, error)),
         }
     }
 
@@ -191,16 +162,21 @@ impl<'a> Search<'a> {
     }
 
     /// Newton's method for a share of the wanted motion.
-    fn newton(&self, start: &Point, share: f64) -> Result<(Point, usize), Stop> {
+    fn newton(&self, start: &Point, share: f64) -> Result<(Point, usize), PreisachError> {
         let target = self.target(share);
         let mut at = self.point(start.x.clone())?;
         let mut residual = self.residual(&at, &target);
-        for iterations in 0..self.settings.largest_iterations {
-            if residual.amax() <= self.settings.tolerance_deg {
+        let mut iterations = 0;
+        loop {
+            let residual_deg = residual.amax();
+            if residual_deg <= self.settings.tolerance_deg {
                 return Ok((at, iterations));
             }
+            let stalled = PreisachError::InverseNotConverged { iterations, residual_deg, share };
+            if iterations == self.settings.largest_iterations {
+                return Err(stalled);
+            }
             let jacobian = self.jacobian(&at)?;
-            let stalled = Stop::Stalled { iterations, residual_deg: residual.amax() };
             let Some(solution) = jacobian.lu().solve(&residual) else {
                 return Err(stalled);
             };
@@ -217,20 +193,13 @@ impl<'a> Search<'a> {
                         }
                     }
                     // the whole step leaves the range: remembered, and a shorter one is tried
-                    Err(error) => {
-                        if halving == 0 {
-                            tried = Err(Stop::from(error));
-                        }
-                    }
+                    Err(error) if halving == 0 => tried = Err(error),
+                    Err(_) => {}
                 }
             }
             (at, residual) = tried?;
+            iterations += 1;
         }
-        let residual_deg = residual.amax();
-        if residual_deg <= self.settings.tolerance_deg {
-            return Ok((at, self.settings.largest_iterations));
-        }
-        Err(Stop::Stalled { iterations: self.settings.largest_iterations, residual_deg })
     }
 
     /// Differences of the flap's harmonics over those of the voltage, taken to the side that lies
@@ -248,54 +217,46 @@ impl<'a> Search<'a> {
                     let there = coefficients(&flap, self.solved);
                     Ok::<_, PreisachError>((there - &here) / difference)
                 };
-                shifted(size).or_else(|_| shifted(-size)).or_else(|_| {
-                    // both sides leave the range: the command touches both ends there
-                    shifted(1e-6 * size)
-                })
+                // where both sides leave the range the command touches both ends
+                shifted(size).or_else(|_| shifted(-size)).or_else(|_| shifted(1e-6 * size))
             })
             .collect::<Result<Vec<_>, PreisachError>>()?;
         Ok(DMatrix::from_columns(&columns))
     }
 
     fn solution(&self, point: Point, iterations: usize) -> PeriodicInverse {
-        let errors = || {
-            let pairs = point.response.samples_deg.iter().zip(&self.wanted_samples);
-            pairs.map(|(a, b)| a - b)
-        };
-        let squares: f64 = errors().map(|e| e * e).sum();
+        let pairs = point.response.samples_deg.iter().zip(&self.wanted_samples);
+        let errors: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
         PeriodicInverse {
-            largest_error_deg: errors().fold(0.0, |m, e| e.abs().max(m)),
-            rms_error_deg: (squares / self.wanted_samples.len() as f64).sqrt(),
+            largest_error_deg: errors.iter().fold(0.0, |m, e| e.abs().max(m)),
+            rms_error_deg: mean_square(&errors).sqrt(),
             amplitude_deg: self.amplitude_deg,
             iterations,
             response: point.response,
         }
     }
 
-    /// The error of a search that ended at `share` of the wanted motion.
-    fn failure(&self, at: &Point, share: f64, stop: Stop) -> PreisachError {
-        match stop {
-            Stop::Simulation(error) => error,
-            Stop::Stalled { iterations, residual_deg } => {
+    /// The error of a search that an error ended at `share` of the wanted motion.
+    fn failure(&self, at: &Point, share: f64, error: PreisachError) -> PreisachError {
+        match error {
+            PreisachError::InverseNotConverged { iterations, residual_deg, .. } => {
                 PreisachError::InverseNotConverged { iterations, residual_deg, share }
             }
-            Stop::Range { azimuth_deg, voltage_volt } => {
+            PreisachError::CommandOutOfRange { azimuth_deg, voltage_volt, range } => {
                 let command = series(&at.x);
-                let strongest = (1..=command.harmonics.len()).max_by(|&a, &b| {
-                    let amplitude = |n: usize| command.harmonic(n).amplitude();
-                    amplitude(a).total_cmp(&amplitude(b))
-                });
+                let amplitudes = command.harmonics.iter().map(Harmonic::amplitude);
+                let (strongest, _) = largest_above(0.0, amplitudes);
                 PreisachError::MotionOutOfReach {
                     wanted_deg: self.amplitude_deg,
                     reachable_deg: share * self.amplitude_deg,
-                    harmonic: strongest.unwrap_or(1),
+                    harmonic: strongest + 1,
                     rev_hz: self.rev_hz,
                     azimuth_deg,
                     voltage_volt,
-                    lowest_volt: self.model.range_volt.lowest_volt(),
-                    highest_volt: self.model.range_volt.highest_volt(),
+                    range,
                 }
             }
+            other => other,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Sample-by-sample inverse of the static model.
 
+use crate::check::{check_finite, check_that};
 use crate::laws::memory::moved;
 use crate::laws::play_map::interpolate;
 use crate::{PlayMemory, PreisachError, StaticPreisach};
@@ -14,18 +15,12 @@ impl StaticPreisach {
     /// nearest to the present one is taken.
     ///
     /// # Errors
-    /// [`PreisachError::OutputOutOfReach`] with what the next sample can reach,
+    /// [`PreisachError::OutOfRange`] with what the next sample can reach,
     /// [`PreisachError::NotFinite`], [`PreisachError::MemoryMismatch`].
     pub fn inverse(&self, memory: &mut PlayMemory, wanted_deg: f64) -> Result<f64, PreisachError> {
         let levels = self.grid().levels();
-        if !wanted_deg.is_finite() {
-            let quantity = "wanted output (deg)";
-            return Err(PreisachError::NotFinite { quantity, index: 0, value: wanted_deg });
-        }
-        if memory.levels() != levels {
-            let found = memory.levels();
-            return Err(PreisachError::MemoryMismatch { found, expected: levels });
-        }
+        check_finite("wanted output (deg)", [wanted_deg])?;
+        memory.check(self.grid())?;
         let cells = memory.cells();
         let map = self.map();
         let output = |top: f64| {
@@ -40,7 +35,11 @@ impl StaticPreisach {
         let slack = 4.0 * f64::EPSILON * size * (highest + 1.0);
         let (lowest_deg, highest_deg) = (output(0.0), output(highest));
         if wanted_deg < lowest_deg - slack || wanted_deg > highest_deg + slack {
-            return Err(PreisachError::OutputOutOfReach { wanted_deg, lowest_deg, highest_deg });
+            let expected = format!(
+                "{lowest_deg} to {highest_deg}: the next sample reaches no further; lower the target or \
+                 widen the voltage range"
+            );
+            check_that(false, "wanted output (deg)", wanted_deg, expected)?;
         }
         // play 0 follows the voltage: it tells where the voltage is
         let now = cells.first().copied().unwrap_or(0.0);

@@ -1,7 +1,6 @@
 //! The Bouc-Wen model in its normalised, rate-independent form.
 
-use crate::check::{check_not_negative, check_positive};
-use crate::laws::memory::approach;
+use crate::check::{check_not_negative, check_positive, check_that, check_within};
 use crate::{Envelope, HysteresisLaw, PreisachError, StartState, VoltageRange};
 use serde::{Deserialize, Serialize};
 
@@ -59,19 +58,7 @@ pub struct BoucWen {
     parameters: BoucWenParameters,
 }
 
-impl TryFrom<BoucWenParameters> for BoucWen {
-    type Error = PreisachError;
-
-    fn try_from(parameters: BoucWenParameters) -> Result<Self, PreisachError> {
-        Self::new(parameters)
-    }
-}
-
-impl From<BoucWen> for BoucWenParameters {
-    fn from(model: BoucWen) -> Self {
-        model.parameters
-    }
-}
+stored_as_parameters!(BoucWen, BoucWenParameters);
 
 /// The hysteretic variable, -1 to 1, and the voltage it belongs to, V.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -85,24 +72,29 @@ impl BoucWen {
     /// The model of the given numbers.
     ///
     /// # Errors
-    /// [`PreisachError::Negative`], [`PreisachError::NotPositive`],
-    /// [`PreisachError::NotDissipative`], [`PreisachError::OutputFalls`] or
-    /// [`PreisachError::EnvelopeFalls`].
+    /// [`PreisachError::OutOfRange`], [`PreisachError::NotFinite`].
     pub fn new(parameters: BoucWenParameters) -> Result<Self, PreisachError> {
         let p = &parameters;
         check_positive("gain_deg_per_volt", p.gain_deg_per_volt)?;
         check_positive("rise_volt", p.rise_volt)?;
         check_not_negative("half_height_deg", p.half_height_deg)?;
         p.envelope.check()?;
-        let shape_ok = p.sigma.is_finite() && p.sigma >= 0.5 && (1.0..=10.0).contains(&p.exponent);
-        if !shape_ok {
-            return Err(PreisachError::NotDissipative { sigma: p.sigma, exponent: p.exponent });
-        }
-        let steepest_deg_per_volt = 2.0 * p.sigma * p.half_height_deg / p.rise_volt;
-        if steepest_deg_per_volt > p.gain_deg_per_volt * (1.0 + 1e-12) {
-            let gain_deg_per_volt = p.gain_deg_per_volt;
-            return Err(PreisachError::OutputFalls { steepest_deg_per_volt, gain_deg_per_volt });
-        }
+        let dissipates = p.sigma.is_finite() && p.sigma >= 0.5;
+        check_that(
+            dissipates,
+            "sigma",
+            p.sigma,
+            "a finite number, 1/2 or more: less gives energy",
+        )?;
+        check_within("exponent", p.exponent, 1.0..=10.0)?;
+        let (gain, steepest) =
+            (p.gain_deg_per_volt, 2.0 * p.sigma * p.half_height_deg / p.rise_volt);
+        let expected = format!(
+            "up to the gain of {gain}, or the output falls while the voltage rises; raise rise_volt or \
+             lower half_height_deg"
+        );
+        let rises = steepest <= gain * (1.0 + 1e-12);
+        check_that(rises, "steepest slope of the loop (deg/V)", steepest, expected)?;
         Ok(Self { parameters })
     }
 
@@ -139,14 +131,13 @@ fn rising(w: f64, length: f64, k: f64, n: f64) -> f64 {
         return w;
     }
     #[expect(clippy::float_cmp, reason = "the exponents with a closed solution, as written")]
-    let closed = if n == 1.0 {
-        Some(rising_exponent_1(w, length, k))
+    let value = if n == 1.0 {
+        rising_exponent_1(w, length, k)
     } else if n == 2.0 {
-        Some(rising_exponent_2(w, length, k))
+        rising_exponent_2(w, length, k)
     } else {
-        None
+        rising_runge_kutta(w, length, k, n)
     };
-    let value = closed.unwrap_or_else(|| rising_runge_kutta(w, length, k, n));
     value.clamp(-1.0, 1.0)
 }
 
@@ -212,13 +203,9 @@ impl HysteresisLaw for BoucWen {
     type Memory = BoucWenMemory;
 
     fn start(&self, voltage_volt: f64, state: StartState) -> (BoucWenMemory, f64) {
+        let memory = BoucWenMemory { w: 0.0, voltage_volt };
         let range = self.parameters.range_volt;
-        let mut memory = BoucWenMemory { w: 0.0, voltage_volt };
-        for fraction in approach(state) {
-            self.moved(&mut memory, range.lowest_volt() + fraction * range.span_volt());
-        }
-        let output_deg = self.moved(&mut memory, voltage_volt);
-        (memory, output_deg)
+        state.led(memory, range, voltage_volt, |m, volt| self.moved(m, volt))
     }
 
     fn step(&self, memory: &mut BoucWenMemory, voltage_volt: f64, _: f64) -> f64 {

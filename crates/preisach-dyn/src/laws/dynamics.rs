@@ -1,5 +1,6 @@
 //! The dynamic Preisach actuator, paper equation (5).
 
+use crate::check::{check_not_negative, check_that};
 use crate::laws::play_map::NodeTable;
 use crate::{
     HysteresisLaw, PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach,
@@ -151,19 +152,7 @@ pub struct DynamicParameters {
     pub time_order: TimeOrder,
 }
 
-impl TryFrom<DynamicParameters> for DynamicPreisach {
-    type Error = PreisachError;
-
-    fn try_from(parameters: DynamicParameters) -> Result<Self, PreisachError> {
-        Self::new(parameters)
-    }
-}
-
-impl From<DynamicPreisach> for DynamicParameters {
-    fn from(model: DynamicPreisach) -> Self {
-        model.parameters
-    }
-}
+stored_as_parameters!(DynamicPreisach, DynamicParameters);
 
 impl DynamicPreisach {
     /// The model of the given maps, checked over *all* reachable states.
@@ -176,8 +165,8 @@ impl DynamicPreisach {
     ///
     /// # Errors
     /// [`PreisachError::NodeCount`], [`PreisachError::NotFinite`],
-    /// [`PreisachError::NegativeDensity`], [`PreisachError::NotWellPosed`],
-    /// [`PreisachError::FoldsTooEarly`].
+    /// [`PreisachError::OutOfRange`], or [`PreisachError::OutOfRange`] for a model that is not well
+    /// posed or folds too early.
     pub fn new(parameters: DynamicParameters) -> Result<Self, PreisachError> {
         let p = &parameters;
         p.g0_deg.check(&p.grid, "g0_deg")?;
@@ -185,32 +174,26 @@ impl DynamicPreisach {
         p.g2_s2_per_deg.check(&p.grid, "g2_s2_per_deg")?;
         p.g0_deg.check_rising()?;
         let rate = p.unfolded_rate_deg_s;
-        if !(rate.is_finite() && rate >= 0.0) {
-            return Err(PreisachError::NotPositive {
-                quantity: "unfolded_rate_deg_s",
-                value: rate,
-            });
-        }
+        check_not_negative("unfolded_rate_deg_s", rate)?;
         if p.form == RateForm::WellPosed {
             let (largest_g1_s, _) = p.g1_s.largest();
-            if largest_g1_s >= 0.0 {
-                return Err(PreisachError::NotWellPosed { largest_g1_s });
-            }
+            let expected = "a negative number in every reachable state of a well-posed model; raise \
+                            tau0 or use the Literal form";
+            check_that(largest_g1_s < 0.0, "largest G1 (s)", largest_g1_s, expected)?;
             for sign in [1.0, -1.0] {
                 let slack = p.g1_s.combined(1.0, &p.g2_s2_per_deg, 2.0 * sign * rate);
                 let (excess_s, _) = slack.largest();
-                if excess_s > 0.0 {
-                    return Err(PreisachError::FoldsTooEarly { excess_s, rate_deg_s: rate });
-                }
+                let expected = format!(
+                    "0 or less in every reachable state up to the output rate d = {rate} deg/s; \
+                     scale G2 down or lower unfolded_rate_deg_s"
+                );
+                check_that(excess_s <= 0.0, "largest 2 |G2| d - |G1| (s)", excess_s, expected)?;
             }
         }
         let maps = [&p.g0_deg, &p.g1_s, &p.g2_s2_per_deg];
         let table = NodeTable::new(&p.grid, |play, knot| {
-            let [a, b, c] = maps.map(|map| {
-                let row = &map.nodes[play];
-                (row[knot], row.get(knot + 1).map_or(0.0, |next| next - row[knot]))
-            });
-            [a.0, b.0, c.0, a.1, b.1, c.1]
+            let [a, b, c] = maps.map(|map| map.value_and_rise(play, knot));
+            [a[0], b[0], c[0], a[1], b[1], c[1]]
         });
         Ok(Self { parameters, table })
     }
@@ -231,13 +214,6 @@ impl DynamicPreisach {
     /// None for a model that was itself built; the checks are those of [`StaticPreisach::new`].
     pub fn static_part(&self) -> Result<StaticPreisach, PreisachError> {
         StaticPreisach::new(self.parameters.grid, self.parameters.g0_deg.clone())
-    }
-
-    /// The same model with another order of time integration.
-    #[must_use]
-    pub fn with_time_order(mut self, order: TimeOrder) -> Self {
-        self.parameters.time_order = order;
-        self
     }
 
     /// `G0` (deg), `G1` (s) and `G2` (s^2/deg) in a given memory state.
@@ -261,31 +237,6 @@ impl DynamicPreisach {
         [g0, g1, g2]
     }
 
-    /// One time step to a new voltage: moves memory and output history, counts, returns the output
-    /// in deg.
-    ///
-    /// Voltages beyond the grid's range act as its limits. The memory must belong to this grid.
-    pub fn step(
-        &self,
-        memory: &mut PlayMemory,
-        history: &mut OutputHistory,
-        counts: &mut StepCounts,
-        voltage_volt: f64,
-        time_step_s: f64,
-    ) -> f64 {
-        let g = self.apply(memory, voltage_volt);
-        let folded = history.advance(g, self.parameters.time_order, time_step_s);
-        counts.steps += 1;
-        counts.g1_not_negative += usize::from(g[1] >= 0.0);
-        counts.folds += usize::from(folded);
-        history.output_deg
-    }
-}
-
-/// Models that are evaluated at once.
-const TOGETHER: usize = 4;
-
-impl DynamicPreisach {
     /// The outputs of models on one grid over the same voltages, from rest at the first: the plays
     /// move once for all of them. Each is that of its own simulation, to the last bit; one that
     /// diverges is not stopped.
@@ -317,14 +268,7 @@ impl DynamicPreisach {
         let mut memory = PlayMemory::new(grid, start, StartState::Rest);
         let mut histories: Vec<OutputHistory> =
             models.iter().map(|m| OutputHistory::at_rest(m.maps(&memory)[0])).collect();
-        let mut outputs: Vec<Vec<f64>> = histories
-            .iter()
-            .map(|history| {
-                let mut output = Vec::with_capacity(voltages_volt.len());
-                output.push(history.output_deg);
-                output
-            })
-            .collect();
+        let mut outputs: Vec<Vec<f64>> = histories.iter().map(|h| vec![h.output_deg]).collect();
         for &volt in &voltages_volt[1..] {
             memory.apply(grid, volt);
             let mut sums = constants;
@@ -345,6 +289,9 @@ impl DynamicPreisach {
         outputs
     }
 }
+
+/// Models that are evaluated at once.
+const TOGETHER: usize = 4;
 
 /// What a [`DynamicPreisach`] remembers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -371,7 +318,12 @@ impl HysteresisLaw for DynamicPreisach {
     #[inline]
     fn step(&self, memory: &mut DynamicMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
         let DynamicMemory { plays, history, counts } = memory;
-        self.step(plays, history, counts, voltage_volt, time_step_s)
+        let g = self.apply(plays, voltage_volt);
+        let folded = history.advance(g, self.parameters.time_order, time_step_s);
+        counts.steps += 1;
+        counts.g1_not_negative += usize::from(g[1] >= 0.0);
+        counts.folds += usize::from(folded);
+        history.output_deg
     }
 
     fn check_memory(&self, memory: &DynamicMemory) -> Result<(), PreisachError> {

@@ -1,6 +1,7 @@
 //! An output curve without memory: what makes a symmetric loop asymmetric.
 
 use crate::PreisachError;
+use crate::check::{check_finite, check_that};
 use serde::{Deserialize, Serialize};
 
 /// A rising cubic from a symmetric law's output to the flap angle.
@@ -29,22 +30,15 @@ pub struct Envelope {
 impl Envelope {
     /// Refuses numbers that are not finite, and a curve that falls anywhere in `|zeta| <= 1`.
     pub(crate) fn check(&self) -> Result<(), PreisachError> {
-        for (index, value) in [self.offset_deg, self.quadratic, self.cubic].into_iter().enumerate()
-        {
-            if !value.is_finite() {
-                return Err(PreisachError::NotFinite { quantity: "envelope", index, value });
-            }
-        }
+        check_finite("envelope", [self.offset_deg, self.quadratic, self.cubic])?;
         let slope = |zeta: f64| 1.0 + 2.0 * self.quadratic * zeta + 3.0 * self.cubic * zeta * zeta;
         let bottom = -self.quadratic / (3.0 * self.cubic);
         let mut least_slope = slope(1.0).min(slope(-1.0));
         if self.cubic > 0.0 && bottom.abs() < 1.0 {
             least_slope = least_slope.min(slope(bottom));
         }
-        if least_slope < 0.0 {
-            return Err(PreisachError::EnvelopeFalls { least_slope });
-        }
-        Ok(())
+        let expected = "0 or more; lower quadratic or cubic";
+        check_that(least_slope >= 0.0, "least slope of the output curve", least_slope, expected)
     }
 
     /// The flap angle, deg, of a symmetric output `z` whose largest value is `reference`, both deg.

@@ -1,7 +1,10 @@
 //! The Preisach triangle cut into levels.
 
 use crate::PreisachError;
+use crate::check::{check_count, check_that};
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::num::NonZeroUsize;
 
 /// The voltages an actuator may see.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -15,14 +18,13 @@ impl VoltageRange {
     /// The range from `lowest_volt` to `highest_volt`.
     ///
     /// # Errors
-    /// [`PreisachError::EmptyVoltageRange`] unless both are finite and the second is the larger.
+    /// [`PreisachError::OutOfRange`] unless both are finite and the second is the larger.
     pub fn new(lowest_volt: f64, highest_volt: f64) -> Result<Self, PreisachError> {
         let span = highest_volt - lowest_volt;
-        if span.is_finite() && span > 0.0 {
-            Ok(Self { lowest_volt, highest_volt })
-        } else {
-            Err(PreisachError::EmptyVoltageRange { lowest_volt, highest_volt })
-        }
+        let expected =
+            format!("above its lower end {lowest_volt}: the range is empty or not finite");
+        check_that(span.is_finite() && span > 0.0, "end of a range", highest_volt, expected)?;
+        Ok(Self { lowest_volt, highest_volt })
     }
 
     /// The range of the amplified piezo stack of the bench tests, -20 V to 150 V.
@@ -62,6 +64,12 @@ impl VoltageRange {
     }
 }
 
+impl fmt::Display for VoltageRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} V to {} V", self.lowest_volt, self.highest_volt)
+    }
+}
+
 impl TryFrom<(f64, f64)> for VoltageRange {
     type Error = PreisachError;
 
@@ -89,49 +97,26 @@ impl From<VoltageRange> for (f64, f64) {
 /// Inside the crate a play state `w` is kept as `x = (w - r_j - u_min) / c`, in 0 ..= n - j, so
 /// that all knots are whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "GridFile", into = "GridFile")]
-pub struct PreisachGrid {
-    range: VoltageRange,
-    levels: usize,
-}
-
-/// The grid as it is written to files.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct GridFile {
-    range_volt: VoltageRange,
-    levels: usize,
-}
-
-impl TryFrom<GridFile> for PreisachGrid {
-    type Error = PreisachError;
-
-    fn try_from(file: GridFile) -> Result<Self, PreisachError> {
-        Self::new(file.range_volt, file.levels)
-    }
-}
-
-impl From<PreisachGrid> for GridFile {
-    fn from(grid: PreisachGrid) -> Self {
-        Self { range_volt: grid.range, levels: grid.levels }
-    }
+pub struct PreisachGrid {
+    #[serde(rename = "range_volt")]
+    range: VoltageRange,
+    levels: NonZeroUsize,
 }
 
 impl PreisachGrid {
     /// The triangle over `range` with `levels >= 1` plays.
     ///
     /// # Errors
-    /// [`PreisachError::TooFew`] without a level.
+    /// [`PreisachError::OutOfRange`] without a level.
     pub fn new(range: VoltageRange, levels: usize) -> Result<Self, PreisachError> {
-        if levels == 0 {
-            return Err(PreisachError::TooFew { quantity: "levels", value: 0, least: 1 });
-        }
-        Ok(Self { range, levels })
+        check_count("levels", levels, 1)?;
+        Ok(Self { range, levels: NonZeroUsize::new(levels).unwrap_or(NonZeroUsize::MIN) })
     }
 
     /// Number of plays, `n`.
     pub fn levels(&self) -> usize {
-        self.levels
+        self.levels.get()
     }
 
     /// The voltages covered.
@@ -141,7 +126,7 @@ impl PreisachGrid {
 
     /// Side `c` of a cell, V.
     pub fn cell_volt(&self) -> f64 {
-        self.range.span_volt() / self.levels as f64
+        self.range.span_volt() / self.levels() as f64
     }
 
     /// Half-width `r_j` of play `play`, V.
@@ -151,7 +136,7 @@ impl PreisachGrid {
 
     /// Number of knots of play `play`, `n - j + 1`; none beyond the last play.
     pub fn knots(&self, play: usize) -> usize {
-        if play < self.levels { self.levels - play + 1 } else { 0 }
+        if play < self.levels() { self.levels() - play + 1 } else { 0 }
     }
 
     /// Centre `s_jk` of knot `knot` of play `play`, V.
@@ -162,12 +147,7 @@ impl PreisachGrid {
     /// A voltage in cells above the lower limit, held inside 0 ..= n.
     pub(crate) fn coordinate(&self, voltage_volt: f64) -> f64 {
         let x = (voltage_volt - self.range.lowest_volt) / self.cell_volt();
-        x.clamp(0.0, self.levels as f64)
-    }
-
-    /// The output of play `play` in volt from its internal coordinate.
-    pub(crate) fn play_volt(&self, play: usize, coordinate: f64) -> f64 {
-        self.range.lowest_volt + self.half_width_volt(play) + coordinate * self.cell_volt()
+        x.clamp(0.0, self.levels() as f64)
     }
 }
 

@@ -31,16 +31,6 @@ impl StepCounts {
             folds: self.folds - earlier.folds,
         }
     }
-
-    /// Counts of two stretches together.
-    #[must_use]
-    pub fn plus(self, other: Self) -> Self {
-        Self {
-            steps: self.steps + other.steps,
-            g1_not_negative: self.g1_not_negative + other.g1_not_negative,
-            folds: self.folds + other.folds,
-        }
-    }
 }
 
 /// A law with memory between a voltage (V) and an output (deg of equivalent flap angle).

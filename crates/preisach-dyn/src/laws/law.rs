@@ -2,8 +2,8 @@
 
 use crate::{
     BoucWen, BoucWenMemory, DynamicMemory, DynamicPreisach, HysteresisLaw, LinearGain, PlayMemory,
-    PrandtlIshlinskii, PrandtlMemory, PrandtlStop, PreisachError, StartState, StaticPreisach,
-    StepCounts, StopMemory,
+    PrandtlIshlinskii, PrandtlStop, PreisachError, StartState, StaticPreisach, StepCounts,
+    WidthsMemory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -38,45 +38,11 @@ pub enum LawMemory {
     /// The plays and the past outputs.
     DynamicPreisach(DynamicMemory),
     /// The plays and the last voltage.
-    PrandtlIshlinskii(PrandtlMemory),
+    PrandtlIshlinskii(WidthsMemory),
     /// The hysteretic variable and the last voltage.
     BoucWen(BoucWenMemory),
     /// The plays of the stops and the last voltage.
-    PrandtlStop(StopMemory),
-}
-
-/// Runs the same expression for a law and the memory that belongs to it.
-macro_rules! paired {
-    ($law:expr, $memory:expr, ($l:ident, $m:ident) => $body:expr, else $otherwise:expr) => {
-        match ($law, $memory) {
-            (ActuatorLaw::Linear($l), LawMemory::Linear($m)) => $body,
-            (ActuatorLaw::StaticPreisach($l), LawMemory::StaticPreisach($m)) => $body,
-            (ActuatorLaw::DynamicPreisach($l), LawMemory::DynamicPreisach($m)) => $body,
-            (ActuatorLaw::PrandtlIshlinskii($l), LawMemory::PrandtlIshlinskii($m)) => $body,
-            (ActuatorLaw::BoucWen($l), LawMemory::BoucWen($m)) => $body,
-            (ActuatorLaw::PrandtlStop($l), LawMemory::PrandtlStop($m)) => $body,
-            _ => $otherwise,
-        }
-    };
-}
-
-/// Runs the same expression for every law, wrapped in its own variant.
-macro_rules! each {
-    ($law:expr, $l:ident, $variant:ident => $body:expr) => {
-        match $law {
-            ActuatorLaw::Linear($l) => each!(@ $variant Linear $body),
-            ActuatorLaw::StaticPreisach($l) => each!(@ $variant StaticPreisach $body),
-            ActuatorLaw::DynamicPreisach($l) => each!(@ $variant DynamicPreisach $body),
-            ActuatorLaw::PrandtlIshlinskii($l) => each!(@ $variant PrandtlIshlinskii $body),
-            ActuatorLaw::BoucWen($l) => each!(@ $variant BoucWen $body),
-            ActuatorLaw::PrandtlStop($l) => each!(@ $variant PrandtlStop $body),
-        }
-    };
-    (@ memory $name:ident $body:expr) => {{
-        let (memory, output_deg) = $body;
-        (LawMemory::$name(memory), output_deg)
-    }};
-    (@ law $name:ident $body:expr) => { ActuatorLaw::$name($body) };
+    PrandtlStop(WidthsMemory),
 }
 
 impl ActuatorLaw {
@@ -91,9 +57,7 @@ impl ActuatorLaw {
             Self::PrandtlStop(_) => "Prandtl-Ishlinskii stops",
         }
     }
-}
 
-impl ActuatorLaw {
     /// The outputs of Preisach laws of one kind on one grid over the same voltages, from rest at the
     /// first; each is that of its own simulation, to the last bit. None for other laws.
     pub(crate) fn side_by_side(
@@ -119,33 +83,54 @@ impl ActuatorLaw {
     }
 }
 
-impl HysteresisLaw for ActuatorLaw {
-    type Memory = LawMemory;
+/// [`HysteresisLaw`] of any law, with any memory, from that of each law with its own.
+macro_rules! any_of {
+    ($($name:ident),*) => {
+        impl HysteresisLaw for ActuatorLaw {
+            type Memory = LawMemory;
 
-    fn start(&self, voltage_volt: f64, state: StartState) -> (LawMemory, f64) {
-        each!(self, law, memory => law.start(voltage_volt, state))
-    }
+            fn start(&self, voltage_volt: f64, state: StartState) -> (LawMemory, f64) {
+                match self {
+                    $(Self::$name(law) => {
+                        let (memory, output_deg) = law.start(voltage_volt, state);
+                        (LawMemory::$name(memory), output_deg)
+                    })*
+                }
+            }
 
-    /// As the law's own step; NaN for a memory that belongs to another law, see
-    /// [`HysteresisLaw::check_memory`].
-    #[inline]
-    fn step(&self, memory: &mut LawMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
-        paired!(self, memory,
-            (law, memory) => HysteresisLaw::step(law, memory, voltage_volt, time_step_s),
-            else f64::NAN)
-    }
+            /// As the law's own step; NaN for a memory that belongs to another law, see
+            /// [`HysteresisLaw::check_memory`].
+            #[inline]
+            fn step(&self, memory: &mut LawMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
+                match (self, memory) {
+                    $((Self::$name(law), LawMemory::$name(memory)) => {
+                        HysteresisLaw::step(law, memory, voltage_volt, time_step_s)
+                    })*
+                    _ => f64::NAN,
+                }
+            }
 
-    fn check_memory(&self, memory: &LawMemory) -> Result<(), PreisachError> {
-        paired!(self, memory,
-            (law, memory) => law.check_memory(memory),
-            else Err(PreisachError::MemoryOfAnotherLaw { expected: self.name() }))
-    }
+            fn check_memory(&self, memory: &LawMemory) -> Result<(), PreisachError> {
+                match (self, memory) {
+                    $((Self::$name(law), LawMemory::$name(memory)) => law.check_memory(memory),)*
+                    _ => Err(PreisachError::MemoryOfAnotherLaw { expected: self.name() }),
+                }
+            }
 
-    fn counts(&self, memory: &LawMemory) -> StepCounts {
-        paired!(self, memory, (law, memory) => law.counts(memory), else StepCounts::default())
-    }
+            fn counts(&self, memory: &LawMemory) -> StepCounts {
+                match (self, memory) {
+                    $((Self::$name(law), LawMemory::$name(memory)) => law.counts(memory),)*
+                    _ => StepCounts::default(),
+                }
+            }
 
-    fn shifted(self, shift_deg: f64) -> Self {
-        each!(self, kept, law => kept.shifted(shift_deg))
-    }
+            fn shifted(self, shift_deg: f64) -> Self {
+                match self {
+                    $(Self::$name(law) => Self::$name(law.shifted(shift_deg)),)*
+                }
+            }
+        }
+    };
 }
+
+any_of!(Linear, StaticPreisach, DynamicPreisach, PrandtlIshlinskii, BoucWen, PrandtlStop);

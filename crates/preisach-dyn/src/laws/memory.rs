@@ -1,6 +1,7 @@
 //! The memory of a Preisach operator: one state per play.
 
-use crate::{PreisachError, PreisachGrid};
+use crate::check::check_that;
+use crate::{PreisachError, PreisachGrid, VoltageRange};
 use serde::{Deserialize, Serialize};
 
 /// The state an actuator is in before its first sample.
@@ -35,16 +36,15 @@ impl TryFrom<Vec<f64>> for PlayMemory {
 
     fn try_from(cells: Vec<f64>) -> Result<Self, PreisachError> {
         let levels = cells.len();
-        let inside = |(j, &x): (usize, &f64)| (0.0..=(levels - j) as f64).contains(&x);
-        match cells.iter().enumerate().position(|pair| !inside(pair)) {
-            Some(play) => Err(PreisachError::PlayOutsideTriangle {
-                play,
-                levels,
-                cells: cells[play],
-                largest: levels - play,
-            }),
-            None => Ok(Self { cells }),
+        for (play, &x) in cells.iter().enumerate() {
+            let most = levels - play;
+            let expected = format!(
+                "0 to {most} for play {play} of {levels}: the memory was not written by this program"
+            );
+            let inside = (0.0..=most as f64).contains(&x);
+            check_that(inside, "stored play (cells)", x, expected)?;
         }
+        Ok(Self { cells })
     }
 }
 
@@ -75,12 +75,7 @@ impl PlayMemory {
 
     /// Refuses a memory of another grid.
     pub(crate) fn check(&self, grid: &PreisachGrid) -> Result<(), PreisachError> {
-        let (found, expected) = (self.levels(), grid.levels());
-        if found == expected {
-            Ok(())
-        } else {
-            Err(PreisachError::MemoryMismatch { found, expected })
-        }
+        check_plays(self.levels(), grid.levels())
     }
 
     /// Number of plays.
@@ -105,11 +100,6 @@ impl PlayMemory {
     pub(crate) fn cells(&self) -> &[f64] {
         &self.cells
     }
-
-    /// Outputs of the plays, V.
-    pub fn plays_volt(&self, grid: &PreisachGrid) -> Vec<f64> {
-        self.cells.iter().enumerate().map(|(j, &x)| grid.play_volt(j, x)).collect()
-    }
 }
 
 /// A play of full width `width` cells after its input moved to `top` cells.
@@ -120,12 +110,59 @@ pub(crate) fn moved(x: f64, top: f64, width: f64) -> f64 {
     if lifted > floor { lifted } else { floor }
 }
 
-/// The voltages, as fractions of the range, that lead a law from anywhere to a starting state.
-pub(crate) fn approach(state: StartState) -> &'static [f64] {
-    match state {
-        StartState::Rest => &[],
-        StartState::RisingFromLowest => &[1.0, 0.0],
-        StartState::FallingFromHighest => &[0.0, 1.0],
+impl StartState {
+    /// A memory that has come to this state and then to a voltage, and the output there: `moved` takes
+    /// the memory to a voltage of the range, from wherever it is.
+    pub(crate) fn led<M>(
+        self,
+        mut memory: M,
+        range: VoltageRange,
+        voltage_volt: f64,
+        moved: impl Fn(&mut M, f64) -> f64,
+    ) -> (M, f64) {
+        let fractions: &[f64] = match self {
+            Self::Rest => &[],
+            Self::RisingFromLowest => &[1.0, 0.0],
+            Self::FallingFromHighest => &[0.0, 1.0],
+        };
+        for fraction in fractions {
+            moved(&mut memory, range.lowest_volt() + fraction * range.span_volt());
+        }
+        let output_deg = moved(&mut memory, voltage_volt);
+        (memory, output_deg)
+    }
+}
+
+/// Outputs of plays of any half-widths, and the voltage they belong to, V.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WidthsMemory {
+    pub(crate) plays_volt: Vec<f64>,
+    pub(crate) voltage_volt: f64,
+}
+
+impl WidthsMemory {
+    /// Every play at a voltage.
+    pub(crate) fn at(count: usize, voltage_volt: f64) -> Self {
+        Self { plays_volt: vec![voltage_volt; count], voltage_volt }
+    }
+
+    /// Refuses a memory of another number of plays.
+    pub(crate) fn check(&self, expected: usize) -> Result<(), PreisachError> {
+        check_plays(self.plays_volt.len(), expected)
+    }
+
+    /// What the input leaves of the plays, V: the outputs of stops of the same half-widths.
+    pub fn stops_volt(&self) -> impl Iterator<Item = f64> {
+        self.plays_volt.iter().map(|play| self.voltage_volt - play)
+    }
+}
+
+fn check_plays(found: usize, expected: usize) -> Result<(), PreisachError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(PreisachError::MemoryMismatch { part: "plays", found, expected })
     }
 }
 
@@ -139,14 +176,18 @@ mod tests {
     fn plays_follow_their_definition_in_volt() {
         let grid = PreisachGrid::new(VoltageRange::amplified_stack(), 12).unwrap();
         let mut memory = PlayMemory::new(&grid, 65.0, StartState::Rest);
-        let mut direct: Vec<f64> = memory.plays_volt(&grid);
+        let plays_volt = |memory: &PlayMemory| -> Vec<f64> {
+            let volt = |(j, x): (usize, &f64)| grid.knot_volt(j, 0) + x * grid.cell_volt();
+            memory.cells().iter().enumerate().map(volt).collect()
+        };
+        let mut direct = plays_volt(&memory);
         for u in [80.0, 20.0, 149.0, -20.0, 3.0, 64.0, 10.0] {
             memory.apply(&grid, u);
             for (j, w) in direct.iter_mut().enumerate() {
                 let r = grid.half_width_volt(j);
                 *w = w.min(u + r).max(u - r);
             }
-            for (got, want) in memory.plays_volt(&grid).iter().zip(&direct) {
+            for (got, want) in plays_volt(&memory).iter().zip(&direct) {
                 assert_abs_diff_eq!(got, want, epsilon = 1e-12);
             }
         }

@@ -1,6 +1,7 @@
 //! Output maps: what each play contributes to an output, and their extremes over all reachable
 //! states.
 
+use crate::check::{check_finite, check_that, largest_above};
 use crate::{PlayMemory, PreisachError, PreisachGrid};
 use serde::{Deserialize, Serialize};
 
@@ -43,13 +44,7 @@ impl PlayMap {
             .iter()
             .map(|row| {
                 let half = 0.5 * row.iter().sum::<f64>();
-                let mut value = -half;
-                let mut nodes = vec![value];
-                for rise in row {
-                    value += rise;
-                    nodes.push(value);
-                }
-                nodes
+                risen(-half, row.iter().copied())
             })
             .collect();
         let map = Self { constant, nodes };
@@ -65,9 +60,20 @@ impl PlayMap {
             .collect()
     }
 
+    /// Value at a knot of a play, and the rise to the next.
+    pub(crate) fn value_and_rise(&self, play: usize, knot: usize) -> [f64; 2] {
+        let row = &self.nodes[play];
+        [row[knot], row.get(knot + 1).map_or(0.0, |next| next - row[knot])]
+    }
+
     /// Value for a memory on the same grid.
     pub fn value(&self, memory: &PlayMemory) -> f64 {
-        let plays = self.nodes.iter().zip(memory.cells());
+        self.value_at(memory.cells())
+    }
+
+    /// Value for the states of a memory on the same grid.
+    pub(crate) fn value_at(&self, cells: &[f64]) -> f64 {
+        let plays = self.nodes.iter().zip(cells);
         plays.fold(self.constant, |sum, (row, &x)| sum + interpolate(row, x))
     }
 
@@ -86,12 +92,7 @@ impl PlayMap {
             }
         }
         let values = std::iter::once(&self.constant).chain(self.nodes.iter().flatten());
-        for (index, &value) in values.enumerate() {
-            if !value.is_finite() {
-                return Err(PreisachError::NotFinite { quantity: map, index, value });
-            }
-        }
-        Ok(())
+        check_finite(map, values.copied())
     }
 
     /// Checks that the map never falls, up to rounding.
@@ -101,7 +102,10 @@ impl PlayMap {
             for (node, pair) in row.windows(2).enumerate() {
                 let fall_deg = pair[0] - pair[1];
                 if fall_deg > 1e-12 * size {
-                    return Err(PreisachError::NegativeDensity { play, node, fall_deg });
+                    let expected = format!(
+                        "0 or less at node {node} of play {play}: the density mu0 must not be negative"
+                    );
+                    return check_that(false, "fall of the static map (deg)", fall_deg, expected);
                 }
             }
         }
@@ -131,7 +135,7 @@ impl PlayMap {
     pub fn largest(&self) -> (f64, Vec<usize>) {
         let levels = self.nodes.len();
         // best[x]: largest sum over this play and all wider ones, given this play at knot x
-        let mut best: Vec<f64> = Vec::new();
+        let mut best = vec![0.0];
         let mut choices: Vec<Vec<usize>> = Vec::with_capacity(levels);
         for row in self.nodes.iter().rev() {
             let mut choice = Vec::with_capacity(row.len());
@@ -140,13 +144,11 @@ impl PlayMap {
                 .enumerate()
                 .map(|(x, &value)| {
                     // the wider play sits at knot x or x - 1, inside 0 ..= its last
-                    let stay = best.get(x).copied();
-                    let lower = x.checked_sub(1).and_then(|i| best.get(i)).copied();
+                    let stay = best.get(x).map(|&sum| (x, sum));
+                    let lower = x.checked_sub(1).and_then(|i| Some((i, *best.get(i)?)));
                     let (next, sum) = match (stay, lower) {
-                        (Some(a), Some(b)) if b > a => (x - 1, b),
-                        (Some(a), _) => (x, a),
-                        (None, Some(b)) => (x - 1, b),
-                        (None, None) => (0, 0.0),
+                        (Some(stay), Some(lower)) if lower.1 > stay.1 => lower,
+                        _ => stay.or(lower).unwrap_or((0, 0.0)),
                     };
                     choice.push(next);
                     value + sum
@@ -155,17 +157,13 @@ impl PlayMap {
             best = sums;
             choices.push(choice);
         }
-        let (mut knot, value) = best
-            .iter()
-            .copied()
-            .enumerate()
-            .fold((0, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
+        let (mut knot, value) = largest_above(f64::NEG_INFINITY, best);
         let mut state = Vec::with_capacity(levels);
         for choice in choices.iter().rev() {
             state.push(knot);
             knot = choice[knot];
         }
-        (self.constant + if levels == 0 { 0.0 } else { value }, state)
+        (self.constant + value, state)
     }
 
     /// The same function on a finer grid whose levels are `factor` times as many.
@@ -188,6 +186,16 @@ impl PlayMap {
             .collect();
         Self { constant: self.constant, nodes }
     }
+}
+
+/// Values at the knots of a play, from the first one and the rises.
+pub(crate) fn risen(first: f64, rises: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let mut value = first;
+    let later = rises.into_iter().map(|rise| {
+        value += rise;
+        value
+    });
+    std::iter::once(first).chain(later).collect()
 }
 
 /// Index of the knot at or below `x >= 0`, with the remainder.

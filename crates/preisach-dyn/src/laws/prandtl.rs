@@ -1,8 +1,7 @@
 //! The rate-dependent Prandtl-Ishlinskii model.
 
 use crate::check::check_not_negative;
-use crate::laws::memory::approach;
-use crate::{Envelope, HysteresisLaw, PreisachError, StartState, VoltageRange};
+use crate::{Envelope, HysteresisLaw, PreisachError, StartState, VoltageRange, WidthsMemory};
 use serde::{Deserialize, Serialize};
 
 /// One weighted play.
@@ -57,33 +56,13 @@ pub struct PrandtlIshlinskii {
     reference_deg: f64,
 }
 
-impl TryFrom<PrandtlParameters> for PrandtlIshlinskii {
-    type Error = PreisachError;
-
-    fn try_from(parameters: PrandtlParameters) -> Result<Self, PreisachError> {
-        Self::new(parameters)
-    }
-}
-
-impl From<PrandtlIshlinskii> for PrandtlParameters {
-    fn from(model: PrandtlIshlinskii) -> Self {
-        model.parameters
-    }
-}
-
-/// Outputs of the plays and the voltage they belong to, V.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PrandtlMemory {
-    plays_volt: Vec<f64>,
-    voltage_volt: f64,
-}
+stored_as_parameters!(PrandtlIshlinskii, PrandtlParameters);
 
 impl PrandtlIshlinskii {
     /// The model of the given numbers.
     ///
     /// # Errors
-    /// [`PreisachError::Negative`] or [`PreisachError::EnvelopeFalls`].
+    /// [`PreisachError::OutOfRange`] or [`PreisachError::NotFinite`].
     pub fn new(parameters: PrandtlParameters) -> Result<Self, PreisachError> {
         let p = &parameters;
         check_not_negative("gain_deg_per_volt", p.gain_deg_per_volt)?;
@@ -104,7 +83,7 @@ impl PrandtlIshlinskii {
         &self.parameters
     }
 
-    fn moved(&self, memory: &mut PrandtlMemory, voltage_volt: f64, growth_volt: f64) -> f64 {
+    fn moved(&self, memory: &mut WidthsMemory, voltage_volt: f64, growth_volt: f64) -> f64 {
         let p = &self.parameters;
         let middle = p.range_volt.middle_volt();
         let mut z = p.gain_deg_per_volt * (voltage_volt - middle);
@@ -119,31 +98,21 @@ impl PrandtlIshlinskii {
 }
 
 impl HysteresisLaw for PrandtlIshlinskii {
-    type Memory = PrandtlMemory;
+    type Memory = WidthsMemory;
 
-    fn start(&self, voltage_volt: f64, state: StartState) -> (PrandtlMemory, f64) {
-        let range = self.parameters.range_volt;
-        let plays_volt = vec![voltage_volt; self.parameters.plays.len()];
-        let mut memory = PrandtlMemory { plays_volt, voltage_volt };
-        for fraction in approach(state) {
-            self.moved(&mut memory, range.lowest_volt() + fraction * range.span_volt(), 0.0);
-        }
-        let output_deg = self.moved(&mut memory, voltage_volt, 0.0);
-        (memory, output_deg)
+    fn start(&self, voltage_volt: f64, state: StartState) -> (WidthsMemory, f64) {
+        let p = &self.parameters;
+        let memory = WidthsMemory::at(p.plays.len(), voltage_volt);
+        state.led(memory, p.range_volt, voltage_volt, |m, volt| self.moved(m, volt, 0.0))
     }
 
-    fn step(&self, memory: &mut PrandtlMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
+    fn step(&self, memory: &mut WidthsMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
         let rate = (voltage_volt - memory.voltage_volt).abs() / time_step_s;
         self.moved(memory, voltage_volt, self.parameters.threshold_growth_s * rate)
     }
 
-    fn check_memory(&self, memory: &PrandtlMemory) -> Result<(), PreisachError> {
-        let (found, expected) = (memory.plays_volt.len(), self.parameters.plays.len());
-        if found == expected {
-            Ok(())
-        } else {
-            Err(PreisachError::MemoryMismatch { found, expected })
-        }
+    fn check_memory(&self, memory: &WidthsMemory) -> Result<(), PreisachError> {
+        memory.check(self.parameters.plays.len())
     }
 
     fn shifted(mut self, shift_deg: f64) -> Self {

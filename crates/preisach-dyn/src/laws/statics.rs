@@ -62,15 +62,11 @@ impl StaticPreisach {
     ///
     /// # Errors
     /// [`PreisachError::NodeCount`], [`PreisachError::NotFinite`] or
-    /// [`PreisachError::NegativeDensity`].
+    /// [`PreisachError::OutOfRange`].
     pub fn new(grid: PreisachGrid, map: PlayMap) -> Result<Self, PreisachError> {
         map.check(&grid, "g0_deg")?;
         map.check_rising()?;
-        let table = NodeTable::new(&grid, |play, knot| {
-            let row = &map.nodes[play];
-            let value = row[knot];
-            [value, row.get(knot + 1).map_or(0.0, |next| next - value)]
-        });
+        let table = NodeTable::new(&grid, |play, knot| map.value_and_rise(play, knot));
         Ok(Self { grid, map, table })
     }
 
@@ -117,11 +113,7 @@ impl StaticPreisach {
     /// The outputs of models on one grid over the same voltages, from rest at the first: the plays
     /// move once for all of them. Each is that of its own simulation, to the last bit.
     pub(crate) fn side_by_side(models: &[&Self], voltages_volt: &[f64]) -> Vec<Vec<f64>> {
-        let mut outputs = Vec::with_capacity(models.len());
-        for group in models.chunks(TOGETHER) {
-            outputs.extend(Self::group(group, voltages_volt));
-        }
-        outputs
+        models.chunks(TOGETHER).flat_map(|group| Self::group(group, voltages_volt)).collect()
     }
 
     /// As [`Self::side_by_side`], of at most [`TOGETHER`] models.
@@ -140,14 +132,8 @@ impl StaticPreisach {
         });
         let constants: [f64; TOGETHER] = std::array::from_fn(|lane| of(lane).map.constant);
         let mut memory = PlayMemory::new(grid, start, StartState::Rest);
-        let mut outputs: Vec<Vec<f64>> = models
-            .iter()
-            .map(|model| {
-                let mut output = Vec::with_capacity(voltages_volt.len());
-                output.push(model.output_deg(&memory));
-                output
-            })
-            .collect();
+        let mut outputs: Vec<Vec<f64>> =
+            models.iter().map(|model| vec![model.output_deg(&memory)]).collect();
         let left = grid.levels() % 4;
         let quads = grid.levels() - left;
         for &volt in &voltages_volt[1..] {

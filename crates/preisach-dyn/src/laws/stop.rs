@@ -1,8 +1,7 @@
 //! The stop-type Prandtl-Ishlinskii model: an output that leads its input, as friction does.
 
 use crate::check::check_not_negative;
-use crate::laws::memory::approach;
-use crate::{HysteresisLaw, PreisachError, StartState, VoltageRange};
+use crate::{HysteresisLaw, PreisachError, StartState, VoltageRange, WidthsMemory};
 use serde::{Deserialize, Serialize};
 
 /// One weighted stop: a spring that slips at its threshold.
@@ -57,41 +56,13 @@ pub struct PrandtlStop {
     parameters: StopParameters,
 }
 
-impl TryFrom<StopParameters> for PrandtlStop {
-    type Error = PreisachError;
-
-    fn try_from(parameters: StopParameters) -> Result<Self, PreisachError> {
-        Self::new(parameters)
-    }
-}
-
-impl From<PrandtlStop> for StopParameters {
-    fn from(model: PrandtlStop) -> Self {
-        model.parameters
-    }
-}
-
-/// Outputs of the plays and the voltage they belong to, V.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StopMemory {
-    plays_volt: Vec<f64>,
-    voltage_volt: f64,
-}
-
-impl StopMemory {
-    /// Outputs of the stops, V: what the input leaves of the plays.
-    pub fn stops_volt(&self) -> impl Iterator<Item = f64> {
-        self.plays_volt.iter().map(|play| self.voltage_volt - play)
-    }
-}
+stored_as_parameters!(PrandtlStop, StopParameters);
 
 impl PrandtlStop {
     /// The model of the given numbers.
     ///
     /// # Errors
-    /// [`PreisachError::Negative`], or [`PreisachError::NotPositive`] for an offset that is no
-    /// number.
+    /// [`PreisachError::OutOfRange`].
     pub fn new(parameters: StopParameters) -> Result<Self, PreisachError> {
         let p = &parameters;
         check_not_negative("stiffness_deg_per_volt", p.stiffness_deg_per_volt)?;
@@ -124,7 +95,7 @@ impl PrandtlStop {
         self.parameters.stops.iter().map(area).sum()
     }
 
-    fn moved(&self, memory: &mut StopMemory, voltage_volt: f64, rate_volt_per_s: f64) -> f64 {
+    fn moved(&self, memory: &mut WidthsMemory, voltage_volt: f64, rate_volt_per_s: f64) -> f64 {
         let p = &self.parameters;
         let elastic = p.stiffness_deg_per_volt * (voltage_volt - p.range_volt.middle_volt());
         let mut output = p.offset_deg + elastic + p.viscosity_deg_s_per_volt * rate_volt_per_s;
@@ -138,31 +109,21 @@ impl PrandtlStop {
 }
 
 impl HysteresisLaw for PrandtlStop {
-    type Memory = StopMemory;
+    type Memory = WidthsMemory;
 
-    fn start(&self, voltage_volt: f64, state: StartState) -> (StopMemory, f64) {
-        let range = self.parameters.range_volt;
-        let plays_volt = vec![voltage_volt; self.parameters.stops.len()];
-        let mut memory = StopMemory { plays_volt, voltage_volt };
-        for fraction in approach(state) {
-            self.moved(&mut memory, range.lowest_volt() + fraction * range.span_volt(), 0.0);
-        }
-        let output_deg = self.moved(&mut memory, voltage_volt, 0.0);
-        (memory, output_deg)
+    fn start(&self, voltage_volt: f64, state: StartState) -> (WidthsMemory, f64) {
+        let p = &self.parameters;
+        let memory = WidthsMemory::at(p.stops.len(), voltage_volt);
+        state.led(memory, p.range_volt, voltage_volt, |m, volt| self.moved(m, volt, 0.0))
     }
 
-    fn step(&self, memory: &mut StopMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
+    fn step(&self, memory: &mut WidthsMemory, voltage_volt: f64, time_step_s: f64) -> f64 {
         let rate = (voltage_volt - memory.voltage_volt) / time_step_s;
         self.moved(memory, voltage_volt, rate)
     }
 
-    fn check_memory(&self, memory: &StopMemory) -> Result<(), PreisachError> {
-        let (found, expected) = (memory.plays_volt.len(), self.parameters.stops.len());
-        if found == expected {
-            Ok(())
-        } else {
-            Err(PreisachError::MemoryMismatch { found, expected })
-        }
+    fn check_memory(&self, memory: &WidthsMemory) -> Result<(), PreisachError> {
+        memory.check(self.parameters.stops.len())
     }
 
     fn shifted(mut self, shift_deg: f64) -> Self {

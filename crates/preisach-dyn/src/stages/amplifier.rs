@@ -1,9 +1,9 @@
 //! What the amplifier and the ceramic do to the voltage: slew, limits, heat, depolarisation.
 
-use super::Step;
-use super::lag::LagStep;
+use super::lag_step::LagStep;
+use super::{Curve, Step};
 use crate::PreisachError;
-use crate::check::{check_not_negative, check_positive};
+use crate::check::{check_finite, check_not_negative, check_positive, check_that, check_within};
 use serde::{Deserialize, Serialize};
 
 /// An amplifier whose current is limited, into a capacitance: a slew limit.
@@ -20,20 +20,10 @@ pub struct CurrentLimit {
     pub slew_rate_volt_per_s: f64,
 }
 
-impl CurrentLimit {
-    pub(super) fn check(self) -> Result<(), PreisachError> {
-        check_positive("slew_rate_volt_per_s", self.slew_rate_volt_per_s)
-    }
-
-    pub(super) fn prepared(self, step_s: f64) -> CurrentStep {
-        CurrentStep { most_volt: self.slew_rate_volt_per_s * step_s }
-    }
-}
-
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CurrentStep {
     /// Largest change over a step, V.
-    most_volt: f64,
+    pub(super) most_volt: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -100,12 +90,7 @@ impl Saturation {
     pub(super) fn check(&self) -> Result<(), PreisachError> {
         crate::VoltageRange::new(self.v_min_volt, self.v_max_volt)?;
         let most = 0.5 * (self.v_max_volt - self.v_min_volt);
-        let (quantity, value) = ("knee_volt", self.knee_volt);
-        if (0.0..=most).contains(&value) {
-            Ok(())
-        } else {
-            Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most })
-        }
+        check_within("knee_volt", self.knee_volt, 0.0..=most)
     }
 
     /// The commands beyond which nothing changes any more, V.
@@ -113,48 +98,25 @@ impl Saturation {
         (self.v_min_volt - self.knee_volt, self.v_max_volt + self.knee_volt)
     }
 
-    pub(super) fn prepared(&self) -> SaturationStep {
-        SaturationStep { low: self.v_min_volt, high: self.v_max_volt, knee: self.knee_volt }
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SaturationStep {
-    low: f64,
-    high: f64,
-    knee: f64,
-}
-
-impl SaturationStep {
     /// What is lost of a command that goes beyond the start of a knee.
     #[inline]
     fn lost(&self, beyond: f64) -> f64 {
-        if beyond > 0.0 { beyond * beyond / (4.0 * self.knee) } else { 0.0 }
-    }
-
-    #[inline]
-    fn limited(&self, input: f64) -> f64 {
-        let (above, below) = (input - (self.high - self.knee), (self.low + self.knee) - input);
-        if above >= 2.0 * self.knee {
-            self.high
-        } else if below >= 2.0 * self.knee {
-            self.low
-        } else {
-            input - self.lost(above) + self.lost(below)
-        }
+        if beyond > 0.0 { beyond * beyond / (4.0 * self.knee_volt) } else { 0.0 }
     }
 }
 
-impl Step for SaturationStep {
-    type Memory = ();
-
-    fn start(&self, input: f64) -> ((), f64) {
-        ((), self.limited(input))
-    }
-
+impl Curve for Saturation {
     #[inline]
-    fn advance(&self, (): &mut (), input: f64) -> f64 {
-        self.limited(input)
+    fn value(&self, input: f64) -> f64 {
+        let Self { v_min_volt: low, v_max_volt: high, knee_volt: knee } = *self;
+        let (above, below) = (input - (high - knee), (low + knee) - input);
+        if above >= 2.0 * knee {
+            high
+        } else if below >= 2.0 * knee {
+            low
+        } else {
+            input - self.lost(above) + self.lost(below)
+        }
     }
 }
 
@@ -199,13 +161,7 @@ impl DielectricHeating {
     pub(super) fn check(&self) -> Result<(), PreisachError> {
         check_positive("time_constant_s", self.time_constant_s)?;
         check_not_negative("rise_k_per_volt2_hz", self.rise_k_per_volt2_hz)?;
-        let value = self.coefficient_per_k;
-        if value.abs() <= 1.0 {
-            Ok(())
-        } else {
-            let quantity = "coefficient_per_k";
-            Err(PreisachError::OutOfRange { quantity, value, least: -1.0, most: 1.0 })
-        }
+        check_within("coefficient_per_k", self.coefficient_per_k, -1.0..=1.0)
     }
 
     pub(super) fn prepared(&self, step_s: f64) -> HeatStep {
@@ -227,28 +183,11 @@ pub(crate) struct HeatStep {
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct HeatMemory {
-    temperature_k: f64,
+    pub(crate) temperature_k: f64,
     voltage: f64,
     turn: f64,
     /// Sign of the last change, 0 before the first.
     direction: f64,
-}
-
-impl HeatMemory {
-    pub(super) fn settle(&mut self, before: &Self, step: &HeatStep, period_s: f64) {
-        self.temperature_k = step.lag.settled(before.temperature_k, self.temperature_k, period_s);
-    }
-
-    pub(crate) fn temperature_k(&self) -> f64 {
-        self.temperature_k
-    }
-}
-
-impl HeatStep {
-    #[inline]
-    pub(super) fn gain(&self, memory: &HeatMemory) -> f64 {
-        1.0 + self.coefficient_per_k * memory.temperature_k
-    }
 }
 
 impl Step for HeatStep {
@@ -274,6 +213,15 @@ impl Step for HeatStep {
             last + self.lag.deviation(memory.temperature_k - first, last - first);
         memory.voltage = input;
         input
+    }
+
+    #[inline]
+    fn gain(&self, memory: &HeatMemory) -> f64 {
+        1.0 + self.coefficient_per_k * memory.temperature_k
+    }
+
+    fn settle(&self, before: &HeatMemory, now: &mut HeatMemory, period_s: f64) {
+        now.temperature_k = self.lag.settled(before.temperature_k, now.temperature_k, period_s);
     }
 }
 
@@ -328,36 +276,27 @@ impl Depolarisation {
     }
 
     pub(super) fn check(&self) -> Result<(), PreisachError> {
-        let value = self.threshold_volt;
-        if !value.is_finite() {
-            return Err(PreisachError::NotFinite { quantity: "threshold_volt", index: 0, value });
-        }
-        if !(0.0..=1.0).contains(&self.loss_per_volt) {
-            let (quantity, value) = ("loss_per_volt", self.loss_per_volt);
-            return Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 1.0 });
-        }
+        let threshold = self.threshold_volt;
+        check_finite("threshold_volt", [threshold])?;
+        check_within("loss_per_volt", self.loss_per_volt, 0.0..=1.0)?;
         check_not_negative("loss_per_volt_second", self.loss_per_volt_second)?;
-        match self.repoling_volt {
-            Some(above) if !(above.is_finite() && above > value) => {
-                let (quantity, relation) = ("repoling_volt", "above threshold_volt");
-                Err(PreisachError::TooLow { quantity, value: above, relation, bound: value })
-            }
-            _ => Ok(()),
-        }
+        self.repoling_volt.map_or(Ok(()), |above| {
+            let expected = format!("a finite number above threshold_volt ({threshold})");
+            check_that(above.is_finite() && above > threshold, "repoling_volt", above, expected)
+        })
     }
 
     /// Gain of the law's output at every sample of a terminal voltage, settled at the first.
     pub fn gains(&self, terminal_volt: &[f64], step_s: f64) -> Vec<f64> {
         let step = self.prepared(step_s);
-        let Some(&first) = terminal_volt.first() else { return Vec::new() };
+        let Some((&first, rest)) = terminal_volt.split_first() else { return Vec::new() };
         let (mut memory, _) = step.start(first);
-        let mut gains = Vec::with_capacity(terminal_volt.len());
-        gains.push(DepolarisationStep::gain(&memory));
-        for &volt in &terminal_volt[1..] {
+        let at_start = step.gain(&memory);
+        let later = rest.iter().map(|&volt| {
             step.advance(&mut memory, volt);
-            gains.push(DepolarisationStep::gain(&memory));
-        }
-        gains
+            step.gain(&memory)
+        });
+        std::iter::once(at_start).chain(later).collect()
     }
 
     pub(super) fn prepared(&self, step_s: f64) -> DepolarisationStep {
@@ -379,19 +318,7 @@ pub(crate) struct LossMemory {
     voltage: f64,
 }
 
-impl LossMemory {
-    /// A closed orbit is that of the loss it began with.
-    pub(super) fn settle(&mut self, before: &Self) {
-        self.with_time = before.with_time;
-    }
-}
-
 impl DepolarisationStep {
-    #[inline]
-    pub(super) fn gain(memory: &LossMemory) -> f64 {
-        1.0 - (memory.at_once + memory.with_time).min(1.0)
-    }
-
     /// Volt below the threshold times seconds spent there, over a step straight in the voltage.
     fn overdrive_volt_s(&self, from_volt: f64, to_volt: f64) -> f64 {
         let threshold = self.stage.threshold_volt;
@@ -435,5 +362,15 @@ impl Step for DepolarisationStep {
         }
         memory.voltage = input;
         input
+    }
+
+    #[inline]
+    fn gain(&self, memory: &LossMemory) -> f64 {
+        1.0 - (memory.at_once + memory.with_time).min(1.0)
+    }
+
+    /// A closed orbit is that of the loss it began with.
+    fn settle(&self, before: &LossMemory, now: &mut LossMemory, _: f64) {
+        now.with_time = before.with_time;
     }
 }

@@ -1,9 +1,9 @@
 //! Creep: the slow part of the response to a step.
 
 use super::Step;
-use super::lag::LagStep;
+use super::lag_step::LagStep;
 use crate::PreisachError;
-use crate::check::{check_not_negative, check_positive};
+use crate::check::{check_not_negative, check_positive, check_that, check_within};
 use serde::{Deserialize, Serialize};
 
 /// Creep that grows with the logarithm of time.
@@ -53,18 +53,10 @@ impl LogCreep {
     pub(super) fn check(&self) -> Result<(), PreisachError> {
         check_positive("from_s", self.from_s)?;
         check_positive("to_s", self.to_s)?;
-        let rate = self.rate_per_decade;
-        if !(0.0..=1.0).contains(&rate) {
-            let quantity = "rate_per_decade";
-            return Err(PreisachError::OutOfRange { quantity, value: rate, least: 0.0, most: 1.0 });
-        }
-        let bound = self.from_s * 10.0;
-        if self.to_s < bound {
-            let (quantity, value) = ("to_s", self.to_s);
-            let relation = "at least ten times from_s";
-            return Err(PreisachError::TooLow { quantity, value, relation, bound });
-        }
-        Ok(())
+        check_within("rate_per_decade", self.rate_per_decade, 0.0..=1.0)?;
+        let least = self.from_s * 10.0;
+        let expected = format!("a finite number at least ten times from_s ({least})");
+        check_that(self.to_s >= least, "to_s", self.to_s, expected)
     }
 
     /// The lags that stand for the logarithm: weight, as a fraction of the input, and time constant (s) of each.
@@ -76,19 +68,12 @@ impl LogCreep {
         // 1 - exp(-t/tau) over an even spread of log tau from tau_0 up is log10(t/tau_0) plus
         // gamma / ln 10, gamma being Euler's constant
         let first_s = self.from_s * EULER_GAMMA.exp();
-        let mut terms = Vec::new();
-        let mut place = 0.5;
-        while place < count {
-            let tau_s = first_s * 10.0_f64.powf(place * spacing);
-            terms.push((weight, tau_s));
-            place += 1.0;
-        }
-        terms
+        let places = (0..).map(|i| f64::from(i) + 0.5).take_while(|place| *place < count);
+        places.map(|place| (weight, first_s * 10.0_f64.powf(place * spacing))).collect()
     }
 
     pub(super) fn prepared(&self, step_s: f64) -> CreepStep {
-        let term = |(weight, tau_s)| (weight, LagStep::new(tau_s, step_s));
-        CreepStep::new(self.lags().into_iter().map(term).collect())
+        CreepStep::creeping(self.lags(), step_s)
     }
 }
 
@@ -129,9 +114,8 @@ impl KelvinVoigt {
     }
 
     pub(super) fn prepared(&self, step_s: f64) -> CreepStep {
-        let term =
-            |e: &KelvinVoigtElement| (e.compliance_ratio, LagStep::new(e.time_constant_s, step_s));
-        CreepStep::new(self.elements.iter().map(term).collect())
+        let lag = |e: &KelvinVoigtElement| (e.compliance_ratio, e.time_constant_s);
+        CreepStep::creeping(self.elements.iter().map(lag), step_s)
     }
 }
 
@@ -150,26 +134,16 @@ pub(crate) struct CreepMemory {
 }
 
 impl CreepStep {
-    fn new(terms: Vec<(f64, LagStep)>) -> Self {
-        let total = terms.iter().map(|(weight, _)| weight).sum();
-        Self { terms, total }
+    /// From weight and time constant (s) of each lag.
+    fn creeping(lags: impl IntoIterator<Item = (f64, f64)>, step_s: f64) -> Self {
+        let relaxing = Self::relaxing(lags, step_s);
+        Self { total: relaxing.terms.iter().map(|(weight, _)| weight).sum(), ..relaxing }
     }
 
     /// `y = u + sum_i w_i d_i`: lags whose gain at rest is 1.
-    pub(super) fn relaxing(terms: Vec<(f64, LagStep)>) -> Self {
-        Self { terms, total: 0.0 }
-    }
-
-    pub(super) fn owns(&self, memory: &CreepMemory) -> bool {
-        memory.deviations.len() == self.terms.len()
-    }
-
-    pub(super) fn settle(&self, before: &CreepMemory, now: &mut CreepMemory, period_s: f64) {
-        for ((_, lag), (before, now)) in
-            self.terms.iter().zip(before.deviations.iter().zip(&mut now.deviations))
-        {
-            *now = lag.settled(*before, *now, period_s);
-        }
+    pub(super) fn relaxing(lags: impl IntoIterator<Item = (f64, f64)>, step_s: f64) -> Self {
+        let term = |(weight, tau_s)| (weight, LagStep::new(tau_s, step_s));
+        Self { terms: lags.into_iter().map(term).collect(), total: 0.0 }
     }
 }
 
@@ -191,39 +165,14 @@ impl Step for CreepStep {
         input + creep
     }
 
-    fn pass(&self, signal: &mut [f64]) {
-        let Some(&start) = signal.first() else {
-            return;
-        };
-        let mut creep: Vec<f64> = signal.iter().map(|input| self.total * (input - start)).collect();
-        match self.terms.as_slice() {
-            [term] => add_lags::<1>(std::slice::from_ref(term), signal, &mut creep),
-            terms => terms.chunks(8).for_each(|terms| add_lags::<8>(terms, signal, &mut creep)),
-        }
-        for (value, creep) in signal.iter_mut().zip(creep).skip(1) {
-            *value += creep;
-        }
+    fn owns(&self, memory: &CreepMemory) -> bool {
+        memory.deviations.len() == self.terms.len()
     }
-}
 
-/// Adds the weighted deviations of at most `N` lags, all of them at once, in their order.
-fn add_lags<const N: usize>(terms: &[(f64, LagStep)], signal: &[f64], creep: &mut [f64]) {
-    let mut lanes = [(0.0, LagStep::new(0.0, 1.0)); N];
-    for (lane, term) in lanes.iter_mut().zip(terms) {
-        *lane = *term;
-    }
-    let (decays, ramps) = (lanes.map(|(_, lag)| lag.decay), lanes.map(|(_, lag)| lag.ramp));
-    let weights = lanes.map(|(weight, _)| weight);
-    let mut deviations = [0.0; N];
-    for (pair, creep) in signal.windows(2).zip(creep.iter_mut().skip(1)) {
-        let change = pair[1] - pair[0];
-        let mut parts = [0.0; N];
-        for k in 0..N {
-            deviations[k] = decays[k] * deviations[k] - ramps[k] * change;
-            parts[k] = weights[k] * deviations[k];
-        }
-        for part in &parts[..terms.len().min(N)] {
-            *creep += part;
+    fn settle(&self, before: &CreepMemory, now: &mut CreepMemory, period_s: f64) {
+        let deviations = before.deviations.iter().zip(&mut now.deviations);
+        for ((_, lag), (before, now)) in self.terms.iter().zip(deviations) {
+            *now = lag.settled(*before, *now, period_s);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Step;
 use crate::PreisachError;
+use crate::check::check_within;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -21,22 +22,14 @@ pub struct Delay {
 
 impl Delay {
     pub(super) fn check(self) -> Result<(), PreisachError> {
-        if (0.0..=1.0).contains(&self.delay_s) {
-            return Ok(());
-        }
-        let (quantity, value) = ("delay_s", self.delay_s);
-        Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 1.0 })
-    }
-
-    pub(super) fn prepared(self, step_s: f64) -> DelayStep {
-        DelayStep { delay_s: self.delay_s, step_s }
+        check_within("delay_s", self.delay_s, 0.0..=1.0)
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DelayStep {
-    delay_s: f64,
-    step_s: f64,
+    pub(super) delay_s: f64,
+    pub(super) step_s: f64,
 }
 
 /// The samples still under way: how long each came after the one before, and its value.

@@ -1,8 +1,8 @@
 //! What the linkage does to the motion: lost motion, dry friction, load.
 
-use super::Step;
+use super::{Curve, Step};
 use crate::PreisachError;
-use crate::check::check_not_negative;
+use crate::check::{check_not_negative, check_positive, check_within};
 use serde::{Deserialize, Serialize};
 
 /// Lost motion in a joint.
@@ -20,21 +20,9 @@ pub struct Backlash {
     pub width_um: f64,
 }
 
-impl Backlash {
-    pub(super) fn check(self) -> Result<(), PreisachError> {
-        check_not_negative("width_um", self.width_um)
-    }
-}
-
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PlayStep {
-    half_width: f64,
-}
-
-impl PlayStep {
-    pub(super) fn new(half_width: f64) -> Self {
-        Self { half_width }
-    }
+    pub(super) half_width: f64,
 }
 
 impl Step for PlayStep {
@@ -74,12 +62,6 @@ pub struct CoulombFriction {
     pub width_um: f64,
 }
 
-impl CoulombFriction {
-    pub(super) fn check(self) -> Result<(), PreisachError> {
-        check_not_negative("width_um", self.width_um)
-    }
-}
-
 /// Stiffness of a contact before it slips over that of the linkage.
 const CONTACT_STIFFNESS: f64 = 10.0;
 
@@ -87,14 +69,10 @@ const CONTACT_STIFFNESS: f64 = 10.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FrictionStep {
     /// Largest stretch, `r`.
-    limit: f64,
+    pub(crate) limit: f64,
 }
 
 impl FrictionStep {
-    pub(crate) fn new(half_width: f64) -> Self {
-        Self { limit: half_width }
-    }
-
     /// The stretch after a monotone change of the output.
     #[inline]
     pub(crate) fn stretched(self, stretch: f64, output_change: f64) -> f64 {
@@ -123,10 +101,6 @@ impl FrictionStep {
             }
         }
         toward(d.clamp(0.0, wanted))
-    }
-
-    pub(super) fn settle(self, before: &WayMemory, now: &mut WayMemory) {
-        now.state = settled_over_period(*before, *now, self.limit / CONTACT_STIFFNESS);
     }
 }
 
@@ -194,6 +168,10 @@ impl Step for FrictionStep {
         }
         input - memory.state
     }
+
+    fn settle(&self, before: &WayMemory, now: &mut WayMemory, _: f64) {
+        now.state = settled_over_period(*before, *now, self.limit / CONTACT_STIFFNESS);
+    }
 }
 
 /// Accommodation: a share of the motion that settles with the way travelled, not with time.
@@ -219,30 +197,16 @@ pub struct Accommodation {
 
 impl Accommodation {
     pub(super) fn check(self) -> Result<(), PreisachError> {
-        crate::check::check_positive("travel_um", self.travel_um)?;
-        if (0.0..=LARGEST_SHARE).contains(&self.share) {
-            return Ok(());
-        }
-        let (quantity, value) = ("share of the accommodation", self.share);
-        Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: LARGEST_SHARE })
+        check_positive("travel_um", self.travel_um)?;
+        check_within("share of the accommodation", self.share, 0.0..=LARGEST_SHARE)
     }
 }
 
 /// `de = (1 - sgn(dx) e / travel) dx`, `y = x - share e`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AccommodationStep {
-    travel: f64,
-    share: f64,
-}
-
-impl AccommodationStep {
-    pub(super) fn new(travel: f64, share: f64) -> Self {
-        Self { travel, share }
-    }
-
-    pub(super) fn settle(&self, before: &WayMemory, now: &mut WayMemory) {
-        now.state = settled_over_period(*before, *now, self.travel);
-    }
+    pub(super) travel: f64,
+    pub(super) share: f64,
 }
 
 impl Step for AccommodationStep {
@@ -259,6 +223,10 @@ impl Step for AccommodationStep {
         memory.travelled += change.abs();
         memory.state = settled_by_way(memory.state, self.travel, change, self.travel);
         input - self.share * memory.state
+    }
+
+    fn settle(&self, before: &WayMemory, now: &mut WayMemory, _: f64) {
+        now.state = settled_over_period(*before, *now, self.travel);
     }
 }
 
@@ -315,15 +283,9 @@ impl LoadStep {
     }
 }
 
-impl Step for LoadStep {
-    type Memory = ();
-
-    fn start(&self, input: f64) -> ((), f64) {
-        ((), self.under(input, 0.0))
-    }
-
+impl Curve for LoadStep {
     #[inline]
-    fn advance(&self, (): &mut (), input: f64) -> f64 {
+    fn value(&self, input: f64) -> f64 {
         self.under(input, 0.0)
     }
 }

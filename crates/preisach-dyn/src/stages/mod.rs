@@ -13,6 +13,7 @@ mod amplifier;
 mod creep;
 mod delay;
 mod lag;
+mod lag_step;
 mod linkage;
 mod relaxation;
 mod resonance;
@@ -27,16 +28,14 @@ pub use relaxation::{Relaxation, RelaxationElement};
 pub use resonance::Resonance;
 pub use sensor::{MainsHum, Nonlinearity, NonlinearityShape, Quantisation};
 
+use crate::check::{check_not_negative, check_positive};
 use crate::{Calibration, PreisachError};
-use amplifier::{
-    CurrentStep, DepolarisationStep, HeatMemory, HeatStep, LimitMemory, LossMemory, SaturationStep,
-};
-use creep::{CreepMemory, CreepStep};
-use delay::{DelayMemory, DelayStep};
-use lag::{LagMemory, LagStep};
+use amplifier::{CurrentStep, DepolarisationStep, HeatStep};
+use creep::CreepStep;
+use delay::DelayStep;
 pub(crate) use linkage::FrictionStep;
-use linkage::{AccommodationStep, LoadStep, PlayStep, WayMemory};
-use resonance::{ResonanceMemory, ResonanceStep};
+use linkage::{AccommodationStep, LoadStep, PlayStep};
+use resonance::ResonanceStep;
 use sensor::{HumStep, NonlinearityStep, QuantisationStep};
 use serde::{Deserialize, Serialize};
 
@@ -107,26 +106,111 @@ pub(crate) trait Step {
     /// One sample on.
     fn advance(&self, memory: &mut Self::Memory, input: f64) -> f64;
 
-    /// A whole signal through the stage, settled at its first sample: the same numbers as sample by
-    /// sample.
-    fn pass(&self, signal: &mut [f64]) {
-        let Some((first, rest)) = signal.split_first_mut() else {
-            return;
-        };
-        let (mut memory, output) = self.start(*first);
-        *first = output;
-        for value in rest {
-            *value = self.advance(&mut memory, *value);
-        }
+    /// Whether a memory of this kind of stage is one of this stage.
+    fn owns(&self, _memory: &Self::Memory) -> bool {
+        true
+    }
+
+    /// Factor on the law's output that the present state means.
+    fn gain(&self, _memory: &Self::Memory) -> f64 {
+        1.0
+    }
+
+    /// Takes slow states to where a periodic input will leave them.
+    ///
+    /// ```text
+    /// x(T) = e x(0) + b   =>   x* = (x(T) - e x(0)) / (1 - e),   e = exp(-T / tau)
+    /// ```
+    /// `e = exp(-way travelled / way)` where a state settles with the way.
+    fn settle(&self, _before: &Self::Memory, _now: &mut Self::Memory, _period_s: f64) {}
+}
+
+/// The stages that have no memory: an output for every input.
+pub(crate) trait Curve {
+    /// The output at an input.
+    fn value(&self, input: f64) -> f64;
+}
+
+impl<C: Curve> Step for C {
+    type Memory = ();
+
+    fn start(&self, input: f64) -> ((), f64) {
+        ((), self.value(input))
+    }
+
+    #[inline]
+    fn advance(&self, (): &mut (), input: f64) -> f64 {
+        self.value(input)
     }
 }
 
-/// Any stage made ready for one time step.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum StageStep {
-    Lag(LagStep),
+/// The kinds of stages: from a list of names and steps the enum of any step, the enum of any memory,
+/// and [`Step`] of the one with the other.
+macro_rules! kinds {
+    ($($kind:ident($step:ty)),* $(,)?) => {
+        /// Any stage made ready for one time step.
+        #[derive(Debug, Clone, PartialEq)]
+        pub(crate) enum StageStep {
+            $($kind($step)),*
+        }
+
+        /// What any stage remembers.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        pub(crate) enum StageMemory {
+            $($kind(<$step as Step>::Memory)),*
+        }
+
+        impl Step for StageStep {
+            type Memory = StageMemory;
+
+            fn start(&self, input: f64) -> (StageMemory, f64) {
+                match self {
+                    $(Self::$kind(step) => {
+                        let (memory, output) = step.start(input);
+                        (StageMemory::$kind(memory), output)
+                    })*
+                }
+            }
+
+            /// NaN for a memory of another kind of stage, see [`Step::owns`].
+            #[inline]
+            fn advance(&self, memory: &mut StageMemory, input: f64) -> f64 {
+                match (self, memory) {
+                    $((Self::$kind(step), StageMemory::$kind(m)) => step.advance(m, input),)*
+                    _ => f64::NAN,
+                }
+            }
+
+            fn owns(&self, memory: &StageMemory) -> bool {
+                match (self, memory) {
+                    $((Self::$kind(step), StageMemory::$kind(m)) => step.owns(m),)*
+                    _ => false,
+                }
+            }
+
+            #[inline]
+            fn gain(&self, memory: &StageMemory) -> f64 {
+                match (self, memory) {
+                    $((Self::$kind(step), StageMemory::$kind(m)) => step.gain(m),)*
+                    _ => f64::NAN,
+                }
+            }
+
+            fn settle(&self, before: &StageMemory, now: &mut StageMemory, period_s: f64) {
+                match (self, before, now) {
+                    $((Self::$kind(step), StageMemory::$kind(b), StageMemory::$kind(n)) => {
+                        step.settle(b, n, period_s);
+                    })*
+                    _ => {}
+                }
+            }
+        }
+    };
+}
+
+kinds! {
     CurrentLimit(CurrentStep),
-    Saturation(SaturationStep),
+    Saturation(Saturation),
     Delay(DelayStep),
     Heating(HeatStep),
     Depolarisation(DepolarisationStep),
@@ -141,197 +225,45 @@ pub(crate) enum StageStep {
     Hum(HumStep),
 }
 
-/// What any stage remembers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum StageMemory {
-    Lag(LagMemory),
-    CurrentLimit(LimitMemory),
-    Saturation(()),
-    Delay(DelayMemory),
-    Heating(HeatMemory),
-    Depolarisation(LossMemory),
-    Creep(CreepMemory),
-    Resonance(ResonanceMemory),
-    Play(f64),
-    Friction(WayMemory),
-    Accommodation(WayMemory),
-    Load(()),
-    Nonlinearity(()),
-    Quantisation(()),
-    Hum(f64),
-}
-
-/// Runs the same expression for a stage and the memory that belongs to it.
-macro_rules! paired {
-    ($step:expr, $memory:expr, ($s:ident, $m:ident) => $body:expr, else $otherwise:expr) => {
-        match ($step, $memory) {
-            (StageStep::Lag($s), StageMemory::Lag($m)) => $body,
-            (StageStep::CurrentLimit($s), StageMemory::CurrentLimit($m)) => $body,
-            (StageStep::Saturation($s), StageMemory::Saturation($m)) => $body,
-            (StageStep::Delay($s), StageMemory::Delay($m)) => $body,
-            (StageStep::Heating($s), StageMemory::Heating($m)) => $body,
-            (StageStep::Depolarisation($s), StageMemory::Depolarisation($m)) => $body,
-            (StageStep::Creep($s), StageMemory::Creep($m)) => $body,
-            (StageStep::Resonance($s), StageMemory::Resonance($m)) => $body,
-            (StageStep::Play($s), StageMemory::Play($m)) => $body,
-            (StageStep::Friction($s), StageMemory::Friction($m)) => $body,
-            (StageStep::Accommodation($s), StageMemory::Accommodation($m)) => $body,
-            (StageStep::Load($s), StageMemory::Load($m)) => $body,
-            (StageStep::Nonlinearity($s), StageMemory::Nonlinearity($m)) => $body,
-            (StageStep::Quantisation($s), StageMemory::Quantisation($m)) => $body,
-            (StageStep::Hum($s), StageMemory::Hum($m)) => $body,
-            _ => $otherwise,
-        }
-    };
-}
-
 impl StageStep {
-    /// The stage settled at an input, and its output there.
-    pub(crate) fn start(&self, input: f64) -> (StageMemory, f64) {
-        macro_rules! started {
-            ($($name:ident),*) => {
-                match self {
-                    $(Self::$name(step) => {
-                        let (memory, output) = step.start(input);
-                        (StageMemory::$name(memory), output)
-                    })*
-                }
-            };
-        }
-        started!(
-            Lag,
-            CurrentLimit,
-            Saturation,
-            Delay,
-            Heating,
-            Depolarisation,
-            Creep,
-            Resonance,
-            Play,
-            Friction,
-            Accommodation,
-            Load,
-            Nonlinearity,
-            Quantisation,
-            Hum
-        )
-    }
-
-    /// One sample on; NaN for a memory of another kind of stage, see [`Self::owns`].
-    #[inline]
-    pub(crate) fn advance(&self, memory: &mut StageMemory, input: f64) -> f64 {
-        paired!(self, memory, (step, memory) => step.advance(memory, input), else f64::NAN)
-    }
-
     /// A whole signal through the stage, settled at its first sample and without load: the same
     /// numbers as sample by sample.
     pub(crate) fn pass(&self, signal: &mut [f64]) {
-        match self {
-            Self::Lag(step) => step.pass(signal),
-            Self::CurrentLimit(step) => step.pass(signal),
-            Self::Saturation(step) => step.pass(signal),
-            Self::Delay(step) => step.pass(signal),
-            Self::Heating(step) => step.pass(signal),
-            Self::Depolarisation(step) => step.pass(signal),
-            Self::Creep(step) => step.pass(signal),
-            Self::Resonance(step) => step.pass(signal),
-            Self::Play(step) => step.pass(signal),
-            Self::Friction(step) => step.pass(signal),
-            Self::Accommodation(step) => step.pass(signal),
-            Self::Load(step) => step.pass(signal),
-            Self::Nonlinearity(step) => step.pass(signal),
-            Self::Quantisation(step) => step.pass(signal),
-            Self::Hum(step) => step.pass(signal),
-        }
-    }
-
-    /// Whether a memory is one of this kind of stage.
-    pub(crate) fn owns(&self, memory: &StageMemory) -> bool {
-        if let (Self::Creep(step), StageMemory::Creep(memory)) = (self, memory) {
-            return step.owns(memory);
-        }
-        paired!(self, memory, (_step, _memory) => true, else false)
-    }
-
-    /// Factor on the law's output that the stage's present state means: 1 but for heating and
-    /// depolarisation.
-    #[inline]
-    pub(crate) fn gain(&self, memory: &StageMemory) -> f64 {
-        match (self, memory) {
-            (Self::Heating(step), StageMemory::Heating(memory)) => step.gain(memory),
-            (Self::Depolarisation(_), StageMemory::Depolarisation(memory)) => {
-                DepolarisationStep::gain(memory)
-            }
-            _ => 1.0,
-        }
-    }
-
-    /// Takes slow states to where a periodic input will leave them.
-    ///
-    /// ```text
-    /// x(T) = e x(0) + b   =>   x* = (x(T) - e x(0)) / (1 - e),   e = exp(-T / tau)
-    /// ```
-    /// `e = exp(-way travelled / way)` where a state settles with the way.
-    pub(crate) fn settle(&self, before: &StageMemory, now: &mut StageMemory, period_s: f64) {
-        match (self, before, now) {
-            (Self::Lag(step), StageMemory::Lag(before), StageMemory::Lag(now)) => {
-                now.deviation = step.settled(before.deviation, now.deviation, period_s);
-            }
-            (Self::Heating(step), StageMemory::Heating(before), StageMemory::Heating(now)) => {
-                now.settle(before, step, period_s);
-            }
-            (
-                Self::Depolarisation(_),
-                StageMemory::Depolarisation(before),
-                StageMemory::Depolarisation(now),
-            ) => now.settle(before),
-            (Self::Creep(step), StageMemory::Creep(before), StageMemory::Creep(now)) => {
-                step.settle(before, now, period_s);
-            }
-            (Self::Friction(step), StageMemory::Friction(before), StageMemory::Friction(now)) => {
-                step.settle(before, now);
-            }
-            (
-                Self::Accommodation(step),
-                StageMemory::Accommodation(before),
-                StageMemory::Accommodation(now),
-            ) => step.settle(before, now),
-            _ => {}
+        let Some((first, rest)) = signal.split_first_mut() else {
+            return;
+        };
+        let (mut memory, output) = self.start(*first);
+        *first = output;
+        for value in rest {
+            *value = self.advance(&mut memory, *value);
         }
     }
 }
 
 impl AmplifierStage {
-    /// Name of the stage, as in an actuator file.
-    pub(crate) fn name(&self) -> &'static str {
+    /// Name of the stage, as in an actuator file, and what is refused of its parameters.
+    pub(crate) fn checked(&self) -> (&'static str, Result<(), PreisachError>) {
         match self {
-            Self::Lag(_) => "Lag",
-            Self::CurrentLimit(_) => "CurrentLimit",
-            Self::Saturation(_) => "Saturation",
-            Self::Delay(_) => "Delay",
-            Self::DielectricHeating(_) => "DielectricHeating",
-            Self::Depolarisation(_) => "Depolarisation",
-        }
-    }
-
-    /// Refuses parameters outside their ranges.
-    pub(crate) fn check(&self) -> Result<(), PreisachError> {
-        match self {
-            Self::Lag(stage) => stage.check(),
-            Self::CurrentLimit(stage) => stage.check(),
-            Self::Saturation(stage) => stage.check(),
-            Self::Delay(stage) => stage.check(),
-            Self::DielectricHeating(stage) => stage.check(),
-            Self::Depolarisation(stage) => stage.check(),
+            Self::Lag(stage) => ("Lag", stage.check()),
+            Self::CurrentLimit(stage) => {
+                let slew = stage.slew_rate_volt_per_s;
+                ("CurrentLimit", check_positive("slew_rate_volt_per_s", slew))
+            }
+            Self::Saturation(stage) => ("Saturation", stage.check()),
+            Self::Delay(stage) => ("Delay", stage.check()),
+            Self::DielectricHeating(stage) => ("DielectricHeating", stage.check()),
+            Self::Depolarisation(stage) => ("Depolarisation", stage.check()),
         }
     }
 
     pub(crate) fn prepared(&self, step_s: f64) -> StageStep {
         match self {
-            Self::Lag(stage) => StageStep::Lag(LagStep::new(stage.tau_s, step_s)),
-            Self::CurrentLimit(stage) => StageStep::CurrentLimit(stage.prepared(step_s)),
-            Self::Saturation(stage) => StageStep::Saturation(stage.prepared()),
-            Self::Delay(stage) => StageStep::Delay(stage.prepared(step_s)),
+            Self::Lag(stage) => StageStep::Creep(stage.prepared(step_s)),
+            Self::CurrentLimit(stage) => StageStep::CurrentLimit(CurrentStep {
+                most_volt: stage.slew_rate_volt_per_s * step_s,
+            }),
+            Self::Saturation(stage) => StageStep::Saturation(*stage),
+            Self::Delay(stage) => StageStep::Delay(DelayStep { delay_s: stage.delay_s, step_s }),
             Self::DielectricHeating(stage) => StageStep::Heating(stage.prepared(step_s)),
             Self::Depolarisation(stage) => StageStep::Depolarisation(stage.prepared(step_s)),
         }
@@ -339,31 +271,19 @@ impl AmplifierStage {
 }
 
 impl LinkageStage {
-    /// Name of the stage, as in an actuator file.
-    pub(crate) fn name(&self) -> &'static str {
+    /// Name of the stage, as in an actuator file, and what is refused of its parameters.
+    pub(crate) fn checked(&self) -> (&'static str, Result<(), PreisachError>) {
         match self {
-            Self::LogCreep(_) => "LogCreep",
-            Self::KelvinVoigt(_) => "KelvinVoigt",
-            Self::Relaxation(_) => "Relaxation",
-            Self::Accommodation(_) => "Accommodation",
-            Self::Resonance(_) => "Resonance",
-            Self::Backlash(_) => "Backlash",
-            Self::CoulombFriction(_) => "CoulombFriction",
-            Self::LoadStiffness(_) => "LoadStiffness",
-        }
-    }
-
-    /// Refuses parameters outside their ranges.
-    pub(crate) fn check(&self) -> Result<(), PreisachError> {
-        match self {
-            Self::LogCreep(stage) => stage.check(),
-            Self::KelvinVoigt(stage) => stage.check(),
-            Self::Relaxation(stage) => stage.check(),
-            Self::Accommodation(stage) => stage.check(),
-            Self::Resonance(stage) => stage.check(),
-            Self::Backlash(stage) => stage.check(),
-            Self::CoulombFriction(stage) => stage.check(),
-            Self::LoadStiffness(stage) => stage.check(),
+            Self::LogCreep(stage) => ("LogCreep", stage.check()),
+            Self::KelvinVoigt(stage) => ("KelvinVoigt", stage.check()),
+            Self::Relaxation(stage) => ("Relaxation", stage.check()),
+            Self::Accommodation(stage) => ("Accommodation", stage.check()),
+            Self::Resonance(stage) => ("Resonance", stage.check()),
+            Self::Backlash(stage) => ("Backlash", check_not_negative("width_um", stage.width_um)),
+            Self::CoulombFriction(stage) => {
+                ("CoulombFriction", check_not_negative("width_um", stage.width_um))
+            }
+            Self::LoadStiffness(stage) => ("LoadStiffness", stage.check()),
         }
     }
 
@@ -373,13 +293,16 @@ impl LinkageStage {
             Self::LogCreep(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::KelvinVoigt(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Relaxation(stage) => StageStep::Creep(stage.prepared(step_s)),
-            Self::Accommodation(stage) => {
-                StageStep::Accommodation(AccommodationStep::new(stage.travel_um * deg, stage.share))
-            }
+            Self::Accommodation(stage) => StageStep::Accommodation(AccommodationStep {
+                travel: stage.travel_um * deg,
+                share: stage.share,
+            }),
             Self::Resonance(stage) => StageStep::Resonance(stage.prepared(step_s)),
-            Self::Backlash(stage) => StageStep::Play(PlayStep::new(0.5 * stage.width_um * deg)),
+            Self::Backlash(stage) => {
+                StageStep::Play(PlayStep { half_width: 0.5 * stage.width_um * deg })
+            }
             Self::CoulombFriction(stage) => {
-                StageStep::Friction(FrictionStep::new(0.5 * stage.width_um * deg))
+                StageStep::Friction(FrictionStep { limit: 0.5 * stage.width_um * deg })
             }
             Self::LoadStiffness(stage) => StageStep::Load(stage.prepared(calibration.deg_per_um)),
         }
@@ -387,34 +310,27 @@ impl LinkageStage {
 }
 
 impl SensorStage {
-    /// Name of the stage, as in an actuator file.
-    pub(crate) fn name(&self) -> &'static str {
+    /// Name of the stage, as in an actuator file, and what is refused of its parameters.
+    pub(crate) fn checked(&self) -> (&'static str, Result<(), PreisachError>) {
         match self {
-            Self::Filter(_) => "Filter",
-            Self::Nonlinearity(_) => "Nonlinearity",
-            Self::Quantisation(_) => "Quantisation",
-            Self::Delay(_) => "Delay",
-            Self::MainsHum(_) => "MainsHum",
-        }
-    }
-
-    /// Refuses parameters outside their ranges.
-    pub(crate) fn check(&self) -> Result<(), PreisachError> {
-        match self {
-            Self::Filter(stage) => stage.check(),
-            Self::Nonlinearity(stage) => stage.check(),
-            Self::Quantisation(stage) => stage.check(),
-            Self::Delay(stage) => stage.check(),
-            Self::MainsHum(stage) => stage.check(),
+            Self::Filter(stage) => ("Filter", stage.check()),
+            Self::Nonlinearity(stage) => ("Nonlinearity", stage.check()),
+            Self::Quantisation(stage) => {
+                ("Quantisation", check_not_negative("step_um", stage.step_um))
+            }
+            Self::Delay(stage) => ("Delay", stage.check()),
+            Self::MainsHum(stage) => ("MainsHum", stage.check()),
         }
     }
 
     pub(crate) fn prepared(&self, step_s: f64, calibration: &Calibration) -> StageStep {
         match self {
-            Self::Filter(stage) => StageStep::Lag(LagStep::new(stage.tau_s, step_s)),
+            Self::Filter(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Nonlinearity(stage) => StageStep::Nonlinearity(stage.prepared(calibration)),
-            Self::Quantisation(stage) => StageStep::Quantisation(stage.prepared(calibration)),
-            Self::Delay(stage) => StageStep::Delay(stage.prepared(step_s)),
+            Self::Quantisation(stage) => StageStep::Quantisation(QuantisationStep {
+                step_deg: stage.step_um * calibration.deg_per_um.abs(),
+            }),
+            Self::Delay(stage) => StageStep::Delay(DelayStep { delay_s: stage.delay_s, step_s }),
             Self::MainsHum(stage) => StageStep::Hum(stage.prepared(step_s, calibration)),
         }
     }

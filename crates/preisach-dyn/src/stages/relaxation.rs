@@ -1,9 +1,8 @@
 //! A distribution of relaxation times.
 
 use super::creep::CreepStep;
-use super::lag::LagStep;
 use crate::PreisachError;
-use crate::check::{check_not_negative, check_positive};
+use crate::check::{check_not_negative, check_positive, check_that};
 use serde::{Deserialize, Serialize};
 
 /// One relaxation time and its share of the response.
@@ -42,16 +41,12 @@ impl Relaxation {
             check_positive("time_constant_s", element.time_constant_s)?;
             value += element.share;
         }
-        if value > 1.0 + 1e-12 {
-            let quantity = "sum of the relaxation shares";
-            return Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 1.0 });
-        }
-        Ok(())
+        check_that(value <= 1.0 + 1e-12, "sum of the relaxation shares", value, "0 to 1")
     }
 
     pub(super) fn prepared(&self, step_s: f64) -> CreepStep {
-        let term = |e: &RelaxationElement| (e.share, LagStep::new(e.time_constant_s, step_s));
-        CreepStep::relaxing(self.elements.iter().map(term).collect())
+        let lag = |e: &RelaxationElement| (e.share, e.time_constant_s);
+        CreepStep::relaxing(self.elements.iter().map(lag), step_s)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Step;
 use crate::PreisachError;
-use crate::check::check_positive;
+use crate::check::{check_positive, check_within};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -27,11 +27,7 @@ impl Resonance {
     pub(super) fn check(&self) -> Result<(), PreisachError> {
         check_positive("frequency_hz", self.frequency_hz)?;
         check_positive("damping_ratio", self.damping_ratio)?;
-        if self.damping_ratio > 100.0 {
-            let (quantity, value) = ("damping_ratio", self.damping_ratio);
-            return Err(PreisachError::OutOfRange { quantity, value, least: 0.0, most: 100.0 });
-        }
-        Ok(())
+        check_within("damping_ratio", self.damping_ratio, 0.0..=100.0)
     }
 
     pub(super) fn prepared(&self, step_s: f64) -> ResonanceStep {

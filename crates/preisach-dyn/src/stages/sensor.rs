@@ -1,7 +1,7 @@
 //! What the sensor adds: an error of its characteristic, rounding, hum.
 
-use super::Step;
-use crate::check::{check_not_negative, check_positive};
+use super::{Curve, Step};
+use crate::check::{check_finite, check_not_negative, check_positive, check_within};
 use crate::{Calibration, PreisachError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -61,22 +61,10 @@ pub struct Nonlinearity {
 impl Nonlinearity {
     pub(super) fn check(&self) -> Result<(), PreisachError> {
         check_positive("half_range_um", self.half_range_um)?;
-        if let NonlinearityShape::CubicAbout { straight: value } = self.shape
-            && !(0.0..=1.5).contains(&value)
-        {
-            return Err(PreisachError::OutOfRange {
-                quantity: "straight",
-                value,
-                least: 0.0,
-                most: 1.5,
-            });
+        if let NonlinearityShape::CubicAbout { straight } = self.shape {
+            check_within("straight", straight, 0.0..=1.5)?;
         }
-        let value = self.amplitude_um;
-        if value.is_finite() {
-            Ok(())
-        } else {
-            Err(PreisachError::NotFinite { quantity: "amplitude_um", index: 0, value })
-        }
+        check_finite("amplitude_um", [self.amplitude_um])
     }
 
     pub(super) fn prepared(&self, calibration: &Calibration) -> NonlinearityStep {
@@ -95,15 +83,9 @@ pub(crate) struct NonlinearityStep {
     coefficients: [f64; 4],
 }
 
-impl Step for NonlinearityStep {
-    type Memory = ();
-
-    fn start(&self, input: f64) -> ((), f64) {
-        ((), self.advance(&mut (), input))
-    }
-
+impl Curve for NonlinearityStep {
     #[inline]
-    fn advance(&self, (): &mut (), input: f64) -> f64 {
+    fn value(&self, input: f64) -> f64 {
         let x = input * self.per_deg;
         let [a, b, c, d] = self.coefficients;
         input + self.amplitude_deg * (a + x * (b + x * (c + x * d)))
@@ -123,30 +105,14 @@ pub struct Quantisation {
     pub step_um: f64,
 }
 
-impl Quantisation {
-    pub(super) fn check(self) -> Result<(), PreisachError> {
-        check_not_negative("step_um", self.step_um)
-    }
-
-    pub(super) fn prepared(self, calibration: &Calibration) -> QuantisationStep {
-        QuantisationStep { step_deg: self.step_um * calibration.deg_per_um.abs() }
-    }
-}
-
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct QuantisationStep {
-    step_deg: f64,
+    pub(super) step_deg: f64,
 }
 
-impl Step for QuantisationStep {
-    type Memory = ();
-
-    fn start(&self, input: f64) -> ((), f64) {
-        ((), self.advance(&mut (), input))
-    }
-
+impl Curve for QuantisationStep {
     #[inline]
-    fn advance(&self, (): &mut (), input: f64) -> f64 {
+    fn value(&self, input: f64) -> f64 {
         if self.step_deg == 0.0 { input } else { (input / self.step_deg).round() * self.step_deg }
     }
 }
@@ -173,12 +139,7 @@ impl MainsHum {
     pub(super) fn check(&self) -> Result<(), PreisachError> {
         check_not_negative("amplitude_um", self.amplitude_um)?;
         check_positive("frequency_hz", self.frequency_hz)?;
-        let value = self.phase_rad;
-        if value.is_finite() {
-            Ok(())
-        } else {
-            Err(PreisachError::NotFinite { quantity: "phase_rad", index: 0, value })
-        }
+        check_finite("phase_rad", [self.phase_rad])
     }
 
     pub(super) fn prepared(&self, step_s: f64, calibration: &Calibration) -> HumStep {

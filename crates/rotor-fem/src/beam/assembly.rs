@@ -2,21 +2,26 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::beam::element::element_matrices;
+use crate::beam::element::{ElementMatrix, element_matrices};
 use crate::beam::shape::{ELEMENT_DOF, JOINT_DOF, Rows, STRIDE};
+use crate::error::check_parameters;
 use crate::{BladeProperties, FemError, ModeKind, RootSupport};
 
 /// Largest number of elements; dense algebra grows with its cube.
-pub(crate) const MAX_ELEMENTS: usize = 200;
+const MAX_ELEMENTS: usize = 200;
+
+/// Refuses a number of elements of a blade that is out of range.
+pub(crate) fn check_elements(found: usize) -> Result<(), FemError> {
+    let allowed = (1..=MAX_ELEMENTS).contains(&found);
+    check_parameters([("number of blade elements", found as f64, allowed, "1 to 200")])
+}
 
 /// Edges of `elements` equal elements from the blade's root to its tip.
 pub(crate) fn element_edges(
     blade: &BladeProperties,
     elements: usize,
 ) -> Result<Vec<f64>, FemError> {
-    if !(1..=MAX_ELEMENTS).contains(&elements) {
-        return Err(FemError::ElementCount { found: elements, most: MAX_ELEMENTS });
-    }
+    check_elements(elements)?;
     let root = blade.spec().root_offset;
     let edge = |i: usize| root + (1.0 - root) * i as f64 / elements as f64;
     // the tip exactly, without round-off
@@ -73,7 +78,7 @@ impl BladeModel {
     /// Cuts a blade into `elements` equal elements and assembles its matrices.
     ///
     /// # Errors
-    /// [`FemError::ElementCount`] unless there are 1 to 200 elements.
+    /// [`FemError::Parameter`] unless there are 1 to 200 elements.
     pub fn new(properties: BladeProperties, elements: usize) -> Result<Self, FemError> {
         let edges = element_edges(&properties, elements)?;
         let size = STRIDE * elements + JOINT_DOF;
@@ -87,15 +92,9 @@ impl BladeModel {
         };
         for e in 0..elements {
             let local = element_matrices(&model.properties, model.edges[e], model.edges[e + 1]);
-            let (at, shape) = ((STRIDE * e, STRIDE * e), (ELEMENT_DOF, ELEMENT_DOF));
-            for (global, part) in [
-                (&mut model.mass, local.mass),
-                (&mut model.stiffness, local.stiffness),
-                (&mut model.gyroscopic, local.gyroscopic),
-            ] {
-                let mut window = global.view_mut(at, shape);
-                window += part;
-            }
+            add_element(&mut model.mass, e, &local.mass);
+            add_element(&mut model.stiffness, e, &local.stiffness);
+            add_element(&mut model.gyroscopic, e, &local.gyroscopic);
         }
         let springs = model.properties.spec().root.springs();
         for (place, spring) in RootSupport::PLACES.into_iter().zip(springs) {
@@ -171,6 +170,12 @@ pub(crate) fn section_motion(
         flap: rows.flap.map(|row| row.dot(&local)),
         twist: rows.twist.map(|row| row.dot(&local)),
     })
+}
+
+/// Adds the matrix of element `e` to that of the blade.
+pub(crate) fn add_element(blade: &mut DMatrix<f64>, e: usize, part: &ElementMatrix) {
+    let mut window = blade.fixed_view_mut::<ELEMENT_DOF, ELEMENT_DOF>(STRIDE * e, STRIDE * e);
+    window += part;
 }
 
 /// The family a global degree of freedom belongs to.

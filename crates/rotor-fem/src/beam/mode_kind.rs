@@ -30,3 +30,28 @@ impl fmt::Display for ModeKind {
         })
     }
 }
+
+/// One value for each family of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PerFamily<T> {
+    /// Flap.
+    pub flap: T,
+    /// Lag.
+    pub lag: T,
+    /// Torsion.
+    pub torsion: T,
+    /// Axial.
+    pub axial: T,
+}
+
+impl<T: Copy> PerFamily<T> {
+    /// The value of one family.
+    pub fn of(&self, kind: ModeKind) -> T {
+        match kind {
+            ModeKind::Flap => self.flap,
+            ModeKind::Lag => self.lag,
+            ModeKind::Torsion => self.torsion,
+            ModeKind::Axial => self.axial,
+        }
+    }
+}

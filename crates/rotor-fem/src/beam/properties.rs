@@ -3,6 +3,7 @@
 use rotor_base::gauss_legendre;
 
 use crate::beam::distribution::Allowed;
+use crate::error::check_parameters;
 use crate::{Distribution, FemError, RootSupport};
 
 /// Built-in twist along the radius, rad, nose up positive.
@@ -155,11 +156,9 @@ impl BladeProperties {
             ("pitch_rad", spec.pitch_rad, -10.0, 10.0, "-10 to 10 rad"),
             ("precone_rad", spec.precone_rad, -0.8, 0.8, "-0.8 to 0.8 rad"),
         ];
-        for (field, value, least, most, expected) in ranges {
-            if !(least..=most).contains(&value) {
-                return Err(FemError::Parameter { field, value, expected });
-            }
-        }
+        check_parameters(ranges.map(|(field, value, least, most, expected)| {
+            (field, value, (least..=most).contains(&value), expected)
+        }))?;
         spec.root.check()?;
         let root = spec.root_offset;
         let fields = [

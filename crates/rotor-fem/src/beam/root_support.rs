@@ -2,6 +2,7 @@
 
 use crate::FemError;
 use crate::beam::shape::JOINT_DOF;
+use crate::error::check_parameters;
 use serde::{Deserialize, Serialize};
 
 /// How one rotation of the blade's root is held.
@@ -86,14 +87,10 @@ impl RootSupport {
             ("root.lag.stiffness", self.lag),
             ("root.feather.stiffness", self.feather),
         ];
-        for (field, joint) in springs {
+        check_parameters(springs.map(|(field, joint)| {
             let value = joint.stiffness().unwrap_or(0.0);
-            if !(value.is_finite() && value >= 0.0) {
-                let expected =
-                    "a finite number not below zero (moment per rad over m0 Omega^2 R^3)";
-                return Err(FemError::Parameter { field, value, expected });
-            }
-        }
-        Ok(())
+            let expected = "a finite number not below zero (moment per rad over m0 Omega^2 R^3)";
+            (field, value, value.is_finite() && value >= 0.0, expected)
+        }))
     }
 }

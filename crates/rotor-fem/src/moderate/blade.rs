@@ -8,16 +8,6 @@ use super::inertia::SectionMass;
 use super::section_shape::SectionShape;
 use super::strain::{STRAIN_VARIABLES, SectionStiffness, at};
 
-/// Whether the radial motion of points off the axis, by the slopes of bending, carries inertia.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum RotaryInertia {
-    /// Of the mass centre only: a slender blade.
-    #[default]
-    Neglected,
-    /// Of every point of the section.
-    Included,
-}
-
 /// Whether tension turns the built-in twist straight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Untwist {
@@ -60,8 +50,6 @@ pub struct ModerateSpec {
     pub mass_centre: Distribution,
     /// Tension centre ahead of the elastic axis, `e_A`.
     pub tension_centre: Distribution,
-    /// Rotary inertia of bending.
-    pub rotary_inertia: RotaryInertia,
     /// Terms of second order in torsion.
     pub torsion: TorsionTerms,
 }
@@ -73,7 +61,6 @@ impl From<BladeSpec> for ModerateSpec {
             blade,
             mass_centre: 0.0.into(),
             tension_centre: 0.0.into(),
-            rotary_inertia: RotaryInertia::default(),
             torsion: TorsionTerms::default(),
         }
     }
@@ -137,24 +124,6 @@ impl ModerateBlade {
         &self.properties
     }
 
-    /// The same blade at another rotor speed, over the nominal one.
-    ///
-    /// # Errors
-    /// [`FemError::Parameter`] for a negative speed or a NaN.
-    pub fn with_rotor_speed(&self, rotor_speed: f64) -> Result<Self, FemError> {
-        let blade = BladeSpec { rotor_speed, ..self.spec.blade.clone() };
-        Self::new(ModerateSpec { blade, ..self.spec.clone() })
-    }
-
-    /// The same blade at another pitch angle, rad.
-    ///
-    /// # Errors
-    /// [`FemError::Parameter`] beyond 10 rad or for a NaN.
-    pub fn with_pitch_rad(&self, pitch_rad: f64) -> Result<Self, FemError> {
-        let blade = BladeSpec { pitch_rad, ..self.spec.blade.clone() };
-        Self::new(ModerateSpec { blade, ..self.spec.clone() })
-    }
-
     /// Root, tip and every station between them where a property jumps or has a kink.
     pub fn breaks(&self) -> &[f64] {
         &self.breaks
@@ -178,9 +147,8 @@ impl ModerateBlade {
         let theta = pitch_rad + self.properties.twist_rad(station);
         let [v_x, w_x, v_xx, w_xx, phi, phi_x] = shape.strain();
         let strain: [f64; STRAIN_VARIABLES] = [0.0, v_x, w_x, v_xx, w_xx, phi, phi_x];
-        let bending = stiffness.bending_force(theta, &strain);
-        let pull = stiffness.tension_force(theta, &strain, tension);
-        [at::W_XX, at::V_XX, at::PHI_X].map(|k| bending[k] + pull[k])
+        let force = stiffness.elastic_force(theta, &strain, tension);
+        [at::W_XX, at::V_XX, at::PHI_X].map(|k| force[k])
     }
 
     pub(crate) fn stiffness(&self, station: f64) -> SectionStiffness {
@@ -203,17 +171,16 @@ impl ModerateBlade {
         }
     }
 
+    /// The radial motion of the mass centre by the slopes of bending carries inertia, that of points off it does
+    /// not: a slender blade.
     pub(crate) fn mass(&self, station: f64) -> SectionMass {
         let m = self.properties.mass(station);
         let offset = self.spec.mass_centre.value(station);
         let first = self.properties.section_mass(station) * offset;
         let [thickness, chord] = self.properties.squared_mass_radii(station).map(|k| m * k);
         let centre = first * offset;
-        let [chord, thickness, flat_chord, flat_thickness] = match self.spec.rotary_inertia {
-            RotaryInertia::Neglected => [centre, 0.0, (chord - centre).max(0.0), thickness],
-            RotaryInertia::Included => [chord, thickness, 0.0, 0.0],
-        };
-        SectionMass { mass: m, first, chord, thickness, flat_chord, flat_thickness }
+        let flat_chord = (chord - centre).max(0.0);
+        SectionMass { mass: m, first, centre, flat_chord, flat_thickness: thickness }
     }
 }
 
@@ -239,7 +206,7 @@ mod tests {
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-15;
         assert!(near(laden.mass, bare.mass + 0.25) && near(bare.mass, 1.08));
         assert!(near(laden.first, bare.first) && near(bare.first, -0.0108));
-        assert!(near(laden.chord, bare.chord) && near(bare.chord, 1.08e-4));
+        assert!(near(laden.centre, bare.centre) && near(bare.centre, 1.08e-4));
         assert!(near(laden.flat_chord, bare.flat_chord) && bare.flat_chord > 0.0);
         assert!(near(laden.flat_thickness, bare.flat_thickness) && bare.flat_thickness > 0.0);
     }

@@ -2,10 +2,8 @@
 
 use super::Scalar;
 use super::inertia::{SectionState, Spin};
-use super::points::{
-    ElementMatrix, ElementPoints, MOTION, Point, STRAIN, SectionMatrix, add_motion, add_strain,
-    motion_of, strain_of,
-};
+use super::points::{ElementPoints, MOTION, Point, STRAIN, SectionMatrix, add_at};
+use crate::beam::element::ElementMatrix;
 use crate::beam::shape::ELEMENT_DOF;
 
 /// Degrees of freedom of an element with two rates.
@@ -38,12 +36,16 @@ fn section_state<T: Scalar>(
     motion: &ElementMotion<T>,
 ) -> SectionState<T> {
     let [angle, rate, acceleration] = imposed.pitch;
+    let variables = |dof: &[T; ELEMENT_DOF]| {
+        let z = point.variables(dof);
+        MOTION.map(|i| z[i])
+    };
     SectionState {
         station: point.station,
         pitch: [angle + point.twist_rad, rate, acceleration],
-        value: motion_of(&point.variables(&motion.value)),
-        rate: motion_of(&point.variables(&motion.rate)),
-        acceleration: motion_of(&point.variables(&motion.acceleration)),
+        value: variables(&motion.value),
+        rate: variables(&motion.rate),
+        acceleration: variables(&motion.acceleration),
     }
 }
 
@@ -57,13 +59,13 @@ pub(crate) fn energies<T: Scalar>(
     for point in &points.whole {
         let dx = T::from_real(point.dx);
         let state = section_state(point, imposed, motion);
-        let s = strain_of(&point.variables(&motion.value));
+        let s = point.strain(&motion.value);
         let theta = imposed.pitch[0] + point.twist_rad;
         kinetic += dx * point.mass.energy(&imposed.spin, &state);
         strain += dx * point.stiffness.bending_energy(theta, &s);
     }
     for point in &points.stretch {
-        let s = strain_of(&point.variables(&motion.value));
+        let s = point.strain(&motion.value);
         let theta = imposed.pitch[0] + point.twist_rad;
         strain += T::from_real(point.dx) * point.stiffness.stretch_energy(theta, &s);
     }
@@ -78,12 +80,12 @@ pub(crate) fn elastic_force<T: Scalar>(
 ) -> [T; ELEMENT_DOF] {
     let mut out = [T::zero(); ELEMENT_DOF];
     for point in &points.whole {
-        let s = strain_of(&point.variables(dof));
+        let s = point.strain(dof);
         let theta = imposed.pitch[0] + point.twist_rad;
         point.add_force(&mut out, &STRAIN, &point.stiffness.bending_force(theta, &s));
     }
     for point in &points.stretch {
-        let s = strain_of(&point.variables(dof));
+        let s = point.strain(dof);
         let theta = imposed.pitch[0] + point.twist_rad;
         let tension =
             point.stiffness.stretch(theta, &s).value * T::from_real(point.stiffness.axial);
@@ -137,29 +139,29 @@ pub(crate) fn tangent(
     };
     for point in &points.whole {
         let theta = imposed.pitch[0] + point.twist_rad;
-        let s = strain_of(&point.variables(&motion.value));
+        let s = point.strain(&motion.value);
         let inertia = point.mass.tangent(&imposed.spin, &section_state(point, imposed, motion));
         point.add_force(&mut out.force, &STRAIN, &point.stiffness.bending_force(theta, &s));
         point.add_force(&mut out.force, &MOTION, &inertia.force);
         let mut section = SectionMatrix::zeros();
-        add_strain(&mut section, &point.stiffness.bending_stiffness(theta, &s));
-        add_motion(&mut section, &inertia.stiffness);
+        add_at(&mut section, &STRAIN, &point.stiffness.bending_stiffness(theta, &s));
+        add_at(&mut section, &MOTION, &inertia.stiffness);
         point.add_matrix(&mut out.stiffness, &section);
         for (matrix, part) in [(&mut out.damping, &inertia.damping), (&mut out.mass, &inertia.mass)]
         {
             let mut section = SectionMatrix::zeros();
-            add_motion(&mut section, part);
+            add_at(&mut section, &MOTION, part);
             point.add_matrix(matrix, &section);
         }
     }
     for point in &points.stretch {
         let theta = imposed.pitch[0] + point.twist_rad;
-        let s = strain_of(&point.variables(&motion.value));
+        let s = point.strain(&motion.value);
         let tension = point.stiffness.axial * point.stiffness.stretch(theta, &s).value;
         let pull = point.stiffness.tension_force(theta, &s, tension);
         point.add_force(&mut out.force, &STRAIN, &pull);
         let mut section = SectionMatrix::zeros();
-        add_strain(&mut section, &point.stiffness.stretch_stiffness(theta, &s));
+        add_at(&mut section, &STRAIN, &point.stiffness.stretch_stiffness(theta, &s));
         point.add_matrix(&mut out.stiffness, &section);
     }
     out
@@ -168,7 +170,7 @@ pub(crate) fn tangent(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::moderate::{ModerateBlade, ModerateSpec, RotaryInertia};
+    use crate::moderate::{ModerateBlade, ModerateSpec};
     use crate::{BladeSpec, Twist};
     use nalgebra::Complex;
 
@@ -182,7 +184,6 @@ mod tests {
         let spec = ModerateSpec {
             mass_centre: (-0.01).into(),
             tension_centre: 0.013.into(),
-            rotary_inertia: RotaryInertia::Included,
             ..blade.into()
         };
         ElementPoints::new(&ModerateBlade::new(spec).unwrap(), 0.4, 0.6)

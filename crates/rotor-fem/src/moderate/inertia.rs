@@ -21,7 +21,7 @@ pub(crate) type MotionMatrix = SMatrix<f64, MOTION_VARIABLES, MOTION_VARIABLES>;
 
 /// Mass properties of a section, per length, about the elastic axis; rotor units.
 ///
-/// The second moments are in two parts. What belongs to the first two moves with the section in every
+/// The second moments are in two parts. That of the mass centre moves with the section in every
 /// direction. The `flat` ones stay in the plane across the blade: they make torsional inertia and
 /// propeller moment, but no rotary inertia of bending.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,10 +30,8 @@ pub(crate) struct SectionMass {
     pub(crate) mass: f64,
     /// `m e_g`, mass centre ahead of the elastic axis.
     pub(crate) first: f64,
-    /// Chordwise second moment.
-    pub(crate) chord: f64,
-    /// Thickness second moment.
-    pub(crate) thickness: f64,
+    /// Chordwise second moment of the mass centre, `m e_g^2`.
+    pub(crate) centre: f64,
     /// Chordwise second moment that stays across the blade.
     pub(crate) flat_chord: f64,
     /// Thickness second moment that stays across the blade.
@@ -117,26 +115,24 @@ fn add<T: Scalar>(a: &Vector<T>, b: &Vector<T>) -> Vector<T> {
 }
 
 /// A field over the section that is linear in its coordinates: on the axis, per chordwise coordinate
-/// eta (forward), per coordinate zeta (up); the last two again for the mass that stays across the blade.
+/// eta (forward); that and the one per coordinate zeta (up) for the mass that stays across the blade.
 #[derive(Debug, Clone, Copy)]
 struct Field<V> {
     axis: V,
     eta: V,
-    zeta: V,
     flat_eta: V,
     flat_zeta: V,
 }
 
 impl<T: Scalar> Field<Moving<T>> {
     fn new(axis: Moving<T>, eta: Moving<T>, zeta: Moving<T>) -> Self {
-        Self { axis, eta, zeta, flat_eta: eta.flat(), flat_zeta: zeta.flat() }
+        Self { axis, eta, flat_eta: eta.flat(), flat_zeta: zeta.flat() }
     }
 
     fn map(&self, f: impl Fn(&Moving<T>) -> Vector<T>) -> Field<Vector<T>> {
         Field {
             axis: f(&self.axis),
             eta: f(&self.eta),
-            zeta: f(&self.zeta),
             flat_eta: f(&self.flat_eta),
             flat_zeta: f(&self.flat_zeta),
         }
@@ -238,8 +234,7 @@ impl SectionMass {
         let of = |moment: f64, value: T| value * T::from_real(moment);
         of(self.mass, dot(&f.axis, &g.axis))
             + of(self.first, dot(&f.axis, &g.eta) + dot(&f.eta, &g.axis))
-            + of(self.chord, dot(&f.eta, &g.eta))
-            + of(self.thickness, dot(&f.zeta, &g.zeta))
+            + of(self.centre, dot(&f.eta, &g.eta))
             + of(self.flat_chord, dot(&f.flat_eta, &g.flat_eta))
             + of(self.flat_thickness, dot(&f.flat_zeta, &g.flat_zeta))
     }
@@ -350,7 +345,7 @@ impl SectionMass {
         }
         let back = |v: &Vector<f64>| v.map(|c| -c);
         stiffness[(at::PHI, at::PHI)] +=
-            pair(back(&g.position.eta.value), back(&g.position.zeta.value));
+            pair(back(&g.position.eta.value), back(&g.position.flat_zeta.value));
     }
 }
 
@@ -374,14 +369,7 @@ mod tests {
     const STEP: f64 = 1e-30;
 
     fn mass() -> SectionMass {
-        SectionMass {
-            mass: 1.3,
-            first: -0.2,
-            chord: 0.15,
-            thickness: 0.04,
-            flat_chord: 0.11,
-            flat_thickness: 0.02,
-        }
+        SectionMass { mass: 1.3, first: -0.2, centre: 0.15, flat_chord: 0.11, flat_thickness: 0.02 }
     }
 
     fn spin() -> Spin {

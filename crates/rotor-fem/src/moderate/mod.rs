@@ -6,11 +6,8 @@
 
 mod blade;
 mod element;
-mod free_motion;
 mod inertia;
 mod modal;
-mod modal_modes;
-mod modal_tangent;
 mod model;
 mod modes;
 mod points;
@@ -19,12 +16,10 @@ mod span;
 mod statics;
 mod strain;
 
-pub use blade::{ModerateBlade, ModerateSpec, RotaryInertia, TorsionTerms, TwistAngle, Untwist};
-pub use free_motion::{FreeMotion, MotionState};
-pub use modal::{ModalBlade, ModalForce, ModalLoads, ModalMotion, ModalShape};
-pub use modal_tangent::ModalTangent;
+pub use blade::{ModerateBlade, ModerateSpec, TorsionTerms, TwistAngle, Untwist};
+pub use modal::{ModalBlade, ModalLoads, ModalMotion, ModalShape};
 pub use model::{ModerateModel, NodalMotion, PitchMotion, Tangents};
-pub use modes::{AxialMotion, deflected_fan, deflected_modes};
+pub use modes::{AxialMotion, deflected_modes};
 pub use section_shape::SectionShape;
 pub use statics::{StaticSettings, StaticState};
 

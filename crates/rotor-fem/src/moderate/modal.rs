@@ -26,29 +26,15 @@ pub struct ModalShape {
     pub sections: Vec<SectionShape>,
 }
 
-/// Modal coordinates with two rates in azimuth.
+/// Modal coordinates with two rates in azimuth, in the numbers of the calculation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ModalMotion<'a> {
+pub struct ModalMotion<'a, T = f64> {
     /// Coordinates, one for each mode.
-    pub value: &'a [f64],
+    pub value: &'a [T],
     /// Rates.
-    pub rate: &'a [f64],
+    pub rate: &'a [T],
     /// Accelerations.
-    pub acceleration: &'a [f64],
-}
-
-/// Modal force with what it was summed from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModalForce {
-    /// Elastic plus inertial force on each mode; the equations of motion set it equal to the applied
-    /// one.
-    pub generalised: Vec<f64>,
-    /// Tension that the inertial loads put into the blade at each station, over m0 Omega^2 R^2.
-    pub tension: Vec<f64>,
-    /// Axial displacement at each station, R.
-    pub axial: Vec<f64>,
-    /// Inertial force per length on `u v w v_x w_x phi` at each station: mass times acceleration.
-    pub inertial: Vec<[f64; 6]>,
+    pub acceleration: &'a [T],
 }
 
 /// What a motion asks of hub and pitch control, inertial and elastic: applied loads not counted.
@@ -73,58 +59,47 @@ pub struct ModalLoads {
 /// The blade at Gauss points along its span, with mode shapes.
 #[derive(Debug, Clone)]
 pub struct ModalBlade {
-    pub(super) span: Span,
-    pub(super) sections: Vec<Section>,
-    pub(super) base: ModalShape,
-    pub(super) modes: Vec<ModalShape>,
+    span: Span,
+    sections: Vec<Section>,
+    modes: Vec<ModalShape>,
     /// Springs of the root on `v_x`, `w_x`, `phi`.
     springs: [f64; 3],
-    pub(super) spin: Spin,
+    spin: Spin,
 }
 
 /// Properties of one station.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Section {
-    pub(super) twist_rad: f64,
-    pub(super) stiffness: SectionStiffness,
-    pub(super) mass: SectionMass,
+struct Section {
+    twist_rad: f64,
+    stiffness: SectionStiffness,
+    mass: SectionMass,
     /// Stretch by the steady tension, `T0 / EA`.
     stretch: f64,
 }
 
 /// Motion of one station, the axial one included.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Station<T> {
-    pub(super) state: SectionState<T>,
-    pub(super) strain: [[T; STRAIN_VARIABLES]; 3],
-}
-
-/// Modal coordinates in the numbers of the calculation.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Coordinates<'a, T> {
-    pub(super) value: &'a [T],
-    pub(super) rate: &'a [T],
-    pub(super) acceleration: &'a [T],
+struct Station<T> {
+    state: SectionState<T>,
+    strain: [[T; STRAIN_VARIABLES]; 3],
 }
 
 /// Everything at all stations.
-pub(super) struct Loaded<T> {
-    pub(super) stations: Vec<Station<T>>,
-    pub(super) inertial: Vec<[T; MOTION_VARIABLES]>,
-    pub(super) tension: Vec<T>,
-    pub(super) generalised: Vec<T>,
-    pub(super) pitch_moment: T,
+struct Loaded<T> {
+    stations: Vec<Station<T>>,
+    inertial: Vec<[T; MOTION_VARIABLES]>,
+    generalised: Vec<T>,
+    pitch_moment: T,
 }
 
 impl ModalBlade {
-    /// A blade whose motion is `base` plus modes.
+    /// A blade whose motion is made of modes.
     ///
     /// | argument | meaning |
     /// |---|---|
     /// | `blade` | the blade, at its own rotor speed and precone; its pitch comes with the motion |
     /// | `edges` | ends of the pieces of quadrature r/R, from root to tip, growing; every break of the blade should be among them |
     /// | `points` | Gauss points in each piece, 2 to 16 |
-    /// | `base` | displacement the modes are added to; none for the undeformed blade |
     /// | `modes` | shapes at the stations that [`Self::stations_of`] gives for the same edges |
     ///
     /// # Errors
@@ -134,16 +109,10 @@ impl ModalBlade {
         blade: &ModerateBlade,
         edges: &[f64],
         points: usize,
-        base: Option<ModalShape>,
         modes: Vec<ModalShape>,
     ) -> Result<Self, FemError> {
         let stations = Self::stations_of(edges, points)?;
-        let still = || ModalShape {
-            root: SectionShape::default(),
-            sections: vec![SectionShape::default(); stations.len()],
-        };
-        let base = base.unwrap_or_else(still);
-        for (mode, shape) in modes.iter().chain([&base]).enumerate() {
+        for (mode, shape) in modes.iter().enumerate() {
             let (found, expected) = (shape.sections.len(), stations.len());
             if found != expected {
                 return Err(FemError::ShapeCount { mode, found, expected });
@@ -162,7 +131,7 @@ impl ModalBlade {
             .collect();
         let springs = spec.root.springs();
         let spin = Spin::new(spec.rotor_speed, spec.precone_rad);
-        Ok(Self { span: Span::new(edges, points), sections, base, modes, springs, spin })
+        Ok(Self { span: Span::new(edges, points), sections, modes, springs, spin })
     }
 
     /// The stations r/R of a blade cut into pieces at `edges` with so many Gauss points in each.
@@ -205,19 +174,13 @@ impl ModalBlade {
         self.modes.len()
     }
 
-    /// Elastic and inertial modal force at one azimuth. A pure function of its arguments.
+    /// Elastic plus inertial force on each mode at one azimuth; the equations of motion set it equal to the
+    /// applied one. A pure function of its arguments.
     ///
     /// # Panics
     /// If the motion has another number of coordinates than there are modes.
-    pub fn force(&self, motion: ModalMotion<'_>, pitch: PitchMotion) -> ModalForce {
-        let ModalMotion { value, rate, acceleration } = motion;
-        let loaded = self.loaded(&Coordinates { value, rate, acceleration }, &pitch);
-        ModalForce {
-            generalised: loaded.generalised,
-            tension: loaded.tension,
-            axial: loaded.stations.iter().map(|s| s.state.value[0]).collect(),
-            inertial: loaded.inertial,
-        }
+    pub fn force(&self, motion: ModalMotion<'_>, pitch: PitchMotion) -> Vec<f64> {
+        self.loaded(&motion, &pitch).generalised
     }
 
     /// What the same motion asks of hub and pitch control. A pure function of its arguments.
@@ -228,8 +191,7 @@ impl ModalBlade {
     /// # Panics
     /// If the motion has another number of coordinates than there are modes.
     pub fn loads(&self, motion: ModalMotion<'_>, pitch: PitchMotion) -> ModalLoads {
-        let ModalMotion { value, rate, acceleration } = motion;
-        let loaded = self.loaded(&Coordinates { value, rate, acceleration }, &pitch);
+        let loaded = self.loaded(&motion, &pitch);
         let of = |section: &Section, station: &Station<f64>| {
             section.mass.wrench(&self.spin, &station.state)
         };
@@ -256,14 +218,10 @@ impl ModalBlade {
         pitch: PitchMotion,
         tension: &[f64],
     ) -> Vec<[f64; 3]> {
-        let zero = vec![0.0; value.len()];
-        let motion = Coordinates { value, rate: &zero, acceleration: &zero };
-        let stations = self.kinematics(&motion, &pitch);
+        let stations = self.standing(value, &pitch);
         let of = |((station, section), n): ((&Station<f64>, &Section), &f64)| {
-            let (theta, s) = (station.state.pitch[0], &station.strain[0]);
-            let bending = section.stiffness.bending_force(theta, s);
-            let pull = section.stiffness.tension_force(theta, s, *n);
-            [at::V_X, at::W_X, at::PHI].map(|k| bending[k] + pull[k])
+            let force = section.elastic_force(station, *n);
+            [at::V_X, at::W_X, at::PHI].map(|k| force[k])
         };
         stations.iter().zip(&self.sections).zip(tension).map(of).collect()
     }
@@ -274,9 +232,7 @@ impl ModalBlade {
     /// # Panics
     /// If the numbers of coordinates or loads do not fit.
     pub fn applied(&self, value: &[f64], pitch: PitchMotion, loads: &[[f64; 4]]) -> Vec<f64> {
-        let zero = vec![0.0; value.len()];
-        let motion = Coordinates { value, rate: &zero, acceleration: &zero };
-        let stations = self.kinematics(&motion, &pitch);
+        let stations = self.standing(value, &pitch);
         let axial: Vec<f64> = loads.iter().map(|load| load[0]).collect();
         let pull = self.span.to_tip(&axial);
         self.modes
@@ -300,20 +256,25 @@ impl ModalBlade {
             .collect()
     }
 
+    /// Motion of every station at rest in the rotating frame.
+    fn standing(&self, value: &[f64], pitch: &PitchMotion) -> Vec<Station<f64>> {
+        let zero = vec![0.0; value.len()];
+        self.kinematics(&ModalMotion { value, rate: &zero, acceleration: &zero }, pitch)
+    }
+
     /// Motion of every station from the modal coordinates.
-    pub(super) fn kinematics<T: Scalar>(
+    fn kinematics<T: Scalar>(
         &self,
-        motion: &Coordinates<'_, T>,
+        motion: &ModalMotion<'_, T>,
         pitch: &PitchMotion,
     ) -> Vec<Station<T>> {
         let count = self.sections.len();
         let mut stations = Vec::with_capacity(count);
         let mut slopes = [(); 3].map(|()| Vec::with_capacity(count));
         for (i, section) in self.sections.iter().enumerate() {
-            let base = self.base.sections[i];
-            let sum = |coordinates: &[T], start: f64| {
-                let mut moving = base.motion().map(|b| T::from_real(start * b));
-                let mut strain = base.strain().map(|b| T::from_real(start * b));
+            let sum = |coordinates: &[T]| {
+                let mut moving = [T::zero(); MOTION_VARIABLES - 1];
+                let mut strain = [T::zero(); STRAIN_VARIABLES - 1];
                 for (mode, q) in self.modes.iter().zip(coordinates) {
                     let shape = &mode.sections[i];
                     for (out, s) in moving.iter_mut().zip(shape.motion()) {
@@ -327,9 +288,9 @@ impl ModalBlade {
                 let [a, b, c, d, e, f] = strain;
                 ([T::zero(), v, w, v_x, w_x, phi], [T::zero(), a, b, c, d, e, f])
             };
-            let (value, s0) = sum(motion.value, 1.0);
-            let (rate, s1) = sum(motion.rate, 0.0);
-            let (acceleration, s2) = sum(motion.acceleration, 0.0);
+            let (value, s0) = sum(motion.value);
+            let (rate, s1) = sum(motion.rate);
+            let (acceleration, s2) = sum(motion.acceleration);
             let [angle, pitch_rate, pitch_acceleration] = pitch.rates();
             let state = SectionState {
                 station: self.span.stations[i],
@@ -354,11 +315,7 @@ impl ModalBlade {
     }
 
     /// Motion, inertial loads, tension and modal force.
-    pub(super) fn loaded<T: Scalar>(
-        &self,
-        motion: &Coordinates<'_, T>,
-        pitch: &PitchMotion,
-    ) -> Loaded<T> {
+    fn loaded<T: Scalar>(&self, motion: &ModalMotion<'_, T>, pitch: &PitchMotion) -> Loaded<T> {
         let stations = self.kinematics(motion, pitch);
         let inertial: Vec<[T; MOTION_VARIABLES]> = stations
             .iter()
@@ -371,12 +328,7 @@ impl ModalBlade {
             .iter()
             .zip(&self.sections)
             .zip(&tension)
-            .map(|((station, section), n)| {
-                let (theta, s) = (station.state.pitch[0], &station.strain[0]);
-                let bending = section.stiffness.bending_force(theta, s);
-                let pull = section.stiffness.tension_force(theta, s, *n);
-                std::array::from_fn(|k| bending[k] + pull[k])
-            })
+            .map(|((station, section), n)| section.elastic_force(station, *n))
             .collect();
         let generalised = self.modes.iter().map(|mode| {
             let mut sum = self.spring_force(mode, motion.value);
@@ -396,18 +348,17 @@ impl ModalBlade {
         for (weight, (f, e)) in self.span.weights.iter().zip(inertial.iter().zip(&elastic)) {
             pitch_moment += (f[super::inertia::at::PHI] + e[at::PHI]) * T::from_real(*weight);
         }
-        Loaded { stations, inertial, tension, generalised, pitch_moment }
+        Loaded { stations, inertial, generalised, pitch_moment }
     }
 
     /// Derivative of the springs' force in the coordinates, for two modes.
-    pub(super) fn spring_stiffness(&self, a: &ModalShape, b: &ModalShape) -> f64 {
+    fn spring_stiffness(&self, a: &ModalShape, b: &ModalShape) -> f64 {
         let (a, b) = (root_rotations(a), root_rotations(b));
         self.springs.iter().zip(a).zip(b).map(|((k, a), b)| k * a * b).sum()
     }
 
     fn spring_force<T: Scalar>(&self, mode: &ModalShape, value: &[T]) -> T {
-        let base = T::from_real(self.spring_stiffness(mode, &self.base));
-        self.modes.iter().zip(value).fold(base, |sum, (other, q)| {
+        self.modes.iter().zip(value).fold(T::zero(), |sum, (other, q)| {
             sum + *q * T::from_real(self.spring_stiffness(mode, other))
         })
     }
@@ -419,6 +370,11 @@ fn root_rotations(shape: &ModalShape) -> [f64; 3] {
 }
 
 impl Section {
+    /// Elastic force on the strain variables under a tension `n`.
+    fn elastic_force<T: Scalar>(&self, station: &Station<T>, n: T) -> [T; STRAIN_VARIABLES] {
+        self.stiffness.elastic_force(station.state.pitch[0], &station.strain[0], n)
+    }
+
     /// Slope of the axial displacement with two rates.
     fn axial_slope<T: Scalar>(&self, station: &Station<T>) -> [T; 3] {
         let [s, s1, s2] = &station.strain;
@@ -451,5 +407,128 @@ impl Section {
             -along(&turned(s1, t1)),
             -(along(&turned(s2, t2)) + squares - ea * bending),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::moderate::ModerateSpec;
+    use crate::{BladeSpec, Joint, RootSupport, Twist};
+    use nalgebra::Complex;
+
+    const STEP: f64 = 1e-30;
+    const MODES: usize = 5;
+
+    /// Arbitrary smooth shapes: no equation asks for modes.
+    fn shape(k: usize, x: f64) -> SectionShape {
+        let a = 1.0 + k as f64;
+        let wave = |b: f64, p: f64| {
+            let z = b * a * x + p;
+            [x * x * z.sin(), 2.0 * x * z.sin() + x * x * b * a * z.cos(), {
+                let d = b * a;
+                (2.0 - x * x * d * d) * z.sin() + 4.0 * x * d * z.cos()
+            }]
+        };
+        let twist = wave(0.8, 0.9);
+        SectionShape { lag: wave(0.7, 0.3), flap: wave(1.1, 0.1), twist: [twist[0], twist[1]] }
+    }
+
+    fn blade() -> ModalBlade {
+        let spec = ModerateSpec {
+            mass_centre: (-0.01).into(),
+            tension_centre: 0.02.into(),
+            ..BladeSpec {
+                root: RootSupport {
+                    flap: Joint::Spring { stiffness: 0.3 },
+                    lag: Joint::Spring { stiffness: 0.2 },
+                    feather: Joint::Spring { stiffness: 0.1 },
+                },
+                twist: Twist::Linear { rate_rad: -0.3 },
+                precone_rad: 0.05,
+                root_offset: 0.1,
+                area_gyration_radius: 0.1.into(),
+                ..BladeSpec::uniform(0.0108, 0.0268, 0.006_15, 5.0)
+            }
+            .into()
+        };
+        let edges = [0.1, 0.4, 0.7, 1.0];
+        let sample = |k: usize| ModalShape {
+            root: shape(k, 0.1),
+            sections: ModalBlade::stations_of(&edges, 8)
+                .unwrap()
+                .into_iter()
+                .map(|x| shape(k, x))
+                .collect(),
+        };
+        let blade = ModerateBlade::new(spec).unwrap();
+        ModalBlade::new(&blade, &edges, 8, (0..MODES).map(sample).collect()).unwrap()
+    }
+
+    fn pitch() -> PitchMotion {
+        PitchMotion { angle_rad: 0.2, rate: -0.15, acceleration: 0.12 }
+    }
+
+    fn state() -> [[f64; MODES]; 3] {
+        [0.04, 0.2, 0.3].map(|a| std::array::from_fn(|k| a * (1.7 * k as f64 + 9.0 * a).sin()))
+    }
+
+    /// Lagrange's equations of the whole blade, the rate of momentum by central difference in time.
+    #[test]
+    fn force_is_that_of_the_lagrangian() {
+        let blade = blade();
+        let [value, rate, acceleration] = state();
+        let at_time = |t: f64| {
+            let p = pitch();
+            let pitch = PitchMotion {
+                angle_rad: p.angle_rad + t * p.rate + 0.5 * t * t * p.acceleration,
+                rate: p.rate + t * p.acceleration,
+                acceleration: p.acceleration,
+            };
+            let q: [f64; MODES] =
+                std::array::from_fn(|k| value[k] + t * rate[k] + 0.5 * t * t * acceleration[k]);
+            let qd: [f64; MODES] = std::array::from_fn(|k| rate[k] + t * acceleration[k]);
+            (q, qd, pitch)
+        };
+        let lagrangian = |q: &[Complex<f64>], qd: &[Complex<f64>], pitch: &PitchMotion| {
+            let none = [Complex::from(0.0); MODES];
+            let coordinates = ModalMotion { value: q, rate: qd, acceleration: &none };
+            let mut sum = Complex::from(0.0);
+            for (i, station) in blade.kinematics(&coordinates, pitch).iter().enumerate() {
+                let section = &blade.sections[i];
+                let kinetic = section.mass.energy(&blade.spin, &station.state);
+                let theta = station.state.pitch[0];
+                let strain = section.stiffness.bending_energy(theta, &station.strain[0]);
+                sum += (kinetic - strain) * Complex::from(blade.span.weights[i]);
+            }
+            for (a, qa) in q.iter().enumerate() {
+                for (b, qb) in q.iter().enumerate() {
+                    let k = blade.spring_stiffness(&blade.modes[a], &blade.modes[b]);
+                    sum -= *qa * *qb * Complex::from(0.5 * k);
+                }
+            }
+            sum
+        };
+        let slope = |t: f64, k: usize, of_rate: bool| {
+            let (q, qd, pitch) = at_time(t);
+            let (mut q, mut qd) = (q.map(Complex::from), qd.map(Complex::from));
+            if of_rate {
+                qd[k].im = STEP;
+            } else {
+                q[k].im = STEP;
+            }
+            lagrangian(&q, &qd, &pitch).im / STEP
+        };
+        let motion = ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
+        let force = blade.force(motion, pitch());
+        for (k, got) in force.iter().enumerate() {
+            let h = 1e-4;
+            let momentum_rate = (8.0 * (slope(h, k, true) - slope(-h, k, true))
+                - (slope(2.0 * h, k, true) - slope(-2.0 * h, k, true)))
+                / (12.0 * h);
+            let expected = momentum_rate - slope(0.0, k, false);
+            let gap = (got - expected).abs();
+            assert!(gap < 1e-9 * (1.0 + expected.abs()), "{k}: {got} {expected}");
+        }
     }
 }

@@ -6,7 +6,7 @@ use super::ModerateBlade;
 use super::element::{self, ElementMotion, Imposed};
 use super::inertia::Spin;
 use super::points::ElementPoints;
-use crate::beam::assembly::{MAX_ELEMENTS, section_motion};
+use crate::beam::assembly::{add_element, check_elements, section_motion};
 use crate::beam::shape::{ELEMENT_DOF, JOINT_DOF, STRIDE, place};
 use crate::{FemError, RootSupport, SectionMotion};
 
@@ -97,13 +97,9 @@ impl ModerateModel {
     /// Cuts a blade into at least `elements` elements.
     ///
     /// # Errors
-    /// [`FemError::ElementCount`] unless 1 to 200 elements are asked for and needed.
+    /// [`FemError::Parameter`] unless 1 to 200 elements are asked for and needed.
     pub fn new(blade: ModerateBlade, elements: usize) -> Result<Self, FemError> {
-        let allowed = |found| {
-            let fits = (1..=MAX_ELEMENTS).contains(&found);
-            if fits { Ok(()) } else { Err(FemError::ElementCount { found, most: MAX_ELEMENTS }) }
-        };
-        allowed(elements)?;
+        check_elements(elements)?;
         let root = blade.properties().spec().root_offset;
         let mut edges = vec![root];
         for pair in blade.breaks().windows(2) {
@@ -116,7 +112,7 @@ impl ModerateModel {
             edges.push(pair[1]);
         }
         let count = edges.len() - 1;
-        allowed(count)?;
+        check_elements(count)?;
         let points: Vec<ElementPoints> =
             edges.windows(2).map(|pair| ElementPoints::new(&blade, pair[0], pair[1])).collect();
         let axial_from_slopes = points.iter().map(axial_from_slopes).collect();
@@ -207,15 +203,9 @@ impl ModerateModel {
         for (e, points) in self.points.iter().enumerate() {
             let local = element::tangent(points, imposed, &motion.element(e));
             add_force(&mut out.force, e, &local.force);
-            for (global, part) in [
-                (&mut out.stiffness, local.stiffness),
-                (&mut out.damping, local.damping),
-                (&mut out.mass, local.mass),
-            ] {
-                let mut window =
-                    global.view_mut((STRIDE * e, STRIDE * e), (ELEMENT_DOF, ELEMENT_DOF));
-                window += part;
-            }
+            add_element(&mut out.stiffness, e, &local.stiffness);
+            add_element(&mut out.damping, e, &local.damping);
+            add_element(&mut out.mass, e, &local.mass);
         }
         for (place, stiffness) in self.springs() {
             out.force[place] += stiffness * motion.value[place];
@@ -240,11 +230,13 @@ impl ModerateModel {
         sum
     }
 
-    /// Momentum and gradient of the Lagrangian over all degrees of freedom.
-    pub(crate) fn momentum(&self, motion: &NodalMotion, imposed: &Imposed) -> [DVector<f64>; 2] {
+    /// Momentum, the derivative of the kinetic energy in the rates, and gradient of the Lagrangian over all
+    /// degrees of freedom.
+    pub fn momentum(&self, motion: &NodalMotion, pitch: PitchMotion) -> [DVector<f64>; 2] {
+        let imposed = self.imposed(pitch, 1.0);
         let mut out = [DVector::zeros(self.size()), DVector::zeros(self.size())];
         for (e, points) in self.points.iter().enumerate() {
-            let parts = element::momentum(points, imposed, &motion.element(e));
+            let parts = element::momentum(points, &imposed, &motion.element(e));
             for (whole, part) in out.iter_mut().zip(&parts) {
                 add_force(whole, e, part);
             }
@@ -297,7 +289,7 @@ impl ModerateModel {
         for (e, points) in self.points.iter().enumerate() {
             let local: [f64; ELEMENT_DOF] = std::array::from_fn(|i| dof[STRIDE * e + i]);
             for point in &points.stretch {
-                let s = super::points::strain_of(&point.variables(&local));
+                let s = point.strain(&local);
                 let theta = pitch.angle_rad + point.twist_rad;
                 let strain = point.stiffness.stretch(theta, &s).value;
                 out.push([point.station, point.stiffness.axial * strain]);
@@ -317,7 +309,7 @@ impl ModerateModel {
             let local: [f64; ELEMENT_DOF] = std::array::from_fn(|i| step[STRIDE * e + i]);
             let mut slopes = Vector3::zeros();
             for (slope, point) in slopes.iter_mut().zip(&points.stretch) {
-                let s = super::points::strain_of(&point.variables(&local));
+                let s = point.strain(&local);
                 let [_, v_x, w_x, _, _, _, phi_x] = s;
                 let turn = point.stiffness.area_radius_squared * phi_x * phi_x;
                 *slope = -0.5 * (v_x * v_x + w_x * w_x + turn);

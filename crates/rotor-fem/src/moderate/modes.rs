@@ -2,11 +2,11 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::{ModerateBlade, ModerateModel, NodalMotion, PitchMotion, StaticSettings, StaticState};
+use super::{ModerateModel, NodalMotion, PitchMotion, StaticState};
 use crate::beam::assembly::{dof_kind, restrict};
 use crate::modes::coupled::ModeProblem;
 use crate::modes::mode_set::shift;
-use crate::{CoupledMode, FanPoint, FemError, GyroscopicTerms, ModeCount, ModeKind};
+use crate::{CoupledMode, FemError, GyroscopicTerms, ModeCount, ModeKind};
 
 /// What becomes of the axial motion in the modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,31 +62,6 @@ pub fn deflected_modes(
             Ok(found)
         }
     }
-}
-
-/// Modes about the deflected state without applied loads, over a list of rotor speeds (over the nominal
-/// one): the data of a fan plot.
-///
-/// # Errors
-/// Those of [`ModerateModel::new`], [`ModerateModel::static_state`] and [`deflected_modes`], and a rotor
-/// speed out of range.
-pub fn deflected_fan(
-    blade: &ModerateBlade,
-    elements: usize,
-    rotor_speeds: &[f64],
-    terms: GyroscopicTerms,
-    count: ModeCount,
-) -> Result<Vec<FanPoint>, FemError> {
-    rotor_speeds
-        .iter()
-        .map(|&rotor_speed| {
-            let model = ModerateModel::new(blade.with_rotor_speed(rotor_speed)?, elements)?;
-            let none = DVector::zeros(model.size());
-            let state = model.static_state(&none, &StaticSettings::default())?;
-            let modes = deflected_modes(&model, &state, terms, AxialMotion::Free, count)?;
-            Ok(FanPoint { rotor_speed, modes })
-        })
-        .collect()
 }
 
 /// The problem without axial degrees of freedom.

@@ -3,9 +3,10 @@
 use nalgebra::SMatrix;
 use rotor_base::gauss_legendre;
 
-use super::inertia::{self, MotionMatrix, SectionMass};
+use super::inertia::{self, SectionMass};
 use super::strain::{STRAIN_VARIABLES, SectionStiffness};
 use super::{ModerateBlade, Scalar};
+use crate::beam::element::ElementMatrix;
 use crate::beam::shape::{ELEMENT_DOF, cubic, hermite, place, quadratic};
 
 /// Gauss points for bending, torsion and inertia.
@@ -25,8 +26,6 @@ pub(crate) const STRAIN: [usize; STRAIN_VARIABLES] = [1, 3, 6, 4, 7, 8, 9];
 /// Places of the motion variables among the section's.
 pub(crate) const MOTION: [usize; inertia::MOTION_VARIABLES] = [0, 2, 5, 3, 6, 8];
 
-/// A matrix over the degrees of freedom of one element.
-pub(crate) type ElementMatrix = SMatrix<f64, ELEMENT_DOF, ELEMENT_DOF>;
 /// A matrix over the variables of a section.
 pub(crate) type SectionMatrix = SMatrix<f64, SECTION_VARIABLES, SECTION_VARIABLES>;
 
@@ -112,6 +111,12 @@ impl Point {
         })
     }
 
+    /// The strain variables of an element's degrees of freedom.
+    pub(crate) fn strain<T: Scalar>(&self, dof: &[T; ELEMENT_DOF]) -> [T; STRAIN_VARIABLES] {
+        let z = self.variables(dof);
+        STRAIN.map(|i| z[i])
+    }
+
     /// Adds forces on section variables to those on the element's degrees of freedom.
     pub(crate) fn add_force<T: Scalar, const N: usize>(
         &self,
@@ -146,33 +151,15 @@ impl Point {
     }
 }
 
-/// Strain variables among section variables.
-pub(crate) fn strain_of<T: Scalar>(z: &[T; SECTION_VARIABLES]) -> [T; STRAIN_VARIABLES] {
-    STRAIN.map(|i| z[i])
-}
-
-/// Motion variables among section variables.
-pub(crate) fn motion_of<T: Scalar>(z: &[T; SECTION_VARIABLES]) -> [T; inertia::MOTION_VARIABLES] {
-    MOTION.map(|i| z[i])
-}
-
-/// Adds a matrix over strain variables to one over section variables.
-pub(crate) fn add_strain(
+/// Adds a matrix over the section variables at some places to one over all of them.
+pub(crate) fn add_at<const N: usize>(
     out: &mut SectionMatrix,
-    part: &SMatrix<f64, STRAIN_VARIABLES, STRAIN_VARIABLES>,
+    places: &[usize; N],
+    part: &SMatrix<f64, N, N>,
 ) {
-    for (i, row) in STRAIN.into_iter().enumerate() {
-        for (j, column) in STRAIN.into_iter().enumerate() {
-            out[(row, column)] += part[(i, j)];
-        }
-    }
-}
-
-/// Adds a matrix over motion variables to one over section variables.
-pub(crate) fn add_motion(out: &mut SectionMatrix, part: &MotionMatrix) {
-    for (i, row) in MOTION.into_iter().enumerate() {
-        for (j, column) in MOTION.into_iter().enumerate() {
-            out[(row, column)] += part[(i, j)];
+    for (i, row) in places.iter().enumerate() {
+        for (j, column) in places.iter().enumerate() {
+            out[(*row, *column)] += part[(i, j)];
         }
     }
 }

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::element::Imposed;
 use super::{ModerateModel, NodalMotion, PitchMotion};
 use crate::beam::assembly::{dof_kind, restrict};
+use crate::error::check_parameters;
 use crate::{FemError, ModeKind};
 
 /// How the static deflection is sought.
@@ -183,7 +184,7 @@ fn check(load: &DVector<f64>, settings: &StaticSettings) -> Result<(), FemError>
     let finite = load.iter().copied().find(|f| !f.is_finite());
     let number = settings.iterations as f64;
     let small = f64::MIN_POSITIVE..=1.0;
-    let checks = [
+    check_parameters([
         ("load", finite.unwrap_or(0.0), finite.is_none(), "finite forces"),
         ("tolerance", settings.tolerance, small.contains(&settings.tolerance), "0 to 1, not 0"),
         ("iterations", number, settings.iterations >= 2, "2 or more Newton steps"),
@@ -193,13 +194,7 @@ fn check(load: &DVector<f64>, settings: &StaticSettings) -> Result<(), FemError>
             small.contains(&settings.smallest_step),
             "0 to 1, not 0: a part of the whole load",
         ),
-    ];
-    for (field, value, good, expected) in checks {
-        if !good {
-            return Err(FemError::Parameter { field, value, expected });
-        }
-    }
-    Ok(())
+    ])
 }
 
 /// Solves a dense system by LU factors with partial pivoting.

@@ -153,6 +153,18 @@ impl SectionStiffness {
         self.stretch(theta_rad, s).gradient.map(|g| n * g)
     }
 
+    /// Force of bending, torsion and a tension `n` on the strain variables.
+    pub(crate) fn elastic_force<T: Scalar>(
+        &self,
+        theta_rad: f64,
+        s: &[T; STRAIN_VARIABLES],
+        n: T,
+    ) -> [T; STRAIN_VARIABLES] {
+        let bending = self.bending_force(theta_rad, s);
+        let pull = self.tension_force(theta_rad, s, n);
+        std::array::from_fn(|k| bending[k] + pull[k])
+    }
+
     /// Second derivatives of [`Self::bending_energy`], symmetric.
     pub(crate) fn bending_stiffness(
         &self,

@@ -1,4 +1,4 @@
-//! Coupled rotating modes, their classification, and the fan plot.
+//! Coupled rotating modes and their classification.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -6,7 +6,7 @@ use crate::beam::assembly::{dof_kind, restrict};
 use crate::beam::shape::JOINT_DOF;
 use crate::modes::eigen::{EigenPair, gyroscopic, symmetric};
 use crate::modes::mode_set::{kind_offset, shift};
-use crate::{BladeModel, BladeProperties, FemError, ModeCount, ModeKind};
+use crate::{BladeModel, FemError, ModeCount, ModeKind, PerFamily};
 
 /// Squared frequencies below this fraction of the eigenvalue shift are raised by it, so that a neutral
 /// motion (a lag hinge on the axis of rotation) does not make the stiffness singular.
@@ -23,38 +23,13 @@ pub enum GyroscopicTerms {
 }
 
 /// How the kinetic energy of a mode is divided among the families; the shares sum to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EnergyShares {
-    /// Flap.
-    pub flap: f64,
-    /// Lag.
-    pub lag: f64,
-    /// Torsion.
-    pub torsion: f64,
-    /// Axial.
-    pub axial: f64,
-}
+pub type EnergyShares = PerFamily<f64>;
 
 impl EnergyShares {
-    /// The share of one family.
-    pub fn of(&self, kind: ModeKind) -> f64 {
-        match kind {
-            ModeKind::Flap => self.flap,
-            ModeKind::Lag => self.lag,
-            ModeKind::Torsion => self.torsion,
-            ModeKind::Axial => self.axial,
-        }
-    }
-
     /// The family with the largest share.
     pub fn leader(&self) -> ModeKind {
-        let mut leader = ModeKind::Flap;
-        for kind in ModeKind::ALL {
-            if self.of(kind) > self.of(leader) {
-                leader = kind;
-            }
-        }
-        leader
+        let larger = |a, b| if self.of(b) > self.of(a) { b } else { a };
+        ModeKind::ALL.into_iter().fold(ModeKind::Flap, larger)
     }
 }
 
@@ -145,7 +120,7 @@ impl ModeProblem {
         let classified: Vec<(EnergyShares, EigenPair<Complex<f64>>)> =
             pairs.into_iter().map(|pair| (shares(free, mass, &pair.vector), pair)).collect();
 
-        let mut chosen = Vec::with_capacity(count.total());
+        let mut chosen = Vec::new();
         for kind in ModeKind::ALL {
             let family: Vec<_> =
                 classified.iter().filter(|(energy, _)| energy.leader() == kind).collect();
@@ -185,35 +160,6 @@ impl ModeProblem {
             quadrature: all.map(|z| sign * z.im),
         }
     }
-}
-
-/// The modes of a blade at one rotor speed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FanPoint {
-    /// Rotor speed over the nominal one.
-    pub rotor_speed: f64,
-    /// Modes at that speed, as [`modes`] gives them.
-    pub modes: Vec<CoupledMode>,
-}
-
-/// Modes over a list of rotor speeds (over the nominal one): the data of a fan plot.
-///
-/// # Errors
-/// Those of [`BladeModel::new`] and [`modes`], and a rotor speed out of range.
-pub fn fan_plot(
-    blade: &BladeProperties,
-    elements: usize,
-    rotor_speeds: &[f64],
-    terms: GyroscopicTerms,
-    count: ModeCount,
-) -> Result<Vec<FanPoint>, FemError> {
-    rotor_speeds
-        .iter()
-        .map(|&rotor_speed| {
-            let model = BladeModel::new(blade.with_rotor_speed(rotor_speed)?, elements)?;
-            Ok(FanPoint { rotor_speed, modes: modes(&model, terms, count)? })
-        })
-        .collect()
 }
 
 fn to_complex(pair: &EigenPair<f64>) -> EigenPair<Complex<f64>> {

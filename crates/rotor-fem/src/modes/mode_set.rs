@@ -8,42 +8,15 @@ use nalgebra::DVector;
 use crate::beam::assembly::{BladeModel, locate, restrict};
 use crate::beam::shape::{JOINT_DOF, STRIDE, hermite, quadratic};
 use crate::modes::eigen::{EigenPair, symmetric};
-use crate::{BladeProperties, FemError, ModeKind};
+use crate::{BladeProperties, FemError, ModeKind, PerFamily};
 
 /// How many modes of each family are wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ModeCount {
-    /// Flap modes.
-    pub flap: usize,
-    /// Lag modes.
-    pub lag: usize,
-    /// Torsion modes.
-    pub torsion: usize,
-    /// Axial modes.
-    pub axial: usize,
-}
+pub type ModeCount = PerFamily<usize>;
 
 impl Default for ModeCount {
     /// Four flap, four lag and two torsion modes, as in the paper.
     fn default() -> Self {
         Self { flap: 4, lag: 4, torsion: 2, axial: 0 }
-    }
-}
-
-impl ModeCount {
-    /// Number wanted of one family.
-    pub fn of(&self, kind: ModeKind) -> usize {
-        match kind {
-            ModeKind::Flap => self.flap,
-            ModeKind::Lag => self.lag,
-            ModeKind::Torsion => self.torsion,
-            ModeKind::Axial => self.axial,
-        }
-    }
-
-    /// Number wanted in all.
-    pub fn total(&self) -> usize {
-        ModeKind::ALL.iter().map(|kind| self.of(*kind)).sum()
     }
 }
 
@@ -72,42 +45,22 @@ pub enum ModalBasis {
 /// One uncoupled mode, its shape scaled to 1 at the tip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UncoupledMode {
-    kind: ModeKind,
-    number: usize,
-    frequency: f64,
-    per_rev: f64,
-    modal_mass: f64,
+    /// Family of the mode.
+    pub kind: ModeKind,
+    /// Place within its family, from 1.
+    pub number: usize,
+    /// Frequency in units of the nominal rotor speed.
+    pub frequency: f64,
+    /// Frequency per revolution of the blade's own rotor speed; infinite at rest.
+    pub per_rev: f64,
+    /// Modal mass: the integral of `m shape^2` (flap, lag) or `m k_m^2 shape^2` (torsion).
+    pub modal_mass: f64,
     edges: Arc<[f64]>,
     /// Values of the family's degrees of freedom, element by element.
     nodal: Vec<[f64; 4]>,
 }
 
 impl UncoupledMode {
-    /// Family of the mode.
-    pub fn kind(&self) -> ModeKind {
-        self.kind
-    }
-
-    /// Place within its family, from 1.
-    pub fn number(&self) -> usize {
-        self.number
-    }
-
-    /// Frequency in units of the nominal rotor speed.
-    pub fn frequency(&self) -> f64 {
-        self.frequency
-    }
-
-    /// Frequency per revolution of the blade's own rotor speed; infinite at rest.
-    pub fn per_rev(&self) -> f64 {
-        self.per_rev
-    }
-
-    /// Modal mass: the integral of `m shape^2` (flap, lag) or `m k_m^2 shape^2` (torsion).
-    pub fn modal_mass(&self) -> f64 {
-        self.modal_mass
-    }
-
     /// Value, first and second radial derivative of the shape at station r/R; zero inboard of the root.
     ///
     /// The second derivative is that of the element's polynomial, discontinuous between elements: its
@@ -185,24 +138,13 @@ impl ModeSet {
 /// | `blade` | the blade, in rotor units |
 /// | `elements` | equal elements from root to tip; frequencies converge with their fourth power |
 /// | `count` | modes wanted; `axial` must be 0 |
+/// | `basis` | which shapes stand for a family |
 ///
 /// # Errors
-/// [`FemError::ElementCount`]; [`FemError::TooFewModes`] when the mesh has fewer than wanted, and for
+/// [`FemError::Parameter`]; [`FemError::TooFewModes`] when the mesh has fewer than wanted, and for
 /// axial modes, which an inextensible blade does not have; [`FemError::NotStable`] for a blade that
 /// diverges.
 pub fn uncoupled_modes(
-    blade: &BladeProperties,
-    elements: usize,
-    count: ModeCount,
-) -> Result<ModeSet, FemError> {
-    modal_basis(blade, elements, count, ModalBasis::Natural)
-}
-
-/// As [`uncoupled_modes`], with a choice of the shapes.
-///
-/// # Errors
-/// As [`uncoupled_modes`].
-pub fn modal_basis(
     blade: &BladeProperties,
     elements: usize,
     count: ModeCount,

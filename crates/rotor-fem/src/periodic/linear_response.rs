@@ -111,7 +111,8 @@ impl PeriodicSolver {
     /// of generalised conjugate residuals: every direction serves them all, and the directions of one
     /// round are independent and evaluated in parallel.
     ///
-    /// `load_changes` holds one matrix `df/dp`, shape `dof x points`, for each parameter; a solution is
+    /// `force` is `f` of the orbit at all points, as [`PeriodicSystem::residual`] gives it for [`Orbit::sample`],
+    /// shape `dof x points`. `load_changes` holds one matrix `df/dp`, shape `dof x points`, for each parameter; a solution is
     /// accepted when the largest relative residual is at most `tolerance`, a number such as 1e-6.
     ///
     /// # Errors
@@ -124,29 +125,6 @@ impl PeriodicSolver {
         &mut self,
         system: &S,
         orbit: &Orbit,
-        load_changes: &[DMatrix<f64>],
-        tolerance: f64,
-    ) -> Result<LinearResponse, PeriodicError<S::Error>>
-    where
-        S::Error: Send,
-    {
-        self.check(system, orbit)?;
-        let base = self.evaluate(system, orbit.clone(), 0, orbit)?;
-        let mut response = self.response_about(system, &base, load_changes, tolerance)?;
-        response.evaluations += 1;
-        Ok(response)
-    }
-
-    /// The same for an orbit whose forces are known: `force` is `f` at all points, as
-    /// [`PeriodicSystem::residual`] gives it for [`Orbit::sample`], shape `dof x points`. It saves the
-    /// evaluation of the orbit itself.
-    ///
-    /// # Errors
-    /// As [`PeriodicSolver::linear_response`].
-    pub fn linear_response_from<S: PeriodicSystem>(
-        &mut self,
-        system: &S,
-        orbit: &Orbit,
         force: &DMatrix<f64>,
         load_changes: &[DMatrix<f64>],
         tolerance: f64,
@@ -156,21 +134,7 @@ impl PeriodicSolver {
     {
         self.check(system, orbit)?;
         let samples = orbit.sample(self.time());
-        let base = self.weigh(system, (orbit.clone(), samples, force.clone()), 0, orbit)?;
-        self.response_about(system, &base, load_changes, tolerance)
-    }
-
-    fn response_about<S: PeriodicSystem>(
-        &mut self,
-        system: &S,
-        base: &Iterate,
-        load_changes: &[DMatrix<f64>],
-        tolerance: f64,
-    ) -> Result<LinearResponse, PeriodicError<S::Error>>
-    where
-        S::Error: Send,
-    {
-        let orbit = &base.orbit;
+        let base = &self.weigh(system, (orbit.clone(), samples, force.clone()), 0, orbit)?;
         let (dof, points) = (system.dof(), self.time().points().len());
         for load in load_changes {
             if load.shape() != (dof, points) {

@@ -2,7 +2,6 @@
 
 pub(crate) mod acceleration;
 pub(crate) mod error;
-pub(crate) mod linear;
 pub(crate) mod linear_response;
 pub(crate) mod newton_matrix;
 pub(crate) mod orbit_memory;

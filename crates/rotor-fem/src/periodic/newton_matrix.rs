@@ -7,7 +7,7 @@ use faer::linalg::solvers::{PartialPivLu, Solve};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rotor_base::HarmonicSeries;
 
-use crate::{LocalTangent, Orbit, OrbitMemory, TimeElements};
+use crate::{LocalTangent, Orbit, OrbitMemory, PeriodicError, TimeElements};
 
 /// Inverse iterations on the smallest singular value.
 const INVERSE_ITERATIONS: usize = 6;
@@ -17,14 +17,6 @@ const RESOLUTION_MARGIN: f64 = 2.0;
 const RESOLVED: f64 = 1e-3;
 /// A dynamic stiffness below this fraction of the squared harmonic counts as zero on any mesh.
 const RELATIVE_FLOOR: f64 = 1e-9;
-
-/// Why a Newton matrix is unusable.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum NewtonMatrixError {
-    Shape { what: &'static str, found: usize, expected: usize },
-    NotFinite { dof: usize, point: usize },
-    Resonance { dof: usize, per_rev: usize, dynamic_stiffness: f64, resolution: f64 },
-}
 
 /// LU factors of the scaled Newton matrix.
 ///
@@ -46,28 +38,25 @@ impl std::fmt::Debug for Factorisation {
 
 impl Factorisation {
     /// Factors of the matrix belonging to the tangents at all points, and to the memory if there is one.
-    pub(crate) fn new(
+    ///
+    /// # Errors
+    /// [`PeriodicError::Resonance`].
+    pub(crate) fn new<E: std::error::Error>(
         time: &TimeElements,
         mass: &DMatrix<f64>,
         tangents: &[LocalTangent],
         memory: Option<&OrbitMemory>,
-    ) -> Result<Self, NewtonMatrixError> {
+    ) -> Result<Self, PeriodicError<E>> {
         let dof = mass.nrows();
-        check(time, dof, tangents)?;
         let root_mass: Vec<f64> = (0..dof).map(|i| mass[(i, i)].sqrt()).collect();
         let mut matrix = assemble(time, mass, tangents);
-        if let Some(memory) = memory {
-            check_memory(time, dof, memory)?;
-            let weak = memory.weak(time);
-            for column in 0..matrix.ncols() {
-                for row in 0..matrix.nrows() {
-                    matrix[(row, column)] += weak[(row, column)];
-                }
-            }
-        }
+        let weak = memory.map(|memory| memory.weak(time));
         let weights = time.node_weights();
         for column in 0..matrix.ncols() {
             for row in 0..matrix.nrows() {
+                if let Some(weak) = &weak {
+                    matrix[(row, column)] += weak[(row, column)];
+                }
                 matrix[(row, column)] /=
                     weights[row / dof] * root_mass[row % dof] * root_mass[column % dof];
             }
@@ -117,7 +106,10 @@ impl Factorisation {
     /// The time elements themselves get the square of a harmonic wrong by `resolution`; a dynamic
     /// stiffness not well above that cannot be told from zero. Harmonics the mesh does not resolve (a
     /// high mode may sit near one) are refused only when the matrix is singular to round-off.
-    fn refuse_resonance(&self, time: &TimeElements) -> Result<(), NewtonMatrixError> {
+    fn refuse_resonance<E: std::error::Error>(
+        &self,
+        time: &TimeElements,
+    ) -> Result<(), PeriodicError<E>> {
         let dof = self.dof();
         let size = dof * time.unknowns_per_dof();
         // any start does that is not orthogonal to the answer: the golden-ratio sequence
@@ -148,7 +140,7 @@ impl Factorisation {
         let margin =
             if resolution < RESOLVED * square { RESOLUTION_MARGIN * resolution } else { 0.0 };
         if stiffness < margin.max(RELATIVE_FLOOR * square) {
-            return Err(NewtonMatrixError::Resonance {
+            return Err(PeriodicError::Resonance {
                 dof: leader,
                 per_rev,
                 dynamic_stiffness: stiffness,
@@ -157,50 +149,6 @@ impl Factorisation {
         }
         Ok(())
     }
-}
-
-/// Refuses tangents of the wrong number, shape or value.
-fn check(
-    time: &TimeElements,
-    dof: usize,
-    tangents: &[LocalTangent],
-) -> Result<(), NewtonMatrixError> {
-    let shape = |what, found, expected| Err(NewtonMatrixError::Shape { what, found, expected });
-    if tangents.len() != time.points().len() {
-        return shape("tangents of the revolution", tangents.len(), time.points().len());
-    }
-    for (point, tangent) in tangents.iter().enumerate() {
-        for matrix in [&tangent.dq, &tangent.dqd, &tangent.dqdd] {
-            if matrix.shape() != (dof, dof) {
-                return shape("entries of a tangent", matrix.len(), dof * dof);
-            }
-            if let Some(entry) = matrix.iter().position(|v| !v.is_finite()) {
-                return Err(NewtonMatrixError::NotFinite { dof: entry % dof, point });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Refuses a memory of the wrong shape or value.
-fn check_memory(
-    time: &TimeElements,
-    dof: usize,
-    memory: &OrbitMemory,
-) -> Result<(), NewtonMatrixError> {
-    let size = dof * time.points().len();
-    for matrix in [&memory.dq, &memory.dqd] {
-        if matrix.shape() != (size, size) {
-            let what = "entries of the memory of an orbit";
-            let (found, expected) = (matrix.len(), size * size);
-            return Err(NewtonMatrixError::Shape { what, found, expected });
-        }
-        if let Some(entry) = matrix.iter().position(|v| !v.is_finite()) {
-            let (dof, point) = (entry % size % dof, entry % size / dof);
-            return Err(NewtonMatrixError::NotFinite { dof, point });
-        }
-    }
-    Ok(())
 }
 
 /// The weak tangent, unknowns node-major.

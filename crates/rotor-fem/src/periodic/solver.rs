@@ -2,8 +2,9 @@
 
 use nalgebra::DMatrix;
 
+use crate::error::check_parameters;
 use crate::periodic::acceleration::Anderson;
-use crate::periodic::newton_matrix::{Factorisation, NewtonMatrixError};
+use crate::periodic::newton_matrix::Factorisation;
 use crate::periodic::renewal::{Renewal, Verdict};
 use crate::{FemError, Orbit, OrbitSamples, PeriodicError, PeriodicSystem, TimeElements};
 
@@ -12,19 +13,6 @@ use crate::{FemError, Orbit, OrbitSamples, PeriodicError, PeriodicSystem, TimeEl
 const STANDSTILL: (usize, f64) = (30, 0.5);
 /// Halvings of a step that makes the residual grow.
 const MAX_HALVINGS: i32 = 6;
-
-/// How chord steps are combined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Acceleration {
-    /// Plain chord steps.
-    None,
-    /// Anderson mixing of the last `depth` steps.
-    Anderson {
-        /// Number of earlier steps that are mixed, 1 to 10.
-        depth: usize,
-    },
-}
 
 /// Settings of the [`PeriodicSolver`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,18 +23,13 @@ pub struct PeriodicSettings {
     pub max_iterations: usize,
     /// The kept factorisation is renewed when a step leaves more than this fraction of the residual.
     pub refresh_contraction: f64,
-    /// How chord steps are combined.
-    pub acceleration: Acceleration,
+    /// Number of earlier chord steps that Anderson's acceleration mixes, at most 10; 0 for plain steps.
+    pub mixing_depth: usize,
 }
 
 impl Default for PeriodicSettings {
     fn default() -> Self {
-        Self {
-            tolerance: 1e-11,
-            max_iterations: 60,
-            refresh_contraction: 0.3,
-            acceleration: Acceleration::Anderson { depth: 5 },
-        }
+        Self { tolerance: 1e-11, max_iterations: 60, refresh_contraction: 0.3, mixing_depth: 5 }
     }
 }
 
@@ -97,12 +80,10 @@ fn stands_still(history: &[f64], careful_from: Option<usize>) -> bool {
 /// The Newton matrix is factorised once and used for chord steps, also in later solves, until a step
 /// contracts the residual too little; when chord steps stall, the search goes back to the best orbit and
 /// takes Newton steps, shortened until the residual falls, and ends where thirty of them do not halve it. The sequence of solves is therefore part of the result at the
-/// level of the tolerance: use one solver per thread, or [`forget_factorisation`] between solves.
+/// level of the tolerance: use one solver per thread, or a new one for every solve.
 ///
 /// Assumes: a constant symmetric mass matrix; period 2 pi.
 /// Not modelled: stability of the orbit, which is for [`Floquet`](crate::Floquet).
-///
-/// [`forget_factorisation`]: Self::forget_factorisation
 #[derive(Debug, Clone)]
 pub struct PeriodicSolver {
     time: TimeElements,
@@ -114,24 +95,33 @@ impl PeriodicSolver {
     /// A solver on a time mesh.
     ///
     /// # Errors
-    /// [`FemError::SolverSetting`] for a tolerance or contraction that is not positive, no iteration,
-    /// or a mixing depth outside 1 to 10.
+    /// [`FemError::Parameter`] for a tolerance or contraction that is not positive, no iteration,
+    /// or a mixing depth above 10.
     pub fn new(time: TimeElements, settings: PeriodicSettings) -> Result<Self, FemError> {
-        let bad = |name, value, expected| Err(FemError::SolverSetting { name, value, expected });
-        if !(settings.tolerance > 0.0 && settings.tolerance.is_finite()) {
-            return bad("tolerance", settings.tolerance, "a positive number");
-        }
-        if !(settings.refresh_contraction > 0.0 && settings.refresh_contraction < 1.0) {
-            return bad("refresh_contraction", settings.refresh_contraction, "between 0 and 1");
-        }
-        if settings.max_iterations == 0 {
-            return bad("max_iterations", 0.0, "at least 1");
-        }
-        if let Acceleration::Anderson { depth } = settings.acceleration
-            && !(1..=10).contains(&depth)
-        {
-            return bad("acceleration depth", depth as f64, "1 to 10");
-        }
+        let PeriodicSettings { tolerance, max_iterations, refresh_contraction, mixing_depth } =
+            settings;
+        let between = refresh_contraction > 0.0 && refresh_contraction < 1.0;
+        check_parameters([
+            (
+                "orbit solver tolerance",
+                tolerance,
+                tolerance > 0.0 && tolerance.is_finite(),
+                "a positive number",
+            ),
+            (
+                "orbit solver refresh_contraction",
+                refresh_contraction,
+                between,
+                "a number between 0 and 1",
+            ),
+            (
+                "orbit solver max_iterations",
+                max_iterations as f64,
+                max_iterations > 0,
+                "1 iteration or more",
+            ),
+            ("orbit solver mixing_depth", mixing_depth as f64, mixing_depth <= 10, "0 to 10"),
+        ])?;
         Ok(Self { time, settings, factorisation: None })
     }
 
@@ -143,11 +133,6 @@ impl PeriodicSolver {
     /// The settings.
     pub fn settings(&self) -> &PeriodicSettings {
         &self.settings
-    }
-
-    /// Drops the kept factorisation: the next solve starts with a new Newton matrix.
-    pub fn forget_factorisation(&mut self) {
-        self.factorisation = None;
     }
 
     /// The periodic orbit of a system, from a start orbit on this solver's mesh.
@@ -177,10 +162,7 @@ impl PeriodicSolver {
         let mut state = self.evaluate(system, start.clone(), 0, start)?;
         let mut history = vec![state.norm];
         let mut best = (state.norm, state.orbit.clone());
-        let mut mixing = Anderson::new(match self.settings.acceleration {
-            Acceleration::None => 0,
-            Acceleration::Anderson { depth } => depth,
-        });
+        let mut mixing = Anderson::new(self.settings.mixing_depth);
         let mut renewal = Renewal::new(self.settings.refresh_contraction);
         let mut careful_from = None;
         while state.norm > tolerance {
@@ -380,27 +362,40 @@ impl PeriodicSolver {
         state: &Iterate,
         iteration: usize,
     ) -> Result<Factorisation, PeriodicError<S::Error>> {
-        let tangents = system
-            .tangents(&state.samples)
-            .map_err(|source| PeriodicError::System { iteration, source })?;
-        let memory = system
-            .memory(&state.samples)
-            .map_err(|source| PeriodicError::System { iteration, source })?;
-        let made = Factorisation::new(&self.time, system.mass(), &tangents, memory.as_ref());
-        made.map_err(|error| match error {
-            NewtonMatrixError::Shape { what, found, expected } => {
-                PeriodicError::Shape { what, found, expected }
+        let refused = |source| PeriodicError::System { iteration, source };
+        let tangents = system.tangents(&state.samples).map_err(refused)?;
+        let memory = system.memory(&state.samples).map_err(refused)?;
+        let (dof, azimuths) = (system.dof(), self.time.points());
+        if tangents.len() != azimuths.len() {
+            let (found, expected) = (tangents.len(), azimuths.len());
+            let what = "tangents of the revolution";
+            return Err(PeriodicError::Shape { what, found, expected });
+        }
+        // every matrix with its order and the point of its first row
+        let local = tangents.iter().enumerate().flat_map(|(point, tangent)| {
+            [&tangent.dq, &tangent.dqd, &tangent.dqdd]
+                .map(|matrix| (matrix, dof, point, "entries of a tangent"))
+        });
+        let whole = memory
+            .iter()
+            .flat_map(|memory| [&memory.dq, &memory.dqd])
+            .map(|matrix| (matrix, dof * azimuths.len(), 0, "entries of the memory of an orbit"));
+        for (matrix, size, point, what) in local.chain(whole) {
+            if matrix.shape() != (size, size) {
+                let (found, expected) = (matrix.len(), size * size);
+                return Err(PeriodicError::Shape { what, found, expected });
             }
-            NewtonMatrixError::NotFinite { dof, point } => PeriodicError::NotFinite {
-                iteration,
-                dof,
-                azimuth_rad: self.time.points()[point],
-                best: Box::new(state.orbit.clone()),
-            },
-            NewtonMatrixError::Resonance { dof, per_rev, dynamic_stiffness, resolution } => {
-                PeriodicError::Resonance { dof, per_rev, dynamic_stiffness, resolution }
+            if let Some(entry) = matrix.iter().position(|v| !v.is_finite()) {
+                let row = entry % size;
+                return Err(PeriodicError::NotFinite {
+                    iteration,
+                    dof: row % dof,
+                    azimuth_rad: azimuths[point + row / dof],
+                    best: Box::new(state.orbit.clone()),
+                });
             }
-        })
+        }
+        Factorisation::new(&self.time, system.mass(), &tangents, memory.as_ref())
     }
 
     /// The longest halved Newton step that keeps the residual from growing, or the best one tried.
@@ -411,33 +406,24 @@ impl PeriodicSolver {
         step: &DMatrix<f64>,
         iteration: usize,
     ) -> Result<Iterate, PeriodicError<S::Error>> {
-        let mut shortest = None;
-        let mut failure = None;
-        for halving in 0..=MAX_HALVINGS {
-            let factor = 0.5_f64.powi(halving);
-            let nodal = &state.orbit.nodal + step * factor;
-            match self.evaluate(system, Orbit { nodal }, iteration, &state.orbit) {
-                Ok(trial) if trial.norm < state.norm => return Ok(trial),
-                Ok(trial) => {
-                    if shortest.as_ref().is_none_or(|best: &Iterate| trial.norm < best.norm) {
-                        shortest = Some(trial);
-                    }
-                }
-                Err(error @ PeriodicError::NotFinite { .. }) => failure = Some(error),
-                Err(error) => return Err(error),
+        let trial = |halving: i32| {
+            let nodal = &state.orbit.nodal + step * 0.5_f64.powi(halving);
+            self.evaluate(system, Orbit { nodal }, iteration, &state.orbit)
+        };
+        let mut best = trial(0);
+        for halving in 1..=MAX_HALVINGS {
+            match &best {
+                Ok(found) if found.norm >= state.norm => {}
+                Err(PeriodicError::NotFinite { .. }) => {}
+                _ => break,
             }
+            best = match (best, trial(halving)) {
+                (Ok(best), Ok(next)) if next.norm >= best.norm => Ok(best),
+                (Ok(best), Err(PeriodicError::NotFinite { .. })) => Ok(best),
+                (_, next) => next,
+            };
         }
-        match (shortest, failure) {
-            (Some(trial), _) => Ok(trial),
-            (None, Some(error)) => Err(error),
-            (None, None) => Err(PeriodicError::NotConverged {
-                iterations: iteration,
-                residual: state.norm,
-                tolerance: self.settings.tolerance,
-                history: vec![state.norm],
-                best: Box::new(state.orbit.clone()),
-            }),
-        }
+        best
     }
 }
 

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use rotor_base::{HarmonicSeries, LagrangeBasis, gauss_legendre, gauss_lobatto_nodes};
 
 use crate::FemError;
+use crate::error::check_parameters;
 
 /// Largest polynomial order of a time element; beyond it nothing is gained over more elements.
 const MAX_ORDER: usize = 12;
@@ -51,18 +52,21 @@ impl TimeElements {
     /// | `gauss_points` | `order`.., at least 8 for aerodynamic loads | 8 |
     ///
     /// # Errors
-    /// [`FemError::TimeMesh`] when an argument is out of range.
+    /// [`FemError::Parameter`] when an argument is out of range.
     pub fn new(elements: usize, order: usize, gauss_points: usize) -> Result<Self, FemError> {
-        let ranges = [
-            ("elements", elements, 1, usize::MAX),
-            ("order", order, 2, MAX_ORDER),
-            ("gauss_points", gauss_points, order, 64),
+        let parameters = [
+            ("elements of the revolution", elements, elements >= 1, "1 or more"),
+            ("order of the time elements", order, (2..=MAX_ORDER).contains(&order), "2 to 12"),
+            (
+                "gauss_points of a time element",
+                gauss_points,
+                (order..=64).contains(&gauss_points),
+                "the order to 64",
+            ),
         ];
-        for (name, found, least, most) in ranges {
-            if !(least..=most).contains(&found) {
-                return Err(FemError::TimeMesh { name, found, least, most });
-            }
-        }
+        check_parameters(
+            parameters.map(|(name, found, good, expected)| (name, found as f64, good, expected)),
+        )?;
         Ok(Self::build(elements, order, gauss_points))
     }
 
@@ -155,21 +159,6 @@ impl TimeElements {
     pub(crate) fn node(&self, e: usize, a: usize) -> usize {
         (e * self.order + a) % self.unknowns_per_dof()
     }
-
-    /// Element holding an azimuth, with the basis functions there.
-    fn locate(&self, azimuth_rad: f64) -> (usize, Vec<[f64; 3]>) {
-        let length = TAU / self.elements as f64;
-        let place = azimuth_rad.rem_euclid(TAU) / length;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "place lies in [0, elements]; a NaN becomes element 0 and stays a NaN in the shapes"
-        )]
-        let e = (place as usize).min(self.elements - 1);
-        let rate = 2.0 / length;
-        let shapes = self.basis.evaluate(2.0 * (place - e as f64) - 1.0);
-        (e, shapes.into_iter().map(|[n, d, dd]| [n, d * rate, dd * rate * rate]).collect())
-    }
 }
 
 /// A periodic motion on a time mesh.
@@ -178,7 +167,8 @@ impl TimeElements {
 /// `a` (node-major when flattened).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orbit {
-    pub(crate) nodal: DMatrix<f64>,
+    /// The nodal values.
+    pub nodal: DMatrix<f64>,
 }
 
 impl Orbit {
@@ -210,11 +200,6 @@ impl Orbit {
         self.nodal.nrows()
     }
 
-    /// Nodal values, shape `dof x nodes`.
-    pub fn nodal(&self) -> &DMatrix<f64> {
-        &self.nodal
-    }
-
     /// Displacement, rate and acceleration at all Gauss points of the mesh the orbit belongs to.
     pub fn sample(&self, time: &TimeElements) -> OrbitSamples {
         let (dof, count) = (self.dof(), time.points.len());
@@ -236,26 +221,6 @@ impl Orbit {
             }
         }
         samples
-    }
-
-    /// Displacement, rate and acceleration (per rad and per rad squared) at any azimuth.
-    ///
-    /// The rate jumps (by the discretisation error) at element ends; there the later element speaks.
-    pub fn at(
-        &self,
-        time: &TimeElements,
-        azimuth_rad: f64,
-    ) -> (DVector<f64>, DVector<f64>, DVector<f64>) {
-        let (e, shapes) = time.locate(azimuth_rad);
-        let mut out = [0, 1, 2].map(|_| DVector::zeros(self.dof()));
-        for (a, shape) in shapes.iter().enumerate() {
-            let value = self.nodal.column(time.node(e, a));
-            for (target, factor) in out.iter_mut().zip(shape) {
-                target.axpy(*factor, &value, 1.0);
-            }
-        }
-        let [q, qd, qdd] = out;
-        (q, qd, qdd)
     }
 
     /// Fourier series of one degree of freedom with `count` harmonics; zero for an unknown `dof`.
@@ -283,6 +248,14 @@ pub struct OrbitSamples {
     pub qdd: DMatrix<f64>,
 }
 
+impl OrbitSamples {
+    /// Displacements, rates and second derivatives at a point.
+    pub fn at(&self, point: usize) -> [&[f64]; 3] {
+        let dof = self.q.nrows();
+        [&self.q, &self.qd, &self.qdd].map(|m| &m.as_slice()[dof * point..dof * (point + 1)])
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -300,34 +273,18 @@ mod tests {
     }
 
     #[test]
-    fn interpolation_is_exact_at_nodes_and_periodic() {
+    fn an_interpolated_motion_and_its_rates_are_near_the_motion() {
         let time = TimeElements::default();
         let motion = |psi: f64| DVector::from_vec(vec![psi.cos(), (2.0 * psi).sin()]);
         let orbit = Orbit::interpolate(&time, 2, motion);
-        let (start, ..) = orbit.at(&time, 0.0);
-        let (end, ..) = orbit.at(&time, TAU);
-        assert_abs_diff_eq!(start, end, epsilon = 0.0);
-        for psi in [-1.0, 0.3, 2.0, 7.0] {
-            let (q, qd, qdd) = orbit.at(&time, psi);
-            assert_abs_diff_eq!(q[0], psi.cos(), epsilon = 2e-6);
-            assert_abs_diff_eq!(qd[1], 2.0 * (2.0 * psi).cos(), epsilon = 1e-3);
-            assert_abs_diff_eq!(qdd[0], -psi.cos(), epsilon = 2e-3);
+        let samples = orbit.sample(&time);
+        for (p, psi) in samples.azimuth_rad.iter().enumerate() {
+            assert_abs_diff_eq!(samples.q[(0, p)], psi.cos(), epsilon = 2e-6);
+            assert_abs_diff_eq!(samples.qd[(1, p)], 2.0 * (2.0 * psi).cos(), epsilon = 1e-3);
+            assert_abs_diff_eq!(samples.qdd[(0, p)], -psi.cos(), epsilon = 2e-3);
         }
         let series = orbit.harmonics(&time, 1, 3);
         assert_abs_diff_eq!(series.harmonic(2).sine, 1.0, epsilon = 1e-7);
-    }
-
-    #[test]
-    fn samples_agree_with_evaluation_at_the_points() {
-        let time = TimeElements::new(5, 3, 7).unwrap();
-        let orbit = Orbit::interpolate(&time, 1, |psi| DVector::from_element(1, (3.0 * psi).sin()));
-        let samples = orbit.sample(&time);
-        for (i, &psi) in samples.azimuth_rad.iter().enumerate() {
-            let (q, qd, qdd) = orbit.at(&time, psi);
-            assert_abs_diff_eq!(samples.q[(0, i)], q[0], epsilon = 1e-13);
-            assert_abs_diff_eq!(samples.qd[(0, i)], qd[0], epsilon = 1e-12);
-            assert_abs_diff_eq!(samples.qdd[(0, i)], qdd[0], epsilon = 1e-10);
-        }
     }
 
     #[test]

@@ -4,14 +4,10 @@ use std::f64::consts::TAU;
 
 use faer::Mat;
 use nalgebra::{Complex, DMatrix};
-use rotor_base::{LagrangeBasis, gauss_legendre};
 
-use crate::{FemError, LocalTangent, TimeElements};
+use crate::stability::monodromy::monodromy;
+use crate::{FemError, LagPlace, LocalTangent, TimeElements};
 
-/// Stages of the Gauss collocation that carries a motion over a step (order eight).
-pub(crate) const STAGES: usize = 4;
-/// Largest angle, rad, that the fastest motion of the linearisation turns in one step.
-const LARGEST_ANGLE_PER_STEP: f64 = 0.7;
 /// A multiplier smaller than this fraction of the largest is lost in its round-off.
 const ROUND_OFF: f64 = 1e-13;
 
@@ -34,8 +30,11 @@ pub struct FloquetMode {
 /// Monodromy matrix of a linearised periodic system and its motions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Floquet {
-    monodromy: DMatrix<f64>,
-    modes: Vec<FloquetMode>,
+    /// The matrix that carries displacements and rates over one revolution from azimuth 0, shape
+    /// `2 dof x 2 dof`; of a system with lags these follow as further states.
+    pub monodromy: DMatrix<f64>,
+    /// The motions, fastest growing (least damped) first.
+    pub modes: Vec<FloquetMode>,
 }
 
 impl Floquet {
@@ -47,78 +46,44 @@ impl Floquet {
     /// ```
     /// The tangents at the Gauss points of the mesh are interpolated inside each time element and the
     /// equation is integrated by four-stage Gauss collocation, in steps in which the fastest motion
-    /// turns at most 0.7 rad. The growth of undamped motions is exact by construction.
+    /// turns at most 0.7 rad; with lags, which die out faster, in steps of at most 0.1 rad. The growth of
+    /// undamped motions is exact by construction.
     ///
     /// | argument | shape | unit |
     /// |---|---|---|
     /// | `mass` | `dof x dof` | rotor units |
-    /// | `tangents` | one per Gauss point | rotor units, per rad |
+    /// | `tangents` | one per Gauss point, with settled lags | rotor units, per rad |
+    /// | `places` | where the system has lags | rotor units, per rad |
     ///
-    /// Not modelled: whatever the tangents leave out.
+    /// There are many more lags than degrees of freedom. Of the motions of the whole system those are kept in
+    /// which the structure participates most (left times right eigenvector over its states, which add up to their
+    /// number), as many as the structure has; the rest are lags that die out by themselves.
+    ///
+    /// Not modelled: whatever tangents and lags leave out.
     ///
     /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.5 (Gauss
     /// methods); Johnson, Helicopter Theory (1980), section 8-6 (Floquet theory).
     ///
     /// # Errors
-    /// [`FemError::Tangents`] when number or shape of the tangents does not fit or a number is not
-    /// finite, [`FemError::MassSingular`], [`FemError::Eigen`].
+    /// [`FemError::Tangents`] when number or shape of tangents or tables of the lags does not fit or a number
+    /// is not finite, [`FemError::MassSingular`], [`FemError::Eigen`].
     pub fn of(
         time: &TimeElements,
         mass: &DMatrix<f64>,
         tangents: &[LocalTangent],
+        places: &[LagPlace],
     ) -> Result<Self, FemError> {
         let dof = mass.nrows();
         check(time, dof, tangents)?;
-        let rule = gauss_legendre(time.gauss_per_element());
-        let basis = LagrangeBasis::new(rule.nodes);
-        let stepper = Stepper::new();
-        let length = TAU / time.elements() as f64;
-        let mut monodromy = DMatrix::identity(2 * dof, 2 * dof);
-        for (e, element) in tangents.chunks_exact(time.gauss_per_element()).enumerate() {
-            let steps = steps_of(mass, element, length)
-                .ok_or(FemError::MassSingular { azimuth_rad: e as f64 * length })?;
-            for step in 0..steps {
-                let from = step as f64 / steps as f64;
-                let equations = stepper.nodes.map(|c| {
-                    let place = 2.0 * (from + c / steps as f64) - 1.0;
-                    Coefficients::interpolate(mass, element, &basis.evaluate(place))
-                });
-                monodromy = stepper
-                    .carry(&equations, length / steps as f64, &monodromy)
-                    .ok_or(FemError::MassSingular { azimuth_rad: (e as f64 + from) * length })?;
-            }
-        }
+        check_places(time, dof, places)?;
+        let monodromy = monodromy(time, mass, tangents, places)?;
         let modes = motions(&monodromy, mass, 2 * dof)?;
         Ok(Self { monodromy, modes })
-    }
-
-    pub(crate) fn from_parts(monodromy: DMatrix<f64>, modes: Vec<FloquetMode>) -> Self {
-        Self { monodromy, modes }
-    }
-
-    /// The matrix that carries displacements and rates over one revolution from azimuth 0, shape
-    /// `2 dof x 2 dof`; of a system with lags these follow as further states.
-    pub fn monodromy(&self) -> &DMatrix<f64> {
-        &self.monodromy
-    }
-
-    /// The motions, fastest growing (least damped) first.
-    pub fn modes(&self) -> &[FloquetMode] {
-        &self.modes
-    }
-
-    /// The largest real part of the exponents, per rad: negative when the orbit is stable.
-    pub fn largest_growth_per_rad(&self) -> f64 {
-        self.modes.first().map_or(f64::NEG_INFINITY, |mode| mode.growth_per_rad)
     }
 }
 
 /// Refuses tangents of the wrong number, shape or value.
-pub(crate) fn check(
-    time: &TimeElements,
-    dof: usize,
-    tangents: &[LocalTangent],
-) -> Result<(), FemError> {
+fn check(time: &TimeElements, dof: usize, tangents: &[LocalTangent]) -> Result<(), FemError> {
     let (found, expected) = (tangents.len(), time.points().len());
     if found != expected {
         return Err(FemError::Tangents { what: "number", point: 0, found, expected });
@@ -138,120 +103,31 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// Steps in which the fastest motion of an element's mean equation turns little; none if the mass
-/// matrix is singular.
-fn steps_of(mass: &DMatrix<f64>, element: &[LocalTangent], length: f64) -> Option<usize> {
-    let share = 1.0 / element.len() as f64;
-    let mean = element.iter().map(|t| (share, t));
-    let c = Coefficients::sum(mass, mean);
-    let lu = c.mass.lu();
-    let (stiffness, damping) = (lu.solve(&c.stiffness)?, lu.solve(&c.damping)?);
-    // a bound on the moduli of the eigenvalues of [0 1; -K -C]: Frobenius norms of the blocks
-    let fastest = damping.norm() + stiffness.norm().sqrt();
-    let steps = (fastest * length / LARGEST_ANGLE_PER_STEP).ceil().clamp(1.0, 1e5);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "clamped to 1..=1e5 and finite because the tangents are"
-    )]
-    Some(steps as usize)
-}
-
-/// `mass x'' + damping x' + stiffness x = 0` at one azimuth.
-pub(crate) struct Coefficients {
-    pub(crate) mass: DMatrix<f64>,
-    pub(crate) damping: DMatrix<f64>,
-    pub(crate) stiffness: DMatrix<f64>,
-}
-
-impl Coefficients {
-    fn sum<'a>(mass: &DMatrix<f64>, parts: impl Iterator<Item = (f64, &'a LocalTangent)>) -> Self {
-        let zero = DMatrix::zeros(mass.nrows(), mass.ncols());
-        let mut out = Self { mass: mass.clone(), damping: zero.clone(), stiffness: zero };
-        for (weight, tangent) in parts {
-            out.mass += &tangent.dqdd * weight;
-            out.damping += &tangent.dqd * weight;
-            out.stiffness += &tangent.dq * weight;
-        }
-        out
-    }
-
-    pub(crate) fn interpolate(
-        mass: &DMatrix<f64>,
-        element: &[LocalTangent],
-        shapes: &[[f64; 3]],
-    ) -> Self {
-        Self::sum(mass, shapes.iter().map(|s| s[0]).zip(element))
-    }
-}
-
-/// Gauss collocation of a second-order equation on the unit step.
-pub(crate) struct Stepper {
-    pub(crate) nodes: [f64; STAGES],
-    pub(crate) weights: [f64; STAGES],
-    /// Integrals of the stage polynomials up to each node.
-    pub(crate) once: [[f64; STAGES]; STAGES],
-    /// The same integrated twice.
-    pub(crate) twice: [[f64; STAGES]; STAGES],
-    /// Integrals of `once` over the whole step.
-    pub(crate) end_twice: [f64; STAGES],
-}
-
-impl Stepper {
-    pub(crate) fn new() -> Self {
-        let rule = gauss_legendre(STAGES);
-        let rows = LagrangeBasis::new(rule.nodes.clone()).integration_matrix();
-        let array = |f: &dyn Fn(usize) -> f64| std::array::from_fn::<f64, STAGES, _>(f);
-        let nodes = array(&|i| 0.5 * (rule.nodes[i] + 1.0));
-        let weights = array(&|i| 0.5 * rule.weights[i]);
-        let once: [[f64; STAGES]; STAGES] = std::array::from_fn(|i| array(&|j| 0.5 * rows[i][j]));
-        let twice =
-            std::array::from_fn(|i| array(&|j| (0..STAGES).map(|k| once[i][k] * once[k][j]).sum()));
-        let end_twice = array(&|j| (0..STAGES).map(|k| weights[k] * once[k][j]).sum());
-        Self { nodes, weights, once, twice, end_twice }
-    }
-
-    /// The columns of `state` (displacements over rates) a step later; none if a stage cannot be solved.
-    fn carry(
-        &self,
-        equations: &[Coefficients; STAGES],
-        step: f64,
-        state: &DMatrix<f64>,
-    ) -> Option<DMatrix<f64>> {
-        let (dof, columns) = (state.nrows() / 2, state.ncols());
-        let (x, v) = (state.rows(0, dof), state.rows(dof, dof));
-        let mut matrix = DMatrix::zeros(STAGES * dof, STAGES * dof);
-        let mut right = DMatrix::zeros(STAGES * dof, columns);
-        for (i, c) in equations.iter().enumerate() {
-            for j in 0..STAGES {
-                let mut block = &c.damping * (step * self.once[i][j])
-                    + &c.stiffness * (step * step * self.twice[i][j]);
-                if i == j {
-                    block += &c.mass;
-                }
-                matrix.view_mut((i * dof, j * dof), (dof, dof)).copy_from(&block);
+/// Refuses tables of lags that do not fit the mesh.
+fn check_places(time: &TimeElements, dof: usize, places: &[LagPlace]) -> Result<(), FemError> {
+    let expected = time.points().len();
+    let wrong = |found| Err(FemError::Tangents { what: "lag tables", point: 0, found, expected });
+    for place in places {
+        let shaped = place.inputs.iter().all(|m| m.shape() == (2, 2 * dof))
+            && place.loads.iter().all(|m| m.shape() == (dof, 2));
+        for found in [place.inputs.len(), place.loads.len()] {
+            if found != expected || !shaped {
+                return wrong(found);
             }
-            let load = &c.damping * v + &c.stiffness * (x + v * (step * self.nodes[i]));
-            right.rows_mut(i * dof, dof).copy_from(&-load);
         }
-        let stages = matrix.lu().solve(&right)?;
-        let mut next = state.clone();
-        let mut moved = x + v * step;
-        let mut rates = v.into_owned();
-        for j in 0..STAGES {
-            let stage = stages.rows(j * dof, dof);
-            moved += stage * (step * step * self.end_twice[j]);
-            rates += stage * (step * self.weights[j]);
+        for channel in &place.channels {
+            let finite = channel.rates.iter().filter(|a| a.is_finite() && **a >= 0.0).count();
+            if finite != expected || channel.gains.len() != expected {
+                return wrong(finite.min(channel.gains.len()));
+            }
         }
-        next.rows_mut(0, dof).copy_from(&moved);
-        next.rows_mut(dof, dof).copy_from(&rates);
-        Some(next)
     }
+    Ok(())
 }
 
 /// The motions of a monodromy matrix, one of each conjugate pair, fastest growing first: the `kept` ones in which
 /// displacements and rates, which come before other states, participate most.
-pub(crate) fn motions(
+fn motions(
     monodromy: &DMatrix<f64>,
     mass: &DMatrix<f64>,
     kept: usize,
@@ -326,4 +202,97 @@ fn leaders(shares: &[Vec<f64>], pairs: &[bool]) -> Vec<usize> {
         (0..dof).max_by(|&i, &j| shares[k][i].total_cmp(&shares[k][j])).unwrap_or_default()
     };
     found.iter().enumerate().map(|(k, leader)| leader.unwrap_or_else(|| largest(k))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::LagChannel;
+    use nalgebra::Complex;
+
+    type Square = [[f64; 2]; 2];
+
+    /// Two degrees of freedom whose load of the air lags behind, coefficients periodic.
+    fn coefficients(psi: f64) -> (Square, Square, [f64; 2], [f64; 4], f64) {
+        let (sin, cos) = psi.sin_cos();
+        let damping = [[0.3 + 0.1 * sin, 0.05], [-0.05, 0.04]];
+        let stiffness = [[1.3 + 0.2 * cos, 0.1], [0.05, 5.0]];
+        let load = [-0.5 - 0.2 * sin, 0.1];
+        let input = [0.2 * cos, 0.6 + 0.3 * sin, -0.8, 0.1];
+        (damping, stiffness, load, input, 0.4 + 0.3 * sin)
+    }
+
+    /// Growth and frequency of the motions by direct integration of all five states.
+    fn integrated() -> Vec<Complex<f64>> {
+        let rate = |psi: f64, s: &[f64; 5]| -> [f64; 5] {
+            let (c, k, load, input, a) = coefficients(psi);
+            let [q0, q1, v0, v1, lag] = *s;
+            let drive = input[0] * q0 + input[1] * q1 + input[2] * v0 + input[3] * v1;
+            let acceleration = |i: usize| {
+                -(c[i][0] * v0 + c[i][1] * v1 + k[i][0] * q0 + k[i][1] * q1)
+                    - load[i] * (lag - drive)
+            };
+            [v0, v1, acceleration(0), acceleration(1), a * (drive - lag)]
+        };
+        let steps = 8000;
+        let h = TAU / f64::from(steps);
+        let mut monodromy = DMatrix::zeros(5, 5);
+        for column in 0..5 {
+            let mut s = [0.0; 5];
+            s[column] = 1.0;
+            for k in 0..steps {
+                let psi = h * f64::from(k);
+                let moved = |by: f64, r: &[f64; 5]| std::array::from_fn(|i| s[i] + by * r[i]);
+                let k1 = rate(psi, &s);
+                let k2 = rate(psi + 0.5 * h, &moved(0.5 * h, &k1));
+                let k3 = rate(psi + 0.5 * h, &moved(0.5 * h, &k2));
+                let k4 = rate(psi + h, &moved(h, &k3));
+                s = std::array::from_fn(|i| {
+                    s[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
+                });
+            }
+            for (i, value) in s.iter().enumerate() {
+                monodromy[(i, column)] = *value;
+            }
+        }
+        monodromy.complex_eigenvalues().iter().copied().collect()
+    }
+
+    #[test]
+    fn lags_and_structure_together_are_what_direct_integration_finds() {
+        let time = TimeElements::new(8, 5, 8).unwrap();
+        let of = |psi: &f64| {
+            let (c, k, ..) = coefficients(*psi);
+            LocalTangent {
+                dq: DMatrix::from_fn(2, 2, |i, j| k[i][j]),
+                dqd: DMatrix::from_fn(2, 2, |i, j| c[i][j]),
+                dqdd: DMatrix::zeros(2, 2),
+            }
+        };
+        let tangents: Vec<LocalTangent> = time.points().iter().map(of).collect();
+        let at = |psi: &f64| coefficients(*psi);
+        let place = LagPlace {
+            inputs: (time.points().iter())
+                .map(|p| DMatrix::from_fn(2, 4, |i, j| if i == 0 { at(p).3[j] } else { 0.0 }))
+                .collect(),
+            loads: (time.points().iter())
+                .map(|p| DMatrix::from_fn(2, 2, |i, j| if j == 0 { at(p).2[i] } else { 0.0 }))
+                .collect(),
+            channels: vec![LagChannel {
+                rates: time.points().iter().map(|p| at(p).4).collect(),
+                input: [1.0, 0.0],
+                gains: vec![[1.0, 0.0]; time.points().len()],
+            }],
+        };
+        let mass = DMatrix::identity(2, 2);
+        let found = Floquet::of(&time, &mass, &tangents, &[place]).unwrap();
+        let settled = Floquet::of(&time, &mass, &tangents, &[]).unwrap();
+        let exact = integrated();
+        let nearest =
+            |m: Complex<f64>| exact.iter().map(|e| (e - m).norm()).fold(f64::INFINITY, f64::min);
+        // the slow motion, and by how much settled lags miss it
+        let (gap, missed) =
+            (nearest(found.modes[0].multiplier), nearest(settled.modes[0].multiplier));
+        assert!(gap < 1e-6 && missed > 1e-2, "{gap:e} {missed:e}");
+    }
 }

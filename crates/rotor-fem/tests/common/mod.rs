@@ -1,7 +1,8 @@
 //! The rigid flapping blade in forward flight: a linear equation with periodic coefficients.
 
 use nalgebra::{DMatrix, DVector};
-use rotor_fem::{LinearCoefficients, LinearPeriodic};
+
+use crate::linear::{LinearCoefficients, LinearPeriodic};
 
 /// Lock number, flap frequency and advance ratio of the reference table.
 const GAMMA: f64 = 5.2;

@@ -1,6 +1,10 @@
 //! Rows of the validation page: the blade and of time elements.
 
 mod blade;
+#[path = "../free_motion/mod.rs"]
+mod free_motion;
+#[path = "../linear/mod.rs"]
+mod linear;
 mod moderate;
 mod moderate_blades;
 mod time_elements;

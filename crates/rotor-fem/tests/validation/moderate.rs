@@ -4,11 +4,11 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::DVector;
 use rotor_fem::{
-    AxialMotion, BladeSpec, FanPoint, FreeMotion, GyroscopicTerms, ModeCount, ModeKind,
-    ModerateBlade, ModerateModel, ModerateSpec, StaticSettings, TorsionTerms, Twist, deflected_fan,
-    deflected_modes,
+    AxialMotion, BladeSpec, CoupledMode, GyroscopicTerms, ModeCount, ModeKind, ModerateBlade,
+    ModerateModel, ModerateSpec, StaticSettings, TorsionTerms, Twist, deflected_modes,
 };
 
+use crate::free_motion::{FreeMotion, MotionState};
 use crate::moderate_blades::{
     EPPS_CHANDRA_RPM, PRINCETON_LENGTH_M, TM_4760_RPM, epps_chandra_strip, princeton_beam,
     tm_4760_blade,
@@ -218,24 +218,38 @@ fn none(model: &ModerateModel) -> DVector<f64> {
     DVector::zeros(model.size())
 }
 
-fn frequency(point: &FanPoint, kind: ModeKind, number: usize) -> Result<f64, Failure> {
-    let mode = point.modes.iter().find(|mode| mode.kind == kind && mode.number == number);
-    let missing = too_few("modes", point.modes.len(), number);
+/// Modes about the state into which rotation at a speed over the nominal one bends the blade.
+fn rotating_modes(
+    spec: &ModerateSpec,
+    elements: usize,
+    rotor_speed: f64,
+    count: ModeCount,
+) -> Result<Vec<CoupledMode>, Failure> {
+    let blade = BladeSpec { rotor_speed, ..spec.blade.clone() };
+    let model = model(ModerateSpec { blade, ..spec.clone() }, elements)?;
+    let state = model.static_state(&none(&model), &StaticSettings::default())?;
+    let terms = GyroscopicTerms::Included;
+    Ok(deflected_modes(&model, &state, terms, AxialMotion::Free, count)?)
+}
+
+fn frequency(modes: &[CoupledMode], kind: ModeKind, number: usize) -> Result<f64, Failure> {
+    let mode = modes.iter().find(|mode| mode.kind == kind && mode.number == number);
+    let missing = too_few("modes", modes.len(), number);
     mode.map(|mode| mode.frequency).ok_or(missing)
 }
 
 /// Largest distance of the named columns, %; the number of a mode counts the rigid one.
 fn hinged_blade(flap: &[(&str, usize)], lag: &[(&str, usize)]) -> Result<f64, Failure> {
     let table = Table::read("rotor/tm4760_mbdyn_frequencies_hz.csv")?;
-    let blade = ModerateBlade::new(tm_4760_blade()?)?;
+    let blade = tm_4760_blade()?;
     let mut distances = Vec::new();
     for row in table.rows() {
         let speed = row.number("rpm")? / TM_4760_RPM;
         let count = ModeCount { flap: 4, lag: 2, torsion: 0, axial: 0 };
-        let fan = deflected_fan(&blade, 30, &[speed], GyroscopicTerms::Included, count)?;
+        let modes = rotating_modes(&blade, 30, speed, count)?;
         for (kind, columns) in [(ModeKind::Flap, flap), (ModeKind::Lag, lag)] {
             for (column, number) in columns {
-                let got = frequency(&fan[0], kind, *number)? * TM_4760_RPM / 60.0;
+                let got = frequency(&modes, kind, *number)? * TM_4760_RPM / 60.0;
                 distances.push(Ok(100.0 * (got / row.number(column)? - 1.0).abs()));
             }
         }
@@ -245,16 +259,19 @@ fn hinged_blade(flap: &[(&str, usize)], lag: &[(&str, usize)]) -> Result<f64, Fa
 
 fn measured_strip() -> Result<f64, Failure> {
     let table = Table::read("rotor/epps_chandra_frequencies_hz.csv")?;
-    let blade = ModerateBlade::new(epps_chandra_strip())?;
+    let blade = epps_chandra_strip();
     let columns = ["f_0rpm", "f_500rpm", "f_750rpm"];
     let speeds = [0.0, 500.0 / EPPS_CHANDRA_RPM, 1.0];
     let count = ModeCount { flap: 3, lag: 0, torsion: 0, axial: 0 };
-    let fan = deflected_fan(&blade, 20, &speeds, GyroscopicTerms::Included, count)?;
+    let fan = speeds
+        .map(|speed| rotating_modes(&blade, 20, speed, count))
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()?;
     let mut squares = Vec::new();
     for (mode, number) in [("B2", 2), ("B3", 3)] {
         let row = table.row(["mode", "sweep_deg"], [mode, "0"])?;
-        for (point, column) in fan.iter().zip(columns) {
-            let got = frequency(point, ModeKind::Flap, number)? * EPPS_CHANDRA_RPM / 60.0;
+        for (modes, column) in fan.iter().zip(columns) {
+            let got = frequency(modes, ModeKind::Flap, number)? * EPPS_CHANDRA_RPM / 60.0;
             squares.push((100.0 * (got / row.number(column)? - 1.0)).powi(2));
         }
     }
@@ -341,15 +358,16 @@ fn energy_error(time_step: f64, revolutions: f64) -> Result<Option<[f64; 2]>, Fa
     let load = model.distributed_load(|x| [0.0, 0.01 * x, 0.04 * x * x, 0.0]);
     let bent = model.static_state(&load, &settings)?;
     let rest = model.static_state(&none(&model), &settings)?;
-    let mut motion = FreeMotion::new(&model, time_step)?;
+    let motion = FreeMotion::new(&model, time_step);
+    let energy = |state: &MotionState| motion.energy(state).ok_or("a singular mass matrix");
     let mut state = motion.at_rest(bent.dof);
-    let start = motion.energy(&state);
-    let size = start - motion.energy(&motion.at_rest(rest.dof));
+    let start = energy(&state)?;
+    let size = start - energy(&motion.at_rest(rest.dof))?;
     let whole = revolutions * TAU;
     let mut errors = [None, None];
     let (mut time, mut step) = (0.0, 0_usize);
     while time < whole {
-        state = motion.step(&state)?;
+        state = motion.step(&state).ok_or("a step of the free motion was not solved")?;
         time += time_step;
         step += 1;
         let part = match time / whole {
@@ -358,7 +376,7 @@ fn energy_error(time_step: f64, revolutions: f64) -> Result<Option<[f64; 2]>, Fa
             _ => continue,
         };
         if step % 4 == 0 {
-            let error = (motion.energy(&state) - start).abs() / size;
+            let error = (energy(&state)? - start).abs() / size;
             errors[part] = Some(errors[part].map_or(error, |e: f64| e.max(error)));
         }
     }

@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 use rotor_base::HarmonicSeries;
-use rotor_fem::{
-    Floquet, LinearCoefficients, LinearPeriodic, LocalTangent, Orbit, PeriodicSettings,
-    PeriodicSolver, TimeElements,
-};
+use rotor_fem::{Floquet, LocalTangent, Orbit, PeriodicSettings, PeriodicSolver, TimeElements};
+
+use crate::linear::{LinearCoefficients, LinearPeriodic};
 use validation::{Check, Failure, Table, row, worst};
 
 pub(crate) const ROWS: &[Check] = &[
@@ -145,8 +144,8 @@ fn floquet_error() -> Result<f64, Failure> {
             LocalTangent { dq: c.stiffness, dqd: c.damping, dqdd: DMatrix::zeros(1, 1) }
         })
         .collect();
-    let found = Floquet::of(&time, &DMatrix::identity(1, 1), &tangents)?;
-    let modes = found.modes().iter();
+    let found = Floquet::of(&time, &DMatrix::identity(1, 1), &tangents, &[])?;
+    let modes = found.modes.iter();
     let errors = modes.flat_map(|m| {
         [Ok((m.growth_per_rad - growth).abs()), Ok((m.frequency_per_rev - frequency).abs())]
     });

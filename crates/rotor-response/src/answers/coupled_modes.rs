@@ -1,10 +1,10 @@
 //! Coupled modes of the blade in the coordinates of the response, and the search for a resonance among them.
 
 use crate::structure::equations::{BladeState, Equations, SpanLoads, StructureScratch};
-use crate::structure::motion::{Motion, RootPitch};
-use crate::{ResponseError, Rotor, RotorModel, RotorSolution};
+use crate::structure::motion::Motion;
+use crate::{ResponseError, Rotor, RotorSolution};
 use nalgebra::{Complex, DMatrix, DVector};
-use rotor_fem::{ModeKind, oscillations};
+use rotor_fem::{EnergyShares, ModeKind, PitchMotion, oscillations};
 
 /// Distance of an undamped frequency from a harmonic below which the response is none, per rev.
 ///
@@ -13,7 +13,7 @@ use rotor_fem::{ModeKind, oscillations};
 pub const RESONANCE_PER_REV: f64 = 1e-2;
 /// Damping over critical below which a response within [`RESONANCE_PER_REV`] of a harmonic is that of its
 /// damping, not of its stiffness.
-pub const HARDLY_DAMPED: f64 = 1e-3;
+pub const LOW_DAMPING_RATIO: f64 = 1e-3;
 /// The same where the response was not found: what is likely to be the reason.
 const NEAR_RESONANCE_PER_REV: f64 = 5e-2;
 /// Distance over which the collective of a trim may carry a frequency.
@@ -40,7 +40,7 @@ pub struct CoupledBladeMode {
 /// The steady blade without air at one pitch.
 struct Still<'a> {
     rotor: &'a Rotor,
-    pitch: RootPitch,
+    pitch: PitchMotion,
     motion: Motion,
     loads: SpanLoads,
     scratch: StructureScratch,
@@ -52,21 +52,21 @@ impl<'a> Still<'a> {
         loads.clear(rotor.blade().grid().len());
         Self {
             rotor,
-            pitch: RootPitch { angle: pitch_rad, ..RootPitch::default() },
+            pitch: PitchMotion::steady(pitch_rad),
             motion: Motion::default(),
             loads,
             scratch: StructureScratch::default(),
         }
     }
 
-    fn residual(&mut self, [q, qd, qdd]: [&[f64]; 3]) -> DVector<f64> {
+    fn residual(&mut self, coordinates: [&[f64]; 3]) -> DVector<f64> {
         let blade = self.rotor.blade();
-        self.motion.fill(blade, q, qd, qdd);
+        self.motion.fill(blade, coordinates);
         let state = BladeState { motion: &self.motion, pitch: self.pitch, loads: &self.loads };
-        let mut out = DVector::zeros(q.len());
-        let (couplings, mass) = (self.rotor.model().couplings, self.rotor.mass());
+        let mut out = DVector::zeros(coordinates[0].len());
+        let (couplings, mass) = (self.rotor.model().couplings, &self.rotor.mass);
         let equations = Equations { blade, couplings, mass };
-        equations.residual(state, [q, qd, qdd], &mut self.scratch, out.as_mut_slice());
+        equations.residual(state, coordinates, &mut self.scratch, out.as_mut_slice());
         out
     }
 
@@ -88,7 +88,7 @@ impl<'a> Still<'a> {
 
     /// The state into which rotation bends the blade; the straight blade if there is none.
     fn steady(&mut self) -> DVector<f64> {
-        let n = self.rotor.mass().nrows();
+        let n = self.rotor.mass.nrows();
         let rest = vec![0.0; n];
         let mut q = DVector::zeros(n);
         for _ in 0..STEADY_STEPS {
@@ -107,54 +107,41 @@ impl<'a> Still<'a> {
 
 impl Rotor {
     /// Coupled modes of the blade without air at a root pitch, lowest frequency first: what the response
-    /// oscillates in, apart from air and damping.
-    ///
-    /// # Errors
-    /// [`ResponseError::Fem`] if the equations of small motion have no solution.
-    pub fn coupled_modes(&self, pitch_rad: f64) -> Result<Vec<CoupledBladeMode>, ResponseError> {
-        let steady = Still::new(self, pitch_rad).steady();
-        self.coupled_modes_about(pitch_rad, &steady)
-    }
-
-    fn coupled_modes_about(
+    /// oscillates in, apart from air and damping; about the mean deflection in flight, or in still air.
+    fn coupled_modes(
         &self,
         pitch_rad: f64,
-        steady: &DVector<f64>,
+        flight: Option<&RotorSolution>,
     ) -> Result<Vec<CoupledBladeMode>, ResponseError> {
         let mut still = Still::new(self, pitch_rad);
-        let [stiffness, damping, apparent] = [0, 1, 2].map(|k| still.tangent(steady, k));
-        let mass = self.mass() + apparent;
-        let mut counts = [0; 3];
-        Ok(oscillations(&mass, &damping, &stiffness)?
-            .iter()
-            .map(|oscillation| {
-                let kind = self.leading_family(&mass, &oscillation.shape);
-                let count = match kind {
-                    ModeKind::Flap => &mut counts[0],
-                    ModeKind::Lag => &mut counts[1],
-                    _ => &mut counts[2],
-                };
-                *count += 1;
-                let frequency_per_rev = oscillation.exponent.im;
-                CoupledBladeMode { kind, number: *count, frequency_per_rev }
-            })
-            .collect())
+        let state = match flight {
+            None => still.steady(),
+            Some(found) => {
+                DVector::from_iterator(found.modal.len(), found.modal.iter().map(|q| q.mean))
+            }
+        };
+        let [stiffness, damping, apparent] = [0, 1, 2].map(|k| still.tangent(&state, k));
+        let mass = &self.mass + apparent;
+        let mut found: Vec<CoupledBladeMode> = Vec::new();
+        for oscillation in oscillations(&mass, &damping, &stiffness)? {
+            let kind = self.leading_family(&mass, &oscillation.shape);
+            let number = 1 + found.iter().filter(|mode| mode.kind == kind).count();
+            let frequency_per_rev = oscillation.exponent.im;
+            found.push(CoupledBladeMode { kind, number, frequency_per_rev });
+        }
+        Ok(found)
     }
 
     /// The family with most of the kinetic energy of a shape.
     fn leading_family(&self, mass: &DMatrix<f64>, shape: &[Complex<f64>]) -> ModeKind {
         let moved = mass.map(Complex::from) * DVector::from_column_slice(shape);
-        let mut energy = [(ModeKind::Flap, 0.0), (ModeKind::Lag, 0.0), (ModeKind::Torsion, 0.0)];
-        for (i, (a, b)) in shape.iter().zip(moved.iter()).enumerate() {
-            let (kind, _) = self.blade().mode(i);
-            for (family, sum) in &mut energy {
-                if *family == kind {
-                    *sum += (a.conj() * b).re;
-                }
-            }
-        }
-        let largest = |a: (ModeKind, f64), b: (ModeKind, f64)| if b.1 > a.1 { b } else { a };
-        energy.into_iter().fold((ModeKind::Flap, 0.0), largest).0
+        let energy = |kind: ModeKind| -> f64 {
+            let parts = shape.iter().zip(moved.iter()).enumerate();
+            let own = parts.filter(|(i, _)| self.blade().mode(*i).0 == kind);
+            own.map(|(_, (a, b))| (a.conj() * b).re).sum()
+        };
+        let [flap, lag, torsion, axial] = ModeKind::ALL.map(energy);
+        EnergyShares { flap, lag, torsion, axial }.leader()
     }
 
     /// Whether nothing but the air damps the lag modes, or a mode has no frequency.
@@ -166,15 +153,20 @@ impl Rotor {
             || uncoupled.iter().any(|f| *f < RESONANCE_PER_REV)
     }
 
-    /// The mode within a distance of a harmonic that nothing damps.
-    fn undamped_near(
+    /// The mode within a distance of a harmonic that nothing damps, about the mean deflection in flight or in
+    /// still air.
+    fn resonance(
         &self,
         pitch_rad: f64,
-        modes: Vec<CoupledBladeMode>,
+        flight: Option<&RotorSolution>,
         within_per_rev: f64,
-    ) -> Option<ResponseError> {
+    ) -> Result<Option<ResponseError>, ResponseError> {
+        if !self.may_resonate() {
+            return Ok(None);
+        }
         let model = self.model();
-        modes.into_iter().find_map(|CoupledBladeMode { kind, number, frequency_per_rev }| {
+        let modes = self.coupled_modes(pitch_rad, flight)?;
+        Ok(modes.into_iter().find_map(|CoupledBladeMode { kind, number, frequency_per_rev }| {
             let harmonic = frequency_per_rev.round();
             // damping is a share of the frequency; flap and torsion are damped by the air
             let free = harmonic == 0.0
@@ -188,7 +180,7 @@ impl Rotor {
                 frequency_per_rev,
                 pitch_deg: pitch_rad.to_degrees(),
             })
-        })
+        }))
     }
 
     /// Refuses a blade with a coupled mode at a harmonic of the rotor speed, the steady one included, that
@@ -196,13 +188,10 @@ impl Rotor {
     /// damps; any mode without air and modal damping, or without a frequency.
     ///
     /// # Errors
-    /// [`ResponseError::Resonance`] with mode, frequency and pitch, and as [`Self::coupled_modes`].
+    /// [`ResponseError::Resonance`] with mode, frequency and pitch, [`ResponseError::Fem`] if the equations of
+    /// small motion have no solution.
     pub fn refuse_resonance(&self, pitch_rad: f64) -> Result<(), ResponseError> {
-        if !self.may_resonate() {
-            return Ok(());
-        }
-        let modes = self.coupled_modes(pitch_rad)?;
-        self.undamped_near(pitch_rad, modes, RESONANCE_PER_REV).map_or(Ok(()), Err)
+        self.resonance(pitch_rad, None, RESONANCE_PER_REV)?.map_or(Ok(()), Err)
     }
 
     /// The same about the mean deflection of a blade in flight, air loads included.
@@ -214,46 +203,31 @@ impl Rotor {
         pitch_rad: f64,
         flight: &RotorSolution,
     ) -> Result<(), ResponseError> {
-        if !self.may_resonate() {
-            return Ok(());
-        }
-        let mean = DVector::from_iterator(flight.modal.len(), flight.modal.iter().map(|q| q.mean));
-        let modes = self.coupled_modes_about(pitch_rad, &mean)?;
-        self.undamped_near(pitch_rad, modes, RESONANCE_PER_REV).map_or(Ok(()), Err)
+        self.resonance(pitch_rad, Some(flight), RESONANCE_PER_REV)?.map_or(Ok(()), Err)
     }
 
     /// Whether an undamped mode is so near a harmonic that the collective of a trim decides: a trim with
     /// damping finds it first.
     pub fn nearly_resonates(&self, pitch_rad: f64) -> bool {
-        self.may_resonate()
-            && self.coupled_modes(pitch_rad).is_ok_and(|modes| {
-                self.undamped_near(pitch_rad, modes, NEARLY_RESONANT_PER_REV).is_some()
-            })
+        matches!(self.resonance(pitch_rad, None, NEARLY_RESONANT_PER_REV), Ok(Some(_)))
     }
 
-    /// A lag mode within [`RESONANCE_PER_REV`] of a harmonic that next to nothing damps ([`HARDLY_DAMPED`]),
+    /// A lag mode within [`RESONANCE_PER_REV`] of a harmonic that next to nothing damps ([`LOW_DAMPING_RATIO`]),
     /// about the mean deflection in flight, or in still air: its response is bounded, but by that damping
     /// alone. None with no damping at all, which is refused.
     ///
     /// # Errors
-    /// As [`Self::coupled_modes`].
-    pub fn hardly_damped_at_a_harmonic(
+    /// [`ResponseError::Fem`] if the equations of small motion have no solution.
+    pub fn lightly_damped_at_a_harmonic(
         &self,
         pitch_rad: f64,
         flight: Option<&RotorSolution>,
     ) -> Result<Option<CoupledBladeMode>, ResponseError> {
         let damping = self.model().modal_damping;
-        if damping == 0.0 || damping >= HARDLY_DAMPED || self.model().lag_damper > 0.0 {
+        if damping == 0.0 || damping >= LOW_DAMPING_RATIO || self.model().lag_damper > 0.0 {
             return Ok(None);
         }
-        let modes = match flight {
-            None => self.coupled_modes(pitch_rad)?,
-            Some(found) => {
-                let mean = found.modal.iter().map(|q| q.mean);
-                let mean = DVector::from_iterator(found.modal.len(), mean);
-                self.coupled_modes_about(pitch_rad, &mean)?
-            }
-        };
+        let modes = self.coupled_modes(pitch_rad, flight)?;
         let airless = self.model().lock_number == 0.0;
         Ok(modes.into_iter().find(|mode| {
             let frequency = mode.frequency_per_rev;
@@ -261,14 +235,6 @@ impl Rotor {
                 && frequency.round() > 0.0
                 && (frequency - frequency.round()).abs() < RESONANCE_PER_REV
         }))
-    }
-
-    /// The same rotor with another damping of its modes over critical.
-    #[must_use]
-    pub fn with_modal_damping(&self, modal_damping: f64) -> Self {
-        let model = RotorModel { modal_damping, ..self.model().clone() };
-        let damping = self.blade().damping(modal_damping, model.lag_damper);
-        self.with_damping(model, damping)
     }
 
     /// Why a response was not found: an undamped mode near a harmonic in place of a failure to converge.
@@ -284,18 +250,14 @@ impl Rotor {
     /// An undamped mode near enough to a harmonic to be the reason of a search that failed, within 0.05 per
     /// rev: [`ResponseError::Resonance`].
     pub fn likely_resonance(&self, pitch_rad: f64) -> Option<ResponseError> {
-        if !self.may_resonate() {
-            return None;
-        }
-        let modes = self.coupled_modes(pitch_rad).ok()?;
-        self.undamped_near(pitch_rad, modes, NEAR_RESONANCE_PER_REV)
+        self.resonance(pitch_rad, None, NEAR_RESONANCE_PER_REV).ok().flatten()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Couplings, Discretisation};
+    use crate::{Couplings, Discretisation, RotorModel};
     use approx::assert_abs_diff_eq;
     use rotor_fem::{
         BladeProperties, BladeSpec, GyroscopicTerms, ModeCount, ModerateBlade, ModerateModel,
@@ -333,7 +295,7 @@ mod tests {
         let couplings = Couplings::Moderate(TorsionTerms::default());
         let rotor =
             Rotor::new(RotorModel::table_1(couplings), &blade, Discretisation::default()).unwrap();
-        let found = rotor.coupled_modes(pitch).unwrap();
+        let found = rotor.coupled_modes(pitch, None).unwrap();
         let spec = ModerateSpec::from(blade.with_pitch_rad(pitch).unwrap().spec().clone());
         let model = ModerateModel::new(ModerateBlade::new(spec).unwrap(), 10).unwrap();
         let none = DVector::zeros(model.size());
@@ -355,7 +317,7 @@ mod tests {
     fn the_coupled_mode_is_refused_and_not_the_uncoupled_one() {
         let pitch = 8.0_f64.to_radians();
         let ei_lag = tuned(|ei_lag| {
-            let modes = moderate(ei_lag, 0.0).coupled_modes(pitch).unwrap();
+            let modes = moderate(ei_lag, 0.0).coupled_modes(pitch, None).unwrap();
             let lag = modes.iter().find(|m| (m.kind, m.number) == (ModeKind::Lag, 1));
             lag.unwrap().frequency_per_rev
         });
@@ -393,7 +355,7 @@ mod tests {
         refused(5.2).unwrap();
         let error = refused(0.0).unwrap_err();
         assert!(matches!(error, ResponseError::Resonance { kind: ModeKind::Flap, number: 1, .. }));
-        let uncoupled = rotor(Couplings::Linear, 0.0268, 0.0).coupled_modes(0.0).unwrap();
+        let uncoupled = rotor(Couplings::Linear, 0.0268, 0.0).coupled_modes(0.0, None).unwrap();
         assert_abs_diff_eq!(uncoupled[0].frequency_per_rev, 0.7014, epsilon = 1e-4);
     }
 }

@@ -28,7 +28,7 @@ impl RotorSolver {
         about: &RotorSolution,
     ) -> Result<SixLoads, ResponseError> {
         let loads = self.in_inflow_of(condition, about)?.1;
-        Ok(loads.root(&self.time, self.rotor.discretisation().load_harmonics + 1))
+        Ok(loads.root(&self.time, self.rotor.discretisation.load_harmonics + 1))
     }
 
     /// The response of one blade of this rotor in the inflow of a solution, held, for its stability and its
@@ -43,7 +43,7 @@ impl RotorSolver {
         about: &RotorSolution,
     ) -> Result<RotorSolution, ResponseError> {
         let (solution, loads) = self.in_inflow_of(condition, about)?;
-        let count = self.rotor.discretisation().load_harmonics;
+        let count = self.rotor.discretisation.load_harmonics;
         let residuals = ResponseResiduals {
             periodicity: solution.residual_norm,
             response_iterations: solution.iterations,
@@ -69,10 +69,7 @@ impl RotorSolver {
         condition: &Condition,
         about: &RotorSolution,
     ) -> Result<(PeriodicSolution, RevolutionLoads), ResponseError> {
-        let (given, expected) = (condition.flap_angles_rad.len(), self.rotor.model().flaps.len());
-        if given != expected {
-            return Err(ResponseError::FlapMotions { given, expected });
-        }
+        self.check_flaps(&condition.flap_angles_rad)?;
         let (rotor, air) = (self.rotor.clone(), self.air.clone());
         let system = rotor.system(&air, self.point_inputs(condition, &about.inflow));
         let solved = self.solver.solve(&system, &about.orbit);
@@ -95,7 +92,7 @@ pub fn dissimilar_hub_loads(
     (condition, about): (&Condition, &RotorSolution),
     others: &mut [OtherBlade],
 ) -> Result<SixLoads, ResponseError> {
-    let (blades, count) = (alike.rotor.model().blades, alike.rotor.discretisation().load_harmonics);
+    let (blades, count) = (alike.rotor.model().blades, alike.rotor.discretisation.load_harmonics);
     let common = alike.blade_loads(condition, about)?;
     let mut loads = vec![common; blades];
     for other in others {

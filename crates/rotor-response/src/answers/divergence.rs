@@ -1,11 +1,9 @@
 //! Static divergence in torsion: the lift of a twisted blade twists it further.
 
+use crate::Rotor;
 use crate::model::air_scales::AirScales;
-use crate::{Compressibility, Rotor};
+use crate::model::rotor_model::MACH_LIMIT;
 use nalgebra::DMatrix;
-
-/// Mach number up to which the lift slope grows.
-const LARGEST_MACH: f64 = 0.9;
 
 impl Rotor {
     /// Moment of the air on an elastic twist over the moment with which the blade resists it, in the shape where
@@ -34,23 +32,16 @@ impl Rotor {
                     return 0.0;
                 }
                 let speed_squared = x * x + 0.5 * advance_ratio * advance_ratio;
-                let mach = match model.compressibility {
-                    Compressibility::None => 0.0,
-                    Compressibility::LocalMach { tip_mach } => (tip_mach * x).min(LARGEST_MACH),
-                };
+                let mach = (model.compressible_tip_mach() * x).min(MACH_LIMIT);
                 let slope = std::f64::consts::TAU / (1.0 - mach * mach).sqrt();
                 let scales = AirScales::at(model, x);
                 0.5 * scales.density_chord * speed_squared * slope * scales.centre
             })
             .collect();
-        let mut largest: f64 = 0.0;
         let scaled = DMatrix::from_fn(shapes.len(), shapes.len(), |j, k| {
             let product = (0..per_angle.len()).map(|i| per_angle[i] * shapes[j][i] * shapes[k][i]);
             blade.grid.integral(&product.collect::<Vec<f64>>()) * root[j] * root[k]
         });
-        for value in scaled.symmetric_eigenvalues().iter() {
-            largest = largest.max(*value);
-        }
-        largest
+        scaled.symmetric_eigenvalues().iter().fold(0.0, |largest, value| value.max(largest))
     }
 }

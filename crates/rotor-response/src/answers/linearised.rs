@@ -1,9 +1,7 @@
 //! How the hub loads answer to small flap motions about a converged orbit.
 
-use crate::answers::settling::{
-    Answer, INFLOW_ROUNDS, INFLOW_TOLERANCE, Settling, independent, sum,
-};
-use crate::loads::wrenches::SixLoads;
+use crate::answers::settling::{Answer, INFLOW_ROUNDS, INFLOW_TOLERANCE, Settling, independent};
+use crate::loads::wrenches::{SixLoads, added};
 use crate::response::hinge::HingeMoment;
 use crate::response::revolution::RevolutionLoads;
 use crate::response::rotor::up;
@@ -41,7 +39,7 @@ pub struct HubSensitivity {
 }
 
 /// Derivatives along several directions, and what they cost.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct LinearisedRotor {
     /// One derivative per direction.
     pub sensitivities: Vec<HubSensitivity>,
@@ -91,14 +89,7 @@ struct Base<'a> {
 /// The linear equations and what they cost so far.
 struct Linear {
     orbits: PeriodicSolver,
-    work: Work,
-}
-
-#[derive(Debug, Clone, Copy, Default)]
-struct Work {
-    evaluations: usize,
-    factorisations: usize,
-    relative_residual: f64,
+    work: LinearisedRotor,
 }
 
 impl RotorSolver {
@@ -133,10 +124,8 @@ impl RotorSolver {
         directions: &[FlapDirection],
         inflow: InflowState,
     ) -> Result<LinearisedRotor, ResponseError> {
-        let expected = self.rotor.model().flaps.len();
-        let all = directions.iter().chain(std::iter::once(&condition.flap_angles_rad));
-        if let Some(given) = all.map(Vec::len).find(|given| *given != expected) {
-            return Err(ResponseError::FlapMotions { given, expected });
+        for motions in directions.iter().chain([&condition.flap_angles_rad]) {
+            self.check_flaps(motions)?;
         }
         // a first guess of how the inflow answers, exact where it follows the thrust
         let seed = match inflow {
@@ -151,8 +140,8 @@ impl RotorSolver {
         }
         let followed = (inflow == InflowState::Settled).then_some(inflow_model);
         let base = Base::new(self, condition, about, followed)?;
-        let mut linear = Linear { orbits: self.solver.clone(), work: Work::default() };
-        linear.work.evaluations = 1;
+        let work = LinearisedRotor { evaluations: 1, ..LinearisedRotor::default() };
+        let mut linear = Linear { orbits: self.solver.clone(), work };
         let mut answers = base.answers(&mut linear, &changes)?;
         if let Some(model) = followed {
             let seed = seed.and_then(|slope| Some((slope, answers.pop()?)));
@@ -168,8 +157,7 @@ impl RotorSolver {
                 hinge,
             })
             .collect();
-        let Work { evaluations, factorisations, relative_residual } = linear.work;
-        Ok(LinearisedRotor { sensitivities, relative_residual, evaluations, factorisations })
+        Ok(LinearisedRotor { sensitivities, ..linear.work })
     }
 
     /// The condition with the flaps moved a little along a direction.
@@ -185,7 +173,7 @@ impl RotorSolver {
             .flap_angles_rad
             .iter()
             .zip(direction)
-            .map(|(angle, along)| sum(angle, along, size))
+            .map(|(angle, along)| added(angle, along, size))
             .collect();
         let moved = Condition { flap_angles_rad, ..condition.clone() };
         let at = |azimuth: &f64| direction.iter().map(|f| f.value_and_rates(*azimuth)).collect();
@@ -220,43 +208,16 @@ impl<'a> Base<'a> {
         let points = solver.point_inputs(condition, &about.inflow);
         let system = solver.rotor.system(&solver.air, points);
         let settled = OrbitSamples { qdd: about.accelerations.clone(), ..orbit.clone() };
-        let (forces, bare) = (DMatrix::zeros(0, 0), DMatrix::zeros(0, 0));
-        let rest = Answer::default();
-        let mut base =
-            Self { solver, orbit, settled, forces, bare, rest, condition, about, followed };
-        let (at_rest, (forces, bare)) = rayon::join(
-            || base.answer(&system, &base.settled),
+        let (rest, (forces, bare)) = rayon::join(
+            || answer(solver, condition, followed, &system, &settled),
             || {
-                let mut forces = DMatrix::zeros(system.dof(), base.orbit.q.ncols());
-                let evaluated = system.residual(&base.orbit, &mut forces);
-                (evaluated.map(|()| forces), system.unloaded(&base.orbit))
+                let mut forces = DMatrix::zeros(system.dof(), orbit.q.ncols());
+                let evaluated = system.residual(&orbit, &mut forces);
+                (evaluated.map(|()| forces), system.unloaded(&orbit))
             },
         );
-        (base.rest, base.forces, base.bare) = (at_rest?, forces?, bare);
-        Ok(base)
-    }
-
-    /// Loads, hinge moments and the inflow they ask for, of a motion.
-    fn answer(
-        &self,
-        system: &ResponseSystem<'_>,
-        samples: &OrbitSamples,
-    ) -> Result<Answer, ResponseError> {
-        let RotorSolver { rotor, time, .. } = self.solver;
-        let loads = RevolutionLoads::summed(rotor, time, system, samples)?;
-        let hub = loads.hub(rotor, time);
-        let count = rotor.discretisation().load_harmonics;
-        let hinge = loads.hinge(time, count).iter().map(HingeMoment::total).collect();
-        let wanted = match self.followed {
-            None => Vec::new(),
-            Some(model) => {
-                let lift = hub.components[2].mean + rotor.blades_weight() * up(self.condition)[2];
-                let ct = rotor.model().thrust_coefficient(lift);
-                let loading = loads.loading(rotor, time, ct, model.circulation_grid())?;
-                model.induced(&self.condition.flight, &loading)?.parameters()
-            }
-        };
-        Ok(Answer { hub, hinge, wanted })
+        let (rest, forces) = (rest?, forces?);
+        Ok(Self { solver, orbit, settled, forces, bare, rest, condition, about, followed })
     }
 
     /// Changes along several directions, solved together, the inflow held or moved as they say.
@@ -272,7 +233,7 @@ impl<'a> Base<'a> {
         let points = self.solver.point_inputs(self.condition, &self.about.inflow);
         let response = linear
             .orbits
-            .linear_response_from(
+            .linear_response(
                 &self.system(points),
                 &self.about.orbit,
                 &self.forces,
@@ -364,7 +325,7 @@ impl<'a> Base<'a> {
         force: &DMatrix<f64>,
     ) -> Result<Answer, ResponseError> {
         let mut motion = motion.sample(&self.solver.time);
-        let mass = self.solver.rotor.mass();
+        let mass = &self.solver.rotor.mass;
         if let Some(lacking) = orbits.lacking_accelerations(&(mass * &motion.qdd + force)) {
             motion.qdd += lacking;
         }
@@ -373,11 +334,36 @@ impl<'a> Base<'a> {
         motion.qd = &self.settled.qd + motion.qd * change.size;
         motion.qdd = &self.settled.qdd + motion.qdd * change.size;
         let system = self.system(change.points.clone());
-        let mut answer = self.answer(&system, &motion)?;
+        let mut answer = answer(self.solver, self.condition, self.followed, &system, &motion)?;
         answer.add(&self.rest, -1.0);
         answer.scale(1.0 / change.size);
         Ok(answer)
     }
+}
+
+/// Loads, hinge moments and the inflow they ask for, of a motion.
+fn answer(
+    solver: &RotorSolver,
+    condition: &Condition,
+    followed: Option<&dyn InflowModel>,
+    system: &ResponseSystem<'_>,
+    samples: &OrbitSamples,
+) -> Result<Answer, ResponseError> {
+    let RotorSolver { rotor, time, .. } = solver;
+    let loads = RevolutionLoads::of(rotor, time, system, samples, &system.revolution(samples)?);
+    let hub = loads.hub(rotor, time);
+    let count = rotor.discretisation.load_harmonics;
+    let hinge = loads.hinge(time, count).iter().map(HingeMoment::total).collect();
+    let wanted = match followed {
+        None => Vec::new(),
+        Some(model) => {
+            let lift = hub.components[2].mean + rotor.blades_weight() * up(condition)[2];
+            let ct = rotor.model().thrust_coefficient(lift);
+            let loading = loads.loading(rotor, time, ct, model.circulation_grid())?;
+            model.induced(&condition.flight, &loading)?.parameters()
+        }
+    };
+    Ok(Answer { hub, hinge, wanted })
 }
 
 /// Change of the inflow parameters with the thrust coefficient, by central differences.
@@ -495,14 +481,14 @@ mod tests {
             let condition = Condition {
                 flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.08 },
                 controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.02, theta1s_rad: -0.07 },
-                flap_angles_rad: vec![sum(&HarmonicSeries::zero(3), &direction[0], 0.02)],
+                flap_angles_rad: vec![added(&HarmonicSeries::zero(3), &direction[0], 0.02)],
                 bank_rad: 0.0,
             };
             let inflow = LinearInflow::Prescribed { induced_inflow: 0.01 };
             let about = solver.solve(&condition, &inflow, None).unwrap();
             let base = Base::new(&solver, &condition, &about, None).unwrap();
             let forces = |by: f64| {
-                let flap_angles_rad = vec![sum(&condition.flap_angles_rad[0], &direction[0], by)];
+                let flap_angles_rad = vec![added(&condition.flap_angles_rad[0], &direction[0], by)];
                 let moved = Condition { flap_angles_rad, ..condition.clone() };
                 let system = base.system(solver.point_inputs(&moved, &about.inflow));
                 let mut out = base.forces.clone();

@@ -29,15 +29,15 @@ impl RotorSolver {
         let x = self.rotor().blade().grid().x();
         let model = self.rotor().model();
         let mut largest: Option<SectionLift> = None;
-        for (azimuth_rad, row) in self.time().points().iter().zip(&solution.lifting) {
+        for (azimuth_rad, row) in self.time.points().iter().zip(&solution.lifting) {
             let stations = &x[x.len() - row.len()..];
             for (station, section) in stations.iter().zip(row) {
-                let speed = station + self.advance_ratio() * azimuth_rad.sin();
+                let speed = station + self.advance_ratio * azimuth_rad.sin();
                 if speed < LEAST_SPEED {
                     continue;
                 }
                 let lift_coefficient =
-                    2.0 * section.circulation() / (model.chord_at(*station) * speed);
+                    2.0 * section.circulation / (model.chord_at(*station) * speed);
                 if largest.is_none_or(|most| lift_coefficient > most.lift_coefficient) {
                     let (station, azimuth_rad) = (*station, *azimuth_rad);
                     largest = Some(SectionLift { lift_coefficient, station, azimuth_rad });

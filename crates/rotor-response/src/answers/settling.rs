@@ -7,7 +7,7 @@
 //! right-hand sides share the directions, by the method of generalised conjugate residuals, as in
 //! [`rotor_fem::PeriodicSolver::linear_response`].
 
-use crate::loads::wrenches::SixLoads;
+use crate::loads::wrenches::{SixLoads, added};
 use rotor_base::HarmonicSeries;
 
 /// Change of the inflow that a linearised response leaves, over the largest that any direction asks for.
@@ -30,34 +30,25 @@ pub(crate) struct Answer {
     pub(crate) wanted: Vec<f64>,
 }
 
-impl Default for Answer {
-    fn default() -> Self {
-        let components = std::array::from_fn(|_| HarmonicSeries::zero(0));
-        Self { hub: SixLoads { components }, hinge: Vec::new(), wanted: Vec::new() }
-    }
-}
-
 impl Answer {
     /// `self += factor other`.
     pub(crate) fn add(&mut self, other: &Self, factor: f64) {
         self.add_loads(other, factor);
-        for (value, part) in self.wanted.iter_mut().zip(&other.wanted) {
-            *value += factor * part;
-        }
+        add(&mut self.wanted, factor, &other.wanted);
     }
 
     /// The same of the loads alone.
     fn add_loads(&mut self, other: &Self, factor: f64) {
         let mine = self.hub.components.iter_mut().chain(&mut self.hinge);
         for (value, part) in mine.zip(other.hub.components.iter().chain(&other.hinge)) {
-            *value = sum(value, part, factor);
+            *value = added(value, part, factor);
         }
     }
 
     /// `self *= factor`.
     pub(crate) fn scale(&mut self, factor: f64) {
         for value in self.hub.components.iter_mut().chain(&mut self.hinge) {
-            *value = sum(&HarmonicSeries::zero(value.harmonics.len()), value, factor);
+            *value = added(&HarmonicSeries::zero(value.harmonics.len()), value, factor);
         }
         for value in &mut self.wanted {
             *value *= factor;
@@ -78,6 +69,13 @@ pub(crate) struct Settling {
     basis: Vec<Followed>,
 }
 
+/// `a += factor b`.
+fn add(a: &mut [f64], factor: f64, b: &[f64]) {
+    for (value, part) in a.iter_mut().zip(b) {
+        *value += factor * part;
+    }
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
@@ -96,9 +94,7 @@ pub(crate) fn independent(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         for _ in 0..2 {
             for unit in &units {
                 let along = dot(&rest, unit);
-                for (value, part) in rest.iter_mut().zip(unit) {
-                    *value -= along * part;
-                }
+                add(&mut rest, -along, unit);
             }
         }
         let size = norm(&rest);
@@ -140,17 +136,13 @@ impl Settling {
         answers: &mut [Answer],
     ) {
         let mut image = direction;
-        for (value, wanted) in image.iter_mut().zip(&answer.wanted) {
-            *value -= wanted;
-        }
+        add(&mut image, -1.0, &answer.wanted);
         let whole = norm(&image);
         // twice is enough to be orthogonal to rounding
         for _ in 0..2 {
             for known in &self.basis {
                 let along = dot(&image, &known.image);
-                for (value, part) in image.iter_mut().zip(&known.image) {
-                    *value -= along * part;
-                }
+                add(&mut image, -along, &known.image);
                 answer.add_loads(&known.answer, -along);
             }
         }
@@ -164,28 +156,9 @@ impl Settling {
         answer.scale(1.0 / size);
         for (left, loads) in self.left.iter_mut().zip(answers) {
             let along = dot(left, &image);
-            for (value, part) in left.iter_mut().zip(&image) {
-                *value -= along * part;
-            }
+            add(left, -along, &image);
             loads.add_loads(&answer, along);
         }
         self.basis.push(Followed { image, answer });
     }
-}
-
-/// `angle + factor direction`.
-pub(crate) fn sum(
-    angle: &HarmonicSeries,
-    direction: &HarmonicSeries,
-    factor: f64,
-) -> HarmonicSeries {
-    let mut out = angle.clone();
-    out.mean += factor * direction.mean;
-    for (k, part) in direction.harmonics.iter().enumerate() {
-        let mut harmonic = out.harmonic(k + 1);
-        harmonic.cosine += factor * part.cosine;
-        harmonic.sine += factor * part.sine;
-        out.set_harmonic(k + 1, harmonic);
-    }
-    out
 }

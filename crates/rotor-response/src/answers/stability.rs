@@ -34,10 +34,9 @@ impl BladeMotion {
 /// Of the frequencies `n +- frequency`, n whole, that whose exponent is nearest in size to a natural
 /// frequency. Unit: per rev, growth per rad of azimuth.
 fn nearest_frequency(growth: f64, frequency: f64, natural: f64) -> f64 {
-    let highest = natural.ceil() + 1.0;
     let mut best = frequency;
     let mut n = 0.0;
-    while n <= highest {
+    while n <= natural.ceil() + 1.0 {
         for candidate in [n - frequency, n + frequency] {
             let distance = |f: f64| (growth.hypot(f) - natural).abs();
             if candidate >= 0.0 && distance(candidate) < distance(best) {
@@ -93,7 +92,7 @@ impl RotorSolver {
     /// Stability of a solution of this solver, obtained in `condition`.
     ///
     /// The tangents of the Newton matrix at the converged orbit and the lags of the sections, carried over one
-    /// revolution ([`Floquet::with_lags`](rotor_fem::Floquet::with_lags)).
+    /// revolution ([`Floquet::of`](rotor_fem::Floquet::of)).
     ///
     /// # Errors
     /// [`ResponseError::FlapMotions`], and [`ResponseError::Fem`] if the monodromy matrix cannot be made.
@@ -115,10 +114,7 @@ impl RotorSolver {
         solution: &RotorSolution,
         lags: SectionLags,
     ) -> Result<Stability, ResponseError> {
-        let (given, expected) = (condition.flap_angles_rad.len(), self.rotor.model().flaps.len());
-        if given != expected {
-            return Err(ResponseError::FlapMotions { given, expected });
-        }
+        self.check_flaps(&condition.flap_angles_rad)?;
         let points = self.point_inputs(condition, &solution.inflow);
         let system = self.rotor.system(&self.air, points);
         let samples = solution.orbit.sample(&self.time);
@@ -128,8 +124,8 @@ impl RotorSolver {
             SectionLags::Settled => Vec::new(),
         };
         let blade = self.rotor.blade();
-        let motions = Floquet::with_lags(&self.time, system.mass, &tangents, &places)?
-            .modes()
+        let motions = Floquet::of(&self.time, system.mass, &tangents, &places)?
+            .modes
             .iter()
             .map(|mode| {
                 let (kind, number) = blade.mode(mode.leading_dof);

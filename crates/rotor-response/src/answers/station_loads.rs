@@ -15,14 +15,13 @@
 
 use crate::loads::section_moments::{curvature_moments, moments_outboard};
 use crate::loads::wrenches::summed;
-use crate::response::revolution::unit_weights;
+use crate::response::revolution::series;
 use crate::response::root_reaction::Loading;
 use crate::response::system::{ResponseSystem, Revolution};
 use crate::sections::flight_air::POINTS_TOGETHER;
 use crate::structure::equations::SpanLoads;
 use crate::structure::load_station::LoadStation;
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{OrbitSamples, TimeElements};
@@ -38,11 +37,7 @@ pub struct LoadHistory<const N: usize> {
 
 impl<const N: usize> LoadHistory<N> {
     fn new(time: &TimeElements, values: Vec<[f64; N]>, count: usize) -> Self {
-        let weights = unit_weights(time);
-        let harmonics = std::array::from_fn(|k| {
-            let component: Vec<f64> = values.iter().map(|v| v[k]).collect();
-            HarmonicSeries::project(time.points(), &weights, &component, count)
-        });
+        let harmonics = std::array::from_fn(|k| series(time, values.iter().map(|v| v[k]), count));
         Self { values, harmonics }
     }
 
@@ -110,11 +105,8 @@ impl RotorSolver {
         solution: &RotorSolution,
         stations: &[f64],
     ) -> Result<Vec<StationLoads>, ResponseError> {
-        let (given, expected) = (condition.flap_angles_rad.len(), self.rotor.model().flaps.len());
-        if given != expected {
-            return Err(ResponseError::FlapMotions { given, expected });
-        }
-        let (blade, discretisation) = (self.rotor.blade(), self.rotor.discretisation());
+        self.check_flaps(&condition.flap_angles_rad)?;
+        let (blade, discretisation) = (self.rotor.blade(), self.rotor.discretisation);
         let (root, elements) = (blade.root_offset, discretisation.blade_elements);
         let stations = stations
             .iter()
@@ -164,12 +156,12 @@ fn at_point(
     stations: &[LoadStation],
 ) -> Vec<PointLoads> {
     let (blade, couplings) = (system.blade, system.couplings);
-    let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-    let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
-    let loading = Loading::new(system, revolution, p, loads, [&q, &qd, &qdd]);
-    let pitch = system.points[p].air.pitch.angle;
+    let coordinates = samples.at(p);
+    let q = coordinates[0];
+    let loading = Loading::new(system, revolution, p, loads, coordinates);
+    let pitch = system.points[p].air.pitch.angle_rad;
     let at = |station: &LoadStation| {
-        let shape = station.shape(blade, &q);
+        let shape = station.shape(blade, q);
         let shortening: f64 =
             station.inboard.iter().zip(&loading.shortening).map(|(w, u)| w * u).sum();
         let place = [station.x + shortening, blade.offsets.torque + shape.lag[0], shape.flap[0]];
@@ -184,7 +176,7 @@ fn at_point(
                 blade.grid.x(),
                 &loading.turning,
             ),
-            curvature: curvature_moments(blade, couplings, station, &q, pitch, forces[0]),
+            curvature: curvature_moments(blade, couplings, station, q, pitch, forces[0]),
         }
     };
     stations.iter().map(at).collect()
@@ -264,19 +256,17 @@ mod tests {
             let loads = solver.station_loads(&condition, &found, &ends).unwrap();
 
             let system = rotor.system(&solver.air, solver.point_inputs(&condition, &found.inflow));
-            let orbit = found.orbit.sample(solver.time());
+            let orbit = found.orbit.sample(&solver.time);
             let samples = OrbitSamples { qdd: found.accelerations.clone(), ..orbit };
             let revolution = system.revolution(&samples).unwrap();
             for p in [0, 17, 40] {
-                let column =
-                    |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-                let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
+                let q = samples.at(p)[0];
                 let mut span = SpanLoads::default();
-                let loading = Loading::new(&system, &revolution, p, &mut span, [&q, &qd, &qdd]);
+                let loading = Loading::new(&system, &revolution, p, &mut span, samples.at(p));
                 let crate::ResponseBlade { properties, modes, grid, .. } = rotor.blade();
                 let places = ends.map(|x| {
                     let station = LoadStation::new(x, 10, properties, modes, grid).unwrap();
-                    let shape = station.shape(rotor.blade(), &q);
+                    let shape = station.shape(rotor.blade(), q);
                     let shortening = between(&rotor, [0.0, x], &|i| loading.shortening[i]);
                     ([x + shortening, shape.lag[0], shape.flap[0]], [shape.lag[1], shape.flap[1]])
                 });

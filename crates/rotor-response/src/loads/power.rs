@@ -99,7 +99,7 @@ impl AxialMotion {
         blade.grid.integral_from_root(&squares, &mut value);
         let moment: Vec<f64> = (0..n)
             .map(|i| {
-                let theta = pitch.angle + blade.twist[i] + phi.value[i];
+                let theta = pitch.angle_rad + blade.twist[i] + phi.value[i];
                 let [km1, km2] = [blade.km1_squared[i], blade.km2_squared[i]];
                 let turning = (km1 + km2) * (pitch.acceleration + phi.acceleration[i]);
                 if couplings == Couplings::Linear {

@@ -81,7 +81,7 @@ pub(crate) fn turning(
                 + 2.0 * (across * shortening[i] + along * w.rate[i]))
             + loads.fy[i]
             + weight_y;
-        let theta = pitch.angle + blade.twist[i] + phi.value[i];
+        let theta = pitch.angle_rad + blade.twist[i] + phi.value[i];
         let radii = blade.km2_squared[i] - blade.km1_squared[i];
         let (sin, cos) = theta.sin_cos();
         let twisting = if full {
@@ -123,7 +123,7 @@ pub(crate) fn moderate_turning(
     let axial: Vec<f64> = force.iter().zip(&found.inertial).map(|(f, m)| f[0] - m[0]).collect();
     let mut tension = vec![0.0; n];
     blade.grid.integral_to_tip(&axial, &mut tension);
-    let elastic = modal.turning_forces(q, pitch.into(), &tension);
+    let elastic = modal.turning_forces(q, pitch, &tension);
     let of = |i: usize| {
         let ([_, fy, fz], [v_x, w_x, phi]) = (force[i], elastic[i]);
         let [_, v, w, v_x_inertial, w_x_inertial, phi_inertial] = found.inertial[i];

@@ -36,6 +36,23 @@ impl SixLoads {
     }
 }
 
+/// `series + factor other`.
+pub(crate) fn added(
+    series: &HarmonicSeries,
+    other: &HarmonicSeries,
+    factor: f64,
+) -> HarmonicSeries {
+    let mut out = series.clone();
+    out.mean += factor * other.mean;
+    for (k, part) in other.harmonics.iter().enumerate() {
+        let mut harmonic = out.harmonic(k + 1);
+        harmonic.cosine += factor * part.cosine;
+        harmonic.sine += factor * part.sine;
+        out.set_harmonic(k + 1, harmonic);
+    }
+    out
+}
+
 /// Force and moment about the rotor centre, per length, of all loads on one blade at one azimuth at every
 /// station, coned blade axes.
 ///
@@ -92,7 +109,7 @@ pub(crate) fn span_wrenches(
         let fy = m * (y - v.acceleration[i] + turning) + loads.fy[i] + weight_y;
         let fz =
             -m * (w.acceleration[i] + along * (out + 2.0 * v.rate[i])) + loads.fz[i] + weight_z;
-        let theta = pitch.angle + blade.twist[i] + motion.phi.value[i];
+        let theta = pitch.angle_rad + blade.twist[i] + motion.phi.value[i];
         let theta_acceleration = pitch.acceleration + motion.phi.acceleration[i];
         let (sin, cos) = theta.sin_cos();
         let (km1, km2) = (blade.km1_squared[i], blade.km2_squared[i]);
@@ -196,7 +213,7 @@ pub fn hub_loads(blades: &[SixLoads], count: usize) -> SixLoads {
     let samples = (highest + count + 2).next_multiple_of(blades.len().max(1));
     let azimuths = uniform_azimuths_rad(samples);
     let weights = vec![1.0 / samples as f64; samples];
-    let mut history = vec![vec![0.0; samples]; 6];
+    let mut history: [Vec<f64>; 6] = std::array::from_fn(|_| vec![0.0; samples]);
     for (k, blade) in blades.iter().enumerate() {
         let offset = std::f64::consts::TAU * k as f64 / blades.len() as f64;
         for (i, azimuth) in azimuths.iter().enumerate() {
@@ -210,16 +227,7 @@ pub fn hub_loads(blades: &[SixLoads], count: usize) -> SixLoads {
         }
     }
     let series = |h: &Vec<f64>| HarmonicSeries::project(&azimuths, &weights, h, count);
-    SixLoads {
-        components: [
-            series(&history[0]),
-            series(&history[1]),
-            series(&history[2]),
-            series(&history[3]),
-            series(&history[4]),
-            series(&history[5]),
-        ],
-    }
+    SixLoads { components: history.each_ref().map(series) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! A trailing-edge flap and its inertia.
 
+use crate::ResponseError;
+use crate::error::check;
 use crate::model::flap_inertia::FlapBody;
 use flap_aero::FlapEffectiveness;
 use serde::{Deserialize, Serialize};
@@ -71,6 +73,23 @@ impl TrailingEdgeFlap {
             gyration_fraction: None,
             mass: FlapMass::PartOfBlade,
             effectiveness: FlapEffectiveness::IDEAL,
+        })
+    }
+
+    /// Checks its proportions.
+    pub(crate) fn validate(&self) -> Result<(), ResponseError> {
+        let (chord, mass, cg) = (self.chord_fraction, self.mass_fraction, self.cg_fraction);
+        let beyond = "-1 to 1 flap chord: 1 is the trailing edge";
+        let least = "abs(cg_fraction) to 1 flap chord: it is about the hinge";
+        let ranges = [
+            ("flap chord_fraction", chord, 0.05..=0.5, "0.05 to 0.5 of the chord"),
+            ("flap mass_fraction", mass, 0.0..=1.0, "0 to 1 of m0"),
+            ("flap cg_fraction", cg, -1.0..=1.0, beyond),
+        ];
+        let gyration =
+            self.gyration_fraction.map(|k| ("flap gyration_fraction", k, cg.abs()..=1.0, least));
+        ranges.into_iter().chain(gyration).try_for_each(|(field, value, range, expected)| {
+            check(field, value, range.contains(&value), expected)
         })
     }
 

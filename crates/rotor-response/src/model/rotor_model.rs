@@ -1,9 +1,10 @@
 //! What a rotor is made of: validated parameters handed down by the drivers.
 
+use crate::error::check;
 use crate::{NonlinearSections, ResponseError, TrailingEdgeFlap};
 use flap_aero::AttachedFlowModel;
 use rotor_base::gauss_legendre;
-use rotor_fem::{Distribution, ModalBasis, TorsionTerms};
+use rotor_fem::{Distribution, ModalBasis, PitchMotion, TorsionTerms};
 use serde::{Deserialize, Serialize};
 
 /// Largest local Mach number handed to the section models, where linear theory ends.
@@ -201,57 +202,59 @@ impl RotorModel {
     /// # Errors
     /// [`ResponseError::Parameter`] or [`ResponseError::FlapSpan`] for the first one out of range.
     pub fn validate(&self) -> Result<(), ResponseError> {
-        let check = |field, value: f64, ok: bool, expected| {
-            if ok { Ok(()) } else { Err(ResponseError::Parameter { field, value, expected }) }
+        let (cutout, quarter) = (self.root_cutout, 0.25 * self.chord);
+        let SectionOffsets { mass_centre, tension_centre, aerodynamic_centre, torque } =
+            self.offsets;
+        let tip_mach = match self.compressibility {
+            Compressibility::None => None,
+            Compressibility::LocalMach { tip_mach } => Some(tip_mach),
         };
-        let within = |v: f64, low: f64, high: f64| v >= low && v <= high;
-        let count = self.blades as f64;
-        check("blades", count, (1..=16).contains(&self.blades), "1 to 16")?;
-        check("chord", self.chord, within(self.chord, 1e-3, 0.5), "0.001 to 0.5 R")?;
-        for &station in self.planform.chord.iter().flat_map(Distribution::breaks) {
-            let chord = self.chord_at(station);
-            check("planform.chord", chord, within(chord, 1e-3, 0.5), "0.001 to 0.5 R")?;
+        let ranges = [
+            ("blades", self.blades as f64, 1.0..=16.0, "1 to 16"),
+            ("chord", self.chord, 1e-3..=0.5, "0.001 to 0.5 R"),
+            ("lock_number", self.lock_number, 0.0..=50.0, "0 to 50"),
+            ("drag_coefficient", self.drag_coefficient, 0.0..=1.0, "0 to 1"),
+            ("root_cutout", cutout, 0.0..=0.9, "0 to 0.9 R"),
+            (
+                "tip_loss",
+                self.tip_loss,
+                cutout.max(0.5)..=1.0,
+                "0.5 to 1 R, outboard of the root cut-out",
+            ),
+            ("gravity", self.gravity, 0.0..=1.0, "0 to 1 Omega^2 R"),
+            ("offsets.mass_centre", mass_centre, -0.1..=0.1, "-0.1 to 0.1 R"),
+            ("offsets.tension_centre", tension_centre, -0.1..=0.1, "-0.1 to 0.1 R"),
+            (
+                "offsets.aerodynamic_centre",
+                aerodynamic_centre,
+                -3.0 * quarter..=quarter,
+                "the elastic axis between the edges of the chord",
+            ),
+            ("offsets.torque", torque, -0.1..=0.1, "-0.1 to 0.1 R"),
+            ("modal_damping", self.modal_damping, 0.0..=0.5, "0 to 0.5 of critical"),
+            ("lag_damper", self.lag_damper, 0.0..=10.0, "0 to 10 m0 Omega R^3"),
+        ];
+        let tables = self.planform.chord.iter().flat_map(Distribution::breaks);
+        let chords = tables
+            .map(|x| ("planform.chord", self.chord_at(*x), 1e-3..=0.5, "0.001 to 0.5 R"))
+            .chain(tip_mach.map(|mach| ("tip_mach", mach, 1e-3..=0.95, "0.001 to 0.95")));
+        for (field, value, range, expected) in ranges.into_iter().chain(chords) {
+            check(field, value, range.contains(&value), expected)?;
+        }
+        let moderate = matches!(self.couplings, Couplings::Moderate(_));
+        for (field, offset, known, expected) in [
+            ("offsets.mass_centre", mass_centre, moderate, "0 unless the couplings are Moderate"),
+            (
+                "offsets.tension_centre",
+                tension_centre,
+                moderate,
+                "0 unless the couplings are Moderate",
+            ),
+            ("offsets.torque", torque, !moderate, "0 if the couplings are Moderate"),
+        ] {
+            check(field, offset, offset == 0.0 || known, expected)?;
         }
         self.validate_sweep()?;
-        let gamma = self.lock_number;
-        check("lock_number", gamma, within(gamma, 0.0, 50.0), "0 to 50")?;
-        let cd = self.drag_coefficient;
-        check("drag_coefficient", cd, within(cd, 0.0, 1.0), "0 to 1")?;
-        let cutout = self.root_cutout;
-        check("root_cutout", cutout, within(cutout, 0.0, 0.9), "0 to 0.9 R")?;
-        let tip_loss = self.tip_loss;
-        let beyond = "0.5 to 1 R, outboard of the root cut-out";
-        check("tip_loss", tip_loss, within(tip_loss, cutout.max(0.5), 1.0), beyond)?;
-        let gravity = self.gravity;
-        check("gravity", gravity, within(gravity, 0.0, 1.0), "0 to 1 Omega^2 R")?;
-        for (field, offset) in [
-            ("offsets.mass_centre", self.offsets.mass_centre),
-            ("offsets.tension_centre", self.offsets.tension_centre),
-        ] {
-            check(field, offset, within(offset, -0.1, 0.1), "-0.1 to 0.1 R")?;
-            let known = offset == 0.0 || matches!(self.couplings, Couplings::Moderate(_));
-            check(field, offset, known, "0 unless the couplings are Moderate")?;
-        }
-        let SectionOffsets { aerodynamic_centre, torque, .. } = self.offsets;
-        let quarter = 0.25 * self.chord;
-        let field = "offsets.aerodynamic_centre";
-        let inside = within(aerodynamic_centre, -3.0 * quarter, quarter);
-        check(
-            field,
-            aerodynamic_centre,
-            inside,
-            "the elastic axis between the edges of the chord",
-        )?;
-        check("offsets.torque", torque, within(torque, -0.1, 0.1), "-0.1 to 0.1 R")?;
-        let known = torque == 0.0 || !matches!(self.couplings, Couplings::Moderate(_));
-        check("offsets.torque", torque, known, "0 if the couplings are Moderate")?;
-        let zeta = self.modal_damping;
-        check("modal_damping", zeta, within(zeta, 0.0, 0.5), "0 to 0.5 of critical")?;
-        let damper = self.lag_damper;
-        check("lag_damper", damper, within(damper, 0.0, 10.0), "0 to 10 m0 Omega R^3")?;
-        if let Compressibility::LocalMach { tip_mach } = self.compressibility {
-            check("tip_mach", tip_mach, within(tip_mach, 1e-3, 0.95), "0.001 to 0.95")?;
-        }
         let mut from = cutout;
         for (index, flap) in self.flaps.iter().enumerate() {
             let (start, end) = (flap.start, flap.end);
@@ -259,17 +262,7 @@ impl RotorModel {
                 return Err(ResponseError::FlapSpan { index, start, end, cutout });
             }
             from = end;
-            let e = flap.chord_fraction;
-            check("flap chord_fraction", e, within(e, 0.05, 0.5), "0.05 to 0.5 of the chord")?;
-            let m = flap.mass_fraction;
-            check("flap mass_fraction", m, within(m, 0.0, 1.0), "0 to 1 of m0")?;
-            let cg = flap.cg_fraction;
-            let beyond = "-1 to 1 flap chord: 1 is the trailing edge";
-            check("flap cg_fraction", cg, within(cg, -1.0, 1.0), beyond)?;
-            if let Some(k) = flap.gyration_fraction {
-                let least = "abs(cg_fraction) to 1 flap chord: it is about the hinge";
-                check("flap gyration_fraction", k, within(k, cg.abs(), 1.0), least)?;
-            }
+            flap.validate()?;
         }
         Ok(())
     }
@@ -277,10 +270,7 @@ impl RotorModel {
     /// Checks the line of a swept blade.
     fn validate_sweep(&self) -> Result<(), ResponseError> {
         let Some(line) = &self.planform.set_back else { return Ok(()) };
-        let field = "planform.set_back";
-        let check = |value: f64, ok: bool, expected| {
-            if ok { Ok(()) } else { Err(ResponseError::Parameter { field, value, expected }) }
-        };
+        let check = |value, ok, expected| check("planform.set_back", value, ok, expected);
         let tip = line.value(1.0);
         let known = matches!(self.couplings, Couplings::Moderate(_)) && self.nonlinear.is_linear();
         check(tip, known, "none unless the couplings are Moderate and the sections linear")?;
@@ -384,6 +374,19 @@ pub struct Controls {
     pub theta1c_rad: f64,
     /// Longitudinal cyclic, rad.
     pub theta1s_rad: f64,
+}
+
+impl Controls {
+    /// Root pitch at an azimuth.
+    pub(crate) fn root_pitch(&self, azimuth_rad: f64) -> PitchMotion {
+        let (sin, cos) = azimuth_rad.sin_cos();
+        let (c, s) = (self.theta1c_rad, self.theta1s_rad);
+        PitchMotion {
+            angle_rad: self.theta0_rad + c * cos + s * sin,
+            rate: s * cos - c * sin,
+            acceleration: -c * cos - s * sin,
+        }
+    }
 }
 
 /// How finely the rotor is resolved.

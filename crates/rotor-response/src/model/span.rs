@@ -1,6 +1,7 @@
 //! Spanwise stations: Gauss points in pieces that respect every kink of the loading.
 
 use crate::ResponseError;
+use crate::error::check;
 use rotor_base::{LagrangeBasis, gauss_legendre};
 
 /// Gauss points along the blade, grouped in pieces, with running integrals of high order.
@@ -23,11 +24,10 @@ impl SpanGrid {
     /// Gauss points in each; breaks outside and repeated breaks are dropped.
     ///
     /// # Errors
-    /// [`ResponseError::SpanPoints`] unless `1 <= points_per_piece <= 16`.
+    /// [`ResponseError::Parameter`] unless `1 <= points_per_piece <= 16`.
     pub fn new(root: f64, breaks: &[f64], points_per_piece: usize) -> Result<Self, ResponseError> {
-        if !(1..=16).contains(&points_per_piece) {
-            return Err(ResponseError::SpanPoints { found: points_per_piece });
-        }
+        let allowed = (1..=16).contains(&points_per_piece);
+        check("span_points_per_piece", points_per_piece as f64, allowed, "1 to 16")?;
         let mut edges: Vec<f64> =
             breaks.iter().copied().filter(|b| *b > root && *b < 1.0).chain([root, 1.0]).collect();
         edges.sort_by(f64::total_cmp);

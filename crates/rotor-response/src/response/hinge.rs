@@ -1,10 +1,11 @@
 //! Hinge moments of the flaps over a revolution.
 
+use crate::loads::wrenches::added;
 use crate::response::system::ResponseSystem;
 use crate::sections::air::SectionLoads;
 use crate::structure::blade::ResponseBlade;
 use crate::structure::motion::Motion;
-use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_base::HarmonicSeries;
 
 /// Moments about the hinge of one flap of one blade, over its span, against the azimuth of the blade;
 /// `m0 Omega^2 R^3`, positive in the sense of the flap angle (trailing edge down).
@@ -22,14 +23,7 @@ impl HingeMoment {
     /// Both together.
     #[must_use]
     pub fn total(&self) -> HarmonicSeries {
-        let (a, b) = (&self.aerodynamic, &self.inertial);
-        let mut total = HarmonicSeries { mean: a.mean + b.mean, ..a.clone() };
-        for n in 1..=a.harmonics.len().max(b.harmonics.len()) {
-            let (x, y) = (a.harmonic(n), b.harmonic(n));
-            let sum = Harmonic { cosine: x.cosine + y.cosine, sine: x.sine + y.sine };
-            total.set_harmonic(n, sum);
-        }
-        total
+        added(&self.aerodynamic, &self.inertial, 1.0)
     }
 }
 
@@ -56,7 +50,7 @@ impl ResponseSystem<'_> {
         motion: &Motion,
         sections: &[SectionLoads],
     ) -> [Vec<f64>; 2] {
-        let (flaps, first) = (self.points[point].flap.len(), self.air.first_station());
+        let (flaps, first) = (self.points[point].flap.len(), self.air.first_station);
         let aerodynamic = over_flaps(self.blade, flaps, |i, _| sections[i - first].hinge);
         let inertial = over_flaps(self.blade, flaps, |i, k| {
             let section = self.flap_section(point, motion, i, k);

@@ -13,32 +13,14 @@
 
 use crate::response::system::ResponseSystem;
 use crate::sections::air::SectionFlow;
-use crate::sections::flight_air::{StationChannel, StationMemory};
-use crate::structure::blade::ResponseBlade;
+use crate::sections::flight_air::StationMemory;
 use crate::structure::motion::Motion;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_fem::{LagChannel, LagPlace, OrbitMemory, OrbitSamples, PeriodicSystem};
-use std::ops::Range;
 
 /// Step of the central differences of the inputs, which are quadratic in the motion but for third-order terms.
 const INPUT_STEP: f64 = 1e-4;
-
-/// Places of the modes of each family among the coordinates.
-struct Modes {
-    flap: Range<usize>,
-    lag: Range<usize>,
-    torsion: Range<usize>,
-}
-
-impl Modes {
-    fn of(blade: &ResponseBlade) -> Self {
-        let flap = 0..blade.flap.count();
-        let lag = flap.end..flap.end + blade.lag.count();
-        let torsion = lag.end..lag.end + blade.torsion.count();
-        Self { flap, lag, torsion }
-    }
-}
 
 /// Share of the two section inputs in displacement and rate of every mode, at one point and station:
 /// the inputs by displacement, then by rate, one entry per mode.
@@ -68,9 +50,7 @@ impl ResponseSystem<'_> {
         let slopes: Vec<Vec<(InputSlopes, LoadSlopes)>> = (0..points)
             .into_par_iter()
             .map(|p| {
-                let mut motion = Motion::default();
-                self.fill(&mut motion, samples, p);
-                let flows = self.flows(p, &motion);
+                let flows = self.flows(p, &self.motion(samples, p));
                 let inputs = self.input_slopes(p, samples);
                 let loads = flows.iter().take(stations.len()).enumerate();
                 inputs.into_iter().zip(loads.map(|(s, flow)| self.load_slopes(s, flow))).collect()
@@ -97,15 +77,11 @@ impl ResponseSystem<'_> {
         let dof = self.dof();
         let flows: Vec<Vec<SectionFlow>> = (0..self.points.len())
             .into_par_iter()
-            .map(|p| {
-                let mut motion = Motion::default();
-                self.fill(&mut motion, samples, p);
-                self.flows(p, &motion)
-            })
+            .map(|p| self.flows(p, &self.motion(samples, p)))
             .collect();
         let by_point: Vec<Vec<InputSlopes>> =
             (0..self.points.len()).into_par_iter().map(|p| self.input_slopes(p, samples)).collect();
-        let place = |(s, channels): (usize, Vec<StationChannel>)| {
+        let place = |(s, channels): (usize, Vec<LagChannel>)| {
             let (mut inputs, mut loads) = (Vec::new(), Vec::new());
             for (p, row) in flows.iter().enumerate() {
                 let input = &by_point[p][s];
@@ -114,10 +90,6 @@ impl ResponseSystem<'_> {
                 inputs.push(DMatrix::from_row_slice(2, 2 * dof, &both));
                 loads.push(DMatrix::from_column_slice(dof, 2, &[load.lift, load.moment].concat()));
             }
-            let channels = channels
-                .into_iter()
-                .map(|c| LagChannel { rates: c.rates, input: c.input, gains: c.gains })
-                .collect();
             LagPlace { inputs, loads, channels }
         };
         let known = channels.into_par_iter().enumerate().take(lost_from);
@@ -167,12 +139,11 @@ impl ResponseSystem<'_> {
     /// Slopes of the inputs of all lifting stations at a point, by differences: the flow is quadratic in the motion.
     fn input_slopes(&self, point: usize, samples: &OrbitSamples) -> Vec<InputSlopes> {
         let dof = self.dof();
-        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
-        let mut state = [&samples.q, &samples.qd].map(column);
-        let accelerations = column(&samples.qdd);
+        let [q, qd, accelerations] = samples.at(point);
+        let mut state = [q.to_vec(), qd.to_vec()];
         let mut motion = Motion::default();
         let mut flows = |[q, qd]: &[Vec<f64>; 2]| {
-            motion.fill(self.blade, q, qd, &accelerations);
+            motion.fill(self.blade, [q, qd, accelerations]);
             self.flows(point, &motion)
         };
         let none = || InputSlopes { alpha: vec![0.0; 2 * dof], pitch_rate: vec![0.0; 2 * dof] };
@@ -195,7 +166,7 @@ impl ResponseSystem<'_> {
 
     fn load_slopes(&self, lifting: usize, flow: &SectionFlow) -> LoadSlopes {
         let blade = self.blade;
-        let i = self.air.first_station() + lifting;
+        let i = self.air.first_station + lifting;
         let weight = blade.grid.weight()[i];
         let scales = blade.air[i];
         let half = 0.5 * scales.density_chord;
@@ -204,16 +175,15 @@ impl ResponseSystem<'_> {
         let about_axis = scales.centre * (fz * cos - fy * sin);
         let dof = self.dof();
         let mut slopes = LoadSlopes { lift: vec![0.0; dof], moment: vec![0.0; dof] };
-        let modes = Modes::of(blade);
-        for (j, mode) in modes.flap.zip(&blade.flap.value) {
-            slopes.lift[j] = -weight * fz * mode[i];
+        let families = [(&blade.flap, fz), (&blade.lag, fy), (&blade.torsion, about_axis)];
+        let modes =
+            families.into_iter().flat_map(|(of, work)| of.value.iter().map(move |m| (m, work)));
+        for (slope, (mode, work)) in slopes.lift.iter_mut().zip(modes) {
+            *slope = -weight * work * mode[i];
         }
-        for (j, mode) in modes.lag.zip(&blade.lag.value) {
-            slopes.lift[j] = -weight * fy * mode[i];
-        }
-        for (j, mode) in modes.torsion.zip(&blade.torsion.value) {
-            slopes.lift[j] = -weight * about_axis * mode[i];
-            slopes.moment[j] = -weight * fz * scales.chord * mode[i];
+        let bending = blade.flap.count() + blade.lag.count();
+        for (slope, mode) in slopes.moment[bending..].iter_mut().zip(&blade.torsion.value) {
+            *slope = -weight * fz * scales.chord * mode[i];
         }
         slopes
     }

@@ -9,7 +9,7 @@ use crate::sections::air::SectionLoads;
 use crate::sections::flight_air::POINTS_TOGETHER;
 use crate::structure::equations::{BladeState, SpanLoads};
 use crate::{ResponseError, Rotor};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{OrbitSamples, PeriodicSolution, PeriodicSolver, TimeElements};
@@ -28,6 +28,16 @@ pub(crate) fn unit_weights(time: &TimeElements) -> Vec<f64> {
     time.weights().iter().map(|w| w / TAU).collect()
 }
 
+/// Harmonics of a history at the time points.
+pub(crate) fn series(
+    time: &TimeElements,
+    history: impl Iterator<Item = f64>,
+    count: usize,
+) -> HarmonicSeries {
+    let values: Vec<f64> = history.collect();
+    HarmonicSeries::project(time.points(), &unit_weights(time), &values, count)
+}
+
 /// Lift per length and circulation of one section, rotor units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Lifting {
@@ -39,19 +49,13 @@ impl Lifting {
     pub(crate) fn of(loads: &SectionLoads) -> Self {
         Self { lift: loads.fz, circulation: loads.circulation }
     }
-
-    pub(crate) fn circulation(&self) -> f64 {
-        self.circulation
-    }
 }
 
 /// Root loads and hinge moments at every azimuth point.
 pub(crate) struct RevolutionLoads {
     /// Aerodynamic lift and circulation at the lifting stations, by point.
     pub(crate) lifting: Vec<Vec<Lifting>>,
-    root: Vec<[f64; 6]>,
-    /// Aerodynamic and inertial hinge moment of each flap.
-    hinge: Vec<[Vec<f64>; 2]>,
+    points: Vec<PointLoads>,
     pub(crate) power: PowerBalance,
     /// The accelerations that went into the sums.
     pub(crate) accelerations: DMatrix<f64>,
@@ -59,7 +63,6 @@ pub(crate) struct RevolutionLoads {
 
 /// The loads at one azimuth point.
 struct PointLoads {
-    lifting: Vec<Lifting>,
     root: [f64; 6],
     /// Aerodynamic and inertial, by flap.
     hinge: [Vec<f64>; 2],
@@ -77,16 +80,14 @@ impl PointLoads {
     ) -> Self {
         let (blade, couplings) = (rotor.blade(), rotor.model().couplings);
         let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
-        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-        let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(column);
-        let loading = Loading::new(system, revolution, p, loads, [&q, &qd, &qdd]);
+        let coordinates = samples.at(p);
+        let loading = Loading::new(system, revolution, p, loads, coordinates);
         let pitch = system.points[p].air.pitch;
         let state = BladeState { motion, pitch, loads };
-        let root = loading.on_hub(blade, couplings, state, &q);
-        let rates = DVector::from_column_slice(&qd);
-        let damped = rates.dot(&(rotor.damping() * &rates));
+        let root = loading.on_hub(blade, couplings, state, coordinates[0]);
+        let rates = samples.qd.column(p);
+        let damped = rates.dot(&(&rotor.damping * rates));
         Self {
-            lifting: sections.iter().map(Lifting::of).collect(),
             root,
             hinge: system.hinge_moments(p, motion, sections),
             power: power(blade, state, &loading.axial, damped, root[5]),
@@ -109,16 +110,7 @@ impl RevolutionLoads {
     }
 
     /// Force summation of a motion as it is.
-    pub(crate) fn summed(
-        rotor: &Rotor,
-        time: &TimeElements,
-        system: &ResponseSystem<'_>,
-        samples: &OrbitSamples,
-    ) -> Result<Self, ResponseError> {
-        Ok(Self::of(rotor, time, system, samples, &system.revolution(samples)?))
-    }
-
-    fn of(
+    pub(crate) fn of(
         rotor: &Rotor,
         time: &TimeElements,
         system: &ResponseSystem<'_>,
@@ -132,58 +124,31 @@ impl RevolutionLoads {
                 PointLoads::new(rotor, system, samples, revolution, p, loads)
             })
             .collect();
-        let mut hinge = vec![[Vec::new(), Vec::new()]; rotor.model().flaps.len()];
-        let mut balance = PowerBalance::default();
+        let mut power = PowerBalance::default();
         for (weight, at) in unit_weights(time).into_iter().zip(&points) {
-            balance.add(weight, &at.power);
-            for (k, history) in hinge.iter_mut().enumerate() {
-                for (part, moment) in history.iter_mut().zip(&at.hinge) {
-                    part.push(moment[k]);
-                }
-            }
+            power.add(weight, &at.power);
         }
-        let accelerations = samples.qdd.clone();
-        let root = points.iter().map(|at| at.root).collect();
-        let lifting = points.into_iter().map(|at| at.lifting).collect();
-        Self { lifting, root, hinge, power: balance, accelerations }
-    }
-
-    fn series(time: &TimeElements, values: &[f64], count: usize) -> HarmonicSeries {
-        HarmonicSeries::project(time.points(), &unit_weights(time), values, count)
+        let sections = revolution.sections.iter();
+        let lifting = sections.map(|row| row.iter().map(Lifting::of).collect()).collect();
+        Self { lifting, points, power, accelerations: samples.qdd.clone() }
     }
 
     pub(crate) fn root(&self, time: &TimeElements, count: usize) -> SixLoads {
-        let component = |k: usize| {
-            let values: Vec<f64> = self.root.iter().map(|r| r[k]).collect();
-            Self::series(time, &values, count)
-        };
-        SixLoads {
-            components: [
-                component(0),
-                component(1),
-                component(2),
-                component(3),
-                component(4),
-                component(5),
-            ],
-        }
+        let component = |k: usize| series(time, self.points.iter().map(|at| at.root[k]), count);
+        SixLoads { components: std::array::from_fn(component) }
     }
 
     pub(crate) fn hinge(&self, time: &TimeElements, count: usize) -> Vec<HingeMoment> {
-        self.hinge
-            .iter()
-            .map(|[aerodynamic, inertial]| HingeMoment {
-                aerodynamic: Self::series(time, aerodynamic, count),
-                inertial: Self::series(time, inertial, count),
-            })
-            .collect()
+        let flaps = self.points.first().map_or(0, |at| at.hinge[0].len());
+        let of = |part: usize, flap: usize| {
+            series(time, self.points.iter().map(|at| at.hinge[part][flap]), count)
+        };
+        (0..flaps).map(|k| HingeMoment { aerodynamic: of(0, k), inertial: of(1, k) }).collect()
     }
 
     pub(crate) fn hub(&self, rotor: &Rotor, time: &TimeElements) -> SixLoads {
-        let count = rotor.discretisation().load_harmonics;
-        let blade = self.root(time, count + 1);
-        let blades: Vec<SixLoads> = (0..rotor.model().blades).map(|_| blade.clone()).collect();
-        hub_loads(&blades, count)
+        let count = rotor.discretisation.load_harmonics;
+        hub_loads(&vec![self.root(time, count + 1); rotor.model().blades], count)
     }
 }
 
@@ -200,7 +165,7 @@ fn settled_motion(
     orbit: &PeriodicSolution,
     absolute: f64,
 ) -> Result<(OrbitSamples, Revolution), ResponseError> {
-    let mass = rotor.mass();
+    let mass = &rotor.mass;
     let inverse =
         mass.clone().cholesky().ok_or(ResponseError::MassMatrix { modes: mass.nrows() })?;
     let (mut samples, mut forces) = (orbit.samples.clone(), orbit.force.clone());

@@ -56,7 +56,7 @@ impl Loading {
         let state = BladeState { motion, pitch, loads };
         if let Some(modal) = &blade.modal {
             let coordinates = ModalMotion { value: q, rate: qd, acceleration: qdd };
-            let found = modal.loads(coordinates, pitch.into());
+            let found = modal.loads(coordinates, pitch);
             return Self {
                 wrenches: moderate_wrenches(blade, state, &found),
                 turning: moderate_turning(blade, modal, state, q, &found),
@@ -64,7 +64,7 @@ impl Loading {
                 axial: AxialMotion::condensed(blade, state, found),
             };
         }
-        let first = system.air.first_station();
+        let first = system.air.first_station;
         let aerodynamic = aerodynamic_loads(blade.grid.len(), first, sections);
         let slopes = motion.v.slope.iter().zip(&motion.w.slope);
         Self {

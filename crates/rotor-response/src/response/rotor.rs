@@ -14,10 +14,10 @@ use rotor_wake::FlightState;
 #[derive(Debug, Clone)]
 pub struct Rotor {
     model: RotorModel,
-    discretisation: Discretisation,
+    pub(crate) discretisation: Discretisation,
     blade: ResponseBlade,
-    mass: DMatrix<f64>,
-    damping: DMatrix<f64>,
+    pub(crate) mass: DMatrix<f64>,
+    pub(crate) damping: DMatrix<f64>,
 }
 
 impl Rotor {
@@ -39,7 +39,11 @@ impl Rotor {
         Ok(Self { model, discretisation, blade, mass, damping })
     }
 
-    pub(crate) fn with_damping(&self, model: RotorModel, damping: DMatrix<f64>) -> Self {
+    /// The same rotor with another damping of its modes over critical.
+    #[must_use]
+    pub fn with_modal_damping(&self, modal_damping: f64) -> Self {
+        let model = RotorModel { modal_damping, ..self.model.clone() };
+        let damping = self.blade.damping(modal_damping, model.lag_damper);
         Self { model, damping, ..self.clone() }
     }
 
@@ -51,18 +55,6 @@ impl Rotor {
     /// Weight of all blades, `m0 Omega^2 R^2`; zero without gravity.
     pub fn blades_weight(&self) -> f64 {
         self.model.blades as f64 * self.model.gravity * self.blade.grid.integral(&self.blade.mass)
-    }
-
-    pub(crate) fn mass(&self) -> &DMatrix<f64> {
-        &self.mass
-    }
-
-    pub(crate) fn damping(&self) -> &DMatrix<f64> {
-        &self.damping
-    }
-
-    pub(crate) fn discretisation(&self) -> Discretisation {
-        self.discretisation
     }
 
     /// The blade at its stations.

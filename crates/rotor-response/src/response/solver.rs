@@ -3,9 +3,9 @@
 use crate::loads::power::PowerBalance;
 use crate::loads::wrenches::SixLoads;
 use crate::response::hinge::HingeMoment;
-use crate::response::revolution::{Lifting, RevolutionLoads, SETTLED, unit_weights};
+use crate::response::revolution::{Lifting, RevolutionLoads, SETTLED, series};
 use crate::response::rotor::up;
-use crate::response::system::{PointInput, ResponseSystem};
+use crate::response::system::PointInput;
 use crate::sections::air::{AirPoint, FlapAngle};
 use crate::sections::flight_air::FlightAir;
 use crate::{Condition, ResponseError, Rotor};
@@ -101,7 +101,7 @@ pub struct RotorSolver {
     pub(crate) time: TimeElements,
     pub(crate) solver: PeriodicSolver,
     tolerances: ResponseTolerances,
-    advance_ratio: f64,
+    pub(crate) advance_ratio: f64,
 }
 
 impl RotorSolver {
@@ -114,7 +114,7 @@ impl RotorSolver {
         advance_ratio: f64,
         tolerances: ResponseTolerances,
     ) -> Result<Self, ResponseError> {
-        let d = rotor.discretisation();
+        let d = rotor.discretisation;
         let time = TimeElements::new(d.time_elements, d.time_order, d.time_gauss_points)?;
         let air = FlightAir::new(rotor.model(), rotor.blade(), &time, advance_ratio)?;
         let settings = PeriodicSettings {
@@ -143,14 +143,6 @@ impl RotorSolver {
         self.tolerances
     }
 
-    pub(crate) fn advance_ratio(&self) -> f64 {
-        self.advance_ratio
-    }
-
-    pub(crate) fn time(&self) -> &TimeElements {
-        &self.time
-    }
-
     /// Periodic response with the inflow settled on the thrust it carries.
     ///
     /// `start` is a solution nearby (or none: the undeformed blade and the inflow of zero thrust).
@@ -165,11 +157,7 @@ impl RotorSolver {
         inflow_model: &dyn InflowModel,
         start: Option<&RotorSolution>,
     ) -> Result<RotorSolution, ResponseError> {
-        let expected = self.rotor.model().flaps.len();
-        let given = condition.flap_angles_rad.len();
-        if given != expected {
-            return Err(ResponseError::FlapMotions { given, expected });
-        }
+        self.check_flaps(&condition.flap_angles_rad)?;
         let mu = condition.flight.advance_ratio;
         if (mu - self.advance_ratio).abs() > 1e-12 {
             return Err(ResponseError::Parameter {
@@ -178,7 +166,7 @@ impl RotorSolver {
                 expected: "the advance ratio the solver was prepared for",
             });
         }
-        let dof = self.rotor.mass().nrows();
+        let dof = self.rotor.mass.nrows();
         let mut orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
         let mut inflow =
             inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
@@ -220,14 +208,14 @@ impl RotorSolver {
             let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
 
             if size <= self.tolerances.inflow && is_exact {
-                let root = loads.root(&self.time, rotor.discretisation().load_harmonics);
+                let root = loads.root(&self.time, rotor.discretisation.load_harmonics);
                 return Ok(RotorSolution {
                     lifting: loads.lifting.clone(),
                     accelerations: loads.accelerations.clone(),
                     modal: self.modal_harmonics(&solution.samples),
                     orbit: solution.orbit,
                     thrust_coefficient: ct,
-                    hinge: loads.hinge(&self.time, rotor.discretisation().load_harmonics),
+                    hinge: loads.hinge(&self.time, rotor.discretisation.load_harmonics),
                     inflow,
                     power: loads.power,
                     root,
@@ -267,6 +255,12 @@ impl RotorSolver {
         })
     }
 
+    /// Refuses another number of flap motions than the blade has flaps.
+    pub(crate) fn check_flaps(&self, motions: &[HarmonicSeries]) -> Result<(), ResponseError> {
+        let (given, expected) = (motions.len(), self.rotor.model().flaps.len());
+        if given == expected { Ok(()) } else { Err(ResponseError::FlapMotions { given, expected }) }
+    }
+
     /// Why an orbit was not found; sections that may stall are the likely reason.
     pub(crate) fn orbit_error(
         rotor: &Rotor,
@@ -289,7 +283,7 @@ impl RotorSolver {
         condition: &Condition,
         inflow: &InducedInflow,
     ) -> Vec<PointInput> {
-        let first = self.air.first_station();
+        let first = self.air.first_station;
         let stations = &self.rotor.blade().grid.x()[first..];
         let mu = condition.flight.advance_ratio;
         let through = mu * condition.flight.shaft_tilt_rad.tan();
@@ -299,7 +293,7 @@ impl RotorSolver {
             .iter()
             .map(|&azimuth| {
                 let (sin, cos) = azimuth.sin_cos();
-                let pitch = ResponseSystem::root_pitch(&condition.controls, azimuth);
+                let pitch = condition.controls.root_pitch(azimuth);
                 let flap: Vec<FlapAngle> =
                     condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
                 PointInput {
@@ -325,16 +319,9 @@ impl RotorSolver {
     }
 
     pub(crate) fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
-        let weights = unit_weights(&self.time);
-        let count = self.rotor.discretisation().load_harmonics;
-        samples
-            .q
-            .row_iter()
-            .map(|row| {
-                let values: Vec<f64> = row.iter().copied().collect();
-                HarmonicSeries::project(&samples.azimuth_rad, &weights, &values, count)
-            })
-            .collect()
+        let count = self.rotor.discretisation.load_harmonics;
+        let rows = samples.q.row_iter();
+        rows.map(|row| series(&self.time, row.iter().copied(), count)).collect()
     }
 }
 

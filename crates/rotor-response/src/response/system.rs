@@ -8,7 +8,7 @@ use crate::sections::air::{
 use crate::sections::flight_air::{FlightAir, LoadLaw, POINTS_TOGETHER};
 use crate::structure::blade::ResponseBlade;
 use crate::structure::equations::{BladeState, Equations, SpanLoads, StructureScratch};
-use crate::structure::motion::{Motion, RootPitch};
+use crate::structure::motion::Motion;
 use crate::{Couplings, FlapMass};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -62,7 +62,7 @@ impl ResponseSystem<'_> {
     /// Flow at every lifting station for the motion held in `motion`.
     pub(crate) fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
         let input = &self.points[point];
-        let first = self.air.first_station();
+        let first = self.air.first_station;
         input
             .inflow
             .iter()
@@ -83,8 +83,7 @@ impl ResponseSystem<'_> {
     /// [`ResponseError::StallNotPeriodic`].
     pub(crate) fn revolution(&self, samples: &OrbitSamples) -> Result<Revolution, ResponseError> {
         let at = |p: usize| {
-            let mut motion = Motion::default();
-            self.fill(&mut motion, samples, p);
+            let motion = self.motion(samples, p);
             let flows = self.flows(p, &motion);
             (motion, flows)
         };
@@ -101,27 +100,37 @@ impl ResponseSystem<'_> {
         samples: &OrbitSamples,
         out: &mut DMatrix<f64>,
     ) {
-        let columns = out.as_mut_slice().par_chunks_mut(self.dof()).with_min_len(POINTS_TOGETHER);
-        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, column)| {
+        self.by_point(out, |scratch, p, column| {
             let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
             self.span_loads(p, motion, sections, &mut scratch.loads);
-            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
-            self.project(p, motion, [&q, &qd, &qdd], scratch, column);
+            self.project(p, motion, samples.at(p), scratch, column);
         });
     }
 
+    /// Lets `write` fill the column of every point.
+    fn by_point(
+        &self,
+        out: &mut DMatrix<f64>,
+        write: impl Fn(&mut Scratch, usize, &mut [f64]) + Sync,
+    ) {
+        let columns = out.as_mut_slice().par_chunks_mut(self.dof()).with_min_len(POINTS_TOGETHER);
+        columns
+            .enumerate()
+            .for_each_init(Scratch::default, |scratch, (p, column)| write(scratch, p, column));
+    }
+
     /// Motion of the blade at one point.
-    pub(crate) fn fill(&self, motion: &mut Motion, samples: &OrbitSamples, point: usize) {
-        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
-        motion.fill(self.blade, &column(&samples.q), &column(&samples.qd), &column(&samples.qdd));
+    pub(crate) fn motion(&self, samples: &OrbitSamples, point: usize) -> Motion {
+        let mut motion = Motion::default();
+        motion.fill(self.blade, samples.at(point));
+        motion
     }
 
     /// How section loads follow from flows, or with `changes` from what a flap changes them by.
     pub(crate) fn load_law(&self, changes: bool) -> LoadLaw<'_> {
-        let lifting = &self.blade.grid.x()[self.air.first_station()..];
+        let lifting = &self.blade.grid.x()[self.air.first_station..];
         let lost_from = lifting.partition_point(|x| *x <= self.blade.tip_loss);
-        LoadLaw { scales: &self.blade.air[self.air.first_station()..], lost_from, changes }
+        LoadLaw { scales: &self.blade.air[self.air.first_station..], lost_from, changes }
     }
 
     /// Motion of the section at a station that carries flap `k`, and of the flap.
@@ -142,7 +151,7 @@ impl ResponseSystem<'_> {
             w: [w.value[i], w.rate[i], w.acceleration[i]],
             w_x: [w.slope[i], w.slope_rate[i], w.slope_acceleration[i]],
             twist: [
-                pitch.angle + self.blade.twist[i] + phi.value[i],
+                pitch.angle_rad + self.blade.twist[i] + phi.value[i],
                 pitch.rate + phi.rate[i],
                 pitch.acceleration + phi.acceleration[i],
             ],
@@ -166,7 +175,7 @@ impl ResponseSystem<'_> {
     ) {
         out.clear(self.blade.grid.len());
         out.gravity = self.points[point].gravity;
-        let first = self.air.first_station();
+        let first = self.air.first_station;
         for (s, load) in sections.iter().enumerate() {
             let axes = SectionAxes::of(self.blade, motion, first + s);
             [out.fy[first + s], out.fz[first + s]] = axes.force(load);
@@ -175,7 +184,7 @@ impl ResponseSystem<'_> {
         let [_, y, z] = out.gravity;
         for (i, centre) in self.blade.mass_centre.iter().enumerate() {
             if *centre != 0.0 {
-                let twist = self.points[point].air.pitch.angle + self.blade.twist[i];
+                let twist = self.points[point].air.pitch.angle_rad + self.blade.twist[i];
                 let (sin, cos) = (twist + motion.phi.value[i]).sin_cos();
                 let arm = self.blade.section_mass[i] * centre;
                 out.moment[i] += arm * (cos * z - sin * y);
@@ -227,34 +236,35 @@ impl ResponseSystem<'_> {
     fn settled_residual(
         &self,
         point: usize,
-        [q, qd, qdd]: [&[f64]; 3],
+        coordinates: [&[f64]; 3],
         motion: &mut Motion,
         scratch: &mut Scratch,
     ) -> Vec<f64> {
-        motion.fill(self.blade, q, qd, qdd);
+        motion.fill(self.blade, coordinates);
         let flows = self.flows(point, motion);
         let sections = self.air.settled_loads(point, &flows, self.load_law(false));
         self.span_loads(point, motion, &sections, &mut scratch.loads);
-        let mut out = vec![0.0; q.len()];
-        self.project(point, motion, [q, qd, qdd], scratch, &mut out);
+        let mut out = vec![0.0; self.dof()];
+        self.project(point, motion, coordinates, scratch, &mut out);
         out
     }
 
     fn tangent(&self, samples: &OrbitSamples, point: usize) -> LocalTangent {
         let n = self.dof();
-        let column = |m: &DMatrix<f64>| -> Vec<f64> { m.column(point).iter().copied().collect() };
-        let state = [column(&samples.q), column(&samples.qd), column(&samples.qdd)];
+        let state = samples.at(point);
         let (mut motion, mut scratch) = (Motion::default(), Scratch::default());
-        let mut settled = |[q, qd, qdd]: &[Vec<f64>; 3]| {
-            self.settled_residual(point, [q, qd, qdd], &mut motion, &mut scratch)
+        let mut settled = |coordinates: [&[f64]; 3]| {
+            self.settled_residual(point, coordinates, &mut motion, &mut scratch)
         };
-        let base = settled(&state);
+        let base = settled(state);
         let mut derivatives = [0, 1, 2].map(|_| DMatrix::zeros(n, n));
         for (which, matrix) in derivatives.iter_mut().enumerate() {
             for j in 0..n {
-                let mut moved = state.clone();
-                moved[which][j] += TANGENT_STEP;
-                let value = settled(&moved);
+                let mut moved = state[which].to_vec();
+                moved[j] += TANGENT_STEP;
+                let mut coordinates = state;
+                coordinates[which] = &moved;
+                let value = settled(coordinates);
                 for i in 0..n {
                     matrix[(i, j)] = (value[i] - base[i]) / TANGENT_STEP;
                 }
@@ -291,31 +301,12 @@ impl PeriodicSystem for ResponseSystem<'_> {
 }
 
 impl ResponseSystem<'_> {
-    /// Root pitch at an azimuth from the controls.
-    pub(crate) fn root_pitch(controls: &crate::Controls, azimuth_rad: f64) -> RootPitch {
-        let (sin, cos) = azimuth_rad.sin_cos();
-        let (c, s) = (controls.theta1c_rad, controls.theta1s_rad);
-        RootPitch {
-            angle: controls.theta0_rad + c * cos + s * sin,
-            rate: s * cos - c * sin,
-            acceleration: -c * cos - s * sin,
-        }
-    }
-}
-
-impl ResponseSystem<'_> {
     /// What the residual is without loads of the air and of the flaps.
     pub(crate) fn unloaded(&self, samples: &OrbitSamples) -> DMatrix<f64> {
-        let dof = self.dof();
-        let mut out = DMatrix::zeros(dof, self.points.len());
-        let columns = out.as_mut_slice().par_chunks_mut(dof).with_min_len(POINTS_TOGETHER);
-        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, bare)| {
-            let mut motion = Motion::default();
-            self.fill(&mut motion, samples, p);
-            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
+        let mut out = DMatrix::zeros(self.dof(), self.points.len());
+        self.by_point(&mut out, |scratch, p, bare| {
             scratch.loads.clear(self.blade.grid.len());
-            self.project(p, &motion, [&q, &qd, &qdd], scratch, bare);
+            self.project(p, &self.motion(samples, p), samples.at(p), scratch, bare);
         });
         out
     }
@@ -354,8 +345,7 @@ impl ResponseSystem<'_> {
         let along =
             ResponseSystem { points: self.points.iter().zip(flaps).map(along).collect(), ..*self };
         let changed = |p: usize| {
-            let mut motion = Motion::default();
-            along.fill(&mut motion, samples, p);
+            let motion = along.motion(samples, p);
             // the inputs of the flap are linear in its motion: along the direction they are their changes
             let mut changes = along.flows(p, &motion);
             for flow in &mut changes {
@@ -367,16 +357,10 @@ impl ResponseSystem<'_> {
         let points = (0..self.points.len()).into_par_iter().with_min_len(POINTS_TOGETHER);
         let (motions, flows): (Vec<Motion>, Vec<Vec<SectionFlow>>) = points.map(changed).unzip();
         let sections = self.air.loads(&flows, self.load_law(true))?;
-        let dof = self.dof();
-        let mut out = DMatrix::zeros(dof, self.points.len());
-        let columns = out.as_mut_slice().par_chunks_mut(dof).with_min_len(POINTS_TOGETHER);
-        columns.enumerate().for_each_init(Scratch::default, |scratch, (p, slope)| {
-            let motion = &motions[p];
-            let of = |m: &DMatrix<f64>| -> Vec<f64> { m.column(p).iter().copied().collect() };
-            let [q, qd, qdd] = [&samples.q, &samples.qd, &samples.qdd].map(of);
-            let coordinates = [q.as_slice(), &qd, &qdd];
-            along.span_loads(p, motion, &sections[p], &mut scratch.loads);
-            self.project(p, motion, coordinates, scratch, slope);
+        let mut out = DMatrix::zeros(self.dof(), self.points.len());
+        self.by_point(&mut out, |scratch, p, slope| {
+            along.span_loads(p, &motions[p], &sections[p], &mut scratch.loads);
+            self.project(p, &motions[p], samples.at(p), scratch, slope);
             for (slope, bare) in slope.iter_mut().zip(&bare.column(p)) {
                 *slope -= bare;
             }

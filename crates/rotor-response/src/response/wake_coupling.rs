@@ -1,7 +1,6 @@
 //! What a wake wants to know of a response: circulation over the disk and where the blades are.
 
 use crate::response::revolution::{Lifting, RevolutionLoads, unit_weights};
-use crate::response::system::ResponseSystem;
 use crate::{Controls, ResponseError, Rotor, RotorSolution, RotorSolver};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use rotor_fem::TimeElements;
@@ -114,7 +113,7 @@ impl RotorSolver {
         wake_rotor: &WakeRotor,
         azimuths: usize,
     ) -> Result<CirculationMap, ResponseError> {
-        circulation(self.rotor(), self.time(), &solution.lifting, wake_rotor, azimuths)
+        circulation(self.rotor(), &self.time, &solution.lifting, wake_rotor, azimuths)
     }
 
     /// The lifting lines of the deflected blades under pitch controls: quarter chord of the coned blade, displaced by flap
@@ -151,7 +150,7 @@ impl RotorSolver {
         .with_trailing_edge(
             |n| 0.75 * chords[n],
             |i, n| {
-                let root = ResponseSystem::root_pitch(controls, psi[i]).angle;
+                let root = controls.root_pitch(psi[i]).angle_rad;
                 root + twist[n] + sum(&torsion, &motion[i][twisting..], n)
             },
         )

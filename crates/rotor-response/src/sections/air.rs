@@ -26,8 +26,9 @@
 use crate::ReverseFlow;
 use crate::model::air_scales::AirScales;
 use crate::structure::blade::ResponseBlade;
-use crate::structure::motion::{Motion, RootPitch};
+use crate::structure::motion::Motion;
 use flap_aero::{FreeStream, loads_of_outputs};
+use rotor_fem::PitchMotion;
 
 /// Angle of one trailing-edge flap with its azimuth derivatives (rad).
 pub(crate) type FlapAngle = [f64; 3];
@@ -69,7 +70,7 @@ pub(crate) struct AirPoint {
     pub(crate) sin: f64,
     pub(crate) cos: f64,
     pub(crate) advance_ratio: f64,
-    pub(crate) pitch: RootPitch,
+    pub(crate) pitch: PitchMotion,
     pub(crate) reverse_flow: ReverseFlow,
 }
 
@@ -166,7 +167,7 @@ pub(crate) fn section_flow(
     delta: FlapAngle,
 ) -> SectionFlow {
     let (w, phi) = (&motion.w, &motion.phi);
-    let theta = point.pitch.angle + blade.twist[i] + phi.value[i];
+    let theta = point.pitch.angle_rad + blade.twist[i] + phi.value[i];
     let theta_rate = point.pitch.rate + phi.rate[i];
     let AirScales { chord, centre, sweep, .. } = blade.air[i];
     let om = theta_rate + w.slope[i] + blade.precone;

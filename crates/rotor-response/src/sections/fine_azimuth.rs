@@ -71,8 +71,10 @@ struct Piece {
 /// The finer azimuth points of one station.
 #[derive(Debug, Clone)]
 pub(crate) struct FineAzimuth {
-    points: Vec<f64>,
-    half_widths: Vec<f64>,
+    /// Azimuths of the points, rad, ascending.
+    pub(crate) points: Vec<f64>,
+    /// Half the length of every piece, rad.
+    pub(crate) half_widths: Vec<f64>,
     pieces: Vec<Piece>,
     weights: Vec<f64>,
 }
@@ -111,16 +113,6 @@ impl FineAzimuth {
             }
         }
         cut.then_some(fine)
-    }
-
-    /// Azimuths of the points, rad, ascending.
-    pub(crate) fn points(&self) -> &[f64] {
-        &self.points
-    }
-
-    /// Half the length of every piece, rad.
-    pub(crate) fn half_widths(&self) -> &[f64] {
-        &self.half_widths
     }
 
     /// The flow at the finer points, without its sense.
@@ -204,7 +196,7 @@ mod tests {
         let whole = Collocation::new(&time);
         let fine = FineAzimuth::new(&time, &SPEED).unwrap();
         let (points, collocation) = if cut {
-            (fine.points(), whole.on(fine.half_widths()))
+            (fine.points.as_slice(), whole.on(&fine.half_widths))
         } else {
             (time.points(), whole)
         };
@@ -239,11 +231,11 @@ mod tests {
         let fine = FineAzimuth::new(&time, &SPEED).unwrap();
         let load = |fz: f64| SectionLoads { fz, ..SectionLoads::default() };
         let smooth = |psi: &f64| load(1.0 + psi.sin() - 0.3 * psi.powi(3));
-        let back = fine.loads(&fine.points().iter().map(smooth).collect::<Vec<_>>());
+        let back = fine.loads(&fine.points.iter().map(smooth).collect::<Vec<_>>());
         for (got, psi) in back.iter().zip(time.points()) {
             assert_abs_diff_eq!(got.fz, smooth(psi).fz, epsilon = 1e-9);
         }
-        let kinked: Vec<_> = fine.points().iter().map(|psi| load(SPEED.at(*psi).abs())).collect();
+        let kinked: Vec<_> = fine.points.iter().map(|psi| load(SPEED.at(*psi).abs())).collect();
         let back = fine.loads(&kinked);
         let mean: f64 = back.iter().zip(time.weights()).map(|(f, w)| w * f.fz).sum();
         assert_abs_diff_eq!(mean, travelled(TAU), epsilon = 1e-12);
@@ -255,11 +247,11 @@ mod tests {
         let fine = FineAzimuth::new(&time, &SPEED).unwrap();
         let at = |psi: &f64| SectionFlow { u_t: SPEED.at(*psi), ..SectionFlow::default() };
         let flows = fine.flows(&time.points().iter().map(at).collect::<Vec<_>>());
-        assert_eq!(flows.len(), fine.points().len());
-        for (flow, psi) in flows.iter().zip(fine.points()) {
+        assert_eq!(flows.len(), fine.points.len());
+        for (flow, psi) in flows.iter().zip(&fine.points) {
             assert_abs_diff_eq!(flow.u_t, SPEED.at(*psi), epsilon = 1e-8);
         }
-        assert!(fine.points().windows(2).all(|p| p[0] < p[1]));
+        assert!(fine.points.windows(2).all(|p| p[0] < p[1]));
     }
 
     #[test]

@@ -9,7 +9,7 @@ mod memory;
 /// Azimuth points, and stations, that one thread takes together at least: less would cost more to hand out.
 pub(crate) const POINTS_TOGETHER: usize = 4;
 
-pub(crate) use self::memory::{StationChannel, StationMemory};
+pub(crate) use self::memory::StationMemory;
 use crate::model::air_scales::{AirScales, sweep_cosine};
 
 use crate::model::rotor_model::MACH_LIMIT;
@@ -76,7 +76,8 @@ struct Station {
 /// The section aerodynamics of one advance ratio, at every lifting station and azimuth point.
 #[derive(Debug, Clone)]
 pub(crate) struct FlightAir {
-    first_station: usize,
+    /// First lifting station.
+    pub(crate) first_station: usize,
     stations: Vec<Station>,
 }
 
@@ -103,11 +104,6 @@ impl FlightAir {
             })
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Self { first_station, stations })
-    }
-
-    /// First lifting station.
-    pub(crate) fn first_station(&self) -> usize {
-        self.first_station
     }
 
     /// Whether any section stalls dynamically: its loads are then not linear in the flap.
@@ -210,11 +206,11 @@ impl Station {
             StationAir::new(model, place, collocation, points, &magnitudes)
         };
         let fine = |azimuth: FineAzimuth| {
-            let collocation = collocation.on(azimuth.half_widths());
+            let collocation = collocation.on(&azimuth.half_widths);
             Ok::<_, ResponseError>(FineStation {
                 reverse_flow: model.reverse_flow,
-                rigid_speeds: speeds(azimuth.points()),
-                air: air(&collocation, azimuth.points())?,
+                rigid_speeds: speeds(&azimuth.points),
+                air: air(&collocation, &azimuth.points)?,
                 azimuth,
             })
         };
@@ -229,24 +225,12 @@ impl Station {
         flows: &[SectionFlow],
         law: StationLaw,
     ) -> Result<Vec<SectionLoads>, ResponseError> {
-        match &self.fine {
-            None => self.air.loads(flows, law),
-            Some(fine) => fine.loads(flows, law),
+        let Some(fine) = &self.fine else { return self.air.loads(flows, law) };
+        let mut flows = fine.azimuth.flows(flows);
+        for (flow, rigid) in flows.iter_mut().zip(&fine.rigid_speeds) {
+            flow.sense = sense(fine.reverse_flow, flow.u_t, flow.u_p, *rigid);
         }
-    }
-}
-
-impl FineStation {
-    fn loads(
-        &self,
-        flows: &[SectionFlow],
-        law: StationLaw,
-    ) -> Result<Vec<SectionLoads>, ResponseError> {
-        let mut flows = self.azimuth.flows(flows);
-        for (flow, rigid) in flows.iter_mut().zip(&self.rigid_speeds) {
-            flow.sense = sense(self.reverse_flow, flow.u_t, flow.u_p, *rigid);
-        }
-        Ok(self.azimuth.loads(&self.air.loads(&flows, law)?))
+        Ok(fine.azimuth.loads(&fine.air.loads(&flows, law)?))
     }
 }
 
@@ -293,15 +277,10 @@ impl StationAir {
         let settled: Vec<[[f64; 4]; 3]> = coefficients
             .iter()
             .map(|k| {
-                let mut gain = [[0.0; 4]; 3];
-                for channel in &k.lags {
-                    for (row, output) in gain.iter_mut().zip(channel.output) {
-                        for (g, input) in row.iter_mut().zip(channel.input) {
-                            *g += output * input;
-                        }
-                    }
-                }
-                gain
+                let gain = |o: usize, i: usize| {
+                    k.lags.iter().fold(0.0, |sum, lag| sum + lag.output[o] * lag.input[i])
+                };
+                std::array::from_fn(|o| std::array::from_fn(|i| gain(o, i)))
             })
             .collect();
         let prompt: Vec<PromptCoefficients> = coefficients

@@ -8,7 +8,7 @@ use crate::{
 use nalgebra::DMatrix;
 use rotor_fem::{
     BladeProperties, ModalBlade, ModalShape, ModeCount, ModeKind, ModeSet, ModerateBlade,
-    ModerateSpec, SectionShape, UncoupledMode, modal_basis,
+    ModerateSpec, SectionShape, UncoupledMode, uncoupled_modes,
 };
 
 /// Station inboard of which the flow may turn round, radius R: the largest advance ratio the attached
@@ -86,7 +86,7 @@ impl ResponseBlade {
     /// Samples mode shapes and properties of a blade at the stations.
     ///
     /// # Errors
-    /// [`ResponseError::SpanPoints`] and the errors of the finite elements.
+    /// [`ResponseError::Parameter`] for the points of a piece, and the errors of the finite elements.
     pub(crate) fn new(
         model: &RotorModel,
         properties: &BladeProperties,
@@ -95,7 +95,7 @@ impl ResponseBlade {
         let [flap, lag, torsion] = discretisation.modes;
         let count = ModeCount { flap, lag, torsion, axial: 0 };
         let elements = discretisation.blade_elements;
-        let modes = modal_basis(properties, elements, count, discretisation.basis)?;
+        let modes = uncoupled_modes(properties, elements, count, discretisation.basis)?;
         let root = properties.spec().root_offset;
         let length = (1.0 - root) / elements as f64;
         let breaks: Vec<f64> = (1..elements)
@@ -107,14 +107,10 @@ impl ResponseBlade {
             .collect();
         let turning = [model.root_cutout, REVERSE_FLOW_END];
         let grid = SpanGrid::halved(root, &breaks, turning, discretisation.span_points_per_piece)?;
-        let family = |kind: ModeKind| -> Result<Shapes, ResponseError> {
-            let samples = modes
-                .of(kind)
-                .iter()
-                .map(|mode| grid.x().iter().map(|x| mode.shape(*x)).collect())
-                .collect::<Result<Vec<Vec<[f64; 3]>>, _>>()?;
-            Ok(Shapes::sample(&samples))
-        };
+        let samples = modes.sample(grid.x())?;
+        let (of_flap, rest) = samples.split_at(flap);
+        let (of_lag, of_torsion) = rest.split_at(lag);
+        let root_rotation = root_rotations(&modes, root)?;
         let moderate = match model.couplings {
             Couplings::Moderate(torsion) => {
                 let spec = ModerateSpec {
@@ -139,13 +135,13 @@ impl ResponseBlade {
             flap.map(|k| model.flaps[k].inertia(air.chord, air.centre))
         };
         Ok(Self {
-            flap: family(ModeKind::Flap)?,
-            lag: family(ModeKind::Lag)?,
-            torsion: family(ModeKind::Torsion)?,
-            frequencies: modes.modes().iter().map(UncoupledMode::frequency).collect(),
-            modal_masses: modes.modes().iter().map(UncoupledMode::modal_mass).collect(),
-            root_spring: root_springs(properties, &modes)?,
-            root_rotation: root_rotations(&modes, root)?,
+            flap: Shapes::sample(of_flap),
+            lag: Shapes::sample(of_lag),
+            torsion: Shapes::sample(of_torsion),
+            frequencies: modes.modes().iter().map(|mode| mode.frequency).collect(),
+            modal_masses: modes.modes().iter().map(|mode| mode.modal_mass).collect(),
+            root_spring: root_springs(properties, &modes, &root_rotation),
+            root_rotation,
             mass: along(&|x| properties.mass(x)),
             section_mass: along(&|x| properties.section_mass(x)),
             ei_flap: along(&|x| properties.flap_stiffness(x)),
@@ -165,10 +161,7 @@ impl ResponseBlade {
             mass_centre: along(&|x| model.mass_centre().value(x)),
             offsets: model.offsets,
             root_offset: root,
-            modal: match &moderate {
-                Some(blade) => Some(modal_blade(blade, &modes, &grid)?),
-                None => None,
-            },
+            modal: moderate.as_ref().map(|b| modal_blade(b, &modes, &grid)).transpose()?,
             moderate,
             modes,
             properties: properties.clone(),
@@ -195,17 +188,13 @@ impl ResponseBlade {
 
     /// Number of modal coordinates.
     pub(crate) fn dof(&self) -> usize {
-        self.flap.count() + self.lag.count() + self.torsion.count()
+        self.modes.len()
     }
 
     /// Family of a modal coordinate and its number in it, from 1.
     pub(crate) fn mode(&self, coordinate: usize) -> (ModeKind, usize) {
-        let (flap, lag) = (self.flap.count(), self.lag.count());
-        match coordinate {
-            i if i < flap => (ModeKind::Flap, i + 1),
-            i if i < flap + lag => (ModeKind::Lag, i - flap + 1),
-            i => (ModeKind::Torsion, i - flap - lag + 1),
-        }
+        let mode = &self.modes.modes()[coordinate];
+        (mode.kind, mode.number)
     }
 
     /// Modal mass matrix: families do not couple, modes of a family do only by rounding.
@@ -277,31 +266,24 @@ impl ResponseBlade {
 /// ```text
 /// K_ij = k s_i s_j,   s_i the slope (twist) of mode i at the root
 /// ```
-fn root_springs(
-    properties: &BladeProperties,
-    modes: &ModeSet,
-) -> Result<DMatrix<f64>, ResponseError> {
-    let rotations = root_rotations(modes, properties.spec().root_offset)?;
+fn root_springs(properties: &BladeProperties, modes: &ModeSet, rotations: &[f64]) -> DMatrix<f64> {
     let [lag, flap, feather] = properties.spec().root.springs();
-    let rotations: Vec<_> = (modes.modes().iter().zip(rotations))
-        .map(|(mode, rotation)| match mode.kind() {
-            ModeKind::Flap => (mode.kind(), flap, rotation),
-            ModeKind::Lag => (mode.kind(), lag, rotation),
-            _ => (mode.kind(), feather, rotation),
-        })
-        .collect();
-    let count = rotations.len();
-    Ok(DMatrix::from_fn(count, count, |i, j| {
-        let ((kind, spring, a), (other, _, b)) = (rotations[i], rotations[j]);
-        if kind == other { spring * a * b } else { 0.0 }
-    }))
+    let kinds: Vec<ModeKind> = modes.modes().iter().map(|mode| mode.kind).collect();
+    DMatrix::from_fn(kinds.len(), kinds.len(), |i, j| {
+        let spring = match kinds[i] {
+            ModeKind::Flap => flap,
+            ModeKind::Lag => lag,
+            _ => feather,
+        };
+        if kinds[i] == kinds[j] { spring * rotations[i] * rotations[j] } else { 0.0 }
+    })
 }
 
 /// Slope of every flap and lag mode at the root, twist of every torsion mode.
 fn root_rotations(modes: &ModeSet, root: f64) -> Result<Vec<f64>, ResponseError> {
     let rotation = |mode: &UncoupledMode| {
         let shape = mode.shape(root)?;
-        Ok(if matches!(mode.kind(), ModeKind::Flap | ModeKind::Lag) { shape[1] } else { shape[0] })
+        Ok(if matches!(mode.kind, ModeKind::Flap | ModeKind::Lag) { shape[1] } else { shape[0] })
     };
     modes.modes().iter().map(rotation).collect()
 }
@@ -316,7 +298,7 @@ fn modal_blade(
     let shape = |mode: &UncoupledMode, x: f64| -> Result<SectionShape, ResponseError> {
         let value = mode.shape(x)?;
         let still = SectionShape::default();
-        Ok(match mode.kind() {
+        Ok(match mode.kind {
             ModeKind::Flap => SectionShape { flap: value, ..still },
             ModeKind::Lag => SectionShape { lag: value, ..still },
             _ => SectionShape { twist: [value[0], value[1]], ..still },
@@ -336,5 +318,5 @@ fn modal_blade(
             })
         })
         .collect::<Result<_, ResponseError>>()?;
-    Ok(ModalBlade::new(blade, grid.edges(), grid.points_per_piece(), None, shapes)?)
+    Ok(ModalBlade::new(blade, grid.edges(), grid.points_per_piece(), shapes)?)
 }

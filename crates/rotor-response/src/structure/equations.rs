@@ -18,7 +18,7 @@
 
 use crate::Couplings;
 use crate::structure::blade::ResponseBlade;
-use crate::structure::motion::{Motion, RootPitch};
+use crate::structure::motion::Motion;
 use nalgebra::DMatrix;
 use rotor_fem::{ModalBlade, ModalMotion, PitchMotion};
 
@@ -68,7 +68,7 @@ impl SpanLoads {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BladeState<'a> {
     pub(crate) motion: &'a Motion,
-    pub(crate) pitch: RootPitch,
+    pub(crate) pitch: PitchMotion,
     pub(crate) loads: &'a SpanLoads,
 }
 
@@ -169,16 +169,15 @@ impl Equations<'_> {
         out: &mut [f64],
     ) {
         let BladeState { motion, pitch, loads } = state;
-        let root = PitchMotion::from(pitch);
         let coordinates = ModalMotion { value: q, rate: qd, acceleration: qdd };
-        let own = modal.force(coordinates, root).generalised;
+        let own = modal.force(coordinates, pitch);
         let applied: Vec<[f64; 4]> = (0..loads.fz.len())
             .map(|i| {
                 let [x, y, z] = loads.force(self.blade, motion, i);
                 [x, y, z, loads.moment[i]]
             })
             .collect();
-        let work = modal.applied(q, root, &applied);
+        let work = modal.applied(q, pitch, &applied);
         for (i, value) in out.iter_mut().enumerate() {
             let constant: f64 = self.mass.row(i).iter().zip(qdd).map(|(m, a)| m * a).sum();
             *value = own[i] - constant - work[i];
@@ -217,7 +216,7 @@ fn modal_residual(
     for i in 0..n {
         let (m, x) = (blade.mass[i], blade.grid.x()[i]);
         let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
-        let theta = pitch.angle + blade.twist[i] + phi.value[i];
+        let theta = pitch.angle_rad + blade.twist[i] + phi.value[i];
         let tension = blade.tension[i] + s.coriolis_tension[i];
         let radii = blade.km2_squared[i] - blade.km1_squared[i];
         let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);

@@ -1,21 +1,6 @@
 //! Deflections, rates and accelerations of the blade at the stations, at one azimuth.
 
 use crate::structure::blade::{ResponseBlade, Shapes};
-use rotor_fem::PitchMotion;
-
-/// Pitch angle imposed at the root with its first two azimuth derivatives (rad).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct RootPitch {
-    pub(crate) angle: f64,
-    pub(crate) rate: f64,
-    pub(crate) acceleration: f64,
-}
-
-impl From<RootPitch> for PitchMotion {
-    fn from(pitch: RootPitch) -> Self {
-        Self { angle_rad: pitch.angle, rate: pitch.rate, acceleration: pitch.acceleration }
-    }
-}
 
 /// Displacement family at the stations: value, slope, curvature; rates of value and slope;
 /// accelerations of value and slope. Radius R and rad; time is azimuth.
@@ -66,13 +51,13 @@ pub(crate) struct Motion {
 
 impl Motion {
     /// Fills the motion from modal coordinates in the order flap, lag, torsion.
-    pub(crate) fn fill(&mut self, blade: &ResponseBlade, q: &[f64], qd: &[f64], qdd: &[f64]) {
+    pub(crate) fn fill(&mut self, blade: &ResponseBlade, coordinates: [&[f64]; 3]) {
         let stations = blade.grid.len();
         let (nf, nl) = (blade.flap.count(), blade.lag.count());
-        let part = |from: usize, to: usize| [&q[from..to], &qd[from..to], &qdd[from..to]];
+        let part = |from: usize, to: usize| coordinates.map(|of| &of[from..to]);
         self.w.fill(&blade.flap, part(0, nf), stations);
         self.v.fill(&blade.lag, part(nf, nf + nl), stations);
-        self.phi.fill(&blade.torsion, part(nf + nl, q.len()), stations);
+        self.phi.fill(&blade.torsion, part(nf + nl, coordinates[0].len()), stations);
         if blade.modal.is_some() {
             self.shorten(blade);
         }

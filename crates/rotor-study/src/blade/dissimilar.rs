@@ -9,7 +9,7 @@ use crate::flaps::FlapMotion;
 use crate::loads::HubLoads;
 use crate::rotor::{TrimmedRotor, UnlikeSolver};
 use rotor_base::HarmonicSeries;
-use rotor_response::{ResponseError, SixLoads};
+use rotor_response::ResponseError;
 use serde::{Deserialize, Serialize};
 
 /// Hub loads with the unlike blades of a case: controls, attitude and inflow as with all blades alike.
@@ -96,14 +96,9 @@ pub fn unlike_lines(
         .chain(controlled)
         .map(|(flaps, angles, about)| {
             let hub = trimmed.unlike_hub_loads(&mut solvers, &angles, about).map_err(blame)?;
-            Ok(UnlikeLine::new(flaps, &hub, 2 * case.rotor.blades))
+            let per_rev = 1..=2 * case.rotor.blades;
+            let per_rev = per_rev.map(|n| HubLoads::from_parts(hub.harmonic(n))).collect();
+            Ok(UnlikeLine { flaps, mean: hub.mean(), per_rev })
         })
         .collect()
-}
-
-impl UnlikeLine {
-    fn new(flaps: String, hub: &SixLoads, highest: usize) -> Self {
-        let per_rev = (1..=highest).map(|n| HubLoads::from_parts(hub.harmonic(n))).collect();
-        Self { flaps, mean: hub.mean(), per_rev }
-    }
 }

@@ -5,8 +5,7 @@ use crate::error::StudyError;
 use nalgebra::DVector;
 use rotor_fem::{
     AxialMotion, BladeModel, BladeProperties, CoupledMode, EnergyShares, FemError, GyroscopicTerms,
-    ModeKind, ModerateBlade, ModerateModel, ModerateSpec, SectionMotion, StaticSettings,
-    deflected_modes, modes,
+    ModeKind, ModerateBlade, ModerateModel, ModerateSpec, StaticSettings, deflected_modes, modes,
 };
 use rotor_response::RESONANCE_PER_REV;
 use serde::Serialize;
@@ -137,7 +136,8 @@ fn modes_at(
             let state = model.static_state(&none, &StaticSettings::default())?;
             let tip = model.section(&state.dof, 1.0)?;
             let found = deflected_modes(&model, &state, question.terms, AxialMotion::Free, count)?;
-            (found, Some(tip.into()))
+            let (lag_r, flap_r) = (tip.lag[0], tip.flap[0]);
+            (found, Some(SteadyTip { lag_r, flap_r, twist_deg: tip.twist[0].to_degrees() }))
         }
     };
     Ok(ModesResult {
@@ -158,12 +158,6 @@ impl ModeLine {
             hz: mode.frequency * nominal_rad_s / std::f64::consts::TAU,
             energy: [flap, lag, torsion, axial],
         }
-    }
-}
-
-impl From<SectionMotion> for SteadyTip {
-    fn from(tip: SectionMotion) -> Self {
-        Self { lag_r: tip.lag[0], flap_r: tip.flap[0], twist_deg: tip.twist[0].to_degrees() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The sections of a case: trim, actuator and control.
 
-use super::field::{Value, Visitor, choice, is_default, section, variant_names};
+use super::field::{Value, is_default, section, values, variant_names};
 use serde::{Deserialize, Serialize};
 
 /// What the rotor is trimmed to.
@@ -116,20 +116,7 @@ section! {
     }
 }
 
-impl Value for TrimValues {
-    fn choices() -> &'static [&'static str] {
-        variant_names::<Self>()
-    }
-
-    fn inside<V: Visitor>(&self, visitor: &mut V) -> bool {
-        match self {
-            Self::Propulsive(trim) => visitor.section("Propulsive", trim),
-            Self::WindTunnel(trim) => visitor.section("WindTunnel", trim),
-            Self::Prescribed(trim) => visitor.section("Prescribed", trim),
-        }
-        true
-    }
-}
+values!(TrimValues { Propulsive, WindTunnel, Prescribed }, ActuatorChoice { Bench, File });
 
 /// Where the actuator model comes from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -160,21 +147,6 @@ section! {
         /// File written by `hhc identify`, relative to the case file.
         pub path: String = String::new(), Any, "",
             "a file written by `hhc identify`, relative to the case file";
-    }
-}
-
-impl Value for ActuatorChoice {
-    fn choices() -> &'static [&'static str] {
-        variant_names::<Self>()
-    }
-
-    fn inside<V: Visitor>(&self, visitor: &mut V) -> bool {
-        match self {
-            Self::Ideal => return false,
-            Self::Bench(bench) => visitor.section("Bench", bench),
-            Self::File(stored) => visitor.section("File", stored),
-        }
-        true
     }
 }
 
@@ -287,7 +259,7 @@ pub enum LoadScaleChoice {
     Baseline,
 }
 
-choice!(
+values!(
     ControlActuator,
     StrokeChoice,
     EffortChoice,

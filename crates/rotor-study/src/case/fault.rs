@@ -42,75 +42,11 @@ pub enum CaseFault {
         /// What to do.
         remedy: &'static str,
     },
-    /// A count lies outside its range.
-    #[error("is {value}, expected {low} to {high}; {remedy}")]
-    CountOutOfRange {
-        /// The count found.
-        value: usize,
-        /// Smallest accepted.
-        low: usize,
-        /// Largest accepted.
-        high: usize,
-        /// What to do.
-        remedy: &'static str,
-    },
-    /// A text or a list is empty.
-    #[error("is empty; give {of}")]
-    Empty {
-        /// What it should hold.
-        of: &'static str,
-    },
-    /// Something that must be unique is there twice.
-    #[error("`{name}` is used already at {first}; give every {of} once")]
-    Repeated {
-        /// The value.
-        name: String,
-        /// What it stands for.
-        of: &'static str,
-        /// Field of its first use.
-        first: String,
-    },
-    /// A range is upside down.
-    #[error("({low}, {high}) is no range; give the lower limit first, both finite")]
-    EmptyRange {
-        /// Lower limit.
-        low: f64,
-        /// Upper limit.
-        high: f64,
-    },
-    /// A flap does not fit between the cut-out, its neighbour and the tip.
-    #[error(
-        "the flap spans {start_r} R to {end_r} R, expected {from_r} R (cut-out or the flap before) <= start_r < end_r <= 1 R; keep it on the blade, and list flaps from root to tip without overlap"
-    )]
-    FlapSpan {
-        /// Inboard edge, R.
-        start_r: f64,
-        /// Outboard edge, R.
-        end_r: f64,
-        /// Where the free span begins, R.
-        from_r: f64,
-    },
-    /// The control voltage leaves the actuator's range.
-    #[error(
-        "the voltage {bias_volt} V +- {amplitude_volt} V leaves the actuator's range {low_volt} V to {high_volt} V; lower control.amplitude_V to {room_volt} V or move control.bias_V"
-    )]
-    VoltageOutsideRange {
-        /// Bias, V.
-        bias_volt: f64,
-        /// Amplitude, V.
-        amplitude_volt: f64,
-        /// Lower limit, V.
-        low_volt: f64,
-        /// Upper limit, V.
-        high_volt: f64,
-        /// Largest amplitude about this bias, V.
-        room_volt: f64,
-    },
-    /// Two fields that do not go together.
-    #[error("{rule}")]
-    Conflict {
+    /// A rule between fields, or one of a text, a list or a pair, is broken.
+    #[error("{message}")]
+    Rule {
         /// What is wrong, and what to do.
-        rule: &'static str,
+        message: String,
     },
     /// A value that no rotor or no model can have.
     #[error("is refused: {message}")]
@@ -118,6 +54,28 @@ pub enum CaseFault {
         /// Why, and what to do.
         message: String,
     },
+}
+
+impl CaseFault {
+    /// Of a number that is to be from `low` to `high`, both included; NaN is outside.
+    pub(super) fn of_number(
+        value: f64,
+        (low, high): (f64, f64),
+        unit: &'static str,
+        remedy: &'static str,
+    ) -> Option<Self> {
+        let within = value >= low && value <= high;
+        (!within).then_some(Self::OutOfRange { value, low, high, unit, remedy })
+    }
+
+    /// Of a count that is to be from `low` to `high`.
+    pub(super) fn of_count(
+        value: usize,
+        (low, high): (usize, usize),
+        remedy: &'static str,
+    ) -> Option<Self> {
+        Self::of_number(value as f64, (low as f64, high as f64), "", remedy)
+    }
 }
 
 fn suffix(unit: &str) -> String {

@@ -49,25 +49,24 @@ pub trait Visitor {
 }
 
 /// A value of a case.
-pub trait Value: Serialize {
+pub trait Value: Serialize + DeserializeOwned {
     /// What is wrong with it; nothing if it is in range.
     fn fault(&self, _range: &Field) -> Option<CaseFault> {
         None
     }
 
-    /// Names of the choices there are; none of what is no choice.
-    fn choices() -> &'static [&'static str]
-    where
-        Self: Sized,
-    {
-        &[]
+    /// Names of the choices there are, those that serde reads; none of what is no choice.
+    fn choices() -> &'static [&'static str] {
+        variant_names::<Self>()
+    }
+
+    /// The values of a table along the span, behind their stations; nothing of another value.
+    fn table(&self) -> Option<&[(f64, f64)]> {
+        None
     }
 
     /// Walks over the fields inside; false if it has none.
-    fn inside<V: Visitor>(&self, _visitor: &mut V) -> bool
-    where
-        Self: Sized,
-    {
+    fn inside<V: Visitor>(&self, _visitor: &mut V) -> bool {
         false
     }
 }
@@ -156,21 +155,26 @@ macro_rules! section {
 }
 pub(crate) use section;
 
-/// A value of a type that is a choice: its names are those that serde reads.
-macro_rules! choice {
-    ($($name:ty),+ $(,)?) => {
+/// Values without a range of their own. Of a choice, the variants in braces hold a section to walk over.
+macro_rules! values {
+    ($($name:ty $({ $($variant:ident),+ })?),+ $(,)?) => {
         $(impl $crate::case::field::Value for $name {
-            fn choices() -> &'static [&'static str] {
-                $crate::case::field::variant_names::<$name>()
-            }
+            $(fn inside<V: $crate::case::field::Visitor>(&self, visitor: &mut V) -> bool {
+                $(if let Self::$variant(section) = self {
+                    visitor.section(stringify!($variant), section);
+                    return true;
+                })+
+                false
+            })?
         })+
     };
 }
-pub(crate) use choice;
+pub(crate) use values;
 
-choice!(
+values!(
     flap_aero::AttachedFlowModel,
     rotor_fem::ModalBasis,
+    rotor_fem::RootSupport,
     rotor_fem::TwistAngle,
     rotor_fem::Untwist,
     rotor_response::FlapMass,
@@ -182,16 +186,17 @@ choice!(
     rotor_wake::ReleasePoint,
     rotor_wake::WakeMethod,
     rotor_wake::WakeSymmetry,
+    // checked by rules
+    Vec<f64>,
+    Vec<Vec<usize>>,
+    (f64, f64),
 );
-
-impl Value for rotor_fem::RootSupport {}
 
 impl Value for f64 {
     fn fault(&self, field: &Field) -> Option<CaseFault> {
         let (value, Field { range, unit, remedy, .. }) = (*self, *field);
         match range {
-            Range::Within(low, high) => (!(value >= low && value <= high))
-                .then_some(CaseFault::OutOfRange { value, low, high, unit, remedy }),
+            Range::Within(low, high) => CaseFault::of_number(value, (low, high), unit, remedy),
             Range::UpTo(_) if !(value > 0.0 && value.is_finite()) => {
                 Some(CaseFault::NotPositive { value, unit, remedy })
             }
@@ -205,24 +210,23 @@ impl Value for f64 {
 
 impl Value for usize {
     fn fault(&self, field: &Field) -> Option<CaseFault> {
-        let (value, Range::Count(low, high)) = (*self, field.range) else { return None };
-        let remedy = field.remedy;
-        (!(low..=high).contains(&value)).then_some(CaseFault::CountOutOfRange {
-            value,
-            low,
-            high,
-            remedy,
-        })
+        let Range::Count(low, high) = field.range else { return None };
+        CaseFault::of_count(*self, (low, high), field.remedy)
     }
 }
 
 impl Value for String {
     fn fault(&self, field: &Field) -> Option<CaseFault> {
-        self.trim().is_empty().then_some(CaseFault::Empty { of: field.remedy })
+        let message = || format!("is empty; give {}", field.remedy);
+        self.trim().is_empty().then(|| CaseFault::Rule { message: message() })
     }
 }
 
 impl<T: Value> Value for Option<T> {
+    fn choices() -> &'static [&'static str] {
+        T::choices()
+    }
+
     fn fault(&self, field: &Field) -> Option<CaseFault> {
         self.as_ref().and_then(|value| value.fault(field))
     }
@@ -237,11 +241,11 @@ impl<T: Section> Value for Vec<T> {
     }
 }
 
-// lists and pairs of numbers, checked by rules
-impl Value for Vec<f64> {}
-impl Value for Vec<(f64, f64)> {}
-impl Value for Vec<Vec<usize>> {}
-impl Value for (f64, f64) {}
+impl Value for Vec<(f64, f64)> {
+    fn table(&self) -> Option<&[(f64, f64)]> {
+        Some(self)
+    }
+}
 
 /// Whether a value is the default of its type: not written then.
 pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {

@@ -44,7 +44,7 @@ pub use sections::{
 };
 pub use wake::{
     CirculationChoice, CirculationShape, FreeWakeValues, GeometryChoice, PrescribedCirculation,
-    RolledUpChoice,
+    RolledUpChoice, WakeChoices, WakePreset,
 };
 // settings of the models below, which a case names as they are
 pub use flap_aero::AttachedFlowModel;

@@ -34,35 +34,7 @@ impl Case {
     /// # Errors
     /// [`StudyError::Blade`]; a checked case gives none.
     pub fn blade_properties(&self) -> Result<BladeProperties, StudyError> {
-        BladeProperties::new(self.blade_spec())
-            .map_err(|source| StudyError::Blade { field: "rotor".to_owned(), source })
-    }
-
-    fn blade_spec(&self) -> BladeSpec {
-        let (b, t) = (&self.rotor, &self.rotor.tables);
-        BladeSpec {
-            flap_stiffness: distribution(&t.ei_flap, b.ei_flap),
-            lag_stiffness: distribution(&t.ei_lag, b.ei_lag),
-            torsion_stiffness: distribution(&t.gj, b.gj),
-            axial_stiffness: distribution(&t.ea, b.ea),
-            mass: distribution(&t.mass, 1.0),
-            thickness_gyration_radius: distribution(&t.km1_r, b.km1_r),
-            chord_gyration_radius: distribution(&t.km2_r, b.km2_r),
-            axis_mass: 0.0.into(),
-            area_gyration_radius: distribution(&t.ka_r, b.ka_r),
-            twist: if t.twist_deg.is_empty() {
-                Twist::Linear { rate_rad: b.twist_deg.to_radians() }
-            } else {
-                let rad: Vec<(f64, f64)> =
-                    t.twist_deg.iter().map(|(x, deg)| (*x, deg.to_radians())).collect();
-                Twist::Table(distribution(&rad, 0.0))
-            },
-            pitch_rad: 0.0,
-            precone_rad: b.precone_deg.to_radians(),
-            root_offset: b.root_offset_r,
-            root: b.root,
-            rotor_speed: 1.0,
-        }
+        self.blade(&DissimilarBlade::default(), "rotor")
     }
 
     /// The structure of a blade that differs from the others.
@@ -70,26 +42,33 @@ impl Case {
     /// # Errors
     /// As [`Self::blade_properties`].
     pub fn dissimilar_blade(&self, own: &DissimilarBlade) -> Result<BladeProperties, StudyError> {
-        let spec = self.blade_spec();
-        let spec = BladeSpec {
-            mass: scaled(spec.mass, own.mass),
-            flap_stiffness: scaled(spec.flap_stiffness, own.ei_flap),
-            lag_stiffness: scaled(spec.lag_stiffness, own.ei_lag),
-            torsion_stiffness: scaled(spec.torsion_stiffness, own.gj),
-            ..spec
-        };
-        let field = "rotor.dissimilar_blades".to_owned();
-        BladeProperties::new(spec).map_err(|source| StudyError::Blade { field, source })
+        self.blade(own, "rotor.dissimilar_blades")
     }
 
-    /// Centres of the sections off the elastic axis.
-    pub fn section_offsets(&self) -> SectionOffsets {
-        SectionOffsets {
-            mass_centre: self.rotor.mass_centre_r,
-            tension_centre: self.rotor.tension_centre_r,
-            aerodynamic_centre: self.rotor.aerodynamic_centre_r,
-            torque: self.rotor.torque_offset_r,
-        }
+    /// The structure with the factors of a blade; `field` is at fault where there is none.
+    fn blade(&self, own: &DissimilarBlade, field: &str) -> Result<BladeProperties, StudyError> {
+        let (b, t) = (&self.rotor, &self.rotor.tables);
+        let twist_rad: Vec<_> = t.twist_deg.iter().map(|(x, deg)| (*x, deg.to_radians())).collect();
+        let spec = BladeSpec {
+            flap_stiffness: distribution(&t.ei_flap, b.ei_flap, own.ei_flap),
+            lag_stiffness: distribution(&t.ei_lag, b.ei_lag, own.ei_lag),
+            torsion_stiffness: distribution(&t.gj, b.gj, own.gj),
+            axial_stiffness: distribution(&t.ea, b.ea, 1.0),
+            mass: distribution(&t.mass, 1.0, own.mass),
+            thickness_gyration_radius: distribution(&t.km1_r, b.km1_r, 1.0),
+            chord_gyration_radius: distribution(&t.km2_r, b.km2_r, 1.0),
+            axis_mass: 0.0.into(),
+            area_gyration_radius: distribution(&t.ka_r, b.ka_r, 1.0),
+            twist: given(&twist_rad, 1.0)
+                .map_or(Twist::Linear { rate_rad: b.twist_deg.to_radians() }, Twist::Table),
+            pitch_rad: 0.0,
+            precone_rad: b.precone_deg.to_radians(),
+            root_offset: b.root_offset_r,
+            root: b.root,
+            rotor_speed: 1.0,
+        };
+        BladeProperties::new(spec)
+            .map_err(|source| StudyError::Blade { field: field.to_owned(), source })
     }
 
     /// Terms of torsion that the equations of moderate deflection keep: in flight with the couplings `Moderate`, in
@@ -132,8 +111,8 @@ impl Case {
             blades: self.rotor.blades,
             chord: self.rotor.chord_r,
             planform: Planform {
-                chord: given(&self.rotor.tables.chord_r),
-                set_back: given(&self.rotor.tables.set_back_r),
+                chord: given(&self.rotor.tables.chord_r, 1.0),
+                set_back: given(&self.rotor.tables.set_back_r, 1.0),
             },
             lock_number: self.rotor.lock_number,
             drag_coefficient: self.aerodynamics.drag_coefficient,
@@ -147,7 +126,12 @@ impl Case {
                     GRAVITY_M_S2 / (speed * speed * scales.radius_m())
                 }
             },
-            offsets: self.section_offsets(),
+            offsets: SectionOffsets {
+                mass_centre: self.rotor.mass_centre_r,
+                tension_centre: self.rotor.tension_centre_r,
+                aerodynamic_centre: self.rotor.aerodynamic_centre_r,
+                torque: self.rotor.torque_offset_r,
+            },
             modal_damping: self.rotor.modal_damping,
             lag_damper: self.rotor.lag_damper,
             couplings: match self.structure.couplings {
@@ -234,7 +218,8 @@ impl Case {
     pub fn wake_trim_settings(&self, values: &FreeWakeValues) -> WakeTrimSettings {
         let scales = self.scales();
         let speed = scales.tip_speed_m_s() * scales.radius_m();
-        let far = match values.rolled_up {
+        let chosen = values.choices();
+        let far = match chosen.rolled_up {
             RolledUpChoice::Tip => FarTrailers::Tip,
             RolledUpChoice::TipAndRoot => FarTrailers::TipAndRoot,
             RolledUpChoice::TipRootAndFlaps => FarTrailers::Stations(
@@ -244,15 +229,15 @@ impl Case {
         };
         let wake = FreeWakeSettings {
             azimuths: values.azimuths_for(self.rotor.blades),
-            turns: values.turns,
+            turns: chosen.turns,
             far_turns: values.far_turns_at(self.advance_ratio),
-            near_wake_rad: values.near_wake_deg.to_radians(),
-            near_wake_motion: values.near_wake,
+            near_wake_rad: chosen.near_wake_deg.to_radians(),
+            near_wake_motion: chosen.near_wake,
             far,
             release: values.release,
             control_point: values.control_point,
             core: CoreSettings {
-                model: values.core,
+                model: chosen.core,
                 radius: values.core_r,
                 mutual_radius: values.mutual_core_r,
                 near_radius: values.near_core_r.unwrap_or(self.rotor.chord_r),
@@ -260,9 +245,9 @@ impl Case {
                 viscosity: VISCOSITY_M2_S / speed,
                 ..CoreSettings::default()
             },
-            symmetry: values.symmetry,
-            far_field: values.far_field,
-            velocity_stride: values.velocity_stride,
+            symmetry: chosen.symmetry,
+            far_field: chosen.far_field,
+            velocity_stride: chosen.velocity_stride,
             ..FreeWakeSettings::default()
         };
         let usual = WakeTrimSettings::default();
@@ -324,26 +309,13 @@ impl PropulsiveTrim {
     }
 }
 
-/// A table of a case, or the uniform value in its place.
-fn distribution(table: &[(f64, f64)], uniform: f64) -> Distribution {
-    given(table).unwrap_or_else(|| uniform.into())
+/// A table of a case, or the uniform value in its place, times a factor.
+fn distribution(table: &[(f64, f64)], uniform: f64, factor: f64) -> Distribution {
+    given(table, factor).unwrap_or_else(|| (factor * uniform).into())
 }
 
-/// A table of a case, if it has it.
-fn given(table: &[(f64, f64)]) -> Option<Distribution> {
-    let (stations, values) = table.iter().copied().unzip();
+/// A table of a case times a factor, if the case has it.
+fn given(table: &[(f64, f64)], factor: f64) -> Option<Distribution> {
+    let (stations, values) = table.iter().map(|(x, value)| (*x, factor * value)).unzip();
     (!table.is_empty()).then_some(Distribution::PiecewiseLinear { stations, values })
-}
-
-fn scaled(distribution: Distribution, factor: f64) -> Distribution {
-    let times = |values: Vec<f64>| values.into_iter().map(|v| factor * v).collect();
-    match distribution {
-        Distribution::Uniform(value) => Distribution::Uniform(factor * value),
-        Distribution::PiecewiseLinear { stations, values } => {
-            Distribution::PiecewiseLinear { stations, values: times(values) }
-        }
-        Distribution::PiecewiseConstant { edges, values } => {
-            Distribution::PiecewiseConstant { edges, values: times(values) }
-        }
-    }
 }

@@ -1,7 +1,6 @@
 //! Rules between the fields of a case, and of values that a plain range cannot say.
 
-use super::checker::{Checker, number};
-use super::field::Section as _;
+use super::checker::Checker;
 use super::rules_blade::check_blade;
 use super::{
     ActuatorChoice, AirfoilStation, AttachedFlowModel, Case, CaseFault, CaseFaults,
@@ -28,14 +27,14 @@ impl Case {
     /// # Errors
     /// Every value out of range and every rule broken, each with its field.
     pub fn check(&self) -> Result<(), CaseFaults> {
-        let mut check = Checker::default();
-        self.each(&mut check);
+        let mut check = Checker::of_values(self);
         check_inflow(&mut check, self);
         check_blade(&mut check, self);
         check_structure(&mut check, self);
         check_flaps(&mut check, self);
         check_section(&mut check, self);
-        check_actuator(&mut check, self);
+        check_voltage(&mut check, self);
+        check_harmonics(&mut check, self);
         check_control(&mut check, self);
         check_response(&mut check, self);
         check.finish()
@@ -45,11 +44,14 @@ impl Case {
 fn check_inflow(check: &mut Checker, case: &Case) {
     if let InflowChoice::Prescribed { lambda_i } = case.inflow.model {
         let remedy = "give the induced inflow over the tip speed, down positive (0.01 is usual)";
-        check.within(number("inflow.model.lambda_i", lambda_i, "", remedy), -0.2, 0.2);
+        check.within("inflow.model.lambda_i", lambda_i, (-0.2, 0.2), "", remedy);
     }
     if let InflowChoice::FreeWake(wake) = &case.inflow.model {
         check_wake(check, wake, case.rotor.blades);
-        check_axial(check, wake, case.advance_ratio);
+        if wake.choices().symmetry == WakeSymmetry::Axial {
+            let remedy = "a wake turns with its blades in hover only; leave inflow.model.symmetry and the preset Hover out";
+            check.within("advance_ratio", case.advance_ratio, (0.0, 0.0), "", remedy);
+        }
     }
 }
 
@@ -64,27 +66,19 @@ fn check_wake(check: &mut Checker, wake: &FreeWakeValues, blades: usize) {
         );
         check.refuse(field, message);
     }
-    if wake.velocity_stride > 1 && wake.method == WakeMethod::Marched {
+    if wake.choices().velocity_stride > 1 && wake.method == WakeMethod::Marched {
         let message = "a march in time computes every age: leave it out, or give method: Relaxed";
         check.refuse("inflow.model.velocity_stride", message);
     }
 }
 
-/// Refuses an axial wake in forward flight.
-fn check_axial(check: &mut Checker, wake: &FreeWakeValues, advance_ratio: f64) {
-    if wake.symmetry == WakeSymmetry::Axial {
-        let remedy = "a wake turns with its blades in hover only; leave inflow.model.symmetry out";
-        check.within(number("advance_ratio", advance_ratio, "", remedy), 0.0, 0.0);
-    }
-}
-
 fn check_structure(check: &mut Checker, case: &Case) {
-    let s = &case.structure;
-    let most = 2 * s.elements;
     let remedy = "as many as the elements resolve: the paper keeps 4, 4 and 2";
-    check.count("structure.modes.flap", s.modes.flap, (1, most), remedy);
-    check.count("structure.modes.lag", s.modes.lag, (1, most), remedy);
-    check.count("structure.modes.torsion", s.modes.torsion, (1, most), remedy);
+    let modes = case.structure.modes.as_array();
+    for (kind, count) in ["flap", "lag", "torsion"].into_iter().zip(modes) {
+        let field = format!("structure.modes.{kind}");
+        check.count(&field, count, (1, 2 * case.structure.elements), remedy);
+    }
 }
 
 /// Slowest tip for which the sections take a Mach number.
@@ -99,19 +93,15 @@ fn check_flaps(check: &mut Checker, case: &Case) {
         } else {
             let end = start_r >= from_r && start_r < 1.0;
             let field = if end { "end_r" } else { "start_r" };
-            check.fault(
-                &format!("flaps[{i}].{field}"),
-                CaseFault::FlapSpan { start_r, end_r, from_r },
+            let message = format!(
+                "the flap spans {start_r} R to {end_r} R, expected {from_r} R (cut-out or the flap before) <= start_r < end_r <= 1 R; keep it on the blade, and list flaps from root to tip without overlap"
             );
+            check.broken(&format!("flaps[{i}].{field}"), message);
         }
         if let Some(gyration) = flap.gyration_fraction {
             let remedy = "it is about the hinge: at least the distance of the centre of gravity; leave it out for a thin rod";
             let field = format!("flaps[{i}].gyration_fraction");
-            check.within(
-                number(&field, gyration, "", remedy),
-                flap.cg_fraction.abs().min(1.0),
-                1.0,
-            );
+            check.within(&field, gyration, (flap.cg_fraction.abs().min(1.0), 1.0), "", remedy);
         }
     }
 }
@@ -121,12 +111,12 @@ fn check_section(check: &mut Checker, case: &Case) {
     check_airfoils(check, &a.airfoils);
     let remedy = "1 is no loss, 0.97 is usual; outboard of the root cut-out";
     let least = case.rotor.root_cutout_r.max(0.5);
-    check.within(number("aerodynamics.tip_loss", a.tip_loss, "R", remedy), least, 1.0);
+    check.within("aerodynamics.tip_loss", a.tip_loss, (least, 1.0), "R", remedy);
     let field = "aerodynamics.speed_of_sound_m_s";
     let remedy = "340.3 m/s is the standard atmosphere at sea level; the tip must stay subsonic";
     let tip_speed = case.scales().tip_speed_m_s();
     let lowest = if tip_speed.is_finite() { (tip_speed / 0.95).max(1.0) } else { 1.0 };
-    check.within(number(field, a.speed_of_sound_m_s, "m/s", remedy), lowest, 2000.0);
+    check.within(field, a.speed_of_sound_m_s, (lowest, 2000.0), "m/s", remedy);
     let is_slow = tip_speed > 0.0 && tip_speed < LEAST_TIP_MACH * a.speed_of_sound_m_s;
     if is_slow && a.compressibility == CompressibilityChoice::LocalMach {
         let message = format!(
@@ -138,13 +128,13 @@ fn check_section(check: &mut Checker, case: &Case) {
     if a.model == AttachedFlowModel::Incompressible
         && a.compressibility != CompressibilityChoice::None
     {
-        check.conflict("aerodynamics.model", INCOMPRESSIBLE);
+        check.broken("aerodynamics.model", INCOMPRESSIBLE);
     }
     if a.model == AttachedFlowModel::Calibrated {
         let remedy = "the calibrated section model holds for these; or choose another model";
         for (i, flap) in case.flaps.iter().enumerate() {
             let field = format!("flaps[{i}].chord_fraction");
-            check.within(number(&field, flap.chord_fraction, "", remedy), 0.1, 0.4);
+            check.within(&field, flap.chord_fraction, (0.1, 0.4), "", remedy);
         }
     }
 }
@@ -160,88 +150,87 @@ fn check_airfoils(check: &mut Checker, airfoils: &[AirfoilStation]) {
         } else {
             let remedy = "list the tables from root to tip, each station once";
             let fault = CaseFault::OutOfRange { value, low: inboard, high: 1.0, unit: "R", remedy };
-            check.fault(&format!("aerodynamics.airfoils[{i}].station_r"), fault);
+            check.found(&format!("aerodynamics.airfoils[{i}].station_r"), Some(fault));
         }
     }
 }
 
-fn check_actuator(check: &mut Checker, case: &Case) {
-    let (low, high) = case.actuator.range_volt;
-    if !(low < high && low.is_finite() && high.is_finite()) {
-        check.fault("actuator.range_V", CaseFault::EmptyRange { low, high });
-    }
-}
-
-fn check_control(check: &mut Checker, case: &Case) {
-    let c = &case.control;
+/// The range of voltages, and the control voltage in it.
+fn check_voltage(check: &mut Checker, case: &Case) {
     let (low_volt, high_volt) = case.actuator.range_volt;
-    let (bias_volt, amplitude_volt) = (c.bias_volt, c.amplitude_volt);
+    if !(low_volt < high_volt && low_volt.is_finite() && high_volt.is_finite()) {
+        let message = format!(
+            "({low_volt}, {high_volt}) is no range; give the lower limit first, both finite"
+        );
+        check.broken("actuator.range_V", message);
+    }
+    let (bias_volt, amplitude_volt) = (case.control.bias_volt, case.control.amplitude_volt);
     let room_volt = (high_volt - bias_volt).min(bias_volt - low_volt);
     let slack = 1e-9 * (high_volt - low_volt).abs();
     // a range that is no range and an amplitude that is none are reported on their own
     let fits = amplitude_volt <= room_volt + slack;
     if low_volt < high_volt && amplitude_volt > 0.0 && !fits {
-        let fault = CaseFault::VoltageOutsideRange {
-            bias_volt,
-            amplitude_volt,
-            low_volt,
-            high_volt,
-            room_volt: room_volt.max(0.0),
-        };
-        check.fault("control.amplitude_V", fault);
-    }
-    if case.flaps.is_empty() && !c.harmonics.is_empty() {
-        check.conflict("control.harmonics", NEEDS_FLAPS);
-    }
-    for (i, set) in c.harmonics.iter().enumerate() {
-        if set.is_empty() {
-            check.fault(
-                &format!("control.harmonics[{i}]"),
-                CaseFault::Empty { of: "at least one harmonic" },
-            );
-        }
-        for (j, &harmonic) in set.iter().enumerate() {
-            let field = format!("control.harmonics[{i}][{j}]");
-            let remedy = "the paper controls 2, 3, 4 (and 5) per rev";
-            check.count(&field, harmonic, (1, 12), remedy);
-            if set[..j].contains(&harmonic) {
-                let name = harmonic.to_string();
-                let first = format!("control.harmonics[{i}]");
-                check.fault(&field, CaseFault::Repeated { name, of: "harmonic of a set", first });
-            }
-        }
-    }
-    let ideal = case.actuator.model == ActuatorChoice::Ideal;
-    for (i, actuator) in c.actuators.iter().enumerate() {
-        if ideal && !c.harmonics.is_empty() && *actuator != ControlActuator::Ideal {
-            check.conflict(&format!("control.actuators[{i}]"), NEEDS_ACTUATOR);
-        }
-    }
-    if let StrokeChoice::Given { amplitude_deg } = c.stroke_limit {
-        let remedy = "or write FromActuator";
-        let field = "control.stroke_limit.amplitude_deg";
-        check.within(number(field, amplitude_deg, "deg", remedy), 1e-3, 45.0);
-    }
-    if c.effort == EffortChoice::MeetStroke && c.controller != ControllerChoice::Global {
-        check.conflict("control.controller", NEEDS_CONSTANT_T);
-    }
-    let has_wake = matches!(case.inflow.model, InflowChoice::FreeWake(_));
-    if c.t_inflow == TInflowChoice::Reconverged && !has_wake {
-        check.conflict("control.t_inflow", NEEDS_FREE_WAKE);
-    }
-    if let EffortChoice::Given { rho } = c.effort {
-        let remedy = "or write MeetStroke";
-        check.within(number("control.effort.rho", rho, "1/V^2", remedy), 0.0, 1e6);
-    }
-    let w = &c.load_weights;
-    if [w.fx, w.fy, w.fz, w.mx, w.my, w.mz].iter().all(|weight| *weight == 0.0) {
-        check.conflict("control.load_weights", NO_LOAD_WEIGHTED);
-    }
-    if c.power_limit_watt.is_some() && c.effort != EffortChoice::Limits {
-        check.conflict("control.power_limit_W", NEEDS_LIMITS);
+        let message = format!(
+            "the voltage {bias_volt} V +- {amplitude_volt} V leaves the actuator's range {low_volt} V to {high_volt} V; lower control.amplitude_V to {} V or move control.bias_V",
+            room_volt.max(0.0)
+        );
+        check.broken("control.amplitude_V", message);
     }
 }
 
+fn check_harmonics(check: &mut Checker, case: &Case) {
+    for (i, set) in case.control.harmonics.iter().enumerate() {
+        let list = format!("control.harmonics[{i}]");
+        if set.is_empty() {
+            check.broken(&list, "is empty; give at least one harmonic");
+        }
+        for (j, &harmonic) in set.iter().enumerate() {
+            let field = format!("{list}[{j}]");
+            check.count(&field, harmonic, (1, 12), "the paper controls 2, 3, 4 (and 5) per rev");
+            if set[..j].contains(&harmonic) {
+                let message = format!(
+                    "`{harmonic}` is used already at {list}; give every harmonic of a set once"
+                );
+                check.broken(&field, message);
+            }
+        }
+    }
+}
+
+fn check_control(check: &mut Checker, case: &Case) {
+    let c = &case.control;
+    let ideal = case.actuator.model == ActuatorChoice::Ideal;
+    for (i, actuator) in c.actuators.iter().enumerate() {
+        if ideal && !c.harmonics.is_empty() && *actuator != ControlActuator::Ideal {
+            check.broken(&format!("control.actuators[{i}]"), NEEDS_ACTUATOR);
+        }
+    }
+    if let StrokeChoice::Given { amplitude_deg } = c.stroke_limit {
+        let (field, remedy) = ("control.stroke_limit.amplitude_deg", "or write FromActuator");
+        check.within(field, amplitude_deg, (1e-3, 45.0), "deg", remedy);
+    }
+    if let EffortChoice::Given { rho } = c.effort {
+        check.within("control.effort.rho", rho, (0.0, 1e6), "1/V^2", "or write MeetStroke");
+    }
+    let has_wake = matches!(case.inflow.model, InflowChoice::FreeWake(_));
+    let w = &c.load_weights;
+    let tuned = c.effort == EffortChoice::MeetStroke;
+    let limited = c.effort == EffortChoice::Limits;
+    let weighs_none = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz].iter().all(|weight| *weight == 0.0);
+    for (field, is_broken, rule) in [
+        ("harmonics", case.flaps.is_empty() && !c.harmonics.is_empty(), NEEDS_FLAPS),
+        ("controller", tuned && c.controller != ControllerChoice::Global, NEEDS_CONSTANT_T),
+        ("t_inflow", c.t_inflow == TInflowChoice::Reconverged && !has_wake, NEEDS_FREE_WAKE),
+        ("load_weights", weighs_none, NO_LOAD_WEIGHTED),
+        ("power_limit_W", c.power_limit_watt.is_some() && !limited, NEEDS_LIMITS),
+    ] {
+        if is_broken {
+            check.broken(&format!("control.{field}"), rule);
+        }
+    }
+}
+
+/// Counts of the response, and stations on the blade, each once.
 fn check_response(check: &mut Checker, case: &Case) {
     let r = &case.response;
     let remedy = "8 is usual; at least the order of the elements";
@@ -249,17 +238,12 @@ fn check_response(check: &mut Checker, case: &Case) {
     let least = case.rotor.blades.min(64);
     let remedy = "12 is usual; at least the blade number, whose harmonic reaches the hub";
     check.count("response.load_harmonics", r.load_harmonics, (least, 64), remedy);
-    check_load_stations(check, case);
-}
-
-/// Stations on the blade, each once.
-fn check_load_stations(check: &mut Checker, case: &Case) {
     let root = case.rotor.root_offset_r;
-    let stations = case.response.load_stations_r.as_deref().unwrap_or_default();
+    let stations = r.load_stations_r.as_deref().unwrap_or_default();
     for (i, &station) in stations.iter().enumerate() {
         let field = format!("response.load_stations_r[{i}]");
         let remedy = "a station of the blade: the root is rotor.root_offset_r, the tip is 1";
-        check.within(number(&field, station, "R", remedy), root, 1.0);
+        check.within(&field, station, (root, 1.0), "R", remedy);
         if let Some(first) = stations[..i].iter().position(|s| (s - station).abs() < 1e-9) {
             let message = format!(
                 "the station {station} R is in the list already (number {}); name each station once",

@@ -3,7 +3,7 @@
 //! Field names carry their unit; a name without unit is a pure number or a stiffness in the paper's
 //! nondimensional form, as its unit says. Most defaults are the paper's values.
 
-use super::field::{Value, Visitor, choice, is_default, section};
+use super::field::{is_default, section, values};
 use super::{ActuatorValues, ControlValues, FlapValues, FreeWakeValues, RotorValues, TrimValues};
 use flap_aero::{AirfoilSpan, AttachedFlowModel};
 use rotor_base::RotorScales;
@@ -163,7 +163,7 @@ pub enum DynamicStallChoice {
     Naca0012,
 }
 
-choice!(CouplingsChoice, CompressibilityChoice, DynamicStallChoice);
+values!(CouplingsChoice, CompressibilityChoice, DynamicStallChoice);
 
 section! {
     /// Section aerodynamics.
@@ -172,7 +172,7 @@ section! {
         /// Section model. `QuasiSteady`: no lag, no apparent mass. `Incompressible`: Theodorsen, Mach 0.
         /// `HariharanLeishman`: a reconstruction of the published form. `Calibrated`: fitted to exact
         /// linear theory, for flap chords of 0.1 to 0.4.
-        pub model: AttachedFlowModel = AttachedFlowModel::HariharanLeishman, Any, "", "";
+        pub model: AttachedFlowModel = AttachedFlowModel::Calibrated, Any, "", "";
         /// Mach number of the sections; `Incompressible` needs `None`.
         pub compressibility: CompressibilityChoice = CompressibilityChoice::LocalMach, Any, "", "";
         /// Circulation at the edge of the reverse-flow region. `Gradual`: it passes through zero.
@@ -245,17 +245,7 @@ impl InflowChoice {
     }
 }
 
-impl Value for InflowChoice {
-    fn choices() -> &'static [&'static str] {
-        super::field::variant_names::<Self>()
-    }
-
-    fn inside<V: Visitor>(&self, visitor: &mut V) -> bool {
-        let Self::FreeWake(wake) = self else { return false };
-        visitor.section("FreeWake", wake);
-        true
-    }
-}
+values!(InflowChoice { FreeWake });
 
 section! {
     /// Inflow.

@@ -1,10 +1,23 @@
 //! The sections of a case: the free wake.
 
-use super::field::{Value, Visitor, choice, section, variant_names};
+use super::field::{section, values};
 use rotor_wake::{
     ControlPoint, CoreModel, FarField, NearWakeMotion, ReleasePoint, WakeMethod, WakeSymmetry,
 };
 use serde::{Deserialize, Serialize};
+
+/// Choices of a free wake that belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum WakePreset {
+    /// Four free turns, a near wake of one revolution that follows the tip vortex.
+    #[default]
+    ForwardFlight,
+    /// A wake alike at every azimuth, with a near wake of 90 deg that moves freely, the inboard sheet as vortices, and
+    /// cores with the curvature between segments.
+    Hover,
+    /// As in forward flight with two turns, steps of 15 deg, every second age and a far field in single precision.
+    Fast,
+}
 
 /// Which rolled-up vortices go on behind the near wake.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,76 +79,73 @@ pub enum CirculationChoice {
     Prescribed(PrescribedCirculation),
 }
 
-impl Value for CirculationChoice {
-    fn choices() -> &'static [&'static str] {
-        variant_names::<Self>()
-    }
-
-    fn inside<V: Visitor>(&self, visitor: &mut V) -> bool {
-        let Self::Prescribed(given) = self else { return false };
-        visitor.section("Prescribed", given);
-        true
-    }
-}
-
-choice!(RolledUpChoice, CirculationShape, GeometryChoice);
+values!(
+    WakePreset,
+    RolledUpChoice,
+    CirculationShape,
+    GeometryChoice,
+    CirculationChoice { Prescribed }
+);
 
 section! {
-    /// `model: FreeWake(...)`: the free wake of Bagai and Leishman.
+    /// `model: FreeWake(...)`: the free wake of Bagai and Leishman. A preset makes the choices that belong together; a field
+    /// that is given comes before it. Those that move the result most stand first.
     #[derive(Copy)]
     #[serde(deny_unknown_fields, default)]
     pub struct FreeWakeValues {
+        /// Choices that belong together: `ForwardFlight`, `Hover`, or `Fast` for a first look.
+        pub preset: WakePreset = WakePreset::ForwardFlight, Any, "", "";
         /// Where the circulation comes from: the trimmed rotor, or given for `hhc wake`.
         pub circulation: CirculationChoice = CirculationChoice::Trimmed, Any, "", "";
-        /// Azimuth steps per revolution; left out: 36 or the next multiple of the blades above (40 for 5 and 8
-        /// blades, 42 for 7). More than 48 ask for `time_gauss_points` of 12 or 16.
-        pub azimuths: Option<usize> = None, Rule("8 to 144, a multiple of the blades"), "", "";
-        /// Free turns of the rolled-up vortices.
-        pub turns: usize = 4, Count(1, 12), "", "4 are usual in forward flight";
-        /// Turns that repeat the last free one behind it; left out: 2, in hover 6.
-        pub far_turns: Option<usize> = None, Count(0, 20), "", "2 are usual, 6 in hover";
+        /// Age up to which all trailers are kept; by the preset 360, one revolution, in hover 90.
+        pub near_wake_deg: Option<f64> = None, Within(1.0, 1440.0), "deg", "360 is one revolution";
+        /// Core radius of the near wake where it passes blades; left out: one chord.
+        pub near_core_r: Option<f64> = None, Within(1e-3, 0.2), "R", "leave it out for the chord of the blade";
+        /// Vortices behind the near wake; by the preset `Tip`, in hover `TipRootAndSheet`: four for the inboard sheet
+        /// at 0.35, 0.5, 0.65 and 0.78 R. `TipRootAndFlaps`: one more at each end of the flaps.
+        pub rolled_up: Option<RolledUpChoice> = None, Any, "", "";
         /// Spanwise panels of a blade.
         pub panels: usize = 20, Count(6, 60), "", "20 are usual";
-        /// Age up to which all trailers are kept.
-        pub near_wake_deg: f64 = 360.0, Within(1.0, 1440.0), "deg", "360 is one revolution";
-        /// How these trailers travel. `BladePlane`: fixed to the plane of the blade, for short near wakes.
-        /// `Convected`: with free stream and mean induced velocity. `FollowsTip`: distorted in proportion to
-        /// the station by what the tip vortex has become. `Free`: as the tip vortex, slow; nearest to the
-        /// measured tip vortex in hover with 90 deg, `TipRootAndSheet`, `Axial`, `Corrected`.
-        pub near_wake: NearWakeMotion = NearWakeMotion::FollowsTip, Any, "", "";
-        /// Vortices behind the near wake. `TipRootAndFlaps`: one more at each end of the flaps.
-        /// `TipRootAndSheet`: four for the inboard sheet at 0.35, 0.5, 0.65 and 0.78 R; hover needs it.
-        pub rolled_up: RolledUpChoice = RolledUpChoice::Tip, Any, "", "";
-        /// Where on the trailing edge these leave: at their stations, or at the centroid of what they collect
-        /// (Betz).
+        /// Azimuth steps per revolution; by the preset 36, 24 if fast, or the next multiple of the blades above. More
+        /// than 48 ask for `time_gauss_points` of 12 or 16.
+        pub azimuths: Option<usize> = None, Rule("8 to 144, a multiple of the blades"), "", "";
+        /// Free turns of the rolled-up vortices; by the preset 4, 2 if fast.
+        pub turns: Option<usize> = None, Count(1, 12), "", "4 are usual in forward flight";
+        /// Core radius, at least, with which rolled-up vortices move each other; 0 for their own, 0.1 where a
+        /// wake at low speed does not converge.
+        pub mutual_core_r: f64 = 0.05, Within(0.0, 0.2), "R", "0.05 is usual, 0.1 at low speed";
+        /// How the trailers of the near wake travel; by the preset `FollowsTip`, in hover `Free`. `BladePlane`: fixed
+        /// to the plane of the blade. `Convected`: with free stream and mean induced velocity. `FollowsTip`: distorted
+        /// in proportion to the station by what the tip vortex has become. `Free`: as the tip vortex, slow.
+        pub near_wake: Option<NearWakeMotion> = None, Any, "", "";
+        /// `Periodic`: each azimuth has its own wake. `Axial`, by the preset in hover alone: the wake turns with its
+        /// blades; refused where blades move by more than 0.01 R.
+        pub symmetry: Option<WakeSymmetry> = None, Any, "", "";
+        /// Velocity profile of the cores; by the preset `Vatistas`, n = 2, in hover `Corrected`, Rosenhead and Moore's
+        /// cut-off with the curvature between segments.
+        pub core: Option<CoreModel> = None, Any, "", "";
+        /// Core radius of the rolled-up vortices at release.
+        pub core_r: f64 = 0.02, Within(1e-3, 0.2), "R", "about a third of the chord is usual";
+        /// Core radius of the trailers younger than 30 deg over the width of the panel beside them, at most; a
+        /// large number for no limit.
+        pub panel_share: f64 = 0.3, Within(0.01, 1e6), "", "0.3 is usual; a large number is no limit";
+        /// Turns that repeat the last free one behind it; left out: 2, in hover 6.
+        pub far_turns: Option<usize> = None, Count(0, 20), "", "2 are usual, 6 in hover";
+        /// Where on the trailing edge rolled-up vortices leave: at their stations, or at the centroid of what they
+        /// collect (Betz).
         pub release: ReleasePoint = ReleasePoint::Station, Any, "", "";
         /// Where on the chord the sections feel the wake; `ThreeQuarterChord` (Weissinger) for blades of few
         /// chords' length.
         pub control_point: ControlPoint = ControlPoint::LiftingLine, Any, "", "";
-        /// Velocity profile of the cores: Vatistas, n = 2, or `Corrected`, Rosenhead and Moore's cut-off with
-        /// the curvature between segments.
-        pub core: CoreModel = CoreModel::Vatistas, Any, "", "";
-        /// Core radius of the rolled-up vortices at release.
-        pub core_r: f64 = 0.02, Within(1e-3, 0.2), "R", "about a third of the chord is usual";
-        /// Core radius, at least, with which rolled-up vortices move each other; 0 for their own, 0.1 where a
-        /// wake at low speed does not converge.
-        pub mutual_core_r: f64 = 0.05, Within(0.0, 0.2), "R", "0.05 is usual, 0.1 at low speed";
-        /// Core radius of the near wake where it passes blades; left out: one chord.
-        pub near_core_r: Option<f64> = None, Within(1e-3, 0.2), "R", "leave it out for the chord of the blade";
-        /// Core radius of the trailers younger than 30 deg over the width of the panel beside them, at most; a
-        /// large number for no limit.
-        pub panel_share: f64 = 0.3, Within(0.01, 1e6), "", "0.3 is usual; a large number is no limit";
         /// `Relaxed`: sweeps of pseudo-implicit relaxation. `Marched`: revolutions in time (PC2B), three per
         /// update.
         pub method: WakeMethod = WakeMethod::Relaxed, Any, "", "";
-        /// `Periodic`: each azimuth has its own wake. `Axial`: the wake turns with its blades, whose mean over
-        /// the azimuth it takes; hover only, refused where blades move by more than 0.01 R.
-        pub symmetry: WakeSymmetry = WakeSymmetry::Periodic, Any, "", "";
-        /// Precision of the velocities of rolled-up vortices older than a revolution.
-        pub far_field: FarField = FarField::Double, Any, "", "";
+        /// Precision of the velocities of rolled-up vortices older than a revolution; by the preset `Double`, `Single`
+        /// if fast.
+        pub far_field: Option<FarField> = None, Any, "", "";
         /// Velocities of the relaxed wake are computed at every n-th age and interpolated between along the
-        /// path of the air; 1 computes all.
-        pub velocity_stride: usize = 1, Count(1, 3), "", "1 computes every age";
+        /// path of the air; by the preset 1, 2 if fast.
+        pub velocity_stride: Option<usize> = None, Count(1, 3), "", "1 computes every age";
         /// Largest change of the inflow between two updates of the wake, over the tip speed.
         pub tolerance: f64 = 2e-4, Within(1e-8, 1e-2), "", "2e-4 of the tip speed is usual";
         /// RMS displacement of the wake in the last sweep of an update.
@@ -145,18 +155,90 @@ section! {
     }
 }
 
+/// What a preset chooses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WakeChoices {
+    /// Azimuth steps per revolution, before they are made a multiple of the blades.
+    pub azimuths: usize,
+    /// Free turns.
+    pub turns: usize,
+    /// Age up to which all trailers are kept, deg.
+    pub near_wake_deg: f64,
+    /// How the near wake travels.
+    pub near_wake: NearWakeMotion,
+    /// Vortices behind it.
+    pub rolled_up: RolledUpChoice,
+    /// Profile of the cores.
+    pub core: CoreModel,
+    /// Whether the wake is alike at every azimuth.
+    pub symmetry: WakeSymmetry,
+    /// Precision of the far field.
+    pub far_field: FarField,
+    /// Every how many ages velocities are computed.
+    pub velocity_stride: usize,
+}
+
+impl WakePreset {
+    /// Its choices.
+    pub fn choices(self) -> WakeChoices {
+        let flight = WakeChoices {
+            azimuths: 36,
+            turns: 4,
+            near_wake_deg: 360.0,
+            near_wake: NearWakeMotion::FollowsTip,
+            rolled_up: RolledUpChoice::Tip,
+            core: CoreModel::Vatistas,
+            symmetry: WakeSymmetry::Periodic,
+            far_field: FarField::Double,
+            velocity_stride: 1,
+        };
+        match self {
+            Self::ForwardFlight => flight,
+            Self::Hover => WakeChoices {
+                near_wake_deg: 90.0,
+                near_wake: NearWakeMotion::Free,
+                rolled_up: RolledUpChoice::TipRootAndSheet,
+                core: CoreModel::RosenheadMoore,
+                symmetry: WakeSymmetry::Axial,
+                ..flight
+            },
+            Self::Fast => WakeChoices {
+                azimuths: 24,
+                turns: 2,
+                far_field: FarField::Single,
+                velocity_stride: 2,
+                ..flight
+            },
+        }
+    }
+}
+
 /// Turns that repeat the last free one in forward flight, and in hover.
 const USUAL_FAR_TURNS: usize = 2;
 const HOVER_FAR_TURNS: usize = 6;
 
-/// Azimuth steps per revolution of a wake, where a case asks for none.
-const USUAL_AZIMUTHS: usize = 36;
-
 impl FreeWakeValues {
-    /// Azimuth steps per revolution for a number of blades: those asked for, or steps of 10 deg, or a little less where
-    /// 36 is no multiple of the blades (40 for five and eight blades, 42 for seven).
+    /// The choices of the preset, but for those that are given.
+    pub fn choices(&self) -> WakeChoices {
+        let preset = self.preset.choices();
+        WakeChoices {
+            azimuths: self.azimuths.unwrap_or(preset.azimuths),
+            turns: self.turns.unwrap_or(preset.turns),
+            near_wake_deg: self.near_wake_deg.unwrap_or(preset.near_wake_deg),
+            near_wake: self.near_wake.unwrap_or(preset.near_wake),
+            rolled_up: self.rolled_up.unwrap_or(preset.rolled_up),
+            core: self.core.unwrap_or(preset.core),
+            symmetry: self.symmetry.unwrap_or(preset.symmetry),
+            far_field: self.far_field.unwrap_or(preset.far_field),
+            velocity_stride: self.velocity_stride.unwrap_or(preset.velocity_stride),
+        }
+    }
+
+    /// Azimuth steps per revolution for a number of blades: those asked for, or those of the preset, or a few more where
+    /// these are no multiple of the blades (40 for five and eight blades, 42 for seven).
     pub fn azimuths_for(&self, blades: usize) -> usize {
-        self.azimuths.unwrap_or_else(|| USUAL_AZIMUTHS.next_multiple_of(blades.max(1)))
+        let usual = || self.preset.choices().azimuths.next_multiple_of(blades.max(1));
+        self.azimuths.unwrap_or_else(usual)
     }
 
     /// Turns that repeat the last free one: those asked for, or 2, or 6 in hover, where the wake stays below the disk.

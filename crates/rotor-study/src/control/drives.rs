@@ -42,12 +42,10 @@ impl Drives {
             limits: BTreeMap::new(),
         };
         let harmonics: BTreeSet<usize> = control.harmonics.iter().flatten().copied().collect();
-        let harmonics: Vec<usize> = harmonics.into_iter().collect();
-        let limits = harmonics
-            .par_iter()
-            .map(|&n| Ok((n, drives.full_scale(case, n)?)))
-            .collect::<Result<Vec<_>, StudyError>>()?;
-        drives.limits = limits.into_iter().collect();
+        drives.limits = harmonics
+            .into_par_iter()
+            .map(|n| Ok((n, drives.full_scale(case, n)?)))
+            .collect::<Result<_, StudyError>>()?;
         Ok(drives)
     }
 
@@ -55,25 +53,19 @@ impl Drives {
     pub(super) fn full_scale(&self, case: &Case, harmonic: usize) -> Result<FullScale, StudyError> {
         let control = &case.control;
         let drive = self.hysteretic.as_ref().unwrap_or(&self.ideal);
-        let full = drive.full_scale(harmonic, control.amplitude_volt).map_err(|source| {
-            let frequency_hz = case.bench_frequency_hz(harmonic);
-            StudyError::Stroke { harmonic, frequency_hz, source }
-        })?;
         let failed = |source| {
             let frequency_hz = case.bench_frequency_hz(harmonic);
             StudyError::Stroke { harmonic, frequency_hz, source }
         };
-        Ok(match control.stroke_limit {
-            StrokeChoice::FromActuator => full,
-            StrokeChoice::Given { amplitude_deg } if amplitude_deg >= full.stroke_deg => {
-                FullScale { stroke_deg: amplitude_deg, ..full }
+        let mut full = drive.full_scale(harmonic, control.amplitude_volt).map_err(failed)?;
+        if let StrokeChoice::Given { amplitude_deg } = control.stroke_limit {
+            if amplitude_deg < full.stroke_deg {
+                let found = drive.voltage_of_stroke(harmonic, amplitude_deg, full);
+                (full.amplitude_volt, full.motion_deg) = found.map_err(failed)?;
             }
-            StrokeChoice::Given { amplitude_deg } => {
-                let (amplitude_volt, motion_deg) =
-                    drive.voltage_of_stroke(harmonic, amplitude_deg, full).map_err(failed)?;
-                FullScale { amplitude_volt, stroke_deg: amplitude_deg, motion_deg, ..full }
-            }
-        })
+            full.stroke_deg = amplitude_deg;
+        }
+        Ok(full)
     }
 
     /// The same drives with every stroke limit multiplied by a factor.

@@ -2,12 +2,13 @@
 
 use crate::case::{Case, ControlActuator, TInflowChoice};
 use crate::control::drives::Drives;
-use crate::control::set::{ControlSet, LEAST_EFFORT};
+use crate::control::set::{ControlSet, least_effort};
 use crate::error::StudyError;
 use crate::flaps::{FlapDrive, PlantError};
 use crate::loads::Setting;
+use crate::plant::{HUB_OUTPUTS, RotorPlant, output_weights};
 use crate::rotor::{FlapAuthority, TrimmedRotor};
-use crate::series::weighted;
+use crate::series::{only, place, weighted};
 use hhc_control::{FeedbackLaw, LoadWeights, Plant, RunError, TMatrix, lag_deg, lag_loss};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -108,11 +109,11 @@ pub fn forecasts(
     rotor: &TrimmedRotor,
     drives: &Drives,
 ) -> Result<Vec<ForecastLine>, StudyError> {
-    if drives.hysteretic.is_none() || case.control.harmonics.is_empty() {
-        return Ok(Vec::new());
-    }
-    // made once before the sets run side by side; a rotor that has none has no forecast either
-    if rotor.authority().is_err() {
+    // the authority is made once before the sets run side by side; a rotor that has none has no forecast either
+    if drives.hysteretic.is_none()
+        || case.control.harmonics.is_empty()
+        || rotor.authority().is_err()
+    {
         return Ok(Vec::new());
     }
     let sets = case.control.harmonics.par_iter();
@@ -144,33 +145,36 @@ impl HarmonicGain {
 impl ControlSet<'_> {
     /// See [`Forecast`].
     fn forecast(&self) -> Result<ForecastLine, StudyError> {
-        let plant_failed = |source: PlantError| {
-            self.failed(ControlActuator::Ideal, RunError::plant("linearised", &[])(source))
-        };
-        let control_failed = |error| self.failed(ControlActuator::Ideal, RunError::Control(error));
-        let mut ideal = self.plant(ControlActuator::Ideal)?;
+        let ideal = self.plant(ControlActuator::Ideal)?;
+        let record = self.record(ideal).map_err(|e| self.failed(ControlActuator::Ideal, e))?;
+        Ok(ForecastLine { harmonics: self.harmonics.to_vec(), record })
+    }
+
+    fn record(&self, mut ideal: RotorPlant) -> Result<ForecastRecord, RunError<PlantError>> {
+        let failed = |source: PlantError| RunError::plant("linearised", &[])(source);
+        let responded = |source: ResponseError| failed(source.into());
         let zero = ideal.layout().zero();
-        let t = ideal.t_about_trim(&zero).map_err(plant_failed)?;
-        let baseline = self.rotor.trim().rotor.hub.harmonic(self.case.rotor.blades);
-        let weights: Vec<f64> = self.load_weights().into_iter().flat_map(|w| [w, w]).collect();
+        let t = ideal.t_about_trim(&zero).map_err(failed)?;
         // the loads alone: what weighs the power beside them is no load
         let columns: Vec<Vec<f64>> =
-            t.columns().into_iter().map(|column| column[..baseline.len()].to_vec()).collect();
-        let t = TMatrix::from_columns(&columns).map_err(control_failed)?;
-        let weights = LoadWeights::Diagonal(weights);
-        let law = FeedbackLaw::new(&t, &weights).map_err(control_failed)?;
-        let surplus = t.controls() > t.loads();
-        let scale = law.singular_values().first().map_or(0.0, |s| s * s);
-        let rho = if surplus { LEAST_EFFORT * scale } else { 0.0 };
-        let limits = ideal.limits(&zero).map_err(plant_failed)?;
-        let cone = law.optimum_within(rho, &zero, &baseline, &limits).map_err(control_failed)?;
+            t.columns().into_iter().map(|column| column[..HUB_OUTPUTS].to_vec()).collect();
+        let t = TMatrix::from_columns(&columns)?;
+        let law = FeedbackLaw::new(&t, &output_weights(&self.load_weights(), HUB_OUTPUTS))?;
+        let rho = least_effort(&law);
+        let limits = ideal.limits(&zero).map_err(failed)?;
+        let baseline = self.rotor.trim().rotor.hub.harmonic(self.case.rotor.blades);
+        let cone = law.optimum_within(rho, &zero, &baseline, &limits)?;
 
-        let responded = |source: ResponseError| plant_failed(source.into());
         let settled = self.rotor.linearised(InflowState::Settled).map_err(responded)?;
         let frozen = self.rotor.linearised(InflowState::Frozen).map_err(responded)?;
         let reconverged = match self.case.control.t_inflow {
             TInflowChoice::Reconverged => self.rotor.reconverged().map_err(responded)?,
             _ => None,
+        };
+        let ideal_t = |authority: &FlapAuthority| {
+            let gain = self.case.actuator.ideal_amplitude_deg / self.case.control.amplitude_volt;
+            let found = self.t_of(authority, |n, sine, _| Ok(only(place(n, sine), gain)));
+            found.map_err(failed)
         };
         let drive = self.drives.hysteretic.as_ref().unwrap_or(&self.drives.ideal);
         let gains = |amplitude: &dyn Fn(usize) -> f64| {
@@ -178,106 +182,85 @@ impl ControlSet<'_> {
             each.map(|(k, &n)| HarmonicGain::of(drive, n, amplitude(k)))
                 .collect::<Result<Vec<_>, PlantError>>()
         };
-        let at_stroke = gains(&|k| self.limits[k].amplitude_volt).map_err(plant_failed)?;
-        let at_step = gains(&|_| self.step_volt()).map_err(plant_failed)?;
-        let dynamic = self.dynamic_t(drive).map_err(plant_failed)?;
+        let at_stroke = gains(&|k| self.limits[k].amplitude_volt).map_err(failed)?;
+        let at_step = gains(&|_| self.step_volt()).map_err(failed)?;
         let per_deg = self.case.control.amplitude_volt / self.case.actuator.ideal_amplitude_deg;
-        Ok(ForecastLine {
-            harmonics: self.harmonics.to_vec(),
-            record: ForecastRecord {
-                t_per_volt: columns,
-                settled_t_per_volt: self.ideal_t(&settled),
-                frozen_t_per_volt: self.ideal_t(&frozen),
-                reconverged_t_per_volt: reconverged
-                    .map(|found| self.ideal_t(&found.authority))
-                    .unwrap_or_default(),
-                wake_updates: reconverged.map(|found| found.updates),
-                wake_change: reconverged.map(|found| found.change),
-                rho_per_volt2: rho,
-                cone_volt: cone.control_volt,
-                stroke_volt: self.limits.iter().map(|l| l.stroke_deg * per_deg).collect(),
-                at_stroke_deg: at_stroke
-                    .iter()
-                    .map(|gain| [gain.flap_deg.cosine, gain.flap_deg.sine])
-                    .collect(),
-                dynamic_t_per_volt: dynamic.columns(),
-                gain_t_at_step_per_volt: self.gain_t(&at_step).map_err(plant_failed)?.columns(),
-                gain_t_at_stroke_per_volt: self.gain_t(&at_stroke).map_err(plant_failed)?.columns(),
+        Ok(ForecastRecord {
+            t_per_volt: columns,
+            settled_t_per_volt: ideal_t(&settled)?,
+            frozen_t_per_volt: ideal_t(&frozen)?,
+            reconverged_t_per_volt: match reconverged {
+                Some(found) => ideal_t(&found.authority)?,
+                None => Vec::new(),
             },
+            wake_updates: reconverged.map(|found| found.updates),
+            wake_change: reconverged.map(|found| found.change),
+            rho_per_volt2: rho,
+            cone_volt: cone.control_volt,
+            stroke_volt: self.limits.iter().map(|l| l.stroke_deg * per_deg).collect(),
+            at_stroke_deg: at_stroke
+                .iter()
+                .map(|gain| [gain.flap_deg.cosine, gain.flap_deg.sine])
+                .collect(),
+            dynamic_t_per_volt: self.dynamic_t(drive).map_err(failed)?,
+            gain_t_at_step_per_volt: self.gain_t(&at_step).map_err(failed)?,
+            gain_t_at_stroke_per_volt: self.gain_t(&at_stroke).map_err(failed)?,
         })
     }
 
-    /// T of the ideal actuator from what the flaps do to the hub, column by column, load per V.
-    fn ideal_t(&self, authority: &FlapAuthority) -> Vec<Vec<f64>> {
-        let gain = self.case.actuator.ideal_amplitude_deg / self.case.control.amplitude_volt;
-        let flaps = self.rotor.rotor().model().flaps.len();
-        let pairs = (0..flaps).flat_map(|flap| self.harmonics.iter().map(move |&n| (flap, n)));
-        pairs
-            .flat_map(|(flap, n)| [(flap, n, gain, 0.0), (flap, n, 0.0, gain)])
-            .map(|(flap, n, cosine, sine)| {
-                let mut motion = HarmonicSeries::zero(n);
-                motion.set_harmonic(n, Harmonic { cosine, sine });
-                authority.loads(flap, &motion).to_vec()
-            })
-            .collect()
-    }
-
     /// T of the linearised rotor with a harmonic gain for the actuator, load per V.
-    fn gain_t(&self, gains: &[HarmonicGain]) -> Result<TMatrix, PlantError> {
-        self.t_of(|n, quadrature, k| {
+    fn gain_t(&self, gains: &[HarmonicGain]) -> Result<Vec<Vec<f64>>, PlantError> {
+        self.t_of(self.rotor.authority()?, |n, sine, k| {
             let HarmonicGain { gain_deg_per_volt, lag_rad, .. } = gains[k];
-            let phase = if quadrature { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+            let phase = if sine { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+            let harmonic = Harmonic::from_amplitude_phase(gain_deg_per_volt, phase + lag_rad);
             let mut motion = HarmonicSeries::zero(n);
-            motion.set_harmonic(
-                n,
-                Harmonic::from_amplitude_phase(gain_deg_per_volt, phase + lag_rad),
-            );
+            motion.set_harmonic(n, harmonic);
             Ok(motion)
         })
     }
 
     /// The same with the full model of the actuator, every harmonic that it makes, by central differences of
     /// the step of T.
-    fn dynamic_t(&self, drive: &FlapDrive) -> Result<TMatrix, PlantError> {
+    fn dynamic_t(&self, drive: &FlapDrive) -> Result<Vec<Vec<f64>>, PlantError> {
         let step_volt = self.step_volt();
-        self.t_of(|n, quadrature, _| {
+        self.t_of(self.rotor.authority()?, |n, sine, _| {
             let moved = |volt: f64| {
-                let (cosine, sine) = if quadrature { (0.0, volt) } else { (volt, 0.0) };
-                drive.motion(&[(n, Harmonic { cosine, sine })]).map(|motion| motion.flap_deg)
+                let voltage = only(place(n, sine), volt).harmonic(n);
+                drive.motion(&[(n, voltage)]).map(|motion| motion.flap_deg)
             };
-            let (up, down) = (moved(step_volt)?, moved(-step_volt)?);
-            Ok(weighted(&up, &down, 0.5 / step_volt))
+            Ok(weighted(&moved(step_volt)?, &moved(-step_volt)?, 0.5 / step_volt))
         })
     }
 
-    /// T from the flap motion per V of a harmonic's cosine and sine, the flaps alike; the harmonic is given
-    /// with its place in the set.
+    /// T from what the flaps do to the hub and the flap motion per V of a harmonic's cosine and sine, the flaps
+    /// alike, column by column, load per V; the harmonic is given with its place in the set.
     fn t_of(
         &self,
+        authority: &FlapAuthority,
         motion: impl Fn(usize, bool, usize) -> Result<HarmonicSeries, PlantError>,
-    ) -> Result<TMatrix, PlantError> {
-        let authority = self.rotor.authority()?;
-        let mut motions = Vec::with_capacity(2 * self.harmonics.len());
-        for (k, &n) in self.harmonics.iter().enumerate() {
-            motions.extend([motion(n, false, k)?, motion(n, true, k)?]);
-        }
-        let flaps = self.rotor.rotor().model().flaps.len();
-        let columns: Vec<Vec<f64>> = (0..flaps)
-            .flat_map(|flap| motions.iter().map(move |along| (flap, along)))
-            .map(|(flap, along)| authority.loads(flap, along).to_vec())
+    ) -> Result<Vec<Vec<f64>>, PlantError> {
+        let each = self.harmonics.iter().enumerate();
+        let motions = each
+            .flat_map(|(k, &n)| [false, true].map(|sine| motion(n, sine, k)))
+            .collect::<Result<Vec<_>, PlantError>>()?;
+        let columns: Vec<Vec<f64>> = (0..self.rotor.rotor().model().flaps.len())
+            .flat_map(|flap| motions.iter().map(move |along| authority.loads(flap, along).to_vec()))
             .collect();
-        TMatrix::from_columns(&columns).map_err(PlantError::Bias)
+        Ok(TMatrix::from_columns(&columns).map_err(PlantError::Bias)?.columns())
     }
 }
 
 impl ForecastLine {
     /// What the linearised rotor says; numbers that do not fit together give NaN.
     pub fn figures(&self, setting: &Setting) -> Forecast {
-        self.computed(setting).unwrap_or_else(|| {
-            let nan = f64::NAN;
-            let (cone, clipped, free, lag_loss_percent) = (nan, nan, nan, nan);
-            let harmonics = self.harmonics.clone();
-            Forecast { harmonics, lag_loss_percent, cone, clipped, free, ..Forecast::default() }
+        self.computed(setting).unwrap_or_else(|| Forecast {
+            harmonics: self.harmonics.clone(),
+            lag_loss_percent: f64::NAN,
+            cone: f64::NAN,
+            clipped: f64::NAN,
+            free: f64::NAN,
+            ..Forecast::default()
         })
     }
 

@@ -10,7 +10,7 @@ mod study;
 
 pub use drives::Drives;
 pub use forecast::{Forecast, ForecastLine, ForecastRecord, forecasts};
-pub use robustness::{Disturbance, RobustnessCell, RobustnessLine, robustness, robustness_maps};
+pub use robustness::{Disturbance, RobustnessCell, RobustnessLine, robustness_maps};
 pub(crate) use run::ideal_control;
 pub use run::{control_all, control_set};
 pub use set::control_status;

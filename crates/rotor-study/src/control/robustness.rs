@@ -2,7 +2,7 @@
 
 use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice};
 use crate::control::drives::Drives;
-use crate::control::set::{ControlSet, close_loop, outcome_name};
+use crate::control::set::{ControlSet, close_loop, stop_name};
 use crate::error::StudyError;
 use crate::flaps::PlantError;
 use crate::loads::{HubLoads, Setting, loads_cost};
@@ -46,11 +46,13 @@ pub struct RobustnessCell {
     pub disturbance: Disturbance,
     /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`; `diverged`: no first step
     /// lowers the cost; `failed`: the stroke was not met or a cone program not solved.
-    pub outcome: String,
+    #[serde(alias = "outcome")]
+    pub status: String,
     /// Control steps.
     pub steps: usize,
-    /// Halvings.
-    pub halvings: u32,
+    /// Backtracks.
+    #[serde(alias = "halvings")]
+    pub backtracks: u32,
     /// Measurements.
     pub measurements: usize,
     /// Hub loads at the end, without noise.
@@ -105,9 +107,8 @@ struct Disturbed {
     drift: f64,
     t_gain: f64,
     t_phase_rad: f64,
-    answers: u32,
     random: ChaCha8Rng,
-    /// Controls that were measured and their loads without noise.
+    /// Controls that were measured, one per answer, and their loads without noise.
     truth: Vec<(Vec<f64>, [f64; 12])>,
 }
 
@@ -118,7 +119,6 @@ impl Disturbed {
             drift: 0.01 * disturbance.drift_percent,
             t_gain: disturbance.t_gain,
             t_phase_rad: disturbance.t_phase_deg.to_radians(),
-            answers: 0,
             random: ChaCha8Rng::seed_from_u64(seed),
             truth: Vec::new(),
         }
@@ -126,16 +126,15 @@ impl Disturbed {
 
     /// Loads without noise and flap motions, the gain of the actuators as it is now.
     fn answer(&self, plant: &RotorPlant, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        let left = (1.0 - self.drift).powf(f64::from(self.answers));
+        let left = (1.0 - self.drift).powf(self.truth.len() as f64);
         let mut state = plant.state(control_volt)?;
-        if self.drift > 0.0 && self.answers > 0 {
+        if self.drift > 0.0 && !self.truth.is_empty() {
             for flap in &mut state.flaps {
                 flap.flap_deg = scaled(&flap.flap_deg, left);
             }
             state = plant.state_of(state.flaps)?;
         }
-        let loads = state.rotor.hub.harmonic(plant.rotor().rotor().model().blades);
-        Ok(plant.measurement(control_volt, &loads, &state.flaps))
+        Ok(plant.seen(control_volt, &state))
     }
 
     /// The loads that a control had when it was measured last, without noise.
@@ -153,7 +152,6 @@ impl Answers for Disturbed {
     ) -> Result<Measurement, PlantError> {
         let mut measurement = self.answer(plant, control_volt)?;
         self.truth.push((control_volt.to_vec(), hub_outputs(&measurement.outputs)));
-        self.answers += 1;
         // the power is worked out, not measured
         add_noise(&mut measurement.outputs[..HUB_OUTPUTS], self.noise, &mut self.random);
         Ok(measurement)
@@ -233,17 +231,7 @@ fn effort_name(effort: EffortChoice) -> &'static str {
 ///
 /// # Errors
 /// [`StudyError`] of the plant; a run that diverges or whose stroke is not met is a cell of the map.
-pub fn robustness(
-    case: &Case,
-    rotor: &TrimmedRotor,
-    drives: &Drives,
-    harmonic: usize,
-) -> Result<Vec<RobustnessCell>, StudyError> {
-    under(case, (rotor, drives), harmonic, disturbances())
-}
-
-/// The cells of given disturbances.
-fn under(
+fn cells(
     case: &Case,
     (rotor, drives): (&TrimmedRotor, &Drives),
     harmonic: usize,
@@ -257,29 +245,25 @@ fn under(
     let plant = set.plant(ControlActuator::Hysteretic)?;
     let step_volt = set.step_volts(&plant);
     let failed = |source| set.failed(ControlActuator::Hysteretic, source);
-    let t0 = identify_t(&mut plant.clone(), &step_volt).map_err(failed)?;
-    let t_at_rest = set.t_at_rest(&plant).map_err(failed)?;
     let baseline = rotor.trim().rotor.hub.harmonic(case.rotor.blades);
-    let each: Vec<(Disturbance, (ControllerChoice, EffortChoice))> = disturbances
-        .into_iter()
-        .flat_map(|disturbance| ways(case.control.effort).map(|way| (disturbance, way)))
-        .collect();
     let flight = Flight {
         set: &set,
-        t0,
-        t_at_rest,
+        t0: identify_t(&mut plant.clone(), &step_volt).map_err(failed)?,
+        t_at_rest: set.t_at_rest(&plant).map_err(failed)?,
         step_volt,
         rms: (baseline.iter().map(|z| z * z).sum::<f64>() / baseline.len() as f64).sqrt(),
-        setting: Setting::of_case(case, &HubLoads::from_parts(baseline)),
+        weights: set.load_weights(),
         plant,
         baseline,
     };
+    let each: Vec<_> = disturbances
+        .into_iter()
+        .flat_map(|disturbance| ways(case.control.effort).map(|way| (disturbance, way)))
+        .collect();
     each.into_par_iter()
         .enumerate()
         .map(|(index, (disturbance, way))| {
-            flight
-                .cell((disturbance, SEED + index as u64), way)
-                .map_err(|source| set.failed(ControlActuator::Hysteretic, source))
+            flight.cell((disturbance, SEED + index as u64), way).map_err(failed)
         })
         .collect()
 }
@@ -294,7 +278,7 @@ struct Flight<'a> {
     step_volt: Vec<f64>,
     baseline: [f64; HUB_OUTPUTS],
     rms: f64,
-    setting: Setting,
+    weights: [f64; 6],
 }
 
 impl Flight<'_> {
@@ -317,57 +301,63 @@ impl Flight<'_> {
         let wrong = wrong_t(t0, answers.t_gain, answers.t_phase_rad)?;
         let controller = self.set.controller(&wrong, way, effort)?;
         let mut plant = Answered { plant: self.plant.clone(), answers };
-        let ended = close_loop(&controller, &mut plant, effort);
+        let (run, status) = match close_loop(&controller, &mut plant, effort) {
+            Ok((run, _)) => {
+                let status = stop_name(run.stop);
+                (Some(run), status)
+            }
+            Err(RunError::Control(
+                ControlError::Diverges { .. } | ControlError::NotAdmitted { .. },
+            )) => (None, "diverged"),
+            Err(RunError::Control(
+                ControlError::StrokeNotMet { .. } | ControlError::ConeProgram { .. },
+            )) => (None, "failed"),
+            Err(error) => return Err(error),
+        };
         let disturbed = &plant.answers;
-        // a run that diverges stays where it is
-        let at_rest = HubLoads::from_parts(self.baseline);
-        let cell = RobustnessCell {
+        let (end, best) = match &run {
+            Some(run) => (Self::end(run, &plant)?, self.best(run, disturbed)),
+            // a run that diverges stays where it is
+            None => (self.baseline, self.baseline),
+        };
+        Ok(RobustnessCell {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
             controller: choice_name(choice).to_owned(),
             effort: effort_name(effort).to_owned(),
             disturbance,
-            measurements: disturbed.answers as usize,
-            end: at_rest,
-            best: at_rest,
-            ..RobustnessCell::default()
-        };
-        let cell = match ended {
-            Ok((run, _)) => {
-                let control = &run.last().control_volt;
-                let end = match disturbed.measured(control) {
-                    Some(loads) if disturbed.drift == 0.0 => loads,
-                    _ => {
-                        let answer = disturbed.answer(&plant.plant, control);
-                        let answer = answer.map_err(|source| unanswered(&run, source))?;
-                        hub_outputs(&answer.outputs)
-                    }
-                };
-                RobustnessCell {
-                    end: HubLoads::from_parts(end),
-                    best: HubLoads::from_parts(self.best(&run, disturbed)),
-                    outcome: outcome_name(Some(run.stop)).to_owned(),
-                    steps: run.steps.len(),
-                    halvings: run.backtracks,
-                    ..cell
-                }
-            }
-            Err(RunError::Control(
-                ControlError::Diverges { .. } | ControlError::NotAdmitted { .. },
-            )) => RobustnessCell { outcome: "diverged".to_owned(), ..cell },
-            Err(RunError::Control(
-                ControlError::StrokeNotMet { .. } | ControlError::ConeProgram { .. },
-            )) => RobustnessCell { outcome: "failed".to_owned(), ..cell },
-            Err(error) => return Err(error),
-        };
-        Ok(cell)
+            status: status.to_owned(),
+            steps: run.as_ref().map_or(0, |run| run.steps.len()),
+            backtracks: run.as_ref().map_or(0, |run| run.backtracks),
+            measurements: disturbed.truth.len(),
+            end: HubLoads::from_parts(end),
+            best: HubLoads::from_parts(best),
+        })
+    }
+
+    /// The loads at the end, without noise and with the actuator as it is by then.
+    fn end(
+        run: &ControlRun,
+        Answered { plant, answers }: &Answered<Disturbed>,
+    ) -> Result<[f64; HUB_OUTPUTS], RunError<PlantError>> {
+        let control = &run.last().control_volt;
+        if let Some(loads) = answers.measured(control).filter(|_| answers.drift == 0.0) {
+            return Ok(loads);
+        }
+        let answer = answers.answer(plant, control).map_err(|source| RunError::Plant {
+            call: "measured",
+            at_volt: control.clone(),
+            history: run.history().cloned().collect(),
+            source,
+        })?;
+        Ok(hub_outputs(&answer.outputs))
     }
 
     /// The least loads of the record, each as it was when it was measured.
     fn best(&self, run: &ControlRun, disturbed: &Disturbed) -> [f64; HUB_OUTPUTS] {
-        let weights = self.setting.load_weights();
+        let weights = &self.weights;
         let all = run.history().filter_map(|step| disturbed.measured(&step.control_volt));
         all.fold(self.baseline, |best, loads| {
-            if loads_cost(&weights, &loads) < loads_cost(&weights, &best) { loads } else { best }
+            if loads_cost(weights, &loads) < loads_cost(weights, &best) { loads } else { best }
         })
     }
 }
@@ -383,30 +373,22 @@ fn choice_name(choice: ControllerChoice) -> &'static str {
 /// The maps of every harmonic that a case controls alone on the hysteretic actuator.
 ///
 /// # Errors
-/// As [`robustness`].
+/// [`StudyError::Robustness`] of the plant.
 pub fn robustness_maps(
     case: &Case,
     rotor: &TrimmedRotor,
     drives: &Drives,
 ) -> Result<Vec<RobustnessCell>, StudyError> {
-    if rotor.wake_parted() || !case.control.actuators.contains(&ControlActuator::Hysteretic) {
+    if rotor.wake_diverged() || !case.control.actuators.contains(&ControlActuator::Hysteretic) {
         return Ok(Vec::new());
     }
-    let alone = case.control.harmonics.iter().filter(|set| set.len() == 1);
-    let maps = alone
-        .flatten()
-        .map(|&harmonic| {
-            robustness(case, rotor, drives, harmonic)
-                .map_err(|source| StudyError::Robustness { harmonic, source: Box::new(source) })
-        })
-        .collect::<Result<Vec<_>, StudyError>>()?;
-    Ok(maps.into_iter().flatten().collect())
-}
-
-/// A plant that did not answer behind a loop that ended.
-fn unanswered(run: &ControlRun, source: PlantError) -> RunError<PlantError> {
-    let (at_volt, history) = (run.last().control_volt.clone(), run.history().cloned().collect());
-    RunError::Plant { call: "measured", at_volt, history, source }
+    let mut maps = Vec::new();
+    for &harmonic in case.control.harmonics.iter().filter(|set| set.len() == 1).flatten() {
+        let map = cells(case, (rotor, drives), harmonic, disturbances())
+            .map_err(|source| StudyError::Robustness { harmonic, source: Box::new(source) })?;
+        maps.extend(map);
+    }
+    Ok(maps)
 }
 
 #[cfg(test)]

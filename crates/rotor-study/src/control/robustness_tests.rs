@@ -175,12 +175,12 @@ fn an_undisturbed_cell_is_the_loop_of_the_study() {
         let done = || ();
         let study = crate::control::control_set(&case, &rotor, &drives, &[3], &done).unwrap();
         let run = study[0].run.as_ref().unwrap();
-        let cells = under(&case, (&rotor, &drives), 3, vec![none]).unwrap();
+        let cells = cells(&case, (&rotor, &drives), 3, vec![none]).unwrap();
         let cell = cells.iter().find(|cell| cell.controller == choice).unwrap();
         let loads = study[0].state.rotor.hub.harmonic(case.rotor.blades);
         let bits = |loads: [f64; 12]| loads.map(f64::to_bits);
         assert_eq!(bits(cell.end.parts()), bits(loads), "{choice}");
-        assert_eq!((cell.steps, cell.halvings), (run.steps.len(), run.backtracks), "{choice}");
-        assert_eq!(cell.outcome, outcome_name(Some(run.stop)), "{choice}");
+        assert_eq!((cell.steps, cell.backtracks), (run.steps.len(), run.backtracks), "{choice}");
+        assert_eq!(cell.status, stop_name(run.stop), "{choice}");
     }
 }

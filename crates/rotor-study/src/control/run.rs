@@ -14,6 +14,7 @@ const TAKEN_OVER_TOLERANCE: f64 = 1e-4;
 
 /// Share of a motion that is out of reach, should rounding call it whole.
 const LARGEST_SHARE_BEYOND: f64 = 1.0 - 1e-9;
+
 /// Controls one set of harmonics with every actuator the case asks for, in the order of the case.
 ///
 /// # Errors

@@ -9,8 +9,8 @@ use crate::loads::{HubLoads, Setting, loads_cost};
 use crate::plant::{PlantState, RotorPlant, output_weights};
 use crate::rotor::TrimmedRotor;
 use hhc_control::{
-    AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackSettings, Plant,
-    RunError, StopReason, TMatrix, Tolerances,
+    AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackLaw, FeedbackSettings,
+    Plant, RunError, StopReason, TMatrix,
 };
 
 /// One set of harmonics under control: the rotor, its drives and how far they reach.
@@ -52,25 +52,18 @@ impl ControlSet<'_> {
     }
 
     pub(super) fn plant(&self, actuator: ControlActuator) -> Result<RotorPlant, StudyError> {
-        let (drive, full_scale) = match actuator {
-            ControlActuator::Ideal => {
-                let amplitude = self.case.control.amplitude_volt;
-                let per_deg = amplitude / self.case.actuator.ideal_amplitude_deg;
-                let scale = self
-                    .limits
-                    .iter()
-                    .map(|l| {
-                        let amplitude_volt = l.stroke_deg * per_deg;
-                        FullScale { amplitude_volt, reach_volt: amplitude_volt, ..*l }
-                    })
-                    .collect();
-                (&self.drives.ideal, scale)
+        let mut full_scale = self.limits.clone();
+        let drive = if actuator == ControlActuator::Ideal {
+            let amplitude = self.case.control.amplitude_volt;
+            let per_deg = amplitude / self.case.actuator.ideal_amplitude_deg;
+            for limit in &mut full_scale {
+                limit.amplitude_volt = limit.stroke_deg * per_deg;
+                limit.reach_volt = limit.amplitude_volt;
             }
-            ControlActuator::Ignored | ControlActuator::Hysteretic | ControlActuator::Inverse => {
-                let drive = self.drives.hysteretic.as_ref();
-                let name = actuator.name();
-                (drive.ok_or(StudyError::NoActuator { actuator: name })?, self.limits.clone())
-            }
+            &self.drives.ideal
+        } else {
+            let missing = StudyError::NoActuator { actuator: actuator.name() };
+            self.drives.hysteretic.as_ref().ok_or(missing)?
         };
         let plant = RotorPlant::new(self.rotor.clone(), drive.clone(), self.harmonics, &full_scale)
             .map_err(|e| self.failed(actuator, e))?;
@@ -83,7 +76,8 @@ impl ControlSet<'_> {
 
     /// Weight of each load: those of the case, over the squared baseline amplitude if it asks for that.
     pub(super) fn load_weights(&self) -> [f64; 6] {
-        load_weights(self.case, &self.rotor.trim().rotor.hub.harmonic(self.case.rotor.blades))
+        let baseline = self.rotor.trim().rotor.hub.harmonic(self.case.rotor.blades);
+        Setting::of_case(self.case, &HubLoads::from_parts(baseline)).load_weights()
     }
 
     /// The step of the T matrix, V.
@@ -197,7 +191,7 @@ pub(super) fn close_loop<P: Plant>(
             (limited.run, limited.rho)
         }
         EffortChoice::Limits => {
-            let rho = least_effort(controller);
+            let rho = least_effort(controller.law());
             (controller.run_constrained(plant, rho)?, rho)
         }
         EffortChoice::Given { rho } => (controller.run(plant, rho)?, rho),
@@ -222,43 +216,36 @@ pub(super) fn cost_tolerance(way: &Controller, effort: EffortChoice) -> f64 {
 
 /// Weight of the control, over the largest singular value of T squared, that picks the least voltage
 /// where the optimum is not unique.
-pub(super) const LEAST_EFFORT: f64 = 1e-8;
+const LEAST_EFFORT: f64 = 1e-8;
 
 /// Control weight of a cone program, 1/V^2: with more controls than loads the optimum is one of many, and the least
 /// voltage is taken.
-pub(super) fn least_effort(controller: &FeedbackController) -> f64 {
-    let law = controller.law();
+pub(super) fn least_effort(law: &FeedbackLaw) -> f64 {
     let scale = law.singular_values().first().map_or(0.0, |s| s * s);
     if law.has_surplus_controls() { LEAST_EFFORT * scale } else { 0.0 }
 }
 
-/// Weight of each load of a case, for the hub loads without control.
-pub(super) fn load_weights(case: &Case, baseline: &[f64; 12]) -> [f64; 6] {
-    Setting::of_case(case, &HubLoads::from_parts(*baseline)).load_weights()
-}
-
 /// Name of the end of a loop.
-pub(super) fn outcome_name(outcome: Option<StopReason>) -> &'static str {
-    match outcome {
-        None => "taken-over",
-        Some(StopReason::Converged) => "converged",
-        Some(StopReason::Stalled) => "stalled",
-        Some(StopReason::OutOfRange) => "out-of-range",
-        Some(StopReason::StepLimit) => "step-limit",
-        Some(StopReason::Stagnated) => "stagnated",
+pub(super) fn stop_name(stop: StopReason) -> &'static str {
+    match stop {
+        StopReason::Converged => "converged",
+        StopReason::Stalled => "stalled",
+        StopReason::OutOfRange => "out-of-range",
+        StopReason::StepLimit => "step-limit",
+        StopReason::Stagnated => "stagnated",
     }
 }
 
 /// Name of the end of a study: a loop whose last step is within the tolerances but that could not look at T again is
 /// stalled.
 pub fn control_status(study: &ControlStudy) -> &'static str {
-    let Some(run) = &study.run else { return outcome_name(None) };
-    let tolerances = Tolerances { step: study.step_tolerance, cost: study.cost_tolerance };
+    let Some(run) = &study.run else { return "taken-over" };
+    let tolerances = [study.step_tolerance, study.cost_tolerance];
     let converged = run.end.is_converged(tolerances, run.start.cost.loads);
     match (run.stop, converged) {
         (StopReason::Converged, false) => "not converged",
         (StopReason::Converged, true) => "converged",
         (_, true) => "stalled",
-        (outcome, false) => outcome_name(Some(outcome)),
+        (stop, false) => stop_name(stop),
     }
 }

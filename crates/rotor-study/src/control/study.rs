@@ -64,7 +64,7 @@ impl ControlStudy {
     }
 
     /// Steps that were halved because they raised the cost.
-    pub fn halvings(&self) -> u32 {
+    pub fn backtracks(&self) -> u32 {
         self.run.as_ref().map_or(0, |run| run.backtracks)
     }
 

@@ -15,7 +15,7 @@
 
 use crate::flaps::error::PlantError;
 use crate::flaps::motion::FlapMotion;
-use crate::series::scaled;
+use crate::series::{coefficients, series};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::Anderson;
@@ -31,7 +31,7 @@ const STEPS_KEPT: usize = 8;
 const CONTROLLED: usize = 5;
 
 /// How well flap motion and hinge moment agree.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CouplingResidual {
     /// Responses of the rotor it took.
     pub iterations: usize,
@@ -50,27 +50,6 @@ pub struct HingeCoupling {
     response: DMatrix<f64>,
     /// Factors of `I - R g`.
     newton: LU<f64, Dyn, Dyn>,
-}
-
-/// Coefficients of a series to `count` harmonics: mean, then cosine and sine of each.
-pub(crate) fn coefficients(series: &HarmonicSeries, count: usize) -> Vec<f64> {
-    std::iter::once(series.mean)
-        .chain((1..=count).flat_map(|n| {
-            let h = series.harmonic(n);
-            [h.cosine, h.sine]
-        }))
-        .collect()
-}
-
-/// The series of these coefficients.
-pub(crate) fn series(coefficients: &[f64]) -> HarmonicSeries {
-    HarmonicSeries {
-        mean: coefficients[0],
-        harmonics: coefficients[1..]
-            .chunks_exact(2)
-            .map(|pair| Harmonic { cosine: pair[0], sine: pair[1] })
-            .collect(),
-    }
 }
 
 impl HingeCoupling {
@@ -107,10 +86,15 @@ impl HingeCoupling {
         moments.as_slice().chunks_exact(2 * self.harmonics + 1).map(series).collect()
     }
 
-    fn gather<'a>(&self, moments: impl IntoIterator<Item = &'a HarmonicSeries>) -> DVector<f64> {
-        let all: Vec<f64> =
-            moments.into_iter().flat_map(|h| coefficients(h, self.harmonics)).collect();
-        DVector::from_vec(all)
+    fn gather(&self, all: &[HarmonicSeries]) -> DVector<f64> {
+        let all = all.iter().flat_map(|one| coefficients(one, self.harmonics));
+        DVector::from_vec(all.collect())
+    }
+
+    /// Change of the hinge moments with flap motions in the linear answer of the rotor, N m.
+    fn answer(&self, flaps: &[FlapMotion]) -> DVector<f64> {
+        let angles_rad: Vec<HarmonicSeries> = flaps.iter().map(FlapMotion::angle_rad).collect();
+        &self.response * self.gather(&angles_rad)
     }
 
     /// Newton's step for a mismatch of the hinge moments; the mismatch itself where the matrix is
@@ -142,9 +126,7 @@ impl HingeCoupling {
     ) -> Result<Vec<FlapMotion>, PlantError> {
         let rest = self.gather(&self.at_rest);
         let linear = |flaps: &[FlapMotion], _: Option<&()>| {
-            let motions_rad: Vec<HarmonicSeries> =
-                flaps.iter().map(|flap| scaled(&flap.flap_deg, 1.0_f64.to_radians())).collect();
-            Ok(((), self.split(&(&rest + &self.response * self.gather(&motions_rad)))))
+            Ok(((), self.split(&(&rest + self.answer(flaps)))))
         };
         Ok(self.settle(actuate, linear)?.0)
     }
@@ -155,7 +137,7 @@ impl HingeCoupling {
     /// rotor and its hinge moments; `respond` is handed the last response to start from.
     ///
     /// # Errors
-    /// [`PlantError::Coupling`] with iterations, residual and the best motion; the errors of both;
+    /// [`PlantError::Coupling`] with iterations and the least residual; the errors of both;
     /// [`PlantError::TooSoft`] around either where the loop gain is 1 or more.
     pub fn settle<R>(
         &self,
@@ -167,15 +149,14 @@ impl HingeCoupling {
             if loop_gain < 1.0 {
                 return source;
             }
-            let hinge_stiffness_newton_metre_per_rad =
-                self.compliance_deg_per_newton_metre.to_radians().recip();
-            let share_percent = 100.0 / loop_gain;
-            let source = Box::new(source);
             PlantError::TooSoft {
-                hinge_stiffness_newton_metre_per_rad,
+                hinge_stiffness_newton_metre_per_rad: self
+                    .compliance_deg_per_newton_metre
+                    .to_radians()
+                    .recip(),
                 loop_gain,
-                share_percent,
-                source,
+                share_percent: 100.0 / loop_gain,
+                source: Box::new(source),
             }
         })
     }
@@ -201,16 +182,12 @@ impl HingeCoupling {
     ) -> Result<(Vec<FlapMotion>, R, CouplingResidual), PlantError> {
         // the linear prediction from the flaps at rest, without a response
         let rest = self.gather(&self.at_rest);
-        let mut flaps = actuate(&self.at_rest)?;
-        let motions_rad: Vec<HarmonicSeries> =
-            flaps.iter().map(|flap| scaled(&flap.flap_deg, 1.0_f64.to_radians())).collect();
-        let predicted = &self.response * self.gather(&motions_rad);
-        let mut moments = &rest + self.step(&predicted);
+        let mut moments = &rest + self.step(&self.answer(&actuate(&self.at_rest)?));
         let mut anderson = Anderson::new(STEPS_KEPT);
         let mut last: Option<R> = None;
-        let mut best: Option<(f64, Vec<FlapMotion>)> = None;
+        let mut least_deg = f64::NAN;
         for iterations in 1..=MAX_ITERATIONS {
-            flaps = actuate(&self.split(&moments))?;
+            let flaps = actuate(&self.split(&moments))?;
             let (response, found) = respond(&flaps, last.as_ref())?;
             let mismatch = self.gather(&found) - &moments;
             let residual_deg = self.residual_deg(&mismatch);
@@ -220,20 +197,16 @@ impl HingeCoupling {
             if residual_deg.is_nan() {
                 break;
             }
-            if best.as_ref().is_none_or(|(least, _)| residual_deg < *least) {
-                best = Some((residual_deg, flaps));
-            }
+            least_deg = least_deg.min(residual_deg);
             let column = |v: &DVector<f64>| DMatrix::from_column_slice(v.len(), 1, v.as_slice());
             let next = anderson.propose(&column(&moments), &column(&self.step(&mismatch)));
             moments = next.column(0).into_owned();
             last = Some(response);
         }
-        let (residual_deg, best) = best.unwrap_or((f64::NAN, Vec::new()));
         Err(PlantError::Coupling {
             iterations: MAX_ITERATIONS,
-            residual_deg,
+            residual_deg: least_deg,
             tolerance_deg: COUPLING_TOLERANCE_DEG,
-            best,
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::flaps::FlapDrive;
+use crate::series::scaled;
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{ActuatorModel, LinkageStage, LoadStiffness, VoltageRange};
 use std::sync::Arc;
@@ -161,7 +162,7 @@ fn the_inverse_makes_up_for_the_hinge_moment() {
 }
 
 #[test]
-fn what_does_not_settle_says_so_with_its_best_state() {
+fn what_does_not_settle_says_so_with_its_least_residual() {
     let drive = soft(0.9);
     let free = [drive.motion(&sine(4, 40.0)).unwrap()];
     let give = drive.compliance_deg_per_newton_metre();
@@ -182,11 +183,11 @@ fn what_does_not_settle_says_so_with_its_best_state() {
         panic!("it settled");
     };
     assert!(loop_gain > 1.0, "{loop_gain}");
-    let PlantError::Coupling { iterations, residual_deg, best, .. } = *source else {
+    let PlantError::Coupling { iterations, residual_deg, .. } = *source else {
         panic!("{source}");
     };
     assert_eq!(iterations, 40);
-    assert!(residual_deg > COUPLING_TOLERANCE_DEG && best.len() == 1);
+    assert!(residual_deg > COUPLING_TOLERANCE_DEG && residual_deg.is_finite());
 }
 
 /// An actuator so soft that a motion feeds itself is named as the reason, with the share of its compliance

@@ -3,7 +3,7 @@
 use crate::flaps::error::PlantError;
 use crate::flaps::full_scale::FullScale;
 use crate::flaps::motion::FlapMotion;
-use crate::series::scaled;
+use crate::series::{only, place, scaled, times};
 use hhc_control::{BiasSolver, ControlError, RunError};
 use preisach_dyn::{
     ActuatorModel, InverseSettings, LinkageStage, PeriodicResponse, PeriodicSettings,
@@ -57,37 +57,21 @@ impl FlapDrive {
     /// # Errors
     /// The actuator's errors: voltage out of range, no bias in the range, orbit not closed.
     pub fn motion(&self, voltages: &[(usize, Harmonic)]) -> Result<FlapMotion, PlantError> {
-        let mut voltage = HarmonicSeries::zero(0);
-        for &(n, harmonic) in voltages {
-            voltage.set_harmonic(n, harmonic);
-        }
-        let (low, high) = alternating_volt(&voltage);
-        let (swing_volt, span_volt) = self.swing_and_room((low, high));
+        let mut voltage_volt = series_of(voltages);
+        let (swing_volt, span_volt) = self.swing_and_room(alternating_volt(&voltage_volt));
         if swing_volt > span_volt * (1.0 + 1e-9) {
             return Err(PlantError::VoltageSwing { swing_volt, span_volt });
         }
         match self {
             Self::Ideal { gain_deg_per_volt, bias_volt, .. } => {
-                let mut flap_deg = HarmonicSeries::zero(0);
-                for &(n, h) in voltages {
-                    let scaled = Harmonic {
-                        cosine: gain_deg_per_volt * h.cosine,
-                        sine: gain_deg_per_volt * h.sine,
-                    };
-                    flap_deg.set_harmonic(n, scaled);
-                }
-                voltage.mean = *bias_volt;
-                Ok(FlapMotion { voltage_volt: voltage, flap_deg })
+                let flap_deg = scaled(&voltage_volt, *gain_deg_per_volt);
+                voltage_volt.mean = *bias_volt;
+                Ok(FlapMotion { voltage_volt, flap_deg })
             }
             Self::Model { model, range_volt, rev_hz, bias_volt } => {
-                let solver = BiasSolver {
-                    range_volt: [range_volt.lowest_volt() - low, range_volt.highest_volt() - high],
-                    guess_volt: *bias_volt,
-                    slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
-                    tolerance_deg: BIAS_TOLERANCE_DEG,
-                };
-                let drive = PeriodicDrive { model, rev_hz: *rev_hz, load: None };
-                drive.biased(&solver, 0.0, voltage)
+                voltage_volt.mean = *bias_volt;
+                let drive = PeriodicDrive { model, range_volt, rev_hz: *rev_hz, load: None };
+                drive.biased(voltage_volt, 0.0, BIAS_TOLERANCE_DEG)
             }
         }
     }
@@ -108,19 +92,11 @@ impl FlapDrive {
         if self.compliance_deg_per_newton_metre() == 0.0 {
             return Ok(free.clone());
         }
-        let voltage = free.voltage_volt.clone();
-        let (low, high) = alternating_volt(&voltage);
-        let solver = BiasSolver {
-            range_volt: [range_volt.lowest_volt() - low, range_volt.highest_volt() - high],
-            guess_volt: voltage.mean,
-            slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
-            tolerance_deg: LOADED_MEAN_TOLERANCE_DEG,
-        };
         // what pushes the flap down helps it on: the actuator counts what stands against it
         let newton = model.calibration.load_newton(-1.0);
-        let load = scaled(hinge_moment_newton_metre, newton);
-        let drive = PeriodicDrive { model, rev_hz: *rev_hz, load: Some(load) };
-        drive.biased(&solver, free.flap_deg.mean, voltage)
+        let load = Some(scaled(hinge_moment_newton_metre, newton));
+        let drive = PeriodicDrive { model, range_volt, rev_hz: *rev_hz, load };
+        drive.biased(free.voltage_volt.clone(), free.flap_deg.mean, LOADED_MEAN_TOLERANCE_DEG)
     }
 
     /// How far a steady hinge moment turns the flap, deg per N m in its own sense; 0 without a load
@@ -149,22 +125,18 @@ impl FlapDrive {
         step_volt: f64,
     ) -> Result<Vec<FlapMotion>, PlantError> {
         if let Self::Ideal { gain_deg_per_volt, .. } = self {
-            let unit = |n: usize, cosine: f64, sine: f64| {
-                let mut voltage_volt = HarmonicSeries::zero(0);
-                voltage_volt.set_harmonic(n, Harmonic { cosine, sine });
+            let along = |k| {
+                let voltage_volt = only(k, 1.0);
                 let flap_deg = scaled(&voltage_volt, *gain_deg_per_volt);
                 FlapMotion { voltage_volt, flap_deg }
             };
-            let each = voltages.iter().flat_map(|&(n, _)| [unit(n, 1.0, 0.0), unit(n, 0.0, 1.0)]);
-            return Ok(each.collect());
+            let places = voltages.iter().flat_map(|&(n, _)| [place(n, false), place(n, true)]);
+            return Ok(places.map(along).collect());
         }
         // at the edge of the range no control may be free to move: a little inside they are
         let mut result = Err(PlantError::BiasSearch);
         for part in TANGENT_PARTS {
-            let inside: Vec<(usize, Harmonic)> = voltages
-                .iter()
-                .map(|&(n, h)| (n, Harmonic { cosine: part * h.cosine, sine: part * h.sine }))
-                .collect();
+            let inside: Vec<_> = voltages.iter().map(|&(n, h)| (n, times(h, part))).collect();
             result = self.tangent_at(&inside, step_volt);
             if result.is_ok() {
                 break;
@@ -209,25 +181,19 @@ impl FlapDrive {
     /// # Errors
     /// As [`ActuatorModel::periodic_inverse`].
     pub fn inverse(&self, wanted_deg: &HarmonicSeries) -> Result<FlapMotion, PlantError> {
+        let count = wanted_deg.harmonics.len();
         match self {
-            Self::Ideal { gain_deg_per_volt, .. } => {
-                let voltages: Vec<(usize, Harmonic)> = (1..=wanted_deg.harmonics.len())
-                    .map(|n| {
-                        let h = wanted_deg.harmonic(n);
-                        let (cosine, sine) =
-                            (h.cosine / gain_deg_per_volt, h.sine / gain_deg_per_volt);
-                        (n, Harmonic { cosine, sine })
-                    })
-                    .collect();
-                self.motion(&voltages)
+            Self::Ideal { gain_deg_per_volt: gain, .. } => {
+                let voltage = |n| {
+                    let Harmonic { cosine, sine } = wanted_deg.harmonic(n);
+                    (n, Harmonic { cosine: cosine / gain, sine: sine / gain })
+                };
+                self.motion(&(1..=count).map(voltage).collect::<Vec<_>>())
             }
             Self::Model { model, rev_hz, .. } => {
-                let settings = InverseSettings {
-                    voltage_harmonics: wanted_deg.harmonics.len(),
-                    ..InverseSettings::default()
-                };
-                let response = model.periodic_inverse(wanted_deg, *rev_hz, &settings)?.response;
-                Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
+                let settings =
+                    InverseSettings { voltage_harmonics: count, ..InverseSettings::default() };
+                Ok(model.periodic_inverse(wanted_deg, *rev_hz, &settings)?.response.into())
             }
         }
     }
@@ -250,14 +216,11 @@ impl FlapDrive {
         for _ in 0..LOADED_INVERSE_ROUNDS {
             made = self.loaded_motion(&made, hinge_moment_newton_metre)?;
             let mut largest = 0.0_f64;
-            for n in 1..=wanted_deg.harmonics.len() {
-                let (want, got, ask) =
-                    (wanted_deg.harmonic(n), made.flap_deg.harmonic(n), asked.harmonic(n));
-                let miss =
-                    Harmonic { cosine: want.cosine - got.cosine, sine: want.sine - got.sine };
-                largest = largest.max(miss.amplitude());
-                let (cosine, sine) = (ask.cosine + miss.cosine, ask.sine + miss.sine);
-                asked.set_harmonic(n, Harmonic { cosine, sine });
+            for (k, asked) in asked.harmonics.iter_mut().enumerate() {
+                let (want, got) = (wanted_deg.harmonics[k], made.flap_deg.harmonic(k + 1));
+                let (cosine, sine) = (want.cosine - got.cosine, want.sine - got.sine);
+                largest = largest.max(cosine.hypot(sine));
+                *asked = Harmonic { cosine: asked.cosine + cosine, sine: asked.sine + sine };
             }
             if largest <= LOADED_INVERSE_TOLERANCE_DEG {
                 return Ok(made);
@@ -276,11 +239,7 @@ impl FlapDrive {
 
     /// The swing of the voltage over what the range leaves it: above 1 it cannot be asked for.
     pub fn range_ratio(&self, voltages: &[(usize, Harmonic)]) -> f64 {
-        let mut voltage = HarmonicSeries::zero(0);
-        for &(n, harmonic) in voltages {
-            voltage.set_harmonic(n, harmonic);
-        }
-        let (swing_volt, room_volt) = self.swing_and_room(alternating_volt(&voltage));
+        let (swing_volt, room_volt) = self.swing_and_room(alternating_volt(&series_of(voltages)));
         swing_volt / room_volt
     }
 
@@ -386,9 +345,10 @@ const LOADED_INVERSE_ROUNDS: usize = 6;
 /// Miss of a wanted harmonic at which these rounds end, deg.
 const LOADED_INVERSE_TOLERANCE_DEG: f64 = 1e-4;
 
-/// An actuator model in the time of the rotor, with the load on it, N.
+/// An actuator model in the time of the rotor, with its range of voltages and the load on it, N.
 struct PeriodicDrive<'a> {
     model: &'a ActuatorModel,
+    range_volt: &'a VoltageRange,
     rev_hz: f64,
     load: Option<HarmonicSeries>,
 }
@@ -404,13 +364,21 @@ impl PeriodicDrive<'_> {
         }
     }
 
-    /// The motion whose mean is `mean_deg`, by the bias.
+    /// The motion whose mean is `mean_deg`, by the bias, from that of the voltage on.
     fn biased(
         &self,
-        solver: &BiasSolver,
-        mean_deg: f64,
         mut voltage: HarmonicSeries,
+        mean_deg: f64,
+        tolerance_deg: f64,
     ) -> Result<FlapMotion, PlantError> {
+        let (low, high) = alternating_volt(&voltage);
+        let (lowest, highest) = (self.range_volt.lowest_volt(), self.range_volt.highest_volt());
+        let solver = BiasSolver {
+            range_volt: [lowest - low, highest - high],
+            guess_volt: voltage.mean,
+            slope_deg_per_volt: QUASI_STATIC_SLOPE_DEG_PER_VOLT,
+            tolerance_deg,
+        };
         let mut orbit = None;
         let solution = solver.solve(|bias_volt| {
             voltage.mean = bias_volt;
@@ -428,14 +396,13 @@ impl PeriodicDrive<'_> {
             Err(_) => return Err(PlantError::BiasSearch),
         };
         // the search may have ended on another trial than its last one
-        let response = match orbit {
-            Some((at, response)) if at.to_bits() == bias_volt.to_bits() => response,
+        match orbit {
+            Some((at, response)) if at.to_bits() == bias_volt.to_bits() => Ok(response.into()),
             _ => {
                 voltage.mean = bias_volt;
-                self.response(&voltage)?
+                Ok(self.response(&voltage)?.into())
             }
-        };
-        Ok(FlapMotion { voltage_volt: response.voltage_volt, flap_deg: response.flap_deg })
+        }
     }
 }
 
@@ -466,6 +433,14 @@ const FULL_SCALE_PASSES: usize = 12;
 
 fn cosine(amplitude: f64) -> Harmonic {
     Harmonic { cosine: amplitude, sine: 0.0 }
+}
+
+fn series_of(voltages: &[(usize, Harmonic)]) -> HarmonicSeries {
+    let mut series = HarmonicSeries::zero(0);
+    for &(n, harmonic) in voltages {
+        series.set_harmonic(n, harmonic);
+    }
+    series
 }
 
 /// Lowest and highest value of the voltage's harmonics over a revolution, bias apart.

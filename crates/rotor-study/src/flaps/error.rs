@@ -1,6 +1,5 @@
 //! Why a flap, or the rotor with it, did not answer to a voltage.
 
-use crate::flaps::motion::FlapMotion;
 use hhc_control::ControlError;
 use preisach_dyn::PreisachError;
 use rotor_response::ResponseError;
@@ -32,8 +31,6 @@ pub enum PlantError {
         residual_deg: f64,
         /// Change wanted, deg.
         tolerance_deg: f64,
-        /// Flap motions at the least residual.
-        best: Vec<FlapMotion>,
     },
     /// The hinge moment of a motion moves the flap as much as the motion itself, or more.
     #[error(

@@ -8,7 +8,6 @@ mod hinge_power;
 mod motion;
 
 pub use coupling::{COUPLING_TOLERANCE_DEG, CouplingResidual, HingeCoupling};
-pub(crate) use coupling::{coefficients, series};
 pub use drive::{FlapDrive, MEAN_FLAP_TOLERANCE_DEG};
 pub use error::PlantError;
 pub use full_scale::FullScale;

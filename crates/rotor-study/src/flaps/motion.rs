@@ -1,6 +1,7 @@
 //! The motion of one flap.
 
 use crate::series::{scaled, weighted};
+use preisach_dyn::PeriodicResponse;
 use rotor_base::HarmonicSeries;
 
 /// Voltage and angle of one flap over a revolution, against the azimuth of its blade.
@@ -10,6 +11,12 @@ pub struct FlapMotion {
     pub voltage_volt: HarmonicSeries,
     /// Flap angle, deg, trailing edge down positive.
     pub flap_deg: HarmonicSeries,
+}
+
+impl From<PeriodicResponse> for FlapMotion {
+    fn from(PeriodicResponse { voltage_volt, flap_deg, .. }: PeriodicResponse) -> Self {
+        Self { voltage_volt, flap_deg }
+    }
 }
 
 impl FlapMotion {

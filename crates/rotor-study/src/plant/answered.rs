@@ -1,6 +1,6 @@
 //! A plant whose loads are worked out in another way than by the rotor's response.
 
-use crate::flaps::{FlapMotion, PlantError};
+use crate::flaps::PlantError;
 use crate::plant::rotor_plant::RotorPlant;
 use hhc_control::{ControlLayout, ControlLimits, Measurement, Plant, TMatrix};
 
@@ -69,25 +69,7 @@ impl<A: Answers> Plant for Answered<A> {
 /// The rotor linearised about its trim with the actuators as they are, which alone are evaluated: what can be
 /// worked out beforehand.
 #[derive(Debug, Clone)]
-pub(crate) struct Linearised {
-    /// Hub loads without control.
-    baseline: [f64; 12],
-}
-
-/// A plant whose rotor answers by its linearised solution.
-pub(crate) type ModelPlant = Answered<Linearised>;
-
-impl ModelPlant {
-    pub(crate) fn new(plant: RotorPlant, blades: usize) -> Self {
-        let baseline = plant.rotor().trim().rotor.hub.harmonic(blades);
-        Self { plant, answers: Linearised { baseline } }
-    }
-
-    /// Flap motions for a control vector.
-    pub(crate) fn flap_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
-        self.plant.flap_motion(control_volt)
-    }
-}
+pub(crate) struct Linearised;
 
 impl Answers for Linearised {
     fn measure(
@@ -95,12 +77,13 @@ impl Answers for Linearised {
         plant: &RotorPlant,
         control_volt: &[f64],
     ) -> Result<Measurement, PlantError> {
-        let authority = plant.rotor().authority()?;
+        let rotor = plant.rotor();
+        let authority = rotor.authority()?;
         let flaps = plant.flap_motion(control_volt)?;
-        let mut hub_loads = self.baseline;
+        let mut hub_loads = rotor.trim().rotor.hub.harmonic(rotor.rotor().model().blades);
         for (flap, motion) in flaps.iter().enumerate() {
-            for (load, change) in hub_loads.iter_mut().zip(authority.loads(flap, &motion.flap_deg))
-            {
+            let changes = authority.loads(flap, &motion.flap_deg);
+            for (load, change) in hub_loads.iter_mut().zip(changes) {
                 *load += change;
             }
         }

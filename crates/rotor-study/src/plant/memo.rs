@@ -9,50 +9,31 @@ const KEPT: usize = 64;
 
 /// The bits of voltages, with the harmonic they belong to where that is not plain from their place.
 type Key = Vec<(usize, u64)>;
-/// Oldest first.
-type Kept<A> = VecDeque<(Key, Result<A, PlantError>)>;
 
-/// The latest answers to voltages, shared by the clones of a plant. An answer depends on its voltages alone, so
-/// what is remembered is what would be found again, to the bit.
-#[derive(Debug)]
-pub(crate) struct Memo<A> {
-    kept: Arc<Mutex<Kept<A>>>,
-}
+/// The latest answers to voltages, oldest first, shared by the clones of a plant. An answer depends on its voltages
+/// alone, so what is remembered is what would be found again, to the bit.
+pub(crate) type Memo<A> = Arc<Mutex<VecDeque<(Key, Result<A, PlantError>)>>>;
 
-impl<A> Default for Memo<A> {
-    fn default() -> Self {
-        Self { kept: Arc::default() }
+/// The answer remembered, or else found and remembered.
+pub(crate) fn answer<A: Clone>(
+    memo: &Memo<A>,
+    voltages: impl IntoIterator<Item = (usize, f64)>,
+    find: impl FnOnce() -> Result<A, PlantError>,
+) -> Result<A, PlantError> {
+    let key: Key = voltages.into_iter().map(|(n, volt)| (n, volt.to_bits())).collect();
+    if let Ok(kept) = memo.lock()
+        && let Some((_, answer)) = kept.iter().find(|(known, _)| *known == key)
+    {
+        return answer.clone();
     }
-}
-
-impl<A> Clone for Memo<A> {
-    fn clone(&self) -> Self {
-        Self { kept: Arc::clone(&self.kept) }
-    }
-}
-
-impl<A: Clone> Memo<A> {
-    /// The answer remembered, or else found and remembered.
-    pub(crate) fn answer(
-        &self,
-        voltages: impl IntoIterator<Item = (usize, f64)>,
-        find: impl FnOnce() -> Result<A, PlantError>,
-    ) -> Result<A, PlantError> {
-        let key: Key = voltages.into_iter().map(|(n, volt)| (n, volt.to_bits())).collect();
-        if let Ok(kept) = self.kept.lock()
-            && let Some((_, answer)) = kept.iter().find(|(known, _)| *known == key)
-        {
-            return answer.clone();
+    let answer = find();
+    if let Ok(mut kept) = memo.lock() {
+        if kept.len() >= KEPT {
+            kept.pop_front();
         }
-        let answer = find();
-        if let Ok(mut kept) = self.kept.lock() {
-            if kept.len() >= KEPT {
-                kept.pop_front();
-            }
-            kept.push_back((key, answer.clone()));
-        }
-        answer
+        kept.push_back((key, answer.clone()));
     }
+    answer
 }
 
 #[cfg(test)]
@@ -63,7 +44,7 @@ mod tests {
     fn an_answer_is_found_once_while_it_is_remembered() {
         let memo = Memo::default();
         let ask = |volt: f64, answer: f64| {
-            memo.clone().answer([(3, volt), (3, 1.0)], || Ok(answer)).unwrap()
+            super::answer(&memo.clone(), [(3, volt), (3, 1.0)], || Ok(answer)).unwrap()
         };
         assert_eq!(ask(10.0, 1.0).to_bits(), 1.0_f64.to_bits());
         assert_eq!(ask(20.0, 2.0).to_bits(), 2.0_f64.to_bits());
@@ -73,8 +54,8 @@ mod tests {
             ask(30.0 + k as f64, 0.0);
         }
         assert_eq!(ask(20.0, 5.0).to_bits(), 5.0_f64.to_bits());
-        let failed: Result<f64, _> = memo.answer([(2, 1.0)], || Err(PlantError::BiasSearch));
+        let failed: Result<f64, _> = answer(&memo, [(2, 1.0)], || Err(PlantError::BiasSearch));
         assert_eq!(failed, Err(PlantError::BiasSearch));
-        assert_eq!(memo.answer([(2, 1.0)], || Ok(1.0)), Err(PlantError::BiasSearch));
+        assert_eq!(answer(&memo, [(2, 1.0)], || Ok(1.0)), Err(PlantError::BiasSearch));
     }
 }

@@ -8,7 +8,7 @@ mod power;
 mod rotor_plant;
 mod tangent;
 
-pub(crate) use answered::{Answered, Answers, ModelPlant};
+pub(crate) use answered::{Answered, Answers, Linearised};
 pub use outputs::{HUB_OUTPUTS, PowerOutputs, hub_outputs, output_weights};
 pub use pair_power::given_watt_per_rad2;
 pub use rotor_plant::{PlantState, RotorPlant};

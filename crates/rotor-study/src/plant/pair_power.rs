@@ -13,8 +13,9 @@
 //! Source: this project; the integral is elementary.
 
 use crate::rotor::FlapAuthority;
+use crate::series::{only, place, times};
 use hhc_control::ControlLayout;
-use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
+use rotor_base::{Harmonic, RotorScales};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Mean power given to a flap at one harmonic over the square of its amplitude.
@@ -47,12 +48,9 @@ pub(crate) fn watt_per_deg2(
     pairs
         .map(|(flap, harmonic)| {
             let n = harmonic as usize;
-            let mut motion_deg = HarmonicSeries::zero(n);
-            motion_deg.set_harmonic(n, Harmonic { cosine: 1.0, sine: 0.0 });
-            let all = authority.hinge(flap, &motion_deg);
+            let all = authority.hinge(flap, &only(place(n, false), 1.0));
             let own = all.get(flap).map_or(Harmonic::default(), |h| h.harmonic(n));
-            let unit = scales.moment_newton_metre();
-            let moment = Harmonic { cosine: unit * own.cosine, sine: unit * own.sine };
+            let moment = times(own, scales.moment_newton_metre());
             // moment per deg times rate per deg: the square of a degree in the end
             given_watt_per_rad2(harmonic, scales.omega_rad_s(), moment) * 1.0_f64.to_radians()
         })
@@ -64,6 +62,7 @@ mod tests {
     use super::*;
     use crate::flaps::HingePower;
     use approx::assert_relative_eq;
+    use rotor_base::HarmonicSeries;
     use rotor_response::HingeMoment;
 
     #[test]

@@ -1,6 +1,6 @@
 //! The power of the actuators in the plant: its limit and its weight.
 
-use crate::flaps::{FlapMotion, HingePower, PlantError};
+use crate::flaps::{FlapMotion, FullScale, HingePower, PlantError};
 use crate::plant::outputs::PowerOutputs;
 use crate::plant::pair_power::watt_per_deg2;
 use crate::plant::rotor_plant::{PlantPower, RotorPlant};
@@ -49,10 +49,9 @@ impl RotorPlant {
         if power.weight_per_watt == 0.0 {
             return PowerOutputs::default();
         }
-        let gains = self.stroke_limits_deg.iter().zip(&self.full_scale_volt);
-        let pairs = power.watt_per_deg2.iter().zip(gains);
-        let gain = |(watt, (deg, volt)): (&f64, (&f64, &f64))| {
-            (power.weight_per_watt * watt).sqrt() * deg / volt
+        let pairs = power.watt_per_deg2.iter().zip(&self.full_scale);
+        let gain = |(watt, full): (&f64, &FullScale)| {
+            (power.weight_per_watt * watt).sqrt() * full.stroke_deg / full.amplitude_volt
         };
         PowerOutputs::new(pairs.map(gain).collect())
     }
@@ -88,10 +87,11 @@ impl RotorPlant {
         let mut form = Vec::with_capacity(amplitudes.len());
         let (mut model, mut moves) = (0.0, false);
         for (pair, watt) in watt_per_deg2.iter().enumerate() {
-            let full = self.full_scale_volt[pair];
+            let full = &self.full_scale[pair];
             let (amplitude, stroke) = (amplitudes[pair], motion[pair].amplitude());
-            let known = amplitude > LEAST_MOTION_PART * full;
-            let gain = if known { stroke / amplitude } else { self.stroke_limits_deg[pair] / full };
+            let known = amplitude > LEAST_MOTION_PART * full.amplitude_volt;
+            let at_full_scale = full.stroke_deg / full.amplitude_volt;
+            let gain = if known { stroke / amplitude } else { at_full_scale };
             form.push(watt * gain * gain);
             model += watt * stroke * stroke;
             moves |= known;

@@ -1,9 +1,8 @@
 //! The plant of the controller: voltages in, hub loads out.
 
 use crate::flaps::{CouplingResidual, FlapDrive, FlapMotion, FullScale, HingeCoupling, PlantError};
-use crate::plant::memo::Memo;
+use crate::plant::memo::{Memo, answer};
 use crate::rotor::TrimmedRotor;
-use crate::series::scaled;
 use hhc_control::{
     ControlLayout, ControlLimits, FlapCircle, Measurement, Plant, RunError, TMatrix,
 };
@@ -48,14 +47,8 @@ pub struct RotorPlant {
     pub(super) drive: FlapDrive,
     /// None where the actuator does not give way to the hinge moment.
     coupling: Option<HingeCoupling>,
-    /// One per pair of the layout.
-    pub(super) stroke_limits_deg: Vec<f64>,
-    /// What a cone program aims at, one per pair.
-    stroke_aims_deg: Vec<f64>,
-    /// Amplitude at which each pair, alone on its flap, reaches its limit, V.
-    pub(super) full_scale_volt: Vec<f64>,
-    /// Amplitude at which each pair, alone on its flap, ends the range of voltages, V.
-    reach_volt: Vec<f64>,
+    /// Limit of every pair of the layout, alone on its flap.
+    pub(super) full_scale: Vec<FullScale>,
     pub(super) power: Option<PlantPower>,
     /// The control measured last and what was found there: T is mostly asked for about it.
     pub(super) measured: Option<(Vec<f64>, Arc<PlantState>)>,
@@ -86,18 +79,9 @@ impl RotorPlant {
         let coupling = rotor
             .coupling(drive.compliance_deg_per_newton_metre())
             .map_err(|source| RunError::plant("measured", &layout.zero())(source.into()))?;
-        let per_pair = |pick: &dyn Fn(&FullScale) -> f64| -> Vec<f64> {
-            (0..layout.pairs()).map(|p| pick(&full_scale[p % full_scale.len()])).collect()
-        };
+        let of_pair = |pair: usize| full_scale[pair % full_scale.len()];
         Ok(Self {
-            full_scale_volt: per_pair(&|f| f.amplitude_volt),
-            stroke_limits_deg: per_pair(&|f| f.stroke_deg),
-            reach_volt: per_pair(&|f| f.reach_volt),
-            // where the range of voltages is the limit, its circle holds the stroke
-            stroke_aims_deg: per_pair(&|f| {
-                let given = f.amplitude_volt < f.reach_volt;
-                if given { STROKE_AIMED_AT * f.stroke_deg } else { f.stroke_deg }
-            }),
+            full_scale: (0..layout.pairs()).map(of_pair).collect(),
             layout,
             rotor,
             drive,
@@ -144,7 +128,7 @@ impl RotorPlant {
     fn free_motion(&self, control_volt: &[f64]) -> Result<Vec<FlapMotion>, PlantError> {
         self.voltages(control_volt)?
             .into_par_iter()
-            .map(|voltages| self.free.answer(bits(&voltages), || self.drive.motion(&voltages)))
+            .map(|voltages| answer(&self.free, bits(&voltages), || self.drive.motion(&voltages)))
             .collect()
     }
 
@@ -171,8 +155,8 @@ impl RotorPlant {
             None => Ok(free),
             Some(coupling) => {
                 let bits = control_volt.iter().copied().enumerate();
-                self.coupled
-                    .answer(bits, || coupling.predict(|moments| self.loaded(&free, moments)))
+                let predict = || coupling.predict(|moments| self.loaded(&free, moments));
+                answer(&self.coupled, bits, predict)
             }
         }
     }
@@ -188,29 +172,15 @@ impl RotorPlant {
             let rotor = self.rotor.with_flaps(angles_rad(&free))?;
             return Ok(PlantState { rotor, flaps: free, coupling: None });
         };
-        let unit = self.rotor.moment_newton_metre();
         let actuate = |moments: &[HarmonicSeries]| self.loaded(&free, moments);
         let respond = |flaps: &[FlapMotion], last: Option<&RotorSolution>| {
             let start = last.unwrap_or(&self.rotor.trim().rotor);
             let rotor = self.rotor.with_flaps_from(angles_rad(flaps), start)?;
-            let moments = rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect();
+            let moments = self.rotor.hinge_moments_newton_metre(&rotor);
             Ok((rotor, moments))
         };
         let (flaps, rotor, residual) = coupling.settle(actuate, respond)?;
         Ok(PlantState { rotor, flaps, coupling: Some(residual) })
-    }
-
-    /// Hinge moment of every flap under given flap motions, N m, positive in the sense of the angle.
-    ///
-    /// # Errors
-    /// The errors of the rotor.
-    pub fn hinge_moments_newton_metre(
-        &self,
-        flaps: Vec<FlapMotion>,
-    ) -> Result<Vec<HarmonicSeries>, PlantError> {
-        let unit = self.rotor.moment_newton_metre();
-        let state = self.state_of(flaps)?;
-        Ok(state.rotor.hinge.iter().map(|h| scaled(&h.total(), unit)).collect())
     }
 
     /// Rotor response for given flap motions, whatever the actuator makes of the hinge moment.
@@ -247,7 +217,7 @@ impl RotorPlant {
     }
 
     /// What is measured of a state.
-    fn seen(&self, control_volt: &[f64], state: &PlantState) -> Measurement {
+    pub(crate) fn seen(&self, control_volt: &[f64], state: &PlantState) -> Measurement {
         let loads = state.rotor.hub.harmonic(self.rotor.rotor().model().blades);
         self.measurement(control_volt, &loads, &state.flaps)
     }
@@ -260,7 +230,7 @@ pub(super) fn bits(voltages: &[(usize, Harmonic)]) -> impl Iterator<Item = (usiz
 
 /// Flap angles as the rotor takes them, rad.
 pub(super) fn angles_rad(flaps: &[FlapMotion]) -> Vec<HarmonicSeries> {
-    flaps.iter().map(|f| scaled(&f.flap_deg, std::f64::consts::PI / 180.0)).collect()
+    flaps.iter().map(FlapMotion::angle_rad).collect()
 }
 
 impl Plant for RotorPlant {
@@ -285,25 +255,24 @@ impl Plant for RotorPlant {
 
     fn strokes_deg(&mut self, control_volt: &[f64]) -> Result<Vec<f64>, PlantError> {
         let amplitudes = self.layout.amplitudes_volt(control_volt).map_err(PlantError::Bias)?;
-        let by_voltage: Vec<f64> = amplitudes
-            .iter()
-            .zip(&self.full_scale_volt)
-            .zip(&self.stroke_limits_deg)
-            .map(|((volt, full), limit)| limit * volt / full)
+        let asked = amplitudes.iter().zip(&self.full_scale);
+        let by_voltage: Vec<f64> = asked
+            .clone()
+            .map(|(volt, full)| full.stroke_deg * volt / full.amplitude_volt)
             .collect();
         // beyond the range the actuator cannot be asked: the stroke grows with the voltage there
-        if amplitudes.iter().zip(&self.reach_volt).any(|(volt, reach)| volt > reach) {
+        if asked.clone().any(|(volt, full)| *volt > full.reach_volt) {
             return Ok(by_voltage);
         }
         // harmonics that share a flap share its range of voltages
         let ratios: Vec<f64> =
             self.voltages(control_volt)?.iter().map(|v| self.drive.range_ratio(v)).collect();
         let in_range = |strokes: Vec<f64>| {
-            let pairs = strokes.into_iter().zip(&self.stroke_limits_deg).enumerate();
+            let pairs = strokes.into_iter().zip(&self.full_scale).enumerate();
             pairs
-                .map(|(pair, (stroke, limit))| {
+                .map(|(pair, (stroke, full))| {
                     let flap = self.layout.flap_and_harmonic(pair).map_or(0, |(flap, _)| flap);
-                    stroke.max(limit * ratios[flap])
+                    stroke.max(full.stroke_deg * ratios[flap])
                 })
                 .collect()
         };
@@ -323,7 +292,7 @@ impl Plant for RotorPlant {
     }
 
     fn stroke_limits_deg(&self) -> Vec<f64> {
-        self.stroke_limits_deg.clone()
+        self.full_scale.iter().map(|full| full.stroke_deg).collect()
     }
 
     fn admits(&self, control_volt: &[f64]) -> bool {
@@ -335,24 +304,27 @@ impl Plant for RotorPlant {
         let voltage = self.voltage_range(control_volt, &flaps)?;
         let voltages = self.layout.voltages_volt(control_volt).map_err(PlantError::Bias)?;
         // the gain of a small motion says nothing about a large one: its amplitude is bounded in volt
-        let known: Vec<bool> = voltages
-            .iter()
-            .zip(&self.full_scale_volt)
-            .map(|(voltage, full)| voltage.amplitude() > LEAST_GAIN_PART * full)
-            .collect();
-        let volts = self.full_scale_volt.iter().zip(&self.reach_volt).zip(&known);
-        let largest_volt = volts.map(|((full, reach), known)| if *known { *reach } else { *full });
+        let known = |voltage: &Harmonic, full: &FullScale| {
+            voltage.amplitude() > LEAST_GAIN_PART * full.amplitude_volt
+        };
+        let largest_volt = voltages.iter().zip(&self.full_scale).map(|(voltage, full)| {
+            if known(voltage, full) { full.reach_volt } else { full.amplitude_volt }
+        });
         let mut limits = ControlLimits::none(&self.layout)
             .with_amplitudes_volt(largest_volt.collect())
             .and_then(|limits| limits.with_voltage_range(voltage))
             .map_err(PlantError::Bias)?;
-        for (pair, (voltage, motion)) in voltages.iter().zip(self.pair_motion(&flaps)).enumerate() {
-            if known[pair] {
+        let pairs = voltages.iter().zip(self.pair_motion(&flaps)).zip(&self.full_scale);
+        for (pair, ((voltage, motion), full)) in pairs.enumerate() {
+            if known(voltage, full) {
                 let gain = motion.amplitude() / voltage.amplitude();
                 let (sin, cos) = (motion.phase_rad() - voltage.phase_rad()).sin_cos();
+                // where the range of voltages is the limit, its circle holds the stroke
+                let given = full.amplitude_volt < full.reach_volt;
+                let aimed_at = if given { STROKE_AIMED_AT } else { 1.0 };
                 let circle = FlapCircle {
                     gain_deg_per_volt: [[gain * cos, -gain * sin], [gain * sin, gain * cos]],
-                    limit_deg: self.stroke_aims_deg[pair],
+                    limit_deg: aimed_at * full.stroke_deg,
                 };
                 limits = limits.with_flap_circle(pair, circle).map_err(PlantError::Bias)?;
             }

@@ -5,6 +5,7 @@
 //! ```
 
 use crate::flaps::{FlapMotion, PlantError};
+use crate::plant::memo::answer;
 use crate::plant::rotor_plant::{RotorPlant, angles_rad, bits};
 use hhc_control::{TMatrix, VoltageRange};
 use rayon::prelude::*;
@@ -31,10 +32,9 @@ impl RotorPlant {
             Some((_, state)) => Arc::clone(state),
             None => Arc::new(self.state(control_volt)?),
         };
-        let loads = |motions: &[Vec<HarmonicSeries>]| {
-            Ok(self.rotor.loads_along(angles_rad(&state.flaps), &state.rotor, motions)?)
-        };
-        self.t_of_motions(loads, &self.tangents_at(control_volt)?)
+        let tangents = self.tangents_at(control_volt)?;
+        let angles = angles_rad(&state.flaps);
+        self.t_of(&self.rotor.loads_along(angles, &state.rotor, each_motion(&tangents))?)
     }
 
     /// Change of the motion of every flap with its controls, per V.
@@ -46,8 +46,7 @@ impl RotorPlant {
     /// Change of the motion of a flap with its controls, per V.
     fn tangent(&self, voltages: &[(usize, Harmonic)]) -> Result<Vec<FlapMotion>, PlantError> {
         let step_volt = TANGENT_STEP * self.drive.range_volt().span_volt();
-        let found = || self.drive.tangent(voltages, step_volt);
-        self.tangents.answer(bits(voltages), found)
+        answer(&self.tangents, bits(voltages), || self.drive.tangent(voltages, step_volt))
     }
 
     /// The range of the voltage about a control vector and the motion it makes, with the bias as it moves with the
@@ -88,32 +87,13 @@ impl RotorPlant {
         })
     }
 
-    /// T from what the controls of every flap make of its motion, per V: load per V of each, with the
-    /// outputs of the power.
-    fn t_of_motions(
-        &self,
-        loads: impl FnOnce(&[Vec<HarmonicSeries>]) -> Result<Vec<[f64; 12]>, PlantError>,
-        tangents: &[Vec<FlapMotion>],
-    ) -> Result<TMatrix, PlantError> {
-        let rest = vec![HarmonicSeries::zero(0); tangents.len()];
-        let motions: Vec<Vec<HarmonicSeries>> = tangents
-            .iter()
-            .enumerate()
-            .flat_map(|(flap, tangent)| {
-                let rest = &rest;
-                tangent.iter().map(move |along| {
-                    let mut motion = rest.clone();
-                    motion[flap] = along.flap_deg.clone();
-                    motion
-                })
-            })
-            .collect();
-        let mut columns: Vec<Vec<f64>> =
-            loads(&motions)?.iter().map(|column| column.to_vec()).collect();
+    /// T from the load per V of every control, with the outputs of the power.
+    fn t_of(&self, loads: &[[f64; 12]]) -> Result<TMatrix, PlantError> {
         let power = self.power_outputs();
-        for (control, column) in columns.iter_mut().enumerate() {
-            column.extend(power.along(control));
-        }
+        let column = |(control, loads): (usize, &[f64; 12])| {
+            loads.iter().copied().chain(power.along(control)).collect()
+        };
+        let columns: Vec<Vec<f64>> = loads.iter().enumerate().map(column).collect();
         TMatrix::from_columns(&columns).map_err(PlantError::Bias)
     }
 
@@ -139,17 +119,13 @@ impl RotorPlant {
     /// T of the rotor linearised about its trim.
     fn t_of_linear_rotor(&self, tangents: &[Vec<FlapMotion>]) -> Result<TMatrix, PlantError> {
         let authority = self.rotor.authority()?;
-        let loads = |motions: &[Vec<HarmonicSeries>]| {
-            let each = motions.iter().map(|flaps| {
-                flaps.iter().enumerate().fold([0.0; 12], |mut sum, (flap, motion)| {
-                    for (sum, part) in sum.iter_mut().zip(authority.loads(flap, motion)) {
-                        *sum += part;
-                    }
-                    sum
-                })
-            });
-            Ok(each.collect())
-        };
-        self.t_of_motions(loads, tangents)
+        let each = each_motion(tangents).map(|(flap, along)| authority.loads(flap, along));
+        self.t_of(&each.collect::<Vec<_>>())
     }
+}
+
+/// The flap and its motion with every control, deg/V.
+fn each_motion(tangents: &[Vec<FlapMotion>]) -> impl Iterator<Item = (usize, &HarmonicSeries)> {
+    let flaps = tangents.iter().enumerate();
+    flaps.flat_map(|(flap, tangent)| tangent.iter().map(move |along| (flap, &along.flap_deg)))
 }

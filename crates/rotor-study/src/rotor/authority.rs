@@ -1,6 +1,6 @@
 //! What every harmonic of every flap does to the hub, from the linearised rotor.
 
-use crate::series::added;
+use crate::series::{added, coefficients, only};
 use rotor_base::HarmonicSeries;
 use rotor_response::{
     Condition, FlapDirection, InflowState, ResponseError, RotorSolution, RotorSolver,
@@ -19,10 +19,6 @@ pub struct FlapAuthority {
     columns: Vec<Vec<[f64; 12]>>,
     /// The same of the hinge moments of all flaps, `m0 Omega^2 R^3` per deg.
     hinge: Vec<Vec<Vec<HarmonicSeries>>>,
-    /// Largest residual of the linear equations, over the right-hand side.
-    pub relative_residual: f64,
-    /// Evaluations of the whole revolution it took.
-    pub evaluations: usize,
 }
 
 impl FlapAuthority {
@@ -42,18 +38,7 @@ impl FlapAuthority {
         let directions: Vec<FlapDirection> = (0..flaps * per_flap)
             .map(|k| {
                 let mut direction = vec![HarmonicSeries::zero(0); flaps];
-                let (series, column) = (&mut direction[k / per_flap], k % per_flap);
-                let unit = 1.0_f64.to_radians();
-                let harmonic = column.div_ceil(2);
-                let mut part = series.harmonic(harmonic.max(1));
-                match column {
-                    0 => series.mean = unit,
-                    odd if odd % 2 == 1 => part.cosine = unit,
-                    _ => part.sine = unit,
-                }
-                if column > 0 {
-                    series.set_harmonic(harmonic, part);
-                }
+                direction[k / per_flap] = only(k % per_flap, 1.0_f64.to_radians());
                 direction
             })
             .collect();
@@ -65,8 +50,6 @@ impl FlapAuthority {
         Ok(Self {
             columns: all.chunks(per_flap).map(<[[f64; 12]]>::to_vec).collect(),
             hinge: hinge.chunks(per_flap).map(<[Vec<HarmonicSeries>]>::to_vec).collect(),
-            relative_residual: found.relative_residual,
-            evaluations: found.evaluations,
         })
     }
 
@@ -91,7 +74,7 @@ impl FlapAuthority {
     pub fn loads(&self, flap: usize, motion_deg: &HarmonicSeries) -> [f64; 12] {
         let mut loads = [0.0; 12];
         let Some(columns) = self.columns.get(flap) else { return loads };
-        for (part, column) in parts(motion_deg, columns.len()).zip(columns) {
+        for (part, column) in coefficients(motion_deg, columns.len() / 2).zip(columns) {
             for (load, c) in loads.iter_mut().zip(column) {
                 *load += c * part;
             }
@@ -103,20 +86,11 @@ impl FlapAuthority {
     pub fn hinge(&self, flap: usize, motion_deg: &HarmonicSeries) -> Vec<HarmonicSeries> {
         let Some(columns) = self.hinge.get(flap) else { return Vec::new() };
         let mut moments = vec![HarmonicSeries::zero(0); columns.first().map_or(0, Vec::len)];
-        for (part, column) in parts(motion_deg, columns.len()).zip(columns) {
+        for (part, column) in coefficients(motion_deg, columns.len() / 2).zip(columns) {
             for (moment, change) in moments.iter_mut().zip(column) {
                 *moment = added(moment, change, part);
             }
         }
         moments
     }
-}
-
-/// Mean, then cosine and sine of the harmonics, as many as there are columns.
-fn parts(motion_deg: &HarmonicSeries, columns: usize) -> impl Iterator<Item = f64> + '_ {
-    let harmonics = (1..=columns / 2).flat_map(|n| {
-        let h = motion_deg.harmonic(n);
-        [h.cosine, h.sine]
-    });
-    std::iter::once(motion_deg.mean).chain(harmonics)
 }

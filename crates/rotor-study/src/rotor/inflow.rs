@@ -1,8 +1,8 @@
 //! The inflow of a case: a linear model, or a free wake settled with the trim.
 
-use crate::case::{Case, CirculationChoice, FreeWakeValues, InflowChoice};
+use crate::case::{Case, CirculationChoice};
 use crate::error::StudyError;
-use rotor_response::{ResponseTolerances, RotorSolver};
+use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
     ClosestPassage, FlightState, InflowModel, WAKE_BREAKDOWN_TRANSPORT, descent_transport,
     momentum_inflow,
@@ -56,13 +56,10 @@ pub struct SettledTrim {
 /// # Errors
 /// [`StudyError::Refused`].
 pub(crate) fn refuse_prescribed_circulation(case: &Case) -> Result<(), StudyError> {
-    let InflowChoice::FreeWake(FreeWakeValues {
-        circulation: CirculationChoice::Prescribed(_),
-        ..
-    }) = case.inflow.model
-    else {
+    let wake = case.inflow.model.free_wake();
+    if wake.is_none_or(|wake| wake.circulation == CirculationChoice::Trimmed) {
         return Ok(());
-    };
+    }
     let message = "a rotor is trimmed with the circulation it has: leave it out, or look at the wake alone with `hhc wake`";
     let field = "inflow.model.circulation".to_owned();
     Err(StudyError::Refused { field, message: message.to_owned() })
@@ -99,12 +96,11 @@ const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1,
 const MOMENTUM: [f64; 2] = [0.5, 2.5];
 
 /// Where a coupling that failed has stopped, on a grid of so many steps per revolution.
-fn kept(
-    azimuths: usize,
-    updates: usize,
-    inflow_change: f64,
-    error: &dyn std::error::Error,
-) -> String {
+fn kept(azimuths: usize, updates: usize, inflow_change: f64, error: &TrimError) -> String {
+    let error = match error {
+        TrimError::Response(ResponseError::Wake(wake)) => wake.to_string(),
+        error => error.to_string(),
+    };
     let state = if inflow_change.is_finite() {
         format!(
             "what is given is the state of the least change of the inflow, {inflow_change:.1e} of the tip speed, on {azimuths} steps per revolution"
@@ -144,10 +140,7 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
                 "the free wake has not settled in {updates} updates: the inflow still changes by {inflow_change:.1e} of the tip speed ({tolerance:.1e} was asked) and the wake moves by {displacement:.1e} R ({displacement_tolerance:.1e}) in the update kept, the nearest to rest; theta0 between {low:.3} and {high:.3} deg in it and the second half of the updates, on {azimuths} steps per revolution. {WAKE_REMEDY}"
             ));
         }
-        WakeOutcome::WakeFailed { updates, inflow_change, error } => {
-            warnings.push(kept(azimuths, *updates, *inflow_change, error));
-        }
-        WakeOutcome::TrimFailed { updates, inflow_change, error } => {
+        WakeOutcome::Failed { updates, inflow_change, error } => {
             warnings.push(kept(azimuths, *updates, *inflow_change, error));
         }
         _ => {}

@@ -2,11 +2,11 @@
 
 use crate::case::Case;
 use crate::rotor::authority::FlapAuthority;
+use crate::series::{only, place};
 use rayon::prelude::*;
-use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{Condition, ResponseError, RotorSolver};
 use std::collections::BTreeSet;
-use trim::{WakeDifference, WakeDifferenceSettings, WakeTrim, WakeTrimSettings, wake_difference};
+use trim::{WakeDifference, WakeTrim, WakeTrimSettings, wake_difference};
 
 /// What the differences take.
 #[derive(Debug, Clone)]
@@ -58,12 +58,11 @@ impl Reconverging {
             .collect();
         let controls: Vec<(usize, usize, bool)> =
             pairs.iter().flat_map(|&(f, n)| [(f, n, false), (f, n, true)]).collect();
-        let settings = WakeDifferenceSettings::default();
         let found = controls
             .into_par_iter()
             .map(|control| {
                 let [plus, minus] = [1.0, -1.0].map(|side| self.moved(rest, control, side));
-                wake_difference(wake, solver, coupling, [&plus, &minus], settings)
+                wake_difference(wake, solver, coupling, [&plus, &minus])
             })
             .collect::<Result<Vec<WakeDifference>, ResponseError>>()?;
         let per_deg = |difference: [f64; 12]| difference.map(|z| z / (2.0 * self.step_deg));
@@ -89,11 +88,9 @@ impl Reconverging {
         (flap, harmonic, sine): (usize, usize, bool),
         side: f64,
     ) -> Condition {
-        let step = side * self.step_deg.to_radians();
-        let (cosine, sine) = if sine { (0.0, step) } else { (step, 0.0) };
         let mut moved = rest.clone();
-        moved.flap_angles_rad[flap] = HarmonicSeries::zero(harmonic);
-        moved.flap_angles_rad[flap].set_harmonic(harmonic, Harmonic { cosine, sine });
+        let step_rad = side * self.step_deg.to_radians();
+        moved.flap_angles_rad[flap] = only(place(harmonic, sine), step_rad);
         moved
     }
 }

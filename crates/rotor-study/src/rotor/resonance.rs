@@ -1,6 +1,6 @@
 //! Undamped modes at a harmonic of the rotor speed: looked for before a rotor is trimmed.
 
-use crate::case::Case;
+use crate::case::{Case, DissimilarBlade};
 use crate::error::StudyError;
 use rotor_response::{ResponseError, Rotor};
 use trim::TrimError;
@@ -20,14 +20,24 @@ pub(crate) fn refuse_resonance_of(case: &Case, rotor: &Rotor) -> Result<(), Stud
     let pitch_rad = case.trim.collective_rad();
     let found = rotor.refuse_resonance(pitch_rad);
     found.map_err(|source| StudyError::Response { field: at_fault(&source), source })?;
-    for (i, own) in case.rotor.dissimilar_blades.iter().enumerate() {
+    dissimilar_rotors(case, pitch_rad).map(drop)
+}
+
+/// The rotor of every blade unlike the rest, with the field of the blade; none may have an undamped mode at a
+/// harmonic at a pitch.
+pub(crate) fn dissimilar_rotors(
+    case: &Case,
+    pitch_rad: f64,
+) -> Result<Vec<(String, Rotor)>, StudyError> {
+    let rotor_of = |(i, own): (usize, &DissimilarBlade)| {
         let field = format!("rotor.dissimilar_blades[{i}]");
         let rotor = case.rotor_of(&case.dissimilar_blade(own)?, &field)?;
-        rotor
-            .refuse_resonance(pitch_rad)
-            .map_err(|source| StudyError::Response { field, source })?;
-    }
-    Ok(())
+        match rotor.refuse_resonance(pitch_rad) {
+            Ok(()) => Ok((field, rotor)),
+            Err(source) => Err(StudyError::Response { field, source }),
+        }
+    };
+    case.rotor.dissimilar_blades.iter().enumerate().map(rotor_of).collect()
 }
 
 /// An error of the trim at the field that is at fault.

@@ -4,9 +4,9 @@ use crate::case::{Case, TInflowChoice};
 use crate::error::StudyError;
 use crate::rotor::authority::{FlapAuthority, HARMONICS};
 use crate::rotor::inflow::{SettledTrim, refuse_prescribed_circulation, settled_trim};
-use crate::rotor::once::Once;
+use crate::rotor::once::{Once, found};
 use crate::rotor::reconverged::{ReconvergedAuthority, Reconverging};
-use crate::rotor::resonance::{refuse_resonance_of, trim_error};
+use crate::rotor::resonance::{dissimilar_rotors, refuse_resonance_of, trim_error};
 use crate::series::scaled;
 use nalgebra::DMatrix;
 use rotor_base::{HarmonicSeries, RotorScales};
@@ -52,18 +52,15 @@ impl TrimmedRotor {
         let tolerances = case.response_tolerances();
         let mut solver = RotorSolver::new(Arc::new(rotor), mu, tolerances).map_err(at_rotor)?;
         let settled = settled_trim(case, &mut solver, start);
-        let settled = settled.map_err(|source| trim_error(case, source))?;
-        let scales = case.scales();
-        let SettledTrim { trim, inflow, wake } = settled;
-        let t_inflow = case.control.t_inflow;
-        let reconverging = Reconverging::of(case);
+        let SettledTrim { trim, inflow, wake } =
+            settled.map_err(|source| trim_error(case, source))?;
         Ok(Self {
             solver,
             inflow,
             trim,
-            scales,
-            t_inflow,
-            reconverging,
+            scales: case.scales(),
+            t_inflow: case.control.t_inflow,
+            reconverging: Reconverging::of(case),
             reconverged: Once::default(),
             hinge_response: Once::default(),
             authority: Once::default(),
@@ -88,11 +85,6 @@ impl TrimmedRotor {
         &self.scales
     }
 
-    /// Moment unit `m0 Omega^2 R^3`, N m.
-    pub(crate) fn moment_newton_metre(&self) -> f64 {
-        self.scales.moment_newton_metre()
-    }
-
     /// The trim.
     pub fn trim(&self) -> &TrimSolution {
         &self.trim
@@ -104,8 +96,8 @@ impl TrimmedRotor {
     }
 
     /// Whether the iteration of free wake and trim diverged: this is the last good state, no solution.
-    pub fn wake_parted(&self) -> bool {
-        self.wake().is_some_and(|wake| wake.outcome.ran_away())
+    pub fn wake_diverged(&self) -> bool {
+        self.wake().is_some_and(|wake| wake.outcome.is_diverged())
     }
 
     /// The rotor.
@@ -118,7 +110,7 @@ impl TrimmedRotor {
     /// # Errors
     /// The errors of the linearised response.
     pub fn authority(&self) -> Result<&FlapAuthority, ResponseError> {
-        self.authority.found(|| self.linearised(self.state_in_t()))
+        found(&self.authority, || self.linearised(self.state_in_t()))
     }
 
     /// The same with the geometry of the free wake converged anew at the harmonics that the case controls; none
@@ -129,7 +121,7 @@ impl TrimmedRotor {
     pub fn reconverged(&self) -> Result<Option<&ReconvergedAuthority>, ResponseError> {
         let Some(wake) = &self.wake else { return Ok(None) };
         let Some(coupling) = &self.reconverging.coupling else { return Ok(None) };
-        let found = self.reconverged.found(|| {
+        let found = found(&self.reconverged, || {
             let settled = self.linearised(InflowState::Settled)?;
             let about = (wake.as_ref(), &self.solver, coupling);
             self.reconverging.authority(about, &self.flaps_at_rest(), settled)
@@ -160,27 +152,29 @@ impl TrimmedRotor {
         )
     }
 
-    /// Change of the hub loads at the blade number per rev with small motions of the flaps (all flaps of each motion,
-    /// deg), about a response with moved flaps of one's own: inflow as the case has it in T. Load per unit of motion.
+    /// Change of the hub loads at the blade number per rev with small motions of one flap each (number and deg),
+    /// about a response with moved flaps of one's own: inflow as the case has it in T. Load per unit of motion.
     ///
     /// # Errors
     /// The errors of the linearised response.
-    pub fn loads_along(
+    pub(crate) fn loads_along<'a>(
         &self,
         flap_angles_rad: Vec<HarmonicSeries>,
         about: &RotorSolution,
-        motions_deg: &[Vec<HarmonicSeries>],
+        motions_deg: impl Iterator<Item = (usize, &'a HarmonicSeries)>,
     ) -> Result<Vec<[f64; 12]>, ResponseError> {
-        let condition = self.condition(flap_angles_rad);
+        let model = self.rotor().model();
         let directions: Vec<FlapDirection> = motions_deg
-            .iter()
-            .map(|flaps| flaps.iter().map(|m| scaled(m, 1.0_f64.to_radians())).collect())
+            .map(|(flap, motion)| {
+                let mut direction = vec![HarmonicSeries::zero(0); model.flaps.len()];
+                direction[flap] = scaled(motion, 1.0_f64.to_radians());
+                direction
+            })
             .collect();
         let mut solver = self.solver.clone();
-        let at = (&condition, about);
+        let at = (&self.condition(flap_angles_rad), about);
         let found = solver.linearised(at, self.inflow.as_ref(), &directions, self.state_in_t())?;
-        let blades = self.rotor().model().blades;
-        Ok(found.sensitivities.iter().map(|s| s.hub.harmonic(blades)).collect())
+        Ok(found.sensitivities.iter().map(|s| s.hub.harmonic(model.blades)).collect())
     }
 
     /// What the inflow does in T. A loop measures responses with the geometry of the wake held: the T that
@@ -261,20 +255,16 @@ impl TrimmedRotor {
     /// # Errors
     /// [`StudyError::Blade`] and [`StudyError::Response`].
     pub fn unlike_solvers(&self, case: &Case) -> Result<Vec<UnlikeSolver>, StudyError> {
-        let unlike = case.rotor.dissimilar_blades.iter().enumerate();
-        unlike
-            .map(|(i, unlike)| {
-                let field = format!("rotor.dissimilar_blades[{i}]");
-                let failed = |source| StudyError::Response { field: field.clone(), source };
-                let rotor = case.rotor_of(&case.dissimilar_blade(unlike)?, &field)?;
-                rotor.refuse_resonance(self.trim.controls.theta0_rad).map_err(failed)?;
-                let mu = self.trim.flight.advance_ratio;
-                let solver = RotorSolver::new(Arc::new(rotor), mu, case.response_tolerances())
-                    .map_err(failed)?;
-                let (position, flap_motion) = (unlike.blade - 1, unlike.flap_motion);
-                Ok(UnlikeSolver { position, flap_motion, solver })
-            })
-            .collect()
+        let (mu, tolerances) = (self.trim.flight.advance_ratio, case.response_tolerances());
+        let rotors = dissimilar_rotors(case, self.trim.controls.theta0_rad)?;
+        let each = rotors.into_iter().zip(&case.rotor.dissimilar_blades);
+        each.map(|((field, rotor), own)| {
+            let (position, flap_motion) = (own.blade - 1, own.flap_motion);
+            let solver = RotorSolver::new(Arc::new(rotor), mu, tolerances)
+                .map_err(|source| StudyError::Response { field, source })?;
+            Ok(UnlikeSolver { position, flap_motion, solver })
+        })
+        .collect()
     }
 
     /// Hub loads with unlike blades in the inflow of a response, for given flap motions of the others.

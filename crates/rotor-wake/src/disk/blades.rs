@@ -2,6 +2,7 @@
 
 use crate::WakeError;
 use crate::WakeRotor;
+use crate::error::ensure;
 use crate::vector::{Vec3, about_the_shaft, add, norm, scale, sub};
 use std::f64::consts::TAU;
 
@@ -74,11 +75,9 @@ impl BladeLines {
     /// [`WakeError::BadInput`] if the blades move by more than a hundredth of the radius as they turn.
     pub fn axial(&self) -> Result<Self, WakeError> {
         let motion = self.departure_from_turning();
-        if motion.is_nan() || motion > STEADY {
-            let quantity = "motion of the blades of an axial wake, R";
-            let expected = "at most 0.01: hover with little cyclic pitch";
-            return Err(WakeError::BadInput { quantity, value: motion, expected });
-        }
+        let quantity = "motion of the blades of an axial wake, R";
+        let expected = "at most 0.01: hover with little cyclic pitch";
+        ensure(motion <= STEADY, quantity, motion, expected)?;
         let azimuths = self.azimuths();
         let angle = |i: usize| TAU * i as f64 / azimuths as f64;
         let turned = |nodes: &[Vec3]| -> Vec<Vec3> {

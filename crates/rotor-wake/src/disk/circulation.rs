@@ -1,8 +1,9 @@
 //! Circulation over the disk.
 
+use super::check_table;
 use crate::WakeError;
 use crate::WakeRotor;
-use rotor_base::HarmonicSeries;
+use crate::error::ensure;
 
 /// Bound circulation of a blade against its azimuth, `Gamma / (Omega R^2)`, positive with lift up.
 ///
@@ -19,20 +20,7 @@ impl CirculationMap {
     /// # Errors
     /// [`WakeError::BadInput`] if the count is no multiple of `panels` or a value is not finite.
     pub fn new(panels: usize, values: Vec<f64>) -> Result<Self, WakeError> {
-        if panels == 0 || values.is_empty() || !values.len().is_multiple_of(panels) {
-            return Err(WakeError::BadInput {
-                quantity: "number of circulations",
-                value: values.len() as f64,
-                expected: "azimuths times panels",
-            });
-        }
-        if let Some(&value) = values.iter().find(|v| !v.is_finite()) {
-            return Err(WakeError::BadInput {
-                quantity: "circulation",
-                value,
-                expected: "a finite number",
-            });
-        }
+        check_table(["number of circulations", "circulation"], panels, &values)?;
         Ok(Self { panels, values })
     }
 
@@ -131,13 +119,9 @@ impl CirculationMap {
     /// # Errors
     /// [`WakeError::BadInput`] if the grids differ.
     pub fn mixed(&self, other: &Self, part: f64) -> Result<Self, WakeError> {
-        if self.panels != other.panels || self.values.len() != other.values.len() {
-            return Err(WakeError::BadInput {
-                quantity: "values of the other circulation",
-                value: other.values.len() as f64,
-                expected: "the same grid",
-            });
-        }
+        let count = other.values.len();
+        let is_alike = self.panels == other.panels && self.values.len() == count;
+        ensure(is_alike, "values of the other circulation", count as f64, "the same grid")?;
         let pairs = self.values.iter().zip(&other.values);
         Self::new(self.panels, pairs.map(|(a, b)| part * a + (1.0 - part) * b).collect())
     }
@@ -149,26 +133,6 @@ impl CirculationMap {
         let mean = |s: usize| (0..azimuths).map(|i| self.row(i)[s]).sum::<f64>() / azimuths as f64;
         let row: Vec<f64> = (0..self.panels).map(mean).collect();
         Self { panels: self.panels, values: row.repeat(azimuths) }
-    }
-
-    /// The same function of azimuth on another number of azimuths, by its harmonics.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn resampled(&self, azimuths: usize) -> Result<Self, WakeError> {
-        if azimuths == self.azimuths() {
-            return Ok(self.clone());
-        }
-        let count = (self.azimuths().min(azimuths) - 1) / 2;
-        let series: Vec<HarmonicSeries> = (0..self.panels)
-            .map(|s| {
-                let column: Vec<f64> = (0..self.azimuths()).map(|i| self.row(i)[s]).collect();
-                HarmonicSeries::from_uniform_samples(&column, count).unwrap_or_default()
-            })
-            .collect();
-        Self::from_fn(azimuths, self.panels, |i, s| {
-            series[s].value(std::f64::consts::TAU * i as f64 / azimuths as f64)
-        })
     }
 
     /// The panel of the outboard peak at every azimuth: from the tip inward, the first panel whose

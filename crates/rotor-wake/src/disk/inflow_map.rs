@@ -1,9 +1,9 @@
 //! Induced inflow over the disk as a table.
 
+use super::check_table;
 use crate::WakeError;
 use crate::WakeRotor;
 use rotor_base::HarmonicSeries;
-use std::f64::consts::TAU;
 
 /// Induced inflow at the middles of the panels and at uniform azimuths, tip speed, down positive.
 ///
@@ -24,17 +24,7 @@ impl InflowMap {
     /// [`WakeError::BadInput`] for a count that does not fit the panels or a value that is not finite.
     pub fn new(rotor: &WakeRotor, values: Vec<f64>) -> Result<Self, WakeError> {
         let panels = rotor.panels();
-        if values.len() < panels || !values.len().is_multiple_of(panels) {
-            return Err(WakeError::BadInput {
-                quantity: "number of inflow values",
-                value: values.len() as f64,
-                expected: "azimuths times panels",
-            });
-        }
-        if let Some(&value) = values.iter().find(|v| !v.is_finite()) {
-            let (quantity, expected) = ("inflow value", "a finite number");
-            return Err(WakeError::BadInput { quantity, value, expected });
-        }
+        check_table(["number of inflow values", "inflow value"], panels, &values)?;
         let series = series(&values, panels);
         Ok(Self { stations: rotor.stations(), widths: rotor.widths(), values, series })
     }
@@ -76,7 +66,11 @@ impl InflowMap {
     /// Induced inflow at several stations (unit `R`) of one azimuth, rad.
     pub fn along(&self, azimuth_rad: f64, stations: &[f64]) -> Vec<f64> {
         let table: Vec<f64> = self.series.iter().map(|s| s.value(azimuth_rad)).collect();
-        stations.iter().map(|&r| self.between(r, &table)).collect()
+        let between = |&r: &f64| {
+            let (a, b, t) = self.place(r);
+            table[a] + t * (table[b] - table[a])
+        };
+        stations.iter().map(between).collect()
     }
 
     /// Induced inflow at one azimuth (rad) and station (unit `R`).
@@ -84,11 +78,6 @@ impl InflowMap {
         let (a, b, t) = self.place(r);
         let (low, high) = (self.series[a].value(azimuth_rad), self.series[b].value(azimuth_rad));
         low + t * (high - low)
-    }
-
-    fn between(&self, r: f64, table: &[f64]) -> f64 {
-        let (a, b, t) = self.place(r);
-        table[a] + t * (table[b] - table[a])
     }
 
     fn place(&self, r: f64) -> (usize, usize, f64) {
@@ -117,19 +106,12 @@ impl InflowMap {
     }
 }
 
+/// All harmonics of each panel that the azimuths resolve.
 fn series(values: &[f64], panels: usize) -> Vec<HarmonicSeries> {
-    let azimuths = values.len() / panels;
-    let count = (azimuths.max(1) - 1) / 2;
-    (0..panels)
-        .map(|s| {
-            let column: Vec<f64> = (0..azimuths).map(|i| values[i * panels + s]).collect();
-            HarmonicSeries::from_uniform_samples(&column, count).unwrap_or_else(|_| {
-                // fewer samples than a harmonic needs: their mean
-                let weights = vec![1.0 / azimuths as f64; azimuths];
-                let angles: Vec<f64> =
-                    (0..azimuths).map(|i| TAU * i as f64 / azimuths as f64).collect();
-                HarmonicSeries::project(&angles, &weights, &column, 0)
-            })
-        })
-        .collect()
+    let count = (values.len() / panels).saturating_sub(1) / 2;
+    let of = |panel: usize| {
+        let column: Vec<f64> = values.iter().skip(panel).step_by(panels).copied().collect();
+        HarmonicSeries::from_uniform_samples(&column, count).unwrap_or_default()
+    };
+    (0..panels).map(of).collect()
 }

@@ -1,6 +1,7 @@
 //! The lifting line of a blade, cut in panels.
 
 use crate::WakeError;
+use crate::error::ensure;
 use std::f64::consts::PI;
 
 /// Number of blades and the spanwise panels of one of them.
@@ -18,21 +19,14 @@ impl WakeRotor {
     /// [`WakeError::BadInput`] unless there are 1 to 12 blades and at least two panels, nodes ascend and
     /// the last one is 1.
     pub fn new(blades: usize, nodes: Vec<f64>) -> Result<Self, WakeError> {
-        let bad =
-            |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
-        if !(1..=12).contains(&blades) {
-            return bad("blades", blades as f64, "1 to 12");
-        }
-        if nodes.len() < 3 {
-            return bad("spanwise nodes", nodes.len() as f64, "3 or more");
-        }
-        if let Some(pair) = nodes.windows(2).find(|p| p[1] - p[0] < 1e-6 || p[0] < 0.0) {
-            return bad("spanwise node", pair[1], "ascending stations from 0 to 1");
+        ensure((1..=12).contains(&blades), "blades", blades as f64, "1 to 12")?;
+        ensure(nodes.len() >= 3, "spanwise nodes", nodes.len() as f64, "3 or more")?;
+        for pair in nodes.windows(2) {
+            let ascends = !(pair[1] - pair[0] < 1e-6 || pair[0] < 0.0);
+            ensure(ascends, "spanwise node", pair[1], "ascending stations from 0 to 1")?;
         }
         let tip = nodes[nodes.len() - 1];
-        if (tip - 1.0).abs() > 1e-12 || tip.is_nan() {
-            return bad("last spanwise node", tip, "1, the tip");
-        }
+        ensure((tip - 1.0).abs() <= 1e-12, "last spanwise node", tip, "1, the tip")?;
         Ok(Self { blades, nodes })
     }
 

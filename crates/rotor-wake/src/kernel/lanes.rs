@@ -3,7 +3,7 @@
 
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
 
-use super::segment::Prepared;
+use super::prepared::Prepared;
 use crate::vector::Vec3;
 
 /// Targets in a block.
@@ -42,72 +42,53 @@ impl Lanes {
 /// Makes the quotient 0/0 of a target at the end of a segment zero; far below any `|r1| |r2| D`.
 const GUARD: f64 = 1e-60;
 
-/// What the laws of the core are made of, at one target.
-pub(super) struct Relative {
-    /// From both ends of the segment to the target.
-    r1: Vec3,
-    r2: Vec3,
-    /// `|l x r1|^2`.
-    cross: f64,
-}
-
 #[inline(always)]
 fn inner(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// How the core enters: `(l.r1 / |r1| - l.r2 / |r2|) / D`.
-pub(super) trait Law {
-    fn factor(at: &Relative, segment: &Prepared) -> f64;
-}
-
-/// Vatistas's profile with n = 2.
-pub(super) struct Vatistas;
-
-impl Law for Vatistas {
-    /// With `p = |r1| |r2|` and `q = r1.r2` two roots and a quotient:
-    ///
-    /// ```text
-    /// (l.r1 / |r1| - l.r2 / |r2|) / D = (p - q) sqrt( (r1^2 + r2^2 + 2 p) / (r1^2 r2^2 D^2) ),   l = r1 - r2
-    /// ```
-    /// where `p - q = |l x r1|^2 / (p + q)` keeps the digits of a segment seen under a sharp angle.
-    #[inline(always)]
-    fn factor(at: &Relative, segment: &Prepared) -> f64 {
-        let (s1, s2, q) = (inner(at.r1, at.r1), inner(at.r2, at.r2), inner(at.r1, at.r2));
-        let product = s1 * s2;
-        let p = product.sqrt();
-        let sharp = q > 0.0;
-        let above = if sharp { at.cross } else { p - q };
-        let below = if sharp { p + q } else { 1.0 };
-        let d = at.cross * at.cross + segment.core;
-        above * ((s1 + s2 + 2.0 * p) / (product * d * (below * below) + GUARD * GUARD)).sqrt()
+/// How the core enters, for a target at `r1` and `r2` from the ends of a segment and `cross = |l x r1|^2`:
+/// `(l.r1 / |r1| - l.r2 / |r2|) / D`.
+///
+/// Rosenhead and Moore's cut-off (`MOORE`): `1/|r1|`, `1/|r2|` and `1/D` in one quotient,
+///
+/// ```text
+/// (l.r1 |r2| - l.r2 |r1|) / (|r1| |r2| D)
+/// ```
+/// Vatistas's profile with n = 2: with `p = |r1| |r2|` and `q = r1.r2` two roots and a quotient,
+///
+/// ```text
+/// (l.r1 / |r1| - l.r2 / |r2|) / D = (p - q) sqrt( (r1^2 + r2^2 + 2 p) / (r1^2 r2^2 D^2) ),   l = r1 - r2
+/// ```
+/// where `p - q = |l x r1|^2 / (p + q)` keeps the digits of a segment seen under a sharp angle.
+#[inline(always)]
+fn factor<const MOORE: bool>([r1, r2]: [Vec3; 2], cross: f64, segment: &Prepared) -> f64 {
+    if MOORE {
+        let (lr1, lr2) = (inner(segment.along, r1), inner(segment.along, r2));
+        let a = (inner(r1, r1) + segment.cut_off).sqrt();
+        let b = (inner(r2, r2) + segment.cut_off).sqrt();
+        return (lr1 * b - lr2 * a) / (a * b * (cross + segment.core) + GUARD);
     }
-}
-
-/// Rosenhead and Moore's cut-off.
-pub(super) struct RosenheadMoore;
-
-impl Law for RosenheadMoore {
-    /// `1/|r1|`, `1/|r2|` and `1/D` in one quotient: `(l.r1 |r2| - l.r2 |r1|) / (|r1| |r2| D)`.
-    #[inline(always)]
-    fn factor(at: &Relative, segment: &Prepared) -> f64 {
-        let (lr1, lr2) = (inner(segment.along, at.r1), inner(segment.along, at.r2));
-        let a = (inner(at.r1, at.r1) + segment.cut_off).sqrt();
-        let b = (inner(at.r2, at.r2) + segment.cut_off).sqrt();
-        (lr1 * b - lr2 * a) / (a * b * (at.cross + segment.core) + GUARD)
-    }
+    let (s1, s2, q) = (inner(r1, r1), inner(r2, r2), inner(r1, r2));
+    let product = s1 * s2;
+    let p = product.sqrt();
+    let sharp = q > 0.0;
+    let above = if sharp { cross } else { p - q };
+    let below = if sharp { p + q } else { 1.0 };
+    let d = cross * cross + segment.core;
+    above * ((s1 + s2 + 2.0 * p) / (product * d * (below * below) + GUARD * GUARD)).sqrt()
 }
 
 /// Adds the velocity by one segment to every target's sum.
 #[inline(always)]
-pub(super) fn add_velocity<L: Law>(at: &Lanes, segment: &Prepared, sum: &mut Lanes) {
+pub(super) fn add_velocity<const MOORE: bool>(at: &Lanes, segment: &Prepared, sum: &mut Lanes) {
     let ([sx, sy, sz], [lx, ly, lz]) = (segment.start, segment.along);
     for k in 0..LANES {
         let (x, y, z) = (at.x[k] - sx, at.y[k] - sy, at.z[k] - sz);
         let (cx, cy, cz) = (ly * z - lz * y, lz * x - lx * z, lx * y - ly * x);
         let cross = cx * cx + cy * cy + cz * cz;
-        let relative = Relative { r1: [x, y, z], r2: [x - lx, y - ly, z - lz], cross };
-        let factor = segment.strength * L::factor(&relative, segment);
+        let ends = [[x, y, z], [x - lx, y - ly, z - lz]];
+        let factor = segment.strength * factor::<MOORE>(ends, cross, segment);
         sum.x[k] += factor * cx;
         sum.y[k] += factor * cy;
         sum.z[k] += factor * cz;

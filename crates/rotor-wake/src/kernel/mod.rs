@@ -18,6 +18,7 @@
 
 mod core;
 mod lanes;
+mod prepared;
 mod segment;
 mod single;
 
@@ -25,7 +26,7 @@ pub use core::CoreModel;
 pub use segment::{SegmentSet, arc_velocity};
 
 use crate::vector::Vec3;
-use lanes::{LANES, Lanes, Law, RosenheadMoore, Vatistas};
+use lanes::{LANES, Lanes};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use single::{SINGLE_LANES, add_single};
@@ -50,11 +51,7 @@ pub fn induced_velocities(targets: &[Vec3], segments: &SegmentSet) -> Vec<Vec3> 
 /// [`induced_velocities`] on the calling thread, into `out` (as long as `targets`; what is longer is
 /// left alone).
 pub fn induced_velocities_serial(targets: &[Vec3], segments: &SegmentSet, out: &mut [Vec3]) {
-    let arch = Arch::new();
-    arch.dispatch(InDouble { targets, segments, out: &mut *out });
-    if !segments.single().is_empty() {
-        arch.dispatch(InSingle { targets, segments, out });
-    }
+    Arch::new().dispatch(Sums { targets, segments, out });
 }
 
 /// Velocity at up to [`LANES`] targets by each segment in turn, handed to `take` component by component with
@@ -67,58 +64,43 @@ pub(crate) fn for_each_velocity(
     Arch::new().dispatch(Each { block: Lanes::gather(targets), segments, take });
 }
 
-/// Sums of the segments in double precision. A type of its own: a closure would be called, not inlined, by the function
-/// that is compiled for the vector unit, and be compiled for none.
-struct InDouble<'a> {
+/// Sums of the segments in double precision, and of those in single precision added to them. A type of its own: a
+/// closure would be called, not inlined, by the function that is compiled for the vector unit, and be compiled for none.
+struct Sums<'a> {
     targets: &'a [Vec3],
     segments: &'a SegmentSet,
     out: &'a mut [Vec3],
 }
 
-impl InDouble<'_> {
+impl Sums<'_> {
     #[inline(always)]
-    fn sums<L: Law>(self) {
+    fn form<const MOORE: bool>(self) {
         for (out, at) in self.out.chunks_mut(LANES).zip(self.targets.chunks(LANES)) {
             let block = Lanes::gather(at);
             let mut sum = Lanes::default();
             for segment in self.segments.prepared() {
-                lanes::add_velocity::<L>(&block, segment, &mut sum);
+                lanes::add_velocity::<MOORE>(&block, segment, &mut sum);
             }
             sum.scatter(out);
+        }
+        let single = self.segments.single();
+        if single.is_empty() {
+            return;
+        }
+        for (out, at) in self.out.chunks_mut(SINGLE_LANES).zip(self.targets.chunks(SINGLE_LANES)) {
+            add_single::<MOORE>(at, single, out);
         }
     }
 }
 
-impl WithSimd for InDouble<'_> {
+impl WithSimd for Sums<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         match self.segments.core() {
-            CoreModel::Vatistas => self.sums::<Vatistas>(),
-            CoreModel::RosenheadMoore => self.sums::<RosenheadMoore>(),
-        }
-    }
-}
-
-/// Sums of the segments in single precision, added to those in double.
-struct InSingle<'a> {
-    targets: &'a [Vec3],
-    segments: &'a SegmentSet,
-    out: &'a mut [Vec3],
-}
-
-impl WithSimd for InSingle<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let single = self.segments.single();
-        for (out, at) in self.out.chunks_mut(SINGLE_LANES).zip(self.targets.chunks(SINGLE_LANES)) {
-            match self.segments.core() {
-                CoreModel::Vatistas => add_single::<false>(at, single, out),
-                CoreModel::RosenheadMoore => add_single::<true>(at, single, out),
-            }
+            CoreModel::Vatistas => self.form::<false>(),
+            CoreModel::RosenheadMoore => self.form::<true>(),
         }
     }
 }
@@ -132,10 +114,10 @@ struct Each<'a, F> {
 
 impl<F: FnMut(usize, [&[f64; LANES]; 3])> Each<'_, F> {
     #[inline(always)]
-    fn velocities<L: Law>(mut self) {
+    fn velocities<const MOORE: bool>(mut self) {
         for (index, segment) in self.segments.prepared().iter().enumerate() {
             let mut one = Lanes::default();
-            lanes::add_velocity::<L>(&self.block, segment, &mut one);
+            lanes::add_velocity::<MOORE>(&self.block, segment, &mut one);
             (self.take)(index, one.components());
         }
     }
@@ -147,8 +129,8 @@ impl<F: FnMut(usize, [&[f64; LANES]; 3])> WithSimd for Each<'_, F> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         match self.segments.core() {
-            CoreModel::Vatistas => self.velocities::<Vatistas>(),
-            CoreModel::RosenheadMoore => self.velocities::<RosenheadMoore>(),
+            CoreModel::Vatistas => self.velocities::<false>(),
+            CoreModel::RosenheadMoore => self.velocities::<true>(),
         }
     }
 }

@@ -1,22 +1,9 @@
 //! Segments as the kernel wants them, and the part of the corrected model that adjacent segments lack.
 
 use super::core::CoreModel;
-use super::single::PreparedSingle;
-use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
+use super::prepared::{Prepared, PreparedSingle};
+use crate::vector::{Vec3, add, cross, norm, scale, sub};
 use std::f64::consts::PI;
-
-/// One segment with what does not depend on the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Prepared {
-    pub(super) start: Vec3,
-    pub(super) along: Vec3,
-    /// Circulation over 4 pi.
-    pub(super) strength: f64,
-    /// `r_c^4 |l|^4` (Vatistas) or `delta^2 |l|^2`.
-    pub(super) core: f64,
-    /// `delta^2`.
-    pub(super) cut_off: f64,
-}
 
 /// Straight vortex segments under one core model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -35,26 +22,14 @@ impl SegmentSet {
     /// Adds a segment from `start` to `end` with a circulation in the right-hand sense about that
     /// direction and the core radius there.
     pub fn push(&mut self, start: Vec3, end: Vec3, circulation: f64, core_radius: f64) {
-        let along = sub(end, start);
-        let square = dot(along, along);
-        let (core, cut_off) = match self.core {
-            CoreModel::Vatistas => {
-                let product = core_radius * core_radius * square;
-                (product * product, 0.0)
-            }
-            CoreModel::RosenheadMoore => {
-                let delta = core_radius * CoreModel::cut_off_ratio();
-                (delta * delta * square, delta * delta)
-            }
-        };
-        let strength = circulation / (4.0 * PI);
-        self.prepared.push(Prepared { start, along, strength, core, cut_off });
+        self.prepared.push(Prepared::new(self.core, [start, end], circulation, core_radius));
     }
 
     /// The same for a segment whose velocity is computed in single precision, with coordinates of seven
     /// digits: some 1e-5 of the velocity next to the core. [`induced_velocities`](super::induced_velocities) adds it to that of the others.
     pub fn push_single(&mut self, start: Vec3, end: Vec3, circulation: f64, core_radius: f64) {
-        self.single.push(PreparedSingle::new(self.core, [start, end], circulation, core_radius));
+        let segment = Prepared::new(self.core, [start, end], circulation, core_radius);
+        self.single.push(PreparedSingle::from(&segment));
     }
 
     /// The core model.
@@ -70,12 +45,6 @@ impl SegmentSet {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.prepared.is_empty() && self.single.is_empty()
-    }
-
-    /// Takes all segments out and keeps the memory.
-    pub fn clear(&mut self) {
-        self.prepared.clear();
-        self.single.clear();
     }
 
     pub(super) fn single(&self) -> &[PreparedSingle] {

@@ -3,9 +3,8 @@
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
 #![expect(clippy::cast_possible_truncation, reason = "single precision is what is asked for")]
 
-use super::core::CoreModel;
-use crate::vector::{Vec3, dot, sub};
-use std::f64::consts::PI;
+use super::prepared::PreparedSingle;
+use crate::vector::Vec3;
 
 /// Targets in a block.
 pub(super) const SINGLE_LANES: usize = 16;
@@ -15,44 +14,6 @@ const RUN: usize = 16;
 
 /// Makes 0/0 at the end of a segment zero; far below any `|r1| |r2| D`.
 const GUARD: f32 = 1e-30;
-
-/// One segment with what does not depend on the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PreparedSingle {
-    start: [f32; 3],
-    along: [f32; 3],
-    strength: f32,
-    /// `r_c^4 |l|^4` (Vatistas) or `delta^2 |l|^2`.
-    core: f32,
-    /// `delta^2`, 0 with Vatistas's cores.
-    cut_off: f32,
-}
-
-impl PreparedSingle {
-    pub(super) fn new(
-        model: CoreModel,
-        ends: [Vec3; 2],
-        circulation: f64,
-        core_radius: f64,
-    ) -> Self {
-        let along = sub(ends[1], ends[0]);
-        let square = dot(along, along);
-        let (core, cut_off) = match model {
-            CoreModel::Vatistas => ((core_radius * core_radius * square).powi(2), 0.0),
-            CoreModel::RosenheadMoore => {
-                let delta = core_radius * CoreModel::cut_off_ratio();
-                (delta * delta * square, delta * delta)
-            }
-        };
-        Self {
-            start: ends[0].map(|x| x as f32),
-            along: along.map(|x| x as f32),
-            strength: (circulation / (4.0 * PI)) as f32,
-            core: core as f32,
-            cut_off: cut_off as f32,
-        }
-    }
-}
 
 type Lanes = [[f32; SINGLE_LANES]; 3];
 

@@ -1,6 +1,6 @@
 //! A filament on the grid of azimuth and age.
 
-use crate::vector::Vec3;
+use crate::vector::{Vec3, norm, sub};
 
 /// Nodes of the filament that one node of a blade trails, `[azimuth of the blade][age]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,4 +35,15 @@ impl Filament {
             }
         }
     }
+}
+
+/// RMS distance of the nodes of pairs of filaments of the same grid, unit `R`.
+pub(crate) fn rms_distance<'a>(pairs: impl Iterator<Item = (&'a Filament, &'a Filament)>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0);
+    for (p, q) in pairs.flat_map(|(a, b)| a.points.iter().zip(&b.points)) {
+        let d = norm(sub(*p, *q));
+        sum += d * d;
+        count += 1;
+    }
+    (sum / f64::from(count.max(1))).sqrt()
 }

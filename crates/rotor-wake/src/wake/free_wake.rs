@@ -3,6 +3,7 @@
 use super::filament::Filament;
 use super::settings::{FreeWakeSettings, NearWakeMotion, WakeSymmetry};
 use super::sources::RollUp;
+use crate::error::{ensure, ensure_finite};
 use crate::vector::Vec3;
 use crate::{BladeLines, CirculationMap, WakeRotor};
 use crate::{FlightState, WakeError};
@@ -60,15 +61,8 @@ impl FreeWake {
     ) -> Result<Self, WakeError> {
         settings.validate(rotor.blades())?;
         let flight = flight.validated()?;
-        if !carrying_inflow.is_finite() {
-            return Err(WakeError::BadInput {
-                quantity: "carrying_inflow",
-                value: carrying_inflow,
-                expected: "a finite number",
-            });
-        }
-        same_azimuths(&settings, lines.azimuths())?;
-        axial_if_asked(&settings, &flight, &lines)?;
+        ensure_finite("carrying_inflow", &[carrying_inflow])?;
+        check_blades(&settings, &flight, &lines)?;
         let azimuths = settings.azimuths;
         let filament = |node, steps| Filament::new(node, steps, azimuths);
         let near = (0..=rotor.panels()).map(|n| filament(n, settings.near_steps())).collect();
@@ -140,8 +134,7 @@ impl FreeWake {
         carrying_inflow: f64,
         lines: BladeLines,
     ) -> Result<(), WakeError> {
-        same_azimuths(&self.settings, lines.azimuths())?;
-        axial_if_asked(&self.settings, &flight, &lines)?;
+        check_blades(&self.settings, &flight, &lines)?;
         self.flight = flight.validated()?;
         self.carrying_inflow = carrying_inflow;
         self.lines = lines;
@@ -171,82 +164,75 @@ impl FreeWake {
         (0..blades).map(move |b| phase + b * spacing)
     }
 
+    /// Whether the wake turns with the blades as it is.
+    pub(crate) fn is_axial(&self) -> bool {
+        self.settings.symmetry == WakeSymmetry::Axial
+    }
+
     /// Instants whose induced velocities have to be computed.
     pub(crate) fn phases_that_differ(&self) -> usize {
-        match self.settings.symmetry {
-            WakeSymmetry::Periodic => self.phases(),
-            WakeSymmetry::Axial => 1,
-        }
+        if self.is_axial() { 1 } else { self.phases() }
     }
 
     /// Blades at whose wakes they have to be computed.
     pub(crate) fn blades_that_differ(&self) -> usize {
-        match self.settings.symmetry {
-            WakeSymmetry::Periodic => self.rotor.blades(),
-            WakeSymmetry::Axial => 1,
-        }
+        if self.is_axial() { 1 } else { self.rotor.blades() }
     }
 
     /// Checks a circulation against the grid.
     pub(crate) fn check(&self, circulation: &CirculationMap) -> Result<(), WakeError> {
         same_azimuths(&self.settings, circulation.azimuths())?;
-        if circulation.panels() != self.rotor.panels() {
-            return Err(WakeError::BadInput {
-                quantity: "panels of the circulation",
-                value: circulation.panels() as f64,
-                expected: "the panels of the wake",
-            });
-        }
-        if self.settings.symmetry == WakeSymmetry::Axial {
+        let panels = circulation.panels();
+        let fits = panels == self.rotor.panels();
+        ensure(fits, "panels of the circulation", panels as f64, "the panels of the wake")?;
+        if self.is_axial() {
             let first = circulation.row(0);
             let differs = |(k, value): (usize, &f64)| (value - first[k % first.len()]).abs();
             let change = circulation.values().iter().enumerate().map(differs).fold(0.0, f64::max);
-            if change > ALIKE {
-                return Err(WakeError::BadInput {
-                    quantity: "change of the circulation over the azimuth",
-                    value: change,
-                    expected: "none: the wake is axial",
-                });
-            }
+            let quantity = "change of the circulation over the azimuth";
+            ensure(change <= ALIKE, quantity, change, "none: the wake is axial")?;
         }
         Ok(())
     }
 
+    /// Whether the near wake moves freely, as the rolled-up vortices do.
+    pub(crate) fn near_is_free(&self) -> bool {
+        self.settings.near_wake_motion == NearWakeMotion::Free
+    }
+
     /// The filaments that move freely.
     pub(crate) fn free(&self) -> impl Iterator<Item = &Filament> {
-        let near_is_free = self.settings.near_wake_motion == NearWakeMotion::Free;
-        self.near.iter().filter(move |_| near_is_free).chain(&self.far)
+        let near = if self.near_is_free() { &self.near[..] } else { &[] };
+        near.iter().chain(&self.far)
+    }
+
+    /// The same, to be moved.
+    pub(crate) fn free_mut(&mut self) -> impl Iterator<Item = &mut Filament> {
+        let near = if self.near_is_free() { &mut self.near[..] } else { &mut [] };
+        near.iter_mut().chain(&mut self.far)
     }
 }
 
 fn same_azimuths(settings: &FreeWakeSettings, given: usize) -> Result<(), WakeError> {
-    if given == settings.azimuths {
-        return Ok(());
-    }
-    Err(WakeError::BadInput {
-        quantity: "azimuths of the blades or the circulation",
-        value: given as f64,
-        expected: "the azimuth steps of the wake",
-    })
+    let quantity = "azimuths of the blades or the circulation";
+    let expected = "the azimuth steps of the wake";
+    ensure(given == settings.azimuths, quantity, given as f64, expected)
 }
 
-/// Refuses axial symmetry where the rotor flies or its blades move.
-fn axial_if_asked(
+/// Refuses blades of another grid, and axial symmetry where the rotor flies or its blades move.
+fn check_blades(
     settings: &FreeWakeSettings,
     flight: &FlightState,
     lines: &BladeLines,
 ) -> Result<(), WakeError> {
+    same_azimuths(settings, lines.azimuths())?;
     if settings.symmetry != WakeSymmetry::Axial {
         return Ok(());
     }
-    let bad = |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
-    if flight.advance_ratio != 0.0 {
-        let expected = "0: a wake turns with its blades in axial flight only";
-        return bad("advance_ratio of an axial wake", flight.advance_ratio, expected);
-    }
+    let expected = "0: a wake turns with its blades in axial flight only";
+    let mu = flight.advance_ratio;
+    ensure(mu == 0.0, "advance_ratio of an axial wake", mu, expected)?;
     let motion = lines.departure_from_turning();
-    if motion.is_nan() || motion > ALIKE {
-        return bad("motion of the blades of an axial wake, R", motion, "none over a revolution");
-    }
-    Ok(())
+    let quantity = "motion of the blades of an axial wake, R";
+    ensure(motion <= ALIKE, quantity, motion, "none over a revolution")
 }

@@ -1,6 +1,7 @@
 //! The wake held still: inflow as a linear function of the circulation.
 
-use super::{ControlPoint, FreeWake, WakeSymmetry};
+use super::{ControlPoint, CoreSettings, FreeWake};
+use crate::error::ensure;
 use crate::kernel::{BLOCK, for_each_velocity};
 use crate::vector::{Vec3, add, norm, scale, sub};
 use crate::{CirculationMap, InflowMap, WakeRotor};
@@ -29,6 +30,7 @@ pub struct LineInduction {
 const HALF_A_CHORD: f64 = 2.0 / 3.0;
 
 /// Points of panels at one instant: at most a block of the kernel.
+#[derive(Default)]
 struct TargetBlock {
     phase: usize,
     /// Row of the matrices.
@@ -46,36 +48,24 @@ impl FreeWake {
         let panels = self.rotor.panels();
         let mut blocks = Vec::new();
         for phase in 0..self.phases_that_differ() {
-            let targets: Vec<(usize, usize)> = self
-                .blade_azimuths(phase)
-                .take(self.blades_that_differ())
-                .flat_map(|i| (0..panels).map(move |s| (i, s)))
-                .collect();
-            for chunk in targets.chunks(BLOCK) {
-                let mut block = TargetBlock {
-                    phase,
-                    rows: chunk.iter().map(|(i, s)| i * panels + s).collect(),
-                    points: Vec::with_capacity(BLOCK),
-                    own: [0.0; BLOCK],
-                    sines: [0.0; BLOCK],
-                    cosines: [0.0; BLOCK],
-                };
-                for (lane, &(i, s)) in chunk.iter().enumerate() {
+            let blades = self.blade_azimuths(phase).take(self.blades_that_differ());
+            let places: Vec<_> = blades.flat_map(|i| (0..panels).map(move |s| (i, s))).collect();
+            for places in places.chunks(BLOCK) {
+                let rows = places.iter().map(|(i, s)| i * panels + s).collect();
+                let mut block = TargetBlock { phase, rows, ..TargetBlock::default() };
+                for (lane, &(i, s)) in places.iter().enumerate() {
                     let middle = |ends: &[Vec3]| scale(add(ends[s], ends[s + 1]), 0.5);
                     let line = middle(self.lines.at(i));
-                    let behind = sub(middle(self.lines.edge_at(i)), line);
-                    if self.settings.control_point == ControlPoint::ThreeQuarterChord
-                        && norm(behind) > 0.0
-                    {
-                        let behind = scale(behind, HALF_A_CHORD);
-                        block.points.push(add(line, behind));
-                        block.own[lane] = self
-                            .settings
-                            .core
-                            .model
-                            .of_a_straight_line(norm(behind), self.settings.core.near_radius);
-                    } else {
-                        block.points.push(line);
+                    let behind = match self.settings.control_point {
+                        ControlPoint::LiftingLine => [0.0; 3],
+                        ControlPoint::ThreeQuarterChord => {
+                            scale(sub(middle(self.lines.edge_at(i)), line), HALF_A_CHORD)
+                        }
+                    };
+                    block.points.push(add(line, behind));
+                    if norm(behind) > 0.0 {
+                        let CoreSettings { model, near_radius, .. } = self.settings.core;
+                        block.own[lane] = model.of_a_straight_line(norm(behind), near_radius);
                     }
                     let azimuth = i as f64 * self.settings.step_rad();
                     (block.sines[lane], block.cosines[lane]) = azimuth.sin_cos();
@@ -95,15 +85,14 @@ impl FreeWake {
         self.check(circulation)?;
         let (azimuths, panels) = (self.settings.azimuths, self.rotor.panels());
         let size = azimuths * panels;
-        let sources: Vec<_> = self.with_context(circulation, |context| {
-            (0..self.phases_that_differ())
-                .map(|phase| {
-                    let sources = self.load_sources(phase, context);
-                    let segments = sources.unit_segments(context);
-                    (sources, segments)
-                })
-                .collect()
-        });
+        let context = self.context(circulation, self.turn());
+        let sources: Vec<_> = (0..self.phases_that_differ())
+            .map(|phase| {
+                let sources = self.load_sources(phase, &context);
+                let segments = sources.unit_segments(&context);
+                (sources, segments)
+            })
+            .collect();
         let blocks = self.line_targets();
         let columns: Vec<[Vec<[f64; BLOCK]>; 2]> = blocks
             .par_iter()
@@ -112,7 +101,7 @@ impl FreeWake {
                 let mut down = vec![[0.0; BLOCK]; size];
                 let mut along = down.clone();
                 for_each_velocity(&block.points, segments, |index, [x, y, z]| {
-                    for (at, factor) in sources.terms()[index].iter() {
+                    for (at, factor) in sources.terms(index).iter() {
                         let (down, along) = (&mut down[at], &mut along[at]);
                         for k in 0..BLOCK {
                             down[k] -= factor * z[k];
@@ -140,7 +129,7 @@ impl FreeWake {
                 out.down[(row, row)] -= own;
             }
         }
-        if self.settings.symmetry == WakeSymmetry::Axial {
+        if self.is_axial() {
             for matrix in [&mut out.down, &mut out.along] {
                 turn_rows(matrix, panels);
             }
@@ -214,28 +203,11 @@ impl LineInduction {
         matrix: &DMatrix<f64>,
         circulation: &CirculationMap,
     ) -> Result<InflowMap, WakeError> {
-        if circulation.values().len() != matrix.nrows() {
-            return Err(WakeError::BadInput {
-                quantity: "values of the circulation",
-                value: circulation.values().len() as f64,
-                expected: "azimuths times panels of the wake",
-            });
-        }
+        let count = circulation.values().len();
+        let expected = "azimuths times panels of the wake";
+        ensure(count == matrix.nrows(), "values of the circulation", count as f64, expected)?;
         let gamma = DVector::from_column_slice(circulation.values());
         InflowMap::new(&self.rotor, (matrix * gamma).as_slice().to_vec())
-    }
-
-    /// `I + A diag(slope)`, factorised: the matrix of a Newton step where the circulation falls by
-    /// `slope` per unit of inflow.
-    pub(crate) fn newton_matrix(&self, slope: &[f64]) -> LU<f64, Dyn, Dyn> {
-        let mut matrix = self.down.clone();
-        for (mut column, s) in matrix.column_iter_mut().zip(slope) {
-            column *= *s;
-        }
-        for k in 0..matrix.nrows() {
-            matrix[(k, k)] += 1.0;
-        }
-        matrix.lu()
     }
 }
 
@@ -250,6 +222,7 @@ const SMALL_SPEED: f64 = 0.04;
 pub struct FrozenWake {
     induction: LineInduction,
     reference: InflowMap,
+    /// Of a Newton step, factorised.
     newton: LU<f64, Dyn, Dyn>,
 }
 
@@ -267,30 +240,17 @@ impl FrozenWake {
         advance_ratio: f64,
     ) -> Result<Self, WakeError> {
         let reference = induction.inflow(circulation)?;
-        let azimuths = induction.azimuths;
-        let stations = reference.stations();
-        let slope: Vec<f64> = (0..azimuths)
-            .flat_map(|i| {
-                let sin = (TAU * i as f64 / azimuths as f64).sin();
-                // in reverse flow the circulation has the other sense
-                stations.iter().map(move |r| {
-                    let along = r + advance_ratio * sin;
-                    PI * chord * along / along.hypot(SMALL_SPEED)
-                })
-            })
-            .collect();
-        let newton = induction.newton_matrix(&slope);
-        Ok(Self { induction, reference, newton })
-    }
-
-    /// The inflow the wake was built with.
-    pub fn reference(&self) -> &InflowMap {
-        &self.reference
-    }
-
-    /// The linear map.
-    pub fn induction(&self) -> &LineInduction {
-        &self.induction
+        let (azimuths, stations) = (induction.azimuths, reference.stations());
+        // the circulation falls by a slope per unit of inflow: I + A diag(slope)
+        let mut newton = induction.down.clone();
+        for (k, mut column) in newton.column_iter_mut().enumerate() {
+            let (i, s) = (k / stations.len(), k % stations.len());
+            let along = stations[s] + advance_ratio * (TAU * i as f64 / azimuths as f64).sin();
+            // in reverse flow the circulation has the other sense
+            column *= PI * chord * along / along.hypot(SMALL_SPEED);
+            column[k] += 1.0;
+        }
+        Ok(Self { newton: newton.lu(), induction, reference })
     }
 }
 

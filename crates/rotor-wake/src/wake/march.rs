@@ -1,9 +1,9 @@
 //! The wake marched in time, blade by blade.
 
 use super::FreeWake;
-use super::filament::Filament;
-use super::settings::{NearWakeMotion, WakeMethod};
-use super::sources::{BladeView, RollUp, SourceContext, Sources};
+use super::filament::rms_distance;
+use super::settings::WakeMethod;
+use super::sources::{BladeView, Sources};
 use crate::CirculationMap;
 use crate::WakeError;
 use crate::kernel::{CoreModel, induced_velocities};
@@ -46,7 +46,6 @@ struct BladeState {
 pub struct WakeMarch {
     wake: FreeWake,
     blades: Vec<BladeState>,
-    near_is_free: bool,
 }
 
 impl FreeWake {
@@ -99,11 +98,8 @@ impl FreeWake {
 impl WakeMarch {
     /// Starts from a wake; its two earlier shapes are those of the periodic grid.
     pub fn new(wake: FreeWake) -> Self {
-        let near_is_free = wake.settings.near_wake_motion == NearWakeMotion::Free;
-        let filaments: Vec<&Filament> =
-            wake.near.iter().filter(|_| near_is_free).chain(&wake.far).collect();
         let azimuths = wake.settings.azimuths;
-        let shape = |i: usize| -> Shape { filaments.iter().map(|f| f.at(i).to_vec()).collect() };
+        let shape = |i: usize| -> Shape { wake.free().map(|f| f.at(i).to_vec()).collect() };
         let blades = wake
             .blade_azimuths(0)
             .map(|azimuth| BladeState {
@@ -112,7 +108,7 @@ impl WakeMarch {
                 velocity: Vec::new(),
             })
             .collect();
-        Self { wake, blades, near_is_free }
+        Self { wake, blades }
     }
 
     /// The wake of blade 0 over the last revolution.
@@ -141,7 +137,7 @@ impl WakeMarch {
                     return Err(error);
                 }
             }
-            let change = difference(&before, &self.wake);
+            let change = rms_distance(before.far.iter().zip(&self.wake.far));
             if !change.is_finite() {
                 self.wake = before;
                 return Err(WakeError::WakeLost { displacement: change });
@@ -216,20 +212,10 @@ impl WakeMarch {
     /// Induced velocities of the newest level of every blade.
     fn refresh_velocities(&mut self, circulation: &CirculationMap) {
         let wake = &self.wake;
-        let roll_up = RollUp::new(&wake.settings.far, &wake.rotor, circulation);
-        let context = SourceContext {
-            rotor: &wake.rotor,
-            settings: &wake.settings,
-            roll_up: &roll_up,
-            circulation,
-            advance_ratio: wake.flight.advance_ratio,
-            chord: wake.lines.chord(),
-            turn: self.turn(),
-        };
         let views: Vec<BladeView<'_>> = self.blades.iter().map(|b| self.view(b)).collect();
+        let context = wake.context(circulation, self.turn());
         let set = Sources::of_geometry(&views, &context).segments(&context, circulation.values());
-        let blades = wake.blades_that_differ();
-        let differing = &self.blades[..blades];
+        let differing = &self.blades[..wake.blades_that_differ()];
         let targets: Vec<Vec3> =
             differing.iter().flat_map(|b| b.levels[0].iter().flatten().copied()).collect();
         let mut values = induced_velocities(&targets, &set).into_iter();
@@ -248,24 +234,23 @@ impl WakeMarch {
             }
             velocities.push(of_blade);
         }
-        let first = velocities.first().cloned().unwrap_or_default();
         let spacing = TAU / self.blades.len() as f64;
-        // in an axial wake the other blades have what the first one has, turned
-        for b in blades..self.blades.len() {
+        for (b, state) in self.blades.iter_mut().enumerate() {
+            // in an axial wake the other blades have what the first one has, turned
             let turned = |v: &Vec3| about_the_shaft(*v, b as f64 * spacing);
-            velocities.push(first.iter().map(|v| v.iter().map(turned).collect()).collect());
-        }
-        for (state, velocity) in self.blades.iter_mut().zip(velocities) {
-            state.velocity = velocity;
+            state.velocity = match velocities.get(b) {
+                Some(own) => own.clone(),
+                None => velocities[0].iter().map(|v| v.iter().map(turned).collect()).collect(),
+            };
         }
     }
 
     fn view<'a>(&'a self, state: &'a BladeState) -> BladeView<'a> {
         let wake = &self.wake;
         let shape = &state.levels[0];
-        let near_count = if self.near_is_free { wake.near.len() } else { 0 };
-        let near = if self.near_is_free {
-            shape[..near_count].iter().map(Vec::as_slice).collect()
+        let (free_near, far) = shape.split_at(self.near_count());
+        let near = if wake.near_is_free() {
+            free_near.iter().map(Vec::as_slice).collect()
         } else {
             wake.near.iter().map(|f| f.at(state.azimuth)).collect()
         };
@@ -274,16 +259,20 @@ impl WakeMarch {
             line: wake.lines.at(state.azimuth),
             edge: wake.lines.edge_at(state.azimuth),
             near,
-            far: shape[near_count..].iter().map(Vec::as_slice).collect(),
+            far: far.iter().map(Vec::as_slice).collect(),
         }
+    }
+
+    /// Filaments of a shape that are of the near wake.
+    fn near_count(&self) -> usize {
+        if self.wake.near_is_free() { self.wake.near.len() } else { 0 }
     }
 
     /// Mean displacement over the last free turn, over all blades.
     fn turn(&self) -> Vec3 {
         let azimuths = self.wake.settings.azimuths;
-        let skip = if self.near_is_free { self.wake.near.len() } else { 0 };
         let (mut sum, mut count) = ([0.0; 3], 0);
-        for points in self.blades.iter().flat_map(|b| &b.levels[0][skip..]) {
+        for points in self.blades.iter().flat_map(|b| &b.levels[0][self.near_count()..]) {
             for k in (points.len() - azimuths).max(azimuths)..points.len() {
                 sum = add(sum, sub(points[k], points[k - azimuths]));
                 count += 1;
@@ -295,10 +284,7 @@ impl WakeMarch {
     /// Stores the newest shape of blade 0 in the periodic grid.
     fn record(&mut self) -> Result<(), WakeError> {
         let Some(state) = self.blades.first() else { return Ok(()) };
-        let wake = &mut self.wake;
-        let near_is_free = self.near_is_free;
-        let filaments = wake.near.iter_mut().filter(|_| near_is_free).chain(&mut wake.far);
-        for (f, points) in filaments.zip(&state.levels[0]) {
+        for (f, points) in self.wake.free_mut().zip(&state.levels[0]) {
             if !points.iter().all(|p| is_finite(*p)) {
                 return Err(WakeError::WakeLost { displacement: f64::NAN });
             }
@@ -307,35 +293,4 @@ impl WakeMarch {
         }
         Ok(())
     }
-}
-
-/// RMS distance of the rolled-up vortices of two wakes of the same grid, unit `R`.
-fn difference(a: &FreeWake, b: &FreeWake) -> f64 {
-    let (mut sum, mut count) = (0.0, 0);
-    for (f, g) in a.far.iter().zip(&b.far) {
-        for (p, q) in f.points.iter().zip(&g.points) {
-            let d = norm(sub(*p, *q));
-            sum += d * d;
-            count += 1;
-        }
-    }
-    (sum / f64::from(count.max(1))).sqrt()
-}
-
-/// Mean radius and mean height of the tip vortex over the azimuth at each age step: what a hovering
-/// wake is compared with. `[radius, height]`, unit `R`.
-pub fn contraction_drift(wake: &FreeWake) -> Vec<[f64; 2]> {
-    let azimuths = wake.settings.azimuths;
-    let Some(tip) = wake.far.last() else { return Vec::new() };
-    (0..=tip.steps)
-        .map(|k| {
-            let (mut radius, mut height) = (0.0, 0.0);
-            for i in 0..azimuths {
-                let [x, y, z] = tip.at(i)[k];
-                radius += x.hypot(y);
-                height += z;
-            }
-            [radius / azimuths as f64, height / azimuths as f64]
-        })
-        .collect()
 }

@@ -7,17 +7,15 @@ mod march;
 mod passage;
 mod placement;
 mod settings;
-mod solve;
 mod sources;
 mod sweep;
 mod velocity;
 
 pub use free_wake::{FreeWake, WakeFilament};
 pub use influence::{FrozenWake, LineInduction};
-pub use march::{WakeMarch, contraction_drift};
+pub use march::WakeMarch;
 pub use passage::{ClosestPassage, FilamentStates, SegmentState};
 pub use settings::{
     ControlPoint, CoreSettings, FarField, FarTrailers, FreeWakeSettings, NearWakeMotion,
     ReleasePoint, ShedVorticity, WakeMethod, WakeSymmetry,
 };
-pub use solve::WakeConvergence;

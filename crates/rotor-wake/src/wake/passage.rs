@@ -1,6 +1,7 @@
 //! Where vortices pass the blades, and what the segments of the wake carry.
 
 use super::FreeWake;
+use super::filament::Filament;
 use super::sources::SourceContext;
 use crate::CirculationMap;
 use crate::WakeError;
@@ -53,16 +54,14 @@ impl FreeWake {
         circulation: &CirculationMap,
     ) -> Result<Option<ClosestPassage>, WakeError> {
         self.check(circulation)?;
-        Ok(self.with_context(circulation, |context| {
-            let phases = 0..self.phases_that_differ();
-            let met = phases.flat_map(|phase| {
-                let blades = self.blade_azimuths(phase).take(self.blades_that_differ());
-                blades.map(move |met| (phase, met))
-            });
-            met.flat_map(|(phase, met)| self.blade_azimuths(phase).map(move |from| (met, from)))
-                .filter_map(|(met, from)| self.closest_of(met, from, context))
-                .min_by(|a, b| a.distance.total_cmp(&b.distance))
-        }))
+        let context = self.context(circulation, self.turn());
+        let met = (0..self.phases_that_differ()).flat_map(|phase| {
+            let blades = self.blade_azimuths(phase).take(self.blades_that_differ());
+            blades.flat_map(move |met| self.blade_azimuths(phase).map(move |from| (met, from)))
+        });
+        Ok(met
+            .filter_map(|(met, from)| self.closest_of(met, from, &context))
+            .min_by(|a, b| a.distance.total_cmp(&b.distance)))
     }
 
     /// The same for the blade at one azimuth and the vortices of that at another.
@@ -74,32 +73,27 @@ impl FreeWake {
     ) -> Option<ClosestPassage> {
         let step = self.settings.step_rad();
         let first = if met == from { (self.settings.azimuths / 8).max(1) } else { 0 };
-        let near_steps = self.settings.near_steps();
         let line = self.lines.at(met);
-        let mut least: Option<ClosestPassage> = None;
-        for (f, filament) in self.far.iter().enumerate() {
-            for (k, ends) in filament.at(from).windows(2).enumerate().skip(first) {
-                let ends = [ends[0], ends[1]];
-                for panel in line.windows(2) {
-                    let (distance, part, foot) = segment_distance(ends, [panel[0], panel[1]]);
-                    if least.is_none_or(|l| distance < l.distance) {
-                        let core_radius = if k < near_steps {
-                            context.trailer_radius(filament.node, from, k)
-                        } else {
-                            context.rolled_up_radius(f, from, k)
-                        };
-                        least = Some(ClosestPassage {
-                            azimuth_rad: met as f64 * step,
-                            station: norm(foot),
-                            age_rad: (k as f64 + part) * step,
-                            distance,
-                            core_radius,
-                        });
-                    }
-                }
-            }
-        }
-        least
+        let segments = self.far.iter().enumerate().flat_map(|(f, filament)| {
+            let segments = filament.at(from).windows(2).enumerate().skip(first);
+            segments.map(move |(k, ends)| (f, k, [ends[0], ends[1]]))
+        });
+        let pairs = segments.flat_map(|(f, k, ends)| {
+            line.windows(2).map(move |panel| (f, k, segment_distance(ends, [panel[0], panel[1]])))
+        });
+        let (f, k, (distance, part, foot)) = pairs.min_by(|a, b| a.2.0.total_cmp(&b.2.0))?;
+        let core_radius = if k < self.settings.near_steps() {
+            context.trailer_radius(self.far[f].node, from, k)
+        } else {
+            context.rolled_up_radius(f, from, k)
+        };
+        Some(ClosestPassage {
+            azimuth_rad: met as f64 * step,
+            station: norm(foot),
+            age_rad: (k as f64 + part) * step,
+            distance,
+            core_radius,
+        })
     }
 
     /// Circulation and core radius of the segments of every rolled-up vortex, in the order of
@@ -112,17 +106,10 @@ impl FreeWake {
         circulation: &CirculationMap,
     ) -> Result<Vec<FilamentStates>, WakeError> {
         self.check(circulation)?;
-        Ok(self.with_context(circulation, |context| {
-            let of = |f: usize, i: usize| {
-                let segments = self.far[f].at(i).len() - 1;
-                let state = |k: usize| SegmentState {
-                    circulation: context.rolled_up_strength(f, i, k),
-                    core_radius: context.rolled_up_radius(f, i, k),
-                };
-                (0..segments).map(state).collect()
-            };
-            let azimuths = 0..self.settings.azimuths;
-            (0..self.far.len()).map(|f| azimuths.clone().map(|i| of(f, i)).collect()).collect()
+        let context = self.context(circulation, self.turn());
+        Ok(self.states_of(&self.far, |f, i, k| SegmentState {
+            circulation: context.rolled_up_strength(f, i, k),
+            core_radius: context.rolled_up_radius(f, i, k),
         }))
     }
 
@@ -135,16 +122,24 @@ impl FreeWake {
         circulation: &CirculationMap,
     ) -> Result<Vec<FilamentStates>, WakeError> {
         self.check(circulation)?;
-        Ok(self.with_context(circulation, |context| {
-            let of = |n: usize, i: usize, k: usize| SegmentState {
-                circulation: context.trailer_strength(n, i, k),
-                core_radius: context.trailer_radius(n, i, k),
-            };
-            let (azimuths, steps) = (self.settings.azimuths, self.settings.near_steps());
-            let row = |n: usize, i: usize| (0..steps).map(|k| of(n, i, k)).collect();
-            let filament = |n: usize| (0..azimuths).map(|i| row(n, i)).collect();
-            (0..self.near.len()).map(filament).collect()
+        let context = self.context(circulation, self.turn());
+        Ok(self.states_of(&self.near, |n, i, k| SegmentState {
+            circulation: context.trailer_strength(n, i, k),
+            core_radius: context.trailer_radius(n, i, k),
         }))
+    }
+
+    /// States of the segments of some filaments by number of the filament, azimuth and age.
+    fn states_of(
+        &self,
+        filaments: &[Filament],
+        state: impl Fn(usize, usize, usize) -> SegmentState,
+    ) -> Vec<FilamentStates> {
+        let of = |(f, filament): (usize, &Filament)| {
+            let row = |i: usize| (0..filament.steps).map(|k| state(f, i, k)).collect();
+            (0..self.settings.azimuths).map(row).collect()
+        };
+        filaments.iter().enumerate().map(of).collect()
     }
 }
 

@@ -1,7 +1,6 @@
 //! Where the wake lies without free motion, and the same wake on another grid.
 
 use super::FreeWake;
-use super::filament::Filament;
 use super::settings::NearWakeMotion;
 use crate::BladeLines;
 use crate::WakeError;
@@ -26,12 +25,12 @@ impl FreeWake {
         let helix = out.clone();
         let pairs = out.far.iter_mut().zip(&self.far).chain(out.near.iter_mut().zip(&self.near));
         for (new, old) in pairs {
-            let node = new.node;
-            let mut distortion = old.clone();
-            distortion
-                .fill(self.settings.azimuths, |i, k| sub(old.at(i)[k], self.carried(node, i, k)));
+            let distortion = |i: usize, k: usize| {
+                let (i, k) = (i % before, k.min(old.steps));
+                sub(old.at(i)[k], self.carried(old.node, i, k))
+            };
             new.fill(azimuths, |i, k| {
-                add(helix.carried(node, i, k), sampled(&distortion, i, k, before, azimuths))
+                add(helix.carried(old.node, i, k), sampled(distortion, [i, k], before, azimuths))
             });
         }
         out.place_near_wake();
@@ -57,19 +56,14 @@ impl FreeWake {
         let motion = self.settings.near_wake_motion;
         let mut near = std::mem::take(&mut self.near);
         for filament in &mut near {
-            let node = filament.node;
-            let place = |i: usize, k: usize| match motion {
+            let before = filament.clone();
+            filament.fill(azimuths, |i, k| match motion {
                 // a free one keeps its shape but for the release
-                NearWakeMotion::Free if k > 0 => filament.at(i)[k],
-                NearWakeMotion::BladePlane => self.swept(node, i, k),
-                NearWakeMotion::FollowsTip => self.following(node, i, k),
-                _ => self.carried(node, i, k),
-            };
-            let mut points = Vec::with_capacity(filament.points.len());
-            for i in 0..azimuths {
-                points.extend((0..=filament.steps).map(|k| place(i, k)));
-            }
-            filament.points = points;
+                NearWakeMotion::Free if k > 0 => before.at(i)[k],
+                NearWakeMotion::BladePlane => self.swept(before.node, i, k),
+                NearWakeMotion::FollowsTip => self.following(before.node, i, k),
+                _ => self.carried(before.node, i, k),
+            });
         }
         self.near = near;
     }
@@ -96,12 +90,15 @@ impl FreeWake {
     }
 }
 
-/// Point of a filament of another grid, linear between its nodes; grids by their azimuth steps.
-fn sampled(old: &Filament, i: usize, k: usize, before: usize, now: usize) -> Vec3 {
-    let (p, z) = (i * before / now, k * before / now);
-    let fraction = |n: usize| (n * before % now) as f64 / now as f64;
-    let (s, t) = (fraction(i), fraction(k));
-    let value = |p: usize, z: usize| old.at(p % before)[z.min(old.steps)];
+/// Value of a function of azimuth and age on another grid, linear between its nodes; grids by their azimuth steps.
+fn sampled(
+    value: impl Fn(usize, usize) -> Vec3,
+    [i, k]: [usize; 2],
+    before: usize,
+    now: usize,
+) -> Vec3 {
+    let [(p, s), (z, t)] =
+        [i, k].map(|n| (n * before / now, (n * before % now) as f64 / now as f64));
     let mix = |a: Vec3, b: Vec3, t: f64| add(scale(a, 1.0 - t), scale(b, t));
     mix(mix(value(p, z), value(p, z + 1), t), mix(value(p + 1, z), value(p + 1, z + 1), t), s)
 }

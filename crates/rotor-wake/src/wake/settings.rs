@@ -1,5 +1,6 @@
 //! The choices of a free wake.
 
+use crate::error::ensure;
 use crate::{CoreModel, WakeError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_6;
@@ -190,10 +191,6 @@ pub struct FreeWakeSettings {
     pub velocity_stride: usize,
     /// Weight of the corrector's velocities against the predictor's, 0 to 1.
     pub relaxation: f64,
-    /// RMS displacement per iteration at which the geometry counts as converged, unit `R`.
-    pub tolerance: f64,
-    /// Iterations allowed.
-    pub max_iterations: usize,
 }
 
 impl Default for FreeWakeSettings {
@@ -213,8 +210,6 @@ impl Default for FreeWakeSettings {
             far_field: FarField::default(),
             velocity_stride: 1,
             relaxation: 0.5,
-            tolerance: 1e-4,
-            max_iterations: 60,
         }
     }
 }
@@ -298,53 +293,35 @@ impl FreeWakeSettings {
     /// # Errors
     /// [`WakeError::BadInput`] with the first value out of range.
     pub fn validate(&self, blades: usize) -> Result<(), WakeError> {
-        let bad =
-            |quantity, value, expected| Err(WakeError::BadInput { quantity, value, expected });
-        if self.azimuths < 8 || !self.azimuths.is_multiple_of(blades.max(1)) || self.azimuths > 720
-        {
-            let expected = "8 to 720 and a multiple of the number of blades";
-            return bad("azimuths", self.azimuths as f64, expected);
-        }
-        if !(1..=20).contains(&self.turns) {
-            return bad("turns", self.turns as f64, "1 to 20");
-        }
-        if self.far_turns > 20 {
-            return bad("far_turns", self.far_turns as f64, "0 to 20");
-        }
+        let count = |value: usize| value as f64;
         let positive = |x: f64| x.is_finite() && x > 0.0;
-        if !positive(self.near_wake_rad) {
-            return bad("near_wake_rad", self.near_wake_rad, "more than 0");
-        }
+        let is_grid =
+            (8..=720).contains(&self.azimuths) && self.azimuths.is_multiple_of(blades.max(1));
+        let expected = "8 to 720 and a multiple of the number of blades";
+        ensure(is_grid, "azimuths", count(self.azimuths), expected)?;
+        ensure((1..=20).contains(&self.turns), "turns", count(self.turns), "1 to 20")?;
+        ensure(self.far_turns <= 20, "far_turns", count(self.far_turns), "0 to 20")?;
+        let near = self.near_wake_rad;
+        ensure(positive(near), "near_wake_rad", near, "more than 0")?;
         let core = &self.core;
-        for (quantity, value) in
+        for (quantity, radius) in
             [("core radius", core.radius), ("core near_radius", core.near_radius)]
         {
-            if !positive(value) || value > 0.5 {
-                return bad(quantity, value, "more than 0 and at most 0.5 R");
-            }
+            let fits = positive(radius) && radius <= 0.5;
+            ensure(fits, quantity, radius, "more than 0 and at most 0.5 R")?;
         }
-        if !(0.0..=0.5).contains(&core.mutual_radius) {
-            return bad("core mutual_radius", core.mutual_radius, "0 to 0.5 R");
-        }
-        if core.panel_share.is_nan() || core.panel_share <= 0.0 {
-            return bad("core panel_share", core.panel_share, "more than 0");
-        }
+        let mutual = core.mutual_radius;
+        ensure((0.0..=0.5).contains(&mutual), "core mutual_radius", mutual, "0 to 0.5 R")?;
+        let share = core.panel_share;
+        ensure(share > 0.0, "core panel_share", share, "more than 0")?;
         for (quantity, value) in [("core viscosity", core.viscosity), ("core squire", core.squire)]
         {
-            if !(value.is_finite() && value >= 0.0) {
-                return bad(quantity, value, "0 or more");
-            }
+            ensure(value.is_finite() && value >= 0.0, quantity, value, "0 or more")?;
         }
-        if self.velocity_stride == 0 || self.velocity_stride > self.azimuths / 4 {
-            let expected = "1 to a quarter of the azimuth steps";
-            return bad("velocity_stride", self.velocity_stride as f64, expected);
-        }
-        if !(self.relaxation > 0.0 && self.relaxation <= 1.0) {
-            return bad("relaxation", self.relaxation, "more than 0 and at most 1");
-        }
-        if !positive(self.tolerance) {
-            return bad("wake tolerance", self.tolerance, "more than 0");
-        }
-        Ok(())
+        let (stride, expected) = (self.velocity_stride, "1 to a quarter of the azimuth steps");
+        let is_stride = (1..=self.azimuths / 4).contains(&stride);
+        ensure(is_stride, "velocity_stride", count(stride), expected)?;
+        let is_part = self.relaxation > 0.0 && self.relaxation <= 1.0;
+        ensure(is_part, "relaxation", self.relaxation, "more than 0 and at most 1")
     }
 }

@@ -16,26 +16,21 @@ const SLOW: f64 = 0.2;
 
 /// Strength of a segment: a sum of at most four circulations `(index in the map, factor)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Terms([(u32, f64); 4]);
+pub(crate) struct Terms([(usize, f64); 4]);
 
 impl Terms {
     fn pair(a: (usize, f64), b: (usize, f64)) -> Self {
-        Self([narrow(a), narrow(b), (0, 0.0), (0, 0.0)])
+        Self([a, b, (0, 0.0), (0, 0.0)])
     }
 
     /// The terms that count.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.0.iter().filter(|(_, f)| *f != 0.0).map(|&(index, f)| (index as usize, f))
+        self.0.iter().copied().filter(|(_, factor)| *factor != 0.0)
     }
 
     fn strength(&self, circulation: &[f64]) -> f64 {
         self.iter().map(|(index, factor)| factor * circulation[index]).sum()
     }
-}
-
-/// Indices are below `720 azimuths x panels`.
-fn narrow((index, factor): (usize, f64)) -> (u32, f64) {
-    (u32::try_from(index).unwrap_or(u32::MAX), factor)
 }
 
 /// Which circulation each rolled-up filament takes up at every azimuth.
@@ -144,7 +139,7 @@ impl RollUp {
                 pair.iter_mut().zip(self.panels[f][release]).zip([0.5, -0.5])
             {
                 if panel > 0 {
-                    *term = narrow((release * panels + panel - 1, sign));
+                    *term = (release * panels + panel - 1, sign);
                 }
             }
         }
@@ -168,11 +163,11 @@ pub(crate) struct BladeView<'a> {
 }
 
 /// What the sources are built with.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct SourceContext<'a> {
     pub(crate) rotor: &'a WakeRotor,
     pub(crate) settings: &'a FreeWakeSettings,
-    pub(crate) roll_up: &'a RollUp,
+    pub(crate) roll_up: RollUp,
     pub(crate) circulation: &'a CirculationMap,
     pub(crate) advance_ratio: f64,
     /// Chord of the blades at the tip, unit `R`; 0 if the wake leaves at the lifting line.
@@ -206,18 +201,18 @@ impl SourceContext<'_> {
 
     /// What the trailer of a node carries from an age to the next one.
     fn trailer_terms(&self, node: usize, azimuth: usize, age: usize) -> Terms {
+        let [[a, b], [c, d]] =
+            [age, age + 1].map(|age| self.trailed_terms(node, self.release(azimuth, age), 0.5));
+        Terms([a, b, c, d])
+    }
+
+    /// A factor times what a node trails of the circulation at an azimuth: inboard and outboard panel.
+    fn trailed_terms(&self, node: usize, azimuth: usize, factor: f64) -> [(usize, f64); 2] {
         let panels = self.rotor.panels();
-        let mut terms = [(0, 0.0); 4];
-        for (pair, age) in terms.chunks_exact_mut(2).zip([age, age + 1]) {
-            let at = self.release(azimuth, age) * panels;
-            if node > 0 {
-                pair[0] = narrow((at + node - 1, 0.5));
-            }
-            if node < panels {
-                pair[1] = narrow((at + node, -0.5));
-            }
-        }
-        Terms(terms)
+        let at = azimuth * panels;
+        let inboard = if node > 0 { (at + node - 1, factor) } else { (0, 0.0) };
+        let outboard = if node < panels { (at + node, -factor) } else { (0, 0.0) };
+        [inboard, outboard]
     }
 
     /// Strength of the same.
@@ -239,15 +234,19 @@ impl SourceContext<'_> {
     }
 }
 
+/// One segment.
+#[derive(Debug, Clone)]
+struct Source {
+    ends: [Vec3; 2],
+    radius: f64,
+    terms: Terms,
+    /// Whether it may be summed in single precision.
+    old: bool,
+}
+
 /// Segments of one instant.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sources {
-    ends: Vec<[Vec3; 2]>,
-    radii: Vec<f64>,
-    terms: Vec<Terms>,
-    /// Whether a segment may be summed in single precision: it is old.
-    old: Vec<bool>,
-}
+pub(crate) struct Sources(Vec<Source>);
 
 impl Sources {
     /// What the blades feel: lifting lines, the full span of the near wake, the rolled-up vortices behind it.
@@ -284,21 +283,21 @@ impl Sources {
         out
     }
 
-    pub(crate) fn terms(&self) -> &[Terms] {
-        &self.terms
+    /// How the strength of a segment depends on the circulation.
+    pub(crate) fn terms(&self, segment: usize) -> &Terms {
+        &self.0[segment].terms
     }
 
     /// For the kernel, with the strengths of a circulation.
     pub(crate) fn segments(&self, context: &SourceContext<'_>, circulation: &[f64]) -> SegmentSet {
         let mut set = SegmentSet::new(context.settings.core.model);
         let single = context.settings.far_field == FarField::Single;
-        let segments = self.ends.iter().zip(&self.radii).zip(&self.terms).zip(&self.old);
-        for (((ends, &radius), terms), &old) in segments {
+        for Source { ends: [start, end], radius, terms, old } in &self.0 {
             let strength = terms.strength(circulation);
-            if single && old {
-                set.push_single(ends[0], ends[1], strength, radius);
+            if single && *old {
+                set.push_single(*start, *end, strength, *radius);
             } else {
-                set.push(ends[0], ends[1], strength, radius);
+                set.push(*start, *end, strength, *radius);
             }
         }
         set
@@ -307,31 +306,24 @@ impl Sources {
     /// For the kernel, all of unit strength and in double precision.
     pub(crate) fn unit_segments(&self, context: &SourceContext<'_>) -> SegmentSet {
         let mut set = SegmentSet::new(context.settings.core.model);
-        for (ends, &radius) in self.ends.iter().zip(&self.radii) {
-            set.push(ends[0], ends[1], 1.0, radius);
+        for Source { ends: [start, end], radius, .. } in &self.0 {
+            set.push(*start, *end, 1.0, *radius);
         }
         set
     }
 
-    fn push(&mut self, ends: [Vec3; 2], radius: f64, terms: Terms) {
+    /// Adds a segment, if it carries anything.
+    fn push(&mut self, ends: [Vec3; 2], radius: f64, terms: Terms, old: bool) {
         if terms.iter().next().is_some() {
-            self.ends.push(ends);
-            self.radii.push(radius);
-            self.terms.push(terms);
-            self.old.push(false);
+            self.0.push(Source { ends, radius, terms, old });
         }
-    }
-
-    /// Of all segments from number `from` on: they are old.
-    fn mark_old(&mut self, from: usize) {
-        self.old[from..].fill(true);
     }
 
     fn bound(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
         let panels = context.rotor.panels();
         for (s, ends) in view.line.windows(2).enumerate() {
             let terms = Terms::pair((view.azimuth * panels + s, 1.0), (0, 0.0));
-            self.push([ends[0], ends[1]], context.settings.core.near_radius, terms);
+            self.push([ends[0], ends[1]], context.settings.core.near_radius, terms, false);
         }
     }
 
@@ -342,13 +334,10 @@ impl Sources {
         context: &SourceContext<'_>,
         radius: impl Fn(usize) -> f64,
     ) {
-        let panels = context.rotor.panels();
         for (n, (from, to)) in view.line.iter().zip(view.edge).enumerate() {
             if norm(sub(*to, *from)) > 0.0 {
-                let panel = |n: usize| view.azimuth * panels + n;
-                let inboard = if n > 0 { (panel(n - 1), 1.0) } else { (0, 0.0) };
-                let outboard = if n < panels { (panel(n), -1.0) } else { (0, 0.0) };
-                self.push([*from, *to], radius(n), Terms::pair(inboard, outboard));
+                let [inboard, outboard] = context.trailed_terms(n, view.azimuth, 1.0);
+                self.push([*from, *to], radius(n), Terms::pair(inboard, outboard), false);
             }
         }
     }
@@ -356,14 +345,12 @@ impl Sources {
     /// Trailers and shed vortices of the near wake, with cores no thinner than `least`.
     fn near(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>, least: f64) {
         let (settings, panels) = (context.settings, context.rotor.panels());
-        let azimuths = settings.azimuths;
-        let release = |age: usize| (view.azimuth + azimuths - age % azimuths) % azimuths;
         let steps = settings.near_steps();
         for (n, points) in view.near.iter().enumerate() {
             for k in 0..steps {
                 let radius = context.trailer_radius(n, view.azimuth, k).max(least);
                 let terms = context.trailer_terms(n, view.azimuth, k);
-                self.push([points[k], points[k + 1]], radius, terms);
+                self.push([points[k], points[k + 1]], radius, terms, false);
             }
         }
         if settings.shed == ShedVorticity::InSections {
@@ -371,12 +358,13 @@ impl Sources {
         }
         for k in 0..steps {
             // at the edge itself the circulation changes from the blade's own
-            let younger = release(k.saturating_sub(1)) * panels;
-            let older = release(k + 1) * panels;
+            let [younger, older] =
+                [k.saturating_sub(1), k + 1].map(|age| context.release(view.azimuth, age) * panels);
             for s in 0..panels {
                 let ends = [view.near[s][k], view.near[s + 1][k]];
                 let radius = settings.core.near_radius.max(least);
-                self.push(ends, radius, Terms::pair((older + s, 0.5), (younger + s, -0.5)));
+                let terms = Terms::pair((older + s, 0.5), (younger + s, -0.5));
+                self.push(ends, radius, terms, false);
             }
         }
     }
@@ -389,26 +377,18 @@ impl Sources {
             let steps = points.len() - 1;
             let terms = |age: usize| context.rolled_up_terms(f, view.azimuth, age);
             let radius = |age: usize| context.rolled_up_radius(f, view.azimuth, age).max(least);
-            for k in first..azimuths.min(steps) {
-                let ends = [points[k], points[k + 1]];
-                self.push(ends, radius(k), terms(k));
-            }
-            let young = self.ends.len();
-            for k in first.max(azimuths)..steps {
-                let ends = [points[k], points[k + 1]];
-                self.push(ends, radius(k), terms(k));
-            }
-            let mut last = points[steps];
-            for turn in 1..=settings.far_turns {
-                for j in 1..=azimuths {
-                    let next = add(points[steps - azimuths + j], scale(context.turn, turn as f64));
-                    let age = steps + (turn - 1) * azimuths + j - 1;
-                    let ends = [last, next];
-                    self.push(ends, radius(age), terms(age));
-                    last = next;
+            // point of an age; behind the free turns the last one is repeated
+            let point = |age: usize| match age.checked_sub(steps + 1) {
+                None => points[age],
+                Some(beyond) => {
+                    let turn = scale(context.turn, (beyond / azimuths + 1) as f64);
+                    add(points[steps - azimuths + beyond % azimuths + 1], turn)
                 }
+            };
+            for age in first..steps + settings.far_turns * azimuths {
+                let ends = [point(age), point(age + 1)];
+                self.push(ends, radius(age), terms(age), age >= azimuths);
             }
-            self.mark_old(young);
         }
     }
 }

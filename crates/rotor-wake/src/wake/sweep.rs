@@ -1,12 +1,12 @@
 //! One sweep of pseudo-implicit relaxation.
 
 use super::FreeWake;
-use super::settings::NearWakeMotion;
+use super::filament::rms_distance;
 use super::sources::RollUp;
 use super::velocity::Velocities;
 use crate::CirculationMap;
 use crate::WakeError;
-use crate::vector::{Vec3, add, is_finite, norm, scale, sub};
+use crate::vector::{Vec3, add, is_finite, scale, sub};
 
 impl FreeWake {
     /// The geometry that the velocities carry the wake to.
@@ -15,10 +15,7 @@ impl FreeWake {
         let azimuths = self.settings.azimuths;
         let step = self.settings.step_rad();
         let stream = self.free_stream();
-        let near_is_free = self.settings.near_wake_motion == NearWakeMotion::Free;
-        let Self { near, far, .. } = &mut out;
-        let free = near.iter_mut().filter(|_| near_is_free).chain(far);
-        for ((f, v), releases) in free.zip(velocities).zip(releases) {
+        for ((f, v), releases) in out.free_mut().zip(velocities).zip(releases) {
             for (i, release) in releases.iter().enumerate() {
                 let at = f.index(i, 0);
                 f.points[at] = *release;
@@ -45,11 +42,10 @@ impl FreeWake {
         let azimuths = 0..self.settings.azimuths;
         let roll_up = RollUp::new(&self.settings.far, &self.rotor, circulation);
         let stations = roll_up.release_stations(self.settings.release, &self.rotor, circulation);
-        let near_is_free = self.settings.near_wake_motion == NearWakeMotion::Free;
         let near = self
             .near
             .iter()
-            .filter(|_| near_is_free)
+            .filter(|_| self.near_is_free())
             .map(|f| azimuths.clone().map(|i| self.lines.edge_at(i)[f.node]).collect());
         let far = stations.iter().map(|stations| {
             let places = stations.iter().enumerate();
@@ -60,10 +56,7 @@ impl FreeWake {
 
     /// Leaves the free nodes at a part of the way from another wake to this one.
     pub(super) fn draw_back(&mut self, from: &Self, part: f64) {
-        let near_is_free = self.settings.near_wake_motion == NearWakeMotion::Free;
-        let Self { near, far, .. } = self;
-        let free = near.iter_mut().filter(|_| near_is_free).chain(far);
-        for (here, there) in free.zip(from.free()) {
+        for (here, there) in self.free_mut().zip(from.free()) {
             for (to, from) in here.points.iter_mut().zip(&there.points) {
                 *to = add(*from, scale(sub(*to, *from), part));
             }
@@ -108,15 +101,7 @@ impl FreeWake {
         }
         let mut corrected = self.moved(&second, &releases);
         corrected.place_near_wake();
-        let (mut sum, mut count) = (0.0, 0);
-        for (new, old) in corrected.free().zip(self.free()) {
-            for (a, b) in new.points.iter().zip(&old.points) {
-                let d = norm(sub(*a, *b));
-                sum += d * d;
-                count += 1;
-            }
-        }
-        let rms = (sum / f64::from(count.max(1))).sqrt();
+        let rms = rms_distance(corrected.free().zip(self.free()));
         if !(rms.is_finite() && corrected.free().all(|f| f.points.iter().all(|p| is_finite(*p)))) {
             return Err(WakeError::WakeLost { displacement: rms });
         }

@@ -2,7 +2,6 @@
 
 use super::FreeWake;
 use super::filament::Filament;
-use super::settings::WakeSymmetry;
 use super::sources::{BladeView, RollUp, SourceContext, Sources};
 use crate::CirculationMap;
 use crate::kernel::{CoreModel, arc_velocity, induced_velocities};
@@ -24,7 +23,7 @@ impl FreeWake {
     }
 
     /// Mean displacement of the rolled-up vortices over the last free turn.
-    fn turn(&self) -> Vec3 {
+    pub(super) fn turn(&self) -> Vec3 {
         let azimuths = self.settings.azimuths;
         let mut sum = [0.0; 3];
         for filament in &self.far {
@@ -41,23 +40,21 @@ impl FreeWake {
         scale(sum, 1.0 / (self.far.len() * azimuths * counted) as f64)
     }
 
-    /// Calls `f` with what the sources are built with.
-    pub(crate) fn with_context<T>(
-        &self,
-        circulation: &CirculationMap,
-        f: impl FnOnce(&SourceContext<'_>) -> T,
-    ) -> T {
-        let roll_up = RollUp::new(&self.settings.far, &self.rotor, circulation);
-        let context = SourceContext {
+    /// What the sources are built with, for a displacement of the wake in one turn.
+    pub(super) fn context<'a>(
+        &'a self,
+        circulation: &'a CirculationMap,
+        turn: Vec3,
+    ) -> SourceContext<'a> {
+        SourceContext {
             rotor: &self.rotor,
             settings: &self.settings,
-            roll_up: &roll_up,
+            roll_up: RollUp::new(&self.settings.far, &self.rotor, circulation),
             circulation,
             advance_ratio: self.flight.advance_ratio,
             chord: self.lines.chord(),
-            turn: self.turn(),
-        };
-        f(&context)
+            turn,
+        }
     }
 
     fn views(&self, phase: usize) -> Vec<BladeView<'_>> {
@@ -75,11 +72,10 @@ impl FreeWake {
         circulation: &CirculationMap,
         sources: fn(&[BladeView<'_>], &SourceContext<'_>) -> Sources,
     ) -> Vec<SegmentSet> {
-        self.with_context(circulation, |context| {
-            (0..self.phases_that_differ())
-                .map(|p| sources(&self.views(p), context).segments(context, circulation.values()))
-                .collect()
-        })
+        let context = self.context(circulation, self.turn());
+        (0..self.phases_that_differ())
+            .map(|p| sources(&self.views(p), &context).segments(&context, circulation.values()))
+            .collect()
     }
 
     /// Induced velocity at points in hub axes, averaged over the revolution: what a slow probe measures.
@@ -124,7 +120,7 @@ impl FreeWake {
                 out[j][index] = v;
             }
         }
-        if self.settings.symmetry == WakeSymmetry::Axial {
+        if self.is_axial() {
             for (f, v) in free.iter().zip(&mut out) {
                 self.turn_with_the_blades(f, v);
             }

@@ -1,7 +1,13 @@
 //! Momentum theory and Drees's gradients.
 
-use rotor_wake::{FlightState, drees_factors, momentum_inflow, momentum_residual};
+use rotor_wake::{FlightState, drees_factors, momentum_inflow};
 use validation::{Check, Failure, row, worst};
+
+/// Residual of the momentum equation, `lambda_i - C_T / (2 sqrt(mu^2 + lambda^2))`.
+fn momentum_residual(flight: &FlightState, thrust_coefficient: f64, induced_inflow: f64) -> f64 {
+    let lambda = flight.normal_inflow() + induced_inflow;
+    induced_inflow - thrust_coefficient / (2.0 * flight.advance_ratio.hypot(lambda))
+}
 
 pub(crate) const ROWS: &[Check] = &[
     row("V-WAKE-01", "induced inflow in hover at C_T 0.0049", "Omega R")

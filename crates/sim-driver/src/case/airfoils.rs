@@ -1,8 +1,8 @@
 //! The aerofoil tables a case names.
 
 use super::AirfoilStation;
-use crate::files::{self, Folder, RonIndex};
-use crate::problem::{Fault, Problem, Problems};
+use crate::files::{self, Folder, RonIndex, missing_file};
+use crate::problem::{Problem, Problems};
 use flap_aero::{AirfoilSpan, C81Airfoil};
 use std::sync::Arc;
 
@@ -37,13 +37,8 @@ fn read_airfoil(
 ) -> Result<C81Airfoil, Problem> {
     let field = format!("aerodynamics.airfoils[{i}].table");
     let (folder, file) = files::airfoil_place(folder, &airfoil.table);
-    let missing = |folder: String| Fault::MissingFile { file: file.to_owned(), folder };
     if !folder.contains(file) {
-        let shown = match folder.display("") {
-            here if here.is_empty() => "this folder".to_owned(),
-            folder => folder,
-        };
-        return Err(Problem::new(index.place(&field), missing(shown)));
+        return Err(Problem::new(index.place(&field), missing_file(&folder, file)));
     }
     files::read_airfoil(&folder.read(file)?)
 }

@@ -3,6 +3,7 @@
 
 use super::{ActuatorChoice, PAPER_CASE, shipped_case};
 use crate::files::ron_text;
+use crate::output::wrap;
 use crate::problem::Problems;
 use rotor_study::case::{
     ActuatorPath, ActuatorValues, AerodynamicsValues, AirfoilStation, BenchFolder, BladeTables,
@@ -62,28 +63,42 @@ fn tables() -> String {
 fn table<T: Section>(heading: &str) -> String {
     let mut rows = Rows::default();
     T::default().each(&mut rows);
+    let notes = if rows.notes.is_empty() { String::new() } else { format!("\n{}", rows.notes) };
     format!(
-        "\n### `{heading}`\n\n{}\n\n| field | unit | range | default | meaning |\n|---|---|---|---|---|\n{}",
+        "\n### `{heading}`\n\n{}\n\n| field | unit | range | default | meaning |\n|---|---|---|---|---|\n{}{notes}",
         sentences(T::ABOUT),
-        rows.0
+        rows.rows
     )
 }
 
-/// Rows of a table; sections inside have tables of their own.
+/// Longest row of a table, characters.
+const LONGEST_ROW: usize = 300;
+
+/// Rows of a table, and below it what is too long for them; sections inside have tables of their own.
 #[derive(Default)]
-struct Rows(String);
+struct Rows {
+    rows: String,
+    notes: String,
+}
 
 impl Visitor for Rows {
     fn field<T: Value>(&mut self, field: &Field, value: &T) {
         let unit = field.unit;
         let (range, default) = (range_of::<T>(field), default_of(field, value));
-        // writing to a text cannot fail
-        let _ = writeln!(
-            self.0,
-            "| `{}` | {unit} | {range} | {default} | {} |",
-            field.key,
-            sentences(field.meaning)
-        );
+        let (key, meaning) = (field.key, sentences(field.meaning));
+        let row =
+            |meaning: &str| format!("| `{key}` | {unit} | {range} | {default} | {meaning} |\n");
+        let whole = row(&meaning);
+        match meaning.split_once(". ") {
+            Some((first, rest)) if whole.chars().count() > LONGEST_ROW => {
+                self.rows.push_str(&row(&format!("{first}; see below.")));
+                for line in wrap(&format!("- `{key}`: {rest}"), WIDTH) {
+                    self.notes.push_str(&line);
+                    self.notes.push('\n');
+                }
+            }
+            _ => self.rows.push_str(&whole),
+        }
     }
 
     fn section<T: Section>(&mut self, _: &str, _: &T) {}
@@ -106,11 +121,13 @@ fn range_of<T: Value>(field: &Field) -> String {
         Range::Count(low, high) => format!("{low} to {high}"),
         Range::Rule(rule) => rule.to_owned(),
     };
-    [choices.join(", "), range]
-        .into_iter()
-        .filter(|part| !part.is_empty())
-        .collect::<Vec<_>>()
-        .join("; ")
+    together([choices.join(", "), range])
+}
+
+/// The parts there are, with semicolons between them.
+fn together([first, second]: [String; 2]) -> String {
+    let separator = if first.is_empty() || second.is_empty() { "" } else { "; " };
+    format!("{first}{separator}{second}")
 }
 
 /// A number as a person writes it.
@@ -122,37 +139,33 @@ fn short(value: f64) -> String {
 
 /// The default of a field.
 fn default_of<T: Value>(field: &Field, value: &T) -> String {
-    let mut kind = Kind::Plain;
-    value.inside(&mut kind);
-    match kind {
-        Kind::Section => "see below".to_owned(),
-        Kind::Choice(name) => format!("`{name}(...)`"),
-        Kind::Plain if matches!(field.range, Range::Rule(rule) if rule.ends_with("required")) => {
+    let mut inside = Inside(None);
+    value.inside(&mut inside);
+    match inside.0.as_deref() {
+        Some("") => "see below".to_owned(),
+        Some(choice) => format!("`{choice}(...)`"),
+        None if matches!(field.range, Range::Rule(rule) if rule.ends_with("required")) => {
             "required".to_owned()
         }
-        Kind::Plain => match one_line(value).as_str() {
+        None => match one_line(value).as_str() {
             "" | "[]" | "None" | "\"\"" => "none".to_owned(),
             text => format!("`{text}`"),
         },
     }
 }
 
-/// What a value is made of.
-enum Kind {
-    Plain,
-    Section,
-    Choice(String),
-}
+/// The name of the choice whose fields a value has, empty where it belongs to none; nothing for a plain value.
+struct Inside(Option<String>);
 
-impl Visitor for Kind {
+impl Visitor for Inside {
     fn field<T: Value>(&mut self, _: &Field, _: &T) {}
 
     fn section<T: Section>(&mut self, choice: &str, _: &T) {
-        *self = if choice.is_empty() { Self::Section } else { Self::Choice(choice.to_owned()) };
+        self.0 = Some(choice.to_owned());
     }
 
     fn item<T: Section>(&mut self, _: usize, _: &T) {
-        *self = Self::Section;
+        self.0 = Some(String::new());
     }
 }
 
@@ -216,25 +229,15 @@ impl Starting {
 
     /// The meaning of a field, in lines of the usual width.
     fn comment<T: Value>(&mut self, field: &Field) {
-        let terms = [field.unit.to_owned(), range_of::<T>(field).replace('`', "")];
-        let terms: Vec<String> = terms.into_iter().filter(|term| !term.is_empty()).collect();
+        let terms = together([field.unit.to_owned(), range_of::<T>(field).replace('`', "")]);
         let mut meaning = sentences(field.meaning).replace('`', "");
         if !terms.is_empty() {
-            meaning = format!("{} [{}]", meaning.trim_end_matches('.'), terms.join("; "));
+            meaning = format!("{} [{}]", meaning.trim_end_matches('.'), terms);
         }
         let width = WIDTH - 4 * self.indent - 3;
-        let mut line = String::new();
-        for word in meaning.split_whitespace() {
-            if !line.is_empty() && line.len() + 1 + word.len() > width {
-                self.line(&format!("// {line}"));
-                line.clear();
-            }
-            if !line.is_empty() {
-                line.push(' ');
-            }
-            line.push_str(word);
+        for line in wrap(&meaning, width) {
+            self.line(&format!("// {line}"));
         }
-        self.line(&format!("// {line}"));
     }
 }
 

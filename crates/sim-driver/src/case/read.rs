@@ -72,7 +72,7 @@ impl LoadedCase {
     /// Warnings of values that can be but hardly are meant, each with its place.
     pub fn in_words(&self, warnings: Vec<PlausibilityWarning>) -> Vec<String> {
         let said = warnings.into_iter().map(|PlausibilityWarning { field, message }| {
-            Problem::new(self.index.place(&field), Fault::Doubtful { message }).to_string()
+            Problem::new(self.index.place(&field), Fault::Other(message)).to_string()
         });
         said.collect()
     }
@@ -92,8 +92,8 @@ pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problem
     for (before, now) in RENAMED {
         if index.contains(before) {
             let message = format!("is named {now} now, and read as that; rename it");
-            let fault = Fault::Doubtful { message };
-            warnings.push(Problem::new(index.place(before), fault).to_string());
+            let problem = Problem::new(index.place(before), Fault::Other(message));
+            warnings.push(problem.to_string());
             index.rename(before, now);
         }
     }
@@ -115,8 +115,7 @@ fn resolved(mut case: Case, index: RonIndex, folder: &Folder) -> Result<LoadedCa
     let mut problems = Problems::default();
     if let Err(CaseFaults(faults)) = case.check() {
         for fault in faults {
-            let message = fault.fault.to_string();
-            problems.push(index.place(&fault.field), Fault::Value { message });
+            problems.push(index.place(&fault.field), Fault::Other(fault.fault.to_string()));
         }
     }
     match read_airfoils(&case.aerodynamics.airfoils, folder, &index) {

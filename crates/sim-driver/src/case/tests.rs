@@ -1,12 +1,15 @@
 //! What is accepted and what is reported, by the text of a case.
 
 use super::{
-    ActuatorSource, ActuatorValues, AttachedFlowModel, CompressibilityChoice, CouplingsChoice,
-    InflowChoice, LoadedCase, PAPER_CASE, StructureValues, TrimValues, read_case, shipped_case,
+    ActuatorSource, ActuatorValues, AerodynamicsValues, AttachedFlowModel, CompressibilityChoice,
+    CouplingsChoice, InflowChoice, LoadedCase, PAPER_CASE, StructureValues, TrimValues, read_case,
+    shipped_case,
 };
 use crate::files::{Source, ron_text, shipped};
 use approx::assert_relative_eq;
-use rotor_wake::{ControlPoint, FarField, FarTrailers, ReleasePoint, WakeMethod, WakeSymmetry};
+use rotor_wake::{
+    ControlPoint, CoreModel, FarField, FarTrailers, ReleasePoint, WakeMethod, WakeSymmetry,
+};
 
 fn read(text: &str) -> Result<LoadedCase, String> {
     let source = Source { name: "case.ron".into(), text: text.into() };
@@ -26,7 +29,9 @@ fn shipped_cases_are_valid_and_complete() {
     assert_eq!(short.case.trim, paper.case.trim);
     assert_eq!(short.case.control, paper.case.control);
     assert_eq!(short.case.flaps, paper.case.flaps);
-    assert_eq!(short.case.aerodynamics, paper.case.aerodynamics);
+    let model = paper.case.aerodynamics.model;
+    let sections = AerodynamicsValues { model, ..short.case.aerodynamics.clone() };
+    assert_eq!(sections, paper.case.aerodynamics);
     assert_eq!(short.actuator_source(), paper.actuator_source());
     let model = paper.case.actuator.model.clone();
     assert_eq!(ActuatorValues { model, ..short.case.actuator.clone() }, paper.case.actuator);
@@ -87,13 +92,15 @@ fn every_problem_is_reported_with_its_line() {
         "(\n  advance_ratio: 0.6,\n  rotor: (\n    ei_flap: -0.0108,\n    radius: 5.0,\n    blades: 0,\n    gj: NaN,\n  ),\n  flaps: [(start_r: 0.7, end_r: 0.8), (start_r: 0.75, end_r: 0.85)],\n  inflow: (model: Dress),\n)",
     )
     .unwrap_err();
-    let lines: Vec<&str> = text.lines().collect();
+    let (unknown, lines): (Vec<&str>, Vec<&str>) =
+        text.lines().partition(|line| line.contains("rotor.radius"));
+    let known = "unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, ";
+    assert!(unknown[0].starts_with(&format!("case.ron:5:5: rotor.radius: {known}")), "{text}");
     assert_eq!(
         lines,
         [
             "case.ron:2:3: advance_ratio: is 0.6, expected 0 to 0.5; the attached-flow rotor model ends at 0.5; 0 is hover",
             "case.ron:4:5: rotor.ei_flap: is -0.0108 m0 Omega^2 R^4, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.0108)",
-            "case.ron:5:5: rotor.radius: unknown key `radius`, did you mean `radius_m`?; known here: blades, radius_m, omega_rpm, mass_kg_m, chord_r, lock_number, ei_flap, ei_lag, gj, ea, km1_r, km2_r, ka_r, twist_deg, precone_deg, root_cutout_r, modal_damping, lag_damper, root_offset_r, root, mass_centre_r, tension_centre_r, aerodynamic_centre_r, torque_offset_r, gravity, tables, dissimilar_blades, unlike_blades",
             "case.ron:6:5: rotor.blades: is 0, expected 1 to 16; the paper's rotor has 4",
             "case.ron:7:5: rotor.gj: is NaN m0 Omega^2 R^4, expected a positive finite number; a stiffness is positive and over m0 Omega^2 R^4, not in N m^2 (paper: 0.00615)",
             "case.ron:9:40: flaps[1].start_r: the flap spans 0.75 R to 0.85 R, expected 0.8 R (cut-out or the flap before) <= start_r < end_r <= 1 R; keep it on the blade, and list flaps from root to tip without overlap",
@@ -126,6 +133,24 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
     let InflowChoice::FreeWake(axial) = hover.inflow.model else { unreachable!() };
     let axial = hover.wake_trim_settings(&axial).wake;
     assert_eq!((axial.symmetry, axial.far_turns), (WakeSymmetry::Axial, 6));
+    let preset =
+        "(advance_ratio: 0.0, inflow: (model: FreeWake(preset: Hover, near_wake_deg: 60)))";
+    let preset = read(preset).unwrap().case;
+    let InflowChoice::FreeWake(file) = preset.inflow.model else { unreachable!() };
+    let hover = preset.wake_trim_settings(&file).wake;
+    assert_eq!(
+        (hover.symmetry, hover.core.model),
+        (WakeSymmetry::Axial, CoreModel::RosenheadMoore)
+    );
+    assert_eq!(hover.far, FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]));
+    assert!(
+        (hover.near_wake_rad - 60.0_f64.to_radians()).abs() < 1e-12,
+        "a field given comes first"
+    );
+    let fast = of("preset: Fast").unwrap().case;
+    let InflowChoice::FreeWake(file) = fast.inflow.model else { unreachable!() };
+    let fast = fast.wake_trim_settings(&file).wake;
+    assert_eq!((fast.turns, fast.azimuths, fast.velocity_stride), (2, 24, 2));
     assert_eq!(wake.far, FarTrailers::Stations(vec![0.35, 0.5, 0.65, 0.78]));
     assert_eq!(wake.release, ReleasePoint::Centroid);
     assert_eq!(wake.control_point, ControlPoint::ThreeQuarterChord);
@@ -309,7 +334,7 @@ fn problems_of_the_blade_name_the_remedy() {
         ),
         (
             "(rotor: (tables: (gj: [(0, 1e7), (1, 0.006)])))",
-            "rotor.tables.gj[0]: is 1e7, expected at most 1e6",
+            "rotor.tables.gj[0]: is 1e7 m0 Omega^2 R^4, expected at most 1e6",
         ),
         ("(rotor: (gravity: Moon))", "unknown choice `Moon`"),
         ("(aerodynamics: (tip_loss: 1.2))", "aerodynamics.tip_loss: is 1.2 R, expected 0.5"),
@@ -344,7 +369,7 @@ fn problems_of_the_blade_name_the_remedy() {
         ),
         (
             "(rotor: (tables: (ei_lag: [(0, 0.03), (0.3, -0.01), (1, 0.02)])))",
-            "rotor.tables.ei_lag[1]: is -0.01, expected a positive finite number",
+            "rotor.tables.ei_lag[1]: is -0.01 m0 Omega^2 R^4, expected a positive finite number",
         ),
         (
             "(flaps: [(start_r: 0.9, end_r: 1.1)])",

@@ -2,10 +2,9 @@
 
 use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
 use crate::choices::choice_parser;
-use crate::identification::ModelChoice;
+use crate::identification::{ModelChoice, model_parser};
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flap_aero::{AttachedFlowModel, Motion};
 use std::path::PathBuf;
@@ -47,19 +46,29 @@ pub enum Command {
     /// Responses of a section with a trailing-edge flap: harmonic, step, ramp, loop, polar.
     Section(SectionArgs),
     /// Check a case, a data folder or an actuator file; reports every problem with its line.
-    Check(CheckArgs),
+    Check {
+        /// Case, dataset.ron (or its folder) or actuator file.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// Tables for people or JSON for programs.
+        #[arg(long, value_enum, default_value_t = Format::Text)]
+        format: Format,
+    },
     /// Write a commented case to start from.
-    Init(InitArgs),
+    Init {
+        /// File to write; never overwritten.
+        #[arg(value_name = "FILE", default_value = "case.ron")]
+        file: PathBuf,
+    },
     /// Show stored results again, and write their report and tables anew.
-    Report(ReportArgs),
-}
-
-/// Form of the output.
-#[derive(Debug, Clone, Copy, Args)]
-pub struct FormatArgs {
-    /// Tables for people or JSON for programs.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub format: Format,
+    Report {
+        /// Folder of a study's results.
+        #[arg(value_name = "DIR")]
+        dir: PathBuf,
+        /// Form of the output.
+        #[command(flatten)]
+        format: DetailArgs,
+    },
 }
 
 /// Form of an output of which the terminal shows one screen.
@@ -161,7 +170,7 @@ pub struct IdentifyArgs {
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
     /// Model to judge and to write; all of them are fitted and compared in any case.
-    #[arg(long, value_enum, default_value = "best")]
+    #[arg(long, value_parser = model_parser(), default_value = "best")]
     pub model: ModelChoice,
     /// Form of the output.
     #[command(flatten)]
@@ -178,11 +187,11 @@ pub struct ImportArgs {
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// What the files are; recognised by their first bytes if left out.
-    #[arg(long = "as", value_parser = source_kind(), value_name = "FORMAT")]
+    #[arg(long = "as", value_parser = choice_parser::<SourceKind>(), value_name = "FORMAT")]
     pub source: Option<SourceKind>,
     /// Kind of the data folder; an actuator bench if there are command and displacement, else a
     /// generic loop, if left out.
-    #[arg(long, value_parser = import_kind())]
+    #[arg(long, value_parser = choice_parser::<ImportKind>())]
     pub kind: Option<ImportKind>,
     /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
     /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
@@ -215,21 +224,9 @@ pub struct ImportArgs {
     /// Title of the data set.
     #[arg(long)]
     pub title: Option<String>,
-    /// Form of the output.
-    #[command(flatten)]
-    pub format: FormatArgs,
-}
-
-fn source_kind() -> impl TypedValueParser<Value = SourceKind> {
-    PossibleValuesParser::new(SourceKind::ALL.map(SourceKind::word)).try_map(|word| {
-        SourceKind::ALL.into_iter().find(|kind| kind.word() == word).ok_or("no such format")
-    })
-}
-
-fn import_kind() -> impl TypedValueParser<Value = ImportKind> {
-    PossibleValuesParser::new(ImportKind::ALL.map(ImportKind::word)).try_map(|word| {
-        ImportKind::ALL.into_iter().find(|kind| kind.word() == word).ok_or("no such kind")
-    })
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
 }
 
 /// Two numbers with a comma between them.
@@ -311,9 +308,9 @@ pub struct ModesArgs {
     /// for every file that is written.
     #[arg(long, value_name = "FILE.csv")]
     pub fan: Option<PathBuf>,
-    /// Form of the output.
-    #[command(flatten)]
-    pub format: FormatArgs,
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
 }
 
 /// `hhc wake`.
@@ -328,9 +325,9 @@ pub struct WakeArgs {
     /// Folder for geometry (CSV, VTK legacy), inflow over the disk and convergence.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Form of the output.
-    #[command(flatten)]
-    pub format: FormatArgs,
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
 }
 
 /// Responses of a section on the command line.
@@ -393,7 +390,8 @@ pub struct SectionArgs {
     /// Stall of a loop or of a polar without a table [default: off].
     #[arg(long, value_parser = choice_parser::<DynamicStallChoice>())]
     pub stall: Option<DynamicStallChoice>,
-    /// C81 file whose polar is wanted; `shipped:naca0012_synthetic.c81` is a synthetic one.
+    /// C81 file whose polar is wanted (a rotor takes tables from its case); `shipped:naca0012_synthetic.c81` is a
+    /// synthetic one.
     #[arg(long, value_name = "FILE")]
     pub table: Option<PathBuf>,
     /// Flap effectiveness in lift, moment and hinge moment, such as 0.78,1,1; not of a polar.
@@ -402,37 +400,7 @@ pub struct SectionArgs {
     /// CSV file to write.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Form of the output.
-    #[command(flatten)]
-    pub format: FormatArgs,
-}
-
-/// `hhc check`.
-#[derive(Debug, Clone, Args)]
-pub struct CheckArgs {
-    /// Case, dataset.ron (or its folder) or actuator file.
-    #[arg(value_name = "FILE")]
-    pub file: PathBuf,
-    /// Form of the output.
-    #[command(flatten)]
-    pub format: FormatArgs,
-}
-
-/// `hhc init`.
-#[derive(Debug, Clone, Args)]
-pub struct InitArgs {
-    /// File to write; never overwritten.
-    #[arg(value_name = "FILE", default_value = "case.ron")]
-    pub file: PathBuf,
-}
-
-/// `hhc report`.
-#[derive(Debug, Clone, Args)]
-pub struct ReportArgs {
-    /// Folder of a study's results.
-    #[arg(value_name = "DIR")]
-    pub dir: PathBuf,
-    /// Form of the output.
-    #[command(flatten)]
-    pub format: DetailArgs,
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
 }

@@ -1,6 +1,6 @@
 //! `hhc import`, `hhc check` and `hhc init`.
 
-use super::args::{CheckArgs, ImportArgs, InitArgs};
+use super::args::ImportArgs;
 use super::warn;
 use crate::SimError;
 use crate::case::starting_case;
@@ -32,20 +32,20 @@ pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
     };
     let result = crate::import::import(&request)?;
     warn(&result.warnings, Format::Details);
-    print(&result.render(args.format.format)?)
+    print(&result.render(args.format)?)
 }
 
-pub(super) fn check(args: &CheckArgs) -> Result<(), SimError> {
-    let result = check_file(&args.file)?;
+pub(super) fn check(file: &Path, format: Format) -> Result<(), SimError> {
+    let result = check_file(file)?;
     warn(&result.warnings, Format::Details);
-    print(&result.render(args.format.format)?)
+    print(&result.render(format)?)
 }
 
-pub(super) fn init(args: &InitArgs) -> Result<(), SimError> {
+pub(super) fn init(file: &Path) -> Result<(), SimError> {
     let text = starting_case()?;
-    write_new(&args.file, text.as_bytes())?;
+    write_new(file, text.as_bytes())?;
     print(&format!(
         "{0} written: the paper's case, every field commented. Edit it, then `hhc check {0}` and `hhc run {0}`.\n",
-        args.file.display()
+        file.display()
     ))
 }

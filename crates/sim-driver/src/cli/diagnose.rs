@@ -1,12 +1,12 @@
 //! `hhc diagnose` and `hhc ladder`.
 
 use super::args::{DiagnoseArgs, LadderArgs, RecordsArgs};
-use super::{overridden, warn};
+use super::{case_or_paper, overridden, warn, write_texts};
 use crate::SimError;
-use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case, with_actuator_file};
+use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{Findings, FolderStore, Question, Record, Records, Story, climb, extended};
 use crate::files::{DataSet, Folder, Source, read_dataset, refuse_input, ron_text, write_atomic};
-use crate::output::{Format, Printable, print};
+use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{read_actuator, write_actuator};
@@ -23,48 +23,34 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     refuse_input(&args.model, &output.join(EXTENDED_FILE))?;
     let (model, case) = given_model(&args.model)?;
     let (measured, reference) = both_records(&args.records)?;
-    let progress = Progress::new(1);
-    progress.doing(format!("diagnosing {} runs", measured.runs.len()));
     let question = Question {
         reference,
         only: args.only.clone(),
         cache: Some(&FolderStore(cache)),
         given: model.as_ref(),
     };
-    let found = crate::diagnose::diagnose(&measured, &question);
-    progress.finish();
-    let found = found?;
-    let findings = serde_json::to_string_pretty(&Findings::from(&found)).map_err(|e| {
-        SimError::NotWritten { path: "findings.json".into(), reason: e.to_string() }
-    })?;
+    let doing = format!("diagnosing {} runs", measured.runs.len());
+    let found = Progress::during(doing, || crate::diagnose::diagnose(&measured, &question))?;
+    let findings = json(&Findings::from(&found))?;
     write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
     if let Some(case) = case {
         write_extended_case(&case, output)?;
     }
-    for (name, text) in found.figures() {
-        write_atomic(&output.join(name), text.as_bytes())?;
-    }
-    write_atomic(&output.join("findings.json"), (findings + "\n").as_bytes())?;
+    write_texts(output, found.figures())?;
+    write_atomic(&output.join("findings.json"), findings.as_bytes())?;
     print(&Story::of(&found).render(format.form())?)
 }
 
 pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
     let RecordsArgs { output, cache, format, .. } = &args.records;
     let (measured, reference) = both_records(&args.records)?;
-    let loaded = match &args.case {
-        Some(path) => load_case(path)?,
-        None => shipped_case(PAPER_CASE)?,
-    };
-    let loaded = overridden(loaded, args.inflow);
-    let progress = Progress::new(1);
-    progress.doing(format!("climbing on {} runs", measured.runs.len()));
-    let climbed = climb(&measured, &reference, &loaded, Some(cache));
-    progress.finish();
-    let (ladder, found) = climbed?;
-    let text = serde_json::to_string_pretty(&ladder)
-        .map_err(|e| SimError::NotWritten { path: "ladder.json".into(), reason: e.to_string() })?;
+    let loaded = overridden(case_or_paper(args.case.as_ref())?, args.inflow);
+    let doing = format!("climbing on {} runs", measured.runs.len());
+    let climbed = || climb(&measured, &reference, &loaded, Some(cache));
+    let (ladder, found) = Progress::during(doing, climbed)?;
+    let text = json(&ladder)?;
     write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
-    write_atomic(&output.join("ladder.json"), (text + "\n").as_bytes())?;
+    write_atomic(&output.join("ladder.json"), text.as_bytes())?;
     print(&ladder.render(format.form())?)
 }
 
@@ -98,8 +84,7 @@ fn write_extended_case(case: &LoadedCase, output: &Path) -> Result<(), SimError>
         return Ok(());
     };
     let path = output.join(EXTENDED_CASE_FILE);
-    let text = ron_text(&own.case)
-        .map_err(|e| SimError::NotWritten { path: path.clone(), reason: e.to_string() })?;
+    let text = ron_text(&own.case).map_err(|e| SimError::not_written(&path, &e))?;
     Ok(write_atomic(&path, text.as_bytes())?)
 }
 

@@ -1,11 +1,11 @@
 //! `hhc identify`.
 
 use super::args::IdentifyArgs;
-use super::{refuse_inputs, warn};
+use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
 use crate::curve_identification::identify_curves;
 use crate::figures::figure_files;
-use crate::files::{DataSet, Folder, Source, read_dataset, refuse_inside, write_atomic};
+use crate::files::{DataSet, Folder, Source, read_dataset, refuse_inside};
 use crate::identification::{BenchIdentification, identify_bench, identify_loops};
 use crate::output::{Printable, print};
 use crate::progress::Progress;
@@ -41,9 +41,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     };
     write_actuator(&stored, &args.output)?;
     if let (Some(folder), Some(figures)) = (&args.figures, figures) {
-        for (name, text) in figures {
-            write_atomic(&folder.join(name), text.as_bytes())?;
-        }
+        write_texts(folder, figures)?;
     }
     print(&text)
 }

@@ -9,13 +9,13 @@ mod run;
 mod section;
 
 pub use args::{
-    CheckArgs, Cli, Command, DetailArgs, DiagnoseArgs, FormatArgs, IdentifyArgs, ImportArgs,
-    InflowOverride, InitArgs, ModesArgs, ReportArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
+    Cli, Command, DetailArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, ModesArgs,
+    RunArgs, SectionArgs, StudyArgs, WakeArgs,
 };
 
 use crate::SimError;
-use crate::case::{InflowChoice, LoadedCase};
-use crate::files::refuse_input;
+use crate::case::{InflowChoice, LoadedCase, PAPER_CASE, load_case, shipped_case};
+use crate::files::{refuse_input, write_atomic};
 use crate::output::{Format, warnings_text};
 use crate::problem::{Fault, Place, Problems};
 use clap::Parser;
@@ -66,9 +66,9 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Modes(args)) => rotor::modes(args),
         Some(Command::Wake(args)) => rotor::wake(args),
         Some(Command::Section(args)) => section::section(args),
-        Some(Command::Check(args)) => data::check(args),
-        Some(Command::Init(args)) => data::init(args),
-        Some(Command::Report(args)) => run::report(args),
+        Some(Command::Check { file, format }) => data::check(file, *format),
+        Some(Command::Init { file }) => data::init(file),
+        Some(Command::Report { dir, format }) => run::report(dir, format.form()),
     }
 }
 
@@ -77,19 +77,46 @@ fn warn<T: Display>(warnings: &[T], format: Format) {
     eprint!("{}", warnings_text(warnings, format, "in the report, or with --details"));
 }
 
+/// Refuses a number of the command line that is out of its range.
+fn check_range(
+    problems: &mut Problems,
+    option: &str,
+    value: f64,
+    [low, high]: [f64; 2],
+    unit: &'static str,
+    remedy: &'static str,
+) {
+    if !(low..=high).contains(&value) {
+        problems.push(Place::file(option), Fault::OutOfRange { value, low, high, unit, remedy });
+    }
+}
+
 /// Whether the rotor can fly at an advance ratio of the command line.
 fn check_advance_ratio(problems: &mut Problems, mu: f64) {
-    if !(0.0..=0.5).contains(&mu) {
-        let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
-        let fault = Fault::OutOfRange { value: mu, low: 0.0, high: 0.5, unit: "", remedy };
-        problems.push(Place::file("--mu"), fault);
+    let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
+    check_range(problems, "--mu", mu, [0.0, 0.5], "", remedy);
+}
+
+/// The case of a file; the paper's if none is given.
+fn case_or_paper(path: Option<&PathBuf>) -> Result<LoadedCase, SimError> {
+    Ok(path.map_or_else(|| shipped_case(PAPER_CASE), |path| load_case(path))?)
+}
+
+/// Writes named texts into a folder.
+fn write_texts<N: AsRef<Path>>(
+    folder: &Path,
+    files: impl IntoIterator<Item = (N, String)>,
+) -> Result<(), SimError> {
+    for (name, text) in files {
+        write_atomic(&folder.join(name), text.as_bytes())?;
     }
+    Ok(())
 }
 
 /// Ends a command in failure, after what it found is stored and shown, if that is no solution.
 fn refuse_diverged(loaded: &LoadedCase, diverged: bool) -> Result<(), SimError> {
     if diverged {
-        return Err(SimError::WakeParted { place: loaded.index.place("inflow.model") });
+        return Err(SimError::WakeDiverged { place: loaded.index.place("inflow.model") });
     }
     Ok(())
 }

@@ -1,14 +1,16 @@
 //! `hhc modes` and `hhc wake`.
 
 use super::args::{ModesArgs, WakeArgs};
-use super::{check_advance_ratio, refuse_diverged, refuse_inputs, warn};
+use super::{
+    case_or_paper, check_advance_ratio, check_range, refuse_diverged, refuse_inputs, warn,
+    write_texts,
+};
 use crate::SimError;
-use crate::case::{PAPER_CASE, load_case, shipped_case};
 use crate::files::{refuse_unwritable, write_atomic};
 use crate::output::{Format, Printable, print};
 use crate::print::modes::{fan_csv, modes_of_case};
 use crate::print::wake::wake_files;
-use crate::problem::{Fault, Place, Problems};
+use crate::problem::Problems;
 use crate::progress::Progress;
 use crate::sweep::at_advance_ratio;
 use rotor_fem::GyroscopicTerms;
@@ -16,10 +18,7 @@ use rotor_study::{AboutState, FAN_SPEEDS, ModesQuestion};
 
 pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     refuse_inputs(args.case.as_deref(), args.fan.as_ref())?;
-    let loaded = match &args.case {
-        Some(path) => load_case(path)?,
-        None => shipped_case(PAPER_CASE)?,
-    };
+    let loaded = case_or_paper(args.case.as_ref())?;
     let terms =
         if args.no_gyroscopic { GyroscopicTerms::Neglected } else { GyroscopicTerms::Included };
     let about = if args.undeformed { AboutState::Undeformed } else { AboutState::Deflected };
@@ -27,29 +26,18 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
         Some(_) if args.speeds.is_empty() => FAN_SPEEDS.to_vec(),
         _ => args.speeds.clone(),
     };
-    if !(-90.0..=90.0).contains(&args.pitch_deg) {
-        let fault = Fault::OutOfRange {
-            value: args.pitch_deg,
-            low: -90.0,
-            high: 90.0,
-            unit: "deg",
-            remedy: "the collective at 0.75 R, a finite number",
-        };
-        let mut problems = Problems::default();
-        problems.push(Place::file("--pitch-deg"), fault);
-        return Err(problems.into());
-    }
     let mut problems = Problems::default();
-    for value in speed_ratios.iter().copied().filter(|ratio| !(0.0..=10.0).contains(ratio)) {
-        let remedy = "rotor speeds over the nominal one; 0 is a blade at rest";
-        let fault = Fault::OutOfRange { value, low: 0.0, high: 10.0, unit: "", remedy };
-        problems.push(Place::file("--speeds"), fault);
+    let remedy = "the collective at 0.75 R, a finite number";
+    check_range(&mut problems, "--pitch-deg", args.pitch_deg, [-90.0, 90.0], "deg", remedy);
+    let remedy = "rotor speeds over the nominal one; 0 is a blade at rest";
+    for &ratio in &speed_ratios {
+        check_range(&mut problems, "--speeds", ratio, [0.0, 10.0], "", remedy);
     }
     problems.into_result(Some(()))?;
     let pitch_rad = args.pitch_deg.to_radians();
     let question = ModesQuestion { terms, pitch_rad, about, speed_ratios };
     let result = modes_of_case(&loaded, &question)?;
-    let text = result.render(args.format.format)?;
+    let text = result.render(args.format)?;
     if let Some(path) = &args.fan {
         write_atomic(path, fan_csv(&result).as_bytes())?;
     }
@@ -57,10 +45,7 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
 }
 
 pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
-    let mut loaded = match &args.case {
-        Some(path) => load_case(path)?,
-        None => shipped_case(PAPER_CASE)?,
-    };
+    let mut loaded = case_or_paper(args.case.as_ref())?;
     if let Some(mu) = args.mu {
         let mut problems = Problems::default();
         check_advance_ratio(&mut problems, mu);
@@ -70,17 +55,11 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     if let Some(folder) = &args.out {
         refuse_unwritable(folder)?;
     }
-    let progress = Progress::new(1);
-    progress.doing("free wake and trim");
-    let outcome = wake_files(&loaded);
-    progress.finish();
-    let (result, files) = outcome?;
+    let (result, files) = Progress::during("free wake and trim", || wake_files(&loaded))?;
     warn(&result.warnings, Format::Details);
     if let Some(folder) = &args.out {
-        for (name, text) in files {
-            write_atomic(&folder.join(name), text.as_bytes())?;
-        }
+        write_texts(folder, files)?;
     }
-    print(&result.render(args.format.format)?)?;
-    refuse_diverged(&loaded, result.parted)
+    print(&result.render(args.format)?)?;
+    refuse_diverged(&loaded, result.diverged)
 }

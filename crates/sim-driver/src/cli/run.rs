@@ -1,39 +1,23 @@
 //! Bare `hhc`, `hhc run` and `hhc report`: a case run, stored and shown.
 
-use super::args::{ReportArgs, RunArgs, StudyArgs};
+use super::args::{RunArgs, StudyArgs};
 use super::{check_advance_ratio, overridden, refuse_diverged, warn};
 use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::files::{refuse_unwritable, write_atomic};
-use crate::output::{Format, Printable, print};
+use crate::output::{Format, Printable, json, print};
 use crate::print::blade_loads::blade_loads_csv;
-use crate::print::study::{robustness_csv, sensitivity_csv};
 use crate::problem::{Fault, Place, Problems};
 use crate::progress::Progress;
-use crate::report::{histories_csv, report_html, study_report};
+use crate::report::{StudyReport, histories_csv, report_html, robustness_csv, sensitivity_csv};
 use crate::results::{BenchPart, Figures, RESULT_FILE, StoredResult, figures};
 use crate::run::{RunOutcome, run_case, run_trimmed, steps_of};
 use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
-use crate::terminal::{Summary, details, summary};
+use crate::terminal::{details, summary};
 use rotor_study::{Assumptions, robustness_maps, sensitivities};
 use std::path::{Path, PathBuf};
 use trim::TrimSolution;
-
-/// Name of the report.
-const REPORT_FILE: &str = "report.html";
-/// Name of the picture it opens with.
-const FIGURE_FILE: &str = "figure.svg";
-/// Name of the flap and voltage histories.
-const HISTORIES_FILE: &str = "histories.csv";
-/// Name of the loads along the blade over azimuth.
-const BLADE_LOADS_FILE: &str = "blade_loads.csv";
-/// Name of the sensitivities.
-const SENSITIVITY_FILE: &str = "sensitivity.csv";
-/// Name of the robustness maps.
-const ROBUSTNESS_FILE: &str = "robustness.csv";
-/// Name of the table over advance ratios.
-const SWEEP_FILE: &str = "sweep.csv";
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, Some(args.inflow));
@@ -56,11 +40,12 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
     Sweep { loaded: &loaded, out: &out, scope, format }.run(&args.mu)
 }
 
-pub(super) fn report(args: &ReportArgs) -> Result<(), SimError> {
-    let stored = StoredResult::read(&args.dir)?;
+pub(super) fn report(dir: &Path, format: Format) -> Result<(), SimError> {
+    let stored = StoredResult::read(dir)?;
     let figures = figures(&stored.result, &stored.setting()?);
-    write_shown(&stored, &figures, &args.dir)?;
-    show(&Summary { stored: &stored, figures: &figures, folder: &args.dir }, args.format.form())
+    let report = StudyReport { stored: &stored, figures: &figures };
+    write_shown(&report, dir)?;
+    show(&report, dir, format)
 }
 
 /// What is computed beside the case.
@@ -115,8 +100,8 @@ fn run_and_store(
     let figures = outcome.figures();
     let stored = store(loaded, &outcome, &figures, out)?;
     warn(&figures.warnings, format);
-    show(&Summary { stored: &stored, figures: &figures, folder: out }, format)?;
-    refuse_diverged(loaded, outcome.trimmed.wake_parted())
+    show(&StudyReport { stored: &stored, figures: &figures }, out, format)?;
+    refuse_diverged(loaded, outcome.trimmed.wake_diverged())
 }
 
 /// Writes everything a run leaves behind.
@@ -131,43 +116,42 @@ fn store(
     let stored = StoredResult::new(&loaded.case, inputs, bench, outcome.result.clone())?;
     stored.write(&out.join(RESULT_FILE))?;
     let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales());
-    write_atomic(&out.join(BLADE_LOADS_FILE), blade_loads.as_bytes())?;
-    write_shown(&stored, figures, out)?;
+    write_atomic(&out.join("blade_loads.csv"), blade_loads.as_bytes())?;
+    write_shown(&StudyReport { stored: &stored, figures }, out)?;
     Ok(stored)
 }
 
 /// Writes what follows from a stored result: tables, picture and report.
-fn write_shown(stored: &StoredResult, figures: &Figures, out: &Path) -> Result<(), SimError> {
+fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), SimError> {
+    let StudyReport { stored, figures } = *report;
     let write = |name: &str, text: &str| write_atomic(&out.join(name), text.as_bytes());
-    write(HISTORIES_FILE, &histories_csv(&stored.result.control))?;
+    write("histories.csv", &histories_csv(&stored.result.control))?;
     if !figures.sensitivity.is_empty() {
         let harmonics = &stored.case.control.harmonics;
-        write(SENSITIVITY_FILE, &sensitivity_csv(harmonics, &figures.sensitivity))?;
+        write("sensitivity.csv", &sensitivity_csv(harmonics, &figures.sensitivity))?;
     }
     if !figures.robustness.is_empty() {
-        write(ROBUSTNESS_FILE, &robustness_csv(&figures.robustness))?;
+        write("robustness.csv", &robustness_csv(&figures.robustness))?;
     }
-    let report = study_report(stored, figures);
-    if report.finding.is_drawn() {
-        write(FIGURE_FILE, &report.finding.svg(&report.title))?;
+    let finding = report.finding();
+    if finding.is_drawn() {
+        write("figure.svg", &finding.svg(&stored.case.title))?;
     }
-    Ok(write(REPORT_FILE, &report_html(&report))?)
+    Ok(write("report.html", &report_html(report))?)
 }
 
 /// Shows a stored result.
-fn show(of: &Summary<'_>, format: Format) -> Result<(), SimError> {
-    match format {
-        Format::Text => print(&summary(of)),
-        Format::Details => {
-            let text = details(of.figures) + &study_report(of.stored, of.figures).text();
-            print(&format!("{text}\nResults, histories and report in {}\n", of.folder.display()))
-        }
-        Format::Json => {
-            let text = serde_json::to_string_pretty(of.figures)
-                .map_err(|e| SimError::NotWritten { path: "JSON".into(), reason: e.to_string() })?;
-            print(&(text + "\n"))
-        }
-    }
+fn show(report: &StudyReport<'_>, folder: &Path, format: Format) -> Result<(), SimError> {
+    print(&match format {
+        Format::Text => summary(report, folder),
+        Format::Details => format!(
+            "{}{}\nResults, histories and report in {}\n",
+            details(report.figures),
+            report.text(),
+            folder.display()
+        ),
+        Format::Json => json(report.figures)?,
+    })
 }
 
 /// Name of the folder of the results at an advance ratio.
@@ -200,14 +184,11 @@ impl Sweep<'_> {
         // what was found before an advance ratio that fails is of use
         if !rows.is_empty() {
             let sweep = SweepResult { rows };
-            write_atomic(&self.out.join(SWEEP_FILE), sweep_csv(&sweep).as_bytes())?;
-            let text = sweep.render(self.format)?;
-            match self.format {
-                Format::Json => print(&text)?,
-                Format::Text | Format::Details => print(&format!(
-                    "{text}\nResults in {}, a folder for each advance ratio\n",
-                    self.out.display()
-                ))?,
+            write_atomic(&self.out.join("sweep.csv"), sweep_csv(&sweep).as_bytes())?;
+            print(&sweep.render(self.format)?)?;
+            if self.format != Format::Json {
+                let folder = self.out.display();
+                print(&format!("\nResults in {folder}, a folder for each advance ratio\n"))?;
             }
         }
         ended
@@ -230,21 +211,19 @@ impl Sweep<'_> {
             });
             progress.finish();
             let computed = computed.inspect_err(|_| note_earlier(&folder));
-            let outcome = computed.map_err(|source| SimError::SweepEnded {
+            let stopped = |found, source| SimError::SweepEnded {
                 advance_ratio: mu,
-                found: rows.iter().map(|row| row.advance_ratio).collect(),
+                found,
                 source: Box::new(source),
-            })?;
+            };
+            let found = rows.iter().map(|row| row.advance_ratio).collect();
+            let outcome = computed.map_err(|source| stopped(found, source))?;
             start = Some(outcome.trimmed.trim().clone());
             let figures = outcome.figures();
             store(&here, &outcome, &figures, &folder)?;
             warn(&figures.warnings, self.format);
-            if outcome.trimmed.wake_parted() && ended.is_ok() {
-                ended = refuse_diverged(&here, true).map_err(|source| SimError::SweepEnded {
-                    advance_ratio: mu,
-                    found: Vec::new(),
-                    source: Box::new(source),
-                });
+            if outcome.trimmed.wake_diverged() && ended.is_ok() {
+                ended = refuse_diverged(&here, true).map_err(|source| stopped(vec![], source));
             }
             rows.push(SweepRow { advance_ratio: mu, result: figures });
         }

@@ -7,9 +7,10 @@ use crate::files::{refuse_input, write_atomic};
 use crate::output::{Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::section::{
-    LoopQuestion, PolarQuestion, SectionChoice, SectionQuestion, TransientQuestion, loop_history,
-    polar, section_response, transient_history,
+    LoopQuestion, PolarQuestion, SectionChoice, loop_history, polar, section_response,
+    transient_history,
 };
+use clap::ValueEnum;
 use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Mach, Motion, StallParameters};
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
@@ -33,14 +34,12 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
         DynamicStallChoice::Naca0012 => Some(StallParameters::naca_0012(Mach::new(args.mach)?)),
     };
     let (distance, points) = (args.distance.unwrap_or(20.0), args.points.unwrap_or(200));
-    let transient = |rise: f64| {
-        transient_history(&TransientQuestion { section, motion, rise, distance, points })
-    };
+    let transient = |rise: f64| transient_history(&section, motion, rise, distance, points);
     let table = match args.response {
         ResponseArg::Harmonic => {
-            let result = section_response(&SectionQuestion { section, reduced_frequency, motion })?;
+            let result = section_response(&section, motion, reduced_frequency)?;
             write_csv(args, &result.csv(), &result.remarks)?;
-            return print(&result.render(args.format.format)?);
+            return print(&result.render(args.format)?);
         }
         ResponseArg::Step => transient(0.0)?,
         ResponseArg::Ramp => transient(args.rise.unwrap_or(1.0))?,
@@ -62,7 +61,7 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
         })?,
     };
     write_csv(args, &table.csv(), &table.remarks)?;
-    print(&table.render(args.format.format)?)
+    print(&table.render(args.format)?)
 }
 
 /// Writes the CSV file asked for; what its numbers need said goes to standard error.
@@ -91,77 +90,51 @@ fn effectiveness(factors: &[f64]) -> Result<FlapEffectiveness, SimError> {
 /// Refuses options that the response asked for would not heed, and numbers that are none.
 fn check_section_options(args: &SectionArgs) -> Result<(), SimError> {
     use ResponseArg::{Harmonic, Loop, Polar, Ramp, Step};
-    let table = args.table.is_some();
-    let moved = "with a response of the section's own flap, not with --response polar";
-    let modelled = "without --table: a table is a section of its own";
-    let rules = [
-        (
-            "--table",
-            table,
-            &[Polar][..],
-            "with --response polar only; a rotor takes tables from its case",
-        ),
-        ("--stall", args.stall.is_some(), &[Loop, Polar], "with --response loop or polar only"),
-        (
-            "--reduced-frequency",
-            args.reduced_frequency.is_some(),
-            &[Harmonic, Loop],
-            "with --response harmonic or loop only",
-        ),
-        ("--distance", args.distance.is_some(), &[Step, Ramp], "with --response step or ramp only"),
-        ("--rise", args.rise.is_some(), &[Ramp], "with --response ramp only"),
-        (
-            "--points",
-            args.points.is_some(),
-            &[Step, Ramp, Loop, Polar],
-            "with --response step, ramp, loop or polar only",
-        ),
-        (
-            "--mean-deg",
-            args.mean_deg.is_some(),
-            &[Loop, Polar],
-            "with --response loop or polar only",
-        ),
-        (
-            "--amplitude-deg",
-            args.amplitude_deg.is_some(),
-            &[Loop, Polar],
-            "with --response loop or polar only",
-        ),
-        (
-            "--motion",
-            args.motion.is_some(),
-            &[Harmonic, Step, Ramp, Loop],
-            "with --response harmonic, step, ramp or loop only",
-        ),
-        ("--effectiveness", !args.effectiveness.is_empty(), &[Harmonic, Step, Ramp, Loop], moved),
-    ];
-    let unheeded = rules
-        .into_iter()
-        .find(|(_, given, of, _)| *given && !of.contains(&args.response))
-        .map(|(name, .., expected)| (name, expected));
-    let beside = [
-        ("--stall", args.stall.is_some(), "without --table: a table holds its own stall"),
-        ("--model", args.model.is_some(), modelled),
-        ("--flap-chord", args.flap_chord.is_some(), modelled),
-    ];
-    let beside = beside
-        .into_iter()
-        .find(|(_, given, _)| *given && table)
-        .map(|(name, _, expected)| (name, expected));
     let refused = |name: &str, message: String| {
         let place = Place::file("hhc section").field(name);
         Err(Problem::new(place, Fault::Refused { message }).into())
     };
-    if let Some((name, expected)) = unheeded.or(beside) {
-        return refused(name, format!("it is used {expected}"));
+    let table = args.table.is_some();
+    let heeded: [(&str, bool, &[ResponseArg]); 10] = [
+        ("--table", table, &[Polar]),
+        ("--stall", args.stall.is_some(), &[Loop, Polar]),
+        ("--reduced-frequency", args.reduced_frequency.is_some(), &[Harmonic, Loop]),
+        ("--distance", args.distance.is_some(), &[Step, Ramp]),
+        ("--rise", args.rise.is_some(), &[Ramp]),
+        ("--points", args.points.is_some(), &[Step, Ramp, Loop, Polar]),
+        ("--mean-deg", args.mean_deg.is_some(), &[Loop, Polar]),
+        ("--amplitude-deg", args.amplitude_deg.is_some(), &[Loop, Polar]),
+        ("--motion", args.motion.is_some(), &[Harmonic, Step, Ramp, Loop]),
+        ("--effectiveness", !args.effectiveness.is_empty(), &[Harmonic, Step, Ramp, Loop]),
+    ];
+    let unheeded = heeded.iter().find(|(_, given, by)| *given && !by.contains(&args.response));
+    if let Some((name, _, by)) = unheeded {
+        let values = by.iter().filter_map(ResponseArg::to_possible_value);
+        let names: Vec<String> = values.map(|value| value.get_name().to_owned()).collect();
+        let names = match names.as_slice() {
+            [others @ .., last] if !others.is_empty() => {
+                format!("{} or {last}", others.join(", "))
+            }
+            names => names.concat(),
+        };
+        return refused(name, format!("it is used with --response {names} only"));
     }
-    for (name, value) in [
+    let own = "a table is a section of its own";
+    let beside = [
+        ("--stall", args.stall.is_some(), "a table holds its own stall"),
+        ("--model", args.model.is_some(), own),
+        ("--flap-chord", args.flap_chord.is_some(), own),
+    ];
+    if let Some((name, _, why)) = beside.into_iter().find(|(_, given, _)| *given && table) {
+        return refused(name, format!("it is used without --table: {why}"));
+    }
+    let numbers = [
         ("--distance", args.distance),
         ("--rise", args.rise),
         ("--mean-deg", args.mean_deg),
         ("--amplitude-deg", args.amplitude_deg),
-    ] {
+    ];
+    for (name, value) in numbers {
         if let Some(value) = value.filter(|value| !value.is_finite()) {
             return refused(name, format!("it is {value}, not a number to reckon with"));
         }

@@ -11,8 +11,7 @@ use super::{Record, Records, at};
 use crate::SimError;
 use crate::actuator::CaseActuators;
 use crate::case::{ControlActuator, LoadedCase};
-use crate::output::{Printable, Sheet, table};
-use crate::problem::Place;
+use crate::output::{Printable, Sheet, table_of};
 use crate::progress::Progress;
 use crate::run::run_trimmed;
 use actuator_gap::{Diagnosis, RungModel, StructureStore, rung_models};
@@ -64,18 +63,17 @@ pub struct Ladder {
 /// explained; the case tells what a rung is worth to a rotor.
 ///
 /// # Errors
-/// [`SimError::Misfit`] without slow runs and as [`super::diagnose`]; everything a run of the case can fail by.
+/// [`SimError::Diagnosis`] without slow runs and as [`super::diagnose`]; everything a run of the case can fail by.
 pub fn climb(
     measured: &Records,
     reference: &[Record],
     loaded: &LoadedCase,
     cache: Option<&Path>,
 ) -> Result<(Ladder, Diagnosis), SimError> {
-    let place = || Place::file(format!("{}/dataset.ron", measured.folder));
-    let failed = |source| SimError::Actuator { place: place(), source };
     let store = cache.map(FolderStore);
     let store = store.as_ref().map(|store| store as &dyn StructureStore);
-    let (models, found) = rung_models(measured, reference, store).map_err(|e| at(&place(), e))?;
+    let (models, found) =
+        rung_models(measured, reference, store).map_err(|e| at(&measured.folder, e))?;
     let trimmed = TrimmedRotor::new(&loaded.case, None).map_err(|error| loaded.located(error))?;
     let mut rungs = Vec::new();
     for RungModel { name, model, asked, error_percent } in models {
@@ -87,7 +85,7 @@ pub fn climb(
             lacks: asked.map(|a| a.lacks).unwrap_or_default(),
             unit: measured.output_unit.clone(),
             error_percent,
-            flap_3_per_rev: flap(&model, loaded).map_err(failed)?,
+            flap_3_per_rev: flap(&model, loaded).map_err(|e| at(&measured.folder, e))?,
             cost: cost(model, loaded, &trimmed)?,
         });
     }
@@ -119,15 +117,7 @@ fn cost(
     let mut own = loaded.clone();
     own.case.control.harmonics = vec![vec![HARMONIC]];
     own.case.control.actuators = vec![ControlActuator::Hysteretic];
-    let actuators = CaseActuators {
-        ideal: model.clone(),
-        real: Some(model),
-        data_title: String::new(),
-        fits: Vec::new(),
-        bench: None,
-        inputs: Vec::new(),
-        warnings: Vec::new(),
-    };
+    let actuators = CaseActuators { real: Some(model.clone()), ..CaseActuators::new(model) };
     let outcome = run_trimmed(&own, actuators, trimmed.clone(), &Progress::new(1))?;
     Ok(outcome
         .figures()
@@ -140,37 +130,27 @@ impl Printable for Ladder {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("Discovery ladder: {}", self.title));
-        let rows = self.rungs.iter().map(|r| {
-            vec![
-                r.model.clone(),
-                format!("{:.2}", r.error_percent[0]),
-                format!("{:.2}", r.error_percent[1]),
-                format!("{:.4}", r.flap_3_per_rev[0]),
-                format!("{:.1}", r.flap_3_per_rev[1]),
-                format!("{:.4e}", r.cost[1]),
-                format!("{:.1}", 100.0 * (1.0 - r.cost[1] / r.cost[0])),
-            ]
-        });
-        let head = [
-            "model",
-            "slow runs, error %",
-            "measured runs, error %",
-            "3/rev deg/V",
-            "lag deg",
-            "J",
-            "J less by %",
-        ];
-        sheet.block(&table(&head, rows));
+        sheet.block(&table_of(
+            &self.rungs,
+            &[
+                ("model", &|r| r.model.clone()),
+                ("slow runs, error %", &|r| format!("{:.2}", r.error_percent[0])),
+                ("measured runs, error %", &|r| format!("{:.2}", r.error_percent[1])),
+                ("3/rev deg/V", &|r| format!("{:.4}", r.flap_3_per_rev[0])),
+                ("lag deg", &|r| format!("{:.1}", r.flap_3_per_rev[1])),
+                ("J", &|r| format!("{:.4e}", r.cost[1])),
+                ("J less by %", &|r| format!("{:.1}", 100.0 * (1.0 - r.cost[1] / r.cost[0]))),
+            ],
+        ));
         for rung in &self.rungs {
             if let (Some(verdict), Some([before, after])) = (rung.verdict, rung.heldout_rms) {
+                let lacks = match rung.lacks.as_slice() {
+                    [] => "nothing".to_owned(),
+                    names => names.join(", "),
+                };
                 sheet.line(format_args!(
-                    "A {} lacks: {} ({}); held-out error {before:.3} -> {after:.3} {}",
+                    "A {} lacks: {lacks} ({}); held-out error {before:.3} -> {after:.3} {}",
                     rung.model,
-                    if rung.lacks.is_empty() {
-                        "nothing".to_owned()
-                    } else {
-                        rung.lacks.join(", ")
-                    },
                     words(verdict),
                     rung.unit
                 ));

@@ -3,7 +3,7 @@
 
 use super::{Diagnosis, Findings};
 use crate::files::significant;
-use crate::output::{Printable, Screen, Sheet, table};
+use crate::output::{Printable, Sheet, table, table_of};
 use model_gap::Candidate;
 use model_gap::discovery::{Confidence, Found, Verdict};
 use serde::Serialize;
@@ -12,69 +12,59 @@ use serde::Serialize;
 const POOR_BASE: f64 = 0.1;
 
 /// The story of a diagnosis, printable.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Clone, Serialize)]
 #[serde(transparent)]
-pub struct Story {
+pub struct Story<'a> {
     findings: Findings,
     #[serde(skip)]
-    screen: String,
-    #[serde(skip)]
-    details: String,
+    diagnosis: &'a Diagnosis,
 }
 
-impl Printable for Story {
-    fn text(&self) -> String {
-        self.screen.clone()
-    }
-
-    fn details(&self) -> String {
-        self.details.clone()
-    }
-}
-
-impl Story {
+impl<'a> Story<'a> {
     /// The story of a diagnosis.
-    pub fn of(d: &Diagnosis) -> Self {
-        let findings = Findings::from(d);
-        let (screen, details) = (screen(d, &findings), details(d, &findings));
-        Self { findings, screen, details }
+    pub fn of(diagnosis: &'a Diagnosis) -> Self {
+        Self { findings: Findings::from(diagnosis), diagnosis }
     }
 }
 
-/// One screen: the verdict first, then what it rests on.
-fn screen(d: &Diagnosis, findings: &Findings) -> String {
-    let mut found = Sheet::default();
-    causes(d, &mut found);
-    gain(d, findings, &mut found);
-    next(d, &mut found);
-    let mut ground = Sheet::default();
-    base(d, &mut ground);
-    let mut screen = Screen::default();
-    screen.wrapped(&verdict_line(d, findings));
-    screen.paragraphs(&found.finish());
-    screen.line("");
-    screen.paragraphs(&ground.finish());
-    screen.line("\nEvery run and every cause: --details");
-    screen.finish()
-}
-
-/// Everything, in the order of the work.
-fn details(d: &Diagnosis, findings: &Findings) -> String {
-    let mut sheet = Sheet::default();
-    base(d, &mut sheet);
-    energies(d, &mut sheet);
-    screening(d, &mut sheet);
-    sheet.line(format_args!("\n{}", verdict_line(d, findings)));
-    causes(d, &mut sheet);
-    gain(d, findings, &mut sheet);
-    if !findings.not_observable.is_empty() {
-        sheet.line(format_args!(
-            "Not observable in these data at usual strength: {}",
-            findings.not_observable.join(", ")
-        ));
+impl Printable for Story<'_> {
+    /// The verdict first, then what it rests on.
+    fn text(&self) -> String {
+        let Self { findings, diagnosis: d } = self;
+        let mut found = Sheet::default();
+        causes(d, &mut found);
+        gain(d, findings, &mut found);
+        next(d, &mut found);
+        let mut ground = Sheet::default();
+        base(d, &mut ground);
+        let mut screen = Sheet::default();
+        screen.paragraphs(&verdict_line(d, findings));
+        screen.paragraphs(&found.finish());
+        screen.line("");
+        screen.paragraphs(&ground.finish());
+        screen.line("\nEvery run and every cause: --details");
+        screen.screen()
     }
-    next(d, &mut sheet);
-    sheet.finish()
+
+    /// Everything, in the order of the work.
+    fn details(&self) -> String {
+        let Self { findings, diagnosis: d } = self;
+        let mut sheet = Sheet::default();
+        base(d, &mut sheet);
+        energies(d, &mut sheet);
+        screening(d, &mut sheet);
+        sheet.line(format_args!("\n{}", verdict_line(d, findings)));
+        causes(d, &mut sheet);
+        gain(d, findings, &mut sheet);
+        if !findings.not_observable.is_empty() {
+            sheet.line(format_args!(
+                "Not observable in these data at usual strength: {}",
+                findings.not_observable.join(", ")
+            ));
+        }
+        next(d, &mut sheet);
+        sheet.finish()
+    }
 }
 
 /// The base model, and what is odd about the runs beside it.
@@ -89,9 +79,9 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
         significant(d.noise, 3),
     ));
     if !d.has_reference {
-        sheet.line(format_args!(
-            "  Without reference runs the floor cannot be calibrated: what these runs share is taken for ordinary, and nothing is said with confidence."
-        ));
+        sheet.line(
+            "  Without reference runs the floor cannot be calibrated: what these runs share is taken for ordinary, and nothing is said with confidence.",
+        );
     }
     if d.floor > POOR_BASE {
         let known = if d.fitted_runs() == 1 {
@@ -117,45 +107,40 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
 
 /// What the base model leaves of each run.
 fn energies(d: &Diagnosis, sheet: &mut Sheet) {
-    sheet.line(format_args!("\nWhat the base model leaves, run by run"));
-    let rows = d.energy.iter().map(|row| {
-        vec![
-            row.id.clone(),
-            format!("{:.3}", 100.0 * row.explained),
-            format!("{:.4}", 100.0 * row.noise),
-            format!("{:.4}", 100.0 * row.structured),
-        ]
-    });
-    sheet.block(&table(&["run", "explained %", "noise %", "structured %"], rows));
+    sheet.line("\nWhat the base model leaves, run by run");
+    sheet.block(&table_of(
+        &d.energy,
+        &[
+            ("run", &|row| row.id.clone()),
+            ("explained %", &|row| format!("{:.3}", 100.0 * row.explained)),
+            ("noise %", &|row| format!("{:.4}", 100.0 * row.noise)),
+            ("structured %", &|row| format!("{:.4}", 100.0 * row.structured)),
+        ],
+    ));
 }
 
 /// What each cause could explain.
 fn screening(d: &Diagnosis, sheet: &mut Sheet) {
-    sheet.line(format_args!("\nScreening: drop of chi-square that each cause could bring, and the floor that surrogates with nothing missing reach"));
-    let mut order: Vec<usize> = (0..d.candidates.len()).collect();
+    sheet.line("\nScreening: drop of chi-square that each cause could bring, and the floor that surrogates with nothing missing reach");
     let ratio = |c: usize| d.finding.screen[c].score / d.finding.screen[c].threshold.max(1e-9);
+    let mut order: Vec<usize> = (0..d.candidates.len()).collect();
     order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
     let rows = order.iter().map(|&c| {
-        let s = &d.finding.screen[c];
-        let name = d.candidates[c].cause.id.to_owned();
-        if let Some(why) = &d.candidates[c].blocked {
-            return vec![name, "-".into(), "-".into(), "-".into(), why.clone()];
+        let (candidate, s) = (&d.candidates[c], &d.finding.screen[c]);
+        let name = candidate.id;
+        if let Some(why) = &candidate.blocked {
+            return vec![name.to_owned(), "-".into(), "-".into(), "-".into(), why.clone()];
         }
-        let name = match &d.candidates[c] {
-            Candidate { refuted: Some(_), .. } => format!("{name} (refuted)"),
-            Candidate { decoy: Some(_), .. } => format!("{name} (decoy)"),
-            _ => name,
+        let mark = match candidate {
+            Candidate { refuted: Some(_), .. } => " (refuted)",
+            Candidate { decoy: Some(_), .. } => " (decoy)",
+            _ => "",
         };
-        let alike = s.most_confused.map_or_else(String::new, |(b, cosine)| {
-            format!("{} {cosine:+.2}", d.candidates[b].cause.id)
-        });
-        vec![
-            name,
-            format!("{:.0}", s.score),
-            format!("{:.0}", s.threshold),
-            format!("{:.1}", 100.0 * s.absorbed),
-            alike,
-        ]
+        let alike = s
+            .most_confused
+            .map_or_else(String::new, |(b, cosine)| format!("{} {cosine:+.2}", d.candidates[b].id));
+        let [score, floor] = [s.score, s.threshold].map(|drop| format!("{drop:.0}"));
+        vec![format!("{name}{mark}"), score, floor, format!("{:.1}", 100.0 * s.absorbed), alike]
     });
     sheet.block(&table(&["cause", "score", "floor", "absorbed %", "most alike"], rows));
 }
@@ -163,7 +148,7 @@ fn screening(d: &Diagnosis, sheet: &mut Sheet) {
 /// The causes named, and the reasons of the verdict.
 fn causes(d: &Diagnosis, sheet: &mut Sheet) {
     for found in &d.finding.causes {
-        let cause = &d.candidates[found.candidate].cause;
+        let cause = &d.candidates[found.candidate];
         sheet.line(format_args!("  {}: {}", cause.id, cause.physics));
         for p in &found.parameters {
             sheet.line(format_args!(
@@ -187,9 +172,7 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
         for other in found.compared.iter().filter(|other| other.is_as_likely()) {
             sheet.line(format_args!(
                 "    {} in its place leaves {:.0} more; the discrimination threshold is {:.0}",
-                d.candidates[other.candidate].cause.id,
-                other.delta_chi2,
-                other.discrimination_threshold
+                d.candidates[other.candidate].id, other.delta_chi2, other.discrimination_threshold
             ));
         }
     }
@@ -224,10 +207,10 @@ fn gain(d: &Diagnosis, findings: &Findings, sheet: &mut Sheet) {
 fn next(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line(format_args!("Measure next: {} ({})", d.next.id, d.next.what));
     if d.next.resolves == Some(0.0) {
-        sheet.line(format_args!(
+        sheet.line(
             "  it comes nearest, but no experiment of the catalogue would tell these explanations apart: \
-             their effects are too alike at this strength, or the noise too large; repeat and average"
-        ));
+             their effects are too alike at this strength, or the noise too large; repeat and average",
+        );
     } else if let Some(share) = d.next.resolves {
         sheet.line(format_args!(
             "  as the explanations left are fitted, it would single out {:.0} % of them",
@@ -238,7 +221,7 @@ fn next(d: &Diagnosis, sheet: &mut Sheet) {
 
 /// The causes found, each with those that could stand in its place.
 fn places(d: &Diagnosis) -> String {
-    let id = |candidate: usize| d.candidates[candidate].cause.id;
+    let id = |candidate: usize| d.candidates[candidate].id;
     let one = |found: &Found| {
         let mut ids = vec![id(found.candidate)];
         ids.extend(found.alternatives.iter().map(|other| id(other.candidate)));
@@ -262,7 +245,7 @@ fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
             format!("Missing ({sure}): {names}; structure remains that it does not explain")
         }
         Verdict::Ambiguous => {
-            format!("Missing: {}; these data do not tell them apart", places(d))
+            format!("Missing: {}; these data do not distinguish them", places(d))
         }
         Verdict::Unknown => {
             "Something is missing, and no known cause explains it: no name is given.".to_owned()

@@ -10,14 +10,15 @@ use flap_aero::{AeroError, C81Airfoil};
 /// # Errors
 /// [`Fault::Refused`] with the line and column of the first thing that is not understood.
 pub fn read_airfoil(source: &Source) -> Result<C81Airfoil, Problem> {
-    C81Airfoil::read(&source.text).map_err(|error| match error {
-        AeroError::C81Text { line, column, expected } => {
-            let message = format!("expected {expected}, as in a C81 table");
-            Problem::new(Place::at(&source.name, line, column), Fault::Refused { message })
-        }
-        other => {
-            Problem::new(Place::file(&source.name), Fault::Refused { message: other.to_string() })
-        }
+    C81Airfoil::read(&source.text).map_err(|error| {
+        let (place, message) = match error {
+            AeroError::C81Text { line, column, expected } => (
+                Place::at(&source.name, line, column),
+                format!("expected {expected}, as in a C81 table"),
+            ),
+            other => (Place::file(&source.name), other.to_string()),
+        };
+        Problem::new(place, Fault::Refused { message })
     })
 }
 

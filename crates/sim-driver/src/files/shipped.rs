@@ -56,16 +56,6 @@ pub fn shipped(folder: &str) -> Folder {
     Folder::Embedded(Embedded::new(folder, FILES))
 }
 
-/// Content of a shipped file by its name, such as `fixtures/cases/paper_mu030.ron`.
-pub fn shipped_file(name: &str) -> Option<&'static [u8]> {
-    FILES.iter().find(|(n, _)| *n == name).map(|(_, bytes)| *bytes)
-}
-
-/// Name and content of every shipped file.
-pub fn shipped_files() -> &'static [(&'static str, &'static [u8])] {
-    FILES
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

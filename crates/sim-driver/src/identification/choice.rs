@@ -1,56 +1,26 @@
 //! Which of the fitted models is used.
 
-use super::{BenchIdentification, judge};
+use super::{BenchIdentification, dataset_place, judge};
 use crate::SimError;
-use crate::problem::{Fault, Place, Problem};
+use crate::choices::spelt;
+use crate::problem::{Fault, Problem};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use preisach_dyn::identify::{Estimate, Family, ModelRow, Order, Settings};
 use serde::Serialize;
 
-/// The model that `hhc identify` writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
-pub enum ModelChoice {
-    /// The one that cross-validation over the training runs chooses.
-    #[default]
-    Best,
-    /// A gain.
-    Linear,
-    /// A gain behind a first-order lag of the voltage.
-    LinearLag,
-    /// Bouc-Wen, rate-independent.
-    BoucWen,
-    /// Prandtl-Ishlinskii whose half-widths grow with the voltage rate.
-    PrandtlIshlinskii,
-    /// Prandtl-Ishlinskii stops: the output leads.
-    PrandtlStop,
-    /// Static Preisach.
-    StaticPreisach,
-    /// Dynamic Preisach, first order in time.
-    DynamicPreisachFirst,
-    /// Dynamic Preisach, second order in time: the paper's model.
-    DynamicPreisach,
-    /// Dynamic Preisach before creep.
-    DynamicPreisachCreep,
-    /// Static Preisach before accommodation, relaxation and creep.
-    StaticPreisachRelaxation,
-}
+/// The family of models that `hhc identify` writes; none leaves it to cross-validation.
+pub type ModelChoice = Option<Family>;
 
-impl ModelChoice {
-    /// The family asked for; none leaves it to cross-validation.
-    pub fn family(self) -> Option<Family> {
-        Some(match self {
-            Self::Best => return None,
-            Self::Linear => Family::Linear,
-            Self::LinearLag => Family::LinearLag,
-            Self::BoucWen => Family::BoucWen,
-            Self::PrandtlIshlinskii => Family::PrandtlIshlinskii,
-            Self::PrandtlStop => Family::PrandtlStop,
-            Self::StaticPreisach => Family::StaticPreisach,
-            Self::DynamicPreisachFirst => Family::DynamicPreisachFirst,
-            Self::DynamicPreisach => Family::DynamicPreisach,
-            Self::DynamicPreisachCreep => Family::DynamicPreisachCreep,
-            Self::StaticPreisachRelaxation => Family::StaticPreisachRelaxation,
-        })
-    }
+/// Reads a choice of models from the command line.
+pub(crate) fn model_parser() -> impl TypedValueParser<Value = ModelChoice> {
+    let spelling = |family: Family| spelt(&format!("{family:?}"), '-');
+    let best = PossibleValue::new("best")
+        .help("the one that cross-validation over the training runs chooses");
+    // the parser keeps its names as long as the program runs
+    let families =
+        Family::ALL.map(|family| PossibleValue::new(&*spelling(family).leak()).help(family.name()));
+    PossibleValuesParser::new(std::iter::once(best).chain(families))
+        .map(move |given| Family::ALL.into_iter().find(|family| spelling(*family) == given))
 }
 
 /// Why a model is used.
@@ -94,11 +64,11 @@ impl BenchIdentification {
     /// Nothing happens before [`Self::compare`].
     ///
     /// # Errors
-    /// [`SimError::Rejected`] if the model asked for could not be fitted, with the reason and the
+    /// [`SimError::Data`] if the model asked for could not be fitted, with the reason and the
     /// models that could; those of [`super::identify_bench`].
     pub fn pick(&mut self, choice: ModelChoice) -> Result<(), SimError> {
         let Some(table) = &self.comparison else { return Ok(()) };
-        let chosen = match choice.family() {
+        let chosen = match choice {
             Some(family) => table.rows.iter().find(|row| row.family == family),
             None => table.best(),
         };
@@ -116,13 +86,13 @@ impl BenchIdentification {
                     self.heading.subject().error(error),
                     if could.is_empty() { "none".to_owned() } else { could.join("; ") }
                 );
-                let place = Place::file(format!("{}/dataset.ron", self.heading.folder));
+                let place = dataset_place(&self.heading.folder);
                 return Err(Problem::new(place, Fault::Refused { message }).into());
             }
         };
         let reason = match (choice, cross_validation) {
-            (ModelChoice::Best, Some(_)) => PickReason::CrossValidation,
-            (ModelChoice::Best, None) => PickReason::NothingToChooseBy,
+            (None, Some(_)) => PickReason::CrossValidation,
+            (None, None) => PickReason::NothingToChooseBy,
             _ => PickReason::AskedFor,
         };
         let parameters = fitted.parameters.clone();

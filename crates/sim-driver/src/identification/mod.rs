@@ -4,21 +4,20 @@ mod choice;
 mod judge;
 mod summary;
 
+pub(crate) use choice::model_parser;
 pub use choice::{ModelChoice, Pick, PickReason};
-pub use judge::RunFit;
 pub(crate) use summary::fit_table;
-pub use summary::{FindingLine, IdentifyResult, ModelLine, ParameterLine};
+pub use summary::{FindingLine, IdentifyResult, ModelLine};
 
 use crate::SimError;
-use crate::files::{BenchData, LoopData, RunRole, RunUse};
+use crate::files::{BenchData, Channel, DATASET, LoopData, Run, RunRole, RunUse, limits};
 use crate::problem::Place;
-use crate::stored_actuator::{GainRule, StoredActuator, StoredChannels, StoredKind};
+use crate::stored_actuator::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
     RecordWindows, Settings, Subject, compare_models, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
-use std::ops::Range;
 
 /// Half peak to peak of the slowest full-scale loop where the data set gives no gain, deg.
 ///
@@ -46,19 +45,37 @@ pub struct DataHeading {
     pub gain_rule: Option<GainRule>,
 }
 
+/// The place of the description of a data folder.
+pub(crate) fn dataset_place(folder: &str) -> Place {
+    Place::file(format!("{folder}/{DATASET}"))
+}
+
 impl DataHeading {
+    /// Data of that title, folder and hash: voltages of an actuator, without the rule of its gain.
+    fn new([title, folder, content_hash]: [&String; 3], runs: &[Run]) -> Self {
+        Self {
+            title: title.clone(),
+            folder: folder.clone(),
+            content_hash: content_hash.clone(),
+            split_by_rule: runs.iter().any(|run| record_use(run).is_none()),
+            split_by_data: runs.iter().any(|run| record_use(run).is_some()),
+            channels: None,
+            range_rule: "command_range_V",
+            gain_rule: None,
+        }
+    }
+
     /// The words and units of messages about the data.
     pub fn subject(&self) -> Subject<'static> {
         self.channels.as_ref().map_or(Subject::Actuator, |channels| {
-            let unit =
-                |label: &str| crate::files::Channel::parse(label).map_or("", |c| c.unit.symbol);
+            let unit = |label: &str| Channel::parse(label).map_or("", |c| c.unit.symbol);
             Subject::Loop { input_unit: unit(&channels.input), output_unit: unit(&channels.output) }
         })
     }
 
     /// An error of the model or its identification, at the place of the data set.
     pub(crate) fn failed(&self, source: PreisachError) -> SimError {
-        let place = Place::file(format!("{}/dataset.ron", self.folder));
+        let place = dataset_place(&self.folder);
         match self.subject() {
             Subject::Actuator => SimError::Actuator { place, source },
             subject @ Subject::Loop { .. } => {
@@ -84,7 +101,7 @@ pub struct BenchIdentification {
     /// Which model that is, and why.
     pub pick: Pick,
     /// How the model fits each record.
-    pub fits: Vec<RunFit>,
+    pub fits: Vec<StoredFit>,
     /// The table of all models, once it was asked for.
     pub comparison: Option<ModelComparison>,
 }
@@ -98,38 +115,13 @@ pub struct BenchIdentification {
 /// # Errors
 /// [`SimError::Actuator`] at the place of the data set.
 pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentification, SimError> {
-    let fail = |source: PreisachError| SimError::Actuator {
-        place: Place::file(format!("{}/dataset.ron", data.folder)),
-        source,
-    };
-    let (low, high) = data.command_range_volt;
-    let range_volt = VoltageRange::new(low, high).map_err(fail)?;
     let (deg_per_um, gain_rule) = gain(data, base);
+    let of = [&data.title, &data.folder, &data.content_hash];
+    let heading = DataHeading { gain_rule: Some(gain_rule), ..DataHeading::new(of, &data.runs) };
+    let (low, high) = data.command_range_volt;
+    let range_volt = VoltageRange::new(low, high).map_err(|source| heading.failed(source))?;
     let settings = Settings { range_volt, deg_per_um, ..base.clone() };
-    let records: Vec<BenchRecord> = data
-        .runs
-        .iter()
-        .map(|run| BenchRecord {
-            id: run.id.clone(),
-            time_step_s: run.table.time_step_s,
-            voltage_volt: run.table.command_volt.clone(),
-            output_deg: run.table.displacement_um.iter().map(|x| deg_per_um * x).collect(),
-            record_use: record_use(run.use_as, run.role),
-            windows: windows(run.window_s, run.window()),
-            ..BenchRecord::default()
-        })
-        .collect();
-    let heading = DataHeading {
-        title: data.title.clone(),
-        folder: data.folder.clone(),
-        content_hash: data.content_hash.clone(),
-        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
-        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
-        channels: None,
-        range_rule: "command_range_V",
-        gain_rule: Some(gain_rule),
-    };
-    identified(heading, records, settings)
+    identified(heading, records(&data.runs, deg_per_um), settings)
 }
 
 /// Identifies a model of a generic loop, in the units of its data.
@@ -141,51 +133,45 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
 /// # Errors
 /// [`SimError::Loop`] at the place of the data set.
 pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentification, SimError> {
-    let [input, output] = data.channels.both().map(crate::files::Channel::label);
+    let [input, output] = data.channels.both().map(Channel::label);
     let heading = DataHeading {
-        title: data.title.clone(),
-        folder: data.folder.clone(),
-        content_hash: data.content_hash.clone(),
-        split_by_rule: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_none()),
-        split_by_data: data.runs.iter().any(|run| record_use(run.use_as, run.role).is_some()),
         channels: Some(StoredChannels { input, output }),
-        range_rule: data.input_range.rule(),
-        gain_rule: None,
+        range_rule: data.range_rule,
+        ..DataHeading::new([&data.title, &data.folder, &data.content_hash], &data.runs)
     };
-    let (low, high) = data.input_range.limits();
+    let (low, high) = data.input_range;
     let range_volt = VoltageRange::new(low, high).map_err(|source| heading.failed(source))?;
     let zero = FlapZero::AsRecorded;
     let settings = Settings { range_volt, deg_per_um: 1.0, zero, ..base.clone() };
-    let records = data
-        .runs
-        .iter()
-        .map(|run| BenchRecord {
-            id: run.id.clone(),
+    identified(heading, records(&data.runs, 1.0), settings)
+}
+
+/// The runs as an identification sees them, with a gain from their outputs.
+fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
+    let record = |run: &Run| {
+        // a window trains and judges alike; without one all of the run does
+        let window = run.entry.window_s.map(|_| run.window());
+        BenchRecord {
+            id: run.entry.id.clone(),
             time_step_s: run.table.time_step_s,
             voltage_volt: run.table.input.clone(),
-            output_deg: run.table.output.clone(),
-            record_use: record_use(run.use_as, run.role),
-            windows: windows(run.window_s, run.window()),
+            output_deg: run.table.output.iter().map(|output| gain * output).collect(),
+            record_use: record_use(run),
+            windows: RecordWindows { train: window.clone(), judge: window },
             ..BenchRecord::default()
-        })
-        .collect();
-    identified(heading, records, settings)
+        }
+    };
+    runs.iter().map(record).collect()
 }
 
 /// Side of the split that the data set fixes: what it says of the run, and otherwise that measured
 /// runs, which are there to be explained, never train.
-fn record_use(given: Option<RunUse>, role: RunRole) -> Option<RecordUse> {
-    match (given, role) {
+fn record_use(run: &Run) -> Option<RecordUse> {
+    match (run.entry.use_as, run.entry.role) {
         (Some(RunUse::Train), _) => Some(RecordUse::Train),
         (Some(RunUse::HeldOut), _) | (None, RunRole::Measured) => Some(RecordUse::HeldOut),
         (None, RunRole::Reference) => None,
     }
-}
-
-/// A window of a run trains and judges alike; without one all of the run does.
-fn windows(window_s: Option<(f64, f64)>, samples: Range<usize>) -> RecordWindows {
-    let window = window_s.map(|_| samples);
-    RecordWindows { train: window.clone(), judge: window }
 }
 
 /// Identifies from records and judges the models by them.
@@ -219,39 +205,19 @@ fn identified(
     })
 }
 
-/// Flap angle per displacement of a bench, deg/um, and where it comes from.
+/// Flap angle per displacement of a bench, deg/um, and where it comes from: the data set, else what makes
+/// the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`]; 1 if there is no slow loop.
 pub(crate) fn gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
-    match data.flap_deg_per_um {
-        Some(gain) => (gain, GainRule::DataSet),
-        None => quasi_static_gain(data, base),
+    if let Some(gain) = data.flap_deg_per_um {
+        return (gain, GainRule::DataSet);
     }
-}
-
-/// Gain that makes the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`], deg/um,
-/// and the rule; 1 if there is no slow loop at all.
-fn quasi_static_gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
-    let half_stroke = |displacement_um: &[f64]| {
-        let (low, high) = displacement_um
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
-        0.5 * (high - low)
+    let half_stroke_um = |(run, record): (&Run, BenchRecord)| {
+        let drive = record.drive();
+        let (low, high) = limits(&run.table.output[run.window()]);
+        (drive.is_periodic() && base.split.is_quasi_static(&drive)).then_some(0.5 * (high - low))
     };
-    let widest_um = data
-        .runs
-        .iter()
-        .filter(|run| {
-            let record = BenchRecord {
-                id: String::new(),
-                time_step_s: run.table.time_step_s,
-                voltage_volt: run.table.command_volt.clone(),
-                output_deg: run.table.displacement_um.clone(),
-                ..BenchRecord::default()
-            };
-            let drive = record.drive();
-            drive.is_periodic() && base.split.is_quasi_static(&drive)
-        })
-        .map(|run| half_stroke(&run.table.displacement_um[run.window()]))
-        .fold(0.0, f64::max);
+    let runs = data.runs.iter().zip(records(&data.runs, 1.0));
+    let widest_um = runs.filter_map(half_stroke_um).fold(0.0, f64::max);
     if widest_um > 0.0 {
         (QUASI_STATIC_AMPLITUDE_DEG / widest_um, GainRule::WidestSlowLoop)
     } else {
@@ -281,7 +247,7 @@ impl BenchIdentification {
             channels: self.heading.channels.clone(),
             gain: self.heading.gain_rule,
             settings: self.settings.clone(),
-            runs: self.fits.iter().map(RunFit::stored).collect(),
+            runs: self.fits.clone(),
             model: self.model.clone(),
         }
     }

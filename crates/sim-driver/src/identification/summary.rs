@@ -1,10 +1,9 @@
 //! What `hhc identify` prints.
 
-use super::{BenchIdentification, PickReason, RunFit};
+use super::{BenchIdentification, PickReason};
 use crate::files::significant;
-use crate::output::{Printable, Screen, Sheet, table};
+use crate::output::{Printable, Sheet, table};
 use crate::stored_actuator::{FitUse, GainRule, StoredChannels, StoredFit};
-use model_gap::Use;
 use preisach_dyn::identify::{
     Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings,
     Severity, Subject,
@@ -34,29 +33,32 @@ impl BenchIdentification {
             levels: self.pick.order.levels,
             picked_by: self.pick.reason,
             refinement: refined.then_some(self.identification.refinement),
-            parameters: self.pick.parameters.iter().map(ParameterLine::of).collect(),
-            runs: self.fits.iter().map(RunFit::stored).collect(),
-            models: self
-                .comparison
-                .as_ref()
-                .map_or_else(Vec::new, |table| model_lines(table, subject)),
-            findings: self.findings().iter().map(|f| FindingLine::of(f, subject)).collect(),
+            parameters: self.pick.parameters.clone(),
+            runs: self.fits.clone(),
+            models: self.comparison.as_ref().map_or_else(Vec::new, |t| model_lines(t, subject)),
+            findings: self.findings(),
             density_determined: found.density_determined,
             written_to,
         }
     }
 
     /// What the data cannot tell; whether the model describes them is said of the model picked.
-    fn findings(&self) -> Vec<Finding> {
-        let mut findings = self.identification.summary.findings.clone();
-        findings.retain(|finding| !matches!(finding, Finding::NotDescribed { .. }));
-        let trained = self.fits.iter().filter(|fit| fit.error.used == Use::Train);
-        let squares: Vec<f64> = trained.map(|fit| fit.error.misfit.nrmse.powi(2)).collect();
-        let unexplained = (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt();
-        if unexplained > MOST_UNEXPLAINED {
-            findings.push(Finding::NotDescribed { nrmse_percent: 100.0 * unexplained });
-        }
-        findings
+    fn findings(&self) -> Vec<FindingLine> {
+        let subject = self.heading.subject();
+        let nrmse_percent = rms_percent(&of_use(&self.fits, FitUse::Trained));
+        let not_described = (nrmse_percent > 100.0 * MOST_UNEXPLAINED)
+            .then_some(Finding::NotDescribed { nrmse_percent });
+        let of_data = self.identification.summary.findings.iter().cloned();
+        of_data
+            .filter(|finding| !matches!(finding, Finding::NotDescribed { .. }))
+            .chain(not_described)
+            .map(|finding| FindingLine {
+                severity: finding.severity(),
+                message: subject.finding(&finding),
+                remedy: subject.remedy(&finding),
+                finding,
+            })
+            .collect()
     }
 
     /// How the runs were split, in words.
@@ -79,6 +81,17 @@ impl BenchIdentification {
     }
 }
 
+/// The runs of one side of the split.
+fn of_use(runs: &[StoredFit], use_as: FitUse) -> Vec<&StoredFit> {
+    runs.iter().filter(|run| run.use_as == use_as).collect()
+}
+
+/// RMS of the NRMSE of runs, percent; 0 of none.
+fn rms_percent(runs: &[&StoredFit]) -> f64 {
+    let squares: f64 = runs.iter().map(|run| run.nrmse_percent.powi(2)).sum();
+    (squares / runs.len().max(1) as f64).sqrt()
+}
+
 /// One family of models in the table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelLine {
@@ -98,27 +111,6 @@ pub struct ModelLine {
     pub worst_held_out_percent: Option<f64>,
     /// Why there is no fit.
     pub failure: Option<String>,
-}
-
-/// One parameter of the model found by output error.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ParameterLine {
-    /// Its name, with its unit.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Its standard deviation; none if the records do not determine it.
-    pub std_deviation: Option<f64>,
-}
-
-impl ParameterLine {
-    fn of(estimate: &Estimate) -> Self {
-        Self {
-            name: estimate.name.clone(),
-            value: estimate.value,
-            std_deviation: Some(estimate.std_deviation).filter(|s| s.is_finite()),
-        }
-    }
 }
 
 fn model_lines(table: &ModelComparison, subject: Subject<'_>) -> Vec<ModelLine> {
@@ -152,17 +144,6 @@ pub struct FindingLine {
     pub remedy: &'static str,
 }
 
-impl FindingLine {
-    fn of(finding: &Finding, subject: Subject<'_>) -> Self {
-        Self {
-            severity: finding.severity(),
-            finding: finding.clone(),
-            message: subject.finding(finding),
-            remedy: subject.remedy(finding),
-        }
-    }
-}
-
 /// What `hhc identify` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct IdentifyResult {
@@ -194,8 +175,9 @@ pub struct IdentifyResult {
     /// What the output-error refinement of all its maps did; none for a model whose parameters alone
     /// were refined.
     pub refinement: Option<Refinement>,
-    /// Parameters found by output error, as the fit holds them.
-    pub parameters: Vec<ParameterLine>,
+    /// Parameters found by output error, as the fit holds them; a deviation is null in JSON if the
+    /// records do not determine the parameter.
+    pub parameters: Vec<Estimate>,
     /// Fit of every run.
     pub runs: Vec<StoredFit>,
     /// All families of models on the same split; empty if they were not compared.
@@ -215,40 +197,33 @@ const MOST_FINDINGS: usize = 4;
 
 impl Printable for IdentifyResult {
     fn text(&self) -> String {
-        let mut screen = Screen::default();
+        let mut screen = Sheet::default();
         screen.line(&self.title);
         screen.labelled("Model", &format!("{}, {}", self.model, self.picked()));
         if self.channels.is_none() {
             let gain = format!("{:.6} deg/um, {}", self.deg_per_um, self.gain_rule);
             screen.labelled("Gain", &gain);
         }
-        let of = |use_as: FitUse| -> Vec<&StoredFit> {
-            self.runs.iter().filter(|run| run.use_as == use_as).collect()
-        };
-        let mut held_out = of(FitUse::HeldOut);
+        let mut held_out = of_use(&self.runs, FitUse::HeldOut);
         held_out.sort_by(|a, b| b.nrmse_percent.total_cmp(&a.nrmse_percent));
-        for (label, runs) in [("Held out", &held_out), ("Trained", &of(FitUse::Trained))] {
-            let squares: f64 = runs.iter().map(|run| run.nrmse_percent.powi(2)).sum();
-            let rms = (squares / runs.len().max(1) as f64).sqrt();
+        let trained = of_use(&self.runs, FitUse::Trained);
+        for (label, runs) in [("Held out", &held_out), ("Trained", &trained)] {
             let worst = runs.iter().max_by(|a, b| a.nrmse_percent.total_cmp(&b.nrmse_percent));
-            screen.labelled(
-                label,
-                &worst.map_or_else(
-                    || "no run".to_owned(),
-                    |worst| {
-                        format!(
-                            "{} runs, NRMSE {rms:.2} % rms, at most {:.2} % ({})",
-                            runs.len(),
-                            worst.nrmse_percent,
-                            worst.id
-                        )
-                    },
+            let text = match worst {
+                Some(worst) => format!(
+                    "{} runs, NRMSE {:.2} % rms, at most {:.2} % ({})",
+                    runs.len(),
+                    rms_percent(runs),
+                    worst.nrmse_percent,
+                    worst.id
                 ),
-            );
+                None => "no run".to_owned(),
+            };
+            screen.labelled(label, &text);
         }
         if !self.models.is_empty() {
             screen.line("\nModels on the same split, NRMSE in %; * chosen by the training runs left out of its fit");
-            screen.block(&short_model_table(&self.models));
+            screen.block(&model_table(&self.models, false));
         }
         if !held_out.is_empty() {
             screen.line("\nHeld-out runs, the worst first");
@@ -259,12 +234,11 @@ impl Printable for IdentifyResult {
             screen.labelled(&format!("{:?}", line.severity), &line.message);
         }
         screen.labelled("NRMSE", "rms error over the standard deviation of the measured output");
-        if let Some(path) = &self.written_to {
-            let what = if self.channels.is_some() { "Model" } else { "Actuator" };
-            screen.line(&format!("{what} written to {path}"));
+        if let Some(written) = self.written() {
+            screen.line(&written);
             screen.line("Every run and parameter: --details");
         }
-        screen.finish()
+        screen.screen()
     }
 
     fn details(&self) -> String {
@@ -298,7 +272,7 @@ impl Printable for IdentifyResult {
         for (title, use_as) in
             [("Trained runs", FitUse::Trained), ("Held-out runs", FitUse::HeldOut)]
         {
-            let runs: Vec<&StoredFit> = self.runs.iter().filter(|r| r.use_as == use_as).collect();
+            let runs = of_use(&self.runs, use_as);
             if runs.is_empty() {
                 sheet.line(format_args!("\n{title}: none"));
                 continue;
@@ -320,7 +294,7 @@ impl Printable for IdentifyResult {
         }
         if !self.models.is_empty() {
             sheet.line(format_args!("\nModels on the same split, NRMSE in %"));
-            sheet.block(&model_table(&self.models));
+            sheet.block(&model_table(&self.models, true));
             sheet.line(format_args!(
                 "{} Held-out runs take no part in the choice.",
                 if self.models.iter().any(|m| m.cross_validation_percent.is_some()) {
@@ -340,15 +314,20 @@ impl Printable for IdentifyResult {
         for line in &self.findings {
             sheet.line(format_args!("{:?}: {}\n  {}", line.severity, line.message, line.remedy));
         }
-        if let Some(path) = &self.written_to {
-            let what = if self.channels.is_some() { "Model" } else { "Actuator" };
-            sheet.line(format_args!("{what} written to {path}"));
+        if let Some(written) = self.written() {
+            sheet.line(format_args!("{written}"));
         }
         sheet.finish()
     }
 }
 
 impl IdentifyResult {
+    /// Where the model was written to, in words.
+    fn written(&self) -> Option<String> {
+        let what = if self.channels.is_some() { "Model" } else { "Actuator" };
+        self.written_to.as_ref().map(|path| format!("{what} written to {path}"))
+    }
+
     /// Why the model is the one judged, in words.
     fn picked(&self) -> &'static str {
         match self.picked_by {
@@ -362,66 +341,52 @@ impl IdentifyResult {
     }
 }
 
-fn parameter_table(parameters: &[ParameterLine]) -> String {
+fn parameter_table(parameters: &[Estimate]) -> String {
     table(
         &["parameter", "value", "std deviation"],
         parameters.iter().map(|p| {
-            let deviation = p
-                .std_deviation
-                .map_or_else(|| "not determined".to_owned(), |s| significant(s, 2).to_string());
+            let deviation = if p.std_deviation.is_finite() {
+                significant(p.std_deviation, 2).to_string()
+            } else {
+                "not determined".to_owned()
+            };
             vec![p.name.clone(), significant(p.value, 4).to_string(), deviation]
         }),
     )
 }
 
-fn model_table(models: &[ModelLine]) -> String {
-    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:.2}"));
+/// The table of models; that of a screen is without the levels of their memories.
+fn model_table(models: &[ModelLine], has_levels: bool) -> String {
+    let levels = usize::from(has_levels);
+    let header = ["levels", "left out", "trained", "held out", "worst"];
     table(
-        &["model", "levels", "left out", "trained", "held out", "worst held out"],
+        &[&["model"], &header[1 - levels..]].concat(),
         models.iter().map(|m| {
-            vec![
-                format!("{}{}", if m.chosen { "* " } else { "" }, m.model),
-                m.levels.to_string(),
-                optional(m.cross_validation_percent),
-                optional(m.trained_percent),
-                optional(m.held_out_percent),
-                optional(m.worst_held_out_percent),
-            ]
+            let model = format!("{}{}", if m.chosen { "* " } else { "" }, m.model);
+            let percents = [
+                m.cross_validation_percent,
+                m.trained_percent,
+                m.held_out_percent,
+                m.worst_held_out_percent,
+            ];
+            let levels = std::iter::repeat_n(m.levels.to_string(), levels);
+            let percents = percents.map(|v| optional(v, |v| format!("{v:.2}")));
+            std::iter::once(model).chain(levels).chain(percents).collect()
         }),
     )
 }
 
-/// The table of models that fits a screen.
-fn short_model_table(models: &[ModelLine]) -> String {
-    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:.2}"));
-    table(
-        &["model", "left out", "trained", "held out", "worst"],
-        models.iter().map(|m| {
-            vec![
-                format!("{}{}", if m.chosen { "* " } else { "" }, m.model),
-                optional(m.cross_validation_percent),
-                optional(m.trained_percent),
-                optional(m.held_out_percent),
-                optional(m.worst_held_out_percent),
-            ]
-        }),
-    )
+fn optional(value: Option<f64>, text: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "-".into(), text)
 }
 
 /// The worst runs.
 fn short_fit_table(runs: &[&StoredFit]) -> String {
-    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
     table(
         &["run", "Hz", "amplitude", "NRMSE %", "amplitude error %", "phase error deg"],
-        runs.iter().take(MOST_RUNS).map(|r| {
-            vec![
-                r.id.clone(),
-                format!("{}", significant(r.frequency_hz, 3)),
-                format!("{}", significant(r.amplitude_volt, 3)),
-                format!("{:.2}", r.nrmse_percent),
-                optional(r.amplitude_error_percent),
-                optional(r.phase_error_deg),
-            ]
+        runs.iter().take(MOST_RUNS).map(|run| {
+            let (head, [.., amplitude, phase, _]) = fit_cells(run);
+            head.into_iter().chain([amplitude, phase]).collect()
         }),
     )
 }
@@ -446,8 +411,6 @@ fn failures(models: &[ModelLine]) -> Vec<String> {
 ///
 /// `input` heads the column of the input's amplitude.
 pub(crate) fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> String {
-    let optional = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:+.2}"));
-    let plain = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{v:.3}"));
     table(
         &[
             "run",
@@ -461,19 +424,31 @@ pub(crate) fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &s
             "phase deg",
             "structured %",
         ],
-        runs.map(|r| {
-            vec![
-                r.id.clone(),
-                format!("{}", significant(r.frequency_hz, 3)),
-                format!("{}", significant(r.amplitude_volt, 3)),
-                format!("{:.2}", r.nrmse_percent),
-                plain(r.range_percent),
-                r.offset.map_or_else(|| "-".into(), |v| significant(v, 2).to_string()),
-                format!("{:.1}", r.static_nrmse_percent),
-                optional(r.amplitude_error_percent),
-                optional(r.phase_error_deg),
-                plain(r.structured_percent),
-            ]
+        runs.map(|run| {
+            let (head, rest) = fit_cells(run);
+            head.into_iter().chain(rest).collect()
         }),
+    )
+}
+
+/// The cells of [`fit_table`]: first what is shown of every run, then the rest.
+fn fit_cells(run: &StoredFit) -> ([String; 4], [String; 6]) {
+    let signed = |v: f64| format!("{v:+.2}");
+    let plain = |v: f64| format!("{v:.3}");
+    (
+        [
+            run.id.clone(),
+            significant(run.frequency_hz, 3).to_string(),
+            significant(run.amplitude_volt, 3).to_string(),
+            format!("{:.2}", run.nrmse_percent),
+        ],
+        [
+            optional(run.range_percent, plain),
+            optional(run.offset, |v| significant(v, 2).to_string()),
+            format!("{:.1}", run.static_nrmse_percent),
+            optional(run.amplitude_error_percent, signed),
+            optional(run.phase_error_deg, signed),
+            optional(run.structured_percent, plain),
+        ],
     )
 }

@@ -1,58 +1,45 @@
 //! Loads along a blade as a table and as CSV, and hub loads of dissimilar blades as a table.
 
-use crate::output::table;
+use crate::output::{table, table_of};
 use rotor_base::RotorScales;
 use rotor_response::StationLoads;
-use rotor_study::UnlikeLine;
-use rotor_study::{MomentLine, StationLine};
+use rotor_study::{MomentLine, StationLine, UnlikeLine};
 use std::fmt::Write as _;
+
+/// The three moments at a station, by name.
+fn moments(line: &StationLine) -> [(&'static str, &MomentLine); 3] {
+    [
+        ("flap", &line.flap_newton_metre),
+        ("lag", &line.lag_newton_metre),
+        ("torsion", &line.torsion_newton_metre),
+    ]
+}
 
 /// The moments at every station as a table: force summation beside the statics of the deflected blade and the curvature.
 pub(crate) fn moments_table(lines: &[StationLine]) -> String {
+    let number = |value: f64| format!("{value:.2}");
+    let per_rev = |moment: &MomentLine, n: usize| {
+        let amplitude = moment.force_summation.harmonics.get(n - 1).map(|[c, s]| c.hypot(*s));
+        amplitude.map_or_else(String::new, number)
+    };
     let rows = lines.iter().flat_map(|line| {
-        [
-            ("flap", &line.flap_newton_metre),
-            ("lag", &line.lag_newton_metre),
-            ("torsion", &line.torsion_newton_metre),
-        ]
-        .map(|(name, moment)| {
-            let number = |value: f64| format!("{value:.2}");
-            let MomentLine { force_summation, deflected_statics, curvature } = moment;
-            let [summed, deflected, curved] = [force_summation, deflected_statics, curvature];
-            let per_rev = |n: usize| {
-                let amplitude = summed.harmonics.get(n - 1).map(|[c, s]| c.hypot(*s));
-                amplitude.map_or_else(String::new, number)
-            };
-            vec![
-                format!("{:.3} R {name}", line.station_r),
-                number(summed.mean),
-                per_rev(1),
-                per_rev(2),
-                per_rev(3),
-                per_rev(4),
-                number(summed.peak_to_peak),
-                number(deflected.mean),
-                number(deflected.peak_to_peak),
-                number(curved.mean),
-                number(curved.peak_to_peak),
-            ]
-        })
+        moments(line).map(|(name, moment)| (format!("{:.3} R {name}", line.station_r), moment))
     });
-    let moments = table(
-        &[
-            "force summation",
-            "mean",
-            "1/rev",
-            "2/rev",
-            "3/rev",
-            "4/rev",
-            "peak to peak",
-            "statics mean",
-            "p-p",
-            "curvature mean",
-            "p-p",
-        ],
+    let moments = table_of(
         rows,
+        &[
+            ("force summation", &|(name, _)| name.clone()),
+            ("mean", &|(_, m)| number(m.force_summation.mean)),
+            ("1/rev", &|(_, m)| per_rev(m, 1)),
+            ("2/rev", &|(_, m)| per_rev(m, 2)),
+            ("3/rev", &|(_, m)| per_rev(m, 3)),
+            ("4/rev", &|(_, m)| per_rev(m, 4)),
+            ("peak to peak", &|(_, m)| number(m.force_summation.peak_to_peak)),
+            ("statics mean", &|(_, m)| number(m.deflected_statics.mean)),
+            ("p-p", &|(_, m)| number(m.deflected_statics.peak_to_peak)),
+            ("curvature mean", &|(_, m)| number(m.curvature.mean)),
+            ("p-p", &|(_, m)| number(m.curvature.peak_to_peak)),
+        ],
     );
     moments + &curvature_gap(lines).unwrap_or_default()
 }
@@ -63,16 +50,15 @@ const WIDE_GAP: f64 = 0.05;
 
 /// How far the curvature of the modes kept is from the load, where that is far.
 fn curvature_gap(lines: &[StationLine]) -> Option<String> {
-    let of_line = |line: &StationLine, k: usize| {
-        let moment =
-            [&line.flap_newton_metre, &line.lag_newton_metre, &line.torsion_newton_metre][k];
-        (moment.force_summation.mean, moment.curvature.mean)
-    };
     let mut widest = (WIDE_GAP, None);
-    for (k, name) in ["flap", "lag", "torsion"].into_iter().enumerate() {
-        let most = lines.iter().map(|line| of_line(line, k).0.abs()).fold(0.0, f64::max);
+    for k in 0..3 {
+        let means = |line: &StationLine| {
+            let (name, moment) = moments(line)[k];
+            (name, moment.force_summation.mean, moment.curvature.mean)
+        };
+        let most = lines.iter().map(|line| means(line).1.abs()).fold(0.0, f64::max);
         for line in lines {
-            let (summed, curved) = of_line(line, k);
+            let (name, summed, curved) = means(line);
             let gap = (curved - summed).abs() / most;
             if gap > widest.0 {
                 widest = (gap, Some((name, line.station_r)));
@@ -88,20 +74,16 @@ fn curvature_gap(lines: &[StationLine]) -> Option<String> {
 
 /// The loads at every azimuth and station as CSV text, every digit kept.
 pub fn blade_loads_csv(loads: &[StationLoads], scales: &RotorScales) -> String {
-    let mut text = String::from("azimuth_deg,station_r");
-    for force in ["axial_force", "inplane_shear", "out_of_plane_shear"] {
-        // writing to a string cannot fail
-        let _ = write!(text, ",{force}_N");
-    }
-    for method in ["force_summation", "deflected_statics", "curvature"] {
-        for moment in ["flap_moment", "lag_moment", "torsion"] {
-            let _ = write!(text, ",{moment}_{method}_N_m");
-        }
-    }
-    text.push('\n');
+    let forces = ["axial_force", "inplane_shear", "out_of_plane_shear"];
+    let forces = forces.map(|force| format!(",{force}_N")).concat();
+    let methods = ["force_summation", "deflected_statics", "curvature"].map(|method| {
+        ["flap_moment", "lag_moment", "torsion"].map(|m| format!(",{m}_{method}_N_m")).concat()
+    });
+    let mut text = format!("azimuth_deg,station_r{forces}{}\n", methods.concat());
     let [newton, newton_metre] = [scales.force_newton(), scales.moment_newton_metre()];
     for at in loads {
         for (p, azimuth) in at.azimuths_rad.iter().enumerate() {
+            // writing to a string cannot fail
             let _ = write!(text, "{:e},{}", azimuth.to_degrees(), at.station);
             let moments = [&at.moments, &at.statics, &at.curvature];
             let columns = at.forces.values[p]

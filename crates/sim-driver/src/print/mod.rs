@@ -2,5 +2,4 @@
 
 pub mod blade_loads;
 pub mod modes;
-pub mod study;
 pub mod wake;

@@ -2,14 +2,13 @@
 
 use crate::SimError;
 use crate::case::LoadedCase;
-use crate::output::{Printable, Sheet, table};
+use crate::output::{Printable, Sheet, csv_of, table};
 use rotor_study::{ModesQuestion, ModesResult, numbered, rotating_modes};
-use std::fmt::Write as _;
 
 /// Rotating modes of a case's blade, with plausibility warnings about the blade.
 ///
 /// # Errors
-/// [`SimError::Blade`].
+/// [`SimError::Study`].
 pub fn modes_of_case(
     loaded: &LoadedCase,
     question: &ModesQuestion,
@@ -23,22 +22,23 @@ pub fn modes_of_case(
 
 /// The fan plot as a table: one row for each mode at each rotor speed.
 pub fn fan_csv(result: &ModesResult) -> String {
-    let mut text = String::from(
-        "rotor_speed_rad_s,mode,frequency_hz,per_rev,flap_share,lag_share,torsion_share,axial_share\n",
-    );
-    for point in &result.fan {
-        for (name, mode) in numbered(&point.modes).zip(&point.modes) {
-            let per_rev = mode.per_rev.map_or_else(String::new, |p| format!("{p:.9}"));
-            let [flap, lag, torsion, axial] = mode.energy;
-            // writing to a string cannot fail
-            let _ = writeln!(
-                text,
-                "{},{name},{:.9},{per_rev},{flap:.6},{lag:.6},{torsion:.6},{axial:.6}",
-                point.rotor_speed_rad_s, mode.hz
-            );
-        }
-    }
-    text
+    let rows = result.fan.iter().flat_map(|point| {
+        let named = numbered(&point.modes).zip(&point.modes);
+        named.map(move |(name, mode)| (point.rotor_speed_rad_s, name, mode))
+    });
+    csv_of(
+        rows,
+        &[
+            ("rotor_speed_rad_s", &|(speed, ..)| speed.to_string()),
+            ("mode", &|(_, name, _)| name.clone()),
+            ("frequency_hz", &|(.., mode)| format!("{:.9}", mode.hz)),
+            ("per_rev", &|(.., mode)| mode.per_rev.map_or(String::new(), |p| format!("{p:.9}"))),
+            ("flap_share", &|(.., mode)| format!("{:.6}", mode.energy[0])),
+            ("lag_share", &|(.., mode)| format!("{:.6}", mode.energy[1])),
+            ("torsion_share", &|(.., mode)| format!("{:.6}", mode.energy[2])),
+            ("axial_share", &|(.., mode)| format!("{:.6}", mode.energy[3])),
+        ],
+    )
 }
 
 impl Printable for ModesResult {

@@ -2,9 +2,8 @@
 
 use crate::SimError;
 use crate::case::LoadedCase;
-use crate::output::{Printable, Sheet, table};
-use rotor_study::StudyError;
-use rotor_study::{FoundWake, WakeResult, WakeUpdateLine, wake_of_case};
+use crate::output::{Printable, Sheet, csv_of, table_of};
+use rotor_study::{FoundWake, HubLoads, StudyError, WakeResult, WakeUpdateLine, wake_of_case};
 use rotor_wake::{
     CirculationMap, FilamentStates, FreeWake, InducedInflow, SegmentState, Vec3, WakeError,
     WakeFilament,
@@ -40,15 +39,16 @@ fn files_of(
     inflow: &InducedInflow,
     updates: &[WakeUpdateLine],
 ) -> Result<WakeFiles, WakeError> {
-    let mut convergence = String::from("azimuths,displacement_r,inflow_change,part,theta0_deg\n");
-    for u in updates {
-        let theta0 = u.theta0_deg.map(|t| t.to_string()).unwrap_or_default();
-        let _ = writeln!(
-            convergence,
-            "{},{:e},{:e},{},{theta0}",
-            u.azimuths, u.displacement_r, u.inflow_change, u.part
-        );
-    }
+    let convergence = csv_of(
+        updates,
+        &[
+            ("azimuths", &|u| u.azimuths.to_string()),
+            ("displacement_r", &|u| format!("{:e}", u.displacement_r)),
+            ("inflow_change", &|u| format!("{:e}", u.inflow_change)),
+            ("part", &|u| u.part.to_string()),
+            ("theta0_deg", &|u| u.theta0_deg.map(|t| t.to_string()).unwrap_or_default()),
+        ],
+    );
     let states = [wake.vortex_states(circulation)?, wake.trailer_states(circulation)?];
     Ok(vec![
         ("wake_geometry.csv", geometry_csv(wake, &states)),
@@ -58,13 +58,17 @@ fn files_of(
     ])
 }
 
-/// Where a filament carries vorticity, and what, at a node: that of the segment behind it, of the last one at its end; none
-/// younger than `first`, where the near wake stands for it.
-fn at_node(states: &[SegmentState], k: usize, first: usize) -> SegmentState {
-    if k < first {
-        return SegmentState::default();
-    }
-    states.get(k.min(states.len().saturating_sub(1))).copied().unwrap_or_default()
+/// What a filament carries at its nodes: that of the segment behind a node, of the last one at its end; nothing where the
+/// near wake stands for it.
+fn at_nodes(
+    filament: &WakeFilament,
+    states: &[Vec<SegmentState>],
+    azimuth: usize,
+) -> Vec<SegmentState> {
+    let states = &states[azimuth];
+    let last = states.len().saturating_sub(1);
+    let at = |k: usize| states.get(k.min(last)).copied().filter(|_| k >= filament.first_age);
+    (0..filament.points[azimuth].len()).map(|k| at(k).unwrap_or_default()).collect()
 }
 
 /// One row per node: the rolled-up vortices, from the age on at which they carry vorticity, and the trailers of the near
@@ -77,11 +81,11 @@ fn geometry_csv(wake: &FreeWake, [far, near]: &[Vec<FilamentStates>; 2]) -> Stri
     let kinds = [("near", wake.near_wake(), near), ("rolled_up", wake.vortices(), far)];
     for (kind, filaments, states) in kinds {
         for (j, (filament, states)) in filaments.iter().zip(states).enumerate() {
-            for (i, (points, states)) in filament.points.iter().zip(states).enumerate() {
-                for (k, [x, y, z]) in points.iter().enumerate().skip(filament.first_age) {
+            for (i, points) in filament.points.iter().enumerate() {
+                let nodes = points.iter().zip(at_nodes(filament, states, i)).enumerate();
+                for (k, ([x, y, z], state)) in nodes.skip(filament.first_age) {
                     let (azimuth, age, r) = (i as f64 * step, k as f64 * step, filament.release_r);
-                    let SegmentState { circulation, core_radius } =
-                        at_node(states, k, filament.first_age);
+                    let SegmentState { circulation, core_radius } = state;
                     let _ = writeln!(
                         out,
                         "{kind},{j},{r},{azimuth},{age},{x:.6},{y:.6},{z:.6},{circulation:.8},{core_radius:.6}"
@@ -125,7 +129,7 @@ fn vtk(
     let azimuths = wake.settings().azimuths;
     let step_deg = wake.settings().step_rad().to_degrees();
     let core_radius = wake.settings().core.near_radius;
-    let (near, far): (Vec<WakeFilament>, Vec<WakeFilament>) = (wake.near_wake(), wake.vortices());
+    let (near, far) = (wake.near_wake(), wake.vortices());
     let mut lines: Vec<VtkLine<'_>> = Vec::new();
     for b in 0..wake.rotor().blades() {
         let i = b * azimuths / wake.rotor().blades();
@@ -136,10 +140,8 @@ fn vtk(
         lines.push(VtkLine { points: wake.lines().at(i), step_deg: 0.0, kind: 0, states });
         for (kind, filaments, of) in [(1, &near, near_states), (2, &far, far_states)] {
             for (filament, states) in filaments.iter().zip(of) {
-                let points = &filament.points[i];
-                let first = filament.first_age;
-                let states = (0..points.len()).map(|k| at_node(&states[i], k, first)).collect();
-                lines.push(VtkLine { points, step_deg, kind, states });
+                let states = at_nodes(filament, states, i);
+                lines.push(VtkLine { points: &filament.points[i], step_deg, kind, states });
             }
         }
     }
@@ -186,7 +188,7 @@ impl Printable for WakeResult {
             match (self.controls_deg, self.settled) {
                 (Some(_), true) => "settled with the trim",
                 (None, true) => "circulation prescribed, settled",
-                (Some(_), false) if self.parted => "parted, the last good state",
+                (Some(_), false) if self.diverged => "diverged, the last good state",
                 (Some(_), false) => "not settled",
                 (None, false) => "circulation prescribed, not settled",
             }
@@ -213,23 +215,21 @@ impl Printable for WakeResult {
             ));
         }
         if let Some(amplitudes) = self.hub_amplitudes {
-            let names = ["FX", "FY", "FZ", "MX", "MY", "MZ"];
+            let loads = HubLoads::NAMES.iter().zip(amplitudes);
             let hub: Vec<String> =
-                names.iter().zip(amplitudes).map(|(n, a)| format!("{n} {a:.4e}")).collect();
+                loads.map(|(name, a)| format!("{} {a:.4e}", name.to_uppercase())).collect();
             sheet.line(format_args!("Hub loads  at the blade number per rev: {}", hub.join(", ")));
         }
-        sheet.line(format_args!(""));
-        sheet.block(&table(
-            &["steps", "displacement R", "inflow change", "part", "theta0 deg"],
-            self.updates.iter().map(|u| {
-                vec![
-                    u.azimuths.to_string(),
-                    format!("{:.2e}", u.displacement_r),
-                    format!("{:.2e}", u.inflow_change),
-                    format!("{:.3}", u.part),
-                    u.theta0_deg.map_or_else(String::new, |t| format!("{t:.5}")),
-                ]
-            }),
+        sheet.line("");
+        sheet.block(&table_of(
+            &self.updates,
+            &[
+                ("steps", &|u| u.azimuths.to_string()),
+                ("displacement R", &|u| format!("{:.2e}", u.displacement_r)),
+                ("inflow change", &|u| format!("{:.2e}", u.inflow_change)),
+                ("part", &|u| format!("{:.3}", u.part)),
+                ("theta0 deg", &|u| u.theta0_deg.map_or(String::new(), |t| format!("{t:.5}"))),
+            ],
         ));
         sheet.finish()
     }

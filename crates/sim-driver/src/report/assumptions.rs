@@ -1,49 +1,19 @@
 //! What a case assumes, in words and as a table with units.
 
+use super::Section;
 use crate::case::Case;
+use crate::choices::spelt;
+use rotor_study::case::{Field, Section as CaseSection, Value as FieldValue, Visitor};
 use serde_json::Value;
 
-/// One thing that a case says.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Assumption {
-    /// Part of the case, such as `rotor`.
-    pub part: String,
-    /// The quantity, in words.
-    pub quantity: String,
-    /// Its value.
-    pub value: String,
-    /// Its unit; empty without one.
-    pub unit: &'static str,
-}
-
-/// Endings of the names of fields and the units they stand for, the longer ones first.
-const UNITS: [(&str, &str); 13] = [
-    ("_per_V2", "1/V^2"),
-    ("_kg_m", "kg/m"),
-    ("_m_s", "m/s"),
-    ("_rpm", "rev/min"),
-    ("_deg", "deg"),
-    ("_hz", "Hz"),
-    ("_volt", "V"),
-    ("_V", "V"),
-    ("_W", "W"),
-    ("_watt", "W"),
-    ("_percent", "%"),
-    ("_m", "m"),
-    ("_r", "R"),
-];
-
-/// Units of fields whose names end in none.
-const NAMED_UNITS: [(&str, &str); 5] = [
-    ("ei_flap", "m0 Omega^2 R^4"),
-    ("ei_lag", "m0 Omega^2 R^4"),
-    ("gj", "m0 Omega^2 R^4"),
-    ("ea", "m0 Omega^2 R^2"),
-    ("drag_area", "pi R^2"),
+/// Endings of the names of fields that say the unit.
+const ENDINGS: [&str; 13] = [
+    "_per_V2", "_kg_m", "_m_s", "_rpm", "_deg", "_hz", "_volt", "_V", "_W", "_watt", "_percent",
+    "_m", "_r",
 ];
 
 /// Models whose names are not words put together.
-const NAMES: [(&str, &str); 15] = [
+const NAMES: [(&str, &str); 16] = [
     ("HariharanLeishman", "form of Hariharan and Leishman"),
     ("Calibrated", "calibrated to indicial solutions"),
     ("QuasiSteady", "quasi-steady"),
@@ -52,7 +22,8 @@ const NAMES: [(&str, &str); 15] = [
     ("Uniform", "uniform, momentum theory"),
     ("FreeWake", "free wake, converged with the trim"),
     ("Vatistas", "core of Vatistas"),
-    ("Full", "linear flap-lag-torsion couplings"),
+    ("Linear", "linear, flap and lag apart"),
+    ("Full", "second-order flap-lag-torsion couplings"),
     ("Moderate", "moderate deflections"),
     ("Bench", "identified from bench data"),
     ("LocalMach", "local Mach number"),
@@ -63,17 +34,8 @@ const NAMES: [(&str, &str); 15] = [
 
 /// The name of a model in words: `FollowsTip` as `follows tip`.
 fn words(name: &str) -> String {
-    if let Some((_, words)) = NAMES.iter().find(|(own, _)| *own == name) {
-        return (*words).to_owned();
-    }
-    let mut text = String::new();
-    for c in name.chars() {
-        if c.is_uppercase() && !text.is_empty() {
-            text.push(' ');
-        }
-        text.extend(c.to_lowercase());
-    }
-    text.replace('_', " ")
+    let known = NAMES.iter().find(|(own, _)| *own == name);
+    known.map_or_else(|| spaced(&spelt(name, ' ')), |(_, words)| (*words).to_owned())
 }
 
 /// The choice that a field of a case makes, in words.
@@ -112,73 +74,63 @@ pub(super) fn setting(case: &Case) -> Vec<String> {
     ]
 }
 
-/// Everything a case says.
-pub(super) fn assumptions(case: &Case) -> Vec<Assumption> {
-    let mut rows = Vec::new();
-    if let Ok(Value::Object(parts)) = serde_json::to_value(case) {
-        for (part, value) in &parts {
-            match value {
-                Value::Object(members) if !members.keys().any(|k| is_choice(k)) => {
-                    for (name, value) in members {
-                        push(&mut rows, part, name, value);
-                    }
-                }
-                value if part != "title" => push(&mut rows, "case", part, value),
-                _ => {}
-            }
-        }
-    }
-    rows
-}
-
-/// Whether the name of a member is that of a choice: `Propulsive`, not `radius_m`.
-fn is_choice(name: &str) -> bool {
-    name.starts_with(char::is_uppercase)
-}
-
-/// Adds a field; those of an object one by one.
-fn push(rows: &mut Vec<Assumption>, part: &str, name: &str, value: &Value) {
-    match value {
-        Value::Object(members) => {
-            // a choice with fields of its own
-            if let Some((only, Value::Object(fields))) = members.iter().next()
-                && members.len() == 1
-                && is_choice(only)
-            {
-                rows.push(row(part, name, words(only)));
-                let inner = format!("{part}: {}", spaced(name));
-                for (name, value) in fields {
-                    push(rows, &inner, name, value);
-                }
-                return;
-            }
-            let inner = format!("{part}: {}", spaced(name));
-            for (name, value) in members {
-                push(rows, &inner, name, value);
-            }
-        }
-        Value::Array(items) if items.iter().any(Value::is_object) => {
-            for (k, item) in items.iter().enumerate() {
-                push(rows, part, &format!("{name} {}", k + 1), item);
-            }
-        }
-        Value::Null => {
-            let value = "chosen by the program".to_owned();
-            rows.push(Assumption { unit: "", ..row(part, name, value) });
-        }
-        value => rows.push(row(part, name, plain(value, name))),
+/// Everything a case says, with units.
+pub(super) fn assumptions(case: &Case) -> Section {
+    let mut walk = Walk::default();
+    case.each(&mut walk);
+    Section {
+        title: "Assumptions".to_owned(),
+        text: "R is the radius of the rotor, m0 the mass per length of its blade, Omega its speed."
+            .to_owned(),
+        header: ["part of the case", "quantity", "value", "unit"].map(str::to_owned).to_vec(),
+        rows: walk.rows,
     }
 }
 
-fn row(part: &str, name: &str, value: String) -> Assumption {
-    let named = NAMED_UNITS.iter().find(|(own, _)| *own == name);
-    let ending = UNITS.iter().find(|(ending, _)| name.ends_with(ending));
-    let (quantity, unit) = match (named, ending) {
-        (Some((_, unit)), _) => (name, *unit),
-        (None, Some((ending, unit))) => (name.strip_suffix(ending).unwrap_or(name), *unit),
-        (None, None) => (name, ""),
-    };
-    Assumption { part: spaced(part), quantity: spaced(quantity), value, unit }
+/// A walk over the fields of a case.
+#[derive(Default)]
+struct Walk {
+    /// Names from the root of the case to where the walk is.
+    path: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Walk {
+    /// Adds the value of the field that the walk is at.
+    fn row(&mut self, value: String, unit: &str) {
+        let Some((name, outer)) = self.path.split_last() else { return };
+        let part = if outer.is_empty() { "case".to_owned() } else { outer.join(": ") };
+        let bare = ENDINGS.iter().find_map(|ending| name.strip_suffix(ending));
+        let quantity = bare.filter(|_| !unit.is_empty()).unwrap_or(name);
+        self.rows.push(vec![spaced(&part), spaced(quantity), value, unit.to_owned()]);
+    }
+}
+
+impl Visitor for Walk {
+    fn field<T: FieldValue>(&mut self, field: &Field, value: &T) {
+        self.path.push(field.key.to_owned());
+        if !value.inside(self) && field.key != "title" {
+            let text = match serde_json::to_value(value).unwrap_or_default() {
+                Value::Null => "chosen by the program".to_owned(),
+                value => plain(&value, field.key),
+            };
+            self.row(text, field.unit);
+        }
+        self.path.pop();
+    }
+
+    fn section<T: CaseSection>(&mut self, choice: &str, section: &T) {
+        if !choice.is_empty() {
+            self.row(words(choice), "");
+        }
+        section.each(self);
+    }
+
+    fn item<T: CaseSection>(&mut self, index: usize, section: &T) {
+        self.path.push((index + 1).to_string());
+        section.each(self);
+        self.path.pop();
+    }
 }
 
 fn spaced(name: &str) -> String {
@@ -192,6 +144,15 @@ fn plain(value: &Value, name: &str) -> String {
             text.clone()
         }
         Value::String(text) => words(text),
+        Value::Object(members) => {
+            let each = members.iter().map(|(key, value)| match value {
+                Value::Object(_) if key.starts_with(char::is_uppercase) => {
+                    format!("{} {}", words(key), plain(value, name))
+                }
+                value => format!("{} {}", spaced(key), plain(value, name)),
+            });
+            each.collect::<Vec<_>>().join(", ")
+        }
         Value::Array(items) => {
             let all: Vec<String> = items.iter().map(|item| plain(item, name)).collect();
             let separator = if items.iter().any(Value::is_array) { "; " } else { ", " };
@@ -212,14 +173,14 @@ mod tests {
         file.inflow.model = InflowChoice::FreeWake(FreeWakeValues::default());
         let text = setting(&file).join(" ");
         assert!(text.contains("free wake") && text.contains("Hariharan and Leishman"), "{text}");
-        let rows = assumptions(&file);
-        let find = |quantity: &str| rows.iter().find(|row| row.quantity == quantity).unwrap();
-        assert_eq!((find("twist").value.as_str(), find("twist").unit), ("-8.0", "deg"));
-        assert_eq!(find("omega").unit, "rev/min");
+        let rows = assumptions(&file).rows;
+        let find = |quantity: &str| rows.iter().find(|row| row[1] == quantity).unwrap();
+        assert_eq!(find("twist")[2..], ["-8.0", "deg"]);
+        assert_eq!(find("omega")[3], "rpm");
         // its length stands beside the choice of how it travels
-        assert!(rows.iter().any(|row| row.quantity == "near wake" && row.unit == "deg"));
+        assert!(rows.iter().any(|row| row[1] == "near wake" && row[3] == "deg"));
         for row in &rows {
-            let whole = format!("{} {} {}", row.part, row.quantity, row.value);
+            let whole = row[..3].join(" ");
             assert!(!whole.contains(['{', '}', '[', '"']), "{whole}");
         }
     }

@@ -1,10 +1,11 @@
 //! The charts, as plotly plots without colours of background and text: the page sets those.
 
-use super::{AzimuthChart, LoadBars};
-use crate::results::LoopRecord;
+use super::tables::HISTORY_AZIMUTHS;
+use crate::results::{ControlLine, ControlRecord, LoopRecord, SeriesLine, flap_name};
 use plotly::common::{Anchor, DashType, Line, Mode, Orientation, Title};
 use plotly::layout::{Axis, BarMode, Legend, Margin};
 use plotly::{Bar, Layout, Plot, Scatter};
+use rotor_base::uniform_azimuths_rad;
 use rotor_study::HubLoads;
 
 /// Colours that stay apart from each other and readable on light and dark, also for the colour-blind
@@ -53,17 +54,19 @@ pub(super) fn loop_chart(chart: &LoopRecord) -> Plot {
     plot
 }
 
-/// Voltage above flap angle, against azimuth.
-pub(super) fn azimuth_chart(chart: &AzimuthChart) -> Plot {
+/// Voltage, bias included, above flap angle, trailing edge down positive, against azimuth.
+pub(super) fn azimuth_chart(record: &ControlRecord) -> Plot {
     let mut plot = Plot::new();
-    for (i, flap) in chart.flaps.iter().enumerate() {
+    let azimuths = uniform_azimuths_rad(HISTORY_AZIMUTHS);
+    let psi: Vec<f64> = azimuths.iter().map(|a| a.to_degrees()).collect();
+    for (i, flap) in record.end.flaps.iter().enumerate() {
         let colour = SERIES[1 + i % (SERIES.len() - 1)];
-        let psi = &chart.azimuth_deg;
-        plot.add_trace(line(psi, &flap.voltage_volt, &flap.name, colour, DashType::Solid));
-        let angle = line(psi, &flap.flap_deg, &flap.name, colour, DashType::Solid)
-            .y_axis("y2")
-            .show_legend(false);
-        plot.add_trace(angle);
+        let trace = |series: &SeriesLine| {
+            let values: Vec<f64> = azimuths.iter().map(|a| series.0.value(*a)).collect();
+            line(&psi, &values, &flap_name(i), colour, DashType::Solid)
+        };
+        plot.add_trace(trace(&flap.voltage_volt));
+        plot.add_trace(trace(&flap.flap_deg).y_axis("y2").show_legend(false));
     }
     let ticks: Vec<f64> = (0..=4).map(|i| 90.0 * f64::from(i)).collect();
     plot.set_layout(
@@ -75,19 +78,19 @@ pub(super) fn azimuth_chart(chart: &AzimuthChart) -> Plot {
     plot
 }
 
-/// The six loads as grouped bars: without control, and with each actuator.
-pub(super) fn load_chart(bars: &LoadBars) -> Plot {
+/// The six loads as grouped bars: without control, and with each actuator for one set of harmonics.
+pub(super) fn load_chart(before: &[f64; 6], lines: &[ControlLine]) -> Plot {
     let names: Vec<String> = HubLoads::NAMES.iter().map(|n| n.to_uppercase()).collect();
     let mut plot = Plot::new();
-    let series = std::iter::once(("without control".to_owned(), bars.before)).chain(
-        bars.after
-            .iter()
-            .map(|(name, loads, percent)| (format!("{name} (J {:+.0} %)", -percent), *loads)),
-    );
+    let after = lines.iter().map(|line| {
+        let name = format!("{} (J {:+.0} %)", line.head.actuator, -line.reduction_percent);
+        (name, line.head.hub_nb_per_rev.amplitudes())
+    });
+    let series = std::iter::once(("without control".to_owned(), *before)).chain(after);
     for (i, (name, loads)) in series.enumerate() {
         let hover: Vec<String> = loads
             .iter()
-            .zip(&bars.before)
+            .zip(before)
             .map(|(after, before)| format!("{:+.0} % of the load", 100.0 * (after / before - 1.0)))
             .collect();
         let scaled: Vec<f64> = loads.iter().map(|v| 1e4 * v).collect();

@@ -73,24 +73,24 @@ pub fn bench_loops(
     found: &BenchIdentification,
 ) -> Result<Vec<LoopRecord>, SimError> {
     let identification = &found.identification;
-    let mut charts = Vec::new();
-    for (record, report) in found.records.iter().zip(&identification.records) {
+    let reports = found.records.iter().zip(&identification.records);
+    let periodic = reports.filter(|(_, report)| report.drive.is_periodic());
+    let charts = periodic.map(|(record, report)| {
         let drive = &report.drive;
-        if !drive.is_periodic() {
-            continue;
-        }
         let simulate = |model: &ActuatorModel| {
-            model.simulate(&record.voltage_volt, record.time_step_s).map_err(|source| {
-                SimError::Actuator { place: Place::file(&data.folder).field(&record.id), source }
+            let simulated = model.simulate(&record.voltage_volt, record.time_step_s);
+            simulated.map(|simulated| simulated.output_deg).map_err(|source| SimError::Actuator {
+                place: Place::file(&data.folder).field(&record.id),
+                source,
             })
         };
-        let dynamic = simulate(&found.model)?.output_deg;
-        let quasi_static = simulate(&identification.static_only)?.output_deg;
+        let dynamic = simulate(&found.model)?;
+        let quasi_static = simulate(&identification.static_only)?;
         let samples = last_cycle(drive.steady.end, drive.base_hz, record.time_step_s);
         let pick = |values: &[f64], shift: f64| -> Vec<f64> {
             samples.iter().filter_map(|&i| values.get(i)).map(|v| v - shift).collect()
         };
-        charts.push(LoopRecord {
+        Ok(LoopRecord {
             id: record.id.clone(),
             frequency_hz: drive.strongest_hz(),
             amplitude_volt: drive.amplitude_volt,
@@ -101,12 +101,12 @@ pub fn bench_loops(
             measured_deg: pick(&record.output_deg, identification.zero_deg),
             simulated_deg: pick(&dynamic, 0.0),
             static_deg: pick(&quasi_static, 0.0),
-        });
-    }
+        })
+    });
+    let mut charts = charts.collect::<Result<Vec<_>, SimError>>()?;
     charts.sort_by(|a, b| {
-        let key = |c: &LoopRecord| (c.frequency_hz, -c.amplitude_volt);
-        let ((fa, aa), (fb, ab)) = (key(a), key(b));
-        fa.total_cmp(&fb).then(aa.total_cmp(&ab))
+        let larger_first = b.amplitude_volt.total_cmp(&a.amplitude_volt);
+        a.frequency_hz.total_cmp(&b.frequency_hz).then(larger_first)
     });
     Ok(charts)
 }

@@ -3,12 +3,26 @@
 use super::Residuals;
 use hhc_control::{AllowedIncrease, ControlRun, ControlStep, TMatrix};
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_study::{ControlStudy, HubLoads, control_status};
+use rotor_study::{ControlStudy, CouplingResidual, HubLoads, control_status};
 use serde::{Deserialize, Serialize};
 
 /// What a control study ended with and how it got there; its figures are those of [`super::ControlLine`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ControlRecord {
+    /// What its figures repeat.
+    #[serde(flatten)]
+    pub head: ControlHead,
+    /// The start and every control step; empty for voltages taken over or inverted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub history: Vec<StepRecord>,
+    /// Voltages, flap motions and T at the end.
+    #[serde(default, rename = "at_end", alias = "record")]
+    pub end: ControlEnd,
+}
+
+/// What a stored control study and its figures both say.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ControlHead {
     /// Harmonics per rev.
     pub harmonics: Vec<usize>,
     /// `ideal`, `ignored`, `hysteretic` or `inverse`.
@@ -49,13 +63,7 @@ pub struct ControlRecord {
     pub residuals: Residuals,
     /// Coupling of flap and hinge moment; none where the actuator is rigid under it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub coupling: Option<CouplingLine>,
-    /// The start and every control step; empty for voltages taken over or inverted.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub history: Vec<StepRecord>,
-    /// Voltages, flap motions and T at the end.
-    #[serde(default, rename = "at_end", alias = "record")]
-    pub end: ControlEnd,
+    pub coupling: Option<CouplingResidual>,
 }
 
 /// Voltages, flap motions and T where a control study ended.
@@ -106,15 +114,6 @@ pub struct StepRecord {
     pub mean_flap_deg: Vec<f64>,
 }
 
-/// How flap motion and hinge moment converged on each other.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct CouplingLine {
-    /// Responses of the rotor it took.
-    pub iterations: usize,
-    /// Largest change of a harmonic of a flap angle by the hinge moment still left, deg.
-    pub residual_deg: f64,
-}
-
 /// A series over a revolution as plain numbers: mean, then cosine and sine of every harmonic.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "Vec<f64>", into = "Vec<f64>")]
@@ -156,17 +155,11 @@ pub struct FlapRecord {
 }
 
 impl ControlRecord {
-    /// The set of harmonics as a title: `2` or `2+3`.
-    pub fn set_name(&self) -> String {
-        let all: Vec<String> = self.harmonics.iter().map(usize::to_string).collect();
-        all.join("+")
-    }
-
     /// What is kept of a study of a rotor with a number of blades.
     pub fn of(study: &ControlStudy, blades: usize) -> Self {
         let rotor = &study.state.rotor;
         let run = study.run.as_ref();
-        Self {
+        let head = ControlHead {
             harmonics: study.harmonics.clone(),
             actuator: study.actuator.name().to_owned(),
             hub_nb_per_rev: HubLoads::from_parts(rotor.hub.harmonic(blades)),
@@ -174,7 +167,7 @@ impl ControlRecord {
             voltage_share: study.voltage_share,
             kkt_residual: run.and_then(|run| run.kkt).map(|kkt| kkt.largest()),
             t_renewals: run.map_or(0, |run| run.identifications),
-            backtracks: study.halvings(),
+            backtracks: study.backtracks(),
             status: control_status(study).to_owned(),
             rho_per_volt2: study.rho,
             stroke_limit_deg: study.stroke_limit_deg.clone(),
@@ -183,13 +176,10 @@ impl ControlRecord {
                 periodicity: rotor.residuals.periodicity,
                 inflow: rotor.residuals.inflow,
             },
-            coupling: study
-                .state
-                .coupling
-                .map(|c| CouplingLine { iterations: c.iterations, residual_deg: c.residual_deg }),
-            history: run.into_iter().flat_map(ControlRun::history).map(StepRecord::of).collect(),
-            end: ControlEnd::of(study),
-        }
+            coupling: study.state.coupling,
+        };
+        let history = run.into_iter().flat_map(ControlRun::history).map(StepRecord::of).collect();
+        Self { head, history, end: ControlEnd::of(study) }
     }
 }
 

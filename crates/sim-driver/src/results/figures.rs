@@ -5,22 +5,19 @@
 //! ```
 
 use super::{
-    Baseline, ControlEnd, ControlRecord, CouplingLine, FlapRecord, Residuals, RunResult,
-    StepRecord, TrimLine,
+    Baseline, ControlEnd, ControlHead, ControlRecord, FlapRecord, Residuals, RunResult, StepRecord,
+    TrimLine, set_name,
 };
 use crate::case::{ControlActuator, ControllerChoice};
+use crate::output::unique;
 use hhc_control::{Cost, FeedbackLaw, TMatrix, lag_deg};
 use rotor_base::RotorScales;
 use rotor_response::HingeMoment;
-use rotor_study::MeanLoads;
-use rotor_study::StabilityLine;
-use rotor_study::StationLine;
-use rotor_study::WakeStatus;
 use rotor_study::{
-    Forecast, HingePower, HubLoads, PowerOutputs, RobustnessLine, SensitivityLine, Setting,
-    loads_cost, output_weights, sensitivity_lines,
+    Forecast, HingePower, MeanLoads, PowerOutputs, RobustnessLine, SensitivityLine, Setting,
+    StabilityLine, StationLine, UnlikeBladeLine, UnlikeLine, WakeStatus, loads_cost,
+    output_weights, sensitivity_lines,
 };
-use rotor_study::{UnlikeBladeLine, UnlikeLine};
 use serde::Serialize;
 
 /// What a result says, for people and as JSON: computed where it is shown, stored nowhere.
@@ -67,10 +64,9 @@ pub struct Figures {
 /// The figures of one control study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ControlLine {
-    /// Harmonics per rev.
-    pub harmonics: Vec<usize>,
-    /// `ideal`, `ignored`, `hysteretic` or `inverse`.
-    pub actuator: String,
+    /// What the record says too.
+    #[serde(flatten)]
+    pub head: ControlHead,
     /// `J_Z` without control.
     pub j_before: f64,
     /// `J_Z` with control.
@@ -82,8 +78,6 @@ pub struct ControlLine {
     /// Mean power that the actuators of one blade give, none taken back, W.
     #[serde(rename = "actuation_power_W")]
     pub actuation_power_watt: f64,
-    /// Hub loads with control.
-    pub hub_nb_per_rev: HubLoads,
     /// One entry per flap, from root to tip; of a set of several harmonics, one after another.
     pub flaps: Vec<FlapLine>,
     /// What the controller knew of T: `global`, `local`, `adaptive`, or `none` for voltages taken over or
@@ -95,25 +89,14 @@ pub struct ControlLine {
     /// inverse alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion_error_percent: Option<f64>,
-    /// See [`ControlRecord::motion_share`].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub motion_share: Option<f64>,
-    /// See [`ControlRecord::voltage_share`].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub voltage_share: Option<f64>,
     /// Whether the identified actuator can make the motion within its range of voltages; of the ideal actuator
     /// beside an identified one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub within_reach: Option<bool>,
-    /// See [`ControlRecord::kkt_residual`].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub kkt_residual: Option<f64>,
     /// Largest mean flap angle over all control steps, deg.
     pub largest_mean_flap_deg: f64,
     /// Control steps.
     pub steps: usize,
-    /// Steps halved because they would have raised the cost.
-    pub backtracks: u32,
     /// Largest rise of the cost in one step, over the cost at the start, percent: a step back into limits that
     /// moved with the control, a non-monotone step on the way to the fixed point, or the allowance of a loop that
     /// converges.
@@ -125,23 +108,9 @@ pub struct ControlLine {
     /// below 1 whole steps converge there. Of a loop with a constant T and a control weight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spectral_radius: Option<f64>,
-    /// Times that T was identified again or probed on the way.
-    pub t_renewals: usize,
-    /// See [`ControlRecord::status`].
-    pub status: String,
     /// Frobenius norm of the T matrix behind the voltages, nondimensional load per V.
     #[serde(rename = "t_norm_per_V")]
     pub t_norm_per_volt: f64,
-    /// Control weight `W_u = rho I`, 1/V^2.
-    #[serde(rename = "rho_per_V2")]
-    pub rho_per_volt2: f64,
-    /// Largest flap amplitude allowed at each harmonic of the set, deg.
-    pub stroke_limit_deg: Vec<f64>,
-    /// Residuals of the controlled response.
-    pub residuals: Residuals,
-    /// Coupling of flap and hinge moment; none where the actuator is rigid under it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub coupling: Option<CouplingLine>,
     /// Cost of every recorded state, with the weight of its step: of the loads and of the control.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cost_history: Vec<[f64; 2]>,
@@ -194,13 +163,9 @@ pub struct FlapLine {
 pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
     let control: Vec<ControlLine> =
         result.control.iter().map(|record| ControlLine::new(record, setting)).collect();
-    let mut warnings = result.warnings.clone();
-    for warning in control_warnings(&control, setting) {
-        // results of before hold these too
-        if !warnings.contains(&warning) {
-            warnings.push(warning);
-        }
-    }
+    // results of before hold the warnings of the control too
+    let warnings =
+        unique(result.warnings.iter().cloned().chain(control_warnings(&control, setting)));
     Figures {
         trim: result.trim,
         residuals: result.residuals,
@@ -231,9 +196,9 @@ fn control_warnings(control: &[ControlLine], setting: &Setting) -> Vec<String> {
 impl ControlLine {
     fn new(record: &ControlRecord, setting: &Setting) -> Self {
         let load_weights = setting.load_weights();
-        let (end, history) = (&record.end, record.history.as_slice());
+        let ControlRecord { head, history, end } = record;
         let j_before = loads_cost(&load_weights, &setting.baseline);
-        let j_after = loads_cost(&load_weights, &record.hub_nb_per_rev.parts());
+        let j_after = loads_cost(&load_weights, &head.hub_nb_per_rev.parts());
         let cost_history: Vec<[f64; 2]> =
             history.iter().map(|step| step_cost(step, &load_weights)).collect();
         let powers = end.flaps.iter().map(|flap| hinge_power(flap, &setting.scales).given_watt);
@@ -241,53 +206,41 @@ impl ControlLine {
         let recorded = history.iter().flat_map(|step| step.mean_flap_deg.iter().copied());
         let overshoot = overshoot_percent(history, &cost_history);
         Self {
-            harmonics: record.harmonics.clone(),
-            actuator: record.actuator.clone(),
+            head: head.clone(),
             j_before,
             j_after,
             reduction_percent: setting.reduction_percent(j_before, j_after),
             j_power: power_cost(record),
             actuation_power_watt: powers.sum(),
-            hub_nb_per_rev: record.hub_nb_per_rev,
-            flaps: flap_lines(&record.harmonics, end, &setting.scales),
-            controller: controller_name(&record.actuator, setting.control.controller).to_owned(),
+            flaps: flap_lines(&head.harmonics, end, &setting.scales),
+            controller: controller_name(&head.actuator, setting.control.controller).to_owned(),
             load_weights,
-            motion_error_percent: motion_error(&record.harmonics, end).map(|e| 100.0 * e),
-            motion_share: record.motion_share,
-            voltage_share: record.voltage_share,
+            motion_error_percent: motion_error(&head.harmonics, end).map(|e| 100.0 * e),
             within_reach: end.reach_share.map(|share| share >= 1.0),
-            kkt_residual: record.kkt_residual,
             largest_mean_flap_deg: recorded.chain(means).fold(0.0, |m, mean| mean.abs().max(m)),
             steps: history.len().saturating_sub(1),
-            backtracks: record.backtracks,
             overshoot_percent: if setting.is_still() { 0.0 } else { overshoot },
             contraction: contraction(history),
             spectral_radius: spectral_radius(record, &load_weights),
-            t_renewals: record.t_renewals,
-            status: record.status.clone(),
             t_norm_per_volt: end.t_per_volt.iter().flatten().map(|t| t * t).sum::<f64>().sqrt(),
-            rho_per_volt2: record.rho_per_volt2,
-            stroke_limit_deg: record.stroke_limit_deg.clone(),
-            residuals: record.residuals,
-            coupling: record.coupling,
             cost_history,
         }
     }
 
-    /// The set of harmonics as a title: `2` or `2+3`.
-    pub fn set_name(&self) -> String {
-        let all: Vec<String> = self.harmonics.iter().map(usize::to_string).collect();
-        all.join("+")
+    /// A number of each flap, inboard / outboard.
+    pub(crate) fn each_flap(&self, pick: fn(&FlapLine) -> f64) -> String {
+        let all: Vec<String> = self.flaps.iter().map(|flap| format!("{:.1}", pick(flap))).collect();
+        all.join(" / ")
     }
 
     /// Whether the motion asked of the inverse is not the ideal actuator's.
     pub(crate) fn motion_differs(&self) -> bool {
-        self.motion_share.is_some_and(|share| (share - 1.0).abs() > WHOLE)
+        self.head.motion_share.is_some_and(|share| (share - 1.0).abs() > WHOLE)
     }
 
     /// What a reader should know of a control that was not taken over as a whole.
     pub fn share_warning(&self) -> Option<String> {
-        let (share, what) = match (self.voltage_share, self.motion_share) {
+        let (share, what) = match (self.head.voltage_share, self.head.motion_share) {
             (Some(share), _) => (
                 share,
                 "of the ideal actuator's voltages; all of them leave no room for the bias that centres the flap",
@@ -299,7 +252,12 @@ impl ControlLine {
             _ => return None,
         };
         (share < 1.0 - WHOLE).then(|| {
-            format!("{}/rev, {}: {:.1} % {what}", self.set_name(), self.actuator, 100.0 * share)
+            format!(
+                "{}/rev, {}: {:.1} % {what}",
+                set_name(&self.head.harmonics),
+                self.head.actuator,
+                100.0 * share
+            )
         })
     }
 }
@@ -326,7 +284,7 @@ fn law_of(t_per_volt: &[Vec<f64>], load_weights: &[f64; 6]) -> Option<FeedbackLa
 fn spectral_radius(record: &ControlRecord, load_weights: &[f64; 6]) -> Option<f64> {
     let there = TMatrix::from_columns(&record.end.t_at_end_per_volt).ok()?;
     let law = law_of(&record.end.t_per_volt, load_weights)?;
-    law.iteration_spectral_radius(record.rho_per_volt2, &there).ok()
+    law.iteration_spectral_radius(record.head.rho_per_volt2, &there).ok()
 }
 
 /// How far a share may be from 1 by rounding.
@@ -335,8 +293,8 @@ const WHOLE: f64 = 1e-12;
 /// The controlled voltages of the flaps: flap by flap, harmonic by harmonic, cosine then sine, V.
 fn control_volt(record: &ControlRecord) -> Vec<f64> {
     let flaps = record.end.flaps.iter();
-    let each =
-        flaps.flat_map(|flap| record.harmonics.iter().map(|&n| flap.voltage_volt.0.harmonic(n)));
+    let each = flaps
+        .flat_map(|flap| record.head.harmonics.iter().map(|&n| flap.voltage_volt.0.harmonic(n)));
     each.flat_map(|h| [h.cosine, h.sine]).collect()
 }
 

@@ -12,15 +12,14 @@ mod figures;
 mod stored;
 
 pub use bench::{BenchPart, LoopRecord, bench_loops};
-pub use control::{ControlEnd, ControlRecord, CouplingLine, FlapRecord, SeriesLine, StepRecord};
+pub use control::{ControlEnd, ControlHead, ControlRecord, FlapRecord, SeriesLine, StepRecord};
 pub use figures::{ControlLine, Figures, FlapLine, figures};
-pub use stored::{RESULT_FILE, StoredResult, result_key, setting_of_file};
+pub use stored::{RESULT_FILE, StoredResult};
 
-use rotor_study::StabilityLine;
-use rotor_study::StationLine;
-use rotor_study::WakeStatus;
-use rotor_study::{ForecastLine, HubLoads, RobustnessCell, Sensitivity};
-use rotor_study::{UnlikeBladeLine, UnlikeLine};
+use rotor_study::{
+    ForecastLine, HubLoads, RobustnessCell, Sensitivity, StabilityLine, StationLine,
+    UnlikeBladeLine, UnlikeLine, WakeStatus,
+};
 use serde::{Deserialize, Serialize};
 
 /// What a run found, each number once. Loads nondimensional (`m0 Omega^2 R^2`, `m0 Omega^2 R^3`), a harmonic as
@@ -70,13 +69,6 @@ pub struct RunResult {
     pub warnings: Vec<String>,
 }
 
-impl RunResult {
-    /// Whether the iteration of wake and trim diverged: no solution, and not controlled.
-    pub fn wake_diverged(&self) -> bool {
-        self.wake == Some(WakeStatus::Diverged)
-    }
-}
-
 /// Mean loads of all blades on the hub without control, fixed shaft axes (X aft, Y to starboard, Z up).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MeanHubLoads {
@@ -124,6 +116,18 @@ pub struct Baseline {
     /// Fixed-frame hub loads at the blade number per rev.
     #[serde(alias = "hub_4_per_rev")]
     pub hub_nb_per_rev: HubLoads,
+}
+
+/// A set of harmonics as a title: `2` or `2+3`.
+pub fn set_name(harmonics: &[usize]) -> String {
+    let all: Vec<String> = harmonics.iter().map(usize::to_string).collect();
+    all.join("+")
+}
+
+/// The controls of each set of harmonics, which stand one after another.
+pub fn by_set(control: &[ControlLine]) -> impl Iterator<Item = (&[usize], &[ControlLine])> {
+    let sets = control.chunk_by(|a, b| a.head.harmonics == b.head.harmonics);
+    sets.map(|lines| (lines[0].head.harmonics.as_slice(), lines))
 }
 
 /// Name of a flap, counted from 0 at the root.

@@ -5,9 +5,10 @@ use super::bench::BenchPart;
 use crate::SimError;
 use crate::case::Case;
 use crate::files::{Source, ron_text, write_atomic};
+use crate::output::json;
 use crate::problem::{Fault, Place, Problem};
-use rotor_base::{BaseError, RotorScales};
-use rotor_study::{HubLoads, Setting};
+use rotor_base::RotorScales;
+use rotor_study::Setting;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -40,7 +41,7 @@ impl StoredResult {
     /// Puts a result beside its case and key. `inputs` are blake3 hashes of bench or actuator data.
     ///
     /// # Errors
-    /// [`SimError::NotWritten`] for a case RON cannot express.
+    /// [`SimError::Data`] for a case RON cannot express.
     pub fn new(
         case: &Case,
         inputs: Vec<String>,
@@ -60,10 +61,9 @@ impl StoredResult {
     /// Writes the result atomically as JSON, its hash first.
     ///
     /// # Errors
-    /// [`SimError::NotWritten`].
+    /// [`SimError::Data`].
     pub fn write(&self, path: &Path) -> Result<(), SimError> {
-        let text = serde_json::to_string_pretty(self).map_err(|e| not_written(path, &e))?;
-        Ok(write_atomic(path, hashed(&text).as_bytes())?)
+        Ok(write_atomic(path, hashed(json(self)?.trim_end()).as_bytes())?)
     }
 
     /// Reads the result in a folder, in this form or that of earlier programs, and checks its hash.
@@ -87,25 +87,17 @@ impl StoredResult {
     /// # Errors
     /// [`SimError::NotReproduced`] for a case whose rotor units are not positive.
     pub fn setting(&self) -> Result<Setting, SimError> {
-        setting_of_file(&self.case, &self.result.baseline.hub_nb_per_rev).map_err(|e| {
-            SimError::NotReproduced {
+        let scales = self.case.scales();
+        RotorScales::new(scales.omega_rad_s(), scales.radius_m(), scales.mass_kg_m()).map_err(
+            |error| SimError::NotReproduced {
                 file: RESULT_FILE.to_owned(),
                 field: "case.rotor".to_owned(),
-                stored: e.to_string(),
+                stored: error.to_string(),
                 recomputed: String::new(),
-            }
-        })
+            },
+        )?;
+        Ok(Setting::of_case(&self.case, &self.result.baseline.hub_nb_per_rev))
     }
-}
-
-/// What the figures of a stored case share.
-///
-/// # Errors
-/// Rotor units that are not positive.
-pub fn setting_of_file(case: &Case, baseline: &HubLoads) -> Result<Setting, BaseError> {
-    let scales = case.scales();
-    RotorScales::new(scales.omega_rad_s(), scales.radius_m(), scales.mass_kg_m())?;
-    Ok(Setting::of_case(case, baseline))
 }
 
 fn from_json<T: DeserializeOwned>(source: &Source) -> Result<T, SimError> {
@@ -131,10 +123,7 @@ fn compact(text: &str) -> String {
     let (mut in_string, mut escaped) = (false, false);
     let kept = |c: &char| {
         let keep = in_string || !c.is_whitespace();
-        match c {
-            '"' if !escaped => in_string = !in_string,
-            _ => {}
-        }
+        in_string ^= *c == '"' && !escaped;
         escaped = in_string && *c == '\\' && !escaped;
         keep
     };
@@ -184,22 +173,16 @@ fn check_hash(source: &Source) -> Result<(), SimError> {
 /// the user's file do not matter.
 ///
 /// # Errors
-/// [`SimError::NotWritten`] for a case RON cannot express.
-pub fn result_key(case: &Case, inputs: &[String]) -> Result<String, SimError> {
-    let canonical = ron_text(case).map_err(|e| not_written(Path::new("case"), &e))?;
+/// [`SimError::Data`] for a case RON cannot express.
+fn result_key(case: &Case, inputs: &[String]) -> Result<String, SimError> {
+    let canonical = ron_text(case).map_err(|e| SimError::not_written("case", &e))?;
     let mut hash = blake3::Hasher::new();
-    for part in std::iter::once(crate::VERSION)
-        .chain(std::iter::once(canonical.as_str()))
-        .chain(inputs.iter().map(String::as_str))
-    {
+    let inputs = inputs.iter().map(String::as_str);
+    for part in [crate::VERSION, &canonical].into_iter().chain(inputs) {
         hash.update(&(part.len() as u64).to_le_bytes());
         hash.update(part.as_bytes());
     }
     Ok(hash.finalize().to_hex().to_string())
-}
-
-fn not_written(path: &Path, error: &dyn std::fmt::Display) -> SimError {
-    SimError::NotWritten { path: path.to_path_buf(), reason: error.to_string() }
 }
 
 #[cfg(test)]

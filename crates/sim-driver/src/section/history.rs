@@ -1,6 +1,8 @@
 //! Histories of a section: after a step, along a ramp, round a cycle.
 
-use super::{Asked, FASTEST, SectionChoice, SectionTable, stall_remark, within};
+use super::{
+    FASTEST, MOST_POINTS, Moved, SectionChoice, SectionTable, stall_remark, within, within_points,
+};
 use crate::SimError;
 use flap_aero::{
     CycleStep, MarchingSection, Motion, SectionInputs, SectionState, StallParameters, StallSection,
@@ -19,29 +21,12 @@ const HALF_TURN: f64 = std::f64::consts::PI;
 /// Fewest points of a cycle, and fewest steps a cycle is marched in.
 const FEWEST_POINTS: usize = 3;
 const FEWEST_STEPS: usize = 720;
-/// Most rows of a history.
-const MOST_POINTS: usize = 1_000_000;
 /// Cycles marched for a stalled loop to repeat, and the distance added to them, semichords: some
 /// twenty-five decays of the slowest lag or the vortex make a difference of 1 to one of 1e-11.
 const MOST_CYCLES: usize = 60;
 const SETTLING_DISTANCE: f64 = 400.0;
 /// Change of the normal force from cycle to cycle that counts as none.
 const REPEATED: f64 = 1e-10;
-
-/// A unit step or ramp of a motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TransientQuestion {
-    /// The section.
-    pub section: SectionChoice,
-    /// What moves by 1 rad (plunge: a velocity of 1 `U`), from rest.
-    pub motion: Motion,
-    /// Distance over which it moves, semichords; 0 is a step, whose rate acts for no time.
-    pub rise: f64,
-    /// Distance shown, semichords.
-    pub distance: f64,
-    /// Number of rows after the first.
-    pub points: usize,
-}
 
 /// One cycle of a motion `mean + amplitude sin(k S)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,11 +45,6 @@ pub struct LoopQuestion {
     pub points: usize,
     /// How the section stalls; `None` is attached flow.
     pub stall: Option<StallParameters>,
-}
-
-fn check_points(points: usize) -> Result<(), SimError> {
-    let fits = (1..=MOST_POINTS).contains(&points);
-    within("number of points", points as f64, fits, "1 to 1000000")
 }
 
 /// Columns every loop has.
@@ -128,20 +108,29 @@ fn inputs(motion: Motion, value: f64, rate: f64) -> SectionInputs {
     inputs
 }
 
-/// The history of a step or a ramp.
+/// The history of a motion that moves by 1 rad (plunge: to a velocity of 1 `U`), from rest.
+///
+/// `rise`: distance over which it moves, semichords; 0 is a step, whose rate acts for no time.
+/// `distance`: what is shown, semichords, in `points` rows after the first.
 ///
 /// # Errors
 /// [`SimError::Section`] for a section outside its model, a distance that is not positive, or no
 /// points.
-pub fn transient_history(question: &TransientQuestion) -> Result<SectionTable, SimError> {
-    let TransientQuestion { motion, rise, distance, points, .. } = *question;
+pub fn transient_history(
+    choice: &SectionChoice,
+    motion: Motion,
+    rise: f64,
+    distance: f64,
+    points: usize,
+) -> Result<SectionTable, SimError> {
     let fits = distance > 0.0 && distance <= LONGEST;
     within("distance, semichords", distance, fits, "above 0, to 1e6")?;
     let fits = rise == 0.0 || (SLOWEST..=LONGEST).contains(&rise);
     within("rise, semichords", rise, fits, "0 (a step), or 1e-6 to 1e6")?;
-    check_points(points)?;
-    let (section, ..) = question.section.coefficients()?;
-    let remarks = question.section.remarks(&section.remarks, Asked::Transient(motion));
+    within_points(points)?;
+    let (section, ..) = choice.coefficients()?;
+    let moved = Moved { motion, reduced_frequency: None };
+    let remarks = choice.remarks(&section.remarks, Some(moved));
     let section = MarchingSection::new(&section);
     let mut state = SectionState::at_rest(&section);
     // on the way up the rate is there at once, at the top it is gone at once
@@ -149,30 +138,33 @@ pub fn transient_history(question: &TransientQuestion) -> Result<SectionTable, S
     let arrived = inputs(motion, 1.0, 0.0);
     let start = if rise > 0.0 { going(0.0) } else { arrived };
     state.jump(&section, &start.modes)?;
-    let [cn, cm, ch] = state.loads(&section, &start)?;
-    let value = |s: f64| if s < rise { s / rise } else { 1.0 };
-    let mut rows = vec![vec![0.0, value(0.0), cn, cm, ch]];
+    let row = |s: f64, loads: [f64; 3]| -> Vec<f64> {
+        let value = if s < rise { s / rise } else { 1.0 };
+        [s, value].into_iter().chain(loads).collect()
+    };
+    let mut loads = state.loads(&section, &start)?;
+    let mut rows = vec![row(0.0, loads)];
     let mut at = 0.0;
     for n in 1..=points {
         let end = distance * n as f64 / points as f64;
         if at < rise {
             let stop = end.min(rise);
-            let loads = state.step(&section, &going(stop), stop - at)?;
+            loads = state.step(&section, &going(stop), stop - at)?;
             at = stop;
-            if at < rise {
-                rows.push([end, value(end)].into_iter().chain(loads).collect());
-                continue;
+            if at >= rise {
+                state.jump(&section, &arrived.modes)?;
             }
-            state.jump(&section, &arrived.modes)?;
         }
-        let loads = state.step(&section, &arrived, end - at)?;
+        if at >= rise {
+            loads = state.step(&section, &arrived, end - at)?;
+        }
         at = end;
-        rows.push([end, 1.0].into_iter().chain(loads).collect());
+        rows.push(row(end, loads));
     }
-    let name = question.section.model.name();
+    let name = choice.model.name();
     let what = if rise > 0.0 { format!("ramp over {rise} semichords") } else { "step".to_owned() };
     Ok(SectionTable {
-        title: format!("unit {what} of {motion:?}, {name}, Mach {}", question.section.mach),
+        title: format!("unit {what} of {motion:?}, {name}, Mach {}", choice.mach),
         remarks,
         columns: match motion {
             Motion::Flap | Motion::Pitch => {
@@ -205,7 +197,8 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
     let fits = (FEWEST_POINTS..=MOST_POINTS).contains(&points);
     within("number of points of a cycle", points as f64, fits, "3 to 1000000")?;
     let (coefficients, mach, flap) = question.section.coefficients()?;
-    let mut remarks = question.section.remarks(&coefficients.remarks, Asked::Harmonic(motion, k));
+    let moved = Moved { motion, reduced_frequency: Some(k) };
+    let mut remarks = question.section.remarks(&coefficients.remarks, Some(moved));
     let section = MarchingSection::new(&coefficients);
     let cycle = Cycle::new(question);
     let steps: Vec<CycleStep<'_>> = cycle

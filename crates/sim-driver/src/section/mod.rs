@@ -10,7 +10,7 @@
 mod history;
 mod polar;
 
-pub use history::{LoopQuestion, TransientQuestion, loop_history, transient_history};
+pub use history::{LoopQuestion, loop_history, transient_history};
 pub use polar::{PolarQuestion, polar};
 
 use crate::SimError;
@@ -55,18 +55,12 @@ impl SectionChoice {
 
     /// What a reader of a response has to know: where the model left its own form, and how far it is
     /// from exact theory where that is far.
-    fn remarks(&self, of_model: &ModelRemarks, asked: Asked) -> Vec<String> {
-        let of = |model| self.model == model;
-        let (flap, k) = match asked {
-            Asked::Harmonic(motion, k) => (motion == Motion::Flap, Some(k)),
-            Asked::Transient(motion) => (motion == Motion::Flap, None),
-            Asked::Static => (false, None),
-        };
-        let fast = k.is_some_and(|k| k > FASTEST_MEASURED);
+    fn remarks(&self, of_model: &ModelRemarks, moved: Option<Moved>) -> Vec<String> {
+        let fast = moved.is_some_and(|m| m.reduced_frequency.is_some_and(|k| k > FASTEST_MEASURED));
         let mut remarks: Vec<String> = [
-            (flap && self.flap_chord <= 0.0, "the section has no flap"),
+            (moved.is_some_and(|m| self.lacks_flap(m)), "the section has no flap"),
             (
-                of(AttachedFlowModel::Calibrated) && fast,
+                self.model == AttachedFlowModel::Calibrated && fast,
                 "the bounds of the calibration hold for reduced frequencies to 1",
             ),
             (
@@ -86,25 +80,21 @@ impl SectionChoice {
         .filter(|(applies, _)| *applies)
         .map(|(_, text)| text.to_owned())
         .collect();
-        remarks.extend(self.known_error(asked));
-        match asked {
-            Asked::Transient(motion) => remarks.extend(unmatched_slopes(of_model, motion)),
-            Asked::Harmonic(motion, k) if k > 0.0 => {
-                remarks.extend(unmatched_slopes(of_model, motion));
-            }
-            _ => {}
-        }
+        // what is held at a frequency of 0 is no motion
+        let moved = moved.filter(|m| m.reduced_frequency.is_none_or(|k| k > 0.0));
+        remarks.extend(moved.and_then(|moved| self.known_error(moved)));
+        remarks.extend(moved.and_then(|moved| unmatched_slopes(of_model, moved.motion)));
         remarks
     }
 
+    fn lacks_flap(&self, moved: Moved) -> bool {
+        moved.motion == Motion::Flap && self.flap_chord <= 0.0
+    }
+
     /// How far a model that is not fitted to exact theory is from it.
-    fn known_error(&self, asked: Asked) -> Option<String> {
-        let (motion, k) = match asked {
-            Asked::Harmonic(motion, k) if k > 0.0 => (motion, Some(k)),
-            Asked::Transient(motion) => (motion, None),
-            _ => return None,
-        };
-        if motion == Motion::Flap && self.flap_chord <= 0.0 {
+    fn known_error(&self, moved: Moved) -> Option<String> {
+        let Moved { motion, reduced_frequency: k } = moved;
+        if self.lacks_flap(moved) {
             return None;
         }
         let errors = known_error_percent(self.model, motion, self.mach)?;
@@ -123,15 +113,12 @@ impl SectionChoice {
     }
 }
 
-/// What was asked of a section.
+/// A motion of a section.
 #[derive(Debug, Clone, Copy)]
-enum Asked {
-    /// A motion at a reduced frequency.
-    Harmonic(Motion, f64),
-    /// A step or a ramp: all frequencies.
-    Transient(Motion),
-    /// Incidences held for ever.
-    Static,
+struct Moved {
+    motion: Motion,
+    /// None of a step or a ramp: all frequencies.
+    reduced_frequency: Option<f64>,
 }
 
 /// Names the loads and inputs of a motion whose initial slope the slope-matched form does not have.
@@ -171,17 +158,6 @@ fn stall_remark(mach: f64) -> Option<String> {
     })
 }
 
-/// What is asked of a section.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SectionQuestion {
-    /// The section.
-    pub section: SectionChoice,
-    /// Reduced frequency `k = omega c / (2 U)`, 0 and up.
-    pub reduced_frequency: f64,
-    /// Motion of unit amplitude.
-    pub motion: Motion,
-}
-
 /// Complex amplitudes per radian (plunge: per unit of `h_dot / U`, down positive) as `[re, im]`;
 /// moments on the full chord squared, about the quarter chord and the hinge.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -202,19 +178,23 @@ pub struct SectionResult {
     pub ch: [f64; 2],
 }
 
-/// Answers a question about a section.
+/// The response of a section to a motion of unit amplitude at a reduced frequency
+/// `k = omega c / (2 U)`, 0 and up.
 ///
 /// # Errors
 /// [`SimError::Section`] for a Mach number, flap chord or frequency outside the model.
-pub fn section_response(question: &SectionQuestion) -> Result<SectionResult, SimError> {
-    let k = question.reduced_frequency;
+pub fn section_response(
+    section: &SectionChoice,
+    motion: Motion,
+    k: f64,
+) -> Result<SectionResult, SimError> {
     within("reduced frequency", k, (0.0..=FASTEST).contains(&k), "0 to 1000")?;
-    let (section, ..) = question.section.coefficients()?;
+    let (coefficients, ..) = section.coefficients()?;
     let [cn, cm, ch] =
-        harmonic_response(&section, k, question.motion).map(|value| [value.re, value.im]);
-    let model = question.section.model.title();
-    let remarks = question.section.remarks(&section.remarks, Asked::Harmonic(question.motion, k));
-    Ok(SectionResult { model, motion: question.motion, remarks, cn, cm, ch })
+        harmonic_response(&coefficients, k, motion).map(|value| [value.re, value.im]);
+    let moved = Moved { motion, reduced_frequency: Some(k) };
+    let remarks = section.remarks(&coefficients.remarks, Some(moved));
+    Ok(SectionResult { model: section.model.title(), motion, remarks, cn, cm, ch })
 }
 
 impl Printable for SectionResult {
@@ -229,14 +209,11 @@ impl Printable for SectionResult {
             rows.map(|(name, [re, im])| {
                 // 0 less the part: no lag of -0 or -180 deg where there is none
                 let lag = (0.0 - im).atan2(re).to_degrees();
-                let amplitude = re.hypot(im);
-                vec![
-                    name.to_owned(),
-                    format!("{re:.6}"),
-                    format!("{im:.6}"),
-                    format!("{amplitude:.6}"),
-                    format!("{lag:.2}"),
-                ]
+                let numbers = [re, im, re.hypot(im)].map(|number| format!("{number:.6}"));
+                std::iter::once(name.to_owned())
+                    .chain(numbers)
+                    .chain([format!("{lag:.2}")])
+                    .collect()
             }),
         );
         format!("Model: {}\n{}{loads}", self.model, notes(&self.remarks))
@@ -299,6 +276,15 @@ impl Printable for SectionTable {
         let notes = notes(&self.remarks);
         format!("{}\n{notes}{}", self.title, table(&self.columns, cells))
     }
+}
+
+/// Most rows of a table.
+const MOST_POINTS: usize = 1_000_000;
+
+/// Refuses a number of rows that does not fit.
+fn within_points(points: usize) -> Result<(), SimError> {
+    let fits = (1..=MOST_POINTS).contains(&points);
+    within("number of points", points as f64, fits, "1 to 1000000")
 }
 
 /// Refuses a number that does not fit.

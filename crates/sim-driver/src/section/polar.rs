@@ -1,6 +1,6 @@
 //! Static curves of a section.
 
-use super::{Asked, SectionChoice, SectionTable, stall_remark, within};
+use super::{SectionChoice, SectionTable, stall_remark, within, within_points};
 use crate::SimError;
 use crate::files::{Folder, Source, airfoil_text, read_airfoil};
 use flap_aero::{C81Airfoil, StallParameters, StallSection, steady_response};
@@ -25,7 +25,7 @@ pub struct PolarQuestion {
 /// The curve.
 ///
 /// # Errors
-/// [`SimError::Rejected`] if the file cannot be read, [`SimError::Section`] if it is no C81 file or a
+/// [`SimError::Data`] if the file cannot be read, [`SimError::Section`] if it is no C81 file or a
 /// number is outside its range.
 pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     let [from, to] = question.incidences_rad;
@@ -34,7 +34,7 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     }
     within("range of incidences, deg", (to - from).to_degrees(), to > from, "above 0")?;
     let points = question.points;
-    within("number of points", points as f64, (1..=1_000_000).contains(&points), "1 to 1000000")?;
+    within_points(points)?;
     let incidences = (0..=points).map(|n| from + (to - from) * n as f64 / points as f64);
     let mach = question.section.mach;
     if let Some(path) = &question.table {
@@ -57,27 +57,24 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
         });
     }
     let (section, mach, flap) = question.section.coefficients()?;
-    let mut remarks = question.section.remarks(&section.remarks, Asked::Static);
+    let mut remarks = question.section.remarks(&section.remarks, None);
     remarks.extend(question.stall.and_then(|_| stall_remark(mach.value())));
     let stalling = question.stall.map(|p| StallSection::new(mach, flap, p)).transpose()?;
     let rows = incidences.map(|a| {
         let modes = [a, 0.0, 0.0, 0.0];
-        let attached = steady_response(&section, &modes);
-        match &stalling {
-            None => [a.to_degrees()].into_iter().chain(attached).collect(),
-            Some(stalling) => {
-                let l = stalling.settled(attached, &modes);
-                let drag = l.pressure_drag(a);
-                vec![a.to_degrees(), l.normal, l.moment, l.hinge, l.chord, drag, l.separation]
-            }
-        }
+        let [cn, cm, ch] = steady_response(&section, &modes);
+        let Some(stalling) = &stalling else { return vec![a.to_degrees(), cn, cm, ch] };
+        let l = stalling.settled([cn, cm, ch], &modes);
+        let drag = l.pressure_drag(a);
+        vec![a.to_degrees(), l.normal, l.moment, l.hinge, l.chord, drag, l.separation]
     });
     let rows = rows.collect();
-    let columns = match &stalling {
-        None => vec!["incidence_deg", "cn", "cm", "ch"],
-        Some(_) => vec!["incidence_deg", "cn", "cm", "ch", "cc", "cd_pressure", "f"],
-    };
-    let flow = if stalling.is_some() { "static stall" } else { "attached flow" };
+    let mut columns = vec!["incidence_deg", "cn", "cm", "ch"];
+    let mut flow = "attached flow";
+    if stalling.is_some() {
+        columns.extend(["cc", "cd_pressure", "f"]);
+        flow = "static stall";
+    }
     let title = format!("{}, Mach {}, {flow}", question.section.model.name(), mach.value());
     Ok(SectionTable { title, remarks, columns, rows })
 }
@@ -86,23 +83,20 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
 fn table_remarks(airfoil: &C81Airfoil, [from, to]: [f64; 2], mach: f64) -> Vec<String> {
     let mut remarks = Vec::new();
     let tables = [("lift", &airfoil.lift), ("drag", &airfoil.drag), ("moment", &airfoil.moment)];
+    // a whole turn repeats
+    let round = from < -180.0 || to > 180.0;
+    let [low, high] = if round { [-180.0, 180.0] } else { [from, to] };
+    let held = |name: &str, axis: &[f64], [low, high]: [f64; 2], [of, unit]: [&str; 2]| {
+        let (first, last) = (axis[0], axis[axis.len() - 1]);
+        (low < first || high > last).then(|| {
+            format!(
+                "the {name} table is for {of}{first} to {last}{unit}: beyond, its end values are held"
+            )
+        })
+    };
     for (name, table) in tables {
-        let ends = |axis: &[f64]| [axis[0], axis[axis.len() - 1]];
-        let [first, last] = ends(table.machs());
-        if mach < first || mach > last {
-            remarks.push(format!(
-                "the {name} table is for Mach {first} to {last}: beyond, its end values are held"
-            ));
-        }
-        let [first, last] = ends(table.incidences_deg());
-        // a whole turn repeats
-        let round = from < -180.0 || to > 180.0;
-        let [low, high] = if round { [-180.0, 180.0] } else { [from, to] };
-        if low < first || high > last {
-            remarks.push(format!(
-                "the {name} table is for {first} to {last} deg: beyond, its end values are held"
-            ));
-        }
+        remarks.extend(held(name, table.machs(), [mach, mach], ["Mach ", ""]));
+        remarks.extend(held(name, table.incidences_deg(), [low, high], ["", " deg"]));
     }
     if let Some([incidence, mach, drag]) = airfoil.negative_drag() {
         remarks.push(format!(

@@ -320,7 +320,7 @@ fn holes_are_reported_once() {
         lines.join("\n") + "\n"
     };
     for (new, part) in [
-        ("2.98,abc,0.5", "a.csv:300:1: command_V: `abc` is not a number"),
+        ("2.98,abc,0.5", "a.csv:300:6: command_V: `abc` is not a number"),
         ("abc,1,0.5", "a.csv:300:1: time_s: `abc` is not a number"),
         ("2.98,1", "a.csv:300:1: the row has 2 fields, the header has 3"),
     ] {

@@ -98,7 +98,7 @@ fn a_run_in_a_wake_that_has_not_settled_says_so() {
     assert_eq!(run.code, 0, "{}", run.err);
 }
 
-/// A wake that parts from its rotor is stored and shown as the last good state, not controlled, and fails the command;
+/// A wake that diverges is stored and shown as the last good state, not controlled, and fails the command;
 /// in a descent where wakes break down that is said. Which thrust parts them is chance: one of three does.
 #[test]
 fn a_wake_that_parts_from_its_rotor_is_no_solution() {
@@ -116,11 +116,11 @@ fn a_wake_that_parts_from_its_rotor_is_no_solution() {
         assert!(ran.err.contains("vortex-ring state"), "{thrust}: {}", ran.err);
         (thrust, ran)
     });
-    let parted = runs.iter().find(|(_, ran)| ran.code == 1);
-    let Some((thrust, ran)) = parted else { panic!("none of the three wakes has parted") };
+    let diverged = runs.iter().find(|(_, ran)| ran.code == 1);
+    let Some((thrust, ran)) = diverged else { panic!("none of the three wakes has diverged") };
     assert!(ran.out.contains("Wake       DIVERGED"), "{}", ran.out);
     assert!(!ran.out.contains("Reduction of hub vibration"), "{}", ran.out);
-    assert!(ran.err.contains("inflow.model: wake and trim have parted"), "{}", ran.err);
+    assert!(ran.err.contains("inflow.model: wake and trim diverged"), "{}", ran.err);
     let stored = place.read(&format!("{thrust}/result.json"));
     let stored: serde_json::Value = serde_json::from_str(&stored).unwrap();
     assert_eq!(stored["result"]["wake"], "diverged");
@@ -137,7 +137,7 @@ fn a_wake_that_parts_from_its_rotor_is_no_solution() {
     let csv = place.read("s/sweep.csv");
     let ends: Vec<&str> = csv.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
     assert!(ends.len() == 3 && ends[..2] == ["wake", "diverged"] && ends[2] != "diverged", "{csv}");
-    assert!(looked_at.out.contains("mu 0.030: parted"), "{}", looked_at.out);
+    assert!(looked_at.out.contains("mu 0.030: diverged"), "{}", looked_at.out);
 }
 
 /// Down a steep slope the wake leaves upward, where the linear model of the start knows no answer.

@@ -29,7 +29,7 @@ pub(crate) const ROWS: &[Check] = &[
     .at_most(1.0, || {
         let changes = [0.15, 0.2, 0.25, 0.35].map(|mu| {
             let settings = WakeTrimSettings::default();
-            Ok(unrest(&coupled(mu, &settings)?, &settings))
+            Ok(normalised_residual(&coupled(mu, &settings)?, &settings))
         });
         worst("advance ratios", 4, changes)
     })
@@ -198,7 +198,7 @@ fn known(found: &'static Result<WakeTrim, TrimError>) -> Result<&'static WakeTri
 }
 
 /// What is left of the inflow or of the geometry in the last update over what may be; nothing settles without.
-fn unrest(wake: &WakeTrim, settings: &WakeTrimSettings) -> f64 {
+fn normalised_residual(wake: &WakeTrim, settings: &WakeTrimSettings) -> f64 {
     let (change, displacement) = match &wake.outcome {
         WakeOutcome::Settled => {
             wake.updates.last().map_or((f64::NAN, f64::NAN), |u| (u.inflow_change, u.displacement))

@@ -40,7 +40,7 @@ pub(crate) const ROWS: &[Check] = &[
     .at_most(1.0, over_ignored),
     row("V-STUDY-03", "the same: halved steps at 3/rev", "-")
         .against(SELF)
-        .at_most(0.0, || Ok(f64::from(line(&[3], "hysteretic")?.backtracks))),
+        .at_most(0.0, || Ok(f64::from(line(&[3], "hysteretic")?.head.backtracks))),
     row(
         "V-STUDY-04",
         "inverse of the actuator, every set of harmonics: error of the wanted flap \
@@ -69,8 +69,8 @@ pub(crate) const ROWS: &[Check] = &[
     row("V-STUDY-07", "constant T, tuned weight: halved steps at 3/rev", "-")
         .against(SELF)
         .at_most(0.0, || {
-            let three = fed_back(paper_study()?).find(|l| l.harmonics == [3]);
-            let found = three.map(|l| f64::from(l.backtracks));
+            let three = fed_back(paper_study()?).find(|l| l.head.harmonics == [3]);
+            let found = three.map(|l| f64::from(l.head.backtracks));
             found.ok_or(too_few("lines of the study", 0, 1))
         }),
     row(
@@ -116,17 +116,17 @@ pub(crate) const ROWS: &[Check] = &[
     )
     .against(SLOWER)
     .at_most(0.0, || {
-        let all: Vec<_> = slower()?.iter().filter(|l| l.actuator == "hysteretic").collect();
+        let all: Vec<_> = slower()?.iter().filter(|l| l.head.actuator == "hysteretic").collect();
         // as many loops as were asked for
         worst("loops", 12, all.iter().map(|_| Ok(0.0)))?;
-        Ok(all.iter().filter(|l| l.status != "converged").count() as f64)
+        Ok(all.iter().filter(|l| l.head.status != "converged").count() as f64)
     }),
     row("V-STUDY-13", "the same: J over that of hysteresis ignored, worst", "-")
         .against(SLOWER)
         .at_most(1.0, || {
             let fed_back: Vec<_> =
-                slower()?.iter().filter(|l| l.actuator == "hysteretic").collect();
-            let ignored = slower()?.iter().filter(|l| l.actuator == "ignored");
+                slower()?.iter().filter(|l| l.head.actuator == "hysteretic").collect();
+            let ignored = slower()?.iter().filter(|l| l.head.actuator == "ignored");
             let ratios = fed_back.iter().zip(ignored).map(|(a, b)| Ok(a.j_after / b.j_after));
             worst("loops", 12, ratios)
         }),
@@ -322,7 +322,7 @@ fn paper_study() -> Result<&'static [ControlLine], Failure> {
 }
 
 fn fed_back(lines: &'static [ControlLine]) -> impl Iterator<Item = &'static ControlLine> {
-    lines.iter().filter(|l| l.actuator == "hysteretic")
+    lines.iter().filter(|l| l.head.actuator == "hysteretic")
 }
 
 fn not_converged() -> Result<f64, Failure> {
@@ -330,7 +330,7 @@ fn not_converged() -> Result<f64, Failure> {
     if all.len() < 8 {
         return Err(too_few("feedback loops", all.len(), 8));
     }
-    Ok(all.iter().filter(|l| l.status != "converged").count() as f64)
+    Ok(all.iter().filter(|l| l.head.status != "converged").count() as f64)
 }
 
 fn power_over_limit() -> Result<f64, Failure> {
@@ -342,7 +342,7 @@ fn power_over_limit() -> Result<f64, Failure> {
         control.actuators = vec![ControlActuator::Ideal, ControlActuator::Hysteretic];
         control.power_limit_watt = Some(limit_watt);
         let lines = run_case(&loaded, &Progress::hidden())?.figures().control;
-        shares.extend(lines.iter().map(|line| match line.status.as_str() {
+        shares.extend(lines.iter().map(|line| match line.head.status.as_str() {
             "converged" => line.actuation_power_watt / limit_watt,
             _ => f64::INFINITY,
         }));
@@ -455,7 +455,8 @@ fn study() -> Result<&'static [ControlLine], Failure> {
 }
 
 fn line(harmonics: &[usize], actuator: &str) -> Result<&'static ControlLine, Failure> {
-    let found = study()?.iter().find(|l| l.harmonics == harmonics && l.actuator == actuator);
+    let found =
+        study()?.iter().find(|l| l.head.harmonics == harmonics && l.head.actuator == actuator);
     found.ok_or(too_few("lines of the study", 0, 1))
 }
 
@@ -468,7 +469,8 @@ fn over_ignored() -> Result<f64, Failure> {
 }
 
 fn inverse_error() -> Result<f64, Failure> {
-    let inverse: Vec<&ControlLine> = study()?.iter().filter(|l| l.actuator == "inverse").collect();
+    let inverse: Vec<&ControlLine> =
+        study()?.iter().filter(|l| l.head.actuator == "inverse").collect();
     let errors = inverse.iter().map(|l| Ok(l.motion_error_percent.unwrap_or(f64::NAN)));
     worst("sets", 5, errors)
 }

@@ -1,4 +1,4 @@
-//! A calibration as the Rust source the section models are built with.
+//! A calibration as the table the section models are built with.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ pub(super) const FLAPPED: [[usize; 2]; 8] =
     [[0, 2], [0, 3], [1, 2], [1, 3], [2, 0], [2, 1], [2, 2], [2, 3]];
 
 impl Calibration {
-    /// The source text of the table: the same for the same calibration.
+    /// The table as Rust items, to be included: the same text for the same calibration.
     pub fn source(&self) -> String {
         let mut text = String::from(HEADER);
         let mut put = |line: std::fmt::Arguments<'_>| {
@@ -50,7 +50,6 @@ impl Calibration {
         put(format_args!(
             "/// Gains of incidence and pitch rate in lift and moment, `[pair][Mach term]`."
         ));
-        put(format_args!("#[rustfmt::skip]"));
         put(format_args!("pub(super) static RIGID: [[[f64; {g}]; {m}]; {}] = [", RIGID.len()));
         for pair in RIGID {
             put(format_args!("    ["));
@@ -63,7 +62,6 @@ impl Calibration {
         put(format_args!(
             "/// Gains that depend on the flap chord, `[pair][flap term][Mach term]`."
         ));
-        put(format_args!("#[rustfmt::skip]"));
         put(format_args!(
             "pub(super) static FLAPPED: [[[[f64; {g}]; {m}]; {FLAP_TERMS}]; {}] = [",
             FLAPPED.len()
@@ -89,10 +87,9 @@ impl Calibration {
 }
 
 const HEADER: &str = "\
-//! Poles and gains of the calibrated model. Written by `cargo xtask calibrate`: do not edit.
-//!
-//! Fitted to solutions of Possio's integral equation. Gains are Chebyshev coefficients of `M gain`
-//! in `ln(M/(1 - M))` and in the flap chord, per pole but the fastest.
-#![expect(clippy::unreadable_literal, reason = \"written by a program, read by one\")]
+// Poles and gains of the calibrated model. Written by `cargo xtask calibrate`: do not edit.
+//
+// Fitted to solutions of Possio's integral equation. Gains are Chebyshev coefficients of `M gain`
+// in `ln(M/(1 - M))` and in the flap chord, per pole but the fastest.
 
 ";

@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 
 use reference_rotors::{
     AttachedPolar, BladeElementRotor, BladeElementSolution, CARADONNA_TUNG_THRUST,
-    CouplingSettings, Landgrebe,
+    CouplingSettings, Landgrebe, contraction_drift,
 };
 use rotor_wake::{
     CirculationMap, CoreModel, FlightState, FreeWake, FreeWakeSettings, Vec3, WakeError,
-    WakeFilament, WakeMarch, WakeSymmetry, contraction_drift,
+    WakeFilament, WakeMarch, WakeSymmetry,
 };
 use validation::{Check, Failure, row, worst};
 

@@ -92,11 +92,9 @@ impl C81Airfoil {
     /// is read, because where it is wrong may not matter, and whoever uses it is to be told.
     pub fn negative_drag(&self) -> Option<[f64; 3]> {
         self.drag.incidences_deg().iter().enumerate().find_map(|(i, incidence)| {
-            let pairs = self.drag.machs().iter().zip(self.drag.row(i));
-            pairs
-                .filter(|(_, drag)| **drag < 0.0)
-                .map(|(mach, drag)| [*incidence, *mach, *drag])
-                .next()
+            let mut pairs = self.drag.machs().iter().zip(self.drag.row(i));
+            let (mach, drag) = pairs.find(|(_, drag)| **drag < 0.0)?;
+            Some([*incidence, *mach, *drag])
         })
     }
 
@@ -109,19 +107,14 @@ impl C81Airfoil {
     /// | `mach` | `M` | - | 0 and up; its absolute value is used |
     pub fn at(&self, incidence_rad: f64, mach: f64) -> SteadyPoint {
         let degrees = crate::airfoil::c81::table::wrapped_degrees(incidence_rad);
-        let [lift, drag, moment] =
+        let tables =
             [&self.lift, &self.drag, &self.moment].map(|table| table.at(degrees, mach.abs()));
-        let slope = 1.0_f64.to_radians().recip();
-        let collect = |pick: fn(&[f64; 3]) -> f64, scale: f64| SteadyCoefficients {
-            lift: scale * pick(&lift),
-            drag: scale * pick(&drag),
-            moment: scale * pick(&moment),
+        let part = |k: usize, scale: f64| {
+            let [lift, drag, moment] = tables.map(|table| scale * table[k]);
+            SteadyCoefficients { lift, drag, moment }
         };
-        SteadyPoint {
-            value: collect(|v| v[0], 1.0),
-            per_incidence: collect(|v| v[1], slope),
-            per_mach: collect(|v| v[2], 1.0),
-        }
+        let per_incidence = part(1, 1.0_f64.to_radians().recip());
+        SteadyPoint { value: part(0, 1.0), per_incidence, per_mach: part(2, 1.0) }
     }
 }
 

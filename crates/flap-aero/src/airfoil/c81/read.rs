@@ -13,10 +13,6 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    fn next(&mut self, expected: &'static str) -> Result<&'a str, AeroError> {
-        self.next_filled().ok_or_else(|| self.fault(1, expected))
-    }
-
     fn next_filled(&mut self) -> Option<&'a str> {
         for (index, line) in self.lines.by_ref() {
             self.line = index + 1;
@@ -27,22 +23,20 @@ impl<'a> Lines<'a> {
         None
     }
 
-    fn fault(&self, column: usize, expected: &'static str) -> AeroError {
-        AeroError::C81Text { line: self.line, column, expected }
+    fn fault(&self, column: usize, expected: impl Into<String>) -> AeroError {
+        AeroError::C81Text { line: self.line, column, expected: expected.into() }
     }
 }
 
 pub(super) fn airfoil(text: &str) -> Result<C81Airfoil, AeroError> {
     let mut lines = Lines { lines: text.lines().enumerate(), line: 1 };
     let expected = "a first line with name (30 columns) and six counts (2 columns each)";
-    let head = lines.next(expected)?;
-    let Some((name, counts)) = header(head) else {
-        return Err(lines.fault(NAME + 1, expected));
-    };
+    let head = lines.next_filled().ok_or_else(|| lines.fault(1, expected))?;
+    let (name, counts) = header(head).ok_or_else(|| lines.fault(NAME + 1, expected))?;
     let [ml, al, md, ad, mm, am] = counts;
-    let lift = table(&mut lines, &LIFT, ml, al)?;
-    let drag = table(&mut lines, &DRAG, md, ad)?;
-    let moment = table(&mut lines, &MOMENT, mm, am)?;
+    let lift = table(&mut lines, "lift", ml, al)?;
+    let drag = table(&mut lines, "drag", md, ad)?;
+    let moment = table(&mut lines, "moment", mm, am)?;
     nothing_follows(&mut lines)?;
     Ok(C81Airfoil { name, lift, drag, moment })
 }
@@ -63,89 +57,48 @@ fn nothing_follows(lines: &mut Lines<'_>) -> Result<(), AeroError> {
     Ok(())
 }
 
-/// What is expected of one of the tables, for errors.
-struct Expected {
-    positive: &'static str,
-    machs: &'static str,
-    incidence: &'static str,
-    more: &'static str,
-    numbers: &'static str,
-}
-
-/// The texts of one table.
-macro_rules! expected {
-    ($table:literal) => {
-        Expected {
-            positive: concat!("Mach numbers of the ", $table, " table of 0 or more"),
-            machs: concat!("Mach numbers of the ", $table, " table that ascend; sort its columns"),
-            incidence: concat!(
-                "an incidence above the one before it in the ",
-                $table,
-                " table; sort its rows"
-            ),
-            more: concat!(
-                "more of the ",
-                $table,
-                " table; the file ends inside it: complete it, or correct the counts of the first line"
-            ),
-            numbers: concat!(
-                "numbers of the ",
-                $table,
-                " table in fields of seven columns, or apart by blanks, as many as the first line counts"
-            ),
-        }
-    };
-}
-
-const LIFT: Expected = expected!("lift");
-const DRAG: Expected = expected!("drag");
-const MOMENT: Expected = expected!("moment");
-
 /// Name and counts of the first line: by columns, or else the last six words.
 fn header(line: &str) -> Option<(String, [usize; 6])> {
+    let count = |text: &str| text.trim().parse().ok().filter(|n| (1..=99).contains(n));
     let characters: Vec<char> = line.chars().collect();
-    let by_columns = || -> Option<[usize; 6]> {
-        let mut counts = [0; 6];
-        for (i, count) in counts.iter_mut().enumerate() {
-            let field: String = characters.get(NAME + 2 * i..NAME + 2 * i + 2)?.iter().collect();
-            *count = field.trim().parse().ok().filter(|n| *n > 0)?;
-        }
-        let rest: String = characters[NAME + 12..].iter().collect();
-        rest.trim().is_empty().then_some(counts)
+    let by_columns = || -> Option<Vec<usize>> {
+        let (fields, rest) = characters.get(NAME..)?.split_at_checked(12)?;
+        let fields = fields.chunks(2).map(|field| count(&String::from_iter(field)));
+        rest.iter().all(|c| c.is_whitespace()).then(|| fields.collect())?
     };
     if let Some(counts) = by_columns() {
-        let name: String = characters[..NAME].iter().collect();
-        return Some((name.trim_end().to_owned(), counts));
+        let name = String::from_iter(&characters[..NAME]);
+        return Some((name.trim_end().to_owned(), counts.try_into().ok()?));
     }
     let words: Vec<&str> = line.split_whitespace().collect();
-    let first = words.len().checked_sub(6)?;
-    let mut counts = [0; 6];
-    for (count, word) in counts.iter_mut().zip(&words[first..]) {
-        *count = word.parse().ok().filter(|n| (1..=99).contains(n))?;
-    }
-    Some((words[..first].join(" "), counts))
+    let (name, counts) = words.split_at_checked(words.len().checked_sub(6)?)?;
+    let counts: Option<Vec<usize>> = counts.iter().map(|word| count(word)).collect();
+    Some((name.join(" "), counts?.try_into().ok()?))
 }
 
+/// The table of this name.
 fn table(
     lines: &mut Lines<'_>,
-    expected: &Expected,
+    name: &str,
     machs: usize,
     incidences: usize,
 ) -> Result<C81Table, AeroError> {
-    let (line, _, mach_numbers) = row(lines, expected, false, machs)?;
+    let (line, _, mach_numbers) = row(lines, name, false, machs)?;
     let fault = |line, expected| AeroError::C81Text { line, column: 1, expected };
     if mach_numbers[0] < 0.0 {
-        return Err(fault(line, expected.positive));
+        return Err(fault(line, format!("Mach numbers of the {name} table of 0 or more")));
     }
     if ascending("Mach numbers", &mach_numbers).is_err() {
-        return Err(fault(line, expected.machs));
+        let expected = format!("Mach numbers of the {name} table that ascend; sort its columns");
+        return Err(fault(line, expected));
     }
     let mut angles: Vec<f64> = Vec::with_capacity(incidences);
     let mut values = Vec::with_capacity(machs * incidences);
     for _ in 0..incidences {
-        let (line, angle, row) = row(lines, expected, true, machs)?;
+        let (line, angle, row) = row(lines, name, true, machs)?;
         if angles.last().zip(angle).is_some_and(|(before, now)| now <= *before) {
-            return Err(fault(line, expected.incidence));
+            let place = format!("an incidence above the one before it in the {name} table");
+            return Err(fault(line, format!("{place}; sort its rows")));
         }
         angles.extend(angle);
         values.extend(row);
@@ -156,7 +109,7 @@ fn table(
 /// One row: the line it begins on, its incidence, if it has one, and `count` values, over as many lines as these need.
 fn row(
     lines: &mut Lines<'_>,
-    expected: &Expected,
+    table: &str,
     has_incidence: bool,
     count: usize,
 ) -> Result<(usize, Option<f64>, Vec<f64>), AeroError> {
@@ -166,12 +119,20 @@ fn row(
     let mut first = has_incidence;
     while values.len() < count {
         let wanted = (count - values.len()).min(PER_LINE);
-        let line = lines.next(expected.more)?;
+        let line = lines.next_filled().ok_or_else(|| {
+            let remedy = "complete it, or correct the counts of the first line";
+            lines.fault(1, format!("more of the {table} table; the file ends inside it: {remedy}"))
+        })?;
         let _ = begin.get_or_insert(lines.line);
         let mut numbers = match by_columns(line, first, wanted) {
             Ok(numbers) => numbers,
-            Err(column) => by_words(line, usize::from(first) + count - values.len())
-                .ok_or_else(|| lines.fault(column, expected.numbers))?,
+            Err(column) => {
+                by_words(line, usize::from(first) + count - values.len()).ok_or_else(|| {
+                    let how = "in fields of seven columns, or apart by blanks";
+                    let count = "as many as the first line counts";
+                    lines.fault(column, format!("numbers of the {table} table {how}, {count}"))
+                })?
+            }
         };
         if first {
             incidence = Some(numbers.remove(0));

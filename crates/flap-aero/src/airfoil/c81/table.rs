@@ -1,6 +1,7 @@
 //! One table of a C81 file: values against incidence and Mach number.
 
 use crate::AeroError;
+use crate::error::check;
 
 /// Values on a grid of incidences (degrees) and Mach numbers, both ascending.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,10 +68,8 @@ impl C81Table {
     ) -> Result<Self, AeroError> {
         ascending("Mach numbers", &machs)?;
         ascending("incidences", &incidences_deg)?;
-        if machs[0] < 0.0 {
-            let (quantity, value) = ("first Mach number of a C81 table", machs[0]);
-            return Err(AeroError::BadInput { quantity, value, expected: "0 or more" });
-        }
+        let first = [("first Mach number of a C81 table", machs[0])];
+        check(&first, "0 or more", |mach| mach >= 0.0)?;
         let expected = machs.len() * incidences_deg.len();
         let found = values.iter().filter(|v| v.is_finite()).count();
         if values.len() != expected || found != expected {

@@ -1,6 +1,6 @@
 //! A C81 file's text from an aerofoil.
 
-use super::{C81Airfoil, C81Table};
+use super::C81Airfoil;
 use crate::AeroError;
 use std::fmt::Write;
 
@@ -74,17 +74,12 @@ pub(super) fn airfoil(airfoil: &C81Airfoil) -> Result<String, AeroError> {
     }
     text.push('\n');
     for table in tables {
-        put(&mut text, table)?;
+        line(&mut text, None, table.machs())?;
+        for (i, incidence) in table.incidences_deg().iter().enumerate() {
+            line(&mut text, Some(*incidence), table.row(i))?;
+        }
     }
     Ok(text)
-}
-
-fn put(text: &mut String, table: &C81Table) -> Result<(), AeroError> {
-    line(text, None, table.machs())?;
-    for (i, incidence) in table.incidences_deg().iter().enumerate() {
-        line(text, Some(*incidence), table.row(i))?;
-    }
-    Ok(())
 }
 
 /// A row with its continuation lines.

@@ -1,6 +1,10 @@
 //! Compressible section with poles and gains fitted to exact linear theory.
 
-mod table;
+/// Poles and gains, written by `cargo xtask calibrate`.
+#[expect(clippy::unreadable_literal, reason = "written by a program, read by one")]
+mod table {
+    include!("table.in");
+}
 
 use crate::attached::hariharan_leishman::piston_start;
 use crate::{

@@ -1,6 +1,6 @@
 //! The bytes of a MAT file: byte order, element tags, numbers.
 
-use crate::problem::RecordFault;
+use crate::problem::Fault;
 
 /// Bytes that are read from front to back, never beyond their end.
 #[derive(Debug, Clone, Copy)]
@@ -50,16 +50,16 @@ impl<'a> Bytes<'a> {
         &self.data[self.at..]
     }
 
-    pub(super) fn is_little_endian(&self) -> bool {
-        self.little_endian
-    }
-
     /// A fault at the present place.
-    pub(super) fn fault(&self, what: &'static str) -> RecordFault {
-        RecordFault::Mat { offset: self.base + self.at, compressed: self.compressed, what }
+    pub(super) fn fault(&self, what: &str) -> Fault {
+        let of = if self.compressed { " of a compressed variable" } else { "" };
+        Fault::Other(format!(
+            "damaged MAT file at byte {}{of}: {what}; save it again with save('file.mat', '-v7')",
+            self.base + self.at
+        ))
     }
 
-    fn take(&mut self, count: usize) -> Result<&'a [u8], RecordFault> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         let end = self.at.checked_add(count).filter(|end| *end <= self.data.len());
         let end =
             end.ok_or_else(|| self.fault("it ends inside an element: the file is truncated"))?;
@@ -68,7 +68,7 @@ impl<'a> Bytes<'a> {
         Ok(bytes)
     }
 
-    fn u32(&mut self) -> Result<u32, RecordFault> {
+    fn u32(&mut self) -> Result<u32, Fault> {
         let bytes = self.take(4)?;
         Ok(self.word(bytes))
     }
@@ -80,7 +80,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// The next element; its padding is skipped.
-    pub(super) fn element(&mut self) -> Result<Element<'a>, RecordFault> {
+    pub(super) fn element(&mut self) -> Result<Element<'a>, Fault> {
         let tag = self.u32()?;
         let (little_endian, compressed) = (self.little_endian, self.compressed);
         // a short element has its size in the upper half of the first word, its data in the second
@@ -108,47 +108,39 @@ impl<'a> Bytes<'a> {
 
 impl Element<'_> {
     /// The numbers of a numeric element.
-    pub(super) fn numbers(&self) -> Result<Vec<f64>, RecordFault> {
-        let data = self.bytes.rest();
-        let little = self.bytes.is_little_endian();
-        macro_rules! read {
-            ($type:ty, $size:literal, $convert:expr) => {{
-                let chunks = data.chunks_exact($size);
-                if !chunks.remainder().is_empty() {
-                    let what = "the size of an element is no whole number of values";
-                    return Err(self.bytes.fault(what));
-                }
-                let convert = $convert;
-                chunks
-                    .map(|chunk| {
-                        let mut bytes = [0; $size];
-                        bytes.copy_from_slice(chunk);
-                        convert(if little {
-                            <$type>::from_le_bytes(bytes)
-                        } else {
-                            <$type>::from_be_bytes(bytes)
-                        })
-                    })
-                    .collect()
-            }};
+    pub(super) fn numbers(&self) -> Result<Vec<f64>, Fault> {
+        match self.kind {
+            INT8 => self.values(|bytes| f64::from(i8::from_le_bytes(bytes))),
+            UINT8 | UTF8 => self.values(|bytes| f64::from(u8::from_le_bytes(bytes))),
+            INT16 => self.values(|bytes| f64::from(i16::from_le_bytes(bytes))),
+            UINT16 | UTF16 => self.values(|bytes| f64::from(u16::from_le_bytes(bytes))),
+            INT32 => self.values(|bytes| f64::from(i32::from_le_bytes(bytes))),
+            UINT32 | UTF32 => self.values(|bytes| f64::from(u32::from_le_bytes(bytes))),
+            SINGLE => self.values(|bytes| f64::from(f32::from_le_bytes(bytes))),
+            DOUBLE => self.values(f64::from_le_bytes),
+            INT64 => self.values(|bytes| i64::from_le_bytes(bytes) as f64),
+            UINT64 => self.values(|bytes| u64::from_le_bytes(bytes) as f64),
+            _ => Err(self.bytes.fault("numbers were expected here")),
         }
-        Ok(match self.kind {
-            INT8 => read!(i8, 1, f64::from),
-            UINT8 | UTF8 => read!(u8, 1, f64::from),
-            INT16 => read!(i16, 2, f64::from),
-            UINT16 | UTF16 => read!(u16, 2, f64::from),
-            INT32 => read!(i32, 4, f64::from),
-            UINT32 | UTF32 => read!(u32, 4, f64::from),
-            SINGLE => read!(f32, 4, f64::from),
-            DOUBLE => read!(f64, 8, |v: f64| v),
-            INT64 => read!(i64, 8, |v: i64| v as f64),
-            UINT64 => read!(u64, 8, |v: u64| v as f64),
-            _ => return Err(self.bytes.fault("numbers were expected here")),
-        })
+    }
+
+    /// The values of `N` bytes each; `value` takes them with the lowest byte first.
+    fn values<const N: usize>(&self, value: impl Fn([u8; N]) -> f64) -> Result<Vec<f64>, Fault> {
+        let (chunks, rest) = self.bytes.rest().as_chunks();
+        if !rest.is_empty() {
+            return Err(self.bytes.fault("the size of an element is no whole number of values"));
+        }
+        let in_order = |mut bytes: [u8; N]| {
+            if !self.bytes.little_endian {
+                bytes.reverse();
+            }
+            bytes
+        };
+        Ok(chunks.iter().map(|bytes| value(in_order(*bytes))).collect())
     }
 
     /// The whole numbers of an element, all 0 or more.
-    pub(super) fn sizes(&self) -> Result<Vec<usize>, RecordFault> {
+    pub(super) fn sizes(&self) -> Result<Vec<usize>, Fault> {
         if !matches!(self.kind, INT32 | UINT32) {
             return Err(self.bytes.fault("sizes were expected here"));
         }

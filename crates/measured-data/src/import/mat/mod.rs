@@ -10,51 +10,44 @@ mod select;
 mod tests;
 mod value;
 
-use super::columns::{Shape, choose, name_columns};
-use super::gather::{Gather, Reduction};
-use super::{ColumnOptions, Table};
-use crate::problem::{Fault, Place, Problem, Problems, RecordFault};
+use super::columns::{ColumnOptions, choose, name_columns};
+use super::gather::Reduction;
+use super::{ImportKind, Table};
+use crate::problem::{Fault, Place, Problem, Problems};
 
-pub(super) use value::{MatLevel, mat_level};
+pub(super) use value::byte_order;
 
 /// Reads a record out of a MAT file; also what was taken, in words.
 pub(super) fn read_mat(
     bytes: &[u8],
     file: &str,
     (options, variable): (&ColumnOptions, Option<&str>),
-    shape: Option<Shape>,
+    kind: Option<ImportKind>,
     reduction: Reduction,
 ) -> Result<(Table, String), Problems> {
-    let refused = |fault: RecordFault| Problem::new(Place::file(file), fault.into());
+    let refused = |fault| Problem::new(Place::file(file), fault);
     let variables = value::read_variables(bytes).map_err(refused)?;
     let found = select::select(&variables, variable).map_err(refused)?;
     drop(variables);
     let choice = name_columns(options, found.names.as_deref(), found.columns.len())
-        .and_then(|named| choose(named, options, shape, reduction.sampling_hz))
+        .and_then(|named| choose(named, options, kind, reduction.sampling_hz))
         .map_err(refused)?;
     let mut problems = Problems::default();
-    let length = found.columns.first().map_or(0, Vec::len);
-    for taken in choice.time.iter().chain(&choice.columns) {
+    for taken in choice.taken() {
         let column = &found.columns[taken.source];
-        let place = || Place::file(file).field(taken.channel.label());
         if let Some((i, value)) = column.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-            let place = Place { line: Some(i + 1), ..place() };
-            problems.push(place, Fault::NotFinite { value: *value });
+            let place = Place { line: Some(i + 1), ..Place::file(file) };
+            let fault = Fault::NotFinite { value: *value };
+            problems.push(place.field(taken.channel.label()), fault);
         }
     }
     if !problems.is_empty() {
         return problems.into_result(None);
     }
-    let mut gather = Gather::new(file, choice.labels(), reduction);
-    let step_s = reduction.sampling_hz.map_or(0.0, |hz| 1.0 / hz);
-    let mut row = vec![0.0; found.columns.len()];
-    let mut taken = Vec::new();
-    for i in 0..length {
-        for (value, column) in row.iter_mut().zip(&found.columns) {
-            *value = column[i];
-        }
-        choice.take(&row, step_s, i, &mut taken);
-        gather.push(&taken, i + 1, &mut problems);
+    let mut gather = choice.gather(file, reduction);
+    for i in 0..found.columns.first().map_or(0, Vec::len) {
+        let numbers = choice.taken().map(|taken| found.columns[taken.source][i]);
+        gather.push(choice.converted(numbers), i + 1, &mut problems);
     }
     let gathered = gather.finish(&mut problems);
     let table = gathered.map(|gathered| (Table { gathered, choice }, found.taken));

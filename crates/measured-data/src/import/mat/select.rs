@@ -1,7 +1,7 @@
 //! Which arrays of a MAT file make up the record.
 
 use super::value::{MatValue, Variables};
-use crate::problem::RecordFault;
+use crate::problem::Fault;
 
 /// The columns of a record: names where the file gives them, and the numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,47 +22,42 @@ const LISTED: usize = 12;
 ///
 /// A matrix gives its columns without names; rows stand for columns where there are more columns than
 /// rows. A structure gives its numeric vectors, named by their fields.
-pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatColumns, RecordFault> {
-    let found = || listing(variables);
-    let refused =
-        |path: &str, what| RecordFault::MatVariable { path: path.into(), what, found: found() };
-    let (value, name) = match path {
-        Some(path) => (walk(variables, path).map_err(|what| refused(path, what))?, path.to_owned()),
-        None => match variables.as_slice() {
-            [] => return Err(refused("the file", "holds no variable")),
-            [(name, value)] => (value, name.clone()),
-            all => {
-                let fields: Vec<(&str, &MatValue)> =
-                    all.iter().map(|(n, v)| (n.as_str(), v)).collect();
-                return vectors(&fields, "all variables")
-                    .ok_or_else(|| refused("the file", "holds no vectors of one length"));
-            }
-        },
+pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatColumns, Fault> {
+    let refused = |path: &str, what: &str| {
+        let found = listing(variables);
+        Fault::Other(format!("`{path}` {what}; the file has: {found}; choose one with --variable"))
     };
-    match value {
-        MatValue::Numeric { sizes, values } => {
-            let columns = matrix(sizes, values);
-            columns
-                .map(|columns| {
-                    let size: Vec<String> = sizes.iter().map(usize::to_string).collect();
-                    let taken = format!("{name}, {} numbers", size.join(" x "));
-                    MatColumns { names: None, columns, taken }
-                })
-                .ok_or_else(|| refused(&name, "is no matrix of several columns"))
+    let (value, name) = match (path, variables.as_slice()) {
+        (Some(path), _) => {
+            (walk(variables, path).map_err(|what| refused(path, what))?, path.to_owned())
         }
+        (None, []) => return Err(refused("the file", "holds no variable")),
+        (None, [(name, value)]) => (value, name.clone()),
+        (None, all) => {
+            return vectors(all, "all variables")
+                .ok_or_else(|| refused("the file", "holds no vectors of one length"));
+        }
+    };
+    let found = match value {
+        MatValue::Numeric { sizes, values } => matrix(sizes, values)
+            .map(|columns| {
+                let taken = format!("{name}, {} numbers", size(sizes, " x "));
+                MatColumns { names: None, columns, taken }
+            })
+            .ok_or("is no matrix of several columns"),
         MatValue::Struct(fields) => {
-            let fields: Vec<(&str, &MatValue)> =
-                fields.iter().map(|(n, v)| (n.as_str(), v)).collect();
-            vectors(&fields, &name)
-                .ok_or_else(|| refused(&name, "is a structure without vectors of one length"))
+            vectors(fields, &name).ok_or("is a structure without vectors of one length")
         }
-        MatValue::Structs(_) => {
-            Err(refused(&name, "is an array of structures; choose one as in name(1)"))
-        }
-        MatValue::Cell(_) => Err(refused(&name, "is an array of cells; choose one as in name{1}")),
-        MatValue::Text(_) => Err(refused(&name, "is a text")),
-        MatValue::Other(_) => Err(refused(&name, "is of a class that holds no measurement")),
-    }
+        MatValue::Structs(_) => Err("is an array of structures; choose one as in name(1)"),
+        MatValue::Cell(_) => Err("is an array of cells; choose one as in name{1}"),
+        MatValue::Text(_) => Err("is a text"),
+        MatValue::Other(_) => Err("is of a class that holds no measurement"),
+    };
+    found.map_err(|what| refused(&name, what))
+}
+
+fn size(sizes: &[usize], times: &str) -> String {
+    sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(times)
 }
 
 /// The columns of a matrix with at least two of them.
@@ -81,72 +76,55 @@ fn matrix(sizes: &[usize], values: &[f64]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// The numeric vectors of the commonest length among fields; scalars and others are left out.
-fn vectors(fields: &[(&str, &MatValue)], name: &str) -> Option<MatColumns> {
-    let vector = |value: &MatValue| match value {
+fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<MatColumns> {
+    let vector = |(name, value): &'_ (String, MatValue)| match value {
         MatValue::Numeric { sizes, values } if sizes.iter().filter(|s| **s != 1).count() == 1 => {
-            Some(values.clone())
+            Some((name.clone(), values.clone()))
         }
         _ => None,
     };
-    let all: Vec<(&str, Vec<f64>)> =
-        fields.iter().filter_map(|(n, v)| Some((*n, vector(v)?))).collect();
+    let all: Vec<(String, Vec<f64>)> = fields.iter().filter_map(vector).collect();
     let longest = all.iter().map(|(_, v)| v.len()).max()?;
-    let (names, columns): (Vec<String>, Vec<Vec<f64>>) =
-        all.into_iter().filter(|(_, v)| v.len() == longest).map(|(n, v)| (n.to_owned(), v)).unzip();
+    let (names, columns): (Vec<_>, Vec<_>) =
+        all.into_iter().filter(|(_, v)| v.len() == longest).unzip();
     let taken = format!("{name}: {} of {longest} samples", names.join(", "));
     (columns.len() > 1).then_some(MatColumns { names: Some(names), columns, taken })
 }
 
-/// A step of a path: a field, then perhaps an index.
-struct Step<'a> {
-    field: &'a str,
-    index: Option<usize>,
-}
-
-fn steps(path: &str) -> Option<Vec<Step<'_>>> {
-    path.split('.')
-        .map(|part| {
-            let open = part.find(['(', '{']);
-            let field = &part[..open.unwrap_or(part.len())];
-            let index = match open {
-                Some(open) => {
-                    let inside = part[open + 1..].strip_suffix([')', '}'])?;
-                    Some(inside.parse::<usize>().ok()?.checked_sub(1)?)
-                }
-                None => None,
-            };
-            (!field.is_empty()).then_some(Step { field, index })
-        })
-        .collect()
+/// The steps of a path: a field, then perhaps an index.
+fn steps(path: &str) -> Option<Vec<(&str, Option<usize>)>> {
+    let step = |part| {
+        let Some((field, index)) = str::split_once(part, ['(', '{']) else {
+            return Some((part, None));
+        };
+        let index: usize = index.strip_suffix([')', '}'])?.parse().ok()?;
+        Some((field, Some(index.checked_sub(1)?)))
+    };
+    path.split('.').map(|part| step(part).filter(|(field, _)| !field.is_empty())).collect()
 }
 
 fn walk<'a>(variables: &'a Variables, path: &str) -> Result<&'a MatValue, &'static str> {
-    let steps = steps(path).ok_or("is no path such as bench.run(2).x")?;
-    let mut at: Option<&MatValue> = None;
-    for step in steps {
-        let mut value = match at {
-            None => variables.iter().find(|(n, _)| n == step.field).map(|(_, v)| v),
-            Some(MatValue::Struct(fields)) => {
-                fields.iter().find(|(n, _)| n == step.field).map(|(_, v)| v)
+    let mut fields = Ok(variables);
+    let mut value = None;
+    for (field, index) in steps(path).ok_or("is no path such as bench.run(2).x")? {
+        let found = fields?.iter().find(|(name, _)| name == field).ok_or("is not there")?;
+        let found = match (&found.1, index) {
+            (found, None) | (found @ MatValue::Struct(_), Some(0)) => found,
+            (MatValue::Cell(all) | MatValue::Structs(all), Some(index)) => {
+                all.get(index).ok_or("has an index beyond its elements")?
             }
-            Some(MatValue::Structs(_)) => {
-                return Err("goes through an array of structures; choose one as in name(1)");
+            _ => return Err("has an index, but is no array of cells or structures"),
+        };
+        fields = match found {
+            MatValue::Struct(fields) => Ok(fields),
+            MatValue::Structs(_) => {
+                Err("goes through an array of structures; choose one as in name(1)")
             }
-            Some(_) => return Err("goes through what is no structure"),
-        }
-        .ok_or("is not there")?;
-        if let Some(index) = step.index {
-            value = match value {
-                MatValue::Cell(all) | MatValue::Structs(all) => {
-                    all.get(index).ok_or("has an index beyond its elements")?
-                }
-                MatValue::Struct(_) if index == 0 => value,
-                _ => return Err("has an index, but is no array of cells or structures"),
-            };
-        }
-        at = Some(value);
+            _ => Err("goes through what is no structure"),
+        };
+        value = Some(found);
     }
-    at.ok_or("is empty")
+    value.ok_or("is empty")
 }
 
 /// Numeric variables with their sizes, for messages.
@@ -167,8 +145,7 @@ fn listing(variables: &Variables) -> String {
 fn list(name: &str, value: &MatValue, names: &mut Vec<String>) {
     match value {
         MatValue::Numeric { sizes, .. } => {
-            let size: Vec<String> = sizes.iter().map(usize::to_string).collect();
-            names.push(format!("{name} {}", size.join("x")));
+            names.push(format!("{name} {}", size(sizes, "x")));
         }
         MatValue::Cell(cells) => {
             for (i, cell) in cells.iter().enumerate() {

@@ -206,23 +206,26 @@ fn a_record_with_units_of_its_own() {
 
 #[test]
 fn other_formats_are_recognised() {
-    let level = |bytes: &[u8]| mat_level(bytes, true);
-    assert_eq!(level(&sample(true, false)), Some(MatLevel::Five { little_endian: true }));
-    assert_eq!(level(&sample(false, false)), Some(MatLevel::Five { little_endian: false }));
+    let order = |bytes: &[u8]| byte_order(bytes, true);
+    let refused = |bytes: &[u8], as_what: &str| {
+        let text = order(bytes).unwrap().unwrap_err().to_string();
+        assert!(text.starts_with(as_what), "{text}");
+        assert_eq!(read_variables(bytes).unwrap_err().to_string(), text);
+    };
+    assert_eq!(order(&sample(true, false)), Some(Ok(true)));
+    assert_eq!(order(&sample(false, false)), Some(Ok(false)));
     let mut hdf5 = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".to_vec();
     hdf5.resize(512, b' ');
     hdf5.extend(b"\x89HDF\r\n\x1a\n");
-    assert_eq!(level(&hdf5), Some(MatLevel::Hdf5));
-    assert_eq!(level(b"\x89HDF\r\n\x1a\n and so on"), Some(MatLevel::Hdf5));
+    refused(&hdf5, "is an HDF5 file");
+    refused(b"\x89HDF\r\n\x1a\n and so on", "is an HDF5 file");
     // level 4: type 0 (little-endian double), 5 x 1, real, name of 2 bytes
     let w = Writer { little: true };
     let four =
         [w.u32(0), w.u32(5), w.u32(1), w.u32(0), w.u32(2), b"u\0".to_vec(), vec![0; 40]].concat();
-    assert_eq!(level(&four), Some(MatLevel::Four));
-    assert_eq!(mat_level(&four, false), None, "there is no signature: the name decides");
-    assert_eq!(level(b"time_s,command_V,displacement_um\n0,1,2\n"), None);
-    assert_eq!(read_variables(&four).unwrap_err(), RecordFault::Mat4);
-    assert_eq!(read_variables(&hdf5).unwrap_err(), RecordFault::Hdf5);
+    refused(&four, "is a MATLAB file of format 4");
+    assert_eq!(byte_order(&four, false), None, "there is no signature: the name decides");
+    assert_eq!(order(b"time_s,command_V,displacement_um\n0,1,2\n"), None);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The arrays of a MAT file of level 5.
 
 use super::bytes::{Bytes, COMPRESSED, INT8, MATRIX, UINT32, UTF8};
-use crate::problem::RecordFault;
+use crate::problem::Fault;
 use std::io::Read;
 
 /// An array of a MAT file.
@@ -31,64 +31,55 @@ const MOST_DECOMPRESSED: usize = 1 << 30;
 /// Length of the header.
 const HEADER: usize = 128;
 
-/// What a MAT file is, by its first bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::import) enum MatLevel {
-    /// Level 5: MATLAB 5 to 7.
-    Five { little_endian: bool },
-    /// Level 4.
-    Four,
-    /// HDF5, MATLAB's format 7.3.
-    Hdf5,
-}
-
-/// The level of a MAT file; none if it is none. `named_mat`: the file's name ends in `.mat`, without
-/// which level 4, which has no signature, is not looked for.
-pub(in crate::import) fn mat_level(start: &[u8], named_mat: bool) -> Option<MatLevel> {
+/// Whether a MAT file is little-endian, by its first bytes; none if it is no MAT file. `named_mat`: the
+/// file's name ends in `.mat`, without which level 4, which has no signature, is not looked for.
+///
+/// # Errors
+/// What to do with an HDF5 file, MATLAB's format 7.3, or one of level 4.
+pub(in crate::import) fn byte_order(start: &[u8], named_mat: bool) -> Option<Result<bool, Fault>> {
     const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
+    let other = |message: &str| Some(Err(Fault::Other(message.to_owned())));
     if start.starts_with(HDF5)
         || start.get(512..).is_some_and(|s| s.starts_with(HDF5))
         || start.starts_with(b"MATLAB 7.3")
     {
-        return Some(MatLevel::Hdf5);
+        return other(
+            "is an HDF5 file (MATLAB's format 7.3), which is not read; in MATLAB: load it and save('file.mat', '-v7', 'your_variable')",
+        );
     }
-    let order = start.get(126..128);
-    let version = start.get(124..126);
-    match (order, version) {
-        (Some(b"IM"), Some([0, 1])) => return Some(MatLevel::Five { little_endian: true }),
-        (Some(b"MI"), Some([1, 0])) => return Some(MatLevel::Five { little_endian: false }),
+    match start.get(124..128) {
+        Some([0, 1, b'I', b'M']) => return Some(Ok(true)),
+        Some([1, 0, b'M', b'I']) => return Some(Ok(false)),
         _ => {}
     }
     // level 4: the type MOPT, rows, columns, imaginary flag, length of the name
-    let word = |at: usize, little: bool| -> Option<u32> {
-        let bytes: [u8; 4] = start.get(at..at + 4)?.try_into().ok()?;
-        Some(if little { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) })
-    };
-    let is_four = |little: bool| {
-        let kind = word(0, little)?;
+    let is_four = |from_bytes: fn([u8; 4]) -> u32| {
+        let (words, _) = start.as_chunks();
+        let &[kind, _, _, is_imaginary, name] = words.first_chunk::<5>()?;
+        let kind = from_bytes(kind);
         let digits = (kind / 1000, kind / 100 % 10, kind / 10 % 10, kind % 10);
         let plausible = digits.0 <= 4 && digits.1 == 0 && digits.2 <= 5 && digits.3 <= 2;
-        let name = word(16, little)?;
-        (plausible && word(12, little)? <= 1 && (1..=64).contains(&name)).then_some(())
+        let named = (1..=64).contains(&from_bytes(name));
+        (plausible && from_bytes(is_imaginary) <= 1 && named).then_some(())
     };
-    let four = named_mat && (is_four(true).is_some() || is_four(false).is_some());
-    four.then_some(MatLevel::Four)
+    if named_mat && is_four(u32::from_le_bytes).or(is_four(u32::from_be_bytes)).is_some() {
+        return other(
+            "is a MATLAB file of format 4, which is not read; in MATLAB: load it and save('file.mat', '-v7')",
+        );
+    }
+    None
 }
 
 /// Reads every variable of a MAT file of level 5.
 ///
 /// # Errors
-/// [`RecordFault::Mat`] with the byte offset, [`RecordFault::Mat4`], [`RecordFault::Hdf5`].
-pub(super) fn read_variables(file: &[u8]) -> Result<Variables, RecordFault> {
-    let little_endian = match mat_level(file, true) {
-        Some(MatLevel::Five { little_endian }) => little_endian,
-        Some(MatLevel::Four) => return Err(RecordFault::Mat4),
-        Some(MatLevel::Hdf5) => return Err(RecordFault::Hdf5),
-        None => {
-            let what = "the header names no byte order: it is no MAT file of level 5";
-            return Err(RecordFault::Mat { offset: 124.min(file.len()), compressed: false, what });
-        }
+/// What is damaged, with the byte offset; those of [`byte_order`].
+pub(super) fn read_variables(file: &[u8]) -> Result<Variables, Fault> {
+    let unknown = || {
+        let at = Bytes::new(&[], 124.min(file.len()), true, false);
+        Err(at.fault("the header names no byte order: it is no MAT file of level 5"))
     };
+    let little_endian = byte_order(file, true).unwrap_or_else(unknown)?;
     let body = file.get(HEADER..).unwrap_or_default();
     let mut bytes = Bytes::new(body, HEADER, little_endian, false);
     let mut variables = Variables::new();
@@ -117,7 +108,7 @@ pub(super) fn read_variables(file: &[u8]) -> Result<Variables, RecordFault> {
 }
 
 /// The bytes of a compressed variable, `room` at most.
-pub(super) fn inflate(bytes: &Bytes<'_>, room: usize) -> Result<Vec<u8>, RecordFault> {
+pub(super) fn inflate(bytes: &Bytes<'_>, room: usize) -> Result<Vec<u8>, Fault> {
     let mut data = Vec::new();
     let decoder = flate2::read::ZlibDecoder::new(bytes.rest());
     decoder
@@ -140,9 +131,9 @@ const SPARSE: u32 = 5;
 const LAST_NUMERIC: u32 = 15;
 
 /// One array with its name.
-fn array(mut bytes: Bytes<'_>, depth: usize) -> Result<(String, MatValue), RecordFault> {
+fn array(mut bytes: Bytes<'_>, depth: usize) -> Result<(String, MatValue), Fault> {
     if bytes.is_empty() {
-        return Ok((String::new(), empty()));
+        return Ok((String::new(), MatValue::Numeric { sizes: vec![0, 0], values: vec![] }));
     }
     if depth > DEEPEST {
         return Err(bytes.fault("structures or cells are nested too deeply"));
@@ -166,11 +157,7 @@ fn array(mut bytes: Bytes<'_>, depth: usize) -> Result<(String, MatValue), Recor
     let name = name.text();
     let value = match class {
         CELL => {
-            let mut cells = Vec::new();
-            for _ in 0..count {
-                cells.push(inner(&mut bytes, depth)?);
-            }
-            MatValue::Cell(cells)
+            MatValue::Cell((0..count).map(|_| inner(&mut bytes, depth)).collect::<Result<_, _>>()?)
         }
         STRUCT => structure(&mut bytes, count, depth)?,
         OBJECT => MatValue::Other("object"),
@@ -198,12 +185,8 @@ fn array(mut bytes: Bytes<'_>, depth: usize) -> Result<(String, MatValue), Recor
     Ok((name, value))
 }
 
-fn empty() -> MatValue {
-    MatValue::Numeric { sizes: vec![0, 0], values: vec![] }
-}
-
 /// An array inside another one.
-fn inner(bytes: &mut Bytes<'_>, depth: usize) -> Result<MatValue, RecordFault> {
+fn inner(bytes: &mut Bytes<'_>, depth: usize) -> Result<MatValue, Fault> {
     let element = bytes.element()?;
     if element.kind != MATRIX {
         return Err(element.bytes.fault("an array was expected inside a cell or structure"));
@@ -211,7 +194,7 @@ fn inner(bytes: &mut Bytes<'_>, depth: usize) -> Result<MatValue, RecordFault> {
     Ok(array(element.bytes, depth + 1)?.1)
 }
 
-fn structure(bytes: &mut Bytes<'_>, count: usize, depth: usize) -> Result<MatValue, RecordFault> {
+fn structure(bytes: &mut Bytes<'_>, count: usize, depth: usize) -> Result<MatValue, Fault> {
     let length = bytes.element()?.sizes()?.first().copied().unwrap_or_default();
     let names = bytes.element()?;
     if length == 0 || length > 256 {
@@ -229,14 +212,11 @@ fn structure(bytes: &mut Bytes<'_>, count: usize, depth: usize) -> Result<MatVal
     if field_names.is_empty() {
         return Ok(MatValue::Struct(vec![]));
     }
-    let mut structs = Vec::new();
-    for _ in 0..count {
-        let mut fields = Vec::new();
-        for name in &field_names {
-            fields.push((name.clone(), inner(bytes, depth)?));
-        }
-        structs.push(MatValue::Struct(fields));
-    }
+    let mut structure = || -> Result<MatValue, Fault> {
+        let fields = field_names.iter().map(|name| Ok((name.clone(), inner(bytes, depth)?)));
+        fields.collect::<Result<_, _>>().map(MatValue::Struct)
+    };
+    let mut structs = (0..count).map(|_| structure()).collect::<Result<Vec<_>, _>>()?;
     match structs.len() {
         1 => Ok(structs.remove(0)),
         _ => Ok(MatValue::Structs(structs)),

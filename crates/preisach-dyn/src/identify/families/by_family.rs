@@ -1,16 +1,16 @@
 //! The families of models that the same records can be fitted with.
 
-use crate::identify::families::family::{Family, Fitted, Given, Search, Training, share};
-use crate::identify::families::layered;
-use crate::identify::families::stop_fit;
+use crate::identify::families::family::{Family, Fitted, Given, Search, share};
+use crate::identify::families::{layered, stop_fit};
 use crate::identify::fit::output_error::Build;
 use crate::identify::fit::preisach::{RateFit, fit_linear};
-use crate::identify::records::prepared::Prepared;
+use crate::identify::fit::refine::Refined;
+use crate::identify::fit::static_fit;
+use crate::identify::fit::training::Training;
 use crate::identify::{RateSmoothness, Settings};
 use crate::{
     ActuatorLaw, AmplifierStage, BoucWen, BoucWenParameters, Envelope, Lag, LinearGain,
-    PrandtlIshlinskii, PrandtlParameters, PreisachError, StaticPreisach, TimeOrder, VoltageRange,
-    WeightedPlay,
+    PrandtlIshlinskii, PrandtlParameters, PreisachError, StaticPreisach, TimeOrder, WeightedPlay,
 };
 use nalgebra::DVector;
 
@@ -21,7 +21,7 @@ use nalgebra::DVector;
 /// if no start led anywhere, or those of the fits.
 pub(crate) fn fit(
     family: Family,
-    training: Training<'_>,
+    training: &Training<'_>,
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
     if family.needs_rate() && training.fast.is_empty() {
@@ -32,10 +32,10 @@ pub(crate) fn fit(
     }
     let mut settings = training.settings.clone();
     settings.rate_smoothness = RateSmoothness::Fixed(given.smoothness);
-    let training = Training { settings: &settings, ..training };
+    let training = &Training { settings: &settings, ..training.clone() };
     match family {
         Family::StaticPreisach => {
-            let law = StaticPreisach::new(*training.grid, training.static_map()?)?;
+            let law = StaticPreisach::new(training.grid, static_fit::as_measured(training)?)?;
             let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
             Ok(Fitted { model, parameters: Vec::new() })
         }
@@ -45,16 +45,11 @@ pub(crate) fn fit(
                 _ => TimeOrder::Second,
             };
             let settings = Settings { time_order, ..settings.clone() };
-            let Training { grid, slow, fast, .. } = training;
-            let rate = RateFit::new(
-                grid,
-                training.static_map()?,
-                slow,
-                fast,
-                &settings,
-                given.uncertainty(),
-            )?;
-            Ok(Fitted { model: settings.actuator_of(rate.law), parameters: rate.parameters })
+            let training = Training { settings: &settings, ..training.clone() };
+            let map = static_fit::as_measured(&training)?;
+            let rate = RateFit::new(&training, map, given.uncertainty())?;
+            let Refined { law, parameters, .. } = rate.refined;
+            Ok(Fitted { model: settings.actuator_of(law), parameters })
         }
         Family::PrandtlStop => stop_fit::fit(training),
         Family::DynamicPreisachCreep => layered::dynamic_creep(training, given),
@@ -69,11 +64,11 @@ const PLAYS: usize = 8;
 /// Fits a family of few parameters to all records at once.
 fn by_output_error(
     family: Family,
-    training: Training<'_>,
+    training: &Training<'_>,
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
-    let all: Vec<&Prepared> = training.slow.iter().chain(training.fast).copied().collect();
-    let line = fit_linear(training.slow);
+    let all = training.all();
+    let line = fit_linear(&training.slow);
     let range = training.settings.range_volt;
     let middle_deg = line.output_deg(range.middle_volt());
     let wrap = |law: ActuatorLaw| training.settings.actuator_of(law);
@@ -90,9 +85,19 @@ fn by_output_error(
         cubic: 0.3 * x[3].tanh(),
     };
     let bouc_wen = |x: &DVector<f64>, exponent: f64| {
-        let gain_deg_per_volt = gain * x[0].exp();
-        let law = bouc_wen_law(x, exponent, gain_deg_per_volt, range, envelope(x))?;
-        Some(wrap(ActuatorLaw::BoucWen(law)))
+        let (gain_deg_per_volt, rise_volt) = (gain * x[0].exp(), 20.0 * x[5].exp());
+        let sigma = 0.5 + 0.5 * x[6].exp();
+        let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
+        let parameters = BoucWenParameters {
+            range_volt: range,
+            gain_deg_per_volt,
+            half_height_deg: most_deg * share(x[4]),
+            rise_volt,
+            sigma,
+            exponent,
+            envelope: envelope(x),
+        };
+        Some(wrap(ActuatorLaw::BoucWen(BoucWen::new(parameters).ok()?)))
     };
     let prandtl = |x: &DVector<f64>| {
         let step_volt = 0.5 * range.span_volt() / (PLAYS + 1) as f64;
@@ -139,19 +144,13 @@ fn by_output_error(
             names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
             // the exponents with a closed solution
             let builds = [1.0, 2.0].map(|exponent| move |x: &DVector<f64>| bouc_wen(x, exponent));
-            let searches = [0, 1].map(|i| Search {
-                family,
-                build: &builds[i],
-                records: &all,
-                names: &names,
-                pulls: &[],
+            let [one, two] = [&builds[0], &builds[1]].map(|build| {
+                let (records, names) = (&all[..], &names[..]);
+                Search { family, build, records, names, pulls: &[] }
             });
-            let (first, second) = (searches[0].minimum(&starts)?, searches[1].minimum(&starts)?);
-            let (search, minimum) = if second.nrmse < first.nrmse {
-                (&searches[1], second)
-            } else {
-                (&searches[0], first)
-            };
+            let (first, second) = (one.minimum(&starts)?, two.minimum(&starts)?);
+            let second_is_better = second.nrmse < first.nrmse;
+            let (search, minimum) = if second_is_better { (two, second) } else { (one, first) };
             Ok(search.fitted(minimum, given.uncertainty()))
         }
         _ => {
@@ -167,28 +166,4 @@ fn by_output_error(
             search(&prandtl, &[1e-3, 1e-2].map(start), &names)
         }
     }
-}
-
-/// The Bouc-Wen law of the parameters behind gain and envelope; none outside its domain.
-fn bouc_wen_law(
-    x: &DVector<f64>,
-    exponent: f64,
-    gain_deg_per_volt: f64,
-    range_volt: VoltageRange,
-    envelope: Envelope,
-) -> Option<BoucWen> {
-    let rise_volt = 20.0 * x[5].exp();
-    let sigma = 0.5 + 0.5 * x[6].exp();
-    let most_deg = gain_deg_per_volt * rise_volt / (2.0 * sigma);
-    let half_height_deg = most_deg * share(x[4]);
-    let parameters = BoucWenParameters {
-        range_volt,
-        gain_deg_per_volt,
-        half_height_deg,
-        rise_volt,
-        sigma,
-        exponent,
-        envelope,
-    };
-    BoucWen::new(parameters).ok()
 }

@@ -1,18 +1,19 @@
 //! The table of all models, and which of them to use.
 
 use crate::identify::families::by_family;
-use crate::identify::families::family::{Family, Fitted, Given, Training};
-use crate::identify::fit::compare;
+use crate::identify::families::family::{Family, Fitted, Given};
 use crate::identify::fit::output_error::Estimate;
-use crate::identify::fit::preisach::{major_loop_mean, trained_range};
-use crate::identify::fit::roles::{Bench, Sorted};
-use crate::identify::fit::static_fit;
-use crate::identify::fit::validate;
+use crate::identify::fit::preisach::{trained_range, zero_deg};
+use crate::identify::fit::roles::Bench;
+use crate::identify::fit::training::Training;
+use crate::identify::fit::{compare, static_fit, validate};
 use crate::identify::records::prepared::Prepared;
-use crate::identify::{BenchRecord, FlapZero, Identifiability, RecordFit, RecordUse, Settings};
+use crate::identify::{BenchRecord, Identifiability, RecordFit, RecordUse, Settings};
 use crate::{ActuatorModel, PreisachError, PreisachGrid};
 use rayon::prelude::*;
+use rotor_base::mean_square;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// A simpler family is preferred if its error is at most this much larger.
 const WITHIN: f64 = 1.03;
@@ -124,9 +125,7 @@ impl ModelComparison {
         if of_use.is_empty() {
             return None;
         }
-        let squares: f64 = of_use.iter().map(|e| e * e).sum();
-        let largest = of_use.iter().copied().fold(0.0, f64::max);
-        Some(((squares / of_use.len() as f64).sqrt(), largest))
+        Some((mean_square(&of_use).sqrt(), of_use.iter().copied().fold(0.0, f64::max)))
     }
 }
 
@@ -157,7 +156,9 @@ pub fn compare_models(
         .unzip();
     let chosen = best(&rows, WITHIN);
     let (mut orders, mut chosen_order) = (Vec::new(), 0);
-    let family = rows.get(chosen).filter(|row| has_memory(row.family)).map(|row| row.family);
+    // the simpler families have no memory of levels
+    let family =
+        rows.get(chosen).filter(|row| row.family >= Family::StaticPreisach).map(|row| row.family);
     if let (Some(family), false) = (family, candidates.orders.is_empty()) {
         let mut tried = candidates.orders.clone();
         tried.push(own);
@@ -206,17 +207,6 @@ struct Trial {
     errors: Vec<f64>,
 }
 
-fn has_memory(family: Family) -> bool {
-    !matches!(
-        family,
-        Family::Linear
-            | Family::LinearLag
-            | Family::BoucWen
-            | Family::PrandtlIshlinskii
-            | Family::PrandtlStop
-    )
-}
-
 /// The row with the smallest cross-validated error, an earlier one if it is at most `within` times it; without
 /// cross-validation the static Preisach model, or what could be fitted at all.
 fn best(rows: &[ModelRow], within: f64) -> usize {
@@ -245,16 +235,11 @@ impl<'a> Contest<'a> {
         let grid = PreisachGrid::new(settings.range_volt, settings.levels.max(1))?;
         let bench = Bench::new(records, settings)?;
         let prepared = bench.prepared(&grid, settings)?;
-        let Sorted { slow, fast } = Sorted::of(&prepared)?;
-        let summary = bench.summary(&grid, &prepared, settings);
-        let zero_deg = match settings.zero {
-            FlapZero::AsRecorded => 0.0,
-            FlapZero::MajorLoopMean => major_loop_mean(&slow),
-        };
+        let training = Training::of(&prepared, grid, settings)?;
+        let (summary, zero_deg) = (bench.summary(&training), zero_deg(&training));
         // one smoothness for all folds, chosen on the training records
-        let measured: Vec<Vec<f64>> = slow.iter().map(|r| r.record.output_deg.clone()).collect();
-        let map = static_fit::fit(&grid, &slow, &measured, settings)?;
-        let smoothness = validate::smoothness(&grid, &map, &fast, settings).0;
+        let map = static_fit::as_measured(&training)?;
+        let smoothness = validate::smoothness(&training, &map).0;
         Ok(Self { bench, settings, zero_deg, summary, smoothness })
     }
 
@@ -272,28 +257,25 @@ impl<'a> Contest<'a> {
         settings.check()?;
         let grid = PreisachGrid::new(settings.range_volt, levels)?;
         let prepared = self.bench.prepared(&grid, &settings)?;
-        let Sorted { slow, fast } = Sorted::of(&prepared)?;
-        let fit = |slow: &[&Prepared], fast: &[&Prepared], whole: Option<&Fitted>| {
-            let training = Training { grid: &grid, slow, fast, settings: &settings };
+        let training = Training::of(&prepared, grid, &settings)?;
+        let Training { slow, fast, .. } = &training;
+        let fit = |training: &Training, whole: Option<&Fitted>| {
             by_family::fit(family, training, Given { smoothness: self.smoothness, whole })
         };
-        let whole = known.map_or_else(|| fit(&slow, &fast, None), |known| Ok(known.whole.clone()));
+        let whole = known.map_or_else(|| fit(&training, None), |known| Ok(known.whole.clone()));
         // places in the slow and the fast records, one after another
         let left_out = |fold: &Vec<usize>, whole: &Fitted| -> Result<f64, PreisachError> {
-            let mut own: [Vec<&Prepared>; 2] = [Vec::new(), Vec::new()];
-            let mut tested: Vec<&Prepared> = Vec::new();
-            for (place, record) in slow.iter().chain(&fast).enumerate() {
-                if fold.contains(&place) {
-                    tested.push(record);
-                } else {
-                    own[usize::from(place >= slow.len())].push(record);
-                }
-            }
-            let model = fit(&own[0], &own[1], Some(whole))?.model;
-            let errors = tested.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
+            let all = training.all();
+            let part = |places: Range<usize>| {
+                places.filter(|place| !fold.contains(place)).map(|place| all[place]).collect()
+            };
+            let (slow, fast) = (part(0..slow.len()), part(slow.len()..all.len()));
+            let model = fit(&Training { slow, fast, ..training.clone() }, Some(whole))?.model;
+            let tested = all.iter().enumerate().filter(|(place, _)| fold.contains(place));
+            let errors = tested.map(|(_, r)| Ok(compare::training_nrmse(&model, r)?.powi(2)));
             Ok(errors.sum::<Result<f64, PreisachError>>()? / fold.len() as f64)
         };
-        let mut folds = conditions(&fast, slow.len());
+        let mut folds = conditions(fast, slow.len());
         let fewest = if fast.is_empty() { 2 } else { 3 };
         if slow.len() >= fewest && (fast.is_empty() || which == Folds::All) {
             folds.extend((0..slow.len()).map(|place| vec![place]));
@@ -310,7 +292,7 @@ impl<'a> Contest<'a> {
         let cross_validation =
             (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
         let fitted = whole.and_then(|Fitted { mut model, parameters }| {
-            model.trained = Some(trained_range(&slow, &fast, &prepared));
+            model.trained = Some(trained_range(&training, &prepared));
             let fits = prepared.iter().map(|r| compare::compare(&model, r));
             let fits = fits.collect::<Result<Vec<_>, _>>()?;
             Ok(FittedModel { model, fits, parameters })

@@ -1,17 +1,16 @@
 //! The families of models, the records they are fitted to, and the search for their parameters.
 
-use crate::identify::Settings;
 use crate::identify::fit::output_error::{
     Build, Estimate, Minimum, OutputError, Pull, Uncertainty,
 };
-use crate::identify::fit::static_fit;
 use crate::identify::records::prepared::Prepared;
-use crate::{ActuatorModel, PlayMap, PreisachError, PreisachGrid};
+use crate::{ActuatorModel, PreisachError};
 use nalgebra::DVector;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// A family of actuator models.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// A family of actuator models, from the simplest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Family {
     /// A gain.
@@ -83,24 +82,6 @@ pub(crate) struct Fitted {
     pub(crate) parameters: Vec<Estimate>,
 }
 
-/// Records to fit to.
-#[derive(Clone, Copy)]
-pub(crate) struct Training<'a> {
-    pub(crate) grid: &'a PreisachGrid,
-    pub(crate) slow: &'a [&'a Prepared<'a>],
-    pub(crate) fast: &'a [&'a Prepared<'a>],
-    pub(crate) settings: &'a Settings,
-}
-
-impl Training<'_> {
-    /// The static map of the slow records as they stand.
-    pub(crate) fn static_map(&self) -> Result<PlayMap, PreisachError> {
-        let measured: Vec<Vec<f64>> =
-            self.slow.iter().map(|r| r.record.output_deg.clone()).collect();
-        static_fit::fit(self.grid, self.slow, &measured, self.settings)
-    }
-}
-
 /// What a fit takes as given: found once on all training records, it is not sought again in every
 /// fold of a cross-validation.
 #[derive(Debug, Clone, Copy)]
@@ -132,7 +113,7 @@ pub(crate) fn share(x: f64) -> f64 {
 }
 
 /// Steps the minimisation may try for each parameter.
-pub(crate) const PATIENCE: usize = 4;
+const PATIENCE: usize = 4;
 
 /// The minimisation of the output error of a family over some records.
 pub(crate) struct Search<'a> {
@@ -146,25 +127,21 @@ pub(crate) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The best minimum found from some starts.
+    fn problem(&self, x: DVector<f64>) -> OutputError<'_> {
+        OutputError::new(self.build, self.records, self.pulls, x)
+    }
+
+    /// The minimum with the smallest error found from some starts, the first of equals.
     pub(crate) fn minimum(&self, starts: &[DVector<f64>]) -> Result<Minimum, PreisachError> {
-        OutputError::best_of(self.build, self.records, self.pulls, starts, PATIENCE)
-            .ok_or(PreisachError::NotFitted { family: self.family.name() })
+        let from = |x: &DVector<f64>| self.problem(x.clone()).minimise(PATIENCE);
+        let found: Vec<Option<Minimum>> = starts.par_iter().map(from).collect();
+        let best = found.into_iter().flatten().reduce(|a, b| if b.nrmse < a.nrmse { b } else { a });
+        best.ok_or(PreisachError::NotFitted { family: self.family.name() })
     }
 
     /// The model of a minimum with its parameters, and their standard deviations if they are wanted.
     pub(crate) fn fitted(&self, minimum: Minimum, uncertainty: Uncertainty) -> Fitted {
         let Minimum { x, model, .. } = minimum;
-        let covariance = match uncertainty {
-            Uncertainty::Wanted => {
-                OutputError::pulled(self.build, self.records, self.pulls, x.clone()).covariance()
-            }
-            Uncertainty::LeftOut => None,
-        };
-        let parameters = self.names.iter().zip(x.iter()).enumerate().map(|(k, (name, &value))| {
-            let deviation = covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k));
-            Estimate { name: (*name).to_owned(), value, std_deviation: deviation }
-        });
-        Fitted { model, parameters: parameters.collect() }
+        Fitted { model, parameters: self.problem(x).estimates(self.names, uncertainty).0 }
     }
 }

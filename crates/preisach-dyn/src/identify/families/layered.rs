@@ -1,14 +1,14 @@
 //! Fits of Preisach laws with linear stages behind them.
 
 use crate::identify::BenchRecord;
-use crate::identify::families::family::{Family, Fitted, Given, Search, Training, share};
-use crate::identify::fit::compare;
-use crate::identify::fit::output_error::{Minimum, Pull};
+use crate::identify::families::family::{Family, Fitted, Given, Search, share};
+use crate::identify::fit::output_error::Pull;
 use crate::identify::fit::preisach::RateFit;
-use crate::identify::fit::refine::{SHAPE, reshaped};
-use crate::identify::fit::static_fit;
+use crate::identify::fit::refine::{Refined, SHAPE, reshaped};
+use crate::identify::fit::training::Training;
+use crate::identify::fit::{compare, static_fit};
 use crate::identify::records::prepared::Prepared;
-use crate::stages::StageStep;
+use crate::stages::{StageStep, Step};
 use crate::{
     Accommodation, ActuatorLaw, ActuatorModel, Calibration, LinkageStage, LogCreep, PlayMap,
     PreisachError, Relaxation, RelaxationElement, StaticPreisach,
@@ -44,23 +44,19 @@ fn without_stage(record: &BenchRecord, stage: &StageStep) -> BenchRecord {
     record
 }
 
-/// Creep per decade of a model with that stage.
-fn creep_per_decade(model: &ActuatorModel) -> Option<f64> {
-    model.linkage.iter().find_map(|stage| match stage {
-        LinkageStage::LogCreep(creep) => Some(creep.rate_per_decade),
-        _ => None,
-    })
-}
-
 /// Dynamic Preisach before creep: the rate of creep that fits the training records best, the law
 /// fitted to the records with that creep taken off.
 pub(crate) fn dynamic_creep(
-    training: Training<'_>,
+    training: &Training<'_>,
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
-    let Training { grid, slow, fast, settings } = training;
+    let (grid, settings, all) = (training.grid, training.settings, training.all());
     let unit = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
-    let given_rate = given.whole.and_then(|whole| creep_per_decade(&whole.model));
+    let per_decade = |stage: &LinkageStage| match stage {
+        LinkageStage::LogCreep(creep) => Some(creep.rate_per_decade),
+        _ => None,
+    };
+    let given_rate = given.whole.and_then(|whole| whole.model.linkage.iter().find_map(per_decade));
     let rates = given_rate.map_or(CREEP_RATES.to_vec(), |rate| vec![rate]);
     let tried: Vec<Result<(f64, Fitted), PreisachError>> = rates
         .par_iter()
@@ -69,46 +65,23 @@ pub(crate) fn dynamic_creep(
             let strip = |r: &&Prepared| {
                 without_stage(r.record, &creep.prepared(r.record.time_step_s, &unit))
             };
-            let stripped: [Vec<BenchRecord>; 2] =
-                [slow, fast].map(|part| part.iter().map(strip).collect());
-            let prepare = |index: usize, part: &[&Prepared]| {
-                part.iter()
-                    .zip(&stripped[index])
-                    .map(|(r, record)| {
-                        let drive = r.drive.clone();
-                        Prepared::new(record, drive, r.record_use, r.is_slow, grid, settings)
-                    })
-                    .collect::<Result<Vec<_>, PreisachError>>()
+            let stripped: Vec<BenchRecord> = all.iter().map(strip).collect();
+            let prepare = |(r, record): (&&Prepared, _)| {
+                let drive = r.drive.clone();
+                Prepared::new(record, drive, r.record_use, r.is_slow, &grid, settings)
             };
-            let (own_slow, own_fast) = (prepare(0, slow)?, prepare(1, fast)?);
-            let (own_slow, own_fast): (Vec<&Prepared>, Vec<&Prepared>) =
-                (own_slow.iter().collect(), own_fast.iter().collect());
-            let own = Training { grid, slow: &own_slow, fast: &own_fast, settings };
-            let fitted = RateFit::new(
-                grid,
-                own.static_map()?,
-                &own_slow,
-                &own_fast,
-                settings,
-                given.uncertainty(),
-            )?;
-            let mut model = settings.actuator_of(fitted.law);
+            let own = all.iter().zip(&stripped).map(prepare).collect::<Result<Vec<_>, _>>()?;
+            let own = Training::of(&own, grid, settings)?;
+            let fit = RateFit::new(&own, static_fit::as_measured(&own)?, given.uncertainty())?;
+            let Refined { law, parameters, .. } = fit.refined;
+            let mut model = settings.actuator_of(law);
             model.linkage.push(creep);
-            let squares = slow
-                .iter()
-                .chain(fast)
-                .map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)))
-                .sum::<Result<f64, PreisachError>>()?;
-            Ok((squares, Fitted { model, parameters: fitted.parameters }))
+            let squares = all.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
+            Ok((squares.sum::<Result<f64, PreisachError>>()?, Fitted { model, parameters }))
         })
         .collect();
-    let mut best: Option<(f64, Fitted)> = None;
-    for result in tried {
-        let (error, fitted) = result?;
-        if best.as_ref().is_none_or(|(least, _)| error < *least) {
-            best = Some((error, fitted));
-        }
-    }
+    let tried = tried.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let best = tried.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best });
     let family = Family::DynamicPreisachCreep.name();
     best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family })
 }
@@ -126,12 +99,11 @@ const STAGES: usize = 5;
 /// density held to the exponential of a quadratic form; then the density anew from the slow records with
 /// what the stages add taken off.
 pub(crate) fn relaxation(
-    training: Training<'_>,
+    training: &Training<'_>,
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
-    let Training { grid, slow, fast, settings } = training;
-    let all: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
-    let mut map = training.static_map()?;
+    let (settings, all) = (training.settings, training.all());
+    let mut map = static_fit::as_measured(training)?;
     let everywhere =
         [(0.02, -6.0), (0.02, -1.5), (0.004, -3.0)].map(|(time_s, at_once): (f64, f64)| {
             let mut x = vec![time_s.ln(), at_once, -2.0, 0.25, -1.0];
@@ -148,34 +120,30 @@ pub(crate) fn relaxation(
     }
     let stroke_um = (map.largest().0 - map.constant) / settings.deg_per_um.abs();
     let built = |held: &PlayMap, x: &DVector<f64>| {
-        let law = StaticPreisach::new(*grid, reshaped(held, &x.as_slice()[STAGES..])).ok()?;
+        let law =
+            StaticPreisach::new(training.grid, reshaped(held, &x.as_slice()[STAGES..])).ok()?;
         let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
         Some(with_stages(model, x, stroke_um))
     };
     let family = Family::StaticPreisachRelaxation;
-    // the best minimum, with the density and the misfit its search began with
-    let mut best: Option<(Minimum, PlayMap, f64)> = None;
+    let mut best: Option<(f64, Fitted)> = None;
     let mut misfit = USUAL_NRMSE;
     for _ in 0..rounds {
-        let (held, before) = (map, misfit);
-        let build = |x: &DVector<f64>| built(&held, x);
-        let pulls = pulls(before);
+        let build = |x: &DVector<f64>| built(&map, x);
+        let pulls = pulls(misfit);
         let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
         let minimum = search.minimum(&starts)?;
         let mut next = minimum.x.clone();
         next.rows_mut(STAGES, SHAPE).fill(0.0);
         starts = vec![next];
         misfit = misfit.min(minimum.nrmse);
-        map = remapped(training, &minimum.model)?;
-        if best.as_ref().is_none_or(|(least, ..)| minimum.nrmse < least.nrmse) {
-            best = Some((minimum, held, before));
+        let next_map = remapped(training, &minimum.model)?;
+        if best.as_ref().is_none_or(|(least, _)| minimum.nrmse < *least) {
+            best = Some((minimum.nrmse, search.fitted(minimum, given.uncertainty())));
         }
+        map = next_map;
     }
-    let (minimum, held, before) = best.ok_or(PreisachError::NotFitted { family: family.name() })?;
-    let build = |x: &DVector<f64>| built(&held, x);
-    let pulls = pulls(before);
-    let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
-    Ok(search.fitted(minimum, given.uncertainty()))
+    best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family: family.name() })
 }
 
 /// Largest share that settles with the way.
@@ -225,7 +193,7 @@ fn with_stages(mut model: ActuatorModel, x: &DVector<f64>, stroke_um: f64) -> Ac
 }
 
 /// The static map of the slow records with what the stages add to the law's output taken off.
-fn remapped(training: Training<'_>, model: &ActuatorModel) -> Result<PlayMap, PreisachError> {
+fn remapped(training: &Training<'_>, model: &ActuatorModel) -> Result<PlayMap, PreisachError> {
     let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
     let targets = training
         .slow
@@ -238,5 +206,5 @@ fn remapped(training: Training<'_>, model: &ActuatorModel) -> Result<PlayMap, Pr
             Ok(triples.map(|(y, (a, b))| y - (a - b)).collect())
         })
         .collect::<Result<Vec<Vec<f64>>, PreisachError>>()?;
-    static_fit::fit(training.grid, training.slow, &targets, training.settings)
+    static_fit::fit(training, &targets)
 }

@@ -1,7 +1,9 @@
 //! Stops by constrained least squares.
 
-use crate::identify::families::family::{Fitted, Training};
+use crate::check::extremes;
+use crate::identify::families::family::Fitted;
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
+use crate::identify::fit::training::Training;
 use crate::identify::records::prepared::Prepared;
 use crate::{
     ActuatorLaw, HysteresisLaw, PrandtlStop, PreisachError, StartState, StopParameters,
@@ -23,7 +25,7 @@ const RIDGE: f64 = 1e-8;
 /// ```
 /// # Errors
 /// [`PreisachError::OutputLags`] if the loops run the other way round.
-pub(crate) fn fit(training: Training<'_>) -> Result<Fitted, PreisachError> {
+pub(crate) fn fit(training: &Training<'_>) -> Result<Fitted, PreisachError> {
     let Training { slow, fast, settings, .. } = training;
     let area = mean_loop_area(slow);
     if area <= 0.0 {
@@ -46,7 +48,7 @@ pub(crate) fn fit(training: Training<'_>) -> Result<Fitted, PreisachError> {
     })?;
     let viscous = !fast.is_empty();
     let unknowns = 2 + STOPS + usize::from(viscous);
-    let records: Vec<&Prepared> = slow.iter().chain(fast).copied().collect();
+    let records = training.all();
     // unknowns in units of the largest spread over half the range, rates in those of the fastest
     let spread_deg = records.iter().map(|r| r.spread_deg).fold(0.0, f64::max);
     let fastest = records.iter().map(|r| r.drive.strongest_hz()).fold(0.0, f64::max);
@@ -106,12 +108,8 @@ fn mean_loop_area(records: &[&Prepared]) -> f64 {
             .steady_within(&record.trained_samples(), record.time_step_s)
             .unwrap_or(record.trained_samples());
         let (u, y) = (&record.voltage_volt[samples.clone()], &record.output_deg[samples]);
-        let extent = |values: &[f64]| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            (0.5 * (low + high), 0.5 * (high - low))
-        };
-        let (middle, half) = extent(y);
+        let [low, high] = extremes(y.iter().copied());
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let steps = u.windows(2).zip(y.windows(2));
         let work: f64 = steps.map(|(u, y)| (0.5 * (y[0] + y[1]) - middle) * (u[1] - u[0])).sum();
         let travel: f64 = u.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();

@@ -1,10 +1,11 @@
 //! How well a model reproduces a record.
 
+use crate::check::extremes;
 use crate::identify::records::fourier;
 use crate::identify::records::prepared::Prepared;
 use crate::identify::records::record::spread;
 use crate::{ActuatorModel, PreisachError, StepCounts};
-use rotor_base::wrap_degrees;
+use rotor_base::{mean_square, wrap_degrees};
 use serde::{Deserialize, Serialize};
 
 /// A model against one record.
@@ -50,8 +51,7 @@ pub(crate) fn compare(
     let squares: f64 = judged.clone().map(|i| error(i).powi(2)).sum();
     let about_mean: f64 = judged.clone().map(|i| (error(i) - mean_error).powi(2)).sum();
     let measured = &theirs[judged.clone()];
-    let (low, high) =
-        measured.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    let [low, high] = extremes(measured.iter().copied());
     let of_range = 100.0 / (high - low);
     let start_up = (judged.start > 0).then(|| {
         // what lies before the samples that train, or else before those that judge
@@ -87,9 +87,8 @@ pub(crate) fn training_nrmse(
     let Prepared { record, spread_deg, .. } = prepared;
     let trained = record.trained_samples();
     let simulation = model.simulate(&record.voltage_volt[..trained.end], record.time_step_s)?;
-    let pairs = trained.clone().map(|i| simulation.output_deg[i] - record.output_deg[i]);
-    let squares: f64 = pairs.map(|e| e * e).sum();
-    Ok((squares / trained.len() as f64).sqrt() / spread_deg)
+    let errors = trained.map(|i| simulation.output_deg[i] - record.output_deg[i]);
+    Ok(mean_square(&errors.collect::<Vec<_>>()).sqrt() / spread_deg)
 }
 
 /// Harmonics fitted to the steady periods to find amplitude and phase of one.

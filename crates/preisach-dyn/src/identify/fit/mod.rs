@@ -10,4 +10,5 @@ pub(crate) mod refine;
 pub(crate) mod roles;
 pub(crate) mod static_fit;
 pub(crate) mod stream;
+pub(crate) mod training;
 pub(crate) mod validate;

@@ -7,7 +7,6 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 
 /// Residuals kept of one record at most; all samples are simulated.
 const MOST_RESIDUALS: usize = 800;
@@ -100,28 +99,20 @@ pub(crate) struct OutputError<'a> {
     here: Option<DVector<f64>>,
     /// The best parameters so far and their residuals.
     best: Option<(DVector<f64>, DVector<f64>)>,
-    /// The model at the parameters last tried that gave residuals, run over the records; none if they
-    /// are too long to be kept.
-    passage: Option<Run>,
+    /// The parameters last tried that gave residuals, and their model run over the records.
+    passage: Option<(DVector<f64>, Passage)>,
 }
 
-/// Parameters and the passage of their model.
-type Run = (DVector<f64>, Passage);
-
 impl<'a> OutputError<'a> {
-    pub(crate) fn new(build: Build<'a>, records: &'a [&'a Prepared<'a>], x: DVector<f64>) -> Self {
-        Self::pulled(build, records, &[], x)
-    }
-
-    /// With what is known beforehand of the first parameters.
-    pub(crate) fn pulled(
+    /// The problem at some parameters, with what is known beforehand of the first of them.
+    pub(crate) fn new(
         build: Build<'a>,
         records: &'a [&'a Prepared<'a>],
         pulls: &'a [Pull],
         x: DVector<f64>,
     ) -> Self {
         let mut problem = Self { build, records, pulls, x, here: None, best: None, passage: None };
-        (problem.here, problem.passage) = problem.evaluated(&problem.x);
+        problem.here = problem.tried();
         problem.best = problem.here.clone().map(|here| (problem.x.clone(), here));
         problem
     }
@@ -138,28 +129,17 @@ impl<'a> OutputError<'a> {
         trained.step_by(stride)
     }
 
-    /// Residuals at some parameters, with the passage they come from where it is kept; none if the
-    /// model diverges.
-    fn evaluated(&self, x: &DVector<f64>) -> (Option<DVector<f64>>, Option<Run>) {
-        if !Passage::fits(self.records) {
-            return (self.residuals_at(x), None);
-        }
-        let passage = (self.build)(x).and_then(|model| Passage::of(model, self.records));
-        let here = passage
-            .as_ref()
-            .and_then(|passage| self.residuals(x, |r| Some(Cow::Borrowed(passage.output_deg(r)))));
-        let kept = passage.filter(|_| here.is_some()).map(|passage| (x.clone(), passage));
-        (here, kept)
+    /// Residuals at some parameters, with the passage they come from; none if the model diverges.
+    fn evaluated(&self, x: &DVector<f64>) -> Option<(DVector<f64>, Passage)> {
+        let passage = Passage::of((self.build)(x)?, self.records)?;
+        Some((self.residuals(x, |r| passage.output_deg(r))?, passage))
     }
 
-    /// Residuals at some parameters; none if the model diverges. One record is held at a time.
-    fn residuals_at(&self, x: &DVector<f64>) -> Option<DVector<f64>> {
-        let model = (self.build)(x)?;
-        self.residuals(x, |r| {
-            let record = self.records[r].record;
-            let voltages = &record.voltage_volt[..record.trained_samples().end];
-            Some(Cow::Owned(model.simulate(voltages, record.time_step_s).ok()?.output_deg))
-        })
+    /// Residuals at the present parameters, their passage kept.
+    fn tried(&mut self) -> Option<DVector<f64>> {
+        let (here, passage) = self.evaluated(&self.x)?;
+        self.passage = Some((self.x.clone(), passage));
+        Some(here)
     }
 
     /// Weighted residuals of all records, one after another, from the flap angles over each; none if
@@ -167,14 +147,14 @@ impl<'a> OutputError<'a> {
     fn residuals<'o>(
         &self,
         x: &DVector<f64>,
-        mut output_deg: impl FnMut(usize) -> Option<Cow<'o, [f64]>>,
+        output_deg: impl Fn(usize) -> &'o [f64],
     ) -> Option<DVector<f64>> {
         let mut residuals = Vec::new();
         for (r, prepared) in self.records.iter().enumerate() {
             let record = prepared.record;
             let kept = Self::kept(prepared).count() as f64 * self.records.len() as f64;
             let weight = 1.0 / (prepared.spread_deg * kept.sqrt());
-            let output = output_deg(r)?;
+            let output = output_deg(r);
             residuals
                 .extend(Self::kept(prepared).map(|i| weight * (output[i] - record.output_deg[i])));
         }
@@ -186,7 +166,7 @@ impl<'a> OutputError<'a> {
     /// Residuals one difference up in every parameter; none where the model diverges.
     fn residuals_beside(&self, moved: &[DVector<f64>]) -> Vec<Option<DVector<f64>>> {
         let Some((_, passage)) = self.passage.as_ref().filter(|(x, _)| *x == self.x) else {
-            return moved.par_iter().map(|x| self.residuals_at(x)).collect();
+            return moved.par_iter().map(|x| Some(self.evaluated(x)?.0)).collect();
         };
         let models: Vec<Option<ActuatorModel>> = moved.iter().map(|x| (self.build)(x)).collect();
         let laws = passage.laws_beside(&models, self.records);
@@ -195,7 +175,7 @@ impl<'a> OutputError<'a> {
             .into_par_iter()
             .map(|((x, model), law)| {
                 let outputs = passage.beside(&model?, law, self.records)?;
-                self.residuals(x, |r| Some(Cow::Borrowed(outputs[r].as_slice())))
+                self.residuals(x, |r| &outputs[r])
             })
             .collect()
     }
@@ -214,24 +194,28 @@ impl<'a> OutputError<'a> {
         Some(Minimum { model, nrmse: residuals.norm(), steps, x })
     }
 
-    /// The best of several starts: the smallest error, the first of equals.
-    pub(crate) fn best_of(
-        build: Build<'a>,
-        records: &'a [&'a Prepared<'a>],
-        pulls: &'a [Pull],
-        starts: &[DVector<f64>],
-        patience: usize,
-    ) -> Option<Minimum> {
-        let found: Vec<Option<Minimum>> = starts
-            .par_iter()
-            .map(|x| Self::pulled(build, records, pulls, x.clone()).minimise(patience))
-            .collect();
-        found.into_iter().flatten().reduce(|a, b| if b.nrmse < a.nrmse { b } else { a })
+    /// The parameters where the problem stands, with their standard deviations if these are wanted, and
+    /// the covariance they come from.
+    pub(crate) fn estimates(
+        &self,
+        names: &[&str],
+        uncertainty: Uncertainty,
+    ) -> (Vec<Estimate>, Option<Covariance>) {
+        let covariance = match uncertainty {
+            Uncertainty::Wanted => self.covariance(),
+            Uncertainty::LeftOut => None,
+        };
+        let estimate = |(k, (name, &value)): (usize, (&&str, &f64))| Estimate {
+            name: (*name).to_owned(),
+            value,
+            std_deviation: covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k)),
+        };
+        (names.iter().zip(&self.x).enumerate().map(estimate).collect(), covariance)
     }
 
     /// The covariance of the parameters where the problem stands; none outside the domain or if
     /// parameters act alike.
-    pub(crate) fn covariance(&self) -> Option<Covariance> {
+    fn covariance(&self) -> Option<Covariance> {
         let here = self.here.as_ref()?;
         let whole = self.jacobian()?;
         // what has no influence is left out: its variance is infinite
@@ -287,11 +271,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
         let found = match &self.best {
             // a step taken back
             Some((at, best)) if at == x => Some(best.clone()),
-            _ => {
-                let (found, passage) = self.evaluated(x);
-                self.passage = passage.or(self.passage.take());
-                found
-            }
+            _ => self.tried(),
         };
         if let (Some(found), Some((_, best))) = (&found, &self.best)
             && found.norm() < best.norm()
@@ -324,7 +304,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
             .map(|(k, found)| match found {
                 Some(found) => Some((found - here) / DIFFERENCE),
                 // the domain may end at the parameter
-                None => Some((self.residuals_at(&moved(k, -DIFFERENCE))? - here) / -DIFFERENCE),
+                None => Some((self.evaluated(&moved(k, -DIFFERENCE))?.0 - here) / -DIFFERENCE),
             })
             .collect::<Option<Vec<_>>>()?;
         Some(DMatrix::from_columns(&columns))

@@ -4,9 +4,6 @@ use crate::identify::records::prepared::Prepared;
 use crate::{ActuatorLaw, ActuatorModel};
 use rayon::prelude::*;
 
-/// Samples of a set of records up to which signals are kept: 8 MB per part of the chain.
-const MOST_KEPT: usize = 1 << 20;
-
 /// The signals of a model over all records, behind the law and behind every stage of the linkage.
 ///
 /// A model beside it is run from the part it differs in; its outputs are those of its own
@@ -24,11 +21,6 @@ fn voltages<'a>(prepared: &Prepared<'a>) -> &'a [f64] {
 }
 
 impl Passage {
-    /// Whether records are short enough for their signals to be kept.
-    pub(crate) fn fits(records: &[&Prepared]) -> bool {
-        records.iter().map(|r| voltages(r).len()).sum::<usize>() <= MOST_KEPT
-    }
-
     /// The passage of a model; none if it diverges or a stage is refused.
     pub(crate) fn of(model: ActuatorModel, records: &[&Prepared]) -> Option<Self> {
         let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
@@ -101,13 +93,9 @@ impl Passage {
         own.then_some(&model.law)
     }
 
-    /// Whether a model has the amplifier and the law of this one.
+    /// Whether a model has the amplifier and the law of this one; range and calibration are the same.
     fn same_front(&self, model: &ActuatorModel) -> bool {
-        let own = &self.model;
-        model.amplifier == own.amplifier
-            && model.law == own.law
-            && model.calibration == own.calibration
-            && model.range_volt == own.range_volt
+        model.amplifier == self.model.amplifier && model.law == self.model.law
     }
 }
 

@@ -1,28 +1,11 @@
 //! Linearly constrained least squares by clarabel.
 
 use crate::PreisachError;
+use crate::check::largest_above;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT,
 };
-
-/// How the quadratic programming solver ended, if not with a solution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum QpStatus {
-    /// It refused the problem or its settings.
-    Refused,
-    /// The constraints contradict each other.
-    Infeasible,
-    /// The minimum is at minus infinity.
-    Unbounded,
-    /// It stopped at a reduced accuracy.
-    ReducedAccuracy,
-    /// It ran out of iterations or time.
-    Limit,
-    /// It broke down numerically or stopped making progress.
-    Breakdown,
-}
 
 /// A sparse row: unknown and coefficient.
 pub(crate) type Row = Vec<(usize, f64)>;
@@ -85,11 +68,7 @@ impl LeastSquaresProgram {
         let largest = rest.iter().copied().fold(0.0, f64::max);
         let mut columns: Vec<Vec<f64>> = Vec::new();
         while columns.len() < n {
-            let (pivot, value) = rest
-                .iter()
-                .copied()
-                .enumerate()
-                .fold((0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+            let (pivot, value) = largest_above(0.0, rest.iter().copied());
             if value <= relative * largest {
                 break;
             }
@@ -127,52 +106,30 @@ impl LeastSquaresProgram {
     /// equations made the solver stop far from the minimum.
     pub(crate) fn solve(&self, stage: &'static str) -> Result<Vec<f64>, PreisachError> {
         let n = self.unknowns;
-        let (mut column_starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
-        for column in 0..n {
-            for row in 0..=column {
-                let value = self.normal[packed(row, column)];
-                if value != 0.0 || row == column {
-                    rows.push(row);
-                    values.push(value);
-                }
-            }
-            column_starts.push(rows.len());
-        }
-        let hessian = CscMatrix::new(n, n, column_starts, rows, values);
+        let column = |column: usize| -> Row {
+            let entries = (0..=column).map(|row| (row, self.normal[packed(row, column)]));
+            entries.filter(|&(row, value)| value != 0.0 || row == column).collect()
+        };
+        let hessian = from_columns(n, (0..n).map(column).collect());
         let linear: Vec<f64> = self.right.iter().map(|v| -v).collect();
 
-        let constraints = self.equalities.len() + self.lower_bounds.len();
-        let mut by_column: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n];
-        let mut bounds = vec![0.0; self.equalities.len()];
-        for (k, row) in self.equalities.iter().enumerate() {
+        let equal = self.equalities.iter().map(|row| (row, 1.0, 0.0));
+        let bounded = self.lower_bounds.iter().map(|(row, bound)| (row, -1.0, -bound));
+        let mut columns: Vec<Row> = vec![Row::new(); n];
+        let mut bounds = Vec::new();
+        for (k, (row, sign, bound)) in equal.chain(bounded).enumerate() {
             for &(column, a) in row {
-                by_column[column].push((k, a));
+                columns[column].push((k, sign * a));
             }
+            bounds.push(bound);
         }
-        for (k, (row, bound)) in self.lower_bounds.iter().enumerate() {
-            let k = k + self.equalities.len();
-            for &(column, a) in row {
-                by_column[column].push((k, -a));
-            }
-            bounds.push(-bound);
-        }
-        let (mut column_starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
-        for column in by_column {
-            for (row, value) in column {
-                rows.push(row);
-                values.push(value);
-            }
-            column_starts.push(rows.len());
-        }
-        let matrix = CscMatrix::new(constraints, n, column_starts, rows, values);
+        let matrix = from_columns(bounds.len(), columns);
         let cones = [ZeroConeT(self.equalities.len()), NonnegativeConeT(self.lower_bounds.len())];
 
-        let refused = PreisachError::QuadraticProgram {
-            stage,
-            status: QpStatus::Refused,
-            iterations: 0,
-            primal_residual: f64::NAN,
+        let failed = |status: String, iterations: u32, primal_residual: f64| {
+            PreisachError::QuadraticProgram { stage, status, iterations, primal_residual }
         };
+        let refused = failed("Refused".into(), 0, f64::NAN);
         let Ok(settings) = DefaultSettingsBuilder::default().verbose(false).build() else {
             return Err(refused);
         };
@@ -183,25 +140,23 @@ impl LeastSquaresProgram {
         };
         solver.solve();
         let solution = solver.solution;
-        let status = match solution.status {
-            SolverStatus::Solved => return Ok(solution.x),
-            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-                QpStatus::Infeasible
-            }
-            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
-                QpStatus::Unbounded
-            }
-            SolverStatus::AlmostSolved => QpStatus::ReducedAccuracy,
-            SolverStatus::MaxIterations | SolverStatus::MaxTime => QpStatus::Limit,
-            _ => QpStatus::Breakdown,
-        };
-        Err(PreisachError::QuadraticProgram {
-            stage,
-            status,
-            iterations: solution.iterations,
-            primal_residual: solution.r_prim,
-        })
+        match solution.status {
+            SolverStatus::Solved => Ok(solution.x),
+            status => Err(failed(format!("{status:?}"), solution.iterations, solution.r_prim)),
+        }
     }
+}
+
+/// A matrix from its columns, each with its rows ascending.
+fn from_columns(rows: usize, columns: Vec<Row>) -> CscMatrix {
+    let mut starts = vec![0];
+    starts.extend(columns.iter().scan(0, |end, column| {
+        *end += column.len();
+        Some(*end)
+    }));
+    let count = columns.len();
+    let (places, values) = columns.into_iter().flatten().unzip();
+    CscMatrix::new(rows, count, starts, places, values)
 }
 
 #[cfg(test)]
@@ -258,7 +213,8 @@ mod tests {
         program.at_least(vec![(0, -1.0)], 1.0);
         let error = program.solve("test").unwrap_err();
         assert!(
-            matches!(error, PreisachError::QuadraticProgram { status: QpStatus::Infeasible, .. }),
+            matches!(&error, PreisachError::QuadraticProgram { status, .. }
+                if status == "PrimalInfeasible"),
             "{error}"
         );
     }

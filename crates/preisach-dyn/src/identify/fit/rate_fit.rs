@@ -1,8 +1,8 @@
 //! The rate maps `G1` and `G2` from steady cycles, by constrained least squares.
 
-use crate::identify::Settings;
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
-use crate::identify::records::prepared::Prepared;
+use crate::identify::fit::static_fit::{merged, numbered};
+use crate::identify::fit::training::Training;
 use crate::laws::play_map::split;
 use crate::{DynamicParameters, DynamicPreisach, PlayMap, PreisachError, PreisachGrid, RateForm};
 
@@ -24,13 +24,13 @@ impl RateMaps {
     /// The dynamic model of these maps with a static map.
     pub(crate) fn model(
         &self,
-        grid: &PreisachGrid,
+        training: &Training,
         g0_deg: &PlayMap,
-        settings: &Settings,
     ) -> Result<DynamicPreisach, PreisachError> {
+        let settings = training.settings;
         let factor = settings.levels / settings.rate_levels;
         DynamicPreisach::new(DynamicParameters {
-            grid: *grid,
+            grid: training.grid,
             g0_deg: g0_deg.clone(),
             g1_s: self.g1_s.refined(factor),
             g2_s2_per_deg: self.g2_s2_per_deg.refined(factor),
@@ -66,15 +66,14 @@ struct Sample {
 /// The bound on `G2` is met by cutting planes: the worst reachable state, found exactly by
 /// [`PlayMap::largest`], joins the constraints until none is left.
 pub(crate) fn fit(
-    grid: &PreisachGrid,
+    training: &Training,
     g0_deg: &PlayMap,
-    records: &[&Prepared],
     smoothness: f64,
-    settings: &Settings,
 ) -> Result<RateMaps, PreisachError> {
+    let Training { grid, settings, fast: records, .. } = training;
     let coarse = PreisachGrid::new(grid.range(), settings.rate_levels)?;
     let unknowns = Unknowns::new(&coarse);
-    let (samples, scale) = equation_samples(&unknowns, g0_deg, records, settings);
+    let (samples, scale) = equation_samples(&unknowns, g0_deg, training);
 
     let literal = settings.form == RateForm::Literal;
     // unknowns in units of the mean relaxation time and of what it leaves to G2
@@ -90,17 +89,14 @@ pub(crate) fn fit(
         row.push((first_offset + sample.record, 1.0));
         program.add(&row, sample.beyond_static_deg, sample.weight);
     }
-    for map in 0..2 {
-        unknowns.smooth(map * unknowns.count, smoothness, &mut program);
-        for j in 0..coarse.levels() {
-            let ends = [unknowns.node(j, 0), unknowns.node(j, coarse.knots(j) - 1)];
-            if literal {
-                let base = map * unknowns.count;
-                program.equal_zero(vec![(base + ends[0], 1.0), (base + ends[1], 1.0)]);
-            }
-        }
+    for base in [0, unknowns.count] {
+        unknowns.smooth(base, smoothness, &mut program);
         if literal {
-            program.equal_zero(vec![(map * unknowns.count, 1.0)]);
+            for j in 0..coarse.levels() {
+                let ends = [unknowns.node(j, 0), unknowns.node(j, coarse.knots(j) - 1)];
+                program.equal_zero(ends.map(|end| (base + end, 1.0)).to_vec());
+            }
+            program.equal_zero(vec![(base, 1.0)]);
         }
     }
     if !literal {
@@ -135,7 +131,7 @@ pub(crate) fn fit(
                     row.push((i, FOLD_ROOM));
                     row.push((unknowns.count + i, -2.0 * sign));
                 }
-                program.at_least(super::static_fit::merged(row), 0.0);
+                program.at_least(merged(row), 0.0);
             }
         }
         if worst > 0.0 && cuts >= MOST_CUTS {
@@ -182,9 +178,9 @@ struct Scale {
 fn equation_samples(
     unknowns: &Unknowns,
     g0_deg: &PlayMap,
-    records: &[&Prepared],
-    settings: &Settings,
+    training: &Training,
 ) -> (Vec<Sample>, Scale) {
+    let Training { settings, fast: records, .. } = training;
     let factor = settings.levels / settings.rate_levels;
     let mut samples = Vec::new();
     for (index, record) in records.iter().enumerate() {
@@ -194,14 +190,10 @@ fn equation_samples(
         let count = record.samples.len() as f64;
         for (i, cells) in record.states() {
             let (output_deg, per_sample) = cycles.value_and_rate(i);
-            let static_deg =
-                g0_deg.nodes.iter().zip(cells).fold(g0_deg.constant, |sum, (row, &x)| {
-                    sum + crate::laws::play_map::interpolate(row, x)
-                });
             samples.push(Sample {
                 hats: unknowns.hats(cells, factor),
                 rate_deg_s: per_sample / record.record.time_step_s,
-                beyond_static_deg: output_deg - static_deg,
+                beyond_static_deg: output_deg - g0_deg.value_at(cells),
                 weight: 1.0 / (count * records.len() as f64),
                 record: index,
             });
@@ -209,10 +201,8 @@ fn equation_samples(
     }
     let fastest = samples.iter().fold(0.0_f64, |m, s| m.max(s.rate_deg_s.abs()));
     let (against, squares) = samples.iter().fold((0.0, 0.0), |(a, b), s| {
-        (
-            a - s.weight * s.rate_deg_s * s.beyond_static_deg,
-            b + s.weight * s.rate_deg_s * s.rate_deg_s,
-        )
+        let weighted = s.weight * s.rate_deg_s;
+        (a - weighted * s.beyond_static_deg, b + weighted * s.rate_deg_s)
     });
     let lag_s = if against > 0.0 { against / squares } else { settings.least_relaxation_s };
     let lag_s = lag_s.max(settings.least_relaxation_s);
@@ -235,15 +225,7 @@ struct Unknowns {
 impl Unknowns {
     fn new(coarse: &PreisachGrid) -> Self {
         let knots: Vec<usize> = (0..coarse.levels()).map(|j| coarse.knots(j)).collect();
-        let mut count = 1;
-        let starts = knots
-            .iter()
-            .map(|k| {
-                let start = count;
-                count += k;
-                start
-            })
-            .collect();
+        let (starts, count) = numbered(knots.iter().copied());
         Self { starts, knots, count }
     }
 

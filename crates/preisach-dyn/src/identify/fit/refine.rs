@@ -1,9 +1,9 @@
 //! Output-error refinement: the training records are simulated and compared.
 
-use crate::identify::Settings;
 use crate::identify::fit::output_error::{Covariance, Estimate, OutputError, Uncertainty};
 use crate::identify::fit::rate_fit::room_for_g2;
-use crate::identify::records::prepared::Prepared;
+use crate::identify::fit::training::Training;
+use crate::laws::play_map::risen;
 use crate::{
     ActuatorLaw, ActuatorModel, DynamicParameters, DynamicPreisach, PlayMap, PreisachError,
     RateForm,
@@ -43,9 +43,9 @@ pub enum RefinementOutcome {
     LeftOut,
 }
 
-/// A refined model with the uncertainty of its parameters.
+/// A refined law with the uncertainty of its parameters.
 pub(crate) struct Refined {
-    pub(crate) model: DynamicPreisach,
+    pub(crate) law: ActuatorLaw,
     pub(crate) refinement: Refinement,
     /// The parameters where the refinement ended, as corrections to the model it began with.
     pub(crate) parameters: Vec<Estimate>,
@@ -65,10 +65,10 @@ pub(crate) struct Refined {
 /// The covariance is left out unless asked for.
 pub(crate) fn refine(
     start: &DynamicPreisach,
-    records: &[&Prepared],
-    settings: &Settings,
+    training: &Training,
     uncertainty: Uncertainty,
 ) -> Result<Refined, PreisachError> {
+    let (settings, records) = (training.settings, training.all());
     let first = start.parameters();
     let mut x = DVector::zeros(PARAMETERS);
     if first.form == RateForm::WellPosed {
@@ -81,39 +81,28 @@ pub(crate) fn refine(
     let build = |x: &DVector<f64>| -> Option<ActuatorModel> {
         if *x == origin { Some(wrap(start.clone())) } else { Some(wrap(corrected(first, x)?)) }
     };
-    let problem = OutputError::new(&build, records, x.clone());
+    let problem = OutputError::new(&build, &records, &[], x.clone());
     let before = problem.nrmse().ok_or(PreisachError::Diverged {
         index: 0,
         last_output_deg: f64::NAN,
         bad_steps: 0,
     })?;
     let mut refinement = Refinement::left_out(before);
-    let mut model = start.clone();
+    let mut law = ActuatorLaw::DynamicPreisach(start.clone());
     if settings.refinement_patience > 0 {
         refinement.outcome = RefinementOutcome::Dropped;
         if let Some(minimum) = problem.minimise(settings.refinement_patience) {
             refinement.steps = minimum.steps;
-            if let (true, ActuatorLaw::DynamicPreisach(law)) =
-                (minimum.nrmse < before, minimum.model.law)
-            {
+            if minimum.nrmse < before {
                 refinement.nrmse_after = minimum.nrmse;
                 refinement.outcome = RefinementOutcome::Kept;
-                (model, x) = (law, minimum.x);
+                (law, x) = (minimum.model.law, minimum.x);
             }
         }
     }
-    let covariance = match uncertainty {
-        Uncertainty::Wanted => OutputError::new(&build, records, x.clone()).covariance(),
-        Uncertainty::LeftOut => None,
-    };
-    let deviation =
-        |k: usize| covariance.as_ref().map_or(f64::INFINITY, |matrix| matrix.std_deviation(k));
-    let parameters = NAMES.iter().zip(x.iter()).enumerate().map(|(k, (name, &value))| Estimate {
-        name: (*name).to_owned(),
-        value,
-        std_deviation: deviation(k),
-    });
-    Ok(Refined { model, refinement, parameters: parameters.collect(), covariance })
+    let problem = OutputError::new(&build, &records, &[], x);
+    let (parameters, covariance) = problem.estimates(&NAMES, uncertainty);
+    Ok(Refined { law, refinement, parameters, covariance })
 }
 
 /// Place of each parameter in the vector.
@@ -152,15 +141,13 @@ pub(crate) fn reshaped(map: &PlayMap, x: &[f64]) -> PlayMap {
     let mut map = map.clone();
     map.constant += x[0];
     for (j, row) in map.nodes.iter_mut().enumerate() {
-        let rises: Vec<f64> = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let mut value = row[0];
-        for (k, rise) in rises.iter().enumerate() {
+        let rises = row.windows(2).map(|pair| pair[1] - pair[0]).enumerate().map(|(k, rise)| {
             let (s, r) = place(levels, j, k as f64 + 0.5);
             let terms = [1.0, s, r, s * s, s * r, r * r];
             let exponent: f64 = terms.iter().zip(&x[1..SHAPE]).map(|(t, a)| t * a).sum();
-            value += rise * exponent.exp();
-            row[k + 1] = value;
-        }
+            rise * exponent.exp()
+        });
+        *row = risen(row[0], rises);
     }
     map
 }

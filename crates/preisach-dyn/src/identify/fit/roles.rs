@@ -1,10 +1,11 @@
 //! Which record trains what, and what the set of records cannot tell.
 
+use crate::check::extremes;
 use crate::identify::fit::static_fit;
+use crate::identify::fit::training::Training;
 use crate::identify::records::findings::{Finding, Identifiability};
-use crate::identify::records::plausibility;
 use crate::identify::records::prepared::Prepared;
-use crate::identify::records::spikes;
+use crate::identify::records::{plausibility, spikes};
 use crate::identify::{BenchRecord, Drive, RecordUse, Settings, Waveform};
 use crate::{PreisachError, PreisachGrid};
 use rayon::prelude::*;
@@ -54,18 +55,14 @@ impl<'a> Bench<'a> {
         let drives: Vec<Drive> = records.iter().map(|record| record.drive()).collect();
         let mut uses = settings.split.uses(given, &drives);
         let moves = |i: usize| drives[i].waveform != Waveform::Constant;
-        let lowest = |indices: &mut dyn Iterator<Item = usize>| {
-            indices.map(|i| drives[i].strongest_hz()).fold(f64::INFINITY, f64::min)
-        };
+        let hz = |i: usize| drives[i].strongest_hz();
+        let lowest = |places: &mut dyn Iterator<Item = usize>| extremes(places.map(hz))[0];
         let all = 0..records.len();
         if !all.clone().any(|i| uses[i] == RecordUse::Train && moves(i)) {
             let free = |i: &usize| records[*i].record_use.is_none() && moves(*i);
             let slowest = lowest(&mut all.clone().filter(free));
-            let taken: Vec<usize> = all
-                .clone()
-                .filter(free)
-                .filter(|&i| drives[i].strongest_hz() <= slowest * (1.0 + SAME_HZ))
-                .collect();
+            let near = |i: &usize| hz(*i) <= slowest * (1.0 + SAME_HZ);
+            let taken: Vec<usize> = all.clone().filter(free).filter(near).collect();
             if taken.is_empty() {
                 return Err(PreisachError::NoTrainingRecord {
                     part: "the static density mu0",
@@ -83,7 +80,7 @@ impl<'a> Bench<'a> {
         if !all.clone().filter(trains).any(quasi_static) {
             let lowest_hz = lowest(&mut all.clone().filter(trains));
             for i in all.clone().filter(trains) {
-                slow[i] = drives[i].strongest_hz() <= lowest_hz * (1.0 + SAME_HZ);
+                slow[i] = hz(i) <= lowest_hz * (1.0 + SAME_HZ);
             }
             let limit_hz = settings.split.quasi_static_hz;
             findings.push(Finding::NoSlowRecords { lowest_hz, limit_hz });
@@ -115,16 +112,9 @@ impl<'a> Bench<'a> {
     }
 
     /// What the records can tell and what they cannot.
-    pub(crate) fn summary(
-        &self,
-        grid: &PreisachGrid,
-        prepared: &[Prepared],
-        settings: &Settings,
-    ) -> Identifiability {
-        let Ok(Sorted { slow, fast }) = Sorted::of(prepared) else {
-            return Identifiability::default();
-        };
-        let periodic = slow.iter().chain(&fast).filter(|r| r.drive.is_periodic());
+    pub(crate) fn summary(&self, training: &Training) -> Identifiability {
+        let Training { slow, fast, settings, .. } = training;
+        let periodic = slow.iter().chain(fast).filter(|r| r.drive.is_periodic());
         let mut hz: Vec<f64> = periodic.map(|r| r.drive.strongest_hz()).collect();
         hz.sort_by(f64::total_cmp);
         hz.dedup_by(|b, a| *b <= *a * (1.0 + SAME_HZ));
@@ -135,7 +125,7 @@ impl<'a> Bench<'a> {
                 _ => Finding::NoRateRecords { slow_hz: settings.split.quasi_static_hz },
             });
         }
-        let [determined, unknowns] = static_fit::determined(grid, &slow);
+        let [determined, unknowns] = static_fit::determined(training);
         if (determined as f64) < UNIQUE * unknowns as f64 {
             findings.push(Finding::DensityNotUnique { determined, unknowns });
         }
@@ -145,25 +135,5 @@ impl<'a> Bench<'a> {
             findings.push(Finding::OneAmplitude { amplitude_volt: largest });
         }
         Identifiability { findings, density_determined: [determined, unknowns], trained_hz: hz }
-    }
-}
-
-/// The records that train: the static map, and the rate maps.
-pub(crate) struct Sorted<'p, 'r> {
-    pub(crate) slow: Vec<&'p Prepared<'r>>,
-    pub(crate) fast: Vec<&'p Prepared<'r>>,
-}
-
-impl<'p, 'r> Sorted<'p, 'r> {
-    pub(crate) fn of(prepared: &'p [Prepared<'r>]) -> Result<Self, PreisachError> {
-        let trained = || prepared.iter().filter(|r| !r.samples.is_empty());
-        let slow: Vec<_> = trained().filter(|r| r.is_slow).collect();
-        if slow.is_empty() {
-            return Err(PreisachError::NoTrainingRecord {
-                part: "the static density mu0",
-                remedy: "record a slow major loop and reversal curves, or raise quasi_static_hz",
-            });
-        }
-        Ok(Self { slow, fast: trained().filter(|r| !r.is_slow).collect() })
     }
 }

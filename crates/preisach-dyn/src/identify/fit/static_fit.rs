@@ -1,8 +1,8 @@
 //! The static map `G0` from quasi-static records, by constrained least squares.
 
-use crate::identify::Settings;
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
-use crate::identify::records::prepared::Prepared;
+use crate::identify::fit::training::Training;
+use crate::identify::records::record::spread;
 use crate::laws::play_map::split;
 use crate::{PlayMap, PreisachError, PreisachGrid};
 
@@ -17,17 +17,12 @@ use crate::{PlayMap, PreisachError, PreisachGrid};
 /// (alpha, beta) plane; the reversible part, which sits on the diagonal, is smoothed along it.
 /// A cell no record crosses takes what its neighbours have.
 ///
-/// `targets_deg` has one row per record, one value per sample.
-pub(crate) fn fit(
-    grid: &PreisachGrid,
-    records: &[&Prepared],
-    targets_deg: &[Vec<f64>],
-    settings: &Settings,
-) -> Result<PlayMap, PreisachError> {
+/// `targets_deg` has one row per slow record, one value per sample.
+pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayMap, PreisachError> {
+    let Training { grid, settings, slow: records, .. } = training;
     let unknowns = Unknowns::new(grid);
     let mut program = LeastSquaresProgram::new(unknowns.count);
-    let spread =
-        targets_deg.iter().map(|t| crate::identify::records::record::spread(t)).fold(0.0, f64::max);
+    let spread = targets_deg.iter().map(|targets| spread(targets)).fold(0.0, f64::max);
     let share = 1.0 / (records.len() as f64 * spread * spread);
     let mut row = Row::new();
     for (record, targets) in records.iter().zip(targets_deg) {
@@ -41,12 +36,18 @@ pub(crate) fn fit(
     Ok(unknowns.map(grid, &program.solve("static map")?))
 }
 
-/// Numbers of the density that records determine, and how many there are.
-pub(crate) fn determined(grid: &PreisachGrid, records: &[&Prepared]) -> [usize; 2] {
-    let unknowns = Unknowns::new(grid);
+/// As [`fit`], to the outputs of the records as they stand.
+pub(crate) fn as_measured(training: &Training) -> Result<PlayMap, PreisachError> {
+    let measured = training.slow.iter().map(|r| r.record.output_deg.clone());
+    fit(training, &measured.collect::<Vec<_>>())
+}
+
+/// Numbers of the density that the slow records determine, and how many there are.
+pub(crate) fn determined(training: &Training) -> [usize; 2] {
+    let unknowns = Unknowns::new(&training.grid);
     let mut program = LeastSquaresProgram::new(unknowns.count);
     let mut row = Row::new();
-    for record in records {
+    for record in &training.slow {
         for (_, cells) in record.states() {
             unknowns.hats(cells, &mut row);
             program.add(&row, 0.0, 1.0 / record.samples.len() as f64);
@@ -71,6 +72,43 @@ pub(crate) fn merged(mut row: Row) -> Row {
     result
 }
 
+/// Bounds of the density, and smoothness of weight `penalty` per cell: `rise(j, k, scale)` is `scale`
+/// times the rise of play `j` between its knots `k` and `k + 1`, as a row.
+pub(crate) fn smooth_density(
+    levels: usize,
+    penalty: f64,
+    rise: impl Fn(usize, usize, f64) -> Row,
+    program: &mut LeastSquaresProgram,
+) {
+    for j in 0..levels {
+        for k in 0..levels - j {
+            program.at_least(rise(j, k, 1.0), 0.0);
+            let neighbours = match j {
+                0 => [Some((0, k + 1)), None],
+                _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
+            };
+            for (j2, k2) in neighbours.into_iter().flatten() {
+                if j2 < levels && k2 < levels - j2 {
+                    let mut difference = rise(j, k, 1.0);
+                    difference.extend(rise(j2, k2, -1.0));
+                    program.add(&merged(difference), 0.0, penalty);
+                }
+            }
+        }
+    }
+}
+
+/// The number of the first unknown of every row, from the lengths of the rows, and the count of all: 0
+/// is the constant before them.
+pub(crate) fn numbered(lengths: impl Iterator<Item = usize>) -> (Vec<usize>, usize) {
+    let mut count = 1;
+    let starts = lengths.map(|length| {
+        count += length;
+        count - length
+    });
+    (starts.collect(), count)
+}
+
 /// Numbering of the unknowns: the offset, then `v_jk` for `k >= 1`, play by play.
 #[derive(Debug, Clone)]
 pub(crate) struct Unknowns {
@@ -87,22 +125,7 @@ impl Unknowns {
         program: &mut LeastSquaresProgram,
     ) {
         let penalty = penalty * (self.count - 1) as f64;
-        for j in 0..grid.levels() {
-            for k in 0..grid.levels() - j {
-                program.at_least(self.rise(j, k, 1.0), 0.0);
-                let neighbours = match j {
-                    0 => [Some((0, k + 1)), None],
-                    _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
-                };
-                for (j2, k2) in neighbours.into_iter().flatten() {
-                    if j2 < grid.levels() && k2 < grid.levels() - j2 {
-                        let mut difference = self.rise(j, k, 1.0);
-                        difference.extend(self.rise(j2, k2, -1.0));
-                        program.add(&merged(difference), 0.0, penalty);
-                    }
-                }
-            }
-        }
+        smooth_density(grid.levels(), penalty, |j, k, scale| self.rise(j, k, scale), program);
     }
 
     /// The map of a solution.
@@ -123,14 +146,7 @@ impl Unknowns {
     }
 
     pub(crate) fn new(grid: &PreisachGrid) -> Self {
-        let mut count = 1;
-        let starts = (0..grid.levels())
-            .map(|j| {
-                let start = count;
-                count += grid.levels() - j;
-                start
-            })
-            .collect();
+        let (starts, count) = numbered((0..grid.levels()).map(|j| grid.levels() - j));
         Self { starts, count }
     }
 

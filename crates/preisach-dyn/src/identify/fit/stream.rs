@@ -1,9 +1,10 @@
 //! The static fit of records that do not fit into memory.
 
-use crate::actuator::model::SAMPLE_TOLERANCE;
+use crate::check::{check_count, check_positive};
 use crate::identify::Settings;
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
 use crate::identify::fit::static_fit::Unknowns;
+use crate::identify::records::record::{UNEQUAL, sample_problem};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach};
 
 /// Builds a static Preisach model from samples that come piece by piece.
@@ -36,12 +37,10 @@ impl StaticAccumulator {
     /// An accumulator for a grid of `settings.levels` over `settings.range_volt`.
     ///
     /// # Errors
-    /// Refused settings; [`PreisachError::TooFew`] for `stride = 0`.
+    /// Refused settings; [`PreisachError::OutOfRange`] for `stride = 0`.
     pub fn new(settings: &Settings, stride: usize) -> Result<Self, PreisachError> {
         settings.check()?;
-        if stride == 0 {
-            return Err(PreisachError::TooFew { quantity: "stride", value: 0, least: 1 });
-        }
+        check_count("stride", stride, 1)?;
         let grid = PreisachGrid::new(settings.range_volt, settings.levels)?;
         let unknowns = Unknowns::new(&grid);
         Ok(Self {
@@ -67,31 +66,17 @@ impl StaticAccumulator {
     /// Takes the next samples of the present record: V and deg.
     ///
     /// # Errors
-    /// [`PreisachError::UnequalColumns`]; [`PreisachError::BadRecord`] with the place of the sample,
-    /// counted over all that came. Nothing of a refused piece is used beyond the sample named.
+    /// [`PreisachError::BadRecord`] with the place of the sample, counted over all that came. Nothing of a refused piece is used beyond the sample named.
     pub fn push(&mut self, voltage_volt: &[f64], output_deg: &[f64]) -> Result<(), PreisachError> {
-        let (voltages, outputs) = (voltage_volt.len(), output_deg.len());
-        let id = || "stream".to_owned();
-        if voltages != outputs {
-            return Err(PreisachError::UnequalColumns { id: id(), voltages, outputs });
+        let bad = |index: usize, problem: &'static str, value: f64| {
+            Err(PreisachError::BadRecord { record: "stream".into(), index, problem, value })
+        };
+        if voltage_volt.len() != output_deg.len() {
+            return bad(self.seen, UNEQUAL, output_deg.len() as f64);
         }
-        let range = self.grid.range();
-        let tolerance = SAMPLE_TOLERANCE * range.span_volt();
         for (&u, &y) in voltage_volt.iter().zip(output_deg) {
-            let (problem, value) = if !u.is_finite() {
-                ("the voltage is not a finite number", u)
-            } else if !y.is_finite() {
-                ("the output is not a finite number", y)
-            } else {
-                ("the voltage is outside the actuator's range", u)
-            };
-            if !(y.is_finite() && range.excess_volt(u) <= tolerance) {
-                return Err(PreisachError::BadRecord {
-                    id: id(),
-                    index: self.seen,
-                    problem,
-                    value,
-                });
+            if let Some((problem, value)) = sample_problem(u, y, self.grid.range()) {
+                return bad(self.seen, problem, value);
             }
             let grid = &self.grid;
             let memory =
@@ -126,18 +111,15 @@ impl StaticAccumulator {
     /// The model of all samples so far; more may follow.
     ///
     /// # Errors
-    /// [`PreisachError::TooFew`] samples, [`PreisachError::NotPositive`] if the output never changed,
+    /// [`PreisachError::OutOfRange`] samples, [`PreisachError::OutOfRange`] if the output never changed,
     /// [`PreisachError::QuadraticProgram`].
     pub fn fit(&self) -> Result<StaticPreisach, PreisachError> {
         const LEAST: usize = 16;
-        if self.used < LEAST {
-            let quantity = "samples of a static fit";
-            return Err(PreisachError::TooFew { quantity, value: self.used, least: LEAST });
-        }
+        check_count("samples of a static fit", self.used, LEAST)?;
         let count = self.used as f64;
         let mean = self.sums[0] / count;
         let variance = self.sums[1] / count - mean * mean;
-        crate::check::check_positive("variance of the outputs, deg^2", variance)?;
+        check_positive("variance of the outputs, deg^2", variance)?;
         let mut program = self.program.clone();
         program.scale(1.0 / (count * variance));
         self.unknowns.regularise(&self.grid, self.smoothness / variance, &mut program);

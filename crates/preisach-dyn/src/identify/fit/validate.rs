@@ -1,11 +1,11 @@
 //! Cross-validation over experiments: how smooth the rate maps should be.
 
-use crate::identify::fit::compare;
-use crate::identify::fit::rate_fit;
-use crate::identify::records::prepared::Prepared;
-use crate::identify::{RateSmoothness, Settings};
-use crate::{ActuatorLaw, PlayMap, PreisachError, PreisachGrid};
+use crate::identify::RateSmoothness;
+use crate::identify::fit::training::Training;
+use crate::identify::fit::{compare, rate_fit};
+use crate::{ActuatorLaw, PlayMap, PreisachError};
 use rayon::prelude::*;
+use rotor_base::mean_square;
 use serde::{Deserialize, Serialize};
 
 /// Candidates, from the loosest.
@@ -30,12 +30,8 @@ pub struct Validation {
 /// Every fast training record is left out of the rate fit in turn and simulated with the maps
 /// fitted to the others: by experiment, never by sample. Of the candidates within 5 % of the best
 /// the loosest is taken, because all records together carry more than all but one.
-pub(crate) fn smoothness(
-    grid: &PreisachGrid,
-    g0_deg: &PlayMap,
-    fast: &[&Prepared],
-    settings: &Settings,
-) -> (f64, Vec<Validation>) {
+pub(crate) fn smoothness(training: &Training, g0_deg: &PlayMap) -> (f64, Vec<Validation>) {
+    let Training { settings, fast, .. } = training;
     if let RateSmoothness::Fixed(smoothness) = settings.rate_smoothness {
         return (smoothness, Vec::new());
     }
@@ -43,20 +39,21 @@ pub(crate) fn smoothness(
         return (UNTESTED, Vec::new());
     }
     let left_out = |index: usize, smoothness: f64| -> Result<f64, PreisachError> {
-        let mut others = fast.to_vec();
-        let tested = others.remove(index);
-        let maps = rate_fit::fit(grid, g0_deg, &others, smoothness, settings)?;
-        let model = maps.model(grid, g0_deg, settings)?;
+        let mut others = training.clone();
+        let tested = others.fast.remove(index);
+        let model = rate_fit::fit(&others, g0_deg, smoothness)?.model(training, g0_deg)?;
         let actuator = settings.actuator_of(ActuatorLaw::DynamicPreisach(model));
         compare::training_nrmse(&actuator, tested)
     };
     let table: Vec<Validation> = CANDIDATES
         .par_iter()
         .map(|&smoothness| {
-            let squares: Result<f64, PreisachError> =
-                (0..fast.len()).map(|i| Ok(left_out(i, smoothness)?.powi(2))).sum();
-            let mean = squares.unwrap_or(f64::INFINITY) / fast.len() as f64;
-            Validation { smoothness, nrmse: mean.sqrt() }
+            let errors = (0..fast.len()).map(|index| left_out(index, smoothness));
+            let errors = errors.collect::<Result<Vec<_>, _>>();
+            Validation {
+                smoothness,
+                nrmse: errors.map_or(f64::INFINITY, |e| mean_square(&e).sqrt()),
+            }
         })
         .collect();
     let best = table.iter().fold(f64::INFINITY, |least, v| least.min(v.nrmse));

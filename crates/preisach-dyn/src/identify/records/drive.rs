@@ -1,8 +1,12 @@
 //! What a command does, found from its samples.
 
+use crate::VoltageRange;
+use crate::check::{extremes, largest_above};
 use crate::identify::BenchRecord;
 use crate::identify::records::fourier;
-use crate::identify::records::repetition::{Swing, find_period, inner_stretch, steady_samples};
+use crate::identify::records::repetition::{find_period, inner_stretch, steady_samples};
+use crate::laws::play_map::split;
+use rotor_base::wrap_degrees;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -40,12 +44,12 @@ pub struct Drive {
 /// Share of the power one harmonic must carry to count as the only one.
 const SINGLE_SHARE: f64 = 0.95;
 
-impl Drive {
-    pub(crate) fn of(record: &BenchRecord) -> Self {
-        let u = &record.voltage_volt;
-        let (low, high) =
-            u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-        let mut drive = Self {
+impl BenchRecord {
+    /// What the command does.
+    pub fn drive(&self) -> Drive {
+        let u = &self.voltage_volt;
+        let [low, high] = extremes(u.iter().copied());
+        let mut drive = Drive {
             waveform: Waveform::Constant,
             base_hz: 0.0,
             strongest_harmonic: 1,
@@ -53,50 +57,45 @@ impl Drive {
             middle_volt: 0.5 * (high + low),
             steady: 0..0,
         };
-        if drive.amplitude_volt <= 0.0 {
+        let Ok(swing) = VoltageRange::new(low, high) else {
             return drive;
-        }
-        let swing = Swing { amplitude_volt: drive.amplitude_volt, middle_volt: drive.middle_volt };
-        let given = record.base_frequency_hz.map(|hz| 1.0 / (hz * record.time_step_s));
+        };
+        let given = self.base_frequency_hz.map(|hz| 1.0 / (hz * self.time_step_s));
         let to_the_end = || {
             let period = given.or_else(|| find_period(u, swing))?;
             Some((period, steady_samples(u, period, drive.amplitude_volt)?))
         };
         if let Some((samples, steady)) = to_the_end().or_else(|| inner_stretch(u, given, swing)) {
-            drive.base_hz = 1.0 / (samples * record.time_step_s);
+            drive.base_hz = 1.0 / (samples * self.time_step_s);
             drive.steady = steady;
-            drive.find_harmonics(record);
+            drive.find_harmonics(self);
         } else {
-            let moving: f64 = u.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-            let moves = u.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > 0.0).count().max(1);
-            let speed = moving / (moves as f64 * record.time_step_s);
+            let changes = || u.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let moves = changes().filter(|change| *change > 0.0).count().max(1);
+            let speed = changes().sum::<f64>() / (moves as f64 * self.time_step_s);
             drive.waveform = Waveform::Transient;
             drive.base_hz = speed / (4.0 * drive.amplitude_volt);
         }
         drive
     }
+}
 
+impl Drive {
     fn find_harmonics(&mut self, record: &BenchRecord) {
-        let count = 8.min(self.harmonics_within(record.time_step_s, 8));
-        let Ok(fit) = fourier::fit(
-            &record.voltage_volt,
-            self.steady.clone(),
-            self.base_hz * record.time_step_s,
-            count,
-        ) else {
-            self.waveform = Waveform::Mix;
+        let count = self.harmonics_within(record.time_step_s, 8);
+        let per_sample = self.base_hz * record.time_step_s;
+        self.waveform = Waveform::Mix;
+        let Ok(fit) = fourier::fit(&record.voltage_volt, self.steady.clone(), per_sample, count)
+        else {
             return;
         };
         let powers: Vec<f64> = fit.series.harmonics.iter().map(|h| h.amplitude().powi(2)).collect();
         let total: f64 = powers.iter().sum();
-        let (index, power) = powers
-            .iter()
-            .copied()
-            .enumerate()
-            .fold((0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
+        let (index, power) = largest_above(0.0, powers);
         self.strongest_harmonic = index + 1;
-        self.waveform =
-            if power >= SINGLE_SHARE * total { Waveform::SingleHarmonic } else { Waveform::Mix };
+        if power >= SINGLE_SHARE * total {
+            self.waveform = Waveform::SingleHarmonic;
+        }
     }
 
     /// The last whole steady periods inside a window; none if there is not one.
@@ -108,9 +107,22 @@ impl Drive {
         let period = 1.0 / (self.base_hz * time_step_s);
         let available = end.saturating_sub(start);
         // a period found from samples is a little off: a sample short still counts as whole
-        let (periods, _) = crate::laws::play_map::split((available as f64 + 1.0) / period);
-        let (samples, _) = crate::laws::play_map::split(periods as f64 * period + 0.5);
+        let (periods, _) = split((available as f64 + 1.0) / period);
+        let (samples, _) = split(periods as f64 * period + 0.5);
         (periods > 0).then(|| end - samples.min(available)..end)
+    }
+
+    /// How far the output lags the command at the strongest harmonic of the steady cycles, deg of
+    /// harmonic phase, -180 to 180; none where the cycles cannot be fitted.
+    pub(crate) fn lag_deg(&self, record: &BenchRecord) -> Option<f64> {
+        let n = self.strongest_harmonic;
+        let per_sample = self.base_hz * record.time_step_s;
+        let count = self.harmonics_within(record.time_step_s, 8).max(n);
+        let phase_deg = |values: &[f64]| {
+            let fit = fourier::fit(values, self.steady.clone(), per_sample, count).ok()?;
+            Some(fit.series.harmonic(n).phase_deg())
+        };
+        Some(wrap_degrees(phase_deg(&record.output_deg)? - phase_deg(&record.voltage_volt)?))
     }
 
     /// Frequency of the strongest harmonic, Hz.
@@ -133,13 +145,6 @@ impl Drive {
     pub(crate) fn harmonics_within(&self, time_step_s: f64, wanted: usize) -> usize {
         let most = (0.4 / (self.base_hz * time_step_s)).floor().min(wanted as f64);
         (most as usize).max(1)
-    }
-}
-
-impl BenchRecord {
-    /// What the command does.
-    pub fn drive(&self) -> Drive {
-        Drive::of(self)
     }
 }
 

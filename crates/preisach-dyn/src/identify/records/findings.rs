@@ -14,6 +14,15 @@ pub enum Severity {
     Suspect,
 }
 
+/// A column of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Channel {
+    /// The command, V.
+    Command,
+    /// The output, deg.
+    Output,
+}
+
 /// One thing the records cannot tell, or that is wrong with them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -57,51 +66,33 @@ pub enum Finding {
         /// The record.
         id: String,
     },
-    /// The output rests at its extreme while the command moves: the sensor was at its limit.
-    ClippedOutput {
+    /// A channel rests at its extreme: the output while the command moves, or a periodic command. The
+    /// sensor or the amplifier was at its limit.
+    Clipped {
         /// The record.
         id: String,
-        /// The level, deg.
-        level_deg: f64,
-        /// Share of the samples at that level, percent.
+        /// The channel.
+        channel: Channel,
+        /// The level, deg or V.
+        level: f64,
+        /// Share of the samples at that level, of a command the steady ones, percent.
         share_percent: f64,
     },
-    /// A periodic command rests at its extreme: the amplifier was at its limit.
-    ClippedCommand {
-        /// The record.
-        id: String,
-        /// The level, V.
-        level_volt: f64,
-        /// Share of the steady samples at that level, percent.
-        share_percent: f64,
-    },
-    /// Samples of the output stand out from their neighbours while the command does not move: they were
+    /// Samples of a channel stand out from their neighbours while the other does not move: they were
     /// left out, straight lines in their place.
-    OutputSpikes {
+    Spikes {
         /// The record.
         id: String,
+        /// The channel.
+        channel: Channel,
         /// Samples left out.
         samples: usize,
         /// First sample of the largest spike.
         index: usize,
         /// Time of it from the first sample, s.
         time_s: f64,
-        /// Output recorded there, deg.
-        value_deg: f64,
-    },
-    /// Samples of the command stand out from their neighbours while the output does not move: they were
-    /// left out, straight lines in their place.
-    CommandSpikes {
-        /// The record.
-        id: String,
-        /// Samples left out.
-        samples: usize,
-        /// First sample of the largest spike.
-        index: usize,
-        /// Time of it from the first sample, s.
-        time_s: f64,
-        /// Command recorded there, V.
-        value_volt: f64,
+        /// What was recorded there, deg or V.
+        value: f64,
     },
     /// The output leads the command: the columns may have changed places.
     OutputLeads {
@@ -127,116 +118,125 @@ pub enum Finding {
 impl Finding {
     /// What it means for the model.
     pub fn severity(&self) -> Severity {
-        match self {
-            Self::ConstantCommand { .. }
-            | Self::TrainedByDefault { .. }
-            | Self::OutputSpikes { .. }
-            | Self::CommandSpikes { .. } => Severity::Remark,
-            Self::OneFrequency { .. }
-            | Self::NoRateRecords { .. }
-            | Self::NoSlowRecords { .. }
-            | Self::DensityNotUnique { .. }
-            | Self::OneAmplitude { .. } => Severity::Limits,
-            Self::ClippedOutput { .. }
-            | Self::ClippedCommand { .. }
-            | Self::OutputLeads { .. }
-            | Self::LoopTooWide { .. }
-            | Self::NotDescribed { .. } => Severity::Suspect,
-        }
+        self.said(ACTUATOR_UNITS).0
     }
 
     /// What to record or correct.
     pub fn remedy(&self) -> &'static str {
+        self.said(ACTUATOR_UNITS).2
+    }
+
+    /// It as a sentence, with symbols of the units of input and output.
+    pub(crate) fn sentence(&self, units: [&str; 2]) -> String {
+        self.said(units).1
+    }
+
+    /// What it means for the model, what was found, and what to record or correct.
+    fn said(&self, [input, output]: [&str; 2]) -> (Severity, String, &'static str) {
         match self {
-            Self::OneFrequency { .. } | Self::NoRateRecords { .. } => {
-                "record periodic runs at two or more frequencies, for instance 1 and 10 Hz"
+            Self::OneFrequency { hz } => (
+                Severity::Limits,
+                format!(
+                    "all training records are at {hz:.3} Hz: nothing is known about rate, the model is static"
+                ),
+                TWO_FREQUENCIES,
+            ),
+            Self::NoRateRecords { slow_hz } => (
+                Severity::Limits,
+                format!(
+                    "no periodic record faster than {slow_hz:.3} Hz trains: nothing is known about rate, the model is static"
+                ),
+                TWO_FREQUENCIES,
+            ),
+            Self::NoSlowRecords { lowest_hz, limit_hz } => (
+                Severity::Limits,
+                format!(
+                    "no training record is slow (up to {limit_hz} Hz): the static map was trained at {lowest_hz:.3} Hz and holds the dynamics of that frequency"
+                ),
+                "record a slow major loop and reversal curves, or raise quasi_static_hz",
+            ),
+            Self::TrainedByDefault { records } => (
+                Severity::Remark,
+                format!("no record was marked for training: the {records} slowest were taken"),
+                "mark the runs that shall train",
+            ),
+            Self::DensityNotUnique { determined, unknowns } => (
+                Severity::Limits,
+                format!(
+                    "the slow records determine {determined} of {unknowns} numbers of the density: it is not unique"
+                ),
+                "record reversal curves, or slow loops of several amplitudes; trust the model on loops like the trained ones only",
+            ),
+            Self::OneAmplitude { amplitude_volt } => (
+                Severity::Limits,
+                format!("the rate records all have an amplitude of {amplitude_volt:.1} {input}"),
+                "record the trained frequencies at two or more amplitudes: one hides large errors at others",
+            ),
+            Self::ConstantCommand { id } => (
+                Severity::Remark,
+                format!("record {id}: the command never changes"),
+                "leave it out, or use it for the noise alone",
+            ),
+            Self::Clipped { id, channel: Channel::Output, level, share_percent } => (
+                Severity::Suspect,
+                format!(
+                    "record {id}: the output rests at {level:.4} {output} for {share_percent:.1} % of the samples while the command moves: it is clipped"
+                ),
+                "widen the sensor's range and record again",
+            ),
+            Self::Clipped { id, channel: Channel::Command, level, share_percent } => (
+                Severity::Suspect,
+                format!(
+                    "record {id}: the periodic command rests at {level:.2} {input} for {share_percent:.1} % of the samples: it is clipped"
+                ),
+                "record the voltage at the actuator's terminals, or keep the amplifier off its limit",
+            ),
+            Self::Spikes { id, channel, samples, index, time_s, value } => {
+                let (name, value) = match channel {
+                    Channel::Output => ("output", format!("{value:.4} {output}")),
+                    Channel::Command => ("command", format!("{value:.2} {input}")),
+                };
+                (
+                    Severity::Remark,
+                    format!(
+                        "record {id}: {samples} samples of the {name} are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value}"
+                    ),
+                    "look at the samples; check contacts and the recorder",
+                )
             }
-            Self::NoSlowRecords { .. } => {
-                "record a slow major loop and reversal curves, or raise quasi_static_hz"
-            }
-            Self::TrainedByDefault { .. } => "mark the runs that shall train",
-            Self::DensityNotUnique { .. } => {
-                "record reversal curves, or slow loops of several amplitudes; trust the model on loops like the trained ones only"
-            }
-            Self::OneAmplitude { .. } => {
-                "record the trained frequencies at two or more amplitudes: one hides large errors at others"
-            }
-            Self::ConstantCommand { .. } => "leave it out, or use it for the noise alone",
-            Self::ClippedOutput { .. } => "widen the sensor's range and record again",
-            Self::ClippedCommand { .. } => {
-                "record the voltage at the actuator's terminals, or keep the amplifier off its limit"
-            }
-            Self::OutputSpikes { .. } | Self::CommandSpikes { .. } => {
-                "look at the samples; check contacts and the recorder"
-            }
-            Self::OutputLeads { .. } => {
-                "exchange the columns, or correct the delay between the channels"
-            }
-            Self::LoopTooWide { .. } => {
-                "check the columns, the sign of the output and the synchronisation of the channels"
-            }
-            Self::NotDescribed { .. } => {
-                "check the sign of the output, which has to rise with the input; otherwise another kind of model is needed: do not use this one"
-            }
+            Self::OutputLeads { id, lead_deg } => (
+                Severity::Suspect,
+                format!(
+                    "record {id}: the output leads the command by {lead_deg:.2} deg, which no actuator does"
+                ),
+                "exchange the columns, or correct the delay between the channels",
+            ),
+            Self::LoopTooWide { id, width_percent } => (
+                Severity::Suspect,
+                format!(
+                    "record {id}: the slow loop is {width_percent:.0} % as wide as the output's range"
+                ),
+                "check the columns, the sign of the output and the synchronisation of the channels",
+            ),
+            Self::NotDescribed { nrmse_percent } => (
+                Severity::Suspect,
+                format!(
+                    "the model leaves {nrmse_percent:.0} % of the training records unexplained: they are outside its class"
+                ),
+                "check the sign of the output, which has to rise with the input; otherwise another kind of model is needed: do not use this one",
+            ),
         }
     }
 }
 
+/// Symbols of the units of an actuator's input and output.
+pub(crate) const ACTUATOR_UNITS: [&str; 2] = ["V", "deg"];
+const TWO_FREQUENCIES: &str =
+    "record periodic runs at two or more frequencies, for instance 1 and 10 Hz";
+
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OneFrequency { hz } => write!(
-                f,
-                "all training records are at {hz:.3} Hz: nothing is known about rate, the model is static"
-            ),
-            Self::NoRateRecords { slow_hz } => write!(
-                f,
-                "no periodic record faster than {slow_hz:.3} Hz trains: nothing is known about rate, the model is static"
-            ),
-            Self::NoSlowRecords { lowest_hz, limit_hz } => write!(
-                f,
-                "no training record is slow (up to {limit_hz} Hz): the static map was trained at {lowest_hz:.3} Hz and holds the dynamics of that frequency"
-            ),
-            Self::TrainedByDefault { records } => {
-                write!(f, "no record was marked for training: the {records} slowest were taken")
-            }
-            Self::DensityNotUnique { determined, unknowns } => write!(
-                f,
-                "the slow records determine {determined} of {unknowns} numbers of the density: it is not unique"
-            ),
-            Self::OneAmplitude { amplitude_volt } => {
-                write!(f, "the rate records all have an amplitude of {amplitude_volt:.1} V")
-            }
-            Self::ConstantCommand { id } => write!(f, "record {id}: the command never changes"),
-            Self::ClippedOutput { id, level_deg, share_percent } => write!(
-                f,
-                "record {id}: the output rests at {level_deg:.4} deg for {share_percent:.1} % of the samples while the command moves: it is clipped"
-            ),
-            Self::ClippedCommand { id, level_volt, share_percent } => write!(
-                f,
-                "record {id}: the periodic command rests at {level_volt:.2} V for {share_percent:.1} % of the samples: it is clipped"
-            ),
-            Self::OutputSpikes { id, samples, index, time_s, value_deg } => write!(
-                f,
-                "record {id}: {samples} samples of the output are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value_deg:.4} deg"
-            ),
-            Self::CommandSpikes { id, samples, index, time_s, value_volt } => write!(
-                f,
-                "record {id}: {samples} samples of the command are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value_volt:.2} V"
-            ),
-            Self::OutputLeads { id, lead_deg } => write!(
-                f,
-                "record {id}: the output leads the command by {lead_deg:.2} deg, which no actuator does"
-            ),
-            Self::LoopTooWide { id, width_percent } => write!(
-                f,
-                "record {id}: the slow loop is {width_percent:.0} % as wide as the output's range"
-            ),
-            Self::NotDescribed { nrmse_percent } => write!(
-                f,
-                "the model leaves {nrmse_percent:.0} % of the training records unexplained: they are outside its class"
-            ),
-        }
+        f.write_str(&self.sentence(ACTUATOR_UNITS))
     }
 }
 

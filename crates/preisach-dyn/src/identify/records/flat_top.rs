@@ -12,10 +12,10 @@
 //! command must turn round on the plateau: lost motion rests after the turn only, friction slips before
 //! it only.
 
-use crate::identify::records::fourier;
+use crate::check::extremes;
 use crate::identify::records::noise::{Fine, median};
 use crate::identify::{BenchRecord, Drive};
-use rotor_base::wrap_degrees;
+use crate::laws::play_map::split;
 use std::ops::Range;
 
 /// Half of the plateau's depth over the noise of the smoothed output.
@@ -58,13 +58,11 @@ impl FlatTop {
         let moving =
             record.voltage_volt.windows(2).filter(|p| (p[1] - p[0]).abs() > 0.0).count() as f64;
         let crossing = moving * range_volt / travel(&record.voltage_volt);
-        let (half, _) =
-            crate::laws::play_map::split((SMOOTHED * crossing).clamp(0.0, MOST_SMOOTHED) / 2.0);
+        let (half, _) = split((SMOOTHED * crossing).clamp(0.0, MOST_SMOOTHED) / 2.0);
         let output = smoothed(&record.output_deg, half);
         let command = delayed(&smoothed(&record.voltage_volt, half), record, drive, is_slow);
         let noise = fine.std_deg / ((2 * half + 1) as f64).sqrt() + fine.quantum_deg;
-        let [low, high] = [&f64::min as &dyn Fn(f64, f64) -> f64, &f64::max]
-            .map(|pick| output.iter().copied().reduce(pick).unwrap_or_default());
+        let [low, high] = extremes(output.iter().copied());
         let depth = (DEPTH * noise).max(LEAST_DEPTH * (high - low));
         if 16.0 * depth > MOST_DEPTH * (high - low) {
             return None;
@@ -173,19 +171,9 @@ fn smoothed(values: &[f64], half: usize) -> Vec<f64> {
 /// The command as late as the strongest harmonic of the output is behind it, where that can be told:
 /// the top of a fast loop lies behind that of its command.
 fn delayed(command: &[f64], record: &BenchRecord, drive: &Drive, is_slow: bool) -> Vec<f64> {
-    let lag = || {
-        let n = drive.strongest_harmonic;
-        let per_sample = drive.base_hz * record.time_step_s;
-        let count = drive.harmonics_within(record.time_step_s, 8).max(n);
-        let phase = |values: &[f64]| {
-            let fit = fourier::fit(values, drive.steady.clone(), per_sample, count).ok()?;
-            Some(fit.series.harmonic(n).phase_deg())
-        };
-        let lag_deg = wrap_degrees(phase(&record.output_deg)? - phase(&record.voltage_volt)?);
-        Some(lag_deg / 360.0 / (per_sample * n as f64))
-    };
-    let samples = if drive.is_periodic() && !is_slow { lag().unwrap_or(0.0).max(0.0) } else { 0.0 };
-    let (whole, _) = crate::laws::play_map::split(samples);
+    let lag = if drive.is_periodic() && !is_slow { drive.lag_deg(record) } else { None };
+    let per_sample = drive.base_hz * record.time_step_s * drive.strongest_harmonic as f64;
+    let (whole, _) = split(lag.map_or(0.0, |lag_deg| lag_deg / 360.0 / per_sample).max(0.0));
     let first = command.first().copied().unwrap_or_default();
     std::iter::repeat_n(first, whole).chain(command.iter().copied()).take(command.len()).collect()
 }

@@ -33,7 +33,7 @@ impl FourierFit {
 /// Least squares fit of mean and `count` harmonics to the samples of a range.
 ///
 /// # Errors
-/// [`PreisachError::TooFew`] if the samples cannot carry the harmonics.
+/// [`PreisachError::OutOfRange`] if the samples cannot carry the harmonics.
 pub(crate) fn fit(
     values: &[f64],
     range: Range<usize>,
@@ -41,11 +41,6 @@ pub(crate) fn fit(
     count: usize,
 ) -> Result<FourierFit, PreisachError> {
     let unknowns = 2 * count + 1;
-    let too_few = PreisachError::TooFew {
-        quantity: "samples of steady cycles",
-        value: range.len(),
-        least: unknowns,
-    };
     let mut normal = DMatrix::zeros(unknowns, unknowns);
     let mut right = DVector::zeros(unknowns);
     let mut result =
@@ -63,8 +58,10 @@ pub(crate) fn fit(
         normal.ger(1.0, &row, &row, 1.0);
         right.axpy(values[index], &row, 1.0);
     }
-    let Some(factor) = (range.len() >= unknowns).then(|| normal.cholesky()).flatten() else {
-        return Err(too_few);
+    let Some(factor) = normal.cholesky().filter(|_| range.len() >= unknowns) else {
+        let (quantity, value) = ("samples of steady cycles", range.len() as f64);
+        let expected = format!("at least {unknowns} and not all alike").into();
+        return Err(PreisachError::OutOfRange { quantity, value, expected });
     };
     let solution = factor.solve(&right);
     result.series.mean = solution[0];

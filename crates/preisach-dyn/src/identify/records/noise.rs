@@ -1,5 +1,6 @@
 //! Noise from what does not repeat, without any model.
 
+use crate::check::extremes;
 use crate::laws::play_map::split;
 use serde::{Deserialize, Serialize};
 
@@ -80,9 +81,7 @@ impl Fine {
         let thirds = values.windows(4).map(|v| (v[3] - v[0] + 3.0 * (v[1] - v[2])).abs());
         let std_deg = 1.4826 * median(thirds.collect()) / 20.0_f64.sqrt();
         // rounded: many neighbours are equal, and no other difference is smaller than a step
-        let [low, high] = values
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)]);
+        let [low, high] = extremes(values.iter().copied());
         let least = 1e-9 * (high - low);
         let steps: Vec<f64> = values.windows(2).map(|v| (v[1] - v[0]).abs()).collect();
         let moved: Vec<f64> = steps.iter().copied().filter(|step| *step > least).collect();

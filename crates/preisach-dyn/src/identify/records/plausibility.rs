@@ -1,10 +1,9 @@
 //! Whether records can be what they are said to be.
 
 use crate::PreisachError;
+use crate::check;
 use crate::identify::records::flat_top::FlatTop;
-use crate::identify::records::fourier;
-use crate::identify::{BenchRecord, Drive, Finding, Settings, Waveform};
-use rotor_base::wrap_degrees;
+use crate::identify::{BenchRecord, Channel, Drive, Finding, Settings, Waveform};
 
 /// A command may span this much more than the declared range before its unit is doubted.
 const TOO_LARGE: f64 = 50.0;
@@ -23,11 +22,9 @@ const LEAD_DEG: f64 = 1.0;
 /// Width of a slow loop over the range of the output that no ceramic has.
 const TOO_WIDE: f64 = 0.6;
 
+/// Smallest and largest of the finite ones among some values.
 fn extremes(values: &[f64]) -> [f64; 2] {
-    values
-        .iter()
-        .filter(|v| v.is_finite())
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| [l.min(v), h.max(v)])
+    check::extremes(values.iter().copied().filter(|v| v.is_finite()))
 }
 
 /// Refuses sets of records whose columns cannot have the unit or the meaning declared.
@@ -40,6 +37,9 @@ pub(crate) fn check_units(
 ) -> Result<(), PreisachError> {
     let range = settings.range_volt;
     let declared = range.span_volt();
+    let mismatch = |found_volt: f64, likely: &'static str| {
+        Err(PreisachError::UnitMismatch { found_volt, declared_volt: declared, likely })
+    };
     let mut widest = 0.0_f64;
     for record in records {
         let [low, high] = extremes(&record.voltage_volt);
@@ -50,12 +50,7 @@ pub(crate) fn check_units(
             continue;
         }
         if found > TOO_LARGE * declared {
-            let likely = "millivolt";
-            return Err(PreisachError::UnitMismatch {
-                found_volt: found,
-                declared_volt: declared,
-                likely,
-            });
+            return mismatch(found, "millivolt");
         }
         // displacement, the other column of the file: inside the range and filling some of it?
         let um = |deg: f64| deg / settings.deg_per_um;
@@ -73,12 +68,7 @@ pub(crate) fn check_units(
         }
     }
     if widest > 0.0 && widest < TOO_SMALL * declared {
-        let likely = "kilovolt, or the signal before the amplifier";
-        return Err(PreisachError::UnitMismatch {
-            found_volt: widest,
-            declared_volt: declared,
-            likely,
-        });
+        return mismatch(widest, "kilovolt, or the signal before the amplifier");
     }
     Ok(())
 }
@@ -90,18 +80,19 @@ pub(crate) fn suspicions(record: &BenchRecord, drive: &Drive, is_slow: bool) -> 
         return vec![Finding::ConstantCommand { id: id() }];
     }
     let mut findings = Vec::new();
-    let noisy = || FlatTop::of(record, drive, is_slow).map(|top| (top.level_deg, top.share));
-    if let Some((level_deg, share)) = flat_output(record).or_else(noisy) {
+    let clipped = |channel: Channel, (level, share): (f64, f64)| {
         let share_percent = 100.0 * share;
-        findings.push(Finding::ClippedOutput { id: id(), level_deg, share_percent });
-    }
+        Finding::Clipped { id: id(), channel, level, share_percent }
+    };
+    let noisy = || FlatTop::of(record, drive, is_slow).map(|top| (top.level_deg, top.share));
+    let output = flat_output(record).or_else(noisy);
+    findings.extend(output.map(|top| clipped(Channel::Output, top)));
     if drive.is_periodic() {
-        if let Some((level_volt, share)) = flat_command(&record.voltage_volt[drive.steady.clone()])
-        {
-            let share_percent = 100.0 * share;
-            findings.push(Finding::ClippedCommand { id: id(), level_volt, share_percent });
-        }
-        if let Some(lead_deg) = lead(record, drive).filter(|&lead| lead > LEAD_DEG) {
+        let command = flat_command(&record.voltage_volt[drive.steady.clone()]);
+        findings.extend(command.map(|top| clipped(Channel::Command, top)));
+        // an output behind an inverting sensor lags by more than 90 deg
+        let lead = drive.lag_deg(record).map(|lag| -lag);
+        if let Some(lead_deg) = lead.filter(|&lead| lead > LEAD_DEG && lead < 90.0) {
             findings.push(Finding::OutputLeads { id: id(), lead_deg });
         }
         let width = width(record, drive);
@@ -149,22 +140,6 @@ fn flat_command(u: &[f64]) -> Option<(f64, f64)> {
         .into_iter()
         .map(|level| (level, share(level)))
         .find(|&(_, share)| !square && share > FLAT_SHARE && share * u.len() as f64 >= 4.0)
-}
-
-/// Lead of the output over the command at the strongest harmonic, deg, an inverting sensor allowed
-/// for; none where the cycles cannot be fitted.
-fn lead(record: &BenchRecord, drive: &Drive) -> Option<f64> {
-    let n = drive.strongest_harmonic;
-    let per_sample = drive.base_hz * record.time_step_s;
-    let count = drive.harmonics_within(record.time_step_s, 8).max(n);
-    let series = |values: &[f64]| {
-        fourier::fit(values, drive.steady.clone(), per_sample, count).ok().map(|f| f.series)
-    };
-    let (u, y) =
-        (series(&record.voltage_volt)?.harmonic(n), series(&record.output_deg)?.harmonic(n));
-    let lag = wrap_degrees(y.phase_deg() - u.phase_deg());
-    // lags from 0 to 120 deg are an actuator's, also behind an inverting sensor
-    (lag < 0.0 && lag > -90.0).then_some(-lag)
 }
 
 /// Difference of the output between the falling and the rising branch at the middle of the command,

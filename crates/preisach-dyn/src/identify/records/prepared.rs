@@ -40,16 +40,14 @@ impl<'a> Prepared<'a> {
         settings: &Settings,
     ) -> Result<Self, PreisachError> {
         let steady = drive.steady_within(&record.trained_samples(), record.time_step_s);
-        let cycles = match &steady {
-            Some(steady) => {
-                let count = drive.harmonics_within(record.time_step_s, settings.harmonics);
-                let per_sample = drive.base_hz * record.time_step_s;
-                Some(fourier::fit(&record.output_deg, steady.clone(), per_sample, count)?)
-            }
-            None => None,
-        };
-        let period = 1.0 / (drive.base_hz * record.time_step_s);
-        let noise = steady.clone().and_then(|s| CycleNoise::of(&record.output_deg[s], period));
+        let per_sample = drive.base_hz * record.time_step_s;
+        let count = drive.harmonics_within(record.time_step_s, settings.harmonics);
+        let cycles = steady
+            .clone()
+            .map(|steady| fourier::fit(&record.output_deg, steady, per_sample, count))
+            .transpose()?;
+        let noise =
+            steady.clone().and_then(|s| CycleNoise::of(&record.output_deg[s], 1.0 / per_sample));
         let trains = record_use == RecordUse::Train && drive.waveform != Waveform::Constant;
         let (range, most) = match (trains, is_slow) {
             (false, _) => (0..0, 1),
@@ -77,13 +75,10 @@ impl<'a> Prepared<'a> {
     fn find_states(&mut self, grid: &PreisachGrid) {
         let voltages = &self.record.voltage_volt;
         let mut memory = PlayMemory::new(grid, voltages[0], StartState::Rest);
-        let mut next = self.samples.iter().copied().peekable();
-        for (index, &u) in voltages.iter().enumerate() {
-            if next.peek().is_none() {
-                break;
-            }
+        let end = self.samples.last().map_or(0, |last| last + 1);
+        for (index, &u) in voltages[..end].iter().enumerate() {
             memory.apply(grid, u);
-            if next.next_if_eq(&index).is_some() {
+            if self.samples.binary_search(&index).is_ok() {
                 self.states.extend_from_slice(memory.cells());
             }
         }

@@ -1,7 +1,7 @@
 //! Bench records.
 
 use crate::actuator::model::SAMPLE_TOLERANCE;
-use crate::check::check_positive;
+use crate::check::{check_count, check_positive, not_finite};
 use crate::{PreisachError, VoltageRange};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -54,37 +54,24 @@ impl BenchRecord {
     /// Checks lengths, numbers and range.
     ///
     /// # Errors
-    /// [`PreisachError::UnequalColumns`], [`PreisachError::TooFew`],
-    /// [`PreisachError::NotPositive`], [`PreisachError::BadRecord`].
+    /// [`PreisachError::BadRecord`], [`PreisachError::OutOfRange`].
     pub fn check(&self, range: VoltageRange) -> Result<(), PreisachError> {
-        let (voltages, outputs) = (self.voltage_volt.len(), self.output_deg.len());
-        if voltages != outputs {
-            return Err(PreisachError::UnequalColumns { id: self.id.clone(), voltages, outputs });
+        let (inputs, outputs) = (self.voltage_volt.len(), self.output_deg.len());
+        let bad = |index: usize, problem: &'static str, value: f64| {
+            let record = format!("record {}", self.id);
+            Err(PreisachError::BadRecord { record, index, problem, value })
+        };
+        if inputs != outputs {
+            return bad(inputs, UNEQUAL, outputs as f64);
         }
-        if voltages < FEWEST_SAMPLES {
-            return Err(PreisachError::TooFew {
-                quantity: "samples of a record",
-                value: voltages,
-                least: FEWEST_SAMPLES,
-            });
-        }
+        check_count("samples of a record", inputs, FEWEST_SAMPLES)?;
         check_positive("time_step_s", self.time_step_s)?;
         if let Some(hz) = self.base_frequency_hz {
             check_positive("base_frequency_hz", hz)?;
         }
-        let bad = |index: usize, problem: &'static str, value: f64| {
-            Err(PreisachError::BadRecord { id: self.id.clone(), index, problem, value })
-        };
-        let tolerance = SAMPLE_TOLERANCE * range.span_volt();
         for (index, (&u, &y)) in self.voltage_volt.iter().zip(&self.output_deg).enumerate() {
-            if !u.is_finite() {
-                return bad(index, "the voltage is not a finite number", u);
-            }
-            if !y.is_finite() {
-                return bad(index, "the output is not a finite number", y);
-            }
-            if range.excess_volt(u) > tolerance {
-                return bad(index, "the voltage is outside the actuator's range", u);
+            if let Some((problem, value)) = sample_problem(u, y, range) {
+                return bad(index, problem, value);
             }
         }
         if spread(&self.output_deg) == 0.0 {
@@ -92,12 +79,8 @@ impl BenchRecord {
         }
         for window in [&self.windows.train, &self.windows.judge].into_iter().flatten() {
             if window.end > outputs || window.len() < FEWEST_SAMPLES {
-                return Err(PreisachError::BadWindow {
-                    id: self.id.clone(),
-                    start: window.start,
-                    end: window.end,
-                    samples: outputs,
-                });
+                let problem = "the window from here to the end given does not hold 16 samples";
+                return bad(window.start, problem, window.end as f64);
             }
         }
         Ok(())
@@ -114,9 +97,16 @@ impl BenchRecord {
     }
 }
 
+/// What is wrong with columns of which one is longer than the other.
+pub(crate) const UNEQUAL: &str = "inputs and outputs differ in number";
+
+/// What is wrong with a sample of command and output, and the value it has.
+pub(crate) fn sample_problem(u: f64, y: f64, range: VoltageRange) -> Option<(&'static str, f64)> {
+    let outside = range.excess_volt(u) > SAMPLE_TOLERANCE * range.span_volt();
+    not_finite(u, y).or_else(|| outside.then_some(("the input is outside its range", u)))
+}
+
 /// Standard deviation.
 pub(crate) fn spread(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
+    rotor_base::variance(values).sqrt()
 }

@@ -1,6 +1,6 @@
 //! Settings of an identification.
 
-use crate::check::check_positive;
+use crate::check::{check_count, check_positive, check_that};
 use crate::identify::SplitRule;
 use crate::{
     ActuatorLaw, ActuatorModel, Calibration, PreisachError, RateForm, TimeOrder, VoltageRange,
@@ -115,16 +115,10 @@ impl Settings {
             ("rounds", self.rounds, 1),
             ("harmonics", self.harmonics, 3),
         ] {
-            if value < least {
-                return Err(PreisachError::TooFew { quantity, value, least });
-            }
+            check_count(quantity, value, least)?;
         }
-        if !self.levels.is_multiple_of(self.rate_levels) {
-            return Err(PreisachError::LevelsDoNotDivide {
-                rate_levels: self.rate_levels,
-                levels: self.levels,
-            });
-        }
-        Ok(())
+        let divides = self.levels.is_multiple_of(self.rate_levels);
+        let expected = format!("a divisor of levels ({})", self.levels);
+        check_that(divides, "rate_levels", self.rate_levels as f64, expected)
     }
 }

@@ -12,7 +12,7 @@
 //! a guard for each feature of a loop.
 
 use crate::identify::records::noise::{Fine, median};
-use crate::identify::{BenchRecord, Finding};
+use crate::identify::{BenchRecord, Channel, Finding};
 
 /// Samples of a spike at most.
 const LONGEST: usize = 3;
@@ -49,22 +49,15 @@ pub(crate) fn mended(record: &BenchRecord) -> Option<(BenchRecord, Vec<Finding>)
     if in_output.is_empty() && in_command.is_empty() {
         return None;
     }
-    let mut findings = Vec::new();
-    let worst = |spikes: &[Spike]| {
+    let worst = |(channel, values, spikes): (Channel, &[f64], &[Spike])| {
         let largest = spikes.iter().copied().reduce(|a, b| if b.size > a.size { b } else { a })?;
-        let time_s = largest.first as f64 * record.time_step_s;
+        let (id, index) = (record.id.clone(), largest.first);
+        let time_s = index as f64 * record.time_step_s;
         let samples = spikes.iter().map(|s| s.count).sum();
-        Some((samples, largest.first, time_s))
+        Some(Finding::Spikes { id, channel, samples, index, time_s, value: values[index] })
     };
-    let id = || record.id.clone();
-    if let Some((samples, index, time_s)) = worst(&in_output) {
-        let value_deg = y[index];
-        findings.push(Finding::OutputSpikes { id: id(), samples, index, time_s, value_deg });
-    }
-    if let Some((samples, index, time_s)) = worst(&in_command) {
-        let value_volt = u[index];
-        findings.push(Finding::CommandSpikes { id: id(), samples, index, time_s, value_volt });
-    }
+    let channels = [(Channel::Output, &y[..], &in_output[..]), (Channel::Command, u, &in_command)];
+    let findings = channels.into_iter().filter_map(worst).collect();
     let mut mended = record.clone();
     replace(&mut mended.output_deg, &in_output);
     replace(&mut mended.voltage_volt, &in_command);
@@ -243,7 +236,7 @@ mod tests {
                         .zip(&whole.output_deg)
                         .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
                     right += u32::from(
-                        matches!(&findings[..], [Finding::OutputSpikes { samples, index: i, .. }]
+                        matches!(&findings[..], [Finding::Spikes { channel: Channel::Output, samples, index: i, .. }]
                             if *samples == count && *i == index)
                             && error < 6.0 * noise + 0.3,
                     );
@@ -256,7 +249,10 @@ mod tests {
         let mut record = simulated(volts.clone(), step_s, 0.02, &mut rng);
         record.voltage_volt[700] = 0.0;
         let (mended, findings) = mended(&record).unwrap();
-        assert!(matches!(&findings[..], [Finding::CommandSpikes { samples: 1, index: 700, .. }]));
+        assert!(matches!(
+            &findings[..],
+            [Finding::Spikes { channel: Channel::Command, samples: 1, index: 700, .. }]
+        ));
         assert!((mended.voltage_volt[700] - volts[700]).abs() < 0.1);
         assert_eq!(mended.output_deg, record.output_deg);
     }

@@ -1,5 +1,6 @@
 //! The default parts of records: which train, which test.
 
+use crate::check::extremes;
 use crate::identify::{BenchRecord, Drive, RecordUse, Waveform};
 use serde::{Deserialize, Serialize};
 
@@ -46,8 +47,7 @@ impl SplitRule {
                 let extreme = self.trained_hz.iter().any(|&hz| {
                     let amplitudes =
                         drives.iter().filter(|d| near(d, hz)).map(|d| d.amplitude_volt);
-                    let (low, high) =
-                        amplitudes.fold((f64::INFINITY, 0.0_f64), |(l, h), a| (l.min(a), h.max(a)));
+                    let [low, high] = extremes(amplitudes);
                     let own = drive.amplitude_volt;
                     near(drive, hz) && (own <= 1.02 * low || own >= 0.98 * high)
                 });

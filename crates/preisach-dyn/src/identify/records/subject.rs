@@ -1,7 +1,7 @@
 //! Messages in the words and units of the data.
 
 use crate::PreisachError;
-use crate::identify::Finding;
+use crate::identify::records::findings::{ACTUATOR_UNITS, Channel, Finding};
 
 /// What records are of: it decides the words and units of messages.
 ///
@@ -25,34 +25,18 @@ impl<'a> Subject<'a> {
     /// Symbols of the units of input and output.
     pub fn units(self) -> [&'a str; 2] {
         match self {
-            Self::Actuator => ["V", "deg"],
+            Self::Actuator => ACTUATOR_UNITS,
             Self::Loop { input_unit, output_unit } => [input_unit, output_unit],
         }
     }
 
     /// A finding as a sentence.
     pub fn finding(self, finding: &Finding) -> String {
-        let [input, output] = self.units();
-        match finding {
-            Finding::OneAmplitude { amplitude_volt } => {
-                format!("the rate records all have an amplitude of {amplitude_volt:.1} {input}")
-            }
-            Finding::ClippedOutput { id, level_deg, share_percent } => format!(
-                "record {id}: the output rests at {level_deg:.4} {output} for {share_percent:.1} % of the samples while the command moves: it is clipped"
-            ),
-            Finding::ClippedCommand { id, level_volt, share_percent } => format!(
-                "record {id}: the periodic command rests at {level_volt:.2} {input} for {share_percent:.1} % of the samples: it is clipped"
-            ),
-            Finding::OutputSpikes { id, samples, index, time_s, value_deg: value } => format!(
-                "record {id}: {samples} samples of the output are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value:.4} {output}"
-            ),
-            Finding::CommandSpikes { id, samples, index, time_s, value_volt: value } => format!(
-                "record {id}: {samples} samples of the command are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value:.2} {input}"
-            ),
-            Finding::OutputLeads { id, lead_deg } if self != Self::Actuator => format!(
+        match (self, finding) {
+            (Self::Loop { .. }, Finding::OutputLeads { id, lead_deg }) => format!(
                 "record {id}: the output leads the input by {lead_deg:.1} deg of phase: friction does, sums of plays cannot"
             ),
-            _ => finding.to_string(),
+            _ => finding.sentence(self.units()),
         }
     }
 
@@ -62,7 +46,7 @@ impl<'a> Subject<'a> {
             (Self::Loop { .. }, Finding::OutputLeads { .. }) => {
                 "use the model of stops; if nothing here dissipates, exchange the columns or correct the delay between them"
             }
-            (Self::Loop { .. }, Finding::ClippedCommand { .. }) => {
+            (Self::Loop { .. }, Finding::Clipped { channel: Channel::Command, .. }) => {
                 "record the input where it acts, or keep its source off its limit"
             }
             (Self::Loop { .. }, Finding::NotDescribed { .. }) => {
@@ -78,21 +62,6 @@ impl<'a> Subject<'a> {
             return error.to_string();
         };
         match error {
-            PreisachError::EmptyVoltageRange { lowest_volt, highest_volt } => format!(
-                "input range {lowest_volt} to {highest_volt} {unit} is empty or not finite; give the lower limit first"
-            ),
-            PreisachError::BadRecord { id, index, problem, value } => {
-                let problem = problem
-                    .replace(
-                        "the voltage is outside the actuator's range",
-                        "the input is outside its range",
-                    )
-                    .replace("voltage", "input");
-                format!("record {id}, sample {index}: {problem} ({value})")
-            }
-            PreisachError::UnequalColumns { id, voltages, outputs } => {
-                format!("record {id}: {voltages} inputs but {outputs} outputs")
-            }
             PreisachError::UnitMismatch { found_volt, declared_volt, .. } => format!(
                 "the inputs span {found_volt} {unit}, the declared range {declared_volt} {unit}: the unit of one of them is wrong; correct the header or input_range"
             ),
@@ -113,8 +82,18 @@ mod tests {
         let damper = Subject::Loop { input_unit: "in", output_unit: "kip" };
         let findings = [
             Finding::OneAmplitude { amplitude_volt: 0.5 },
-            Finding::ClippedOutput { id: "a".into(), level_deg: 0.4, share_percent: 3.0 },
-            Finding::ClippedCommand { id: "a".into(), level_volt: 0.4, share_percent: 3.0 },
+            Finding::Clipped {
+                id: "a".into(),
+                channel: Channel::Output,
+                level: 0.4,
+                share_percent: 3.0,
+            },
+            Finding::Clipped {
+                id: "a".into(),
+                channel: Channel::Command,
+                level: 0.4,
+                share_percent: 3.0,
+            },
         ];
         for finding in &findings {
             let (own, actuator) = (damper.finding(finding), Subject::Actuator.finding(finding));
@@ -125,13 +104,12 @@ mod tests {
         let leads = Finding::OutputLeads { id: "a".into(), lead_deg: 60.0 };
         assert!(damper.finding(&leads).contains("friction"));
         assert_ne!(damper.remedy(&leads), leads.remedy());
-        let error = PreisachError::BadRecord {
-            id: "a".into(),
-            index: 3,
-            problem: "the voltage is outside the actuator's range",
-            value: 2.0,
+        let error = PreisachError::UnitMismatch {
+            found_volt: 2.0,
+            declared_volt: 900.0,
+            likely: "kilovolt",
         };
-        assert_eq!(damper.error(&error), "record a, sample 3: the input is outside its range (2)");
+        assert!(damper.error(&error).contains("2 in, the declared range 900 in"));
         assert_eq!(Subject::Actuator.error(&error), error.to_string());
     }
 }

@@ -3,6 +3,7 @@
 use super::{FlightAir, StationAir};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use rotor_fem::LagChannel;
 
 /// Change of the lag part of lift and moment at a point with the first two inputs at all points, beyond
 /// what the settled lags make of the inputs at the point itself.
@@ -32,22 +33,11 @@ impl FlightAir {
         };
         Some(self.stations.par_iter().map(of).collect())
     }
-}
 
-/// One lag of a station for its stability: rate and gains on lift and moment at every point, shares of the first
-/// two inputs.
-#[derive(Debug, Clone)]
-pub(crate) struct StationChannel {
-    pub(crate) rates: Vec<f64>,
-    pub(crate) input: [f64; 2],
-    pub(crate) gains: Vec<[f64; 2]>,
-}
-
-impl FlightAir {
-    /// The lags of every lifting station, and none of those with finer azimuth points.
+    /// The lags of every lifting station for its stability, of the first two inputs on lift and moment; none of those with finer azimuth points.
     ///
     /// `None` over tables and where sections stall dynamically: settled lags are all that is known there.
-    pub(crate) fn channels(&self) -> Option<Vec<Vec<StationChannel>>> {
+    pub(crate) fn channels(&self) -> Option<Vec<Vec<LagChannel>>> {
         let beyond = |air: &StationAir| air.tables.is_some() || air.stall.is_some();
         if self.stations.iter().any(|station| beyond(&station.air)) {
             return None;
@@ -61,7 +51,7 @@ impl FlightAir {
 }
 
 impl StationAir {
-    fn channels(&self) -> Vec<StationChannel> {
+    fn channels(&self) -> Vec<LagChannel> {
         let points = self.prompt.len();
         let of = |lag: &super::StationLag| {
             let mut gains = vec![[0.0; 2]; points];
@@ -73,7 +63,7 @@ impl StationAir {
             let input = [lag.input[0], lag.input[1]];
             let nothing = |pair: &[f64; 2]| pair.iter().all(|v| v.abs() == 0.0);
             let idle = nothing(&input) || gains.iter().all(nothing);
-            (!idle).then(|| StationChannel { rates: lag.rates.clone(), input, gains })
+            (!idle).then(|| LagChannel { rates: lag.rates.clone(), input, gains })
         };
         self.lags.iter().filter_map(of).collect()
     }

@@ -4,7 +4,7 @@ mod blade;
 
 use super::{
     Case, CirculationChoice, CouplingsChoice, InflowChoice, Joint, NearWakeMotion, PropulsiveTrim,
-    RotorValues, TrimValues,
+    RotorValues, TrimValues, WakeChoices,
 };
 use crate::error::StudyError;
 use rotor_response::{CoupledBladeMode, Rotor, RotorSolution, SectionLift};
@@ -104,11 +104,11 @@ impl Case {
     fn wake_warnings(&self) -> Vec<PlausibilityWarning> {
         let InflowChoice::FreeWake(wake) = self.inflow.model else { return vec![] };
         let mut warnings = Vec::new();
-        if wake.near_wake == NearWakeMotion::BladePlane && wake.near_wake_deg > LONGEST_IN_PLANE_DEG
-        {
+        let WakeChoices { near_wake, near_wake_deg, .. } = wake.choices();
+        let in_plane = near_wake == NearWakeMotion::BladePlane;
+        if in_plane && near_wake_deg > LONGEST_IN_PLANE_DEG {
             let message = format!(
-                "a near wake of {} deg held in the plane of its blade lies in that of the blades behind: they fly in its sheet, and the mean inflow is several times Glauert's. Give near_wake_deg of at most {LONGEST_IN_PLANE_DEG}, or near_wake: FollowsTip",
-                wake.near_wake_deg
+                "a near wake of {near_wake_deg} deg held in the plane of its blade lies in that of the blades behind: they fly in its sheet, and the mean inflow is several times Glauert's. Give near_wake_deg of at most {LONGEST_IN_PLANE_DEG}, or near_wake: FollowsTip"
             );
             warnings.push(warning("inflow.model.near_wake", message));
         }
@@ -116,15 +116,10 @@ impl Case {
         let points = r.time_elements * r.time_gauss_points;
         let azimuths = wake.azimuths_for(self.rotor.blades);
         let is_trimmed = wake.circulation == CirculationChoice::Trimmed;
-        let in_plane = wake.near_wake == NearWakeMotion::BladePlane;
-        if is_trimmed
-            && !in_plane
-            && self.advance_ratio > 0.0
-            && wake.near_wake_deg < SHORTEST_IN_FLIGHT_DEG
-        {
+        let flies = is_trimmed && !in_plane && self.advance_ratio > 0.0;
+        if flies && near_wake_deg < SHORTEST_IN_FLIGHT_DEG {
             let message = format!(
-                "a near wake of {} deg is short in forward flight: with 90 deg the mean inflow is a tenth too large and the phase of the vibratory thrust 80 deg off, from {SHORTEST_IN_FLIGHT_DEG} deg on both stay. Leave it out for 360",
-                wake.near_wake_deg
+                "a near wake of {near_wake_deg} deg is short in forward flight: with 90 deg the mean inflow is a tenth too large and the phase of the vibratory thrust 80 deg off, from {SHORTEST_IN_FLIGHT_DEG} deg on both stay. Leave it out for 360"
             );
             warnings.push(warning("inflow.model.near_wake_deg", message));
         }
@@ -242,7 +237,7 @@ impl Case {
         (theta0_rad, flight): (f64, Option<&RotorSolution>),
     ) -> Result<Option<PlausibilityWarning>, StudyError> {
         let field = "rotor.modal_damping";
-        let found = rotor.hardly_damped_at_a_harmonic(theta0_rad, flight);
+        let found = rotor.lightly_damped_at_a_harmonic(theta0_rad, flight);
         let found =
             found.map_err(|source| StudyError::Response { field: field.to_owned(), source })?;
         Ok(found.map(|CoupledBladeMode { kind, number, frequency_per_rev }| {

@@ -1,8 +1,8 @@
-//! What kind of input a record has.
+//! Inputs that are one sine.
 
 use crate::{noise, wave};
 use approx::assert_relative_eq;
-use model_gap::Stimulus;
+use model_gap::Sine;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -21,8 +21,8 @@ proptest! {
     ) {
         let clean = wave(&[(amplitude, phase)], frequency_hz, STEP_S, 3000);
         let shifted: Vec<f64> = clean.iter().map(|v| v + mean).collect();
-        let Stimulus::Sine { frequency_hz: hz, amplitude: a, mean: m, .. } =
-            Stimulus::of(&shifted, STEP_S) else { return Err(TestCaseError::fail("no sine")) };
+        let Some(Sine { frequency_hz: hz, amplitude: a, mean: m, .. }) = Sine::of(&shifted, STEP_S)
+        else { return Err(TestCaseError::fail("no sine")) };
         prop_assert!((hz / frequency_hz - 1.0).abs() < 1e-8, "{hz} {frequency_hz}");
         prop_assert!((a / amplitude - 1.0).abs() < 1e-6);
         prop_assert!((m - mean).abs() < 1e-6 * amplitude.max(mean.abs()));
@@ -32,7 +32,7 @@ proptest! {
             .zip(noise(seed, 3000))
             .map(|(v, e)| v + 0.01 * amplitude * e)
             .collect();
-        let Stimulus::Sine { frequency_hz: hz, .. } = Stimulus::of(&noisy, STEP_S) else {
+        let Some(Sine { frequency_hz: hz, .. }) = Sine::of(&noisy, STEP_S) else {
             return Err(TestCaseError::fail("no sine in noise"));
         };
         // resolution 1 / duration, noise -37 dB
@@ -46,8 +46,7 @@ fn a_rest_before_and_after_is_left_out() {
         let mut record = vec![65.0; 250];
         record.extend(wave(&[(25.0, phase)], 10.0, STEP_S, 1200).iter().map(|v| v + 65.0));
         record.extend(vec![65.0; 100]);
-        let Stimulus::Sine { frequency_hz, amplitude, mean, samples } =
-            Stimulus::of(&record, STEP_S)
+        let Some(Sine { frequency_hz, amplitude, mean, samples }) = Sine::of(&record, STEP_S)
         else {
             panic!("no sine");
         };
@@ -68,6 +67,6 @@ fn other_signals_are_not_sines() {
     let part = wave(&[(1.0, 0.0)], 0.8, STEP_S, 1000);
     let swept: Vec<f64> = (0..2000).map(|i| (1e-5 * f64::from(i * i)).sin()).collect();
     for samples in [ramp, triangle, step, mixed, part, swept, vec![3.0; 100], vec![1.0]] {
-        assert_eq!(Stimulus::of(&samples, STEP_S), Stimulus::Other);
+        assert_eq!(Sine::of(&samples, STEP_S), None);
     }
 }

@@ -1,18 +1,24 @@
-//! Why a verdict is what it is. The words are in `text`.
-
-mod text;
+//! Why a verdict is what it is.
 
 /// A reason of a verdict, with the numbers it rests on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
     /// The extended model is worse on held-out runs.
+    #[error("the extended model is worse on held-out runs")]
     WorseHeldOut,
     /// The interval of the gain on held-out runs contains zero.
+    #[error("the gain on held-out runs may be zero: the name is tentative")]
     GainMayBeZero,
     /// A name was dropped, because the base model alone stays within the floor.
+    #[error("the misfit of the base model is within the floor: the name is dropped")]
     NameDropped,
     /// Too little of the excess along the generic directions is explained.
+    #[error(
+        "{:.0} % of the excess is explained; structure is left along the generic directions: \
+         chi-square {chi2:.0}, floor {floor:.0}",
+        .share * 100.0
+    )]
     StructureLeft {
         /// Explained share, 0 to 1.
         share: f64,
@@ -22,16 +28,30 @@ pub enum Reason {
         floor: f64,
     },
     /// Too little of the misfit above the floor is explained.
+    #[error(
+        "{:.0} % of the misfit of the base model above its floor is explained: most of it has \
+         another cause",
+        .share * 100.0
+    )]
     MisfitLeft {
         /// Explained share, at most 1.
         share: f64,
     },
     /// Too little of the misfit of the runs that stand out is explained.
+    #[error(
+        "{:.0} % of the misfit of the runs that stand out is explained: most of it has another \
+         cause",
+        .share * 100.0
+    )]
     MisfitOfRunsLeft {
         /// Explained share, at most 1.
         share: f64,
     },
     /// Runs stand out with the named causes too.
+    #[error(
+        "{runs} of the runs stand out with the named causes too, the worst by {times:.1} \
+         times the residual of the worst surrogate there"
+    )]
     RunsStandOut {
         /// Their number.
         runs: usize,
@@ -39,11 +59,17 @@ pub enum Reason {
         times: f64,
     },
     /// A signal that fixes a parameter was not measured.
+    #[error("the name is tentative: {signal} was not measured")]
     NotMeasured {
         /// The signal.
         signal: &'static str,
     },
     /// Another cause is not excluded with certainty.
+    #[error(
+        "{other} in the place of {cause} is {} excluded: its chi-square is higher by \
+         {delta_chi2:.0}, the discrimination threshold is {threshold:.0}",
+        if *.is_open { "not" } else { "barely" }
+    )]
     NotExcluded {
         /// The cause found.
         cause: &'static str,
@@ -57,11 +83,16 @@ pub enum Reason {
         threshold: f64,
     },
     /// No parameter of a cause is determined.
+    #[error("no parameter of {cause} is determined: the name is tentative")]
     Undetermined {
         /// The cause.
         cause: &'static str,
     },
     /// The interval of a parameter reaches an end of its range.
+    #[error(
+        "{parameter} of {cause} is not determined: its interval reaches an end of its range, \
+         the name is tentative"
+    )]
     OpenEnded {
         /// The cause.
         cause: &'static str,
@@ -69,6 +100,7 @@ pub enum Reason {
         parameter: &'static str,
     },
     /// A parameter lies at an end of its range.
+    #[error("{parameter} of {cause} lies at an end of its range, {value:.3e} {unit}")]
     AtBound {
         /// The cause.
         cause: &'static str,
@@ -80,6 +112,10 @@ pub enum Reason {
         unit: &'static str,
     },
     /// A parameter differs from run to run.
+    #[error(
+        "{parameter} of {cause} drifts by {:.0} % from run to run: the name may be wrong",
+        .spread * 100.0
+    )]
     Drifts {
         /// The cause.
         cause: &'static str,
@@ -89,6 +125,10 @@ pub enum Reason {
         spread: f64,
     },
     /// No known cause explains what is left along the generic directions.
+    #[error(
+        "no known cause explains the structure that is left: chi-square {chi2:.0}, floor \
+         {floor:.0}"
+    )]
     NoKnownCause {
         /// Chi-square left along them.
         chi2: f64,
@@ -96,6 +136,10 @@ pub enum Reason {
         floor: f64,
     },
     /// The output changes slowly in all runs alike.
+    #[error(
+        "the output changes slowly in all runs alike, and no known cause explains it: \
+         chi-square {chi2:.0} along the slow trends, floor {floor:.0}"
+    )]
     ChangesSlowly {
         /// Chi-square along the slow trends.
         chi2: f64,
@@ -103,15 +147,22 @@ pub enum Reason {
         floor: f64,
     },
     /// Some runs are missed by more than any surrogate is.
+    #[error(
+        "{runs} of the runs are missed by more than any surrogate is: the missing effect \
+         differs from run to run"
+    )]
     RunsMissed {
         /// Their number.
         runs: usize,
     },
     /// The best candidate explains a few runs only.
+    #[error("it explains a few runs only, and no cause acts in a few runs only")]
     FewRuns,
     /// No cause of usual strength would be visible.
+    #[error("no cause of usual strength would be visible in these data")]
     NothingVisible,
     /// A further cause is not added.
+    #[error("{cause} is not added to the causes found before: {why}")]
     NotAdded {
         /// The cause.
         cause: &'static str,
@@ -119,6 +170,10 @@ pub enum Reason {
         why: Box<Reason>,
     },
     /// A further cause shows too little on the outputs.
+    #[error(
+        "it lowers the chi-square of the outputs by {drop:.0}, and errors of form of those \
+         causes can leave {needed:.0}"
+    )]
     HardlyShown {
         /// Drop of their chi-square by it.
         drop: f64,
@@ -126,6 +181,10 @@ pub enum Reason {
         needed: f64,
     },
     /// A candidate explains no more than surrogates with nothing missing reach.
+    #[error(
+        "{cause} explains most: it lowers chi-square by {drop:.0} within the chain. \
+         Surrogates with nothing missing reach {threshold:.0}"
+    )]
     WithinSurrogates {
         /// The candidate.
         cause: &'static str,
@@ -135,6 +194,10 @@ pub enum Reason {
         threshold: f64,
     },
     /// Too little of the drop of a candidate shows on held-out runs.
+    #[error(
+        "{cause} lowers chi-square by {drop:.0} where it is fitted, but by {held_out:.0} on \
+         held-out runs; {needed:.0} are required"
+    )]
     LostHeldOut {
         /// The candidate.
         cause: &'static str,
@@ -148,6 +211,7 @@ pub enum Reason {
         needed: f64,
     },
     /// The missing effect resembles a candidate that cannot be named.
+    #[error("the missing effect resembles {cause} most, but {why}")]
     Resembles {
         /// The candidate.
         cause: &'static str,
@@ -155,13 +219,19 @@ pub enum Reason {
         why: Box<Reason>,
     },
     /// A measurement of its agent refutes a cause: the words of the caller.
+    #[error("{0}")]
     Refuted(String),
     /// A candidate is a decoy.
+    #[error("this is no cause of the library; it would be {what}")]
     Decoy {
         /// What it would be.
         what: &'static str,
     },
     /// The intermediate channels do not show the effect of a cause.
+    #[error(
+        "the intermediate channels show {:.0} % of its effect, {:.0} % at most",
+        .part * 100.0, .most * 100.0
+    )]
     Contradicted {
         /// Part of the effect that they show.
         part: f64,
@@ -169,6 +239,10 @@ pub enum Reason {
         most: f64,
     },
     /// The reading of a run is noisier than that of the reference runs.
+    #[error(
+        "the reading of run {run} has {times:.1} times the noise of the reference runs: look \
+         at sensor and amplifier"
+    )]
     Noisier {
         /// The run.
         run: String,

@@ -1,4 +1,4 @@
-//! Stability of a periodic orbit of a system with first-order lags: structure and lags carried together.
+//! The linearised system carried over one revolution: structure and first-order lags together.
 //!
 //! ```text
 //! (M + f_q'') q'' + f_q' q' + f_q q + sum load gain (x - input . [q; q']) = 0,   x' = a(psi) (input . [q; q'] - x)
@@ -6,20 +6,19 @@
 //! The tangents `f` are those with settled lags, `x = input . [q; q']`. A step of Gauss collocation solves the lags
 //! in closed form for the motion at its stages, `X = alpha x0 + B In`, so that the system to be solved has the
 //! size of the structure alone.
-//!
-//! There are many more lags than degrees of freedom. Of the motions of the whole system those are kept in which the
-//! structure participates most (left times right eigenvector over its states, which add up to their number), as many
-//! as the structure has; the rest are lags that die out by themselves.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, Matrix4, RowVector4, Vector4};
 use rotor_base::{LagrangeBasis, gauss_legendre};
 
-use crate::stability::floquet::{Coefficients, STAGES, Stepper, check, motions};
-use crate::{FemError, Floquet, LocalTangent, TimeElements};
+use crate::{FemError, LocalTangent, TimeElements};
 
-/// Largest step, rad.
+/// Stages of the Gauss collocation that carries a motion over a step (order eight).
+const STAGES: usize = 4;
+/// Largest angle, rad, that the fastest motion of the linearisation turns in one step.
+const LARGEST_ANGLE_PER_STEP: f64 = 0.7;
+/// Largest step of a system with lags, rad.
 const LARGEST_STEP: f64 = 0.1;
 
 /// One lag: its rate, share of the two inputs of its place, and gain on the two loads there.
@@ -67,56 +66,74 @@ struct State {
     lags: DMatrix<f64>,
 }
 
-impl Floquet {
-    /// Stability of a system with lags about the orbit at which tangents, inputs and loads were taken; without
-    /// places what [`Floquet::of`] finds.
-    ///
-    /// # Errors
-    /// As [`Floquet::of`], and [`FemError::Tangents`] for places whose tables do not fit the mesh.
-    pub fn with_lags(
-        time: &TimeElements,
-        mass: &DMatrix<f64>,
-        tangents: &[LocalTangent],
-        places: &[LagPlace],
-    ) -> Result<Self, FemError> {
-        if places.is_empty() {
-            return Self::of(time, mass, tangents);
+/// Steps in which the fastest motion of an element's mean equation turns little; none if the mass
+/// matrix is singular.
+fn steps_of(mass: &DMatrix<f64>, element: &[LocalTangent], length: f64) -> Option<usize> {
+    let share = 1.0 / element.len() as f64;
+    let mean = element.iter().map(|t| (share, t));
+    let c = Coefficients::sum(mass, mean);
+    let lu = c.mass.lu();
+    let (stiffness, damping) = (lu.solve(&c.stiffness)?, lu.solve(&c.damping)?);
+    // a bound on the moduli of the eigenvalues of [0 1; -K -C]: Frobenius norms of the blocks
+    let fastest = damping.norm() + stiffness.norm().sqrt();
+    let steps = (fastest * length / LARGEST_ANGLE_PER_STEP).ceil().clamp(1.0, 1e5);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to 1..=1e5 and finite because the tangents are"
+    )]
+    Some(steps as usize)
+}
+
+/// `mass x'' + damping x' + stiffness x = 0` at one azimuth.
+struct Coefficients {
+    mass: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+}
+
+impl Coefficients {
+    fn sum<'a>(mass: &DMatrix<f64>, parts: impl Iterator<Item = (f64, &'a LocalTangent)>) -> Self {
+        let zero = DMatrix::zeros(mass.nrows(), mass.ncols());
+        let mut out = Self { mass: mass.clone(), damping: zero.clone(), stiffness: zero };
+        for (weight, tangent) in parts {
+            out.mass += &tangent.dqdd * weight;
+            out.damping += &tangent.dqd * weight;
+            out.stiffness += &tangent.dq * weight;
         }
-        let dof = mass.nrows();
-        check(time, dof, tangents)?;
-        check_places(time, dof, places)?;
-        let lags = places.iter().map(|place| place.channels.len()).sum();
-        let size = 2 * dof + lags;
-        let start = State {
-            motion: DMatrix::identity(2 * dof, size),
-            lags: DMatrix::from_fn(lags, size, |i, j| f64::from(u8::from(2 * dof + i == j))),
-        };
-        let end = revolved(time, mass, tangents, places, start)?;
-        let monodromy = stacked(&end.motion, &end.lags);
-        let modes = motions(&monodromy, mass, 2 * dof)?;
-        Ok(Self::from_parts(monodromy, modes))
+        out
+    }
+
+    fn interpolate(mass: &DMatrix<f64>, element: &[LocalTangent], shapes: &[[f64; 3]]) -> Self {
+        Self::sum(mass, shapes.iter().map(|s| s[0]).zip(element))
     }
 }
 
-fn check_places(time: &TimeElements, dof: usize, places: &[LagPlace]) -> Result<(), FemError> {
-    let expected = time.points().len();
-    let wrong = |found| Err(FemError::Tangents { what: "lag tables", point: 0, found, expected });
-    for place in places {
-        let shaped = place.inputs.iter().all(|m| m.shape() == (2, 2 * dof))
-            && place.loads.iter().all(|m| m.shape() == (dof, 2));
-        for found in [place.inputs.len(), place.loads.len()] {
-            if found != expected || !shaped {
-                return wrong(found);
-            }
-        }
-        for channel in &place.channels {
-            let finite = channel.rates.iter().filter(|a| a.is_finite() && **a >= 0.0).count();
-            if finite != expected || channel.gains.len() != expected {
-                return wrong(finite.min(channel.gains.len()));
-            }
-        }
+/// Gauss collocation of a second-order equation on the unit step.
+struct Stepper {
+    nodes: [f64; STAGES],
+    weights: [f64; STAGES],
+    /// Integrals of the stage polynomials up to each node.
+    once: [[f64; STAGES]; STAGES],
+    /// The same integrated twice.
+    twice: [[f64; STAGES]; STAGES],
+    /// Integrals of `once` over the whole step.
+    end_twice: [f64; STAGES],
+}
+
+impl Stepper {
+    fn new() -> Self {
+        let rule = gauss_legendre(STAGES);
+        let rows = LagrangeBasis::new(rule.nodes.clone()).integration_matrix();
+        let array = |f: &dyn Fn(usize) -> f64| std::array::from_fn::<f64, STAGES, _>(f);
+        let nodes = array(&|i| 0.5 * (rule.nodes[i] + 1.0));
+        let weights = array(&|i| 0.5 * rule.weights[i]);
+        let once: [[f64; STAGES]; STAGES] = std::array::from_fn(|i| array(&|j| 0.5 * rows[i][j]));
+        let twice =
+            std::array::from_fn(|i| array(&|j| (0..STAGES).map(|k| once[i][k] * once[k][j]).sum()));
+        let end_twice = array(&|j| (0..STAGES).map(|k| weights[k] * once[k][j]).sum());
+        Self { nodes, weights, once, twice, end_twice }
     }
-    Ok(())
 }
 
 fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
@@ -126,29 +143,44 @@ fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
     out
 }
 
-/// The state one revolution later.
-fn revolved(
+/// The matrix that carries displacements, rates and lags over one revolution from azimuth 0.
+///
+/// # Errors
+/// [`FemError::MassSingular`].
+pub(crate) fn monodromy(
     time: &TimeElements,
     mass: &DMatrix<f64>,
     tangents: &[LocalTangent],
     places: &[LagPlace],
-    mut state: State,
-) -> Result<State, FemError> {
+) -> Result<DMatrix<f64>, FemError> {
+    let dof = mass.nrows();
+    let lags = places.iter().map(|place| place.channels.len()).sum();
+    let size = 2 * dof + lags;
+    let mut state = State {
+        motion: DMatrix::identity(2 * dof, size),
+        lags: DMatrix::from_fn(lags, size, |i, j| f64::from(u8::from(2 * dof + i == j))),
+    };
     let gauss = time.gauss_per_element();
     let basis = LagrangeBasis::new(gauss_legendre(gauss).nodes);
     let stepper = Stepper::new();
     let length = TAU / time.elements() as f64;
-    let mut steps = 1;
-    while length / f64::from(steps) > LARGEST_STEP {
-        steps += 1;
+    let mut lag_steps = 1;
+    while length / lag_steps as f64 > LARGEST_STEP {
+        lag_steps += 1;
     }
-    let step = length / f64::from(steps);
     for (e, element) in tangents.chunks_exact(gauss).enumerate() {
+        let steps = if places.is_empty() {
+            steps_of(mass, element, length)
+                .ok_or(FemError::MassSingular { azimuth_rad: e as f64 * length })?
+        } else {
+            lag_steps
+        };
+        let step = length / steps as f64;
         for k in 0..steps {
-            let from = f64::from(k) / f64::from(steps);
+            let from = k as f64 / steps as f64;
             let singular = FemError::MassSingular { azimuth_rad: (e as f64 + from) * length };
             let shapes =
-                stepper.nodes.map(|c| basis.evaluate(2.0 * (from + c / f64::from(steps)) - 1.0));
+                stepper.nodes.map(|c| basis.evaluate(2.0 * (from + c / steps as f64) - 1.0));
             let equations = shapes.each_ref().map(|s| Coefficients::interpolate(mass, element, s));
             let at: Vec<PlaceStep> = places
                 .iter()
@@ -158,7 +190,7 @@ fn revolved(
             state = carry(&stepper, &equations, &at, step, &state).ok_or(singular)?;
         }
     }
-    Ok(state)
+    Ok(stacked(&state.motion, &state.lags))
 }
 
 impl PlaceStep {
@@ -325,96 +357,4 @@ fn carry(
         first += place.lags.len();
     }
     Some(State { motion: stacked(&moved, &rates), lags })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::Complex;
-
-    type Square = [[f64; 2]; 2];
-
-    /// Two degrees of freedom whose load of the air lags behind, coefficients periodic.
-    fn coefficients(psi: f64) -> (Square, Square, [f64; 2], [f64; 4], f64) {
-        let (sin, cos) = psi.sin_cos();
-        let damping = [[0.3 + 0.1 * sin, 0.05], [-0.05, 0.04]];
-        let stiffness = [[1.3 + 0.2 * cos, 0.1], [0.05, 5.0]];
-        let load = [-0.5 - 0.2 * sin, 0.1];
-        let input = [0.2 * cos, 0.6 + 0.3 * sin, -0.8, 0.1];
-        (damping, stiffness, load, input, 0.4 + 0.3 * sin)
-    }
-
-    /// Growth and frequency of the motions by direct integration of all five states.
-    fn integrated() -> Vec<Complex<f64>> {
-        let rate = |psi: f64, s: &[f64; 5]| -> [f64; 5] {
-            let (c, k, load, input, a) = coefficients(psi);
-            let [q0, q1, v0, v1, lag] = *s;
-            let drive = input[0] * q0 + input[1] * q1 + input[2] * v0 + input[3] * v1;
-            let acceleration = |i: usize| {
-                -(c[i][0] * v0 + c[i][1] * v1 + k[i][0] * q0 + k[i][1] * q1)
-                    - load[i] * (lag - drive)
-            };
-            [v0, v1, acceleration(0), acceleration(1), a * (drive - lag)]
-        };
-        let steps = 8000;
-        let h = TAU / f64::from(steps);
-        let mut monodromy = DMatrix::zeros(5, 5);
-        for column in 0..5 {
-            let mut s = [0.0; 5];
-            s[column] = 1.0;
-            for k in 0..steps {
-                let psi = h * f64::from(k);
-                let moved = |by: f64, r: &[f64; 5]| std::array::from_fn(|i| s[i] + by * r[i]);
-                let k1 = rate(psi, &s);
-                let k2 = rate(psi + 0.5 * h, &moved(0.5 * h, &k1));
-                let k3 = rate(psi + 0.5 * h, &moved(0.5 * h, &k2));
-                let k4 = rate(psi + h, &moved(h, &k3));
-                s = std::array::from_fn(|i| {
-                    s[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
-                });
-            }
-            for (i, value) in s.iter().enumerate() {
-                monodromy[(i, column)] = *value;
-            }
-        }
-        monodromy.complex_eigenvalues().iter().copied().collect()
-    }
-
-    #[test]
-    fn lags_and_structure_together_are_what_direct_integration_finds() {
-        let time = TimeElements::new(8, 5, 8).unwrap();
-        let of = |psi: &f64| {
-            let (c, k, ..) = coefficients(*psi);
-            LocalTangent {
-                dq: DMatrix::from_fn(2, 2, |i, j| k[i][j]),
-                dqd: DMatrix::from_fn(2, 2, |i, j| c[i][j]),
-                dqdd: DMatrix::zeros(2, 2),
-            }
-        };
-        let tangents: Vec<LocalTangent> = time.points().iter().map(of).collect();
-        let at = |psi: &f64| coefficients(*psi);
-        let place = LagPlace {
-            inputs: (time.points().iter())
-                .map(|p| DMatrix::from_fn(2, 4, |i, j| if i == 0 { at(p).3[j] } else { 0.0 }))
-                .collect(),
-            loads: (time.points().iter())
-                .map(|p| DMatrix::from_fn(2, 2, |i, j| if j == 0 { at(p).2[i] } else { 0.0 }))
-                .collect(),
-            channels: vec![LagChannel {
-                rates: time.points().iter().map(|p| at(p).4).collect(),
-                input: [1.0, 0.0],
-                gains: vec![[1.0, 0.0]; time.points().len()],
-            }],
-        };
-        let mass = DMatrix::identity(2, 2);
-        let found = Floquet::with_lags(&time, &mass, &tangents, &[place]).unwrap();
-        let settled = Floquet::of(&time, &mass, &tangents).unwrap();
-        let exact = integrated();
-        let nearest =
-            |m: Complex<f64>| exact.iter().map(|e| (e - m).norm()).fold(f64::INFINITY, f64::min);
-        // the slow motion, and by how much settled lags miss it
-        let (gap, missed) =
-            (nearest(found.modes()[0].multiplier), nearest(settled.modes()[0].multiplier));
-        assert!(gap < 1e-6 && missed > 1e-2, "{gap:e} {missed:e}");
-    }
 }

@@ -1,26 +1,21 @@
-//! What kind of input a record has.
+//! Inputs that are one sine.
 
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// The kind of an input, seen from its samples.
+/// One sinusoid about a mean, with or without a rest before and after.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Stimulus {
-    /// One sinusoid about a mean, with or without a rest before and after.
-    Sine {
-        /// Frequency, Hz.
-        frequency_hz: f64,
-        /// Amplitude, in the input's unit.
-        amplitude: f64,
-        /// Mean, in the input's unit.
-        mean: f64,
-        /// The samples (from 0) over which it lasts. The response to the first cycles may still be
-        /// settling.
-        samples: Range<usize>,
-    },
-    /// Anything else: steps, ramps, reversal curves, mixtures.
-    Other,
+pub struct Sine {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Amplitude, in the input's unit.
+    pub amplitude: f64,
+    /// Mean, in the input's unit.
+    pub mean: f64,
+    /// The samples (from 0) over which it lasts. The response to the first cycles may still be
+    /// settling.
+    pub samples: Range<usize>,
 }
 
 /// Part of the energy beside the sinusoid that still passes for a sine (-30 dB, 3 % in amplitude).
@@ -37,16 +32,13 @@ const ON_SINE: f64 = 1e-3;
 
 const REFINEMENTS: usize = 8;
 
-impl Stimulus {
-    /// Tells a sine of at least nine tenths of a cycle from anything else; time step in s.
+impl Sine {
+    /// The sine that an input is, of at least nine tenths of a cycle; time step in s. None for anything
+    /// else: steps, ramps, reversal curves, mixtures.
     ///
     /// The frequency is guessed from the crossings of the middle and refined by the four-parameter
     /// least squares fit of a sine (mean, cosine, sine, frequency).
-    pub fn of(samples: &[f64], time_step_s: f64) -> Self {
-        Self::sine(samples, time_step_s).unwrap_or(Self::Other)
-    }
-
-    fn sine(record: &[f64], time_step_s: f64) -> Option<Self> {
+    pub fn of(record: &[f64], time_step_s: f64) -> Option<Self> {
         let moving = moving(record)?;
         let samples = record.get(moving.clone())?;
         let duration = samples.len() as f64;
@@ -101,7 +93,7 @@ impl Stimulus {
         let start = (0..moving.start).rev().take_while(|&i| on_sine(i)).last();
         let end = (moving.end..record.len()).take_while(|&i| on_sine(i)).last();
         let samples = start.unwrap_or(moving.start)..end.map_or(moving.end, |last| last + 1);
-        Some(Self::Sine { frequency_hz: frequency / time_step_s, amplitude, mean: fit[0], samples })
+        Some(Self { frequency_hz: frequency / time_step_s, amplitude, mean: fit[0], samples })
     }
 }
 

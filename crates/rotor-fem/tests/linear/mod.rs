@@ -1,20 +1,20 @@
-//! Linear equations with periodic coefficients, the simplest [`PeriodicSystem`].
+//! Linear equations with periodic coefficients, the simplest system.
 
 use std::convert::Infallible;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{LocalTangent, OrbitSamples, PeriodicSystem};
+use rotor_fem::{LocalTangent, OrbitSamples, PeriodicSystem};
 
 /// Coefficients of a linear system at one azimuth, rotor units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LinearCoefficients {
+pub(crate) struct LinearCoefficients {
     /// Damping matrix, `dof x dof`.
-    pub damping: DMatrix<f64>,
+    pub(crate) damping: DMatrix<f64>,
     /// Stiffness matrix, `dof x dof`.
-    pub stiffness: DMatrix<f64>,
+    pub(crate) stiffness: DMatrix<f64>,
     /// Load, `dof`.
-    pub load: DVector<f64>,
+    pub(crate) load: DVector<f64>,
 }
 
 /// A linear system with periodic coefficients.
@@ -25,14 +25,14 @@ pub struct LinearCoefficients {
 /// `coefficients` gives C, K and F at an azimuth in rad; the tangent is exact, so one Newton step
 /// solves it.
 #[derive(Debug, Clone)]
-pub struct LinearPeriodic<F> {
+pub(crate) struct LinearPeriodic<F> {
     mass: DMatrix<f64>,
     coefficients: F,
 }
 
 impl<F: Fn(f64) -> LinearCoefficients + Sync> LinearPeriodic<F> {
     /// A system of mass matrix `mass`, whose order is the number of degrees of freedom.
-    pub fn new(mass: DMatrix<f64>, coefficients: F) -> Self {
+    pub(crate) fn new(mass: DMatrix<f64>, coefficients: F) -> Self {
         Self { mass, coefficients }
     }
 }
