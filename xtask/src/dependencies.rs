@@ -5,13 +5,13 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
-use std::process::Command;
 
 use serde::Deserialize;
 
 use crate::XtaskError;
 use crate::layers::{DependencyKind, Member};
 use crate::tidy::Tree;
+use crate::workspace::cargo;
 
 /// Licences under which a dependency may come, by SPDX identifier. All of them let a program under MIT or
 /// Apache 2.0 be linked with the dependency.
@@ -175,20 +175,7 @@ fn names(code: &str, name: &str) -> bool {
 /// # Errors
 /// [`XtaskError`] if cargo cannot be run or answers in another shape.
 pub fn licences(root: &Path) -> Result<(usize, Vec<Unlicensed>), XtaskError> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(&cargo)
-        .args(["metadata", "--locked", "--format-version", "1"])
-        .current_dir(root)
-        .output()
-        .map_err(|source| XtaskError::Start {
-            program: cargo.to_string_lossy().into_owned(),
-            source,
-        })?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-        return Err(XtaskError::Metadata { said });
-    }
-    unlicensed(&output.stdout)
+    unlicensed(&cargo(root, &["metadata", "--locked", "--format-version", "1"])?)
 }
 
 /// The packages in an answer of `cargo metadata` whose licence is not allowed, and how many there are in all.

@@ -19,20 +19,21 @@ pub fn root() -> PathBuf {
 /// # Errors
 /// [`XtaskError`] if cargo cannot be run, refuses a manifest, or answers in another shape.
 pub fn members(root: &Path) -> Result<Vec<Member>, XtaskError> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(&cargo)
-        .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
-        .current_dir(root)
-        .output()
-        .map_err(|source| XtaskError::Start {
-            program: cargo.to_string_lossy().into_owned(),
-            source,
+    members_of(&cargo(root, &["metadata", "--no-deps", "--format-version", "1", "--offline"])?)
+}
+
+/// What cargo says on standard output, asked at `root`.
+pub(crate) fn cargo(root: &Path, arguments: &[&str]) -> Result<Vec<u8>, XtaskError> {
+    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output =
+        Command::new(&program).args(arguments).current_dir(root).output().map_err(|source| {
+            XtaskError::Start { program: program.to_string_lossy().into_owned(), source }
         })?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
         return Err(XtaskError::Metadata { said });
     }
-    members_of(&output.stdout)
+    Ok(output.stdout)
 }
 
 /// Names of all crates that a member is built and tested with, itself included, as `cargo tree` lists them.
@@ -40,20 +41,8 @@ pub fn members(root: &Path) -> Result<Vec<Member>, XtaskError> {
 /// # Errors
 /// [`XtaskError`] if cargo cannot be run or refuses.
 pub fn tree(root: &Path, member: &str) -> Result<Vec<String>, XtaskError> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(&cargo)
-        .args(["tree", "--package", member, "--edges", "all", "--prefix", "none", "--offline"])
-        .current_dir(root)
-        .output()
-        .map_err(|source| XtaskError::Start {
-            program: cargo.to_string_lossy().into_owned(),
-            source,
-        })?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-        return Err(XtaskError::Metadata { said });
-    }
-    let lines = String::from_utf8_lossy(&output.stdout).into_owned();
+    let asked = ["tree", "--package", member, "--edges", "all", "--prefix", "none", "--offline"];
+    let lines = String::from_utf8_lossy(&cargo(root, &asked)?).into_owned();
     let mut names: Vec<String> =
         lines.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect();
     names.sort();

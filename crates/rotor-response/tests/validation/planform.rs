@@ -7,8 +7,8 @@ use std::sync::Arc;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Distribution, Joint, RootSupport, TorsionTerms};
 use rotor_response::{
-    Condition, Controls, Couplings, Discretisation, Planform, ResponseTolerances, ReverseFlow,
-    Rotor, RotorModel, RotorSolution, RotorSolver, SectionLags, TrailingEdgeFlap,
+    Compressibility, Condition, Controls, Couplings, Discretisation, Planform, ResponseTolerances,
+    ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, SectionLags, TrailingEdgeFlap,
 };
 use rotor_wake::{FlightState, LinearInflow};
 
@@ -56,11 +56,11 @@ pub(crate) const ROWS: &[Check] = &[
     row(
         "V-PLAN-05",
         "thrust and torque of a stiff blade in hover, swept aft by 21.8 deg beyond \
-         .8 R: largest error",
+         .8 R, incompressible and at a tip Mach number of .6: largest error",
         "%",
     )
     .against(SWEPT)
-    .at_most(1e-3, swept_hover),
+    .at_most(1e-3, || worst("Mach numbers", 2, [0.0, 0.6].map(swept_hover))),
     row(
         "V-PLAN-06",
         "pitch and roll moment of that blade on the hub at mu .15, no pitch, upflow \
@@ -249,11 +249,11 @@ const SWEEP_FROM: f64 = 0.8;
 const TANGENT: f64 = 0.4;
 const MU: f64 = 0.15;
 
-/// `int f(x) dx` over the lifting span for cubics: `f` is given the tangent of the sweep and the distance behind the axis.
+/// `int f(x) dx` over the lifting span: `f` is given the tangent of the sweep and the distance behind the axis.
 fn over_span(f: impl Fn(f64, f64, f64) -> f64) -> f64 {
     let of = |low: f64, high: f64, tangent: f64| {
         let half = 0.5 * (high - low);
-        let rule = rotor_base::gauss_legendre(4);
+        let rule = rotor_base::gauss_legendre(12);
         let parts = rule.nodes.iter().zip(&rule.weights).map(|(node, weight)| {
             let x = low + half * (node + 1.0);
             half * weight * f(x, tangent, tangent * (x - SWEEP_FROM))
@@ -275,6 +275,7 @@ struct Stiff {
     mu: f64,
     theta0_rad: f64,
     inflow: f64,
+    tip_mach: f64,
 }
 
 impl Stiff {
@@ -286,6 +287,7 @@ impl Stiff {
             mu: 0.0,
             theta0_rad: PITCH,
             inflow: INFLOW,
+            tip_mach: 0.0,
         }
     }
 
@@ -299,6 +301,10 @@ impl Stiff {
             drag_coefficient: DRAG,
             reverse_flow: ReverseFlow::Abrupt,
             lock_number: self.lock_number,
+            compressibility: match self.tip_mach {
+                0.0 => Compressibility::None,
+                tip_mach => Compressibility::LocalMach { tip_mach },
+            },
             ..paper_rotor(Couplings::Moderate(TorsionTerms::default()), CUTOUT)
         };
         let spec = BladeSpec {
@@ -322,13 +328,16 @@ impl Stiff {
     }
 }
 
-/// `C_T = N_b int c cos L (x^2 th - x la) dx`, `C_Q = la C_T + N_b c_d / (2 pi) int c cos L x^3 dx`.
-fn swept_hover() -> Result<f64, Failure> {
-    let (model, found) = Stiff::swept().solve()?;
+/// `C_T = N_b int c cos L (x^2 th - x la) / sqrt(1 - (M x cos L)^2) dx`,
+/// `C_Q = la C_T + N_b c_d / (2 pi) int c cos L x^3 dx`.
+fn swept_hover(tip_mach: f64) -> Result<f64, Failure> {
+    let (model, found) = Stiff { tip_mach, ..Stiff::swept() }.solve()?;
     let (unit, blades) = (model.thrust_coefficient(1.0), model.blades as f64);
     let mean = found.hub.mean();
     let c = model.chord;
-    let thrust = blades * c * over_span(|x, t, _| cosine(t) * x * (x * PITCH - INFLOW));
+    let slope = |mach: f64| 1.0 / (1.0 - mach * mach).sqrt();
+    let lift = |x: f64, cos: f64| cos * x * (x * PITCH - INFLOW) * slope(tip_mach * x * cos);
+    let thrust = blades * c * over_span(|x, t, _| lift(x, cosine(t)));
     let torque =
         INFLOW * thrust + blades * c * DRAG * over_span(|x, t, _| cosine(t) * x.powi(3)) / TAU;
     let errors = [unit * mean[2] / thrust - 1.0, -unit * mean[5] / torque - 1.0];
