@@ -14,7 +14,10 @@ pub const TOOLS_FLOOR: u32 = 9;
 /// The member that makes synthetic measurements and shares no code with the product.
 pub const TRUTH: &str = "truth";
 
-/// The member that compares findings with the answers of [`TRUTH`], and shares no code with the product either.
+/// The member that makes synthetic measurements with everyday errors, and shares no code with product or [`TRUTH`].
+pub const EVERYDAY: &str = "everyday-bench";
+
+/// The member that compares findings with the answers of both, and shares no code with the product either.
 pub const SCORE: &str = "score";
 
 /// External crates that know files, the terminal or reports.
@@ -32,8 +35,8 @@ pub const RESERVED_CRATES: [&str; 10] = [
 ];
 
 /// The members that may use [`RESERVED_CRATES`] in what they ship; tests may use them anywhere.
-pub const RESERVED_FOR: [&str; 7] =
-    ["measured-data", "sim-driver", "xtask", TRUTH, SCORE, "validation", "e2e"];
+pub const RESERVED_FOR: [&str; 8] =
+    ["measured-data", "sim-driver", "xtask", TRUTH, EVERYDAY, SCORE, "validation", "e2e"];
 
 /// The member whose studies take values and give values.
 pub const STUDY: &str = "rotor-study";
@@ -156,7 +159,7 @@ pub enum LayerFault {
 ///
 /// - every member names one of [`FLOORS`];
 /// - dependencies of every kind, tests included, lead to strictly lower floors;
-/// - [`TRUTH`] uses no other member, [`SCORE`] none but that, and no member below the tools uses them;
+/// - [`TRUTH`] and [`EVERYDAY`] use no other member, [`SCORE`] none but them, and no member below the tools uses them;
 /// - [`RESERVED_CRATES`] are used by [`RESERVED_FOR`] alone, or in tests.
 pub fn check(members: &[Member]) -> Vec<LayerFault> {
     let floors: BTreeMap<&str, Option<u32>> =
@@ -199,8 +202,8 @@ fn check_member_edge(
     below: Option<u32>,
 ) -> Option<LayerFault> {
     let (name, kind) = (dependency.name.clone(), dependency.kind);
-    let apart = |member: &str| member == TRUTH || member == SCORE;
-    let scorer = member.name == SCORE && name == TRUTH;
+    let apart = |member: &str| [TRUTH, EVERYDAY, SCORE].contains(&member);
+    let scorer = member.name == SCORE && [TRUTH, EVERYDAY].contains(&name.as_str());
     let user = apart(&name) && member.floor != Some(TOOLS_FLOOR);
     if (apart(&member.name) || user) && !scorer {
         return Some(LayerFault::TruthNotApart {

@@ -10,6 +10,7 @@
 //! | `refinement` | shows what refining the paper's case does to its 4/rev hub loads | [`refinement`] |
 //! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
 //! | `hidden-effects` | has the program diagnose synthetic sets with known answers, prints the scores | [`hidden_effects`] |
+//! | `everyday-errors` | the same on benches with the everyday errors of a laboratory | [`everyday_errors`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
 //! Exit codes: 0 done, 1 physics or numerics failed, 2 bad input or broken rule, 3 a comparison
@@ -23,7 +24,9 @@
 pub mod calibrate;
 pub mod ci;
 pub mod dependencies;
+pub mod diagnosis;
 mod error;
+pub mod everyday_errors;
 pub mod files;
 pub mod hidden_effects;
 pub mod hover_refinement;

@@ -5,9 +5,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use everyday_bench::family::Family;
+use everyday_bench::hidden::Deal;
+use xtask::diagnosis::Options;
 use xtask::{
-    XtaskError, calibrate, ci, dependencies, files, hidden_effects, hover_refinement, layers,
-    refinement, regress, rooms, tidy, validate, wake_inflow, wake_refinement, workspace,
+    XtaskError, calibrate, ci, dependencies, everyday_errors, files, hidden_effects,
+    hover_refinement, layers, refinement, regress, rooms, tidy, validate, wake_inflow,
+    wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -69,18 +73,70 @@ enum Chore {
         /// Only some sets: null, pairs, outside, or the id of what is hidden
         #[arg(long, default_value = "")]
         only: String,
-        /// Groups of sets at a time
-        #[arg(long, default_value_t = 2)]
-        threads: usize,
-        /// The program that diagnoses; left out, it is built
-        #[arg(long, value_name = "PROGRAM")]
-        hhc: Option<PathBuf>,
-        /// Folder of the results: sets that are there are not run again, the report is on all of them
-        #[arg(short, long, value_name = "DIR")]
-        out: Option<PathBuf>,
+        #[command(flatten)]
+        suite: Suite,
     },
+    /// Diagnose synthetic benches with the everyday errors of a laboratory, one actuator a set, and score the findings
+    EverydayErrors(Everyday),
     /// Run .ci/run: everything a change must pass
     Ci,
+}
+
+/// Families of a suite.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Families {
+    Relays,
+    Duhem,
+    Both,
+}
+
+impl Families {
+    fn list(self) -> Vec<Family> {
+        match self {
+            Self::Relays => vec![Family::Relays],
+            Self::Duhem => vec![Family::Duhem],
+            Self::Both => vec![Family::Relays, Family::Duhem],
+        }
+    }
+}
+
+/// How a suite of synthetic sets is run.
+#[derive(clap::Args)]
+struct Suite {
+    /// Sets at a time, or groups of them that share reference runs
+    #[arg(long, default_value_t = 2)]
+    threads: usize,
+    /// The program that diagnoses; left out, it is built
+    #[arg(long, value_name = "PROGRAM")]
+    hhc: Option<PathBuf>,
+    /// Folder of the results: sets that are there are not run again, the report is on all of them
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Suite {
+    fn options<S>(self, selection: S) -> Options<S> {
+        let Self { threads, hhc, out } = self;
+        Options { selection, threads, hhc, out }
+    }
+}
+
+#[derive(clap::Args)]
+struct Everyday {
+    /// Number of sets
+    #[arg(long, default_value_t = 60)]
+    sets: u64,
+    /// The first of their seeds; the others follow it
+    #[arg(long, default_value_t = 0)]
+    first_seed: u64,
+    /// Hysteresis: relays, duhem, or both in turn
+    #[arg(long, default_value = "both")]
+    family: Families,
+    /// What the seeds are dealt: everyday, singles, nulls, all
+    #[arg(long, default_value = "all")]
+    kind: Deal,
+    #[command(flatten)]
+    suite: Suite,
 }
 
 #[derive(clap::Args)]
@@ -200,14 +256,14 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             say(&mut std::io::stdout(), &report.text());
             Ok(ExitCode::from(report.exit_code()))
         }
-        Chore::HiddenEffects { seeds, first_block, snr, only, threads, hhc, out } => {
+        Chore::HiddenEffects { seeds, first_block, snr, only, suite } => {
             let selection = hidden_effects::Selection { seeds, first_block, snr_db: snr, only };
-            let options = hidden_effects::Options { selection, threads, hhc, out };
             let progress = |line: &str| say(&mut std::io::stderr(), line);
-            let report = hidden_effects::run(root, &options, progress)?;
+            let report = hidden_effects::run(root, &suite.options(selection), progress)?;
             say(&mut std::io::stdout(), &report.text());
             Ok(ExitCode::from(report.exit_code()))
         }
+        Chore::EverydayErrors(options) => everyday(root, options),
         Chore::Ci => ci::run(root),
     }
 }
@@ -238,6 +294,16 @@ fn validation(root: &Path, options: &Validation) -> Result<ExitCode, XtaskError>
     }
     say(&mut std::io::stdout(), &text);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn everyday(root: &Path, options: Everyday) -> Result<ExitCode, XtaskError> {
+    let Everyday { sets, first_seed, family, kind, suite } = options;
+    let families = family.list();
+    let selection = everyday_errors::Selection { sets, first_seed, families, deal: kind };
+    let progress = |line: &str| say(&mut std::io::stderr(), line);
+    let report = everyday_errors::run(root, &suite.options(selection), progress)?;
+    say(&mut std::io::stdout(), &report.text());
+    Ok(ExitCode::from(report.exit_code()))
 }
 
 /// Writes text; a reader that has gone away is no reason to fail.

@@ -27,7 +27,12 @@ fn sound_house() -> Vec<Member> {
         member("rotor-study", 4, &[("rotor-response", Normal)]),
         member("sim-driver", 6, &[("rotor-study", Normal), ("clap", Normal), ("ron", Normal)]),
         member("truth", 0, &[("clap", Normal)]),
-        member("score", 1, &[("truth", Normal), ("serde_json", Normal)]),
+        member("everyday-bench", 0, &[("clap", Normal)]),
+        member(
+            "score",
+            1,
+            &[("truth", Normal), ("everyday-bench", Normal), ("serde_json", Normal)],
+        ),
         member("xtask", 9, &[("sim-driver", Normal), ("score", Normal), ("csv", Normal)]),
         member("e2e", 9, &[("sim-driver", Development), ("truth", Development)]),
     ]
@@ -100,6 +105,9 @@ fn a_sideways_edge_is_a_fault() {
 fn truth_and_product_stay_apart() {
     for (user, dependency) in [
         ("truth", "rotor-base"),
+        ("everyday-bench", "truth"),
+        ("everyday-bench", "rotor-base"),
+        ("sim-driver", "everyday-bench"),
         ("sim-driver", "truth"),
         ("rotor-fem", "truth"),
         ("score", "rotor-base"),

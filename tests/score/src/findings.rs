@@ -81,12 +81,21 @@ pub struct Findings {
     pub confidence: Confidence,
     /// Parameters by cause and name.
     pub parameters: BTreeMap<String, BTreeMap<String, Estimate>>,
-    /// What the extension is worth.
-    pub gain: Gain,
+    /// What the extension is worth; some programs give none where nothing is named.
+    pub gain: Option<Gain>,
     /// Id of the experiment that would tell more.
     pub next_experiment: String,
     /// Ids of causes these data could not show.
     pub not_observable: Vec<String>,
+    /// The class of what is missing, where one is given.
+    #[serde(default)]
+    pub class: Option<String>,
+    /// Names in that class.
+    #[serde(default)]
+    pub class_members: Vec<String>,
+    /// How sure the class is.
+    #[serde(default)]
+    pub class_confidence: Option<Confidence>,
 }
 
 impl Findings {
@@ -108,5 +117,16 @@ impl Findings {
         !self.names().is_empty()
             && self.verdict != Verdict::Ambiguous
             && self.confidence == Confidence::Confident
+    }
+
+    /// The class, where it is given with confidence.
+    pub fn sure_class(&self) -> Option<&str> {
+        let sure = self.class_confidence == Some(Confidence::Confident);
+        self.class.as_deref().filter(|_| sure)
+    }
+
+    /// Whether it says with confidence that nothing is missing.
+    pub fn denies(&self) -> bool {
+        self.verdict == Verdict::NothingMissing && self.confidence == Confidence::Confident
     }
 }

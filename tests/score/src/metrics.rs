@@ -95,11 +95,11 @@ pub fn metrics(cases: &[Case]) -> Vec<Metric> {
     all
 }
 
-fn share(name: &str, bar: Bar, outcomes: impl Iterator<Item = bool>) -> Metric {
+pub(crate) fn share(name: &str, bar: Bar, outcomes: impl Iterator<Item = bool>) -> Metric {
     Metric { name: name.to_owned(), figure: Figure::Share(Share::of(outcomes)), bar }
 }
 
-fn number(name: &str, bar: Bar, value: f64, cases: usize) -> Metric {
+pub(crate) fn number(name: &str, bar: Bar, value: f64, cases: usize) -> Metric {
     Metric { name: name.to_owned(), figure: Figure::Number { value, cases: cases as u64 }, bar }
 }
 
@@ -112,8 +112,9 @@ impl Floors {
     pub fn of(cases: &[Case]) -> Self {
         let mut errors: BTreeMap<(String, u64), Vec<f64>> = BTreeMap::new();
         for case in cases.iter().filter(|case| case.is_null()) {
-            let error = case.findings.gain.heldout_rms_before;
-            errors.entry(Self::key(case)).or_default().push(error);
+            if let Some(gain) = &case.findings.gain {
+                errors.entry(Self::key(case)).or_default().push(gain.heldout_rms_before);
+            }
         }
         Self(errors.into_iter().map(|(key, mut values)| (key, median(&mut values))).collect())
     }
@@ -137,7 +138,7 @@ impl Floors {
 }
 
 /// The middle one of some numbers, sorting them; NaN of none.
-fn median(values: &mut [f64]) -> f64 {
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     match values.len() {
         0 => f64::NAN,
@@ -296,10 +297,9 @@ fn gains(cases: &[Case]) -> Vec<Metric> {
     let mut ratios = Vec::new();
     let (mut reached, mut possible) = (0.0, 0.0);
     for case in cases.iter().filter(|case| !case.findings.names().is_empty()) {
-        let Some(oracle) = &case.oracle else { continue };
+        let (Some(oracle), Some(gain)) = (&case.oracle, &case.findings.gain) else { continue };
         let before = oracle.heldout_rms_before;
         if oracle.reduction() > LEAST_ORACLE_GAIN * before {
-            let gain = &case.findings.gain;
             ratios.push(gain.reduction() / oracle.reduction());
             reached += gain.reduction() / before;
             possible += oracle.reduction() / before;
@@ -307,7 +307,7 @@ fn gains(cases: &[Case]) -> Vec<Metric> {
     }
     let count = ratios.len();
     let covered = cases.iter().filter(|case| case.replicates.len() > 2).flat_map(|case| {
-        let all: Vec<_> = case.replicates.iter().chain([&case.findings.gain]).collect();
+        let all: Vec<_> = case.replicates.iter().chain(&case.findings.gain).collect();
         let mean = all.iter().map(|gain| gain.reduction()).sum::<f64>() / all.len() as f64;
         all.into_iter()
             .map(move |gain| (gain.ci95[0]..=gain.ci95[1]).contains(&mean))

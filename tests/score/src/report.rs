@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use crate::case::Case;
-use crate::findings::Verdict;
+use crate::findings::{Findings, Verdict};
 use crate::metrics::{Bar, Figure, Metric, Outcome};
 
 /// One line a metric: name, figure, cases, 95 % bounds, bar, outcome.
@@ -52,10 +52,15 @@ pub fn metric_table(metrics: &[Metric]) -> String {
 /// Rows: what is hidden. Columns: how often each answer came, the most frequent first. A set of several
 /// names counts under its first name with a `+`, a confident name with a `!`.
 pub fn confusion_table(cases: &[Case]) -> String {
+    confusion(cases.iter().map(|case| (case.answer.hidden.as_str(), &case.findings)))
+}
+
+/// [`confusion_table`] of what is hidden and what was found.
+pub fn confusion<'a>(sets: impl Iterator<Item = (&'a str, &'a Findings)>) -> String {
     let mut rows: BTreeMap<&str, BTreeMap<String, u32>> = BTreeMap::new();
-    for case in cases {
-        let row = rows.entry(&case.answer.hidden).or_default();
-        *row.entry(answer_given(case)).or_default() += 1;
+    for (hidden, findings) in sets {
+        let row = rows.entry(hidden).or_default();
+        *row.entry(answer_given(findings)).or_default() += 1;
     }
     let mut text = String::from("truth                                    sets  answers\n");
     for (truth, answers) in rows {
@@ -69,8 +74,8 @@ pub fn confusion_table(cases: &[Case]) -> String {
     text
 }
 
-fn answer_given(case: &Case) -> String {
-    let found = &case.findings;
+/// An answer in a few words.
+pub fn answer_given(found: &Findings) -> String {
     let first = || found.causes.first().map_or("(no name)", String::as_str);
     match found.verdict {
         Verdict::NothingMissing => "nothing".to_owned(),

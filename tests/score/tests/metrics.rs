@@ -47,9 +47,12 @@ fn case(hidden: &str, verdict: Verdict, names: &[&str], confidence: Confidence) 
         causes: names.iter().map(|name| (*name).to_owned()).collect(),
         confidence,
         parameters: BTreeMap::new(),
-        gain: gain(1.1, 1.1),
+        gain: Some(gain(1.1, 1.1)),
         next_experiment: String::new(),
         not_observable: Vec::new(),
+        class: None,
+        class_members: Vec::new(),
+        class_confidence: None,
     };
     let (oracle, follow_up, replicates) = (None, None, Vec::new());
     let (first_seconds, made_by) = (None, String::new());
@@ -131,7 +134,7 @@ fn only_effects_above_the_floor_have_to_be_named() {
     assert_eq!(share(&cases, "effect >= 2.5 floors, 40 dB: named"), (1, 2));
     // Sets without effect that leave 3 um raise the floor to that.
     let mut rough = silent("null");
-    rough.findings.gain = gain(3.0, 3.0);
+    rough.findings.gain = Some(gain(3.0, 3.0));
     let cases = [rough, silent("creep")];
     assert_eq!(share(&cases, "effect >= 2.5 floors, 40 dB: named"), (0, 0));
     assert_eq!(metric(&cases, "effect >= 2.5 floors, 40 dB: named").outcome(), Outcome::Open);
@@ -182,7 +185,7 @@ fn parameters_count_when_confident() {
 fn gains_are_measured_against_the_refit_of_the_truth() {
     let with = |after: f64, best: f64| {
         let mut found = sure("creep", &["creep"]);
-        found.findings.gain = gain(2.0, after);
+        found.findings.gain = Some(gain(2.0, after));
         found.oracle = Some(gain(2.0, best));
         found
     };
@@ -279,7 +282,7 @@ fn findings_are_read_from_the_published_layout() {
     let findings = Findings::parse(text).unwrap();
     assert!(findings.is_confident());
     assert_eq!(findings.names(), ["creep"]);
-    assert!((findings.gain.reduction() - 1.0).abs() < 1e-12);
+    assert!((findings.gain.unwrap().reduction() - 1.0).abs() < 1e-12);
     assert!(Findings::parse(&text.replace("named-structure-remains", "perhaps")).is_err());
     let ambiguous = Findings::parse(&text.replace("named-structure-remains", "ambiguous")).unwrap();
     assert!(!ambiguous.is_confident());

@@ -1,125 +1,14 @@
-//! Runs the program on generated folders.
+//! Diagnoses the sets of a group.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::time::Instant;
 
 use score::case::Case;
 use score::findings::{Findings, Gain, Verdict};
-use truth::hidden::{Answer, File, Request, Size, is_experiment, measured_set, reference_files};
+use truth::hidden::{Answer, Request, Size, is_experiment, measured_set, reference_files};
 
-use super::{Failure, Group};
+use super::Group;
+use crate::diagnosis::{Failure, Hhc, Oracle, keep_result, read_result, write_folder};
 use crate::{XtaskError, files};
-
-/// Whether the program refits causes that are given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Oracle {
-    /// It knows `--only`.
-    Present,
-    /// It does not.
-    Absent,
-}
-
-/// The program that diagnoses.
-#[derive(Debug, Clone)]
-pub struct Hhc {
-    program: PathBuf,
-    oracle: Oracle,
-    /// What stands beside every result: which programs made it.
-    made_by: String,
-}
-
-/// Builds the program as a user would.
-pub(super) fn build(root: &Path) -> Result<PathBuf, XtaskError> {
-    let status = Command::new("cargo")
-        .args(["build", "--release", "-p", "sim-driver"])
-        .current_dir(root)
-        .status()
-        .map_err(|source| XtaskError::Start { program: "cargo".to_owned(), source })?;
-    if !status.success() {
-        let said = "cargo build --release -p sim-driver did not succeed".to_owned();
-        return Err(XtaskError::Refused { program: "cargo".to_owned(), said });
-    }
-    Ok(root.join("target/release/hhc"))
-}
-
-impl Hhc {
-    /// The program at a path.
-    ///
-    /// # Errors
-    /// [`XtaskError::Start`] where it does not start, [`XtaskError::Program`] where it cannot diagnose.
-    pub fn new(program: PathBuf) -> Result<Self, XtaskError> {
-        let mut hhc = Self { program, oracle: Oracle::Absent, made_by: String::new() };
-        let help = hhc.call(&["diagnose", "--help"], Path::new("."))?;
-        if !help.status.success() {
-            return Err(hhc.failed(&help));
-        }
-        if String::from_utf8_lossy(&help.stdout).contains("--only") {
-            hhc.oracle = Oracle::Present;
-        }
-        Ok(hhc)
-    }
-
-    /// Marks every result with what made it.
-    #[must_use]
-    pub fn marked(self, made_by: &str) -> Self {
-        Self { made_by: made_by.to_owned(), ..self }
-    }
-
-    /// Whether it refits causes that are given.
-    pub fn oracle(&self) -> Oracle {
-        self.oracle
-    }
-
-    fn call(&self, arguments: &[&str], folder: &Path) -> Result<Output, XtaskError> {
-        let program = || self.program.display().to_string();
-        Command::new(&self.program)
-            .args(arguments)
-            .current_dir(folder)
-            // Groups run side by side already.
-            .env("RAYON_NUM_THREADS", "1")
-            .output()
-            .map_err(|source| XtaskError::Start { program: program(), source })
-    }
-
-    fn failed(&self, output: &Output) -> XtaskError {
-        let said = String::from_utf8_lossy(&output.stderr);
-        let said = said.lines().next().unwrap_or("nothing").to_owned();
-        XtaskError::Refused { program: self.program.display().to_string(), said }
-    }
-
-    fn identify(&self, folder: &Path) -> Result<(), XtaskError> {
-        let output = self.call(&["identify", "reference", "-o", "actuator.ron"], folder)?;
-        if output.status.success() { Ok(()) } else { Err(self.failed(&output)) }
-    }
-
-    /// Findings and wall time of one diagnosis of `folder/measured`.
-    fn diagnose(&self, folder: &Path, only: &[&str]) -> Result<(Findings, f64), XtaskError> {
-        files::remove_folder(&folder.join("found"))?;
-        // What the program keeps for a base lies in its own folder beside, and stays.
-        let mut arguments = vec!["diagnose", "actuator.ron", "--data", "measured", "-o", "found"];
-        let list = only.join(",");
-        if !only.is_empty() {
-            arguments.extend(["--only", &list]);
-        }
-        let begin = Instant::now();
-        let output = self.call(&arguments, folder)?;
-        let seconds = begin.elapsed().as_secs_f64();
-        if !output.status.success() {
-            return Err(self.failed(&output));
-        }
-        let path = folder.join("found/findings.json");
-        let findings = Findings::parse(&files::read(&path)?)
-            .map_err(|source| XtaskError::Findings { path, source })?;
-        Ok((findings, seconds))
-    }
-}
-
-/// A result kept.
-pub(super) fn read_case(path: &Path) -> Result<Case, XtaskError> {
-    serde_json::from_str(&files::read(path)?)
-        .map_err(|source| XtaskError::Findings { path: path.to_path_buf(), source })
-}
 
 /// Runs the sets of a group that were not done before and keeps their results; those without findings.
 pub(super) fn run_group(
@@ -141,16 +30,14 @@ pub(super) fn run_group(
         let kept = folder.join(format!("{name}_seed{seed}.json"));
         let request = Request::new(*seed, group.snr_db);
         if kept.exists() {
-            let case = read_case(&kept)?;
+            let case: Case = read_result(&kept)?;
             bench.follow_ups_left -= u32::from(case.follow_up.is_some()).min(bench.follow_ups_left);
             tell(&format!("{set}: done before"));
             continue;
         }
         match bench.case(&request, group) {
             Ok(case) => {
-                let text = serde_json::to_string(&case)
-                    .map_err(|source| XtaskError::Findings { path: kept.clone(), source })?;
-                files::write_atomically(&kept, &text)?;
+                keep_result(&kept, &case)?;
                 let hidden = &case.answer.hidden;
                 let answer = case.findings.causes.join(", ");
                 let verdict = case.findings.verdict;
@@ -188,25 +75,15 @@ impl Bench<'_> {
     /// Reference folder and actuator; a first diagnosis, of `request`, whose time it returns.
     fn prepare(&self, request: &Request, group: &Group) -> Result<f64, XtaskError> {
         let reference = reference_files(group.base, group.snr_db, Size::Small)?;
-        self.write("reference", &reference)?;
+        write_folder(&self.folder.join("reference"), &reference)?;
         self.hhc.identify(&self.folder)?;
         self.measure(request)?;
         Ok(self.hhc.diagnose(&self.folder, &[])?.1)
     }
 
-    /// Replaces a folder of data.
-    fn write(&self, name: &str, content: &[File]) -> Result<(), XtaskError> {
-        let folder = self.folder.join(name);
-        files::remove_folder(&folder)?;
-        for (file, text) in content {
-            files::write_atomically(&folder.join(file), text)?;
-        }
-        Ok(())
-    }
-
     fn measure(&self, request: &Request) -> Result<Answer, XtaskError> {
         let set = measured_set(request)?;
-        self.write("measured", &set.files)?;
+        write_folder(&self.folder.join("measured"), &set.files)?;
         Ok(set.answer)
     }
 
@@ -216,7 +93,7 @@ impl Bench<'_> {
         let answer = self.measure(request)?;
         let (findings, seconds) = self.hhc.diagnose(&self.folder, &[])?;
         let (oracle, follow_up, replicates) = (None, None, Vec::new());
-        let made_by = self.hhc.made_by.clone();
+        let made_by = self.hhc.made_by().to_owned();
         let mut case = Case {
             answer,
             findings,
@@ -239,7 +116,7 @@ impl Bench<'_> {
         if causes.is_empty() || !named || self.hhc.oracle() == Oracle::Absent {
             return Ok(None);
         }
-        Ok(Some(self.hhc.diagnose(&self.folder, &causes)?.0.gain))
+        Ok(self.hhc.diagnose(&self.folder, &causes)?.0.gain)
     }
 
     fn replicate_gains(&self, request: &Request, case: &Case) -> Result<Vec<Gain>, XtaskError> {
@@ -247,12 +124,12 @@ impl Bench<'_> {
         if !wanted || case.findings.names().is_empty() {
             return Ok(Vec::new());
         }
-        (1..=REPLICATES)
-            .map(|replicate| {
-                self.measure(&Request { replicate, ..request.clone() })?;
-                Ok(self.hhc.diagnose(&self.folder, &[])?.0.gain)
-            })
-            .collect()
+        let mut gains = Vec::new();
+        for replicate in 1..=REPLICATES {
+            self.measure(&Request { replicate, ..request.clone() })?;
+            gains.extend(self.hhc.diagnose(&self.folder, &[])?.0.gain);
+        }
+        Ok(gains)
     }
 
     /// The proposed experiment, done where the verdict is ambiguous.

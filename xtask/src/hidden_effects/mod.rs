@@ -8,44 +8,21 @@
 
 mod bench;
 mod plan;
-mod programs;
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use score::case::Case;
-use score::metrics::{self, Metric, Outcome};
+use score::metrics::{self, Metric};
 use score::report;
 
-pub use bench::{Hhc, Oracle};
 pub use plan::{Group, Selection, groups};
 
-use crate::{XtaskError, files};
-
-/// What to run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Options {
-    /// Sets.
-    pub selection: Selection,
-    /// Groups at a time.
-    pub threads: usize,
-    /// The program that diagnoses; none: it is built.
-    pub hhc: Option<PathBuf>,
-    /// Folder of the results; none: one of the programs' own.
-    pub out: Option<PathBuf>,
-}
-
-/// A set that could not be diagnosed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Failure {
-    /// The set.
-    pub set: String,
-    /// What was said.
-    pub said: String,
-}
+use crate::XtaskError;
+use crate::diagnosis::{
+    Failure, Options, Oracle, closing, exit_code, makers, pool, read_results, set_up,
+};
 
 /// What the suite found.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,31 +47,18 @@ impl SuiteReport {
 
     /// Tables for the terminal.
     pub fn text(&self) -> String {
-        let mut made: BTreeMap<&str, usize> = BTreeMap::new();
-        for case in &self.cases {
-            *made.entry(&case.made_by).or_default() += 1;
-        }
-        let mut text = String::new();
-        for (programs, sets) in made {
-            let _ = writeln!(text, "{sets} sets by {programs}");
-        }
+        let mut text = makers(self.cases.iter().map(|case| case.made_by.as_str()));
         text.push('\n');
         text += &report::confusion_table(&self.cases);
         text.push('\n');
         text += &report::metric_table(&self.metrics);
-        for failure in &self.failures {
-            let _ = writeln!(text, "failed: {}: {}", failure.set, failure.said);
-        }
-        let missed = self.metrics.iter().filter(|m| m.outcome() == Outcome::Missed).count();
-        let (sets, failed) = (self.cases.len(), self.failures.len());
-        let _ = writeln!(text, "{sets} sets scored, {failed} failed, {missed} bars missed");
+        text += &closing(self.cases.len(), &self.failures, &self.metrics);
         text
     }
 
     /// 0, or 3 where a bar is missed or a set failed.
     pub fn exit_code(&self) -> u8 {
-        let missed = self.metrics.iter().any(|m| m.outcome() == Outcome::Missed);
-        if missed || !self.failures.is_empty() { 3 } else { 0 }
+        exit_code(&self.failures, &self.metrics)
     }
 }
 
@@ -104,23 +68,10 @@ impl SuiteReport {
 /// [`XtaskError`] where files cannot be written, programs not be started, or results kept earlier not be read.
 pub fn run(
     root: &Path,
-    options: &Options,
+    options: &Options<Selection>,
     progress: impl Fn(&str) + Sync,
 ) -> Result<SuiteReport, XtaskError> {
-    let program = match &options.hhc {
-        Some(path) => path.clone(),
-        None => bench::build(root)?,
-    };
-    // It is started from the folders of the data.
-    let program = program
-        .canonicalize()
-        .map_err(|source| XtaskError::Read { path: program.clone(), source })?;
-    let programs = programs::Programs::of(root, &program)?;
-    let folder = match &options.out {
-        Some(folder) => folder.clone(),
-        None => root.join("target/hidden-effects").join(&programs.key),
-    };
-    let hhc = Hhc::new(program)?.marked(&programs.text);
+    let (hhc, folder) = set_up(root, options, "hidden-effects")?;
     if hhc.oracle() == Oracle::Absent {
         progress(
             "hhc diagnose knows no --only: what a refit of the true cause gives stays unknown\n",
@@ -133,13 +84,7 @@ pub fn run(
         groups.len(),
         folder.display()
     ));
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().map_err(|error| {
-            XtaskError::Start {
-                program: "threads".to_owned(),
-                source: std::io::Error::other(error),
-            }
-        })?;
+    let pool = pool(options.threads)?;
     let done = AtomicUsize::new(0);
     let tell = |line: &str| {
         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -161,21 +106,15 @@ pub fn run(
 /// # Errors
 /// [`XtaskError`] for results that cannot be read.
 pub fn stored(folder: &Path, selection: &Selection) -> Result<Vec<Case>, XtaskError> {
-    let mut cases = Vec::new();
-    for path in files::in_folder(folder)? {
-        if path.extension().is_some_and(|ending| ending == "json") {
-            let case = bench::read_case(&path)?;
-            if selection.admits_case(&case.answer.hidden, case.answer.snr_db) {
-                cases.push(case);
-            }
-        }
-    }
+    let mut cases: Vec<Case> = read_results(folder)?;
+    cases.retain(|case| selection.admits_case(&case.answer.hidden, case.answer.snr_db));
     Ok(cases)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files;
 
     fn result(seed: u64, hidden: &str, made_by: &str) -> String {
         let findings = r#"{"verdict": "nothing-missing", "causes": [], "confidence": "confident", "parameters": {},
