@@ -8,6 +8,7 @@
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
 use actuator_gap::{Findings, Question, Record, Records, diagnose};
+use measured_data::Accuracy;
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, CurrentLimit, Drive, PlayMap,
     PreisachError, PreisachGrid, StaticPreisach, VoltageRange,
@@ -61,6 +62,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         input_label: "command_V".into(),
         output_label: "displacement_um".into(),
         deg_per_um: Some(DEG_PER_UM),
+        accuracy: Accuracy::default(),
         is_bench: true,
         content_hash: String::new(),
         runs: vec![
@@ -80,7 +82,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!("planted: amplifier-current-limit: slew_rate {PLANTED_SLEW_RATE} V/s");
-    let (before, after) = (found.gain.heldout_rms_before, found.gain.heldout_rms_after);
-    println!("held-out error: {before:.2} um -> {after:.2} um; noise 0.29 um");
+    if let Some(gain) = found.gain {
+        let (before, after) = (gain.heldout_rms_before, gain.heldout_rms_after);
+        println!("held-out error: {before:.2} um -> {after:.2} um; noise 0.29 um");
+    }
     Ok(())
 }

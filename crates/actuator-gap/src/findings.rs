@@ -1,8 +1,8 @@
 //! `findings.json`: the findings in the form other programs read.
 
 use crate::diagnosis::Diagnosis;
-use model_gap::Candidate;
 use model_gap::discovery::{Confidence, Finding, FittedParameter, Verdict};
+use model_gap::{Candidate, Class};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -15,20 +15,29 @@ pub struct Findings {
     pub causes: Vec<String>,
     /// How sure the verdict is.
     pub confidence: Confidence,
+    /// What kind of effect is missing, of the leading cause; none where nothing is named.
+    pub class: Option<Class>,
+    /// The causes of that class that the data leave open, the leading one first.
+    pub class_members: Vec<String>,
+    /// How sure the class is: it may be sure where the cause is not.
+    pub class_confidence: Option<Confidence>,
     /// Parameters of every cause of [`Self::causes`], were it the one; the extended model has those of the first.
     pub parameters: BTreeMap<String, BTreeMap<String, ParameterValue>>,
     /// Whether the causes leave structure that they do not explain.
     pub structure_remains: bool,
     /// Measured runs that the base model misses by more than any surrogate there.
     pub standing_out: Vec<String>,
-    /// Error on held-out experiments.
-    pub gain: GainValue,
+    /// Error on held-out experiments; none where nothing is named, or where no run could be held out.
+    pub gain: Option<GainValue>,
     /// What to measure next.
     pub next_experiment: String,
     /// What was fitted in the place of each cause found, with its chi-square above that of the cause found.
     pub compared: Vec<ComparedValue>,
     /// Causes these data could not show.
     pub not_observable: Vec<String>,
+    /// Size of every cause, rms over that of the output, that these data would have shown with 90 % probability; none
+    /// of a cause that they cannot show.
+    pub would_have_shown: BTreeMap<String, Option<f64>>,
     /// The screening.
     pub screen: Vec<ScreenValue>,
 }
@@ -127,7 +136,6 @@ impl From<&Diagnosis> for Findings {
             causes.clear();
             parameters.clear();
         }
-        let gain = finding.gain;
         let compared = finding
             .causes
             .iter()
@@ -152,12 +160,20 @@ impl From<&Diagnosis> for Findings {
                 cosine: s.most_confused.map_or(0.0, |m| m.1),
             })
             .collect();
+        let named = d.candidates.iter().zip(&finding.limits).filter(|(own, _)| own.decoy.is_none());
+        let would_have_shown = named.map(|(own, limit)| (own.id.to_owned(), *limit)).collect();
+        let class = finding.class.as_ref();
         let mut not_observable = d.not_observable();
         not_observable.retain(|id| !causes.contains(id));
         Self {
             verdict: finding.verdict,
             causes,
             confidence: finding.confidence,
+            class: class.map(|own| own.class),
+            class_members: class
+                .map(|own| own.members.iter().map(|&c| id(c)).collect())
+                .unwrap_or_default(),
+            class_confidence: class.map(|own| own.confidence),
             parameters,
             structure_remains: finding.structure_remains,
             standing_out: finding
@@ -165,16 +181,17 @@ impl From<&Diagnosis> for Findings {
                 .iter()
                 .map(|run| d.run_ids[run.experiment].clone())
                 .collect(),
-            gain: GainValue {
+            gain: finding.gain.map(|gain| GainValue {
                 heldout_rms_before: gain.rms_before,
                 heldout_rms_after: gain.rms_after,
                 ci95: gain.drop_ci95,
                 ci95_other_experiments: gain.drop_elsewhere_ci95,
                 unit: d.output_unit.clone(),
-            },
+            }),
             next_experiment: d.next.id.clone(),
             compared,
             not_observable,
+            would_have_shown,
             screen,
         }
     }

@@ -1,6 +1,6 @@
 //! The records of a diagnosis, in the units of the bench.
 
-use measured_data::{BenchData, Fitting, LoopData, Run, RunRole, RunUse, Sensor};
+use measured_data::{Accuracy, BenchData, Fitting, LoopData, Run, RunRole, RunUse, Sensor};
 use rotor_base::{mean_square, variance};
 use std::ops::Range;
 
@@ -113,6 +113,8 @@ pub struct Records {
     pub output_label: String,
     /// Flap angle per output, deg/um, if it is an actuator and the data say it.
     pub deg_per_um: Option<f64>,
+    /// How well the channels keep their calibration from one session to the next.
+    pub accuracy: Accuracy,
     /// Whether this is an actuator bench.
     pub is_bench: bool,
     /// blake3 of the data.
@@ -158,6 +160,7 @@ impl From<&BenchData> for Records {
             input_label: "command_V".into(),
             output_label: "displacement_um".into(),
             deg_per_um: data.flap_deg_per_um,
+            accuracy: data.accuracy,
             is_bench: true,
             content_hash: data.content_hash.clone(),
         }
@@ -176,6 +179,7 @@ impl From<&LoopData> for Records {
             input_label: data.channels.input.label(),
             output_label: data.channels.output.label(),
             deg_per_um: None,
+            accuracy: Accuracy::EXACT,
             is_bench: false,
             content_hash: data.content_hash.clone(),
         }
@@ -216,6 +220,7 @@ mod tests {
             ],
             flap_deg_per_um: None,
             command_range_volt: (-20.0, 150.0),
+            accuracy: Accuracy::default(),
             warnings: vec![],
             content_hash: String::new(),
         };

@@ -3,13 +3,14 @@
 use crate::base::BaseModel;
 use crate::causes::{self, Design};
 use crate::diagnosis::{
-    Diagnosis, Question, StructureStore, diagnose, error_percent, range_of, search,
+    Diagnosis, Floors, Question, StructureStore, diagnose, error_percent, range_of, search,
 };
 use crate::error::DiagnosisError;
 use crate::extended::{USUAL_DEG_PER_UM, law_of_file};
 use crate::findings::{Findings, names};
 use crate::record::{Record, Records};
-use crate::simulator::BenchSimulator;
+use crate::simulator::{BenchSimulator, Setting};
+use measured_data::Accuracy;
 use model_gap::GapError;
 use model_gap::discovery::{Confidence, Settings, Verdict};
 use preisach_dyn::ActuatorModel;
@@ -36,8 +37,9 @@ pub struct Asked {
     pub lacks: Vec<String>,
     /// How sure they are.
     pub confidence: Confidence,
-    /// Held-out error before and after the cause named, rms, output's unit.
-    pub heldout_rms: [f64; 2],
+    /// Held-out error before and after the cause named, rms, output's unit; none where nothing was named, or no run
+    /// could be held out.
+    pub heldout_rms: Option<[f64; 2]>,
 }
 
 /// Straight line, static hysteresis of the slow runs and extended actuator; and the diagnosis that the last is made of.
@@ -68,7 +70,7 @@ pub fn rung_models(
         verdict: findings.verdict,
         lacks: findings.causes.clone(),
         confidence: findings.confidence,
-        heldout_rms: [findings.gain.heldout_rms_before, findings.gain.heldout_rms_after],
+        heldout_rms: findings.gain.map(|gain| [gain.heldout_rms_before, gain.heldout_rms_after]),
     };
     let deg_per_um = measured.deg_per_um.unwrap_or(USUAL_DEG_PER_UM);
     let inputs: Vec<Vec<f64>> = slow.iter().map(|r| r.input.clone()).collect();
@@ -93,16 +95,23 @@ fn asked_of_line(
     range: (f64, f64),
 ) -> Result<Asked, GapError> {
     let library = [causes::LIBRARY.as_slice(), &[causes::HYSTERESIS]].concat();
-    let design = Design::of(slow, measured.is_bench, true);
+    let design = Design::of(slow, slow, measured.is_bench);
     let candidates = causes::candidates(&library, &design);
-    let simulator = BenchSimulator::new(line, slow.to_vec(), &library, range)?;
+    let setting = Setting {
+        base: line,
+        references: Vec::new(),
+        causes: &library,
+        range,
+        accuracy: Accuracy::EXACT,
+    };
+    let simulator = BenchSimulator::new(setting, slow.to_vec())?;
     // one cause at a time: a second would mend the form of the first
     let settings = Settings { most_causes: 1, ..Settings::default() };
-    let finding = search(&simulator, &candidates, &[], &[], settings, None)?;
+    let finding = search(&simulator, &candidates, &Floors::default(), settings, None)?;
     Ok(Asked {
         verdict: finding.verdict,
         lacks: names(&finding, &candidates),
         confidence: finding.confidence,
-        heldout_rms: [finding.gain.rms_before, finding.gain.rms_after],
+        heldout_rms: finding.gain.map(|gain| [gain.rms_before, gain.rms_after]),
     })
 }

@@ -16,9 +16,9 @@ pub mod problem;
 mod tables;
 
 pub use dataset::{
-    BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet, DatasetFile,
-    DatasetKind, Fitting, LoopData, ReversalCurve, Run, RunFile, RunRole, RunUse, Sensor,
-    read_bench, read_curves, read_dataset, read_loops,
+    Accuracy, BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet,
+    DatasetFile, DatasetKind, DisplacementAccuracy, Fitting, LoopData, ReversalCurve, Run, RunFile,
+    RunRole, RunUse, Sensor, VoltageAccuracy, read_bench, read_curves, read_dataset, read_loops,
 };
 pub use error::DataError;
 pub use files::{

@@ -1,5 +1,7 @@
 //! What could be missing: causes as values.
 
+use serde::{Deserialize, Serialize};
+
 /// How a parameter is searched.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Scale {
@@ -28,6 +30,8 @@ pub struct Parameter {
     pub is_shape: bool,
     /// Whether it is an amount of the effect: at zero there is none.
     pub is_amount: bool,
+    /// Whether a weak effect grows in proportion to it, as with a lag or a width; an amount always does.
+    pub grows: bool,
     /// What must be measured besides before the value means anything; none if these data suffice. Without
     /// it only a product with something unknown is found, and the interval is the whole range.
     pub needs: Option<&'static str>,
@@ -97,6 +101,66 @@ impl Parameter {
     }
 }
 
+/// What kind of effect a cause has and where in the chain it acts: what data show more surely than which cause it is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Class {
+    /// A gain or a characteristic that acts at every rate alike.
+    StaticGain,
+    /// An offset in all runs.
+    Zero,
+    /// A lag or a delay between the command and the terminals.
+    LagBeforeTerminals,
+    /// A lag or a delay behind the terminals.
+    LagBehindTerminals,
+    /// A lag or a delay, where the terminal voltage was not measured.
+    Lag,
+    /// Motion lost at every reversal.
+    LostMotion,
+    /// Loops of another shape.
+    LoopShape,
+    /// A limited rate.
+    Slew,
+    /// A limited range.
+    Clip,
+    /// A slow change after a move or with warmth.
+    SlowDrift,
+    /// Gain lost under reverse voltage.
+    LossOfPolarisation,
+    /// A mode.
+    Resonance,
+    /// A line of its own frequency.
+    Line,
+    /// A channel beside the output that is off.
+    Monitor,
+    /// None of these.
+    #[default]
+    Other,
+}
+
+impl Class {
+    /// The class in words, as what was lost or added.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::StaticGain => "a change of static gain between the amplifier and the reading",
+            Self::Zero => "an offset of the reading",
+            Self::LagBeforeTerminals => "a lag between the command and the terminals",
+            Self::LagBehindTerminals => "a lag behind the terminals",
+            Self::Lag => "a lag, before or behind the terminals",
+            Self::LostMotion => "lost motion at every reversal",
+            Self::LoopShape => "loops of another shape",
+            Self::Slew => "a limited rate",
+            Self::Clip => "a limited range",
+            Self::SlowDrift => "a slow drift",
+            Self::LossOfPolarisation => "a loss of gain under reverse voltage",
+            Self::Resonance => "a resonance",
+            Self::Line => "a line of its own frequency in the reading",
+            Self::Monitor => "a voltage monitor that is off; the output is not",
+            Self::Other => "an effect of no class",
+        }
+    }
+}
+
 /// A cause, an effect the simulation may lack, made ready for one data set.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Candidate {
@@ -109,6 +173,15 @@ pub struct Candidate {
     /// Part of its effect by which this model of the cause is wrong along the effect itself, `>= 0`, such
     /// as 0.05: intervals of the parameters grow by what it does to them.
     pub form_error: f64,
+    /// What kind of effect it has, and where.
+    pub class: Class,
+    /// Whether these data hold the channel that tells it from the others of its class: without one of a pair being
+    /// told, no fit parts two of them.
+    pub is_told: bool,
+    /// Whether a bench of its kind shows it so often that "nothing is missing" must have looked for it.
+    pub is_common: bool,
+    /// Whether it acts on channels beside the output alone, so that no gain can be stated.
+    pub is_beside_output: bool,
     /// What the residual looks like.
     pub fingerprint: &'static str,
     /// Causes that look alike on ordinary data.
@@ -126,6 +199,15 @@ pub struct Candidate {
     /// What it would be, where it is a decoy: an unnamed alternative that is fitted like a cause, so that data
     /// which show it are not given the name of a similar cause. None for a cause that may be named.
     pub decoy: Option<&'static str>,
+}
+
+impl Candidate {
+    /// Whether it and another belong to one set that only a channel parts, and the data hold none that tells either:
+    /// gains that act at every rate alike.
+    pub fn is_one_set_with(&self, other: &Self) -> bool {
+        let is_gain = |own: &Self| own.class == Class::StaticGain && !own.is_told;
+        is_gain(self) && is_gain(other)
+    }
 }
 
 /// A cause switched on, with values of its parameters.

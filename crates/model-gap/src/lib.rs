@@ -42,8 +42,9 @@ mod noise;
 mod quantile;
 mod resampling;
 mod sine;
+mod trace;
 
-pub use cause::{Candidate, Effect, Parameter, Scale};
+pub use cause::{Candidate, Class, Effect, Parameter, Scale};
 pub use energy::EnergySplit;
 pub use error::GapError;
 pub use harmonics::{FirstHarmonicError, HarmonicFit};

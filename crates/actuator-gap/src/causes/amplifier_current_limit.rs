@@ -1,7 +1,7 @@
 //! Current limit of the amplifier.
 
 use super::cause::{BenchCause, logarithmic, singles, usual};
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 use preisach_dyn::{AmplifierStage, CurrentLimit};
 
 /// Current limit of the amplifier.
@@ -12,6 +12,8 @@ pub(super) const CAUSE: BenchCause = BenchCause {
             id: "amplifier-current-limit",
             physics: "The amplifier's current is limited into the capacitance, |V'| <= I / C.",
             parameters: vec![logarithmic("slew_rate", "V/s", 0.02 * fast_rate, 50.0 * fast_rate)],
+            class: Class::Slew,
+            is_common: true,
             fingerprint: "nothing below a threshold of amplitude times frequency, then triangular, third harmonic",
             confused_with: &["electrical-lag", "voltage-saturation", "rate-dependence"],
             separating: &["amplifier-monitor", "amplitude-sweep"],

@@ -1,32 +1,29 @@
-//! An amplifier of another gain, which is no cause of the library.
+//! An amplifier of another gain or zero.
 
 use super::cause::{BenchCause, amount, usual};
 use super::chain::Command;
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 
 /// A terminal voltage that follows the command by another gain and zero.
-///
-/// It stands among the candidates where the terminal voltage was measured, so that what an amplifier set anew does
-/// is not given the name of a load or of a characteristic of the sensor. Without a monitor nothing tells it from
-/// these.
 pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| {
         let (low, high) = design.input;
         let (span, middle) = (high - low, f64::midpoint(low, high));
         Candidate {
             id: "amplifier-gain",
-            physics: "The terminal voltage follows the command by another gain, V = (1 + rise) u + zero.",
+            physics: "The terminal voltage follows the command by another gain and zero, V = (1 + gain_error) u + zero.",
             parameters: vec![
-                amount("rise", "1", -0.5, 0.5),
+                amount("gain_error", "1", -0.5, 0.5),
                 amount("zero", "V", -0.2 * span, 0.2 * span),
             ],
-            fingerprint: "the input scaled before the hysteresis",
-            confused_with: &["load-stiffness", "sensor-nonlinearity"],
+            class: Class::StaticGain,
+            is_common: true,
+            is_told: design.monitored_runs > 0,
+            fingerprint: "the input scaled before the hysteresis, of either sign",
+            confused_with: &["load-stiffness", "sensor-gain", "sensor-nonlinearity"],
             separating: &["amplifier-monitor"],
             starts: [0.02, -0.02].map(|g| [vec![g, 0.0], vec![g, -g * middle]]).concat(),
-            blocked: (design.monitored_runs == 0)
-                .then(|| "without the terminal voltage nothing tells it from a load".to_owned()),
-            decoy: Some("an amplifier set anew"),
+            blocked: design.no_reference(),
             ..usual()
         }
     },

@@ -1,7 +1,7 @@
 //! Backlash in the lever.
 
-use super::cause::{BenchCause, logarithmic, singles, usual};
-use model_gap::Candidate;
+use super::cause::{BenchCause, growing, logarithmic, singles, usual};
+use model_gap::{Candidate, Class};
 use preisach_dyn::{Backlash, LinkageStage};
 
 /// Backlash in the lever.
@@ -11,7 +11,8 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         Candidate {
             id: "backlash",
             physics: "Lost motion in a joint: the output stands until the gap is taken up; a free density absorbs it.",
-            parameters: vec![logarithmic("width", "um", of_stroke(1e-4), of_stroke(0.5))],
+            parameters: vec![growing(logarithmic("width", "um", of_stroke(1e-4), of_stroke(0.5)))],
+            class: Class::LostMotion,
             fingerprint: "flat after every reversal, relatively larger at small motion",
             confused_with: &["coulomb-friction"],
             separating: &["preload", "small-motion"],

@@ -30,6 +30,11 @@ pub(super) fn logarithmic(
     Parameter { scale: Scale::Log, ..linear(name, unit, low, high) }
 }
 
+/// A parameter that a weak effect grows in proportion to.
+pub(super) fn growing(parameter: Parameter) -> Parameter {
+    Parameter { grows: true, ..parameter }
+}
+
 /// A parameter searched on a straight scale.
 pub(super) fn linear(name: &'static str, unit: &'static str, low: f64, high: f64) -> Parameter {
     Parameter { name, unit, low, high, ..Parameter::default() }

@@ -17,6 +17,8 @@ use preisach_dyn::{
 pub(crate) struct Chain {
     pub(crate) front: FrontStages,
     pub(crate) rear: RearStages,
+    /// Gain and zero of the voltage monitor, where they are others.
+    pub(crate) monitor: Option<Command>,
 }
 
 /// What acts before or in the law.
@@ -24,6 +26,8 @@ pub(crate) struct Chain {
 pub(crate) struct FrontStages {
     /// The gain between command and terminals, where it is another.
     pub(crate) command: Option<Command>,
+    /// Time by which the terminals follow the command late, where they do, s.
+    pub(crate) late_s: Option<f64>,
     /// Stages before the law. Heat and loss of polarisation act on the gain of its output.
     pub(crate) amplifier: Vec<AmplifierStage>,
     /// The point that the gain of heat acts about, from 0 V (0) to the middle of the range (1).
@@ -39,8 +43,6 @@ pub(crate) struct FrontStages {
 /// What acts behind the base model.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct RearStages {
-    /// A factor on every output.
-    pub(crate) gain: Option<f64>,
     /// Stages of the linkage.
     pub(crate) linkage: Vec<LinkageStage>,
     /// Stages of the bench sensor. The phase of mains hum is that of each record.
@@ -49,12 +51,12 @@ pub(crate) struct RearStages {
     pub(crate) readings: Vec<Reading>,
 }
 
-/// A command that reaches the terminals by another gain.
+/// A voltage that is passed on with another gain and zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Command {
     /// The gain.
     pub(crate) gain: f64,
-    /// Terminal voltage of no command, V.
+    /// What is passed on of no voltage, V.
     pub(crate) zero_volt: f64,
 }
 
@@ -85,6 +87,13 @@ impl RearStages {
             SensorStage::MainsHum(hum) => Some(hum),
             _ => None,
         }
+    }
+}
+
+impl Command {
+    /// What is passed on of a voltage, V.
+    pub(crate) fn of(&self, volt: f64) -> f64 {
+        self.gain * volt + self.zero_volt
     }
 }
 

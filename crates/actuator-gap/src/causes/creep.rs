@@ -1,7 +1,7 @@
 //! Creep beyond that of the reference runs.
 
 use super::cause::{BenchCause, amount, logarithmic, shape, usual};
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 use preisach_dyn::{LinkageStage, LogCreep};
 
 /// Creep beyond that of the reference runs.
@@ -13,6 +13,8 @@ pub(super) const CAUSE: BenchCause = BenchCause {
             amount("rate_per_decade", "1", 0.0, 0.3),
             shape(logarithmic("from", "s", 1e-3, 3.0)),
         ],
+        class: Class::SlowDrift,
+        is_common: true,
         fingerprint: "grows as frequency falls, linear in amplitude, a straight line in log t after a step",
         confused_with: &["dielectric-heating", "load-stiffness", "rate-dependence"],
         separating: &["hold-steps-100s"],

@@ -1,7 +1,7 @@
 //! Polarisation lost under reverse voltage.
 
 use super::cause::{BenchCause, linear, logarithmic, shape, usual};
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 use preisach_dyn::{AmplifierStage, Depolarisation};
 
 /// Polarisation lost under reverse voltage.
@@ -22,6 +22,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
                 shape(logarithmic("loss_per_volt_second", "1/(V s)", 1e-6, 1.0)),
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
+            class: Class::LossOfPolarisation,
             fingerprint: "a gain that falls with the time below the threshold and stays lost",
             confused_with: &["voltage-saturation", "sensor-nonlinearity", "load-stiffness"],
             separating: &["bias-sweep"],

@@ -25,8 +25,14 @@ pub(crate) struct Design {
     pub(crate) monitored_runs: usize,
     /// Whether a thermometer was read.
     pub(crate) has_temperature: bool,
-    /// Load over displacement as a load cell saw it, N/um, and its standard error; none without a load cell.
+    /// Number of measured runs that a second, ideal sensor read.
+    pub(crate) second_sensor_runs: usize,
+    /// Load over displacement as a load cell saw it beyond that of the reference runs, N/um, and its standard error;
+    /// none without a load cell.
     pub(crate) load_per_um: Option<(f64, f64)>,
+    /// Load cells that read a load in the reference runs already do not tell a new load: a sensor that reads low shows
+    /// more load per displacement too. Number of measured runs with one that does.
+    pub(crate) load_told_runs: usize,
     /// Whether it is an actuator bench, with volt and um.
     pub(crate) is_bench: bool,
     /// Whether reference runs fix the base model.
@@ -34,7 +40,7 @@ pub(crate) struct Design {
 }
 
 impl Design {
-    pub(crate) fn of(runs: &[&Record], is_bench: bool, has_reference: bool) -> Self {
+    pub(crate) fn of(runs: &[&Record], references: &[&Record], is_bench: bool) -> Self {
         let output = range(runs.iter().flat_map(|r| r.judged_output()));
         let mut rates: Vec<f64> = runs
             .iter()
@@ -58,9 +64,15 @@ impl Design {
             only_hz,
             monitored_runs: runs.iter().filter(|r| r.amplifier.is_some()).count(),
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
-            load_per_um: load_per_um(runs),
+            second_sensor_runs: runs.iter().filter(|r| r.has_ideal_sensor()).count(),
+            load_per_um: load_beyond(runs, references),
+            load_told_runs: if reads_load(references) {
+                0
+            } else {
+                runs.iter().filter(|r| r.load.is_some()).count()
+            },
             is_bench,
-            has_reference,
+            has_reference: !references.is_empty(),
         }
     }
 
@@ -78,6 +90,25 @@ impl Design {
         })
     }
 }
+
+/// Standard errors that the slope of a load cell must stand out by.
+pub(super) const SHOWS: f64 = 5.0;
+
+/// Whether a load follows the displacement in runs.
+pub(crate) fn reads_load(runs: &[&Record]) -> bool {
+    load_per_um(runs).is_some_and(|(slope, error)| slope.abs() > SHOWS * error)
+}
+
+/// How far the load follows the displacement beyond what it did in the reference runs. A spring that was always there
+/// is part of the actuator; a load cell is trusted to [`LOAD_CELL_ERROR`] of what it reads.
+fn load_beyond(runs: &[&Record], references: &[&Record]) -> Option<(f64, f64)> {
+    let (slope, error) = load_per_um(runs)?;
+    let (before, error_before) = load_per_um(references).unwrap_or_default();
+    Some((slope - before, error.hypot(error_before).hypot(LOAD_CELL_ERROR * before)))
+}
+
+/// Part of its reading that a load cell is trusted to.
+const LOAD_CELL_ERROR: f64 = 0.01;
 
 /// Slope of the load against the displacement over all runs with a load cell, each about its means, and its
 /// standard error.

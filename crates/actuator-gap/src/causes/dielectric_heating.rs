@@ -2,7 +2,7 @@
 
 use super::cause::{BenchCause, amount, linear, logarithmic, shape, usual};
 use super::design::Design;
-use model_gap::{Candidate, Parameter};
+use model_gap::{Candidate, Class, Parameter};
 use preisach_dyn::{AmplifierStage, DielectricHeating};
 
 /// Longest run from which on warming may show where no thermometer was read, s: a third of the shortest
@@ -23,6 +23,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
                 Parameter { needs, ..amount("coefficient", "1/K", -0.05, 0.5) },
                 shape(linear("about", "1", -0.5, 1.5)),
             ],
+            class: Class::SlowDrift,
             fingerprint: "slow scaling ordered by the dose of f V^2, not by the time since a step",
             confused_with: &["creep", "load-stiffness"],
             separating: &["cold-hot-cold"],

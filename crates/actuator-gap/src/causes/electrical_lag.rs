@@ -1,7 +1,7 @@
 //! Electrical lag of amplifier and ceramic.
 
-use super::cause::{BenchCause, LAGS_S, logarithmic, singles, usual};
-use model_gap::Candidate;
+use super::cause::{BenchCause, LAGS_S, growing, logarithmic, singles, usual};
+use model_gap::{Candidate, Class};
 use preisach_dyn::{AmplifierStage, Lag};
 
 /// Electrical lag of amplifier and ceramic.
@@ -9,7 +9,9 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| Candidate {
         id: "electrical-lag",
         physics: "Output resistance of the amplifier into the capacitance of the ceramic, tau V' + V = u, tau = R C.",
-        parameters: vec![logarithmic("tau", "s", 1e-5, 0.05)],
+        parameters: vec![growing(logarithmic("tau", "s", 1e-5, 0.05))],
+        class: Class::LagBeforeTerminals,
+        is_common: true,
         fingerprint: "phase -atan(w tau) before the hysteresis, so that reversal points shrink",
         confused_with: &["transport-delay", "sensor-filter", "rate-dependence"],
         separating: &["amplifier-monitor", "multisine-5-181Hz"],

@@ -2,7 +2,7 @@
 
 use super::cause::{BenchCause, amount, logarithmic, shape, usual};
 use super::chain::Loops;
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 
 /// Static hysteresis, a candidate where the base model has none.
 pub(crate) const CAUSE: BenchCause = BenchCause {
@@ -15,6 +15,7 @@ pub(crate) const CAUSE: BenchCause = BenchCause {
                 amount("share", "1", 0.0, 1.5),
                 shape(logarithmic("widest", "um", of_stroke(0.02), of_stroke(2.0))),
             ],
+            class: Class::LoopShape,
             fingerprint: "loops as wide when slow as when fast, wider than in proportion at large amplitude",
             confused_with: &["backlash", "coulomb-friction", "creep"],
             separating: &["amplitude-sweep", "frequency-sweep"],

@@ -1,12 +1,9 @@
 //! Stiffness of the load.
 
 use super::cause::{BenchCause, amount, singles, usual};
-use super::design::Design;
-use model_gap::Candidate;
+use super::design::{Design, SHOWS};
+use model_gap::{Candidate, Class};
 use preisach_dyn::{LinkageStage, LoadStiffness};
-
-/// Standard errors that the slope of a load cell must stand out by.
-const SHOWS: f64 = 5.0;
 
 /// Stiffness of the load.
 pub(super) const CAUSE: BenchCause = BenchCause {
@@ -14,9 +11,18 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         id: "load-stiffness",
         physics: "A load spring takes part of the stroke, y = h k_a / (k_a + k_load).",
         parameters: vec![amount("stiffness_ratio", "1", 0.0, 2.0)],
-        fingerprint: "pure gain, no harmonics",
-        confused_with: &["dielectric-heating", "creep", "sensor-nonlinearity"],
-        separating: &["laser-cross-check", "bias-sweep"],
+        class: Class::StaticGain,
+        is_common: true,
+        is_told: design.load_told_runs > 0,
+        fingerprint: "pure gain below 1, no harmonics",
+        confused_with: &[
+            "amplifier-gain",
+            "sensor-gain",
+            "dielectric-heating",
+            "creep",
+            "sensor-nonlinearity",
+        ],
+        separating: &["laser-cross-check", "amplifier-monitor"],
         starts: singles([0.01, 0.05]),
         blocked: design.no_reference(),
         refuted: refuted(design),
@@ -34,7 +40,7 @@ fn refuted(design: &Design) -> Option<String> {
     let (slope, error) = design.load_per_um?;
     (slope.abs() < SHOWS * error).then(|| {
         format!(
-            "the load cell reads no load that follows the displacement: {slope:.1e} N/um, give or take {error:.1e}"
+            "the load cell reads no load that follows the displacement beyond that of the reference runs: {slope:.1e} N/um, give or take {error:.1e}"
         )
     })
 }

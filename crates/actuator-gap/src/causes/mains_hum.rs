@@ -1,8 +1,8 @@
 //! Mains frequency in the reading.
 
-use super::cause::{BenchCause, linear, logarithmic, usual};
+use super::cause::{BenchCause, growing, linear, logarithmic, usual};
 use super::design::Design;
-use model_gap::{Candidate, Parameter};
+use model_gap::{Candidate, Class, Parameter};
 use preisach_dyn::{MainsHum, SensorStage};
 
 /// Mains frequency in the reading.
@@ -11,13 +11,15 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         id: "mains-hum",
         physics: "Mains frequency in the reading, A sin(2 pi f t + phase), its phase another in every record.",
         parameters: vec![
-            logarithmic("amplitude", "um", 1e-5 * design.half_stroke, design.half_stroke),
+            growing(logarithmic("amplitude", "um", 1e-5 * design.half_stroke, design.half_stroke)),
             // a phase turns over the length of a run: the slope is that of a small part of a turn
             Parameter {
                 step: Some(0.02 / design.longest_s),
                 ..linear("frequency", "Hz", 45.0, 65.0)
             },
         ],
+        class: Class::Line,
+        is_common: true,
         fingerprint: "a line fixed in Hz, present without input, not locked to the excitation",
         confused_with: &["mechanical-resonance"],
         separating: &["zero-input-record"],

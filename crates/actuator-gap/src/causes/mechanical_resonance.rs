@@ -2,7 +2,7 @@
 
 use super::cause::{BenchCause, logarithmic, usual};
 use super::design::Design;
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 use preisach_dyn::{LinkageStage, Resonance};
 
 /// Highest frequency of a first mode, Hz. One above the runs shows by its tail, (f / fn)^2.
@@ -17,6 +17,8 @@ pub(super) const CAUSE: BenchCause = BenchCause {
             logarithmic("frequency", "Hz", 20.0, HIGHEST_HZ),
             logarithmic("damping_ratio", "1", 1e-3, 0.2),
         ],
+        class: Class::Resonance,
+        is_common: true,
         fingerprint: "gain growing as (f / fn)^2, ringing after steps",
         confused_with: &["sensor-filter", "electrical-lag", "transport-delay"],
         separating: &["ring-down", "multisine-5-181Hz"],

@@ -4,6 +4,7 @@
 //! must contain before it can be seen, and where a search for its parameters should begin.
 
 mod amplifier_current_limit;
+mod amplifier_delay;
 mod amplifier_gain;
 mod backlash;
 mod cause;
@@ -14,30 +15,32 @@ mod depolarisation;
 mod design;
 mod dielectric_heating;
 mod electrical_lag;
-mod gain_rise;
 mod hysteresis;
 mod load_stiffness;
 mod mains_hum;
 mod mechanical_resonance;
+mod monitor_calibration;
 mod rate_dependence;
 mod reading;
 mod reading_range;
 mod reading_rate;
 mod sensor_filter;
+mod sensor_gain;
 mod sensor_nonlinearity;
+mod sensor_zero;
 mod transport_delay;
 mod voltage_saturation;
 
 pub(crate) use cause::BenchCause;
 pub(crate) use chain::{Chain, Command, FrontStages, Loops, Rate, RearStages};
-pub(crate) use design::Design;
+pub(crate) use design::{Design, reads_load};
 pub(crate) use hysteresis::looped;
 pub(crate) use rate_dependence::rate_dependent;
 
-use model_gap::{Candidate, Effect};
+use model_gap::{Candidate, Class, Effect};
 
 /// Every cause of the library.
-pub(crate) const LIBRARY: [BenchCause; 15] = [
+pub(crate) const LIBRARY: [BenchCause; 19] = [
     creep::CAUSE,
     rate_dependence::CAUSE,
     electrical_lag::CAUSE,
@@ -53,12 +56,16 @@ pub(crate) const LIBRARY: [BenchCause; 15] = [
     sensor_filter::CAUSE,
     sensor_nonlinearity::CAUSE,
     mains_hum::CAUSE,
+    amplifier_gain::CAUSE,
+    sensor_gain::CAUSE,
+    sensor_zero::CAUSE,
+    monitor_calibration::CAUSE,
 ];
 
 /// Decoys: what can be wrong on a bench without being a cause of the library. They are candidates too, so that data
 /// which show one of them are not given the name of a similar cause.
-pub(crate) const DECOYS: [BenchCause; 4] =
-    [gain_rise::CAUSE, amplifier_gain::CAUSE, reading_range::CAUSE, reading_rate::CAUSE];
+pub(crate) const DECOYS: [BenchCause; 3] =
+    [amplifier_delay::CAUSE, reading_range::CAUSE, reading_rate::CAUSE];
 
 /// Hysteresis, a candidate where the base model has none.
 pub(crate) const HYSTERESIS: BenchCause = hysteresis::CAUSE;
@@ -68,7 +75,14 @@ pub(crate) fn candidates(causes: &[BenchCause], design: &Design) -> Vec<Candidat
     let one = |cause: &BenchCause| {
         let own = (cause.candidate)(design);
         let starts = if own.blocked.is_some() { Vec::new() } else { own.starts };
-        Candidate { starts, ..own }
+        let class = match own.class {
+            // the terminal voltage alone says where a lag is
+            Class::LagBeforeTerminals | Class::LagBehindTerminals if design.monitored_runs == 0 => {
+                Class::Lag
+            }
+            class => class,
+        };
+        Candidate { starts, class, ..own }
     };
     causes.iter().map(one).collect()
 }
@@ -93,11 +107,11 @@ mod tests {
             .collect();
         let output = input.iter().map(|u| 2.5 * u).collect();
         let run = Record::new("a", 0.01, input, output);
-        Design::of(&[&run], true, true)
+        Design::of(&[&run], &[&run], true)
     }
 
     /// The names and units other programs read; parameters of form are not among them.
-    const REPORTED: [(&str, &[(&str, &str)]); 15] = [
+    const REPORTED: [(&str, &[(&str, &str)]); 19] = [
         ("creep", &[("rate_per_decade", "1")]),
         ("rate-dependence", &[("tau", "s")]),
         ("electrical-lag", &[("tau", "s")]),
@@ -113,6 +127,10 @@ mod tests {
         ("sensor-filter", &[("tau", "s")]),
         ("sensor-nonlinearity", &[("amplitude", "um")]),
         ("mains-hum", &[("amplitude", "um"), ("frequency", "Hz")]),
+        ("amplifier-gain", &[("gain_error", "1"), ("zero", "V")]),
+        ("sensor-gain", &[("gain_error", "1")]),
+        ("sensor-zero", &[("zero", "um")]),
+        ("monitor-calibration", &[("gain_error", "1"), ("zero", "V")]),
     ];
 
     #[test]
@@ -145,16 +163,26 @@ mod tests {
     #[test]
     fn a_load_cell_that_reads_nothing_refutes_a_load() {
         let output: Vec<f64> = (0..2000).map(|i| 80.0 * (0.03 * f64::from(i)).sin()).collect();
-        let refuted = |newton_per_um: f64| {
+        let run = |newton_per_um: f64| {
             let noise = |i: usize| 0.4 * ((i * 7919 % 1013) as f64 / 506.0 - 1.0);
             let load = output.iter().enumerate().map(|(i, y)| newton_per_um * y + noise(i));
-            let run = Record {
+            Record {
                 load: Some(load.collect()),
                 ..Record::new("a", 0.01, output.clone(), output.clone())
-            };
-            (load_stiffness::CAUSE.candidate)(&Design::of(&[&run], true, true)).refuted.is_some()
+            }
         };
-        assert_eq!([0.0, 0.002, -0.002].map(refuted), [true, false, false]);
+        let refuted = |before: f64, now: f64| {
+            let design = Design::of(&[&run(now)], &[&run(before)], true);
+            (load_stiffness::CAUSE.candidate)(&design).refuted.is_some()
+        };
+        assert_eq!([0.0, 0.002, -0.002].map(|now| refuted(0.0, now)), [true, false, false]);
+        // a spring that was always there is no new load, and its load cell tells none
+        assert_eq!([0.02, 0.025].map(|now| refuted(0.02, now)), [true, false]);
+        let told = |before: f64| {
+            let design = Design::of(&[&run(0.025)], &[&run(before)], true);
+            (load_stiffness::CAUSE.candidate)(&design).is_told
+        };
+        assert_eq!([0.0, 0.02].map(told), [true, false]);
         let unseen = (load_stiffness::CAUSE.candidate)(&design());
         assert!(unseen.refuted.is_none(), "no load cell says nothing");
     }
@@ -163,7 +191,7 @@ mod tests {
     fn one_frequency_says_nothing_about_rate() {
         let input: Vec<f64> = (0..4000).map(|i| 150.0 * (0.0628 * f64::from(i)).sin()).collect();
         let run = Record::new("a", 0.01, input.clone(), input);
-        let design = Design::of(&[&run], true, false);
+        let design = Design::of(&[&run], &[], true);
         for cause in candidates(&LIBRARY, &design) {
             let about_rate = [
                 "creep",

@@ -1,8 +1,8 @@
 //! Rate dependence of the hysteresis.
 
-use super::cause::{BenchCause, LAGS_S, linear, logarithmic, shape, usual};
+use super::cause::{BenchCause, LAGS_S, growing, linear, logarithmic, shape, usual};
 use super::chain::Rate;
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 
 /// Rate dependence of the hysteresis.
 pub(super) const CAUSE: BenchCause = BenchCause {
@@ -10,9 +10,10 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         id: "rate-dependence",
         physics: "Domains take time: the law relaxes towards its static value, with a time that depends on its state.",
         parameters: vec![
-            logarithmic("tau", "s", 1e-5, 0.05),
+            growing(logarithmic("tau", "s", 1e-5, 0.05)),
             shape(linear("position", "1", -0.6, 0.6)),
         ],
+        class: Class::LagBehindTerminals,
         fingerprint: "phase and loop area grow with frequency and depend on amplitude and place; odd harmonics",
         confused_with: &["electrical-lag", "transport-delay", "sensor-filter"],
         separating: &["multisine-5-181Hz", "amplitude-sweep", "laser-cross-check"],

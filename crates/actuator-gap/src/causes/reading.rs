@@ -1,8 +1,12 @@
 //! What a sensor can read of a motion.
 
-/// What a sensor can read.
+/// What a sensor makes of a motion: a gain and a zero, then what it can read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reading {
+    /// Reading over motion.
+    pub(super) gain: f64,
+    /// Reading of no motion, output's unit.
+    pub(super) zero: f64,
     /// Highest reading, output's unit.
     pub(super) most: f64,
     /// Lowest reading, output's unit.
@@ -12,15 +16,20 @@ pub(crate) struct Reading {
 }
 
 impl Reading {
-    pub(super) const FREE: Self =
-        Self { most: f64::INFINITY, least: f64::NEG_INFINITY, fastest: f64::INFINITY };
+    pub(super) const FREE: Self = Self {
+        gain: 1.0,
+        zero: 0.0,
+        most: f64::INFINITY,
+        least: f64::NEG_INFINITY,
+        fastest: f64::INFINITY,
+    };
 
     /// What it reads of a motion.
     pub(crate) fn of(&self, motion: &[f64], step_s: f64) -> Vec<f64> {
         let most = self.fastest * step_s;
-        let mut read = motion.first().copied().unwrap_or_default();
-        motion
-            .iter()
+        let shown = || motion.iter().map(|x| self.gain * x + self.zero);
+        let mut read = shown().next().unwrap_or_default();
+        shown()
             .map(|y| {
                 read += (y - read).clamp(-most, most);
                 read.min(self.most).max(self.least)
@@ -41,6 +50,8 @@ mod tests {
             Reading { most: 8.0, least: -9.0, ..Reading::FREE }.of(&motion, 0.1),
             [0.0, 8.0, 8.0, 8.0, -9.0]
         );
+        let other = Reading { gain: 1.1, zero: 0.5, ..Reading::FREE };
+        assert_abs_diff_eq!(other.of(&motion, 0.1)[1], 11.5, epsilon = 1e-12);
         let late = Reading { fastest: 40.0, ..Reading::FREE }.of(&motion, 0.1);
         for (read, expected) in late.iter().zip([0.0, 4.0, 8.0, 10.0, 6.0]) {
             assert_abs_diff_eq!(*read, expected, epsilon = 1e-12);

@@ -2,7 +2,7 @@
 
 use super::cause::{BenchCause, linear, usual};
 use super::reading::Reading;
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 
 /// A reading clipped at the ends of the range of the sensor.
 ///
@@ -21,6 +21,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
                 linear("most", "um", middle, high + 0.1 * span),
                 linear("least", "um", low - 0.1 * span, middle),
             ],
+            class: Class::Clip,
             fingerprint: "flat tops at one reading, whatever the voltage",
             confused_with: &["voltage-saturation", "sensor-nonlinearity"],
             separating: &["amplifier-monitor", "laser-cross-check"],

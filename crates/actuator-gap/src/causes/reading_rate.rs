@@ -2,7 +2,7 @@
 
 use super::cause::{BenchCause, logarithmic, singles, usual};
 use super::reading::Reading;
-use model_gap::Candidate;
+use model_gap::{Candidate, Class};
 
 /// A reading of limited rate.
 ///
@@ -17,6 +17,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
             id: "reading-rate",
             physics: "The reading follows the motion no faster than the sensor can, |y'| <= fastest.",
             parameters: vec![logarithmic("fastest", "um/s", 0.02 * usual_rate, 50.0 * usual_rate)],
+            class: Class::Slew,
             fingerprint: "nothing below a rate of the motion, then triangular, third harmonic",
             confused_with: &["amplifier-current-limit", "sensor-filter"],
             separating: &["amplifier-monitor", "laser-cross-check"],

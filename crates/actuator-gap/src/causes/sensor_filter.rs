@@ -1,7 +1,7 @@
 //! Filter of the sensor.
 
-use super::cause::{BenchCause, LAGS_S, linear, logarithmic, shape, usual};
-use model_gap::Candidate;
+use super::cause::{BenchCause, LAGS_S, growing, linear, logarithmic, shape, usual};
+use model_gap::{Candidate, Class};
 use preisach_dyn::{Lag, SensorStage};
 
 /// Filter of the sensor.
@@ -13,9 +13,11 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         id: "sensor-filter",
         physics: "Low-pass filter of the displacement sensor, (1 + (1 - c) tau s)(1 + c tau s) y = x.",
         parameters: vec![
-            logarithmic("tau", "s", 1e-5, 0.05),
+            growing(logarithmic("tau", "s", 1e-5, 0.05)),
             shape(linear("second_share", "1", 0.0, 0.5)),
         ],
+        class: Class::LagBehindTerminals,
+        is_common: true,
         fingerprint: "a lag of the reading behind everything else, amplitude and phase",
         confused_with: &["transport-delay", "electrical-lag", "rate-dependence"],
         separating: &["laser-cross-check", "multisine-5-181Hz"],

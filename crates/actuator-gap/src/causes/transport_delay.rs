@@ -1,7 +1,7 @@
 //! Transport delay of the reading.
 
-use super::cause::{BenchCause, LAGS_S, logarithmic, singles, usual};
-use model_gap::Candidate;
+use super::cause::{BenchCause, LAGS_S, growing, logarithmic, singles, usual};
+use model_gap::{Candidate, Class};
 use preisach_dyn::{Delay, SensorStage};
 
 /// Transport delay of the reading.
@@ -9,7 +9,9 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| Candidate {
         id: "transport-delay",
         physics: "The reading comes late, y(t - T).",
-        parameters: vec![logarithmic("delay", "s", 1e-5, 0.05)],
+        parameters: vec![growing(logarithmic("delay", "s", 1e-5, 0.05))],
+        class: Class::LagBehindTerminals,
+        is_common: true,
         fingerprint: "phase exactly straight in frequency, gain 1",
         confused_with: &["electrical-lag", "sensor-filter", "rate-dependence"],
         separating: &["multisine-5-181Hz", "laser-cross-check"],

@@ -1,7 +1,7 @@
 //! Voltage limits of the amplifier.
 
 use super::cause::{BenchCause, linear, shape, usual};
-use model_gap::{Candidate, Parameter};
+use model_gap::{Candidate, Class, Parameter};
 use preisach_dyn::{AmplifierStage, Saturation};
 
 /// Half-width of the widest knee over the range of the inputs.
@@ -45,6 +45,8 @@ pub(super) const CAUSE: BenchCause = BenchCause {
                     ..shape(linear("knee", "V", 0.0, WIDEST_KNEE * span))
                 },
             ],
+            class: Class::Clip,
+            is_common: true,
             fingerprint: "depends on amplitude only, flat tops; one-sided gives even harmonics",
             confused_with: &["depolarisation", "sensor-nonlinearity"],
             separating: &["amplifier-monitor", "amplitude-sweep"],

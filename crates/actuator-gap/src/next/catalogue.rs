@@ -39,8 +39,24 @@ fn one(id: &'static str, what: &'static str, step_s: f64, input: Vec<f64>) -> Ex
 }
 
 /// Every experiment that can be worked out, for the measured runs at hand.
-pub(super) fn catalogue(span: Span, runs: &[&Record], is_bench: bool) -> Vec<Experiment> {
+pub(super) fn catalogue(
+    span: Span,
+    runs: &[&Record],
+    references: &[&Record],
+    is_bench: bool,
+) -> Vec<Experiment> {
     let mut catalogue = fast(span);
+    if !references.is_empty() {
+        let again = |r: &&Record| {
+            let (sensor, fitting) = (r.sensor, r.fitting);
+            Record { sensor, fitting, ..run(&r.id, r.step_s, r.input.clone()) }
+        };
+        catalogue.push(experiment(
+            "repeat-reference",
+            "the reference runs again, today, with the same commands: what changed shows without any model",
+            references.iter().map(again).collect(),
+        ));
+    }
     catalogue.extend(slow_and_small(span));
     catalogue.extend(other_fittings(span, runs));
     if is_bench {

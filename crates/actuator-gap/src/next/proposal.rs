@@ -9,10 +9,9 @@
 
 use super::catalogue::{Experiment, catalogue};
 use super::excitation::Span;
-use crate::base::BaseModel;
-use crate::causes::{BenchCause, Design, chain_under};
+use crate::causes::{self, Design, chain_under};
 use crate::record::{Record, frequency_hz};
-use crate::simulator::{BenchSimulator, ChannelKind};
+use crate::simulator::{BenchSimulator, ChannelKind, Setting};
 use measured_data::Sensor;
 use model_gap::discovery::{
     Finding, Found, Rival, Separation, Verdict, needed_to_separate, separations,
@@ -37,19 +36,18 @@ pub struct Proposal {
 
 /// What a proposal is worked out from.
 pub(crate) struct Bench<'a> {
-    pub(crate) base: &'a BaseModel,
-    pub(crate) library: &'a [BenchCause],
+    pub(crate) setting: Setting<'a>,
     pub(crate) candidates: &'a [Candidate],
     pub(crate) runs: &'a [&'a Record],
     pub(crate) design: &'a Design,
-    pub(crate) range: (f64, f64),
 }
 
 /// The experiment that tells the remaining explanations apart best.
 pub(crate) fn proposal(bench: &Bench<'_>, finding: &Finding) -> Result<Proposal, GapError> {
     let (low, high) = bench.design.input;
     let span = Span { middle: f64::midpoint(low, high), half: 0.5 * (high - low) };
-    let catalogue = catalogue(span, bench.runs, bench.design.is_bench);
+    let references = &bench.setting.references;
+    let catalogue = catalogue(span, bench.runs, references, bench.design.is_bench);
     let open = finding.causes.iter().max_by_key(|found| found.rivals.len());
     let Some(open) = open.filter(|found| found.rivals.len() > 1) else {
         let usual = usual(finding, bench, &catalogue);
@@ -159,11 +157,25 @@ fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<P
             record.temperature = Some(warmth(bench, &open.rivals, record)?);
         }
     }
-    let runs: Vec<&Record> = records.iter().collect();
-    let mut simulator = BenchSimulator::new(bench.base, runs, bench.library, bench.range)?;
+    let mut simulator = BenchSimulator::new(bench.setting.clone(), records.iter().collect())?;
     simulator.channels.retain(|channel| shows(channel.kind));
     let found = separations(&simulator, &simulator.traces(), bench.candidates, &open.rivals)?;
-    Ok(Parting::of(&found, open.output_drop))
+    let mut parting = Parting::of(&found, open.output_drop);
+    // what no fit parts needs a channel that the experiment adds
+    let design = Design::of(
+        &records.iter().collect::<Vec<_>>(),
+        &bench.setting.references,
+        bench.design.is_bench,
+    );
+    let told = causes::candidates(bench.setting.causes, &design);
+    for (a, one) in open.rivals.iter().enumerate() {
+        for (b, other) in open.rivals.iter().enumerate() {
+            if a != b && told[one.candidate].is_one_set_with(&told[other.candidate]) {
+                parting.0[a][b] = 0.0;
+            }
+        }
+    }
+    Ok(parting)
 }
 
 /// A planned run of the base model, with its noise: that noise is what a distance is measured by.
@@ -172,9 +184,9 @@ fn undisturbed(bench: &Bench<'_>, planned: &Record) -> Record {
     let of_name =
         planned.id.bytes().fold(0, |sum: u64, b| sum.wrapping_mul(31).wrapping_add(b.into()));
     let mut noise = SplitMix(0x0F1E_2D3C ^ of_name);
-    let mut output = bench.base.predict(&planned.input, planned.step_s);
+    let mut output = bench.setting.base.predict(&planned.input, planned.step_s);
     for y in &mut output {
-        *y += bench.base.noise * noise.normal();
+        *y += bench.setting.base.noise * noise.normal();
     }
     Record { window: 0..output.len(), output, ..planned.clone() }
 }
@@ -182,7 +194,7 @@ fn undisturbed(bench: &Bench<'_>, planned: &Record) -> Record {
 /// The temperature that a rival expects: a thermometer shows the heat of the one that has any.
 fn warmth(bench: &Bench<'_>, rivals: &[Rival], record: &Record) -> Result<Vec<f64>, GapError> {
     let is_heat = |effect: &&Effect| {
-        let chain = chain_under(bench.library, std::slice::from_ref(effect));
+        let chain = chain_under(bench.setting.causes, std::slice::from_ref(effect));
         let stages = &chain.front.amplifier;
         stages.iter().any(|stage| matches!(stage, AmplifierStage::DielectricHeating(_)))
     };
@@ -190,7 +202,7 @@ fn warmth(bench: &Bench<'_>, rivals: &[Rival], record: &Record) -> Result<Vec<f6
         return Ok(vec![0.0; record.input.len()]);
     };
     let bare = Record { temperature: None, ..record.clone() };
-    let simulator = BenchSimulator::new(bench.base, vec![&bare], bench.library, bench.range)?;
+    let simulator = BenchSimulator::new(bench.setting.clone(), vec![&bare])?;
     simulator.rise_k(heat)
 }
 
@@ -216,6 +228,9 @@ fn usual<'m>(
     let first = finding.causes.first().map(|found| found.candidate).or(finding.looks_like);
     let named = first.map(|candidate| &bench.candidates[candidate]);
     // what was measured already is no longer on the catalogue
+    if finding.is_slow {
+        return of("hold-steps-100s");
+    }
     let separating = named.and_then(|cause| cause.separating.iter().find_map(|id| of(id)));
     separating.or_else(|| {
         of(if finding.verdict == Verdict::NothingMissing {
@@ -225,7 +240,7 @@ fn usual<'m>(
             "amplitude-sweep"
         } else if bench.design.only_hz.is_some() {
             "frequency-sweep"
-        } else if finding.is_slow || bench.runs.iter().any(|run| is_wide(run)) {
+        } else if bench.runs.iter().any(|run| is_wide(run)) {
             // high frequencies were measured already: what is left to see is slow
             "hold-steps-100s"
         } else {
@@ -244,8 +259,8 @@ mod tests {
     fn every_experiment_that_a_cause_names_can_be_simulated() {
         let input: Vec<f64> = (0..400).map(|i| 80.0 * (0.1 * f64::from(i)).sin()).collect();
         let run = Record::new("a", 1e-3, input.clone(), input);
-        let design = Design::of(&[&run], true, true);
-        let catalogue = catalogue(Span { middle: 0.0, half: 80.0 }, &[&run], true);
+        let design = Design::of(&[&run], &[&run], true);
+        let catalogue = catalogue(Span { middle: 0.0, half: 80.0 }, &[&run], &[&run], true);
         for cause in crate::causes::candidates(&crate::causes::LIBRARY, &design) {
             assert!(!cause.separating.is_empty(), "{}", cause.id);
             for id in cause.separating {

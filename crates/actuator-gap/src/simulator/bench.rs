@@ -2,9 +2,10 @@
 
 use super::response::{Plant, Response, line};
 use crate::base::BaseModel;
-use crate::causes::{BenchCause, chain_under};
+use crate::causes::{BenchCause, Command, chain_under, reads_load};
 use crate::numbers::{less, mean, slope};
 use crate::record::Record;
+use measured_data::Accuracy;
 use model_gap::discovery::{Signal, Simulator, TraceRole};
 use model_gap::{Effect, GapError};
 
@@ -41,6 +42,9 @@ pub(crate) struct Channel {
     pub(super) measured: Vec<f64>,
     /// The run that the reading is compared with: of the same input, read by the sensor of the bench.
     twin: Option<usize>,
+    /// What the reference run of the same input read less what the base model makes of it, where there is one: the
+    /// error of the base model, which is then known there.
+    pub(super) anchor: Option<Vec<f64>>,
 }
 
 /// The measured runs with the base model and the causes.
@@ -53,38 +57,69 @@ pub(crate) struct BenchSimulator<'a> {
     /// Samples averaged into one.
     pub(crate) block: usize,
     pub(super) range: (f64, f64),
+    pub(super) accuracy: Accuracy,
+}
+
+/// What a simulator of a bench is made of.
+#[derive(Clone)]
+pub(crate) struct Setting<'a> {
+    pub(crate) base: &'a BaseModel,
+    /// Runs that show the system with nothing missing.
+    pub(crate) references: Vec<&'a Record>,
+    pub(crate) causes: &'a [BenchCause],
+    pub(crate) range: (f64, f64),
+    pub(crate) accuracy: Accuracy,
 }
 
 /// Part of the range of the input by which two runs of the same input may differ.
 const SAME_INPUT: f64 = 1e-3;
 
+/// Whether two runs have the same input.
+pub(crate) fn is_same_input(a: &Record, b: &Record, range: (f64, f64)) -> bool {
+    let most = SAME_INPUT * (range.1 - range.0);
+    a.input.len() == b.input.len()
+        && (a.step_s / b.step_s - 1.0).abs() < SAME_INPUT
+        && a.input.iter().zip(&b.input).all(|(a, b)| (a - b).abs() <= most)
+}
+
 /// The run that a run read by an ideal sensor repeats.
 fn twin_of(runs: &[&Record], own: &Record, range: (f64, f64)) -> Option<usize> {
-    let most = SAME_INPUT * (range.1 - range.0);
     let is_twin = |other: &&Record| {
-        !other.has_ideal_sensor()
-            && !other.is_preloaded()
-            && other.input.len() == own.input.len()
-            && (other.step_s / own.step_s - 1.0).abs() < SAME_INPUT
-            && other.input.iter().zip(&own.input).all(|(a, b)| (a - b).abs() <= most)
+        !other.has_ideal_sensor() && !other.is_preloaded() && is_same_input(other, own, range)
     };
     runs.iter().position(is_twin).filter(|_| own.has_ideal_sensor())
 }
 
+/// Number of the input of every run: that of the first run with the same input.
+pub(crate) fn inputs_of(runs: &[&Record], range: (f64, f64)) -> Vec<usize> {
+    let first = |own: &&Record| {
+        let same = runs.iter().position(|other| is_same_input(other, own, range));
+        same.unwrap_or_default()
+    };
+    runs.iter().map(first).collect()
+}
+
 impl<'a> BenchSimulator<'a> {
-    pub(crate) fn new(
-        base: &'a BaseModel,
-        runs: Vec<&'a Record>,
-        causes: &'a [BenchCause],
-        range: (f64, f64),
-    ) -> Result<Self, GapError> {
+    pub(crate) fn new(setting: Setting<'a>, runs: Vec<&'a Record>) -> Result<Self, GapError> {
+        let Setting { base, references, causes, range, accuracy } = setting;
+        let monitor = monitor_of(&references);
+        let shows_load = !reads_load(&references);
         let all: usize = runs.iter().map(|r| r.input.len()).sum();
         let block = all.div_ceil(MOST_SAMPLES).max(1);
         let mut channels = Vec::new();
         for (number, run) in runs.iter().enumerate() {
+            let anchor = references
+                .iter()
+                .find(|other| {
+                    let is_judged = other.window.start <= run.window.start
+                        && other.window.end >= run.window.end;
+                    is_judged && is_same_setup(other, run) && is_same_input(other, run, range)
+                })
+                .map(|other| less(&other.output, &base.predict(&other.input, other.step_s)));
             let mut add = |kind, signal: &[f64], twin| {
                 let measured = run.judged(signal).to_vec();
-                channels.push(Channel { run: number, kind, measured, twin });
+                let anchor = anchor.clone().filter(|_| kind == ChannelKind::Output);
+                channels.push(Channel { run: number, kind, measured, twin, anchor });
             };
             match twin_of(&runs, run, range) {
                 Some(twin) => {
@@ -93,18 +128,27 @@ impl<'a> BenchSimulator<'a> {
                 }
                 None => add(ChannelKind::Output, &run.output, None),
             }
-            for (kind, given) in [
-                (ChannelKind::Amplifier, &run.amplifier),
-                (ChannelKind::Temperature, &run.temperature),
-                (ChannelKind::Load, &run.load),
-            ] {
-                if let Some(signal) = given {
-                    add(kind, signal, None);
-                }
+            if let Some(read) = &run.amplifier {
+                // as it read the command in the reference runs, where terminals and command are one
+                let volt: Vec<f64> =
+                    read.iter().map(|v| (v - monitor.zero_volt) / monitor.gain).collect();
+                add(ChannelKind::Amplifier, &volt, None);
+            }
+            if let Some(rise) = &run.temperature {
+                add(ChannelKind::Temperature, rise, None);
+            }
+            // beside a spring that was always there a reading that is low looks like a new load
+            if let Some(load) = run.load.as_ref().filter(|_| shows_load) {
+                add(ChannelKind::Load, load, None);
             }
         }
         let plant = Plant::new(base, runs.clone(), causes, range)?;
-        Ok(Self { base, runs, causes, plant, channels, block, range })
+        Ok(Self { base, runs, causes, plant, channels, block, range, accuracy })
+    }
+
+    /// The runs under no effect.
+    pub(super) fn plain(&self) -> &[Vec<f64>] {
+        &self.plant.plain
     }
 
     /// Directions on all traces, zero on every channel but the outputs, from input, output of the base model
@@ -117,16 +161,26 @@ impl<'a> BenchSimulator<'a> {
         let per_run: Vec<Vec<Vec<f64>>> =
             plain.map(|(run, plain)| of_run(&run.input, plain, run.step_s)).collect();
         let count = per_run.first().map_or(0, Vec::len);
-        (0..count).map(|k| self.on_traces(|run| &per_run[run][k])).collect()
+        (0..count).map(|k| self.on_outputs(|run| &per_run[run][k], |_| true)).collect()
     }
 
-    /// A signal per run taken to the traces: zero on every further channel.
-    pub(crate) fn on_traces<'s>(&self, of_run: impl Fn(usize) -> &'s Vec<f64>) -> Signal {
+    /// What the base model leaves of a system per run, taken to the traces. Where the reference runs hold the same
+    /// input its error is known, and none is left.
+    pub(crate) fn structure<'s>(&self, of_run: impl Fn(usize) -> &'s Vec<f64>) -> Signal {
+        self.on_outputs(of_run, |channel| channel.anchor.is_none())
+    }
+
+    /// A signal per run on the outputs that count; zero on every further channel: what is wrong with the motion is the
+    /// same in two readings of it.
+    fn on_outputs<'s>(
+        &self,
+        of_run: impl Fn(usize) -> &'s Vec<f64>,
+        counts: impl Fn(&Channel) -> bool,
+    ) -> Signal {
         let one = |channel: &Channel| {
             let output = averaged(self.runs[channel.run].judged(of_run(channel.run)), self.block);
             match channel.kind {
-                ChannelKind::Output => output,
-                // what is wrong with the motion is the same in both readings
+                ChannelKind::Output if counts(channel) => output,
                 _ => vec![0.0; output.len()],
             }
         };
@@ -150,13 +204,21 @@ impl<'a> BenchSimulator<'a> {
             signal.iter().map(|v| v + off).collect()
         };
         match channel.kind {
-            ChannelKind::Output => run.judged(&own.outputs[number]).to_vec(),
+            ChannelKind::Output => {
+                let read = run.judged(&own.outputs[number]).to_vec();
+                match &channel.anchor {
+                    Some(off) => read.iter().zip(run.judged(off)).map(|(y, off)| y + off).collect(),
+                    None => read,
+                }
+            }
             ChannelKind::Comparison => {
                 let read = &own.outputs[channel.twin.unwrap_or(number)];
                 with_its_mean(less(run.judged(read), run.judged(&own.outputs[number])))
             }
             ChannelKind::Amplifier => {
-                run.judged(own.front.terminals[number].as_ref().unwrap_or(&run.input)).to_vec()
+                let volt = own.front.terminals[number].as_ref().unwrap_or(&run.input);
+                let read = |volt: &f64| own.monitor.map_or(*volt, |monitor| monitor.of(*volt));
+                run.judged(volt).iter().map(read).collect()
             }
             ChannelKind::Temperature => {
                 let rise = own.front.rises_k[number].as_deref();
@@ -171,6 +233,25 @@ impl<'a> BenchSimulator<'a> {
             }
         }
     }
+}
+
+/// Whether two runs are read by the same sensor and fitted alike.
+fn is_same_setup(a: &Record, b: &Record) -> bool {
+    a.sensor == b.sensor && a.fitting == b.fitting
+}
+
+/// Gain and zero of the voltage monitor in the reference runs, where the terminals are at the command: by least
+/// squares; 1 and 0 without one.
+fn monitor_of(references: &[&Record]) -> Command {
+    let monitored = references.iter().filter_map(|run| Some((run, run.amplifier.as_ref()?)));
+    let (input, read): (Vec<f64>, Vec<f64>) = monitored
+        .flat_map(|(run, read)| run.judged_input().iter().copied().zip(run.judged(read).to_vec()))
+        .unzip();
+    let gain = slope(&input, &read);
+    if gain <= 0.0 {
+        return Command { gain: 1.0, zero_volt: 0.0 };
+    }
+    Command { gain, zero_volt: mean(&read) - gain * mean(&input) }
 }
 
 impl Simulator for BenchSimulator<'_> {

@@ -5,4 +5,5 @@ mod response;
 mod smooth;
 mod traces;
 
-pub(crate) use bench::{BenchSimulator, ChannelKind, averaged};
+pub(crate) use bench::{BenchSimulator, ChannelKind, Setting, averaged, inputs_of};
+pub(crate) use traces::CALIBRATIONS;

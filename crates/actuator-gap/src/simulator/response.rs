@@ -46,6 +46,8 @@ pub(super) struct Response {
     pub(super) steady: OnRuns,
     /// Whether a load spring is among the effects.
     pub(super) is_loaded: bool,
+    /// What the voltage monitor makes of the terminal voltage, where it is not what it was.
+    pub(super) monitor: Option<Command>,
 }
 
 /// The base model on runs, with the stages of causes.
@@ -96,7 +98,7 @@ impl<'a> Plant<'a> {
     /// All runs under effects. The phase of a hum is what the measured output asks for beside the other
     /// effects.
     pub(super) fn respond(&self, effects: &[Effect]) -> Result<Response, GapError> {
-        let Chain { front: stages, mut rear } = chain_under(self.causes, effects);
+        let Chain { front: stages, mut rear, monitor } = chain_under(self.causes, effects);
         let hum = rear.take_hum();
         let front = self.fronts.get(stages.clone(), || self.front(&stages))?;
         let is_loaded = rear.linkage.iter().any(|s| matches!(s, LinkageStage::LoadStiffness(_)));
@@ -109,7 +111,7 @@ impl<'a> Plant<'a> {
             }
             None => Arc::clone(&steady),
         };
-        Ok(Response { front, outputs, steady, is_loaded })
+        Ok(Response { front, outputs, steady, is_loaded, monitor })
     }
 
     fn front(&self, stages: &FrontStages) -> Result<Front, GapError> {
@@ -123,9 +125,12 @@ impl<'a> Plant<'a> {
         for number in 0..count {
             let run = self.runs[number];
             let mut terminal: Option<Vec<f64>> =
-                stages.command.map(|Command { gain, zero_volt }| {
-                    run.input.iter().map(|u| gain * u + zero_volt).collect()
-                });
+                stages.command.map(|command| run.input.iter().map(|u| command.of(*u)).collect());
+            if let Some(late_s) = stages.late_s {
+                let known = terminal.is_none().then(|| &self.commands[number]);
+                let input = terminal.as_deref().unwrap_or(&run.input);
+                terminal = Some(Smooth::new(input, known).late_by(late_s / run.step_s));
+            }
             for stage in stages.amplifier.iter().filter(|stage| !acts_on_gain(stage)) {
                 let input = terminal.as_deref().unwrap_or(&run.input);
                 terminal = Some(match stage {
@@ -199,11 +204,10 @@ impl<'a> Plant<'a> {
             return Ok(Arc::clone(&front.outputs));
         }
         let mut outputs = Vec::with_capacity(self.runs.len());
-        let is_plain = Arc::ptr_eq(&front.outputs, &self.plain) && stages.gain.is_none();
+        let is_plain = Arc::ptr_eq(&front.outputs, &self.plain);
         for (number, (run, output)) in self.runs.iter().zip(front.outputs.iter()).enumerate() {
             let mut known = is_plain.then(|| &self.plain_outputs[number]);
-            let gain = stages.gain.unwrap_or(1.0);
-            let mut signal: Vec<f64> = output.iter().map(|y| gain * y).collect();
+            let mut signal = output.clone();
             let has_play = |stage: &&LinkageStage| matches!(stage, LinkageStage::Backlash(_));
             for stage in stages.linkage.iter().filter(|s| !(run.is_preloaded() && has_play(s))) {
                 let known = known.take();

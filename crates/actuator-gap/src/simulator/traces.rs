@@ -3,8 +3,10 @@
 
 use super::bench::{BenchSimulator, Channel, ChannelKind, averaged};
 use crate::base::{ErrorModel, white_noise};
+use crate::causes::Command;
 use crate::numbers::less;
 use crate::record::Record;
+use measured_data::Accuracy;
 use model_gap::Sine;
 use model_gap::discovery::Trace;
 use nalgebra::DMatrix;
@@ -12,12 +14,17 @@ use rotor_base::variance;
 
 /// Directions in which the base model may move.
 const MOST_DIRECTIONS: usize = 32;
-/// Part of the range that a voltage monitor is trusted to.
+/// Part of the range by which a voltage monitor may stray from the terminals beside its gain and zero.
 const MONITOR_ERROR: f64 = 1e-2;
 /// Temperature that a thermometer is trusted to, K.
 const THERMOMETER_ERROR_K: f64 = 1.0;
 /// Standard deviation of the zero of a run, over the spread of the output.
 const ZERO_ERROR: f64 = 2e-3;
+/// What two runs of one input may differ by besides noise, over the spread of the output.
+const REPEATABILITY: f64 = 1e-3;
+
+/// Columns of the nuisance that are calibrations, gain and zero of sensor, amplifier and monitor: the last ones.
+pub(crate) const CALIBRATIONS: usize = 6;
 
 impl BenchSimulator<'_> {
     /// The traces with their noise and the covariance of the base model.
@@ -37,8 +44,14 @@ impl BenchSimulator<'_> {
             let (noise, sigma) = match channel.kind {
                 ChannelKind::Output => {
                     let e = errors[channel.run];
-                    let white = e.noise.powi(2) / block;
-                    let left = (e.correlation / block).max(1.0) * e.structure.powi(2);
+                    // the noise of the reference run of the same input is in the comparison too
+                    let readings = if channel.anchor.is_some() { 2.0 } else { 1.0 };
+                    let structure = match channel.anchor {
+                        Some(_) => (REPEATABILITY * self.base.spread).min(e.structure),
+                        None => e.structure,
+                    };
+                    let white = readings * e.noise.powi(2) / block;
+                    let left = (e.correlation / block).max(1.0) * structure.powi(2);
                     (white.sqrt(), (white + left).sqrt())
                 }
                 ChannelKind::Comparison => (white / block.sqrt(), white / block.sqrt()),
@@ -53,10 +66,7 @@ impl BenchSimulator<'_> {
             Trace {
                 experiment: channel.run,
                 block: block_of(run, measured.len()),
-                nuisance: match channel.kind {
-                    ChannelKind::Output => self.nuisance(&moving[channel.run], channel.run),
-                    _ => DMatrix::zeros(measured.len(), 0),
-                },
+                nuisance: self.nuisance(channel, &moving, measured.len()),
                 measured,
                 sigma: sigma.max(1e-12),
                 noise,
@@ -66,18 +76,51 @@ impl BenchSimulator<'_> {
         self.channels.iter().map(one).collect()
     }
 
-    /// What the output of a run may move by: the directions of the base model, and the zeros of the runs.
-    fn nuisance(&self, directions: &DMatrix<f64>, number: usize) -> DMatrix<f64> {
-        let column = |k: usize| {
-            let own = directions.column(k);
-            averaged(self.runs[number].judged(own.as_slice()), self.block)
-        };
-        let columns: Vec<Vec<f64>> = (0..directions.ncols()).map(column).collect();
-        let samples = averaged(self.runs[number].judged_output(), self.block).len();
-        DMatrix::from_fn(samples, columns.len() + self.runs.len(), |i, k| match columns.get(k) {
-            Some(column) => column[i],
-            None if k == columns.len() + number => ZERO_ERROR * self.base.spread,
-            None => 0.0,
+    /// What a channel may move by, in this order: the directions of the base model, the zeros of the runs, and the
+    /// calibration of sensor, amplifier and monitor from one session to the next.
+    fn nuisance(&self, channel: &Channel, moving: &[DMatrix<f64>], samples: usize) -> DMatrix<f64> {
+        let (number, Accuracy { displacement, amplifier, monitor }) = (channel.run, self.accuracy);
+        let run = self.runs[number];
+        let (plain, input) = (&self.plain()[number], &run.input);
+        let directions = moving.first().map_or(0, DMatrix::ncols);
+        let mut columns: Vec<Option<Vec<f64>>> = vec![None; directions + self.runs.len()];
+        let scaled =
+            |signal: &[f64], by: f64| -> Vec<f64> { signal.iter().map(|v| by * v).collect() };
+        let constant = |value: f64| vec![value; input.len()];
+        let is_output = channel.kind == ChannelKind::Output;
+        let by_sensor = !run.has_ideal_sensor();
+        if is_output {
+            if channel.anchor.is_none() {
+                for (own, direction) in columns.iter_mut().zip(moving[number].column_iter()) {
+                    *own = Some(direction.as_slice().to_vec());
+                }
+            }
+            columns[directions + number] = Some(constant(ZERO_ERROR * self.base.spread));
+        }
+        let output = |by: &dyn Fn() -> Vec<f64>| is_output.then(by);
+        let of_sensor = |by: &dyn Fn() -> Vec<f64>| (is_output && by_sensor).then(by);
+        columns.push(of_sensor(&|| scaled(plain, 0.01 * displacement.gain_percent)));
+        columns.push(of_sensor(&|| constant(displacement.zero_um)));
+        let is_monitor = channel.kind == ChannelKind::Amplifier;
+        for (gain, zero_volt) in [(0.01 * amplifier.gain_percent, 0.0), (0.0, amplifier.zero_volt)]
+        {
+            let volt = || -> Vec<f64> {
+                input.iter().map(|u| Command { gain: 1.0 + gain, zero_volt }.of(*u)).collect()
+            };
+            columns.push(if is_monitor {
+                Some(less(&volt(), input))
+            } else {
+                output(&|| less(&self.base.predict(&volt(), run.step_s), plain))
+            });
+        }
+        columns.push(is_monitor.then(|| scaled(input, 0.01 * monitor.gain_percent)));
+        columns.push(is_monitor.then(|| constant(monitor.zero_volt)));
+        let columns: Vec<Option<Vec<f64>>> = columns
+            .into_iter()
+            .map(|column| column.map(|own| averaged(run.judged(&own), self.block)))
+            .collect();
+        DMatrix::from_fn(samples, columns.len(), |i, k| {
+            columns[k].as_ref().map_or(0.0, |own| own[i])
         })
     }
 }

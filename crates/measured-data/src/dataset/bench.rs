@@ -1,5 +1,6 @@
 //! A whole actuator bench: `dataset.ron` and every record it names, all problems in one report.
 
+use super::accuracy::Accuracy;
 use super::file::{DEFAULT_COMMAND_RANGE_VOLT, DatasetKind};
 use super::open::OpenDataset;
 use super::run::Run;
@@ -22,6 +23,8 @@ pub struct BenchData {
     pub flap_deg_per_um: Option<f64>,
     /// Voltages the actuator may see, V: lower and upper limit.
     pub command_range_volt: (f64, f64),
+    /// How well the channels keep their calibration from one session to the next.
+    pub accuracy: Accuracy,
     /// What a reader should know: resampled, clipped or suspect records.
     pub warnings: Vec<Problem>,
     /// blake3 of `dataset.ron` and of every record, in order.
@@ -46,6 +49,14 @@ pub fn read_bench(folder: &Folder) -> Result<BenchData, Problems> {
         let fault = Fault::NotPositive { value, unit: "deg/um", remedy };
         open.problems.push(open.index.place("flap_deg_per_um"), fault);
     }
+    let accuracy = open.dataset.accuracy.unwrap_or_default();
+    for (field, value, unit) in accuracy.rows() {
+        if !(value.is_finite() && value >= 0.0) {
+            let message = format!("is {value} {unit}, expected a standard deviation of 0 or more");
+            let place = open.index.place(&format!("accuracy.{field}"));
+            open.problems.push(place, Fault::Other(message));
+        }
+    }
     let runs = open.runs(|open, source| {
         let mut table = parse_measured_csv(source)?;
         open.warnings.append(&mut table.warnings);
@@ -69,6 +80,7 @@ pub fn read_bench(folder: &Folder) -> Result<BenchData, Problems> {
         runs,
         flap_deg_per_um: open.dataset.flap_deg_per_um,
         command_range_volt: given,
+        accuracy,
         content_hash,
         warnings: open.warnings,
         title: open.dataset.title,

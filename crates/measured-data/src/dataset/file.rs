@@ -1,5 +1,6 @@
 //! `dataset.ron`: what the files of a data folder are.
 
+use super::accuracy::Accuracy;
 use crate::tables::ChannelFile;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -72,6 +73,9 @@ pub struct DatasetFile {
     /// stack, -20 to 150 V. `ActuatorBench` only.
     #[serde(default, rename = "command_range_V", skip_serializing_if = "Option::is_none")]
     pub command_range_volt: Option<(f64, f64)>,
+    /// How well the channels keep their calibration; without it the usual of a bench. `ActuatorBench` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<Accuracy>,
     /// Which column is the input; without it the first one besides the time. Not `ActuatorBench`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input: Option<ChannelFile>,

@@ -1,5 +1,6 @@
 //! Data folders: `dataset.ron` and the records it names, all problems in one report.
 
+mod accuracy;
 mod any;
 mod bench;
 mod curves;
@@ -8,6 +9,7 @@ mod loops;
 mod open;
 mod run;
 
+pub use accuracy::{Accuracy, DisplacementAccuracy, VoltageAccuracy};
 pub use any::{DataSet, read_dataset};
 pub use bench::{BenchData, read_bench};
 pub(crate) use bench::{check_bench_record, range_unused};

@@ -16,9 +16,10 @@ const LARGEST_RECORD_MB: u64 = 64;
 const LEAST_WINDOW: usize = 16;
 
 /// Keys that not all kinds have, of the data set or its runs, with the kinds that have them.
-const KEYS: [(&str, &str); 9] = [
+const KEYS: [(&str, &str); 10] = [
     ("flap_deg_per_um", "ActuatorBench"),
     ("command_range_V", "ActuatorBench"),
+    ("accuracy", "ActuatorBench"),
     ("input", "GenericLoop and ReversalCurves"),
     ("output", "GenericLoop and ReversalCurves"),
     ("input_range", "GenericLoop and ReversalCurves"),

@@ -155,6 +155,7 @@ pub(super) fn write(
         title: title.clone(),
         runs: entries,
         flap_deg_per_um: None,
+        accuracy: None,
         // a bench without a range would get the default one
         command_range_volt: range.filter(|_| !is_loop),
         input: column(0),

@@ -5,12 +5,14 @@ use super::fit::Fitted;
 use super::gain::gain;
 use super::judge::drift;
 use super::thresholds::{
-    DRIFT_COSTS, DRIFTING, EXPLAINED, LEAST_SHARE, LEAST_SHARE_OF_RUNS, STRONG, WRONG_NAME,
+    COMMON_SEEN, DRIFT_COSTS, DRIFTING, EXPLAINED, GENERIC_SURELY, LEAST_SHARE,
+    LEAST_SHARE_OF_RUNS, STRAINED, STRONG, WEAK_EFFECT, WRONG_NAME, least_effect, limit_share,
 };
 use super::{
-    Compared, Confidence, Finding, Found, Reason, Screened, Simulator, StandsOut, Verdict,
+    Compared, Confidence, Finding, Found, FoundClass, Reason, Screened, Simulator, StandsOut,
+    Verdict,
 };
-use crate::{GapError, Scale};
+use crate::{Class, GapError, Scale};
 
 impl<S: Simulator> Search<'_, S> {
     pub(super) fn conclude(
@@ -32,18 +34,26 @@ impl<S: Simulator> Search<'_, S> {
             if chosen.is_empty() { (Vec::new(), false) } else { self.shortcomings(current, after) };
         let doubts = !chosen.is_empty() && (!found.is_empty() || looks_like.is_some());
         reasons.extend(found);
-        let gain = gain(self.evidence, &self.base, current, settings.resamplings);
-        let [least, most] = if chosen.is_empty() { [1.0; 2] } else { gain.drop_ci95 };
+        let gain = gain(&self.folds, self.evidence, current, settings.resamplings)?;
+        let (unseen, are_borne_out) = self.borne_out(&causes);
+        let is_unseen = unseen.is_some();
+        let is_beside = |c: &usize| self.discovery.candidates[*c].is_beside_output;
+        let is_beside = chosen.iter().all(is_beside);
+        // a gain that no held-out run can show is not stated
+        let gain = gain.filter(|_| !is_unseen && !is_beside);
+        let [least, most] = gain.map_or([1.0; 2], |gain| gain.drop_ci95);
         let (gains, gains_surely) = (most > 0.0, least > 0.0);
         if !gains {
             reasons.push(Reason::WorseHeldOut);
         } else if !gains_surely {
             reasons.push(Reason::GainMayBeZero);
         }
+        reasons.extend(unseen);
         let wrong_name = !gains || is_wrong;
         if wrong_name && !chosen.is_empty() && before <= self.generic.threshold {
             reasons.push(Reason::NameDropped);
             let base = self.base.clone();
+            let in_some_runs = in_some_runs || causes.iter().any(|c| c.only_run.is_some());
             let notes = Notes { reasons, looks_like, in_some_runs };
             let mut finding = self.conclude(&[], &base, singles, notes)?;
             finding.confidence = Confidence::Tentative;
@@ -63,22 +73,30 @@ impl<S: Simulator> Search<'_, S> {
         } else {
             Verdict::Named
         };
-        let is_slow = chosen.is_empty() && self.trend().is_some();
+        let is_slow = matches!(verdict, Verdict::Unknown) && self.trend().is_some();
         let strong = causes.iter().all(|c| c.drop > STRONG * self.screened[c.candidate].threshold);
         let tentative = self.tentative(&causes);
-        let named_surely = strong && tentative.is_empty() && gains_surely;
+        let named_surely = strong && tentative.is_empty() && gains_surely && are_borne_out;
         reasons.extend(tentative);
+        let limits = self.limits();
         let sure = match verdict {
-            Verdict::NothingMissing => settings.has_reference,
+            Verdict::NothingMissing => self.denies_surely(&limits, before, current, &mut reasons),
             Verdict::Named => settings.has_reference && named_surely,
             _ => false,
         };
         let confidence = if sure { Confidence::Confident } else { Confidence::Tentative };
         causes.sort_by(|a, b| b.drop.total_cmp(&a.drop));
+        let is_named = !matches!(verdict, Verdict::Unknown | Verdict::NothingMissing);
+        let class_is_sure =
+            settings.has_reference && strong && gains_surely && are_borne_out && !doubts;
+        let class = causes.first().filter(|_| is_named);
+        let class = class.map(|leading| self.class_of(leading, class_is_sure));
         Ok(Finding {
             verdict,
             confidence,
             causes,
+            class,
+            limits,
             effects: current.effects.clone(),
             reasons,
             screen: self.screened.clone(),
@@ -90,6 +108,87 @@ impl<S: Simulator> Search<'_, S> {
             residual_before: self.base.cleaned(self.evidence),
             residual_after: current.cleaned(self.evidence),
         })
+    }
+
+    /// Why no run bears a cause out, if there is one such cause; and whether every cause is borne out by runs or parts
+    /// of a run that its fit has not seen.
+    fn borne_out(&self, causes: &[Found]) -> (Option<Reason>, bool) {
+        let unseen = causes.iter().find(|c| c.held_out_drop.is_none()).map(|found| {
+            let cause = self.id(found.candidate);
+            found.only_run.map_or(Reason::NothingHeldOut, |run| Reason::OneRunOnly { cause, run })
+        });
+        let is_borne_out =
+            |c: &Found| c.held_out_drop.is_some() || c.only_run.is_some_and(|run| run.halves_agree);
+        (unseen, causes.iter().all(is_borne_out))
+    }
+
+    /// Whether "nothing is missing" is sure, with what speaks against it; `excess` is what the base model leaves along
+    /// the generic directions.
+    fn denies_surely(
+        &self,
+        limits: &[Option<f64>],
+        excess: f64,
+        base: &Fitted,
+        reasons: &mut Vec<Reason>,
+    ) -> bool {
+        let missed = self.would_be_missed(limits);
+        let strain = self.evidence.strain(base, self.discovery.calibrations);
+        let (sees_all, is_calibrated) = (missed.is_empty(), strain <= STRAINED);
+        if !sees_all {
+            reasons.push(Reason::WouldBeMissed { share: COMMON_SEEN, causes: missed });
+        }
+        if !is_calibrated {
+            reasons.push(Reason::CalibrationOff { times: strain });
+        }
+        let is_at_floor = excess <= self.generic.threshold;
+        // a further channel shows what the output does not
+        let is_beside = |r: &Reason| matches!(r, Reason::Negligible { drop, .. } if *drop < 0.0);
+        let is_at_floor = is_at_floor && !reasons.iter().any(is_beside);
+        self.discovery.settings.has_reference && sees_all && is_calibrated && is_at_floor
+    }
+
+    /// What would have been seen of every candidate, over the output.
+    fn limits(&self) -> Vec<Option<f64>> {
+        let left = self.evidence.left_of_outputs(&self.base, self.discovery.calibrations);
+        let least = least_effect(left, self.evidence.output_samples());
+        let limit = |(c, s): (usize, &Screened)| {
+            let is_seen = self.discovery.candidates[c].blocked.is_none() && s.weak_signal > 0.0;
+            let by_chi2 = limit_share(s.weak_signal, s.threshold + self.penalty(c));
+            is_seen.then(|| by_chi2.max(WEAK_EFFECT * least / s.weak_drop.sqrt()))
+        };
+        self.screened.iter().enumerate().map(limit).collect()
+    }
+
+    /// The common causes that would have been missed at a size that matters.
+    fn would_be_missed(&self, limits: &[Option<f64>]) -> Vec<&'static str> {
+        let candidates = self.discovery.candidates.iter().zip(limits);
+        let missed = candidates.filter(|(own, limit)| {
+            own.is_common && own.refuted.is_none() && limit.is_none_or(|share| share > COMMON_SEEN)
+        });
+        missed.map(|(own, _)| own.id).collect()
+    }
+
+    /// The class of a cause, with the members that the data leave open; sure if no cause of another class is near it.
+    fn class_of(&self, leading: &Found, is_sure: bool) -> FoundClass {
+        let class_of = |c: usize| self.discovery.candidates[c].class;
+        let class = class_of(leading.candidate);
+        let near = || leading.compared.iter().filter(|other| other.is_near());
+        let is_alone =
+            class != Class::Other && near().all(|other| class_of(other.candidate) == class);
+        let is_known = self.undetermined(leading).is_none() && self.open_ended(leading).is_none();
+        let open = leading.compared.iter().filter(|other| other.is_open());
+        let members = open
+            .map(|other| other.candidate)
+            .filter(|&c| self.may_be_named(c) && class_of(c) == class);
+        FoundClass {
+            class,
+            members: std::iter::once(leading.candidate).chain(members).collect(),
+            confidence: if is_sure && is_alone && is_known {
+                Confidence::Confident
+            } else {
+                Confidence::Tentative
+            },
+        }
     }
 
     /// What causes as fitted together leave open, and whether they cannot be what is missing; `after` is the
@@ -139,9 +238,17 @@ impl<S: Simulator> Search<'_, S> {
     /// What speaks against the parameters of fitted effects: ends of ranges, drift from experiment to
     /// experiment; and the largest drift.
     pub(super) fn doubts(&self, current: &Fitted) -> (Vec<Reason>, f64) {
+        self.doubts_of(current, None)
+    }
+
+    /// The same of one effect alone, or of all.
+    pub(super) fn doubts_of(&self, current: &Fitted, of: Option<usize>) -> (Vec<Reason>, f64) {
         let mut doubts = Vec::new();
         let mut worst = 0.0_f64;
         for (k, &(effect, p)) in current.free.iter().enumerate() {
+            if of.is_some_and(|own| own != effect) {
+                continue;
+            }
             let own = &current.effects[effect];
             let parameter = &self.discovery.candidates[own.candidate].parameters[p];
             if parameter.is_shape {
@@ -220,6 +327,8 @@ impl<S: Simulator> Search<'_, S> {
         let threshold = self.generic.threshold;
         if excess > threshold {
             reasons.push(Reason::NoKnownCause { chi2: excess, floor: threshold });
+        }
+        if excess > GENERIC_SURELY * threshold {
             return Verdict::Unknown;
         }
         if let Some(trend) = self.trend() {

@@ -1,13 +1,14 @@
 //! The decisions, in their order.
 
 use super::evidence::{Evidence, Seen, difference};
-use super::fit::{Fitted, Fitter};
-use super::gain::held_out_residual;
+use super::fit::{Fitted, Fitter, Starts};
+use super::held_out::{Folds, Ground, HeldOut};
 use super::judge::{Generic, drop_error, parameters};
 use super::screen::screen;
 use super::thresholds::{
-    CONFUSED_SHARE, HELD_OUT_SHARE, NEXT_SHARE, PARAMETER_PENALTY, PROMISE, RIVAL_PROMISE,
-    SEPARATION, STRONG, STRUCTURE_MARGIN, SWAY_SHARE, needed_to_separate,
+    AS_LIKELY, CONFUSED_SHARE, HELD_OUT_SHARE, LEAST_GAIN, NEXT_SHARE, PARAMETER_PENALTY, PROMISE,
+    RIVAL_LACK, RIVAL_PROMISE, SAME_GAIN, SEPARATION, STRONG, STRUCTURE_MARGIN, SWAY_SHARE,
+    WRONG_NAME, needed_to_separate,
 };
 use super::{Alternative, Compared, Discovery, Finding, Found, Reason, Rival, Screened, Simulator};
 use crate::{Effect, GapError, Memo};
@@ -24,6 +25,15 @@ pub(super) struct Notes {
     /// Whether a cause explains much where it is fitted and little where it is held out.
     pub(super) in_some_runs: bool,
 }
+
+/// Why a candidate is not the next cause.
+struct Refusal {
+    candidate: usize,
+    reason: Reason,
+}
+
+/// The next cause with its fit, or why there is none.
+type Entrance = Result<(usize, Fitted), Refusal>;
 
 /// The fit without one of the causes, and every candidate fitted in its place.
 struct TakenOut {
@@ -44,7 +54,13 @@ pub(super) struct Search<'a, S> {
     /// Misfit that the worst of them leaves.
     pub(super) structure_energy: f64,
     kept: Memo<(Vec<Effect>, usize), TakenOut>,
+    pub(super) folds: Folds<'a, S>,
+    /// What held-out experiments say of fits, by the effects before and after.
+    judged: Memo<(Vec<Effect>, Vec<Effect>), HeldOut>,
 }
+
+/// Judgements by held-out experiments that are kept.
+const JUDGED: usize = 24;
 
 impl<'a, S: Simulator> Search<'a, S> {
     pub(super) fn new(
@@ -55,6 +71,10 @@ impl<'a, S: Simulator> Search<'a, S> {
         let fitter = Fitter { simulator, evidence, candidates };
         let base = fitter.refine(Vec::new())?;
         let screened = screen(discovery, evidence, &simulator.predict(&[])?, &base.residual)?;
+        let thresholds = screened.iter().map(|s| s.threshold).collect();
+        let calibrations = discovery.calibrations;
+        let ground = Ground { simulator, candidates, thresholds, calibrations };
+        let folds = Folds::new(evidence, discovery.groups, ground)?;
         let seen = evidence.seen(&structures.iter().collect::<Vec<_>>());
         let energy = |s: &Seen<'_>| evidence.inner(s, s);
         Ok(Self {
@@ -68,6 +88,8 @@ impl<'a, S: Simulator> Search<'a, S> {
             structure_energy: seen.iter().map(energy).fold(0.0, f64::max),
             structures: seen,
             kept: Memo::new(discovery.settings.most_causes),
+            folds,
+            judged: Memo::new(JUDGED),
         })
     }
 
@@ -77,7 +99,9 @@ impl<'a, S: Simulator> Search<'a, S> {
         let mut chosen = Vec::new();
         for &candidate in given {
             let starts = &self.discovery.candidates[candidate].starts;
-            if let Some(found) = self.fitter.fit_with(&current, candidate, starts, 0.0)? {
+            if let Some(found) =
+                self.fitter.fit_with(&current, candidate, starts, Starts::Widely { least: 0.0 })?
+            {
                 current = found;
                 chosen.push(candidate);
             }
@@ -94,12 +118,23 @@ impl<'a, S: Simulator> Search<'a, S> {
         let mut chosen: Vec<usize> = Vec::new();
         let mut fits = singles.clone();
         while chosen.len() < self.discovery.settings.most_causes {
-            let (mut candidate, mut next) = match self.next(&current, &fits) {
+            let (mut candidate, mut next) = match self.next(&current, &fits)? {
                 None => break,
-                Some(Err(refusal)) => {
-                    notes.in_some_runs = matches!(refusal,
-                        Reason::LostHeldOut { drop, threshold, .. } if drop > STRONG * threshold);
-                    notes.reasons.push(refusal);
+                Some(Err(Refusal { candidate, reason })) => {
+                    let is_lost = matches!(
+                        reason,
+                        Reason::LostHeldOut { .. }
+                            | Reason::OneRunOnly { .. }
+                            | Reason::Negligible { .. }
+                    );
+                    notes.in_some_runs |= matches!(reason, Reason::LostHeldOut { drop, threshold, held_out, .. }
+                        if drop > STRONG * threshold && held_out > 0.0);
+                    notes.reasons.push(reason);
+                    if is_lost {
+                        // what held-out runs speak against is not there: the next one may be
+                        fits[candidate] = None;
+                        continue;
+                    }
                     break;
                 }
                 Some(Ok(next)) => next,
@@ -155,7 +190,7 @@ impl<'a, S: Simulator> Search<'a, S> {
         };
         let delta_chi2 = found.cost - fit.cost + self.penalty(candidate) - self.penalty(decoy);
         let is_as_good = delta_chi2 < PARAMETER_PENALTY
-            && self.enters(rest, candidate, &found).is_ok()
+            && self.enters(rest, candidate, &found)?.is_ok()
             && self.contradicted(&found)?.is_none();
         Ok(is_as_good.then_some((candidate, found)))
     }
@@ -184,15 +219,13 @@ impl<'a, S: Simulator> Search<'a, S> {
                     return Ok(None);
                 }
                 let least = least.max(PROMISE * self.screened[candidate].threshold);
-                self.fitter.fit_with(current, candidate, &own.starts, least)
+                self.fitter.fit_with(current, candidate, &own.starts, Starts::Widely { least })
             })
             .collect()
     }
 
-    fn penalty(&self, candidate: usize) -> f64 {
-        let parameters = &self.discovery.candidates[candidate].parameters;
-        let free = parameters.iter().filter(|p| p.held.is_none()).count();
-        PARAMETER_PENALTY * free as f64
+    pub(super) fn penalty(&self, candidate: usize) -> f64 {
+        PARAMETER_PENALTY * self.fitter.free_parameters(candidate) as f64
     }
 
     /// The candidate with the largest drop of a kind, its parameters paid for, of some of them.
@@ -229,16 +262,30 @@ impl<'a, S: Simulator> Search<'a, S> {
         &self,
         current: &Fitted,
         fits: &[Option<Fitted>],
-    ) -> Option<Result<(usize, Fitted), Reason>> {
-        let shown = self.best_by(fits, |f| self.proven_drop(current, f), |_, _| true)?;
-        let next = self.enters(current, shown.0, &shown.1).and_then(|_| {
-            let shows = |c: usize, f: &Fitted| {
-                self.proven_drop(current, f) - self.penalty(c) >= self.threshold_after(current, c)
-            };
-            let best = self.best_by(fits, |f| current.cost - f.cost, shows).unwrap_or(shown);
-            self.enters(current, best.0, &best.1).map(|_| best)
-        });
-        Some(next)
+    ) -> Result<Option<Entrance>, GapError> {
+        let over = |c: usize, f: &Fitted| {
+            self.proven_drop(current, f) - self.penalty(c) - self.threshold_after(current, c)
+        };
+        let shows = |c: usize, f: &Fitted| over(c, f) >= 0.0;
+        let last = current.effects.len();
+        // a cause whose value differs from run to run stands back behind any other that shows
+        let holds =
+            |f: &Fitted| f.effects.len() <= last || self.doubts_of(f, Some(last)).1 <= WRONG_NAME;
+        let drop = |f: &Fitted| current.cost - f.cost;
+        let proven = |f: &Fitted| self.proven_drop(current, f);
+        let Some(most) = self.best_by(fits, proven, |_, _| true) else { return Ok(None) };
+        // beside causes that were found, a lesser candidate would only mend the form of what the best one is
+        let is_barred = !current.effects.is_empty() && !shows(most.0, &most.1);
+        let best = if is_barred {
+            most
+        } else {
+            self.best_by(fits, drop, |c, f| shows(c, f) && holds(f))
+                .or_else(|| self.best_by(fits, drop, shows))
+                .unwrap_or(most)
+        };
+        let candidate = best.0;
+        let entered = self.enters(current, candidate, &best.1)?;
+        Ok(Some(entered.map(|()| best).map_err(|reason| Refusal { candidate, reason })))
     }
 
     pub(super) fn id(&self, candidate: usize) -> &'static str {
@@ -246,29 +293,50 @@ impl<'a, S: Simulator> Search<'a, S> {
     }
 
     /// Both acceptance tests: the drop of chi-square exceeds what surrogates reach, and most of it shows on
-    /// held-out runs.
-    fn enters(&self, current: &Fitted, candidate: usize, next: &Fitted) -> Result<f64, Reason> {
+    /// held-out runs, where one could show it.
+    fn enters(
+        &self,
+        current: &Fitted,
+        candidate: usize,
+        next: &Fitted,
+    ) -> Result<Result<(), Reason>, GapError> {
         let drop = self.proven_drop(current, next) - self.penalty(candidate);
         let threshold = self.threshold_after(current, candidate);
         let cause = self.id(candidate);
         if let Some(shown) = self.hardly_shown(candidate, current, next) {
-            return Err(Reason::NotAdded { cause, why: Box::new(shown) });
+            return Ok(Err(Reason::NotAdded { cause, why: Box::new(shown) }));
         }
         if drop < threshold {
-            return Err(Reason::WithinSurrogates { cause, drop: drop.max(0.0), threshold });
+            return Ok(Err(Reason::WithinSurrogates { cause, drop: drop.max(0.0), threshold }));
         }
-        let held_out = self.held_out_drop(current, next);
-        let needed = HELD_OUT_SHARE * drop;
-        if held_out < needed {
-            return Err(Reason::LostHeldOut { cause, drop, threshold, held_out, needed });
+        let left = |fit| self.evidence.left_of_outputs(fit, self.discovery.calibrations);
+        let (drop_of_outputs, needed) = (left(current) - left(next), self.least_gain(current));
+        if !self.discovery.candidates[candidate].is_beside_output && drop_of_outputs < needed {
+            return Ok(Err(Reason::Negligible { cause, drop: drop_of_outputs, needed }));
+        }
+        match self.held_out(current, next)? {
+            HeldOut::Drop(held_out) if held_out < HELD_OUT_SHARE * drop => {
+                let needed = HELD_OUT_SHARE * drop;
+                return Ok(Err(Reason::LostHeldOut { cause, drop, threshold, held_out, needed }));
+            }
+            // one run that does not even foretell itself
+            HeldOut::OneRun(run) if !run.halves_agree => {
+                return Ok(Err(Reason::OneRunOnly { cause, run }));
+            }
+            _ => {}
         }
         // parameters of an added cause that drift show that it compensates an error of form of those before it
         if !current.effects.is_empty()
             && let Some(doubt) = self.doubts(next).0.into_iter().next()
         {
-            return Err(Reason::NotAdded { cause, why: Box::new(doubt) });
+            return Ok(Err(Reason::NotAdded { cause, why: Box::new(doubt) }));
         }
-        Ok(held_out)
+        Ok(Ok(()))
+    }
+
+    /// Mean square that a cause must take off what a fit leaves of the outputs.
+    fn least_gain(&self, fit: &Fitted) -> f64 {
+        LEAST_GAIN * self.evidence.left_of_outputs(fit, self.discovery.calibrations)
     }
 
     /// Why one more cause shows too little on the outputs, if it does: the further channels alone would show an
@@ -289,28 +357,23 @@ impl<'a, S: Simulator> Search<'a, S> {
     /// Drop of chi-square within the chain, covariates left out. A temperature that rises shows that heat is
     /// there, not that it changes the output.
     fn proven_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
-        let around = |f: &Fitted| self.evidence.of_covariates(&f.residual);
+        let around = |f: &Fitted| self.evidence.of_covariates(f);
         before.cost - after.cost - (around(before) - around(after))
     }
 
     /// What a fit takes off the misfit of the outputs. A further channel shows a cause directly: it says
     /// nothing about the form of its effect on the output, which is what a next cause may mend.
     pub(super) fn output_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
-        let beside = |f: &Fitted| self.evidence.beside_output(&f.residual);
+        let beside = |f: &Fitted| self.evidence.beside_output(f);
         let drop = before.cost - after.cost - (beside(before) - beside(after));
         drop.max(0.0)
     }
 
-    /// The same as the drop within the chain, every experiment predicted by a fit that has not seen it.
-    pub(super) fn held_out_drop(&self, before: &Fitted, after: &Fitted) -> f64 {
-        let sum = |f: &Fitted| f.held_out(self.evidence).iter().sum::<f64>();
-        let drop = sum(before) - sum(after);
-        if self.evidence.has_covariates() {
-            let around =
-                |f: &Fitted| self.evidence.of_covariates(&held_out_residual(self.evidence, f));
-            return drop - (around(before) - around(after));
-        }
-        drop
+    /// What experiments that its fit has not seen say of the cause added last.
+    fn held_out(&self, before: &Fitted, after: &Fitted) -> Result<HeldOut, GapError> {
+        let key = (before.effects.clone(), after.effects.clone());
+        let found = self.judged.get(key, || self.folds.held_out(self.evidence, before, after))?;
+        Ok(*found)
     }
 
     /// Effects without one of them.
@@ -372,10 +435,12 @@ impl<'a, S: Simulator> Search<'a, S> {
             // the same two acceptance tests, now that the other causes are refitted beside it
             let needed = self.threshold_after(&rest, chosen[at]);
             let is_shown = self.hardly_shown(chosen[at], &rest, current).is_none();
-            if !is_shown
-                || drop < needed
-                || self.held_out_drop(&rest, current) < HELD_OUT_SHARE * drop
-            {
+            let is_lost = match self.held_out(&rest, current)? {
+                HeldOut::Drop(held_out) => held_out < HELD_OUT_SHARE * drop,
+                HeldOut::OneRun(run) => !run.halves_agree,
+                HeldOut::Nothing => false,
+            };
+            if !is_shown || drop < needed || is_lost {
                 chosen.remove(at);
                 *current = rest;
                 at = 0;
@@ -431,13 +496,27 @@ impl<'a, S: Simulator> Search<'a, S> {
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
             let penalty = self.penalty(candidate) - self.penalty(chosen[at]);
-            let delta_chi2 = fit.cost - current.cost + penalty;
+            // a fit that has not come as far as its starts promised may be as good as they do
+            let reached = (rest.cost - fit.cost).max(fit.promised);
+            let delta_chi2 = rest.cost - reached - current.cost + penalty;
             let error = drop_error(self.evidence, fit, current);
             let open = margin + self.structure_between(fit, current);
-            let discrimination_threshold = open.max((2.0 * error).min(0.2 * drop));
+            let mut discrimination_threshold = open.max((2.0 * error).min(0.2 * drop));
+            // what explains much less explains something else
+            discrimination_threshold = discrimination_threshold.min(margin.max(RIVAL_LACK * drop));
+            let [own, other] = [chosen[at], candidate].map(|c| &self.discovery.candidates[c]);
+            if own.is_one_set_with(other) && reached > SAME_GAIN * drop {
+                // as likely, whatever the fit says
+                let least = 1.01 / AS_LIKELY * delta_chi2.max(0.0);
+                discrimination_threshold = discrimination_threshold.max(least);
+            }
             let compared_with = Compared { candidate, delta_chi2, discrimination_threshold };
-            // one that fits far worse is excluded already
-            if compared_with.is_near() && self.contradicted(fit)?.is_some() {
+            // one that fits far worse is excluded already; one that differs from run to run is no better than a name
+            let last = fit.effects.len() - 1;
+            if compared_with.is_near()
+                && (self.contradicted(fit)?.is_some()
+                    || self.doubts_of(fit, Some(last)).1 > WRONG_NAME)
+            {
                 continue;
             }
             compared.push((compared_with, fit));
@@ -450,6 +529,11 @@ impl<'a, S: Simulator> Search<'a, S> {
             .chain(open.map(|c| (c.1, c.0.candidate)))
             .map(|(fit, candidate)| Rival::of(self.evidence, fit, candidate))
             .collect();
+        let (held_out_drop, only_run) = match self.held_out(rest, current)? {
+            HeldOut::Drop(drop) => (Some(drop), None),
+            HeldOut::Nothing => (None, None),
+            HeldOut::OneRun(run) => (None, Some(run)),
+        };
         let likely = compared.iter().filter(|c| c.0.is_as_likely()).filter(may_be);
         let alternatives = likely
             .map(|(c, fit)| {
@@ -464,7 +548,8 @@ impl<'a, S: Simulator> Search<'a, S> {
             parameters: parameters(self.discovery, self.evidence, current, at, rest)?,
             drop: self.proven_drop(rest, current),
             output_drop,
-            held_out_drop: self.held_out_drop(rest, current),
+            held_out_drop,
+            only_run,
             alternatives,
             rivals,
             compared: compared.iter().map(|c| c.0).collect(),

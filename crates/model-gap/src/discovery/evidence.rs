@@ -4,6 +4,7 @@ use super::thresholds::NOISE_DOUBT;
 use super::{Signal, Trace, TraceRole};
 use crate::GapError;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::sync::Arc;
 
 /// Products of a set of columns, weighted by the noise, over one experiment.
 #[derive(Debug, Clone)]
@@ -35,42 +36,28 @@ pub(crate) struct Seen<'s> {
 /// Rows that are multiplied together: with the nuisance they stay in a second-level cache.
 const ROWS: usize = 512;
 
-/// The traces with their nuisance factorised, for all experiments and with each fold left out.
+/// The traces that count, with their nuisance factorised.
 #[derive(Debug, Clone)]
 pub(crate) struct Evidence<'a> {
     pub(crate) traces: &'a [Trace],
     pub(crate) experiments: usize,
-    /// Fold of every experiment.
-    pub(crate) folds: Vec<usize>,
-    pub(crate) fold_count: usize,
+    /// What a square of a sample of each trace counts, `1 / sigma^2`; 0 of a trace that is left out.
+    weights: Vec<f64>,
     nuisance: Vec<DMatrix<f64>>,
     /// The columns of the nuisance that move each trace.
-    moving: Vec<Vec<usize>>,
+    moving: Arc<Vec<Vec<usize>>>,
     all: Cholesky<f64, Dyn>,
-    without: Vec<Cholesky<f64, Dyn>>,
 }
 
 impl<'a> Evidence<'a> {
-    pub(crate) fn new(traces: &'a [Trace], most_folds: usize) -> Result<Self, GapError> {
+    pub(crate) fn new(traces: &'a [Trace]) -> Result<Self, GapError> {
         let experiments = traces.iter().map(|t| t.experiment + 1).max().unwrap_or(0);
         let width = traces.iter().map(|t| t.nuisance.ncols()).max().unwrap_or(0);
+        let weights: Vec<f64> = traces.iter().map(|t| 1.0 / (t.sigma * t.sigma)).collect();
         let mut nuisance = vec![DMatrix::zeros(width, width); experiments];
-        for t in traces.iter().filter(|t| t.nuisance.ncols() > 0) {
-            nuisance[t.experiment] += t.nuisance.tr_mul(&t.nuisance) / (t.sigma * t.sigma);
+        for (t, weight) in traces.iter().zip(&weights).filter(|(t, _)| t.nuisance.ncols() > 0) {
+            nuisance[t.experiment] += t.nuisance.tr_mul(&t.nuisance) * *weight;
         }
-        let fold_count = experiments.min(most_folds);
-        let folds: Vec<usize> = (0..experiments).map(|e| e % fold_count.max(1)).collect();
-        let factor = |left_out: Option<usize>| {
-            let mut sum = DMatrix::identity(width, width);
-            for (e, own) in nuisance.iter().enumerate() {
-                if left_out != Some(folds[e]) {
-                    sum += own;
-                }
-            }
-            Cholesky::new(sum).ok_or(GapError::NotPositiveDefinite { columns: width })
-        };
-        let all = factor(None)?;
-        let without = (0..fold_count).map(|f| factor(Some(f))).collect::<Result<_, _>>()?;
         let moving = traces
             .iter()
             .map(|t| {
@@ -78,7 +65,25 @@ impl<'a> Evidence<'a> {
                 (0..t.nuisance.ncols()).filter(moves).collect()
             })
             .collect();
-        Ok(Self { traces, experiments, folds, fold_count, nuisance, moving, all, without })
+        let all = factor(&nuisance, width)?;
+        Ok(Self { traces, experiments, weights, nuisance, moving: Arc::new(moving), all })
+    }
+
+    /// The same without some experiments: what a fit may see that has not seen them.
+    pub(crate) fn without(&self, left_out: impl Fn(usize) -> bool) -> Result<Self, GapError> {
+        let mut own = self.clone();
+        for (weight, trace) in own.weights.iter_mut().zip(self.traces) {
+            if left_out(trace.experiment) {
+                *weight = 0.0;
+            }
+        }
+        for (e, nuisance) in own.nuisance.iter_mut().enumerate() {
+            if left_out(e) {
+                nuisance.fill(0.0);
+            }
+        }
+        own.all = factor(&own.nuisance, self.width())?;
+        Ok(own)
     }
 
     fn width(&self) -> usize {
@@ -87,8 +92,8 @@ impl<'a> Evidence<'a> {
 
     /// Products over the noise of two signals, all experiments together.
     pub(crate) fn dot(&self, a: &Signal, b: &Signal) -> f64 {
-        let pairs = self.traces.iter().zip(a.iter().zip(b));
-        pairs.map(|(t, (a, b))| product(a, b) / (t.sigma * t.sigma)).sum()
+        let seen = self.weights.iter().zip(a.iter().zip(b)).filter(|(weight, _)| **weight > 0.0);
+        seen.map(|(weight, (a, b))| product(a, b) * weight).sum()
     }
 
     /// Signals with their products with the nuisance.
@@ -139,8 +144,10 @@ impl<'a> Evidence<'a> {
 
     /// Adds the products of signals with the nuisance on one trace.
     fn add_crosses(&self, into: &mut DMatrix<f64>, signals: &[&Signal], number: usize) {
-        let trace = &self.traces[number];
-        let weight = 1.0 / (trace.sigma * trace.sigma);
+        let (trace, weight) = (&self.traces[number], self.weights[number]);
+        if weight == 0.0 {
+            return;
+        }
         let (rows, all) = (trace.nuisance.nrows(), trace.nuisance.as_slice());
         let mut first = 0;
         while first < rows {
@@ -163,42 +170,69 @@ impl<'a> Evidence<'a> {
     /// Energy of the outputs about their means, in units of the noise variance.
     pub(crate) fn output_energy(&self) -> f64 {
         self.of_role(TraceRole::Output)
-            .map(|(_, t)| {
+            .map(|(number, t)| {
                 let mean = t.measured.iter().sum::<f64>() / t.measured.len().max(1) as f64;
-                t.measured.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (t.sigma * t.sigma)
+                t.measured.iter().map(|y| (y - mean).powi(2)).sum::<f64>() * self.weights[number]
             })
             .sum()
     }
 
+    /// Mean square of a signal over the samples of all outputs.
+    pub(crate) fn output_square(&self, signal: &Signal) -> f64 {
+        self.output_mean(|number, _| signal[number].iter().map(|x| x * x).sum())
+    }
+
+    /// Mean square of the outputs about their means.
+    pub(crate) fn output_variance(&self) -> f64 {
+        self.output_mean(|_, t| {
+            let mean = t.measured.iter().sum::<f64>() / t.measured.len().max(1) as f64;
+            t.measured.iter().map(|y| (y - mean).powi(2)).sum()
+        })
+    }
+
+    /// Samples of all outputs.
+    pub(crate) fn output_samples(&self) -> f64 {
+        self.of_role(TraceRole::Output).map(|(_, t)| t.measured.len() as f64).sum()
+    }
+
+    /// A sum over every output, over the samples of all.
+    fn output_mean(&self, of_trace: impl Fn(usize, &Trace) -> f64) -> f64 {
+        let sum: f64 = self.of_role(TraceRole::Output).map(|(number, t)| of_trace(number, t)).sum();
+        sum / self.output_samples().max(1.0)
+    }
+
+    /// A signal less the nuisance that it asks for, but for the calibrations: so many of the last columns.
+    pub(crate) fn as_calibrated(&self, signal: &Seen<'_>, calibrations: usize) -> Signal {
+        let nuisance = as_calibrated(signal.solved.clone(), calibrations);
+        let pairs = self.traces.iter().zip(signal.signal);
+        pairs.map(|(trace, own)| trace.cleaned(own.clone(), &nuisance)).collect()
+    }
+
     /// Sum of squares of a residual over what it weighs with, on the channels of some roles.
-    fn energy_of(&self, residual: &Signal, counts: impl Fn(TraceRole) -> bool) -> f64 {
+    pub(super) fn energy_of(&self, residual: &Signal, counts: impl Fn(TraceRole) -> bool) -> f64 {
         self.traces
             .iter()
             .zip(residual)
-            .filter(|(t, _)| counts(t.role))
-            .map(|(t, r)| r.iter().map(|x| x * x).sum::<f64>() / (t.sigma * t.sigma))
+            .zip(&self.weights)
+            .filter(|((t, _), _)| counts(t.role))
+            .map(|((_, r), weight)| r.iter().map(|x| x * x).sum::<f64>() * weight)
             .sum()
     }
 
-    /// The channels beside the output, which no nuisance touches: part of every cost.
-    pub(crate) fn beside_output(&self, residual: &Signal) -> f64 {
-        self.energy_of(residual, |role| role != TraceRole::Output)
+    /// The energy of a signal on the channels beside the output.
+    pub(crate) fn energy_beside(&self, signal: &Signal) -> f64 {
+        self.energy_of(signal, |role| role != TraceRole::Output)
     }
 
-    /// The part of [`Self::beside_output`] of the covariates.
-    pub(crate) fn of_covariates(&self, residual: &Signal) -> f64 {
-        self.energy_of(residual, |role| role == TraceRole::Covariate)
-    }
-
-    /// Whether a covariate was measured.
-    pub(crate) fn has_covariates(&self) -> bool {
-        self.of_role(TraceRole::Covariate).next().is_some()
+    /// Sum of squares of a residual on all channels but the covariates.
+    pub(crate) fn within_chain(&self, residual: &Signal) -> f64 {
+        self.energy_of(residual, |role| role != TraceRole::Covariate)
     }
 
     /// Sum of squares of the outputs that noise alone would leave, over what they weigh with.
     pub(crate) fn noise_energy(&self) -> f64 {
         self.of_role(TraceRole::Output)
-            .map(|(_, t)| t.measured.len() as f64 * (t.noise / t.sigma).powi(2))
+            .map(|(number, t)| t.measured.len() as f64 * t.noise.powi(2) * self.weights[number])
             .sum()
     }
 
@@ -207,7 +241,18 @@ impl<'a> Evidence<'a> {
         let mut all = vec![0.0; self.experiments];
         for (number, t) in self.of_role(TraceRole::Output) {
             let square: f64 = signal[number].iter().map(|x| x * x).sum();
-            all[t.experiment] += square / (t.sigma * t.sigma);
+            all[t.experiment] += square * self.weights[number];
+        }
+        all
+    }
+
+    /// The same on all channels but the covariates.
+    pub(crate) fn energy_by_experiment(&self, signal: &Signal) -> Vec<f64> {
+        let mut all = vec![0.0; self.experiments];
+        for ((trace, own), weight) in self.traces.iter().zip(signal).zip(&self.weights) {
+            if trace.role != TraceRole::Covariate {
+                all[trace.experiment] += own.iter().map(|x| x * x).sum::<f64>() * weight;
+            }
         }
         all
     }
@@ -215,8 +260,8 @@ impl<'a> Evidence<'a> {
     /// Such sums of a residual less what noise alone would leave, with the standard error of that.
     pub(crate) fn excess_by_experiment(&self, energies: &[f64]) -> Vec<(f64, f64)> {
         let mut all: Vec<(f64, f64)> = energies.iter().map(|energy| (*energy, 0.0)).collect();
-        for (_, t) in self.of_role(TraceRole::Output) {
-            let (share, n) = ((t.noise / t.sigma).powi(2), t.measured.len() as f64);
+        for (number, t) in self.of_role(TraceRole::Output) {
+            let (share, n) = (t.noise.powi(2) * self.weights[number], t.measured.len() as f64);
             let own = &mut all[t.experiment];
             own.0 -= n * share;
             own.1 = own.1.hypot(share * (2.0 * n).sqrt() + NOISE_DOUBT * n * share);
@@ -226,28 +271,15 @@ impl<'a> Evidence<'a> {
 
     /// Products of columns, experiment by experiment.
     pub(crate) fn products(&self, columns: &[&Signal]) -> Vec<Products> {
-        let zero = Products::zero(columns.len(), self.width());
-        self.added(vec![zero; self.experiments], columns, columns.len())
-    }
-
-    /// Products of columns whose first is another, the products of the others being known.
-    pub(crate) fn products_after(&self, columns: &[&Signal], known: &[Products]) -> Vec<Products> {
-        let mut all = known.to_vec();
-        for own in &mut all {
-            own.own.row_mut(0).fill(0.0);
-            own.own.column_mut(0).fill(0.0);
-            own.with_nuisance.column_mut(0).fill(0.0);
-        }
-        self.added(all, columns, 1)
-    }
-
-    /// Products with those of the first `count` columns added.
-    fn added(&self, mut all: Vec<Products>, columns: &[&Signal], count: usize) -> Vec<Products> {
+        let mut all = vec![Products::zero(columns.len(), self.width()); self.experiments];
         for (number, trace) in self.traces.iter().enumerate() {
             let into = &mut all[trace.experiment];
-            let weight = 1.0 / (trace.sigma * trace.sigma);
+            let weight = self.weights[number];
+            if weight == 0.0 {
+                continue;
+            }
             for (a, column) in columns.iter().enumerate() {
-                for (b, other) in columns[..count].iter().enumerate().take(a + 1) {
+                for (b, other) in columns.iter().enumerate().take(a + 1) {
                     let own = weight * product(&column[number], &other[number]);
                     into.own[(a, b)] += own;
                     if a != b {
@@ -255,31 +287,57 @@ impl<'a> Evidence<'a> {
                     }
                 }
             }
-            self.add_crosses(&mut into.with_nuisance, &columns[..count], number);
+            self.add_crosses(&mut into.with_nuisance, columns, number);
         }
         all
     }
 
-    fn sum(&self, products: &[Products], left_out: Option<usize>) -> Products {
+    /// Products of a fit with another signal in the place of its residual, whose products with itself and the
+    /// nuisance are known; none of an experiment that is left out.
+    pub(crate) fn products_of_first(
+        &self,
+        alone: &[Products],
+        first: &Signal,
+        products: &[Products],
+        slopes: &[Signal],
+    ) -> Vec<Products> {
+        let mut all = products.to_vec();
+        for (own, alone) in all.iter_mut().zip(alone) {
+            own.own.row_mut(0).fill(0.0);
+            own.own.column_mut(0).fill(0.0);
+            own.own[(0, 0)] = alone.own[(0, 0)];
+            own.with_nuisance.set_column(0, &alone.with_nuisance.column(0));
+        }
+        for (number, trace) in self.traces.iter().enumerate() {
+            let own = &mut all[trace.experiment];
+            if self.weights[number] == 0.0 {
+                own.own[(0, 0)] = 0.0;
+                own.with_nuisance.column_mut(0).fill(0.0);
+                continue;
+            }
+            for (k, slope) in slopes.iter().enumerate() {
+                let both = self.weights[number] * product(&first[number], &slope[number]);
+                own.own[(0, k + 1)] += both;
+                own.own[(k + 1, 0)] += both;
+            }
+        }
+        all
+    }
+
+    fn sum(&self, products: &[Products]) -> Products {
         let columns = products.first().map_or(0, |p| p.own.ncols());
         let mut sum = Products::zero(columns, self.width());
-        for (e, one) in products.iter().enumerate() {
-            if left_out != Some(self.folds[e]) {
-                sum.own += &one.own;
-                sum.with_nuisance += &one.with_nuisance;
-            }
+        for one in products {
+            sum.own += &one.own;
+            sum.with_nuisance += &one.with_nuisance;
         }
         sum
     }
 
-    fn factor(&self, left_out: Option<usize>) -> &Cholesky<f64, Dyn> {
-        left_out.map_or(&self.all, |fold| &self.without[fold])
-    }
-
-    /// The products with the nuisance projected out, over all experiments or with a fold left out.
-    pub(crate) fn project(&self, products: &[Products], left_out: Option<usize>) -> DMatrix<f64> {
-        let sum = self.sum(products, left_out);
-        let solved = self.factor(left_out).solve(&sum.with_nuisance);
+    /// The products with the nuisance projected out.
+    pub(crate) fn project(&self, products: &[Products]) -> DMatrix<f64> {
+        let sum = self.sum(products);
+        let solved = self.all.solve(&sum.with_nuisance);
         sum.own - sum.with_nuisance.tr_mul(&solved)
     }
 
@@ -318,14 +376,8 @@ impl<'a> Evidence<'a> {
     }
 
     /// The nuisance that a residual asks for, the residual being `column + rest shift`.
-    pub(crate) fn nuisance_of(
-        &self,
-        products: &[Products],
-        shift: &DVector<f64>,
-        left_out: Option<usize>,
-    ) -> DVector<f64> {
-        let sum = self.sum(products, left_out);
-        self.factor(left_out).solve(&(sum.with_nuisance * shift))
+    pub(crate) fn nuisance_of(&self, products: &[Products], shift: &DVector<f64>) -> DVector<f64> {
+        self.all.solve(&(self.sum(products).with_nuisance * shift))
     }
 
     /// Sum of squares, over the noise, of a residual less its nuisance on one experiment.
@@ -341,6 +393,18 @@ impl<'a> Evidence<'a> {
         let square = (nuisance.transpose() * &self.nuisance[experiment] * nuisance)[0];
         (own - 2.0 * cross + square).max(0.0)
     }
+}
+
+fn factor(nuisance: &[DMatrix<f64>], width: usize) -> Result<Cholesky<f64, Dyn>, GapError> {
+    let sum = nuisance.iter().fold(DMatrix::identity(width, width), |sum, own| sum + own);
+    Cholesky::new(sum).ok_or(GapError::NotPositiveDefinite { columns: width })
+}
+
+/// Nuisance with the calibrations, so many of its last columns, of the reference runs.
+pub(super) fn as_calibrated(mut nuisance: DVector<f64>, calibrations: usize) -> DVector<f64> {
+    let first = nuisance.len().saturating_sub(calibrations);
+    nuisance.rows_range_mut(first..).fill(0.0);
+    nuisance
 }
 
 impl Trace {

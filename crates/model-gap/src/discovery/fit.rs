@@ -1,13 +1,12 @@
 //! Fits of the parameters of one or several causes, the nuisance projected out.
 
-use super::evidence::{
-    Evidence, Products, columns, difference, normal_equations, residual, ridged,
-};
-use super::{Signal, Simulator};
+use super::evidence::{Evidence, Products, Seen, columns, difference, normal_equations, residual};
+use super::thresholds::PARAMETER_PENALTY;
+use super::{Signal, Simulator, Trace, TraceRole};
 use crate::{Candidate, Effect, GapError, Parameter};
 use nalgebra::{DMatrix, DVector};
 
-/// Effects fitted to all experiments, with what is needed to fit them to fewer.
+/// Effects fitted to the experiments of an evidence.
 #[derive(Debug, Clone)]
 pub(crate) struct Fitted {
     pub(crate) effects: Vec<Effect>,
@@ -21,9 +20,31 @@ pub(crate) struct Fitted {
     pub(crate) free: Vec<(usize, usize)>,
     /// Products of residual and slopes, experiment by experiment.
     pub(crate) products: Vec<Products>,
-    /// Rise of the cost of the whole set up to which a fold may move the parameters, the residual taken
-    /// as straight in them.
-    pub(crate) trust: f64,
+    /// Drop of the cost that the starts promised and the fit has not reached, less the penalty on its parameters; 0
+    /// of a fit that is finished.
+    pub(crate) promised: f64,
+}
+
+/// How many starts a fit is given.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Starts {
+    /// Those that cost least and those that promise most, where one promises `least`.
+    Widely {
+        /// The drop that must be promised.
+        least: f64,
+    },
+    /// Those that promise most, until the promise is kept.
+    Shortly,
+}
+
+/// A start of a fit.
+struct Tried {
+    cost: f64,
+    /// Drop of the cost that its effect, scaled freely, would bring.
+    promise: f64,
+    /// The factor of that.
+    scale: f64,
+    effects: Vec<Effect>,
 }
 
 /// Where a descent has come to.
@@ -41,11 +62,9 @@ pub(crate) struct Fitter<'a, S> {
     pub(crate) candidates: &'a [Candidate],
 }
 
-/// Part of the drop of a fit up to which its residual counts as straight in the parameters.
-const TRUSTED: f64 = 0.1;
-/// Weight of the whole set in the fit of a fold.
-const KEPT: f64 = 0.02;
-const ITERATIONS: usize = 12;
+const ITERATIONS: usize = 20;
+/// Starts that a fit below its own promise is begun again from.
+const MOST_RESTARTS: usize = 3;
 /// Iterations that a start which costs much and promises much is given to show it.
 const TRIAL_ITERATIONS: usize = 4;
 /// Part of the drop found from other starts that it must have reached by then.
@@ -69,62 +88,110 @@ impl<S: Simulator> Fitter<'_, S> {
         self.evidence.inner(&seen, &seen)
     }
 
-    /// The best fit of the effects of `before` (refitted too) and a further candidate, from every
-    /// start given; none if no start promises a drop of `least` were its effect scaled freely.
+    /// The best fit of the effects of `before` (refitted too) and a further candidate, from the starts given;
+    /// none if no start promises a drop of `least` were its effect scaled freely.
+    ///
+    /// The largest promise is a check on the fit: one that stays below it by more than the penalty on its parameters
+    /// is begun again elsewhere, and where that does not help [`Fitted::promised`] says what it may have missed.
     pub(crate) fn fit_with(
         &self,
         before: &Fitted,
         candidate: usize,
         starts: &[Vec<f64>],
-        least: f64,
+        search: Starts,
     ) -> Result<Option<Fitted>, GapError> {
         let mut tried = Vec::new();
-        let mut promise = 0.0_f64;
         let own = self.evidence.see(&before.residual);
         for values in starts {
-            let mut effects = before.effects.clone();
-            effects.push(Effect { candidate, values: values.clone() });
-            let residual = self.residual(&effects)?;
-            let with = self.evidence.see(&residual);
-            let (both, cost) =
-                (self.evidence.inner(&own, &with), self.evidence.inner(&with, &with));
-            let along = before.cost - both;
-            let size = before.cost - 2.0 * both + cost;
-            let own_promise = if along > 0.0 && size > 0.0 { along * along / size } else { 0.0 };
-            promise = promise.max(own_promise);
-            tried.push((cost, own_promise, effects));
+            tried.push(self.tried(before, &own, Effect { candidate, values: values.clone() })?);
         }
-        if promise < least {
+        let promise = tried.iter().map(|start| start.promise).fold(0.0, f64::max);
+        let widely = match search {
+            Starts::Widely { least } if promise < least => return Ok(None),
+            Starts::Widely { .. } => true,
+            Starts::Shortly => false,
+        };
+        if tried.is_empty() {
             return Ok(None);
         }
-        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let promising = tried.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
-        let third = promising.map(|(place, (_, promise, _))| (place, *promise));
+        let cheapest = {
+            let mut order: Vec<usize> = (0..tried.len()).collect();
+            order.sort_by(|&a, &b| tried[a].cost.total_cmp(&tried[b].cost));
+            order
+        };
+        let mut promising: Vec<usize> = (0..tried.len()).collect();
+        promising.sort_by(|&a, &b| tried[b].promise.total_cmp(&tried[a].promise));
         let mut best: Option<Fitted> = None;
-        let mut refined = |effects: &[Effect]| -> Result<f64, GapError> {
-            let mut found = self.refine(effects.to_vec())?;
-            let drop = before.cost - found.cost;
-            found.trust = TRUSTED * drop.max(0.0);
+        let mut drop = 0.0_f64;
+        let mut refined = |effects: Vec<Effect>| -> Result<f64, GapError> {
+            let found = self.refine(effects)?;
+            drop = drop.max(before.cost - found.cost);
             if best.as_ref().is_none_or(|b| found.cost < b.cost) {
                 best = Some(found);
             }
             Ok(drop)
         };
-        let mut drop = 0.0_f64;
-        for (_, _, effects) in tried.iter().take(2) {
-            drop = drop.max(refined(effects)?);
+        let asked = promise - PARAMETER_PENALTY * self.free_parameters(candidate) as f64;
+        let mut reached = f64::NEG_INFINITY;
+        for &place in cheapest.iter().take(if widely { 2 } else { 0 }) {
+            reached = refined(tried[place].effects.clone())?;
         }
-        // the effect of a start may be right in form and too large: it costs more than none and promises much
-        if let Some((place, promise)) = third
-            && place > 1
-            && promise > drop
+        // the effect of a start may be right in form and of another size: it costs more than none and promises much
+        let first = &tried[promising[0]];
+        if widely
+            && !cheapest[..cheapest.len().min(2)].contains(&promising[0])
+            && first.promise > reached
         {
-            let on_trial = self.descend(tried[place].2.clone(), TRIAL_ITERATIONS)?;
-            if before.cost - on_trial.cost > TRIAL_SHARE * drop {
-                refined(&on_trial.effects)?;
+            let on_trial = self.descend(first.effects.clone(), TRIAL_ITERATIONS)?;
+            if before.cost - on_trial.cost > TRIAL_SHARE * reached.max(0.0) {
+                reached = refined(on_trial.effects)?;
             }
         }
-        Ok(best)
+        for &place in promising.iter().take(MOST_RESTARTS) {
+            if reached >= asked {
+                break;
+            }
+            for effects in self.scaled(&tried[place], before.effects.len()) {
+                if reached < asked || reached <= 0.0 {
+                    reached = refined(effects)?;
+                }
+            }
+        }
+        if reached == f64::NEG_INFINITY {
+            reached = refined(tried[cheapest[0]].effects.clone())?;
+        }
+        Ok(best
+            .map(|found| Fitted { promised: if reached < asked { asked } else { 0.0 }, ..found }))
+    }
+
+    /// What a start costs, and what it promises.
+    fn tried(&self, before: &Fitted, own: &Seen<'_>, added: Effect) -> Result<Tried, GapError> {
+        let mut effects = before.effects.clone();
+        effects.push(added);
+        let residual = self.residual(&effects)?;
+        let with = self.evidence.see(&residual);
+        let (both, cost) = (self.evidence.inner(own, &with), self.evidence.inner(&with, &with));
+        let (along, size) = (before.cost - both, before.cost - 2.0 * both + cost);
+        let scale = if size > 0.0 { along / size } else { 0.0 };
+        let promise = if scale > 0.0 { along * scale } else { 0.0 };
+        Ok(Tried { cost, promise, scale, effects })
+    }
+
+    /// The effect of a start, which stands last, as large as the data ask for; and as it is.
+    fn scaled(&self, start: &Tried, place: usize) -> Vec<Vec<Effect>> {
+        let parameters = &self.candidates[start.effects[place].candidate].parameters;
+        let mut scaled = start.effects.clone();
+        for (value, parameter) in scaled[place].values.iter_mut().zip(parameters) {
+            if parameter.is_amount || parameter.grows {
+                *value = (*value * start.scale).clamp(parameter.low, parameter.high);
+            }
+        }
+        if scaled == start.effects { vec![scaled] } else { vec![scaled, start.effects.clone()] }
+    }
+
+    /// Parameters of a candidate that are fitted.
+    pub(crate) fn free_parameters(&self, candidate: usize) -> usize {
+        self.candidates[candidate].parameters.iter().filter(|p| p.held.is_none()).count()
     }
 
     /// Levenberg-Marquardt from given effects, with what folds and intervals need.
@@ -132,7 +199,7 @@ impl<S: Simulator> Fitter<'_, S> {
         let Descent { effects, free, residual, cost } = self.descend(effects, ITERATIONS)?;
         let slopes = self.slopes(&effects, &residual, &free)?;
         let products = self.evidence.products(&columns(&residual, &slopes));
-        Ok(Fitted { effects, cost, residual, slopes, free, products, trust: f64::INFINITY })
+        Ok(Fitted { effects, cost, residual, slopes, free, products, promised: 0.0 })
     }
 
     /// Levenberg-Marquardt from given effects.
@@ -150,13 +217,14 @@ impl<S: Simulator> Fitter<'_, S> {
             let slopes = self.slopes(&effects, &residual, &free)?;
             let gram = self.evidence.gram(&columns(&residual, &slopes));
             let (normal, right) = normal_equations(&gram);
+            let inward = self.inward(&effects, &free, &right);
             let mut improved = None;
-            for _ in 0..4 {
-                let mut damped = normal.clone();
-                for i in 0..free.len() {
-                    damped[(i, i)] += damping * normal[(i, i)] + 1e-12 + 1e-9 * normal.trace();
-                }
-                let Some(step) = damped.cholesky().map(|c| c.solve(&right)) else { break };
+            for _ in 0..6 {
+                let Some(step) =
+                    self.projected_step(&effects, &free, (&normal, &right), &inward, damping)
+                else {
+                    break;
+                };
                 let moved = self.moved(&effects, &free, &step);
                 let new_residual = self.residual(&moved)?;
                 let new_cost = self.cost_of(&new_residual);
@@ -178,6 +246,68 @@ impl<S: Simulator> Fitter<'_, S> {
             }
         }
         Ok(Descent { effects, free, residual, cost })
+    }
+
+    /// The free coordinates that do not lie at an end of their range with the descent leading out of it.
+    fn inward(
+        &self,
+        effects: &[Effect],
+        free: &[(usize, usize)],
+        downhill: &DVector<f64>,
+    ) -> Vec<usize> {
+        let leads_inward = |&k: &usize| {
+            let parameter = self.parameter(effects, free[k]);
+            let x = parameter.coordinate(effects[free[k].0].values[free[k].1]);
+            let (low, high) =
+                (parameter.coordinate(parameter.low), parameter.coordinate(parameter.high));
+            let slack = 1e-9 * (high - low);
+            !(x <= low + slack && downhill[k] < 0.0 || x >= high - slack && downhill[k] > 0.0)
+        };
+        (0..free.len()).filter(leads_inward).collect()
+    }
+
+    /// The damped step of the coordinates of `active`, none of which leaves its range: one that would is held at its
+    /// end, and the others are solved for again.
+    fn projected_step(
+        &self,
+        effects: &[Effect],
+        free: &[(usize, usize)],
+        (normal, right): (&DMatrix<f64>, &DVector<f64>),
+        active: &[usize],
+        damping: f64,
+    ) -> Option<DVector<f64>> {
+        let mut active = active.to_vec();
+        let mut step = DVector::zeros(free.len());
+        while !active.is_empty() {
+            let mut own = normal.select_rows(&active).select_columns(&active);
+            for (i, &k) in active.iter().enumerate() {
+                own[(i, i)] += damping * normal[(k, k)] + 1e-12 + 1e-9 * normal.trace();
+            }
+            // what the coordinates held at their ends move already
+            let asked = right.select_rows(&active) - normal.select_rows(&active) * &step;
+            let solved = own.cholesky()?.solve(&asked);
+            let ends = |(i, &k): (usize, &usize)| {
+                let parameter = self.parameter(effects, free[k]);
+                let x = parameter.coordinate(effects[free[k].0].values[free[k].1]);
+                let (low, high) =
+                    (parameter.coordinate(parameter.low), parameter.coordinate(parameter.high));
+                let there = x + solved[i];
+                let end = (there < low).then_some(low).or((there > high).then_some(high));
+                end.map(|end| (i, end - x))
+            };
+            let out: Vec<(usize, f64)> = active.iter().enumerate().filter_map(ends).collect();
+            if out.is_empty() {
+                for (i, &k) in active.iter().enumerate() {
+                    step[k] = solved[i];
+                }
+                break;
+            }
+            for &(i, to_end) in out.iter().rev() {
+                step[active[i]] = to_end;
+                active.remove(i);
+            }
+        }
+        Some(step)
     }
 
     /// Slopes of the residual by one-sided differences, turned inward at the upper bound.
@@ -229,70 +359,66 @@ impl<S: Simulator> Fitter<'_, S> {
 }
 
 impl Fitted {
-    /// The step of the coordinates that fits the projected products of a fold best, the residual
-    /// straight in them. The first entry belongs to the residual and is 1.
-    ///
-    /// The products of the whole set weigh in with a fiftieth: a parameter that only the fold left out
-    /// shows keeps the value of the whole fit, where the others alone would leave it anywhere. A step is
-    /// cut back to where the residual may be taken as straight in the parameters.
-    fn shift(&self, matrix: &DMatrix<f64>, whole: &DMatrix<f64>) -> DVector<f64> {
-        let n = matrix.nrows() - 1;
-        let mut shift = zero_shift(n);
-        if n == 0 {
-            return shift;
-        }
-        let (normal, right) = normal_equations(matrix);
-        let whole = whole.view((1, 1), (n, n));
-        let normal = ridged(normal + whole * KEPT, 1e-9, 1e-12);
-        if let Some(mut step) = normal.cholesky().map(|c| c.solve(&right)) {
-            let rise = (step.transpose() * whole * &step)[0];
-            if rise > self.trust {
-                step *= (self.trust / rise).sqrt();
-            }
-            shift.rows_mut(1, n).copy_from(&step);
-        }
-        shift
-    }
-
-    /// Sums of squares over the noise on every experiment, each predicted by a fit that has not seen
-    /// its fold.
-    pub(crate) fn held_out(&self, evidence: &Evidence<'_>) -> Vec<f64> {
-        let folds = self.folds(evidence, &self.products);
-        let left = |(e, products): (usize, &Products)| {
-            let (shift, nuisance) = &folds[evidence.folds[e]];
-            evidence.left_of(products, shift, nuisance, e)
-        };
-        self.products.iter().enumerate().map(left).collect()
-    }
-
-    /// Steps of the coordinates and nuisance of the fits that have not seen a fold, fold by fold, from products of
-    /// a residual with the slopes; one fold alone is its own judge.
-    pub(crate) fn folds(
-        &self,
-        evidence: &Evidence<'_>,
-        products: &[Products],
-    ) -> Vec<(DVector<f64>, DVector<f64>)> {
-        let whole = evidence.project(products, None);
-        let one = |fold| {
-            let left_out = (evidence.fold_count > 1).then_some(fold);
-            let shift = self.shift(&evidence.project(products, left_out), &whole);
-            let nuisance = evidence.nuisance_of(products, &shift, left_out);
-            (shift, nuisance)
-        };
-        (0..evidence.fold_count).map(one).collect()
+    /// The nuisance that its residual asks for.
+    pub(crate) fn nuisance(&self, evidence: &Evidence<'_>) -> DVector<f64> {
+        evidence.nuisance_of(&self.products, &zero_shift(self.free.len()))
     }
 
     /// The residual less the nuisance it asks for.
     pub(crate) fn cleaned(&self, evidence: &Evidence<'_>) -> Signal {
-        let shift = zero_shift(self.free.len());
-        let nuisance = evidence.nuisance_of(&self.products, &shift, None);
+        let nuisance = self.nuisance(evidence);
         let pairs = evidence.traces.iter().zip(&self.residual);
         pairs.map(|(trace, own)| trace.cleaned(own.clone(), &nuisance)).collect()
     }
 }
 
+/// What a fit leaves of the evidence.
+impl Evidence<'_> {
+    /// Sums of squares over the noise that a fit leaves of every experiment, the nuisance being that of all.
+    pub(crate) fn left_by_experiment(&self, fit: &Fitted) -> Vec<f64> {
+        let shift = zero_shift(fit.free.len());
+        let nuisance = fit.nuisance(self);
+        let left = |(e, own): (usize, &Products)| self.left_of(own, &shift, &nuisance, e);
+        fit.products.iter().enumerate().map(left).collect()
+    }
+
+    /// What a fit leaves of the channels beside the output: part of its cost.
+    pub(crate) fn beside_output(&self, fit: &Fitted) -> f64 {
+        self.left_beside(fit, |role| role != TraceRole::Output)
+    }
+
+    /// The part of [`Self::beside_output`] of the covariates.
+    pub(crate) fn of_covariates(&self, fit: &Fitted) -> f64 {
+        self.left_beside(fit, |role| role == TraceRole::Covariate)
+    }
+
+    /// What a fit leaves of channels of some roles, the nuisance that it asks for taken out.
+    fn left_beside(&self, fit: &Fitted, counts: impl Fn(TraceRole) -> bool) -> f64 {
+        if !self.traces.iter().any(|t| counts(t.role)) {
+            return 0.0;
+        }
+        let nuisance = fit.nuisance(self);
+        let left = |(trace, residual): (&Trace, &Vec<f64>)| {
+            if counts(trace.role) { trace.cleaned(residual.clone(), &nuisance) } else { Vec::new() }
+        };
+        let left: Signal = self.traces.iter().zip(&fit.residual).map(left).collect();
+        self.energy_of(&left, counts)
+    }
+
+    /// How far the last columns of the nuisance move under a fit, in their standard deviations: the farthest.
+    pub(crate) fn strain(&self, fit: &Fitted, columns: usize) -> f64 {
+        fit.nuisance(self).iter().rev().take(columns).fold(0.0, |most, shift| shift.abs().max(most))
+    }
+
+    /// Mean square of what a fit leaves of all outputs, the channels calibrated as in the reference runs; `calibrations`
+    /// are so many of the last columns of the nuisance.
+    pub(crate) fn left_of_outputs(&self, fit: &Fitted, calibrations: usize) -> f64 {
+        self.output_square(&self.as_calibrated(&self.see(&fit.residual), calibrations))
+    }
+}
+
 /// No step of `parameters` coordinates: the residual as it is, whose own entry is 1 and stands first.
-fn zero_shift(parameters: usize) -> DVector<f64> {
+pub(super) fn zero_shift(parameters: usize) -> DVector<f64> {
     let mut shift = DVector::zeros(parameters + 1);
     shift[0] = 1.0;
     shift

@@ -9,7 +9,7 @@ impl<S: Simulator> Search<'_, S> {
     /// Share of the misfit above the floor that a fit takes away; 1 where nothing stands out. The floor
     /// is what noise and the worst surrogate leave.
     pub(super) fn share_of_excess(&self, current: &Fitted) -> f64 {
-        let energy = |f: &Fitted| f.cost - self.evidence.beside_output(&f.residual);
+        let energy = |f: &Fitted| f.cost - self.evidence.beside_output(f);
         let floor = self.evidence.noise_energy() + self.structure_energy;
         let before = energy(&self.base) - floor;
         let drop = self.output_drop(&self.base, current);

@@ -1,8 +1,10 @@
 //! What the extension is worth on data not used for it.
 
-use super::evidence::{Evidence, Products, columns, difference};
+use super::evidence::{Evidence, difference};
 use super::fit::Fitted;
-use super::{Signal, TraceRole};
+use super::held_out::{FoldFit, Folds};
+use super::{Signal, Simulator, TraceRole};
+use crate::GapError;
 use crate::quantile::student_975;
 use crate::resampling::{NoiseDraw, SplitMix};
 use rayon::prelude::*;
@@ -28,15 +30,18 @@ type Block = (f64, f64, f64);
 /// Draws of the noise; the interval takes the quantile of Student's distribution for as many.
 const DRAWS: u64 = 40;
 
-/// The gain of an extended model with both intervals.
-pub(crate) fn gain(
+/// The gain of causes with both intervals; none where nothing can be held out.
+pub(super) fn gain<S: Simulator>(
+    folds: &Folds<'_, S>,
     evidence: &Evidence<'_>,
-    base: &Fitted,
     extended: &Fitted,
     resamplings: usize,
-) -> Gain {
-    let before = held_out_residual(evidence, base);
-    let after = held_out_residual(evidence, extended);
+) -> Result<Option<Gain>, GapError> {
+    if extended.effects.is_empty() || !folds.hold_out() {
+        return Ok(None);
+    }
+    let fits = [folds.fits(&[])?, folds.fits(&extended.causes())?];
+    let [before, after] = [&fits[0], &fits[1]].map(|own| folds.residual(own));
     let mut experiments: Vec<Vec<Block>> = vec![Vec::new(); evidence.experiments];
     for (number, trace) in evidence.of_role(TraceRole::Output) {
         let pairs = before[number].chunks(trace.block).zip(after[number].chunks(trace.block));
@@ -50,13 +55,9 @@ pub(crate) fn gain(
     let rms = |s: Block| ((s.0 / s.2).sqrt(), (s.1 / s.2).sqrt());
     let total = experiments.iter().flatten().fold((0.0, 0.0, 0.0), sum);
     if total.2 == 0.0 {
-        return Gain::default();
+        return Ok(None);
     }
-    if extended.effects.is_empty() {
-        let (rms, _) = rms(total);
-        return Gain { rms_before: rms, rms_after: rms, ..Gain::default() };
-    }
-    let drop_ci95 = repeated(evidence, base, extended, (&before, &after));
+    let drop_ci95 = repeated(folds, evidence, extended, [&fits[0], &fits[1]], [&before, &after]);
     let (rms_before, rms_after) = rms(total);
     let mut random = SplitMix(0x9E37_79B9_7F4A_7C15);
     let mut drops: Vec<f64> = (0..resamplings)
@@ -74,21 +75,25 @@ pub(crate) fn gain(
         .collect();
     drops.sort_by(f64::total_cmp);
     let at = |share: f64| quantile(&drops, share).unwrap_or(rms_before - rms_after);
-    Gain { rms_before, rms_after, drop_ci95, drop_elsewhere_ci95: [at(0.025), at(0.975)] }
+    Ok(Some(Gain { rms_before, rms_after, drop_ci95, drop_elsewhere_ci95: [at(0.025), at(0.975)] }))
 }
 
 /// Interval of the drop under other noise: a residual bootstrap, the residual less its noise held, the fits
 /// straight in their parameters.
-fn repeated(
+fn repeated<S: Simulator>(
+    folds: &Folds<'_, S>,
     evidence: &Evidence<'_>,
-    base: &Fitted,
     extended: &Fitted,
-    held_out: (&Signal, &Signal),
+    fits: [&[FoldFit]; 2],
+    held_out: [&Signal; 2],
 ) -> [f64; 2] {
     let noise: Signal =
         extended.cleaned(evidence).iter().map(|left| NoiseDraw::BROAD.noise_of(left)).collect();
-    let still = |fitted: &Fitted, all: &Signal| difference(all, &under(evidence, fitted, &noise));
-    let (before, after) = (still(base, held_out.0), still(extended, held_out.1));
+    let still: Vec<Signal> = fits
+        .iter()
+        .zip(held_out)
+        .map(|(fits, all)| difference(all, &folds.under(evidence, fits, &noise)))
+        .collect();
     let drops: Vec<f64> = (0..DRAWS)
         .into_par_iter()
         .map(|draw| {
@@ -96,17 +101,17 @@ fn repeated(
                 .zip(&noise)
                 .map(|(trace, own)| NoiseDraw::BROAD.again(own, (draw << 32) + trace))
                 .collect();
-            let size = |still: &Signal, fitted: &Fitted| {
-                output_rms(evidence, still, &under(evidence, fitted, &other))
+            let size = |which: usize| {
+                output_rms(evidence, &still[which], &folds.under(evidence, fits[which], &other))
             };
-            size(&before, base) - size(&after, extended)
+            size(0) - size(1)
         })
         .collect();
     let mean = drops.iter().sum::<f64>() / drops.len() as f64;
     let square: f64 = drops.iter().map(|d| (d - mean).powi(2)).sum();
     let spread =
         student_975(drops.len() as f64 - 1.0) * (square / (drops.len() as f64 - 1.0)).sqrt();
-    let drop = output_rms(evidence, held_out.0, &[]) - output_rms(evidence, held_out.1, &[]);
+    let drop = output_rms(evidence, held_out[0], &[]) - output_rms(evidence, held_out[1], &[]);
     [drop - spread, drop + spread]
 }
 
@@ -123,12 +128,6 @@ fn output_rms(evidence: &Evidence<'_>, a: &Signal, b: &[Vec<f64>]) -> f64 {
     (square / f64::max(count, 1.0)).sqrt()
 }
 
-/// What held-out residuals change by when the measured signals change by `noise`.
-fn under(evidence: &Evidence<'_>, fitted: &Fitted, noise: &Signal) -> Signal {
-    let products = evidence.products_after(&columns(noise, &fitted.slopes), &fitted.products);
-    held_out_of(evidence, fitted, noise, &products)
-}
-
 /// Quantile of sorted values by linear interpolation.
 #[expect(
     clippy::cast_possible_truncation,
@@ -142,33 +141,4 @@ fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let above = (below + 1).min(last);
     let part = place - below as f64;
     Some(sorted[below] + part * (sorted[above] - sorted[below]))
-}
-
-/// Residuals of every experiment predicted by a fit that has not seen its fold; one experiment alone
-/// is its own judge.
-pub(crate) fn held_out_residual(evidence: &Evidence<'_>, fitted: &Fitted) -> Signal {
-    held_out_of(evidence, fitted, &fitted.residual, &fitted.products)
-}
-
-/// The same for another residual in the place of the first column of the products.
-fn held_out_of(
-    evidence: &Evidence<'_>,
-    fitted: &Fitted,
-    residual: &Signal,
-    products: &[Products],
-) -> Signal {
-    let folds = fitted.folds(evidence, products);
-    evidence
-        .traces
-        .iter()
-        .enumerate()
-        .map(|(number, trace)| {
-            let (shift, nuisance) = &folds[evidence.folds[trace.experiment]];
-            let mut left = residual[number].clone();
-            for (slope, s) in fitted.slopes.iter().zip(shift.iter().skip(1)) {
-                left.iter_mut().zip(&slope[number]).for_each(|(y, slope)| *y += slope * s);
-            }
-            trace.cleaned(left, nuisance)
-        })
-        .collect()
 }

@@ -196,7 +196,7 @@ pub(crate) fn parameters<S: Simulator>(
     let own = &fitted.effects[effect];
     let cause = &discovery.candidates[own.candidate];
     let shifts = shifts(discovery, evidence, fitted, effect, rest)?;
-    let (normal, _) = normal_equations(&evidence.project(&fitted.products, None));
+    let (normal, _) = normal_equations(&evidence.project(&fitted.products));
     let covariance = ridged(normal, 1e-12, 0.0).cholesky().map(|c| c.inverse());
     let fitted = cause
         .parameters

@@ -6,32 +6,29 @@ mod evidence;
 mod fit;
 mod floors;
 mod gain;
+mod held_out;
 mod intermediate;
 mod judge;
 mod reason;
 mod rival;
 mod screen;
 mod thresholds;
-mod trace;
 mod verdict;
 
+pub use crate::trace::{Signal, Simulator, Trace, TraceRole};
 pub use gain::Gain;
-pub use reason::Reason;
+pub use reason::{OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
 pub use thresholds::needed_to_separate;
-pub use trace::{Simulator, Trace, TraceRole};
 pub use verdict::{
-    Alternative, Compared, Confidence, Finding, FittedParameter, Found, StandsOut, Verdict,
+    Alternative, Compared, Confidence, Finding, FittedParameter, Found, FoundClass, StandsOut,
+    Verdict,
 };
 
 use crate::{Candidate, GapError};
 use decide::Search;
 use evidence::Evidence;
-use thresholds::MOST_FOLDS;
-
-/// A signal on all traces.
-pub type Signal = Vec<Vec<f64>>;
 
 /// Everything a search for what is missing needs.
 #[derive(Debug)]
@@ -49,6 +46,12 @@ pub struct Discovery<'a, S> {
     pub trends: &'a [Signal],
     /// What the base model leaves of surrogate systems of other kinds with nothing missing.
     pub structures: &'a [Signal],
+    /// Which experiments are held out together, because they repeat one input: those of equal number. Each is held
+    /// out by itself where this is empty.
+    pub groups: &'a [usize],
+    /// How many of the last nuisance columns are calibrations of the channels: where one of them must move by more than
+    /// its accuracy, nothing is denied with confidence.
+    pub calibrations: usize,
     /// What depends on the data and on who asks.
     pub settings: Settings,
 }
@@ -70,13 +73,30 @@ impl Default for Settings {
     }
 }
 
+impl<'a, S> Discovery<'a, S> {
+    /// A search with no directions, no surrogates, nothing repeated and no calibration.
+    pub fn new(traces: &'a [Trace], simulator: &'a S, candidates: &'a [Candidate]) -> Self {
+        Self {
+            traces,
+            simulator,
+            candidates,
+            generic: &[],
+            trends: &[],
+            structures: &[],
+            groups: &[],
+            calibrations: 0,
+            settings: Settings::default(),
+        }
+    }
+}
+
 impl<S: Simulator> Discovery<'_, S> {
     /// Finds what is missing, or says that nothing is, or that it has no name.
     ///
     /// # Errors
     /// [`GapError::Simulation`]; [`GapError::NotPositiveDefinite`] for bad nuisance columns.
     pub fn find(&self) -> Result<Finding, GapError> {
-        let evidence = Evidence::new(self.traces, MOST_FOLDS)?;
+        let evidence = Evidence::new(self.traces)?;
         Search::new(self, &evidence)?.run()
     }
 
@@ -85,7 +105,7 @@ impl<S: Simulator> Discovery<'_, S> {
     /// # Errors
     /// As [`Self::find`].
     pub fn refit(&self, given: &[usize]) -> Result<Finding, GapError> {
-        let evidence = Evidence::new(self.traces, MOST_FOLDS)?;
+        let evidence = Evidence::new(self.traces)?;
         Search::new(self, &evidence)?.refit(given)
     }
 }

@@ -1,5 +1,14 @@
 //! Why a verdict is what it is.
 
+/// The one experiment that shows a cause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OnlyRun {
+    /// Its number, from 0.
+    pub experiment: usize,
+    /// Whether each of its halves is foretold by the other and all other experiments.
+    pub halves_agree: bool,
+}
+
 /// A reason of a verdict, with the numbers it rests on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -10,6 +19,23 @@ pub enum Reason {
     /// The interval of the gain on held-out runs contains zero.
     #[error("the gain on held-out runs may be zero: the name is tentative")]
     GainMayBeZero,
+    /// One measured experiment: nothing can be held out.
+    #[error(
+        "there is one measured run, or one kind of it: no run that was not fitted bears the name out"
+    )]
+    NothingHeldOut,
+    /// One experiment alone shows a cause.
+    #[error(
+        "one run alone shows {cause}, so that no gain on other runs can be stated; {}",
+        if .run.halves_agree { "its two halves foretell each other" }
+        else { "its two halves do not foretell each other: repeat it" }
+    )]
+    OneRunOnly {
+        /// The cause.
+        cause: &'static str,
+        /// The run, and whether its halves agree.
+        run: OnlyRun,
+    },
     /// A name was dropped, because the base model alone stays within the floor.
     #[error("the misfit of the base model is within the floor: the name is dropped")]
     NameDropped,
@@ -161,6 +187,26 @@ pub enum Reason {
     /// No cause of usual strength would be visible.
     #[error("no cause of usual strength would be visible in these data")]
     NothingVisible,
+    /// A calibration is off by more than its accuracy.
+    #[error(
+        "gain or zero of a channel is off by {times:.1} times its accuracy between the reference and the measured \
+         runs: calibrate, or repeat the reference runs"
+    )]
+    CalibrationOff {
+        /// By how many standard deviations.
+        times: f64,
+    },
+    /// A common cause of a size that matters could have been missed.
+    #[error(
+        "nothing was seen, but these would have been missed at {:.0} % of the output: {}",
+        .share * 100.0, .causes.join(", ")
+    )]
+    WouldBeMissed {
+        /// The size, over the output.
+        share: f64,
+        /// The causes.
+        causes: Vec<&'static str>,
+    },
     /// A further cause is not added.
     #[error("{cause} is not added to the causes found before: {why}")]
     NotAdded {
@@ -192,6 +238,19 @@ pub enum Reason {
         drop: f64,
         /// What surrogates reach.
         threshold: f64,
+    },
+    /// A candidate hardly changes the error of the outputs.
+    #[error(
+        "{cause} would lower the mean square of the outputs' error by {drop:.1e}: below {needed:.1e} that is the base \
+         model's own"
+    )]
+    Negligible {
+        /// The candidate.
+        cause: &'static str,
+        /// What it would take off, in the square of the output's unit.
+        drop: f64,
+        /// What it must.
+        needed: f64,
     },
     /// Too little of the drop of a candidate shows on held-out runs.
     #[error(

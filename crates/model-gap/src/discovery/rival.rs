@@ -21,7 +21,7 @@ pub struct Rival {
 
 impl Rival {
     pub(super) fn of(evidence: &Evidence<'_>, fit: &Fitted, candidate: usize) -> Self {
-        let (information, _) = normal_equations(&evidence.project(&fit.products, None));
+        let (information, _) = normal_equations(&evidence.project(&fit.products));
         Self { candidate, effects: fit.effects.clone(), information, free: fit.free.clone() }
     }
 }
@@ -56,7 +56,7 @@ pub fn separations<S: Simulator>(
     candidates: &[Candidate],
     rivals: &[Rival],
 ) -> Result<Separation, GapError> {
-    let evidence = Evidence::new(traces, 1)?;
+    let evidence = Evidence::new(traces)?;
     let fitter = Fitter { simulator, evidence: &evidence, candidates };
     let base = fitter.residual(&[])?;
     let looked_at: Vec<_> = rivals
@@ -68,7 +68,7 @@ pub fn separations<S: Simulator>(
         })
         .collect::<Result<_, GapError>>()?;
     let on_outputs =
-        |effect: &Signal| (fitter.cost_of(effect) - evidence.beside_output(effect)).max(0.0);
+        |effect: &Signal| (fitter.cost_of(effect) - evidence.energy_beside(effect)).max(0.0);
     let energy = looked_at.iter().map(|own| on_outputs(&difference(&base, &own.0))).collect();
     let count = rivals.len();
     let mut distance = DMatrix::zeros(count, count);

@@ -20,6 +20,9 @@ pub struct Screened {
     /// Drop of the misfit expected of a weak effect, a hundredth of the output, in
     /// units of the noise variance.
     pub weak_signal: f64,
+    /// Mean square on the outputs that an effect of that size would take off their error, the channels calibrated as in
+    /// the reference runs.
+    pub weak_drop: f64,
     /// The candidate whose effect points the same way, with the cosine.
     pub most_confused: Option<(usize, f64)>,
 }
@@ -68,6 +71,7 @@ fn one<S: Simulator>(
         absorbed: 1.0,
         threshold: NOISE_DEVIATIONS.powi(2),
         weak_signal: 0.0,
+        weak_drop: 0.0,
         most_confused: None,
     };
     let given = &discovery.candidates[candidate];
@@ -81,6 +85,7 @@ fn one<S: Simulator>(
     let known = evidence.seen(&columns(misfit, discovery.structures));
     let seen = evidence.seen(&signals.iter().collect::<Vec<_>>());
     let weak = WEAK_EFFECT.powi(2) * evidence.output_energy();
+    let spread = evidence.output_variance();
     let mut best = nothing;
     let mut found = None;
     let mut structural = 0.0_f64;
@@ -96,6 +101,7 @@ fn one<S: Simulator>(
         if size <= 1e-9 * whole.max(1e-300) {
             continue;
         }
+        let on_output = whole - evidence.energy_beside(&signals[start]);
         for structure in &known[1..] {
             let along = evidence.inner(signal, structure) / size.sqrt();
             structural = structural.max(along).max(-OTHER_SIGN * along);
@@ -109,7 +115,14 @@ fn one<S: Simulator>(
                 }
             }
         }
-        best.weak_signal = best.weak_signal.max(weak * size / whole);
+        if on_output > 1e-9 * whole {
+            best.weak_signal = best.weak_signal.max(weak * size / on_output);
+            // the same part of an effect that is a hundredth of the output
+            let shown =
+                evidence.output_square(&evidence.as_calibrated(signal, discovery.calibrations));
+            let part = shown / evidence.output_square(&signals[start]).max(1e-300);
+            best.weak_drop = best.weak_drop.max(WEAK_EFFECT.powi(2) * spread * part);
+        }
         let along = evidence.inner(signal, &known[0]);
         let score = if along > 0.0 { along * along / size } else { 0.0 };
         if score > best.score || found.is_none() {

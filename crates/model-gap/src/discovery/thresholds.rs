@@ -26,6 +26,10 @@ pub(super) const OTHER_SIGN: f64 = 0.5;
 
 /// Most folds of the split by experiment.
 pub(super) const MOST_FOLDS: usize = 8;
+/// Part of its threshold that a cause must reach on some experiments for these to know it.
+pub(super) const KNOWN_SHARE: f64 = 0.5;
+/// Share of what a cause explains that other experiments must know of, for held-out experiments to judge it.
+pub(super) const FORETOLD_SHARE: f64 = 0.5;
 /// Penalty on a free parameter, in units of the noise variance.
 pub(super) const PARAMETER_PENALTY: f64 = 3.0;
 /// Share of the excess that the named causes must explain.
@@ -36,6 +40,9 @@ pub(super) const NEXT_SHARE: f64 = 0.04;
 /// The same for a candidate that is easily taken for one of the causes before: an error of their form is most of
 /// all like it.
 pub(super) const CONFUSED_SHARE: f64 = 0.2;
+/// Part of the mean square of the outputs' error by which a cause must lower it: what it takes below that is the base
+/// model's own.
+pub(super) const LEAST_GAIN: f64 = 0.05;
 /// Times its threshold that a cause must explain to be named with confidence.
 pub(super) const STRONG: f64 = 2.0;
 /// Share of a drop that must show where experiments are held out.
@@ -53,6 +60,8 @@ pub fn needed_to_separate(drop: f64) -> f64 {
     SEPARATION + FORM_ERROR * drop
 }
 
+/// Largest share of the drop of a cause that a rival may lack.
+pub(super) const RIVAL_LACK: f64 = 0.4;
 /// Share of the drop beyond which structure of the base model does not make two causes change places.
 pub(super) const SWAY_SHARE: f64 = 0.1;
 /// Part of the discrimination threshold within which the other cause is as likely.
@@ -64,6 +73,39 @@ pub(super) const SURELY: f64 = 1.25;
 pub(super) const SHOWN: f64 = 0.5;
 /// Standard errors of that part that must lie between.
 pub(super) const SURE_ERRORS: f64 = 3.0;
+
+/// Share of the drop of a cause of static gain that another must bring to stay open where no channel parts them.
+pub(super) const SAME_GAIN: f64 = 0.8;
+
+// What "nothing is missing" means.
+
+/// Standard deviations by which an effect must lie above its threshold to be seen with 90 % probability.
+const SEEN: f64 = 1.2816;
+
+/// Size of an effect, rms over that of the output, whose drop would have exceeded `asked` with 90 % probability.
+///
+/// `weak_signal` is the drop that an effect of [`WEAK_EFFECT`] is expected to bring; drops grow with the square of an
+/// effect. Infinite where the base model takes all of it.
+pub(super) fn limit_share(weak_signal: f64, asked: f64) -> f64 {
+    WEAK_EFFECT * (asked.sqrt() + SEEN) / weak_signal.max(0.0).sqrt()
+}
+
+/// RMS that an effect must have on `samples` of the outputs to take [`LEAST_GAIN`] off their error with 90 % probability;
+/// `left` is its mean square.
+///
+/// ```text
+/// s^2 - 2 s z root(left / n) = LEAST_GAIN left,   z the normal quantile of 90 %
+/// ```
+pub(super) fn least_effect(left: f64, samples: f64) -> f64 {
+    let scatter = SEEN * (left / samples).sqrt();
+    scatter + scatter.mul_add(scatter, LEAST_GAIN * left).sqrt()
+}
+
+/// Size of every common cause, over the output, that must have been seen for a sure "nothing is missing".
+pub(super) const COMMON_SEEN: f64 = 0.03;
+
+/// Standard deviations that a calibration may be off before nothing is denied with confidence.
+pub(super) const STRAINED: f64 = 1.5;
 
 // What speaks against a name.
 
@@ -81,6 +123,9 @@ pub(super) const LEAST_SHARE_OF_RUNS: f64 = 0.3;
 
 // What stands out.
 
+/// Times its floor that structure along the generic directions must reach for "something is missing": between, what
+/// is there may be the base model's own.
+pub(super) const GENERIC_SURELY: f64 = 1.5;
 /// Factor on the energy that surrogates leave along the generic directions.
 pub(super) const GENERIC_MARGIN: f64 = 4.0;
 /// Times the energy that the worst surrogate leaves on an experiment, beyond which that experiment stands

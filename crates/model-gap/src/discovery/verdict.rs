@@ -1,8 +1,8 @@
 //! What can be said at the end.
 
 use super::thresholds::{AS_LIKELY, SURELY};
-use super::{Gain, Reason, Rival, Screened};
-use crate::Effect;
+use super::{Gain, OnlyRun, Reason, Rival, Screened};
+use crate::{Class, Effect};
 use serde::{Deserialize, Serialize};
 
 /// The six verdicts.
@@ -61,8 +61,10 @@ pub struct Found {
     pub drop: f64,
     /// The part of that drop on the outputs, further channels left out.
     pub output_drop: f64,
-    /// The same where it was held out, by experiment.
-    pub held_out_drop: f64,
+    /// The same on experiments that its fit has not seen; none where no other experiment could foretell one.
+    pub held_out_drop: Option<f64>,
+    /// The experiment that shows nearly all of it, where there is one such that the others cannot foretell.
+    pub only_run: Option<OnlyRun>,
     /// The candidates that explain the same data about as well, best first, itself left out.
     pub alternatives: Vec<Alternative>,
     /// It and every candidate that cannot be excluded, as fitted: a further experiment has to distinguish them.
@@ -118,6 +120,17 @@ impl Compared {
     }
 }
 
+/// What kind of effect is missing: said more surely than which cause it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FoundClass {
+    /// The class of the leading cause.
+    pub class: Class,
+    /// Its members that the data leave open, positions among the candidates, the leading one first.
+    pub members: Vec<usize>,
+    /// How sure the class is.
+    pub confidence: Confidence,
+}
+
 /// Everything found.
 #[derive(Debug, Clone)]
 pub struct Finding {
@@ -127,6 +140,11 @@ pub struct Finding {
     pub confidence: Confidence,
     /// The causes, largest drop first.
     pub causes: Vec<Found>,
+    /// What kind of effect is missing; none where nothing is named.
+    pub class: Option<FoundClass>,
+    /// Size of every candidate, rms over that of the output, that these data would have shown with 90 % probability;
+    /// none of one that they cannot show.
+    pub limits: Vec<Option<f64>>,
     /// The effects as fitted together.
     pub effects: Vec<Effect>,
     /// Whether the causes named leave structure that they do not explain.
@@ -141,8 +159,8 @@ pub struct Finding {
     pub reasons: Vec<Reason>,
     /// The screening, candidate by candidate.
     pub screen: Vec<Screened>,
-    /// Held-out error before and after.
-    pub gain: Gain,
+    /// Held-out error before and after; none where nothing is named, or where no experiment could be held out.
+    pub gain: Option<Gain>,
     /// Residual of the base model, its nuisance taken out.
     pub residual_before: Vec<Vec<f64>>,
     /// Residual of the extended model, likewise.

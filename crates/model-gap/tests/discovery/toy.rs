@@ -94,11 +94,7 @@ pub(crate) fn find_beside(
     candidates: &[Candidate],
     structures: &[Signal],
 ) -> Finding {
-    let settings = Settings::default();
-    let (simulator, generic, trends) = (&Toy, &[], &[]);
-    Discovery { traces, simulator, candidates, generic, trends, structures, settings }
-        .find()
-        .unwrap()
+    Discovery { structures, ..Discovery::new(traces, &Toy, candidates) }.find().unwrap()
 }
 
 pub(crate) fn find(traces: &[Trace], candidates: &[Candidate]) -> Finding {
@@ -110,15 +106,9 @@ pub(crate) fn find(traces: &[Trace], candidates: &[Candidate]) -> Finding {
         })
         .into_iter()
         .collect();
-    let discovery = Discovery {
-        traces,
-        simulator: &Toy,
-        candidates,
-        generic: &generic,
-        trends: &[],
-        structures: &[],
-        settings: Settings { resamplings: 200, ..Settings::default() },
-    };
+    let settings = Settings { resamplings: 200, ..Settings::default() };
+    let discovery =
+        Discovery { generic: &generic, settings, ..Discovery::new(traces, &Toy, candidates) };
     discovery.find().unwrap()
 }
 
@@ -166,10 +156,7 @@ pub(crate) fn find_by(
     candidates: &[Candidate],
 ) -> Finding {
     let settings = Settings { resamplings: 200, ..Settings::default() };
-    let (generic, trends, structures) = (&[], &[], &[]);
-    Discovery { traces, simulator, candidates, generic, trends, structures, settings }
-        .find()
-        .unwrap()
+    Discovery { settings, ..Discovery::new(traces, simulator, candidates) }.find().unwrap()
 }
 
 /// What is found where the meters read a ramp of a size, and a lag of another acts on the outputs.

@@ -81,7 +81,7 @@ pub fn climb(
             model: name.to_owned(),
             verdict: asked.as_ref().map(|a| a.verdict),
             confidence: asked.as_ref().map(|a| a.confidence),
-            heldout_rms: asked.as_ref().map(|a| a.heldout_rms),
+            heldout_rms: asked.as_ref().and_then(|a| a.heldout_rms),
             lacks: asked.map(|a| a.lacks).unwrap_or_default(),
             unit: measured.output_unit.clone(),
             error_percent,

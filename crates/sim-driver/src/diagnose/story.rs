@@ -39,6 +39,7 @@ impl Printable for Story<'_> {
         base(d, &mut ground);
         let mut screen = Sheet::default();
         screen.paragraphs(&verdict_line(d, findings));
+        class(findings, &mut screen);
         screen.paragraphs(&found.finish());
         screen.line("");
         screen.paragraphs(&ground.finish());
@@ -51,9 +52,11 @@ impl Printable for Story<'_> {
         let Self { findings, diagnosis: d } = self;
         let mut sheet = Sheet::default();
         base(d, &mut sheet);
+        accuracy(d, &mut sheet);
         energies(d, &mut sheet);
         screening(d, &mut sheet);
         sheet.line(format_args!("\n{}", verdict_line(d, findings)));
+        class(findings, &mut sheet);
         causes(d, &mut sheet);
         gain(d, findings, &mut sheet);
         if !findings.not_observable.is_empty() {
@@ -105,6 +108,16 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
     }
 }
 
+/// How well the channels are taken to keep their calibration.
+fn accuracy(d: &Diagnosis, sheet: &mut Sheet) {
+    let one = |(field, value, unit): &(&str, f64, &str)| format!("{field} {value} {unit}");
+    let rows = d.accuracy().rows();
+    let stated: Vec<String> = rows.iter().filter(|row| row.1 > 0.0).map(one).collect();
+    if !stated.is_empty() {
+        sheet.line(format_args!("  accuracy from session to session: {}", stated.join(", ")));
+    }
+}
+
 /// What the base model leaves of each run.
 fn energies(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line("\nWhat the base model leaves, run by run");
@@ -145,6 +158,13 @@ fn screening(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.block(&table(&["cause", "score", "floor", "absorbed %", "most alike"], rows));
 }
 
+/// The kind of effect that is missing, in physical words.
+fn class(findings: &Findings, sheet: &mut Sheet) {
+    if let (Some(class), Some(confidence)) = (findings.class, findings.class_confidence) {
+        sheet.line(format_args!("Kind ({}): {}", sure(confidence), class.words()));
+    }
+}
+
 /// The causes named, and the reasons of the verdict.
 fn causes(d: &Diagnosis, sheet: &mut Sheet) {
     for found in &d.finding.causes {
@@ -166,9 +186,16 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
             }
         }
         sheet.line(format_args!(
-            "    signature: {}; lowers chi-square by {:.0}, by {:.0} on held-out runs",
-            cause.fingerprint, found.drop, found.held_out_drop
+            "    signature: {}; lowers chi-square by {:.0}{}",
+            cause.fingerprint,
+            found.drop,
+            found
+                .held_out_drop
+                .map_or_else(String::new, |drop| format!(", by {drop:.0} on held-out runs")),
         ));
+        if let Some(run) = found.only_run {
+            sheet.line(format_args!("    run {} alone shows it", d.run_ids[run.experiment]));
+        }
         for other in found.compared.iter().filter(|other| other.is_as_likely()) {
             sheet.line(format_args!(
                 "    {} in its place leaves {:.0} more; the discrimination threshold is {:.0}",
@@ -189,8 +216,8 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
 
 /// What the extended model gains.
 fn gain(d: &Diagnosis, findings: &Findings, sheet: &mut Sheet) {
-    let (gain, unit) = (&findings.gain, &d.output_unit);
-    if !findings.causes.is_empty() {
+    let unit = &d.output_unit;
+    if let Some(gain) = &findings.gain {
         sheet.line(format_args!(
             "\nGain on held-out experiments: {} -> {} {unit} rms, less by {} to {} if they were measured again (95 %), by {} to {} on other experiments of these kinds",
             significant(gain.heldout_rms_before, 4),
@@ -230,12 +257,16 @@ fn places(d: &Diagnosis) -> String {
     d.finding.causes.iter().map(one).collect::<Vec<_>>().join(" + ")
 }
 
-fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
-    let names = findings.causes.join(" + ");
-    let sure = match findings.confidence {
+fn sure(confidence: Confidence) -> &'static str {
+    match confidence {
         Confidence::Confident => "confident",
         Confidence::Tentative => "tentative",
-    };
+    }
+}
+
+fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
+    let names = findings.causes.join(" + ");
+    let sure = sure(findings.confidence);
     match findings.verdict {
         Verdict::NothingMissing => {
             format!("Nothing is missing ({sure}): the misfit is at the floor of the base model.")

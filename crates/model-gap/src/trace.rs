@@ -1,8 +1,10 @@
 //! Measured signals and what simulates them.
 
-use super::Signal;
 use crate::{Effect, GapError};
 use nalgebra::DMatrix;
+
+/// A signal on all traces.
+pub type Signal = Vec<Vec<f64>>;
 
 /// One measured signal of one experiment, with what is known about its errors when nothing is
 /// missing from the simulation.

@@ -1,0 +1,28 @@
+//! An amplifier that delays, which is no cause of the library.
+
+use super::cause::{BenchCause, LAGS_S, growing, logarithmic, singles, usual};
+use model_gap::{Candidate, Class};
+
+/// A terminal voltage that follows the command late and undistorted.
+///
+/// It stands among the candidates so that a digital output stage, or an amplifier of higher order, is not given the
+/// name of a lag of one pole.
+pub(super) const CAUSE: BenchCause = BenchCause {
+    candidate: |design| Candidate {
+        id: "amplifier-delay",
+        physics: "The terminal voltage is the command of a while ago, V(t) = u(t - delay).",
+        parameters: vec![growing(logarithmic("delay", "s", 1e-5, 0.05))],
+        class: Class::LagBeforeTerminals,
+        fingerprint: "phase exactly straight in frequency, before the hysteresis",
+        confused_with: &["electrical-lag", "transport-delay", "sensor-filter", "rate-dependence"],
+        separating: &["amplifier-monitor", "multisine-5-181Hz"],
+        starts: singles(LAGS_S),
+        blocked: design.one_frequency().or_else(|| {
+            (design.monitored_runs == 0)
+                .then(|| "without the terminal voltage nothing tells it from a lag".to_owned())
+        }),
+        decoy: Some("an amplifier that delays"),
+        ..usual()
+    },
+    apply: |chain, values| chain.front.late_s = Some(values[0]),
+};
