@@ -4,14 +4,16 @@ use crate::base::{BaseModel, white_noise};
 use crate::causes::{self, BenchCause, Design};
 use crate::error::DiagnosisError;
 use crate::next::{self, Proposal};
-use crate::numbers::{less, range, slope};
 use crate::record::{Record, Records};
+use crate::sessions::{
+    GivenModel, beginning, continued, noisier, range_of, scale_of, share_beyond, simulated_runs,
+};
 use crate::simulator::{BenchSimulator, CALIBRATIONS, ChannelKind, Setting, averaged, inputs_of};
 use crate::surrogate;
 use measured_data::Accuracy;
 use model_gap::discovery::{Confidence, Discovery, Finding, Reason, Settings, Signal, Verdict};
 use model_gap::{Candidate, EnergySplit, GapError};
-use preisach_dyn::{ActuatorModel, PreisachError};
+use preisach_dyn::ActuatorModel;
 use rotor_base::variance;
 
 /// A diagnosis with everything it rests on.
@@ -38,9 +40,8 @@ pub struct Diagnosis {
     pub(crate) data: Records,
     /// Whether reference runs fix the base model.
     pub has_reference: bool,
-    /// Error of the model given on the measured runs, rms over spread, percent; none if it was not
-    /// simulated.
-    pub given_error_percent: Option<f64>,
+    /// The simulation given beside the data; none if none was.
+    pub given: Option<GivenModel>,
     /// Motion of the measured outputs over that of the base model, by least squares: far from 1 where the
     /// unit of a column is not what its name says.
     pub scale: f64,
@@ -99,14 +100,15 @@ pub struct Question<'a> {
     pub only: Vec<String>,
     /// Where surrogate structures are kept; none computes them anew.
     pub cache: Option<&'a dyn StructureStore>,
-    /// The model given, to be shown beside the base model.
+    /// The simulation that is asked about. Reference runs say how far it may be off; where there are none, it is what
+    /// the measured runs are compared with.
     pub given: Option<&'a ActuatorModel>,
 }
 
 /// Motion over that expected, beyond which a unit is more likely wrong than a gain.
 const LIKELY_SCALE: [f64; 2] = [0.4, 2.5];
-/// Times the noise of the reference runs from which a reading is another.
-const NOISIER: f64 = 2.0;
+/// Share of the measured samples that may lie where no reference run has been.
+const MOST_BEYOND: f64 = 0.05;
 /// Share of its threshold from which on a cause may be there and hidden.
 const MAY_BE_HIDDEN: f64 = 0.5;
 
@@ -154,14 +156,37 @@ impl Diagnosis {
 pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, DiagnosisError> {
     let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
     let library = [causes::LIBRARY.as_slice(), &causes::DECOYS].concat();
-    let runs: Vec<&Record> = measured.runs.iter().filter(|r| !r.is_reference).collect();
+    let (mut own, mut beside) = (continued(&measured.runs), continued(&question.reference));
+    // where the sensor has its zero says nothing
+    let is_ordinary = |run: &&Record| run.is_reference;
+    let zero = match (beside.is_empty(), own.iter().any(|run| run.is_reference)) {
+        (false, _) => beginning(beside.iter()),
+        (true, true) => beginning(own.iter().filter(is_ordinary)),
+        (true, false) => beginning(own.iter()),
+    };
+    own.iter_mut().chain(&mut beside).for_each(|run| run.lower(zero));
+    let runs: Vec<&Record> = own.iter().filter(|r| !r.is_reference).collect();
     if runs.is_empty() {
         return Err(DiagnosisError::NothingMeasured { runs: measured.runs.len() });
     }
-    let mut references: Vec<&Record> = question.reference.iter().collect();
-    references.extend(measured.runs.iter().filter(|r| r.is_reference));
+    let mut references: Vec<&Record> = beside.iter().collect();
+    references.extend(own.iter().filter(|r| r.is_reference));
     let has_reference = !references.is_empty();
-    let fitted = if has_reference { &references } else { &runs };
+    let given_model =
+        question.given.map(|model| GivenModel::beside(model, &references, &runs)).transpose()?;
+    let simulated = match (question.given, given_model) {
+        (Some(model), Some(given)) if !has_reference && !given.is_foreign() => {
+            let mut simulated = simulated_runs(model, &runs)?;
+            let zero = beginning(simulated.iter());
+            for run in &mut simulated {
+                run.lower(zero);
+            }
+            simulated
+        }
+        _ => Vec::new(),
+    };
+    references.extend(&simulated);
+    let fitted = if references.is_empty() { &runs } else { &references };
     let range = range_of(measured.range, fitted, &runs);
     let base =
         BaseModel::fit(fitted, range, None).ok_or_else(|| too_few("runs of the base model"))?;
@@ -191,6 +216,20 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         finding.confidence = Confidence::Tentative;
         finding.reasons.push(reason);
     }
+    let share = share_beyond(&runs, &references);
+    if share > MOST_BEYOND {
+        finding.confidence = Confidence::Tentative;
+        if let Some(class) = &mut finding.class {
+            class.confidence = Confidence::Tentative;
+        }
+        finding.reasons.push(Reason::BeyondReference { share });
+    }
+    if let Some(own) = given_model.filter(GivenModel::is_foreign) {
+        finding.verdict = Verdict::Unknown;
+        (finding.confidence, finding.class, finding.gain) = (Confidence::Tentative, None, None);
+        let reason = Reason::OtherBench { percent: own.error_percent, scale: own.scale };
+        finding.reasons.insert(0, reason);
+    }
     let bench = next::Bench { setting, candidates: &candidates, runs: &runs, design: &design };
     let next = next::proposal(&bench, &finding)?;
     Ok(Diagnosis {
@@ -203,7 +242,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         folder: measured.folder.clone(),
         data: Records { runs: Vec::new(), range, ..measured.clone() },
         has_reference,
-        given_error_percent: question.given.and_then(|model| error_percent(model, &runs).ok()),
+        given: given_model,
         scale: scale_of(&runs, &base),
         output_unit: measured.output_unit.clone(),
         next,
@@ -211,7 +250,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         noise: base.noise,
         candidates,
         library,
-        base,
+        base: base.raised(zero),
     })
 }
 
@@ -328,57 +367,13 @@ impl RunEnergy {
     }
 }
 
-/// What is said of the measured run whose reading is noisier than that of the reference runs by most. No cause of a
-/// simulation adds noise, but a sensor or an amplifier that has become noisy is no longer what it was.
-fn noisier(runs: &[&Record], base: &BaseModel) -> Option<Reason> {
-    let times = |run: &&Record| white_noise(&base.residual(run)) / base.noise;
-    let (run, times) = runs
-        .iter()
-        .map(|run| (run, times(run)))
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .filter(|(_, times)| *times > NOISIER)?;
-    Some(Reason::Noisier { run: run.id.clone(), times })
-}
-
-/// RMS error of a model on runs over the spread of their output, zero displacement left free, percent.
-pub(crate) fn error_percent(model: &ActuatorModel, runs: &[&Record]) -> Result<f64, PreisachError> {
-    let (mut left, mut all) = (0.0, 0.0);
-    for run in runs {
-        let drive = preisach_dyn::Drive::new(&run.input, run.step_s);
-        let simulated = model.simulate_bench(&drive)?;
-        let deg = run.judged(&simulated.measured_deg);
-        let um: Vec<f64> = deg.iter().map(|deg| model.calibration.displacement_um(*deg)).collect();
-        let off = less(run.judged_output(), &um);
-        left += variance(&off) * off.len() as f64;
-        all += variance(run.judged_output()) * off.len() as f64;
-    }
-    Ok(100.0 * (left / all.max(1e-300)).sqrt())
-}
-
-/// Slope of what runs did against what the base model expects of them, each about its mean.
-fn scale_of(runs: &[&Record], base: &BaseModel) -> f64 {
-    let (mut both, mut own) = (0.0, 0.0);
-    for run in runs {
-        let expected = base.predict(&run.input, run.step_s);
-        let expected = run.judged(&expected);
-        let n = expected.len() as f64 * variance(expected);
-        both += n * slope(expected, run.judged_output());
-        own += n;
-    }
-    if own > 0.0 { both / own } else { 1.0 }
-}
-
-/// The range of the base model: that of the data set, widened to every input that occurs.
-pub(crate) fn range_of(given: (f64, f64), a: &[&Record], b: &[&Record]) -> (f64, f64) {
-    range([&given.0, &given.1].into_iter().chain(a.iter().chain(b).flat_map(|r| &r.input)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::findings::Findings;
     use measured_data::{DisplacementAccuracy, VoltageAccuracy};
     use model_gap::Class;
+    use preisach_dyn::{ActuatorLaw, Calibration, LinearGain, VoltageRange};
 
     /// A line of gain 2.5 on a slow triangle and a sine, times a factor.
     fn runs(is_reference: bool, factor: f64) -> Vec<Record> {
@@ -463,6 +458,86 @@ mod tests {
         diagnose(&records(measured), &question).unwrap()
     }
 
+    #[test]
+    fn where_the_reference_runs_have_not_been_nothing_is_sure() {
+        for (part, confidence) in [(1.0, Confidence::Confident), (0.6, Confidence::Tentative)] {
+            let mut reference = runs(true, 1.0);
+            for run in &mut reference {
+                run.input.iter_mut().for_each(|u| *u = 65.0 + part * (*u - 65.0));
+                run.output.iter_mut().for_each(|y| *y = 162.5 + part * (*y - 162.5));
+            }
+            let question = Question { reference, ..Question::default() };
+            let found = diagnose(&records(runs(false, 1.0)), &question).unwrap();
+            assert_eq!(found.finding.verdict, Verdict::NothingMissing);
+            assert_eq!(found.finding.confidence, confidence, "{:?}", found.finding.reasons);
+            let is_said = |r: &Reason| matches!(r, Reason::BeyondReference { .. });
+            assert_eq!(found.finding.reasons.iter().any(is_said), part < 1.0);
+        }
+    }
+
+    /// On a straight line nothing tells an offset of the amplifier from one of the sensor.
+    #[test]
+    fn an_offset_alone_is_no_sure_zero_of_the_sensor() {
+        let found = found(|run| run.output.iter_mut().for_each(|y| *y += 12.0));
+        let findings = Findings::from(&found);
+        assert_ne!(findings.verdict, Verdict::NothingMissing, "{:?}", found.finding.reasons);
+        assert_eq!(findings.confidence, Confidence::Tentative, "{:?}", findings.causes);
+        for id in ["sensor-zero", "amplifier-gain"] {
+            assert!(findings.causes.iter().any(|own| own == id), "{:?}", findings.causes);
+        }
+    }
+
+    /// A straight simulation of some gain.
+    fn simulation(gain_um_per_volt: f64) -> ActuatorModel {
+        let law = LinearGain { gain_deg_per_volt: gain_um_per_volt, bias_volt: 0.0 };
+        let range = VoltageRange::new(-20.0, 150.0).unwrap();
+        let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+        ActuatorModel::new(ActuatorLaw::Linear(law), range, calibration)
+    }
+
+    /// With or without reference runs, whatever the runs have in common.
+    #[test]
+    fn of_a_simulation_of_another_bench_nothing_is_said() {
+        for (gain, is_ours) in [(2.5, true), (10.0, false), (0.2, false)] {
+            for reference in [runs(true, 1.0), Vec::new()] {
+                let given = simulation(gain);
+                let question = Question { reference, given: Some(&given), ..Question::default() };
+                let found = diagnose(&records(runs(false, 1.0)), &question).unwrap();
+                let findings = Findings::from(&found);
+                let own = findings.given_model.unwrap();
+                assert_eq!(own.is_of_this_bench, is_ours, "{own:?}");
+                assert!((found.given.unwrap().scale - 2.5 / gain).abs() < 0.01);
+                let is_said = matches!(found.finding.reasons[..], [Reason::OtherBench { .. }, ..]);
+                assert_eq!(is_said, !is_ours, "{:?}", found.finding.reasons);
+                let expected = if is_ours { Verdict::NothingMissing } else { Verdict::Unknown };
+                assert_eq!(findings.verdict, expected, "{gain}: {:?}", found.finding.reasons);
+            }
+        }
+    }
+
+    /// Where nothing but the simulation says what is ordinary, what it lacks is what the runs have beyond it.
+    #[test]
+    fn without_reference_runs_the_simulation_is_what_the_runs_are_compared_with() {
+        let bent = |mut runs: Vec<Record>| {
+            for run in &mut runs {
+                run.output.iter_mut().for_each(|y| *y += 1e-6 * (*y - 162.5).powi(3));
+            }
+            runs
+        };
+        let given = simulation(2.5);
+        let names = |given| {
+            let question = Question { given, ..Question::default() };
+            let found = diagnose(&records(bent(runs(false, 1.0))), &question).unwrap();
+            assert_eq!(found.finding.confidence, Confidence::Tentative);
+            Findings::from(&found).causes
+        };
+        assert!(names(Some(&given)).iter().any(|id| id == "sensor-nonlinearity"));
+        assert!(
+            names(None).is_empty(),
+            "what all runs share is ordinary without anything beside them"
+        );
+    }
+
     /// What the reference runs did on the same input is known, whatever the base model makes of it: here a bend by the
     /// rate, which no play has.
     #[test]
@@ -485,10 +560,8 @@ mod tests {
         let same = left(bent(runs(false, 1.0)));
         let mut other = bent(runs(false, 1.0));
         for run in &mut other {
-            // the same but for its last sample: nothing to compare with
-            run.input.pop();
-            run.output.pop();
-            run.window = 0..run.output.len();
+            // the same but for one sample: nothing to compare with
+            run.input[1500] += 1.0;
         }
         let other = left(other);
         assert!(same < 0.2 * other, "{same} um, {other} um without the comparison");

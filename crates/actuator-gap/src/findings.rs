@@ -27,6 +27,10 @@ pub struct Findings {
     pub structure_remains: bool,
     /// Measured runs that the base model misses by more than any surrogate there.
     pub standing_out: Vec<String>,
+    /// Bands of frequency in which the causes leave more than noise, surrogates and errors of form can.
+    pub bands_left: Vec<BandValue>,
+    /// The simulation given beside the data; none where none was.
+    pub given_model: Option<GivenModelValue>,
     /// Error on held-out experiments; none where nothing is named, or where no run could be held out.
     pub gain: Option<GainValue>,
     /// What to measure next.
@@ -40,6 +44,32 @@ pub struct Findings {
     pub would_have_shown: BTreeMap<String, Option<f64>>,
     /// The screening.
     pub screen: Vec<ScreenValue>,
+}
+
+/// What the causes leave of a channel of a run in a band of frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BandValue {
+    /// The run.
+    pub run: String,
+    /// Where the band begins, Hz.
+    pub low_hz: f64,
+    /// Where it ends, Hz.
+    pub high_hz: f64,
+    /// What is left, in amplitude, over what may be.
+    pub times: f64,
+    /// Share of its energy that follows the motion simulated, 0 to 1.
+    pub coherence: f64,
+}
+
+/// How the simulation given describes the data.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GivenModelValue {
+    /// Error on runs with nothing missing, on the measured ones where there are none: rms over spread, percent.
+    pub error_percent: f64,
+    /// Error on the measured runs.
+    pub measured_error_percent: f64,
+    /// Whether it is of this bench: of another one nothing is said.
+    pub is_of_this_bench: bool,
 }
 
 /// A parameter.
@@ -181,6 +211,22 @@ impl From<&Diagnosis> for Findings {
                 .iter()
                 .map(|run| d.run_ids[run.experiment].clone())
                 .collect(),
+            bands_left: finding
+                .bands_left
+                .iter()
+                .map(|band| BandValue {
+                    run: d.run_ids[band.experiment].clone(),
+                    low_hz: band.low_hz,
+                    high_hz: band.high_hz,
+                    times: band.times,
+                    coherence: band.coherence,
+                })
+                .collect(),
+            given_model: d.given.map(|own| GivenModelValue {
+                error_percent: own.error_percent,
+                measured_error_percent: own.measured_error_percent,
+                is_of_this_bench: !own.is_foreign(),
+            }),
             gain: finding.gain.map(|gain| GainValue {
                 heldout_rms_before: gain.rms_before,
                 heldout_rms_after: gain.rms_after,

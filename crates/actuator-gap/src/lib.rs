@@ -29,16 +29,20 @@ mod numbers;
 mod plays;
 mod record;
 mod rungs;
+mod sessions;
 mod simulator;
 mod surrogate;
 
 pub use actuator_file::{FitUse, GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 pub use diagnosis::{Diagnosis, Question, RunEnergy, StructureStore, diagnose};
 pub use error::DiagnosisError;
-pub use findings::{ComparedValue, Findings, GainValue, ParameterValue, ScreenValue};
+pub use findings::{
+    BandValue, ComparedValue, Findings, GainValue, GivenModelValue, ParameterValue, ScreenValue,
+};
 pub use next::Proposal;
 pub use record::{Record, Records};
 pub use rungs::{Asked, RungModel, rung_models};
+pub use sessions::GivenModel;
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -52,6 +52,14 @@ pub(crate) struct OutputMap {
     cells: [[Quadratic; MAP]; PLAYS],
 }
 
+impl OutputMap {
+    /// The same with all outputs higher.
+    pub(crate) fn raised(mut self, by: f64) -> Self {
+        self.offset += by;
+        self
+    }
+}
+
 impl Plays {
     pub(crate) fn new(low: f64, high: f64) -> Self {
         let n = PLAYS as f64;

@@ -74,6 +74,11 @@ impl Record {
         self.judged(&self.input)
     }
 
+    /// Takes a zero off the output.
+    pub(crate) fn lower(&mut self, zero: f64) {
+        self.output.iter_mut().for_each(|y| *y -= zero);
+    }
+
     /// Length of what is judged, s.
     pub fn duration_s(&self) -> f64 {
         self.step_s * self.judged_input().len() as f64

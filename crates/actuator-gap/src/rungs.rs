@@ -2,13 +2,12 @@
 
 use crate::base::BaseModel;
 use crate::causes::{self, Design};
-use crate::diagnosis::{
-    Diagnosis, Floors, Question, StructureStore, diagnose, error_percent, range_of, search,
-};
+use crate::diagnosis::{Diagnosis, Floors, Question, StructureStore, diagnose, search};
 use crate::error::DiagnosisError;
 use crate::extended::{USUAL_DEG_PER_UM, law_of_file};
 use crate::findings::{Findings, names};
 use crate::record::{Record, Records};
+use crate::sessions::{error_percent, range_of};
 use crate::simulator::{BenchSimulator, Setting};
 use measured_data::Accuracy;
 use model_gap::GapError;

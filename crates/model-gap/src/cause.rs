@@ -203,10 +203,14 @@ pub struct Candidate {
 
 impl Candidate {
     /// Whether it and another belong to one set that only a channel parts, and the data hold none that tells either:
-    /// gains that act at every rate alike.
+    /// gains that act at every rate alike, and lags where no voltage says on which side of the terminals they are.
     pub fn is_one_set_with(&self, other: &Self) -> bool {
-        let is_gain = |own: &Self| own.class == Class::StaticGain && !own.is_told;
-        is_gain(self) && is_gain(other)
+        let is_untold = |own: &Self| match own.class {
+            Class::StaticGain => !own.is_told,
+            Class::Lag => true,
+            _ => false,
+        };
+        self.class == other.class && is_untold(self) && is_untold(other)
     }
 }
 

@@ -31,6 +31,7 @@
 //! # Ok::<(), model_gap::GapError>(())
 //! ```
 
+mod bands;
 mod cause;
 pub mod discovery;
 mod energy;

@@ -18,6 +18,8 @@ pub type Signal = Vec<Vec<f64>>;
 pub struct Trace {
     /// Number of the experiment it belongs to, from 0.
     pub experiment: usize,
+    /// Time from one sample to the next, s.
+    pub step_s: f64,
     /// The samples, thinned or averaged as the simulator's predictions are.
     pub measured: Vec<f64>,
     /// Standard deviation that a sample weighs with, in the signal's unit: noise and what the
@@ -54,6 +56,12 @@ pub trait Simulator: Sync {
     /// # Errors
     /// [`GapError::Simulation`] with the simulator's own words.
     fn predict(&self, effects: &[Effect]) -> Result<Signal, GapError>;
+
+    /// Whether the samples of a trace carry what these effects do. What they do between samples no trace tells, and what
+    /// is left of such a trace does not speak against them.
+    fn carries(&self, _effects: &[Effect], _trace: usize) -> bool {
+        true
+    }
 
     /// What an effect adds when what it adapts to each experiment, such as a phase, is fitted to a
     /// given residual instead of the measured one. None for effects that adapt to nothing: theirs is

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use score::findings::Findings;
@@ -35,6 +36,18 @@ pub struct Options<S> {
     pub hhc: Option<PathBuf>,
     /// Folder of the results; none: one of the programs' own.
     pub out: Option<PathBuf>,
+}
+
+/// Tells every line with its number of so many.
+pub(crate) fn counted(
+    total: usize,
+    progress: &(impl Fn(&str) + Sync),
+) -> impl Fn(&str) + Sync + '_ {
+    let done = AtomicUsize::new(0);
+    move |line: &str| {
+        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress(&format!("{count}/{total} {line}\n"));
+    }
 }
 
 /// The last lines of a report: what failed, and how many sets and bars.

@@ -5,7 +5,6 @@
 //! folder that the selection admits.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use everyday_bench::family::Family;
 use everyday_bench::hidden::{Deal, Hidden};
@@ -17,7 +16,7 @@ use score::report;
 
 use crate::XtaskError;
 use crate::diagnosis::{
-    Failure, Hhc, Options, closing, exit_code, keep_result, makers, pool, read_result,
+    Failure, Hhc, Options, closing, counted, exit_code, keep_result, makers, pool, read_result,
     read_results, set_up, write_folder,
 };
 use crate::files;
@@ -102,11 +101,7 @@ pub fn run(
     let requests = options.selection.requests();
     let total = requests.len();
     progress(&format!("{total} sets, results in {}\n", folder.display()));
-    let done = AtomicUsize::new(0);
-    let tell = |line: &str| {
-        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress(&format!("{count}/{total} {line}\n"));
-    };
+    let tell = counted(total, &progress);
     let one = |request: &Request| run_set(&hhc, &folder, request, &tell);
     let results = pool(options.threads)?
         .install(|| requests.par_iter().with_max_len(1).map(one).collect::<Result<Vec<_>, _>>())?;

@@ -10,7 +10,6 @@ mod bench;
 mod plan;
 
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use score::case::Case;
@@ -21,7 +20,7 @@ pub use plan::{Group, Selection, groups};
 
 use crate::XtaskError;
 use crate::diagnosis::{
-    Failure, Options, Oracle, closing, exit_code, makers, pool, read_results, set_up,
+    Failure, Options, Oracle, closing, counted, exit_code, makers, pool, read_results, set_up,
 };
 
 /// What the suite found.
@@ -85,11 +84,7 @@ pub fn run(
         folder.display()
     ));
     let pool = pool(options.threads)?;
-    let done = AtomicUsize::new(0);
-    let tell = |line: &str| {
-        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress(&format!("{count}/{total} {line}\n"));
-    };
+    let tell = counted(total, &progress);
     let results = pool.install(|| {
         groups
             .par_iter()

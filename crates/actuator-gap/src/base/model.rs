@@ -103,6 +103,13 @@ impl BaseModel {
         own
     }
 
+    /// The same with another zero of the output.
+    pub(crate) fn raised(mut self, zero: f64) -> Self {
+        self.map = self.map.raised(zero);
+        self.weights[0] += zero;
+        self
+    }
+
     /// A straight line through runs, without memory, taken at its word: no structure is granted to it and
     /// nothing it may move by.
     pub(crate) fn straight(runs: &[&Record], range: (f64, f64)) -> Self {

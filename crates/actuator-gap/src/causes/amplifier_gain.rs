@@ -1,6 +1,6 @@
 //! An amplifier of another gain or zero.
 
-use super::cause::{BenchCause, amount, usual};
+use super::cause::{BenchCause, gain_and_zero, usual};
 use super::chain::Command;
 use model_gap::{Candidate, Class};
 
@@ -12,17 +12,16 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         Candidate {
             id: "amplifier-gain",
             physics: "The terminal voltage follows the command by another gain and zero, V = (1 + gain_error) u + zero.",
-            parameters: vec![
-                amount("gain_error", "1", -0.5, 0.5),
-                amount("zero", "V", -0.2 * span, 0.2 * span),
-            ],
+            parameters: gain_and_zero(span),
             class: Class::StaticGain,
             is_common: true,
             is_told: design.monitored_runs > 0,
             fingerprint: "the input scaled before the hysteresis, of either sign",
-            confused_with: &["load-stiffness", "sensor-gain", "sensor-nonlinearity"],
+            confused_with: &["load-stiffness", "sensor-gain", "sensor-nonlinearity", "sensor-zero"],
             separating: &["amplifier-monitor"],
-            starts: [0.02, -0.02].map(|g| [vec![g, 0.0], vec![g, -g * middle]]).concat(),
+            starts: [0.02, -0.02]
+                .map(|g| [vec![g, 0.0], vec![g, -g * middle], vec![0.0, g * span]])
+                .concat(),
             blocked: design.no_reference(),
             ..usual()
         }

@@ -45,6 +45,11 @@ pub(super) fn amount(name: &'static str, unit: &'static str, low: f64, high: f64
     Parameter { is_amount: true, ..linear(name, unit, low, high) }
 }
 
+/// Gain and zero of a voltage over a range of so many volts, as errors.
+pub(super) fn gain_and_zero(span: f64) -> Vec<Parameter> {
+    vec![amount("gain_error", "1", -0.5, 0.5), amount("zero", "V", -0.2 * span, 0.2 * span)]
+}
+
 /// A parameter that only shapes the effect.
 pub(super) fn shape(parameter: Parameter) -> Parameter {
     Parameter { is_shape: true, ..parameter }

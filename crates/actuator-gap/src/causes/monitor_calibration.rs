@@ -1,6 +1,6 @@
 //! A voltage monitor of another gain or zero.
 
-use super::cause::{BenchCause, amount, usual};
+use super::cause::{BenchCause, gain_and_zero, usual};
 use super::chain::Command;
 use model_gap::{Candidate, Class};
 
@@ -12,10 +12,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         Candidate {
             id: "monitor-calibration",
             physics: "The voltage monitor reads another gain and zero, V_read = (1 + gain_error) V + zero; the output does not change.",
-            parameters: vec![
-                amount("gain_error", "1", -0.5, 0.5),
-                amount("zero", "V", -0.2 * span, 0.2 * span),
-            ],
+            parameters: gain_and_zero(span),
             class: Class::Monitor,
             is_beside_output: true,
             fingerprint: "a terminal voltage off by a gain and a zero that the output does not feel",

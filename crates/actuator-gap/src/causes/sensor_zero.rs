@@ -12,7 +12,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         parameters: vec![amount("zero", "um", -2.0 * design.half_stroke, 2.0 * design.half_stroke)],
         class: Class::Zero,
         fingerprint: "one offset at every voltage, in every run",
-        confused_with: &["creep", "dielectric-heating"],
+        confused_with: &["creep", "dielectric-heating", "amplifier-gain"],
         separating: &["laser-cross-check", "repeat-reference"],
         starts: singles([0.01, -0.01].map(|part| part * design.half_stroke)),
         blocked: design.no_reference(),

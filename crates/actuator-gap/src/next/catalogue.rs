@@ -1,8 +1,8 @@
 //! The experiments a bench can do, as runs that the base model can be asked about.
 
 use super::excitation::Span;
-use crate::record::Record;
-use crate::simulator::ChannelKind;
+use crate::record::{Record, frequency_hz};
+use crate::simulator::{ChannelKind, is_same_input};
 use measured_data::Fitting;
 
 /// One experiment.
@@ -13,9 +13,16 @@ pub(super) struct Experiment {
     pub(super) what: &'static str,
     /// Runs to be done, without their outputs; none where the runs at hand only get a further column.
     pub(super) runs: Vec<Record>,
+    /// What it costs on a usual bench, minutes: a cable is less than a run, a run less than another fitting or sensor.
+    pub(super) minutes: f64,
     /// What is measured on them. A comparison asks for each run to be read by an ideal sensor too.
     pub(super) shown: &'static [ChannelKind],
 }
+
+/// Minutes that a run takes before it begins, that another fitting takes, and that a second sensor does.
+const PREPARED: f64 = 3.0;
+const FITTED: f64 = 60.0;
+const SECOND_SENSOR: f64 = 120.0;
 
 const BAND: (f64, f64) = (1.0, 35.0);
 const WIDE: (f64, f64) = (5.0, 181.0);
@@ -30,7 +37,8 @@ fn preloaded(id: &str, step_s: f64, input: Vec<f64>) -> Record {
 
 /// An experiment that measures the output on runs.
 fn experiment(id: &'static str, what: &'static str, runs: Vec<Record>) -> Experiment {
-    Experiment { id, what, runs, shown: &[ChannelKind::Output] }
+    let seconds: f64 = runs.iter().map(|run| run.step_s * run.input.len() as f64).sum();
+    Experiment { id, what, runs, minutes: PREPARED + seconds / 60.0, shown: &[ChannelKind::Output] }
 }
 
 /// The same of one further run.
@@ -60,9 +68,47 @@ pub(super) fn catalogue(
     catalogue.extend(slow_and_small(span));
     catalogue.extend(other_fittings(span, runs));
     if is_bench {
-        catalogue.extend(monitors(span, runs));
+        catalogue.extend(monitors(span));
     }
+    let range = (span.middle - span.half, span.middle + span.half);
+    catalogue.retain(|own| !is_measured(own, runs, range));
     catalogue
+}
+
+/// Whether the measured runs hold an experiment already.
+fn is_measured(experiment: &Experiment, runs: &[&Record], range: (f64, f64)) -> bool {
+    match experiment.id {
+        "multisine-5-181Hz" => runs.iter().any(|run| is_wide(run)),
+        "zero-input-record" => runs.iter().any(|run| rests(run)),
+        "preload" => runs.iter().any(|run| run.is_preloaded()),
+        "repeat-reference" => experiment
+            .runs
+            .iter()
+            .all(|reference| runs.iter().any(|run| is_same_input(run, reference, range))),
+        "laser-cross-check" => runs.iter().any(|run| run.has_ideal_sensor()),
+        "amplifier-monitor" => runs.iter().any(|run| run.amplifier.is_some()),
+        "temperature-monitor" => runs.iter().any(|run| run.temperature.is_some()),
+        _ => false,
+    }
+}
+
+/// Frequency from which a run carries what the multisines of 5 to 181 Hz would, Hz: they move as a sine of
+/// 106 Hz does.
+const WIDE_HZ: f64 = 50.0;
+
+/// Whether a run carries high frequencies all along: each quarter of it, because the edges of a single step
+/// are fast too.
+pub(super) fn is_wide(run: &Record) -> bool {
+    let input = run.judged_input();
+    let quarter = (input.len() / 4).max(1);
+    input.chunks_exact(quarter).all(|part| frequency_hz(part, run.step_s) > WIDE_HZ)
+}
+
+/// Whether the input of a run stands still but for a tenth of it.
+fn rests(run: &Record) -> bool {
+    let input = run.judged_input();
+    let moving = input.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > 0.0).count();
+    10 * moving < input.len()
 }
 
 /// Two multisines that carry all frequencies a bench sensor has to follow.
@@ -140,61 +186,66 @@ fn slow_and_small(span: Span) -> Vec<Experiment> {
 /// Experiments with something else on the bench.
 fn other_fittings(span: Span, runs: &[&Record]) -> Vec<Experiment> {
     let mut catalogue = vec![
-        experiment(
-            "preload",
-            "a triangle and a multisine with the lever preloaded: play goes, friction stays",
-            vec![
-                preloaded("preload_triangle", 2e-3, span.triangles(1.0, &[1.0, 0.7, 0.35], 2e-3)),
-                preloaded("preload_band", 1e-3, span.multisine(BAND, 0.5, 0.7, 3.0, 1e-3)),
-            ],
-        ),
+        Experiment {
+            minutes: FITTED,
+            ..experiment(
+                "preload",
+                "a triangle and a multisine with the lever preloaded: play goes, friction stays",
+                vec![
+                    preloaded(
+                        "preload_triangle",
+                        2e-3,
+                        span.triangles(1.0, &[1.0, 0.7, 0.35], 2e-3),
+                    ),
+                    preloaded("preload_band", 1e-3, span.multisine(BAND, 0.5, 0.7, 3.0, 1e-3)),
+                ],
+            )
+        },
         Experiment {
             id: "multisine-5-181Hz+laser-cross-check",
             what: "two multisines from 5 to 181 Hz, 0.14 and 0.35 of the half range, 2 s each, read by \
                    the sensor and by a second, ideal one",
             runs: wide_multisines(span),
+            minutes: SECOND_SENSOR,
             shown: &[ChannelKind::Output, ChannelKind::Comparison],
         },
     ];
-    if !runs.iter().any(|r| r.has_ideal_sensor()) {
-        let again =
-            |r: &&Record| Record { fitting: r.fitting, ..run(&r.id, r.step_s, r.input.clone()) };
-        catalogue.push(Experiment {
-            id: "laser-cross-check",
-            what: "the same runs read by a second, ideal displacement sensor",
-            runs: runs.iter().map(again).collect(),
-            shown: &[ChannelKind::Comparison],
-        });
-    }
+    let again =
+        |r: &&Record| Record { fitting: r.fitting, ..run(&r.id, r.step_s, r.input.clone()) };
+    catalogue.push(Experiment {
+        id: "laser-cross-check",
+        what: "the same runs read by a second, ideal displacement sensor",
+        runs: runs.iter().map(again).collect(),
+        minutes: SECOND_SENSOR,
+        shown: &[ChannelKind::Comparison],
+    });
     catalogue
 }
 
 /// Further columns, and what needs them.
-fn monitors(span: Span, runs: &[&Record]) -> Vec<Experiment> {
+fn monitors(span: Span) -> Vec<Experiment> {
     let bursts = [(0.35, 40.0), (0.94, 1200.0), (0.35, 800.0)];
-    let mut catalogue = vec![Experiment {
-        id: "cold-hot-cold",
-        what: "a small sine, a minute of full drive, the small sine again; temperature recorded",
-        runs: vec![run("hot", 5e-3, span.bursts(20.0, 0.0, &bursts, 5e-3))],
-        shown: &[ChannelKind::Output, ChannelKind::Temperature],
-    }];
-    if runs.iter().all(|r| r.amplifier.is_none()) {
-        catalogue.push(Experiment {
-            id: "amplifier-monitor",
-            what: "the terminal voltage beside every run",
-            runs: Vec::new(),
-            shown: &[ChannelKind::Amplifier],
-        });
-    }
-    if runs.iter().all(|r| r.temperature.is_none()) {
-        catalogue.push(Experiment {
-            id: "temperature-monitor",
-            what: "the temperature beside every run",
-            runs: Vec::new(),
-            shown: &[ChannelKind::Temperature],
-        });
-    }
-    catalogue
+    let beside =
+        |id, what, shown| Experiment { id, what, runs: Vec::new(), minutes: PREPARED, shown };
+    vec![
+        Experiment {
+            id: "cold-hot-cold",
+            what: "a small sine, a minute of full drive, the small sine again; temperature recorded",
+            runs: vec![run("hot", 5e-3, span.bursts(20.0, 0.0, &bursts, 5e-3))],
+            minutes: 3.0 * PREPARED,
+            shown: &[ChannelKind::Output, ChannelKind::Temperature],
+        },
+        beside(
+            "amplifier-monitor",
+            "the terminal voltage beside every run",
+            &[ChannelKind::Amplifier],
+        ),
+        beside(
+            "temperature-monitor",
+            "the temperature beside every run",
+            &[ChannelKind::Temperature],
+        ),
+    ]
 }
 
 /// Ramps through places of the range with a small triangle at each, at 1.2 half ranges per second.

@@ -3,14 +3,13 @@
 //!
 //! Every experiment is simulated with every explanation as fitted. It resolves a truth if every other
 //! explanation, refitted within what the data at hand allow, would miss it by more than the search asks
-//! of two causes to be told apart. The experiment that resolves the largest share of the truths is
-//! proposed, among equals the one whose smallest distance is largest (T-optimality); where none
-//! resolves all, two or three together that do better.
+//! of two causes to be told apart. The cheapest that rules out nearly as much as any experiment does is
+//! proposed, among equals the one whose smallest distance is largest (T-optimality).
 
-use super::catalogue::{Experiment, catalogue};
+use super::catalogue::{Experiment, catalogue, is_wide};
 use super::excitation::Span;
 use crate::causes::{self, Design, chain_under};
-use crate::record::{Record, frequency_hz};
+use crate::record::Record;
 use crate::simulator::{BenchSimulator, ChannelKind, Setting};
 use measured_data::Sensor;
 use model_gap::discovery::{
@@ -58,51 +57,33 @@ pub(crate) fn proposal(bench: &Bench<'_>, finding: &Finding) -> Result<Proposal,
         .par_iter()
         .map(|experiment| parting(bench, experiment, open))
         .collect::<Result<_, _>>()?;
-    let (parting, places) = choose(&parted);
-    let join = |of: fn(&Experiment) -> &str, between: &str| {
-        places.iter().map(|&i| of(&catalogue[i])).collect::<Vec<_>>().join(between)
-    };
+    let minutes: Vec<f64> = catalogue.iter().map(|own| own.minutes).collect();
+    let first = choose(&parted, &minutes);
+    let (id, what) = first.map_or(("", ""), |i| (catalogue[i].id, catalogue[i].what));
     Ok(Proposal {
-        id: join(|e| e.id, "+"),
-        what: join(|e| e.what, "; and "),
-        resolves: Some(parting.resolves()),
+        id: id.to_owned(),
+        what: what.to_owned(),
+        resolves: first.map(|i| parted[i].resolves()),
     })
 }
 
-/// Most experiments proposed together.
-const MOST_TOGETHER: usize = 3;
+/// Part of what the best experiment rules out that a cheaper one must.
+const WORTH: f64 = 0.6;
 
-/// The experiment, or the few together, that resolve the largest share of truths: as few as do, among
-/// equals the one whose smallest distance is largest.
-fn choose(parted: &[Parting]) -> (Parting, Vec<usize>) {
-    let mut best: Option<(Parting, Vec<usize>)> = None;
-    let mut sets: Vec<(Parting, Vec<usize>)> =
-        parted.iter().enumerate().map(|(i, own)| (own.clone(), vec![i])).collect();
-    for _ in 0..MOST_TOGETHER {
-        let score = |own: &Parting| (own.resolves(), own.least());
-        let first = sets.iter().max_by(|a, b| {
-            let (a, b) = (score(&a.0), score(&b.0));
-            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-        });
-        if let Some(first) = first
-            && best.as_ref().is_none_or(|b| first.0.resolves() > b.0.resolves() + 1e-9)
-        {
-            best = Some(first.clone());
-        }
-        if best.as_ref().is_some_and(|b| b.0.resolves() >= 1.0) {
-            break;
-        }
-        sets = sets
-            .iter()
-            .flat_map(|(own, places)| {
-                let next = places.last().map_or(0, |last| last + 1);
-                (next..parted.len()).map(move |i| {
-                    (own.with(&parted[i]), places.iter().copied().chain([i]).collect())
-                })
-            })
-            .collect();
-    }
-    best.unwrap_or((Parting(Vec::new()), Vec::new()))
+/// The experiment to do first: the cheapest that rules out nearly as much as any does; what is still open then is asked
+/// again. Among equals the one whose smallest distance is largest.
+fn choose(parted: &[Parting], minutes: &[f64]) -> Option<usize> {
+    let most = parted.iter().map(Parting::ruled_out).fold(0.0, f64::max);
+    let is_worth = |own: &&usize| parted[**own].ruled_out() >= WORTH * most;
+    let places: Vec<usize> = (0..parted.len()).collect();
+    places
+        .iter()
+        .filter(is_worth)
+        .min_by(|&&a, &&b| {
+            let by_distance = || parted[b].least().total_cmp(&parted[a].least());
+            minutes[a].total_cmp(&minutes[b]).then_with(by_distance)
+        })
+        .copied()
 }
 
 /// Distances over what is asked, `[truth][other]`; above 1 the other is ruled out.
@@ -119,11 +100,14 @@ impl Parting {
         Self((0..count).map(|a| (0..count).map(|b| ratio(a, b)).collect()).collect())
     }
 
-    /// Both experiments: either of them rules out what it rules out.
-    fn with(&self, other: &Self) -> Self {
-        let sum =
-            |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(x, y)| x.max(*y)).collect();
-        Self(self.0.iter().zip(&other.0).map(sum).collect())
+    /// Share of the pairs of a truth and another explanation that it tells apart.
+    fn ruled_out(&self) -> f64 {
+        let others = self.0.iter().enumerate().flat_map(|(a, row)| {
+            row.iter().enumerate().filter(move |(b, _)| *b != a).map(|(_, ratio)| *ratio > 1.0)
+        });
+        let (told, all) =
+            others.fold((0.0, 0.0), |(told, all), is_told| (told + f64::from(is_told), all + 1.0));
+        told / f64::max(all, 1.0)
     }
 
     fn resolves(&self) -> f64 {
@@ -206,18 +190,6 @@ fn warmth(bench: &Bench<'_>, rivals: &[Rival], record: &Record) -> Result<Vec<f6
     simulator.rise_k(heat)
 }
 
-/// Frequency from which a run carries what the multisines of 5 to 181 Hz would, Hz: they move as a sine of
-/// 106 Hz does.
-const WIDE_HZ: f64 = 50.0;
-
-/// Whether a run carries high frequencies all along: each quarter of it, because the edges of a single step
-/// are fast too.
-fn is_wide(run: &Record) -> bool {
-    let input = run.judged_input();
-    let quarter = (input.len() / 4).max(1);
-    input.chunks_exact(quarter).all(|part| frequency_hz(part, run.step_s) > WIDE_HZ)
-}
-
 /// What is usual where no explanations are to be told apart.
 fn usual<'m>(
     finding: &Finding,
@@ -260,7 +232,8 @@ mod tests {
         let input: Vec<f64> = (0..400).map(|i| 80.0 * (0.1 * f64::from(i)).sin()).collect();
         let run = Record::new("a", 1e-3, input.clone(), input);
         let design = Design::of(&[&run], &[&run], true);
-        let catalogue = catalogue(Span { middle: 0.0, half: 80.0 }, &[&run], &[&run], true);
+        let other = Record { input: run.input[..200].to_vec(), ..run.clone() };
+        let catalogue = catalogue(Span { middle: 0.0, half: 80.0 }, &[&run], &[&other], true);
         for cause in crate::causes::candidates(&crate::causes::LIBRARY, &design) {
             assert!(!cause.separating.is_empty(), "{}", cause.id);
             for id in cause.separating {
@@ -282,25 +255,43 @@ mod tests {
     }
 
     #[test]
-    fn the_fewest_experiments_that_single_out_most_are_chosen() {
-        // three explanations; the first experiment parts one of them, the second another, weakly
-        let first = Parting(vec![vec![SELF, 9.0, 9.0], vec![9.0, SELF, 0.1], vec![9.0, 0.1, SELF]]);
-        let second =
-            Parting(vec![vec![SELF, 0.2, 2.0], vec![0.2, SELF, 2.0], vec![2.0, 2.0, SELF]]);
-        let nothing =
-            Parting(vec![vec![SELF, 0.5, 0.5], vec![0.5, SELF, 0.5], vec![0.5, 0.5, SELF]]);
-        let all = [nothing.clone(), first.clone(), second.clone()];
-        let (parting, places) = choose(&all);
-        assert_eq!(places, [1, 2]);
-        assert!(parting.resolves() >= 1.0);
-        // one that does it alone is preferred, of two the one with the larger smallest distance
-        let alone = |least: f64| {
+    fn the_cheapest_experiment_that_rules_out_nearly_as_much_comes_first() {
+        // three explanations; the first experiment parts one of them, the second all, the third nothing
+        let one = Parting(vec![vec![SELF, 9.0, 9.0], vec![9.0, SELF, 0.1], vec![9.0, 0.1, SELF]]);
+        let all = |least: f64| {
             Parting(vec![vec![SELF, least, 5.0], vec![least, SELF, 5.0], vec![5.0, 5.0, SELF]])
         };
-        let (_, places) = choose(&[first, second, alone(1.5), alone(3.0), nothing.clone()]);
-        assert_eq!(places, [3]);
-        // where nothing singles out any, one is proposed and not three
-        let (parting, places) = choose(&[nothing.clone(), nothing]);
-        assert!(parting.resolves() <= 0.0 && places.len() == 1, "{places:?}");
+        let nothing =
+            Parting(vec![vec![SELF, 0.5, 0.5], vec![0.5, SELF, 0.5], vec![0.5, 0.5, SELF]]);
+        assert!(
+            (one.ruled_out() - 2.0 / 3.0).abs() < 1e-12
+                && (one.resolves() - 1.0 / 3.0).abs() < 1e-12
+        );
+        let parted = [one, all(1.5), nothing];
+        // two thirds of the pairs for a tenth of the time
+        assert_eq!(choose(&parted, &[5.0, 60.0, 1.0]), Some(0));
+        assert_eq!(choose(&parted, &[60.0, 5.0, 1.0]), Some(1));
+        // of two of one price the one that leaves the largest distance
+        assert_eq!(choose(&[all(1.5), all(3.0)], &[5.0, 5.0]), Some(1));
+        assert_eq!(choose(&[], &[]), None);
+    }
+
+    #[test]
+    fn what_was_measured_is_not_asked_for_again() {
+        let span = Span { middle: 0.0, half: 80.0 };
+        let run = |input: Vec<f64>| Record::new("a", 5e-4, input.clone(), input);
+        let wide = run(span.multisine((5.0, 181.0), 2.0, 0.35, 2.0, 5e-4));
+        let rest = run(vec![65.0; 4000]);
+        let asked = |runs: &[&Record], id: &str| {
+            catalogue(span, runs, &[&wide], true).iter().any(|own| own.id == id)
+        };
+        let slow = run(span.triangles(1.0, &[1.0], 5e-4));
+        for (id, measured) in [
+            ("multisine-5-181Hz", &wide),
+            ("zero-input-record", &rest),
+            ("repeat-reference", &wide),
+        ] {
+            assert!(asked(&[&slow], id) && !asked(&[&slow, measured], id), "{id}");
+        }
     }
 }

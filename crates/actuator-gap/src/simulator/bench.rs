@@ -1,6 +1,6 @@
 //! The bench as the engine sees it: base model, stages of the causes, channels.
 
-use super::response::{Plant, Response, line};
+use super::response::{Plant, Response, highest_mode_hz, line};
 use crate::base::BaseModel;
 use crate::causes::{BenchCause, Command, chain_under, reads_load};
 use crate::numbers::{less, mean, slope};
@@ -8,6 +8,7 @@ use crate::record::Record;
 use measured_data::Accuracy;
 use model_gap::discovery::{Signal, Simulator, TraceRole};
 use model_gap::{Effect, GapError};
+use preisach_dyn::LinkageStage;
 
 /// Most samples of all traces together; longer sets are averaged in blocks.
 const MOST_SAMPLES: usize = 60_000;
@@ -76,10 +77,15 @@ const SAME_INPUT: f64 = 1e-3;
 
 /// Whether two runs have the same input.
 pub(crate) fn is_same_input(a: &Record, b: &Record, range: (f64, f64)) -> bool {
+    a.input.len() == b.input.len() && begins_as(a, b, range)
+}
+
+/// Whether the input of a run is that of the beginning of another, or all of it.
+fn begins_as(own: &Record, other: &Record, range: (f64, f64)) -> bool {
     let most = SAME_INPUT * (range.1 - range.0);
-    a.input.len() == b.input.len()
-        && (a.step_s / b.step_s - 1.0).abs() < SAME_INPUT
-        && a.input.iter().zip(&b.input).all(|(a, b)| (a - b).abs() <= most)
+    own.input.len() <= other.input.len()
+        && (own.step_s / other.step_s - 1.0).abs() < SAME_INPUT
+        && own.input.iter().zip(&other.input).all(|(a, b)| (a - b).abs() <= most)
 }
 
 /// The run that a run read by an ideal sensor repeats.
@@ -113,7 +119,7 @@ impl<'a> BenchSimulator<'a> {
                 .find(|other| {
                     let is_judged = other.window.start <= run.window.start
                         && other.window.end >= run.window.end;
-                    is_judged && is_same_setup(other, run) && is_same_input(other, run, range)
+                    is_judged && is_same_setup(other, run) && begins_as(run, other, range)
                 })
                 .map(|other| less(&other.output, &base.predict(&other.input, other.step_s)));
             let mut add = |kind, signal: &[f64], twin| {
@@ -259,6 +265,17 @@ impl Simulator for BenchSimulator<'_> {
         let response = self.plant.respond(effects)?;
         let reading = |channel: &Channel| averaged(&self.reading(channel, &response), self.block);
         Ok(self.channels.iter().map(reading).collect())
+    }
+
+    /// A mode above what a run is sampled for rings between its samples.
+    fn carries(&self, effects: &[Effect], trace: usize) -> bool {
+        let run = self.runs[self.channels[trace].run];
+        let linkage = chain_under(self.causes, effects).rear.linkage;
+        let mut modes = linkage.iter().filter_map(|stage| match stage {
+            LinkageStage::Resonance(mode) => Some(mode.frequency_hz),
+            _ => None,
+        });
+        modes.all(|hz| hz < highest_mode_hz(run.step_s))
     }
 
     /// Mains hum has a phase of its own in every record.

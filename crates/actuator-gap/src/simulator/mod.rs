@@ -5,5 +5,5 @@ mod response;
 mod smooth;
 mod traces;
 
-pub(crate) use bench::{BenchSimulator, ChannelKind, Setting, averaged, inputs_of};
+pub(crate) use bench::{BenchSimulator, ChannelKind, Setting, averaged, inputs_of, is_same_input};
 pub(crate) use traces::CALIBRATIONS;

@@ -15,12 +15,15 @@ use crate::record::Record;
 use model_gap::{Effect, GapError, Memo};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, BenchSimulation, Calibration, DielectricHeating,
-    Drive, LinearGain, LinkageStage, LogCreep, MainsHum, SensorStage, VoltageRange,
+    Drive, LinearGain, LinkageStage, LogCreep, MainsHum, Resonance, SensorStage, VoltageRange,
 };
 use std::sync::Arc;
 
 /// Fronts and responses kept; each holds two or three signals of all samples.
 const KEPT: usize = 6;
+
+/// Part of half the sampling frequency up to which samples carry a mode.
+const CARRIED: f64 = 0.8;
 
 /// Chords for each step of a relaxation.
 const FINER: u32 = 4;
@@ -213,8 +216,7 @@ impl<'a> Plant<'a> {
                 let known = known.take();
                 signal = match stage {
                     LinkageStage::Resonance(mode) if mode.damping_ratio < 1.0 => {
-                        let smooth = Smooth::new(&signal, known);
-                        smooth.through_mode(mode.frequency_hz, mode.damping_ratio, run.step_s)
+                        ringing(&signal, known, *mode, run.step_s)
                     }
                     LinkageStage::LogCreep(creep) => crept(&signal, creep, run.step_s),
                     other => {
@@ -288,6 +290,27 @@ fn humming(run: &Record, output: &[f64], hum: MainsHum) -> Vec<f64> {
         read.iter_mut().skip(run.window.start).zip(line).for_each(|(y, hum)| *y += hum);
     }
     read
+}
+
+/// Highest frequency of a mode that samples so far apart carry.
+pub(super) fn highest_mode_hz(step_s: f64) -> f64 {
+    CARRIED * 0.5 / step_s
+}
+
+/// What a mode makes of a signal, as far as its samples carry the mode.
+///
+/// From [`highest_mode_hz`] on its ringing is taken out, at half the sampling frequency all of it: where between two
+/// samples a step begins decides how the mode rings, and no sample tells.
+fn ringing(signal: &[f64], known: Option<&Weights>, mode: Resonance, step_s: f64) -> Vec<f64> {
+    let nyquist_hz = 0.5 / step_s;
+    let beyond = nyquist_hz - highest_mode_hz(step_s);
+    let share = ((nyquist_hz - mode.frequency_hz) / beyond).clamp(0.0, 1.0);
+    if share == 0.0 {
+        return signal.to_vec();
+    }
+    let smooth = Smooth::new(signal, known);
+    let through = smooth.through_mode(mode.frequency_hz, mode.damping_ratio, step_s);
+    through.iter().zip(signal).map(|(y, x)| x + share * (y - x)).collect()
 }
 
 /// A signal with its creep, `u + sum_i w_i (lag_i[u] - u_start)`.
@@ -382,5 +405,23 @@ mod tests {
         for (own, y) in crept(&input, &creep, 2e-3).iter().zip(&staged.measured_deg) {
             assert_abs_diff_eq!(*own, *y, epsilon = 1e-12);
         }
+    }
+
+    /// A step rings where the mode is sampled finely, and passes where it rings between the samples.
+    #[test]
+    fn a_mode_rings_where_samples_carry_it() {
+        let step: Vec<f64> = (0..200).map(|i| if i < 20 { 0.0 } else { 1.0 }).collect();
+        let mode = Resonance { frequency_hz: 190.0, damping_ratio: 0.03 };
+        let overshoot = |step_s: f64| {
+            ringing(&step, None, mode, step_s).iter().fold(0.0_f64, |most, y| most.max(*y - 1.0))
+        };
+        assert!(overshoot(5e-4) > 0.5, "{}", overshoot(5e-4));
+        assert!(overshoot(4e-3) <= 0.0, "{}", overshoot(4e-3));
+        // in between it fades: no jump where a fit moves the mode past what a run carries
+        let near = |hz: f64| {
+            let mode = Resonance { frequency_hz: hz, ..mode };
+            ringing(&step, None, mode, 2e-3).iter().map(|y| (y - 1.0).abs()).fold(0.0, f64::max)
+        };
+        assert!((near(199.9) - near(200.1)).abs() < 0.02 && near(251.0) <= 1.0);
     }
 }

@@ -14,7 +14,7 @@ use rotor_base::variance;
 
 /// Directions in which the base model may move.
 const MOST_DIRECTIONS: usize = 32;
-/// Part of the range by which a voltage monitor may stray from the terminals beside its gain and zero.
+/// Part of the range by which a sample of a voltage monitor may stray from the terminals beside its gain and zero.
 const MONITOR_ERROR: f64 = 1e-2;
 /// Temperature that a thermometer is trusted to, K.
 const THERMOMETER_ERROR_K: f64 = 1.0;
@@ -65,6 +65,7 @@ impl BenchSimulator<'_> {
             let measured = averaged(own, self.block);
             Trace {
                 experiment: channel.run,
+                step_s: block * run.step_s,
                 block: block_of(run, measured.len()),
                 nuisance: self.nuisance(channel, &moving, measured.len()),
                 measured,

@@ -6,7 +6,8 @@ use super::gain::gain;
 use super::judge::drift;
 use super::thresholds::{
     COMMON_SEEN, DRIFT_COSTS, DRIFTING, EXPLAINED, GENERIC_SURELY, LEAST_SHARE,
-    LEAST_SHARE_OF_RUNS, STRAINED, STRONG, WEAK_EFFECT, WRONG_NAME, least_effect, limit_share,
+    LEAST_SHARE_OF_RUNS, STRAINED, STRAINED_BESIDE, STRONG, WEAK_EFFECT, WRONG_NAME, least_effect,
+    limit_share,
 };
 use super::{
     Compared, Confidence, Finding, Found, FoundClass, Reason, Screened, Simulator, StandsOut,
@@ -34,6 +35,11 @@ impl<S: Simulator> Search<'_, S> {
             if chosen.is_empty() { (Vec::new(), false) } else { self.shortcomings(current, after) };
         let doubts = !chosen.is_empty() && (!found.is_empty() || looks_like.is_some());
         reasons.extend(found);
+        let bands_left = if chosen.is_empty() { Vec::new() } else { self.bands_left(current) };
+        let worst = bands_left.iter().max_by(|a, b| a.times.total_cmp(&b.times));
+        reasons.extend(
+            worst.map(|worst| Reason::BandsLeft { bands: bands_left.len(), worst: *worst }),
+        );
         let gain = gain(&self.folds, self.evidence, current, settings.resamplings)?;
         let (unseen, are_borne_out) = self.borne_out(&causes);
         let is_unseen = unseen.is_some();
@@ -68,14 +74,14 @@ impl<S: Simulator> Search<'_, S> {
             Verdict::Unknown
         } else if ambiguous {
             Verdict::Ambiguous
-        } else if doubts {
+        } else if doubts || !bands_left.is_empty() {
             Verdict::NamedStructureRemains
         } else {
             Verdict::Named
         };
         let is_slow = matches!(verdict, Verdict::Unknown) && self.trend().is_some();
         let strong = causes.iter().all(|c| c.drop > STRONG * self.screened[c.candidate].threshold);
-        let tentative = self.tentative(&causes);
+        let tentative = self.tentative(&causes, current);
         let named_surely = strong && tentative.is_empty() && gains_surely && are_borne_out;
         reasons.extend(tentative);
         let limits = self.limits();
@@ -101,10 +107,11 @@ impl<S: Simulator> Search<'_, S> {
             reasons,
             screen: self.screened.clone(),
             gain,
-            structure_remains: doubts,
+            structure_remains: doubts || !bands_left.is_empty(),
             looks_like,
             is_slow,
             standing_out,
+            bands_left,
             residual_before: self.base.cleaned(self.evidence),
             residual_after: current.cleaned(self.evidence),
         })
@@ -225,14 +232,18 @@ impl<S: Simulator> Search<'_, S> {
     }
 
     /// Why the names of these causes are tentative, if they are.
-    fn tentative(&self, causes: &[Found]) -> Vec<Reason> {
+    fn tentative(&self, causes: &[Found], current: &Fitted) -> Vec<Reason> {
         // a cause whose own signal was not measured may be mistaken for any other slow or scaling error
         let guessed = causes.iter().flat_map(|c| &c.parameters).find_map(|p| p.needs);
         let guessed = guessed.map(|signal| Reason::NotMeasured { signal });
         let not_excluded = causes.iter().find_map(|found| self.not_excluded(found));
         let open_ended = causes.iter().find_map(|found| self.open_ended(found));
         let undetermined = causes.iter().find_map(|found| self.undetermined(found));
-        [guessed, not_excluded, open_ended, undetermined].into_iter().flatten().collect()
+        // a name that asks for another calibration besides is not the whole of it
+        let strain = self.evidence.strain(current, self.discovery.calibrations);
+        let off = (!causes.is_empty() && strain > STRAINED_BESIDE)
+            .then_some(Reason::CalibrationOff { times: strain });
+        [guessed, not_excluded, open_ended, undetermined, off].into_iter().flatten().collect()
     }
 
     /// What speaks against the parameters of fitted effects: ends of ranges, drift from experiment to

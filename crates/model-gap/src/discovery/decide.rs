@@ -50,7 +50,7 @@ pub(super) struct Search<'a, S> {
     pub(super) trends: Generic<'a>,
     pub(super) base: Fitted,
     /// What the base model leaves of the surrogates.
-    structures: Vec<Seen<'a>>,
+    pub(super) structures: Vec<Seen<'a>>,
     /// Misfit that the worst of them leaves.
     pub(super) structure_energy: f64,
     kept: Memo<(Vec<Effect>, usize), TakenOut>,

@@ -208,6 +208,11 @@ impl<'a> Evidence<'a> {
         pairs.map(|(trace, own)| trace.cleaned(own.clone(), &nuisance)).collect()
     }
 
+    /// A signal less all the nuisance that it asks for.
+    pub(crate) fn cleaned(&self, signal: &Seen<'_>) -> Signal {
+        self.as_calibrated(signal, 0)
+    }
+
     /// Sum of squares of a residual over what it weighs with, on the channels of some roles.
     pub(super) fn energy_of(&self, residual: &Signal, counts: impl Fn(TraceRole) -> bool) -> f64 {
         self.traces
@@ -441,7 +446,7 @@ pub(crate) fn difference(a: &Signal, b: &Signal) -> Signal {
     a.iter().zip(b).map(|(a, b)| less(a, b)).collect()
 }
 
-fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
+pub(super) fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 

@@ -1,9 +1,16 @@
 //! What is left above the floors: of everything, and run by run.
 
 use super::decide::Search;
+use super::evidence::less;
 use super::fit::Fitted;
-use super::thresholds::{FORM_LEFT, NOISE_DEVIATIONS, RUN_MARGIN, STANDS_OUT};
-use super::{Simulator, StandsOut};
+use super::thresholds::{
+    BAND_MARGIN, FORM_LEFT, FORM_LEFT_OF_BAND, NOISE_COLOUR, NOISE_DEVIATIONS, RUN_MARGIN,
+    STANDS_OUT,
+};
+use super::{BandLeft, Signal, Simulator, StandsOut, Trace, TraceRole};
+use crate::bands::{Lines, octaves};
+use crate::quantile::chi2_quantile;
+use std::ops::Range;
 
 impl<S: Simulator> Search<'_, S> {
     /// Share of the misfit above the floor that a fit takes away; 1 where nothing stands out. The floor
@@ -69,6 +76,59 @@ impl<S: Simulator> Search<'_, S> {
         let mut alone = self.above_floor(&left_without(&aside));
         alone.retain(|run| aside.contains(&run.experiment));
         if alone.is_empty() { together } else { alone }
+    }
+
+    /// What a fit leaves in the bands of every channel of the chain, where it is more than noise, surrogates and an error
+    /// of form of its causes leave.
+    ///
+    /// ```text
+    /// most = M max over surrogates of S_b + 2 sigma^2 chi2(K_b) + F R_b + F' sum over bands of R_b
+    /// ```
+    /// `S_b` and `R_b` are the energies of what the base model leaves of a surrogate and of the data in a band of `K_b`
+    /// lines. `chi2` is the quantile of the noise: two degrees of freedom a line, but under the window every other line
+    /// alone is independent.
+    pub(super) fn bands_left(&self, current: &Fitted) -> Vec<BandLeft> {
+        let (before, after) = (self.base.cleaned(self.evidence), current.cleaned(self.evidence));
+        let floors: Vec<Signal> =
+            self.structures.iter().map(|s| self.evidence.cleaned(s)).collect();
+        let of_channel = |(number, trace): (usize, &Trace)| {
+            let bands = octaves(trace.measured.len());
+            let motion = less(&trace.measured, &after[number]);
+            let [before, after, motion] =
+                [&before[number], &after[number], &motion].map(|own| Lines::of(own));
+            let floors: Vec<Lines> = floors.iter().map(|own| Lines::of(&own[number])).collect();
+            let noise = match trace.role {
+                TraceRole::Output => NOISE_COLOUR * trace.noise,
+                // what such a channel is trusted to
+                _ => trace.sigma,
+            };
+            let whole: f64 = bands.iter().map(|band| before.energy(band)).sum();
+            let line_hz = 1.0 / (trace.step_s * trace.measured.len() as f64);
+            let left = |band: &Range<usize>| {
+                let floor = floors.iter().map(|own| own.energy(band)).fold(0.0, f64::max);
+                let [there, elsewhere] = FORM_LEFT_OF_BAND;
+                let form = there * before.energy(band) + elsewhere * whole;
+                let by_noise =
+                    2.0 * noise.powi(2) * chi2_quantile(band.len() as f64, NOISE_DEVIATIONS);
+                let most = BAND_MARGIN * floor + form + by_noise;
+                let own = after.energy(band);
+                (own > most).then(|| BandLeft {
+                    experiment: trace.experiment,
+                    role: trace.role,
+                    low_hz: band.start as f64 * line_hz,
+                    high_hz: band.end as f64 * line_hz,
+                    times: (own / most).sqrt(),
+                    coherence: after.coherence(&motion, band),
+                })
+            };
+            bands.iter().filter_map(left).collect::<Vec<_>>()
+        };
+        let channels = self.evidence.traces.iter().enumerate();
+        let counts = |(number, trace): &(usize, &Trace)| {
+            trace.role != TraceRole::Covariate
+                && self.discovery.simulator.carries(&current.effects, *number)
+        };
+        channels.filter(counts).flat_map(of_channel).collect()
     }
 
     /// Experiments above their own floors, from what is left of each.

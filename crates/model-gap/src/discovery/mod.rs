@@ -17,7 +17,7 @@ mod verdict;
 
 pub use crate::trace::{Signal, Simulator, Trace, TraceRole};
 pub use gain::Gain;
-pub use reason::{OnlyRun, Reason};
+pub use reason::{BandLeft, OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
 pub use thresholds::needed_to_separate;

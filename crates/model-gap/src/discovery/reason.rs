@@ -1,5 +1,29 @@
 //! Why a verdict is what it is.
 
+use super::TraceRole;
+
+/// Coherence from which on what is left follows the motion.
+const DRIVEN: f64 = 0.5;
+
+/// What the causes leave of a channel of an experiment in a band of frequency, where it is more than noise, surrogates
+/// and errors of form leave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandLeft {
+    /// Number of the experiment, from 0.
+    pub experiment: usize,
+    /// What the channel says of a cause.
+    pub role: TraceRole,
+    /// Where the band begins, Hz.
+    pub low_hz: f64,
+    /// Where it ends, Hz.
+    pub high_hz: f64,
+    /// What is left, in amplitude, over what may be.
+    pub times: f64,
+    /// Share of its energy that follows the channel's own motion with one gain and phase, 0 to 1: what follows it is an
+    /// error of the chain, what does not comes from elsewhere.
+    pub coherence: f64,
+}
+
 /// The one experiment that shows a cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OnlyRun {
@@ -35,6 +59,28 @@ pub enum Reason {
         cause: &'static str,
         /// The run, and whether its halves agree.
         run: OnlyRun,
+    },
+    /// The simulation asked about leaves most of what it should describe.
+    #[error(
+        "this simulation is not of this bench: it leaves {percent:.0} % of the output of runs with nothing missing, which \
+         move {scale:.2} times as much as it says; identify the actuator of these data, or see whether every column has \
+         the unit of its name"
+    )]
+    OtherBench {
+        /// What it leaves, rms over the spread of the output, percent.
+        percent: f64,
+        /// Motion of those runs over that simulated.
+        scale: f64,
+    },
+    /// The measured runs move where the reference runs have not been.
+    #[error(
+        "{:.0} % of the measured samples have an input that no reference run has reached: the base model is stretched \
+         there, and nothing is sure; measure reference runs over the whole range",
+        .share * 100.0
+    )]
+    BeyondReference {
+        /// Share of the samples.
+        share: f64,
     },
     /// A name was dropped, because the base model alone stays within the floor.
     #[error("the misfit of the base model is within the floor: the name is dropped")]
@@ -83,6 +129,20 @@ pub enum Reason {
         runs: usize,
         /// Residual of the worst over that of the worst surrogate there, in amplitude.
         times: f64,
+    },
+    /// Part of the spectrum stands out with the named causes too.
+    #[error(
+        "the named causes leave {:.1} times what noise, surrogates and errors of form can leave at {:.3} to {:.3} Hz of \
+         one channel{}: {}",
+        .worst.times, .worst.low_hz, .worst.high_hz,
+        if *.bands > 1 { format!(", and more than that in {} other bands", .bands - 1) } else { String::new() },
+        if .worst.coherence > DRIVEN { "it follows the motion" } else { "it does not follow the motion" }
+    )]
+    BandsLeft {
+        /// Number of bands, over all experiments and channels.
+        bands: usize,
+        /// The one that leaves most.
+        worst: BandLeft,
     },
     /// A signal that fixes a parameter was not measured.
     #[error("the name is tentative: {signal} was not measured")]

@@ -74,7 +74,7 @@ pub(super) const SHOWN: f64 = 0.5;
 /// Standard errors of that part that must lie between.
 pub(super) const SURE_ERRORS: f64 = 3.0;
 
-/// Share of the drop of a cause of static gain that another must bring to stay open where no channel parts them.
+/// Share of the drop of a cause that another of its set must bring to stay open where no channel parts them.
 pub(super) const SAME_GAIN: f64 = 0.8;
 
 // What "nothing is missing" means.
@@ -105,7 +105,10 @@ pub(super) fn least_effect(left: f64, samples: f64) -> f64 {
 pub(super) const COMMON_SEEN: f64 = 0.03;
 
 /// Standard deviations that a calibration may be off before nothing is denied with confidence.
-pub(super) const STRAINED: f64 = 1.5;
+pub(super) const STRAINED: f64 = 2.0;
+
+/// The same for a cause to be all that is missing: its errors of form bend a calibration too.
+pub(super) const STRAINED_BESIDE: f64 = 5.0;
 
 // What speaks against a name.
 
@@ -131,9 +134,16 @@ pub(super) const GENERIC_MARGIN: f64 = 4.0;
 /// Times the energy that the worst surrogate leaves on an experiment, beyond which that experiment stands
 /// out alone.
 pub(super) const RUN_MARGIN: f64 = 4.0;
+/// The same in one band of frequency, where a few surrogates tell less of what is possible.
+pub(super) const BAND_MARGIN: f64 = 9.0;
+/// Noise of an octave over that of the fastest, from whose differences it is known: real noise is a little coloured.
+pub(super) const NOISE_COLOUR: f64 = 1.3;
 /// Misfit over the floor, in floors, from which the share of it that is explained means anything.
 pub(super) const STANDS_OUT: f64 = 0.5;
 /// Part of the misfit of an experiment, in energy, that causes with their errors of form may leave.
 pub(super) const FORM_LEFT: f64 = 0.05;
+/// The same of one band of frequency: a part of the misfit there, and a part of that of the whole experiment, because an
+/// error of form has harmonics.
+pub(super) const FORM_LEFT_OF_BAND: [f64; 2] = [0.12, 0.03];
 /// Relative error of the noise of a channel, taken from its differences.
 pub(super) const NOISE_DOUBT: f64 = 0.05;

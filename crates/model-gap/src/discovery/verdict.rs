@@ -1,7 +1,7 @@
 //! What can be said at the end.
 
 use super::thresholds::{AS_LIKELY, SURELY};
-use super::{Gain, OnlyRun, Reason, Rival, Screened};
+use super::{BandLeft, Gain, OnlyRun, Reason, Rival, Screened};
 use crate::{Class, Effect};
 use serde::{Deserialize, Serialize};
 
@@ -155,6 +155,8 @@ pub struct Finding {
     pub is_slow: bool,
     /// Experiments whose own misfit to the base model lies above their own floor.
     pub standing_out: Vec<StandsOut>,
+    /// What the causes leave band by band; empty where none is named.
+    pub bands_left: Vec<BandLeft>,
     /// Why the verdict is what it is, in order of the decisions.
     pub reasons: Vec<Reason>,
     /// The screening, candidate by candidate.

@@ -4,7 +4,7 @@ use crate::toy::{
     EXPERIMENTS, NOISE, SAMPLES, Toy, added, candidate, find, find_beside, find_by, input, traces,
 };
 use model_gap::discovery::{
-    Confidence, Discovery, Finding, Reason, Settings, Signal, Simulator, Trace, Verdict,
+    BandLeft, Confidence, Discovery, Finding, Reason, Settings, Signal, Simulator, Trace, Verdict,
     separations,
 };
 use model_gap::{Candidate, Class, Effect, GapError, Scale};
@@ -60,6 +60,33 @@ fn the_interval_of_the_gain_holds_what_other_noise_gives_and_hardly_more() {
     // other experiments differ more than the noise does
     let wide = |g: &model_gap::discovery::Gain| g.drop_elsewhere_ci95[1] - g.drop_elsewhere_ci95[0];
     assert!(gains.iter().all(|g| wide(g) > 2.0 * half));
+}
+
+/// A line of 0.9 standard deviations of the noise is lost in the energy of a run, and stands out of its band.
+#[test]
+fn what_a_name_leaves_in_one_band_keeps_it_from_being_sure() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let mut told_before = 0;
+    for seed in 1..21 {
+        let found = |line: f64| {
+            let wave = |i: usize| (TAU * 6.0 * i as f64 / SAMPLES as f64).cos();
+            find(&traces(|e, i| added(1, 0.06, e, i) + line * NOISE * wave(i), seed), &candidates)
+        };
+        let plain = found(0.0);
+        assert!(plain.bands_left.is_empty(), "seed {seed}: {:?}", plain.bands_left);
+        assert_eq!(plain.confidence, Confidence::Confident);
+        let lined = found(0.9);
+        assert_eq!(lined.verdict, Verdict::NamedStructureRemains, "seed {seed}");
+        assert_eq!(lined.causes[0].candidate, 1);
+        // 6 cycles in 4 s
+        let is_there = |b: &BandLeft| b.low_hz < 1.5 && 1.5 < b.high_hz && b.coherence < 0.5;
+        assert!(lined.bands_left.iter().any(is_there), "seed {seed}: {:?}", lined.bands_left);
+        assert!(lined.reasons.iter().any(|r| matches!(r, Reason::BandsLeft { .. })));
+        let of_run =
+            |r: &Reason| matches!(r, Reason::RunsStandOut { .. } | Reason::StructureLeft { .. });
+        told_before += usize::from(lined.reasons.iter().any(of_run));
+    }
+    assert!(told_before < 10, "the whole run tells it in {told_before} of 20 draws already");
 }
 
 #[test]
@@ -167,7 +194,7 @@ fn what_the_better_of_two_leaves_between_them_keeps_the_other_in_the_set() {
 
 /// What a fit parts is one set where only a channel could: two gains without one that tells either.
 #[test]
-fn gains_that_no_channel_tells_are_one_set() {
+fn gains_and_lags_that_no_channel_tells_are_one_set() {
     let alternatives = |class, is_told| -> Vec<usize> {
         let mut candidates = ["cubic", "lag", "cubic-twin", "fifth"].map(candidate);
         candidates[2].blocked = Some("no".into());
@@ -179,6 +206,8 @@ fn gains_that_no_channel_tells_are_one_set() {
         finding.causes[0].alternatives.iter().map(|a| a.candidate).collect()
     };
     assert_eq!(alternatives(Class::StaticGain, false), [3]);
+    assert_eq!(alternatives(Class::Lag, false), [3]);
+    assert!(alternatives(Class::LagBehindTerminals, false).is_empty());
     assert!(alternatives(Class::StaticGain, true).is_empty());
     assert!(alternatives(Class::Other, false).is_empty());
 }
@@ -500,11 +529,48 @@ fn a_calibration_that_is_off_makes_a_denial_tentative() {
         let discovery = Discovery { calibrations: 1, ..Discovery::new(&traces, &Toy, &candidates) };
         discovery.find().unwrap()
     };
-    for (accuracies, confidence) in [(1.0, Confidence::Confident), (2.0, Confidence::Tentative)] {
+    for (accuracies, confidence) in [(1.0, Confidence::Confident), (3.0, Confidence::Tentative)] {
         let finding = found(accuracies);
         assert_eq!(finding.verdict, Verdict::NothingMissing, "{:?}", finding.reasons);
         assert_eq!(finding.confidence, confidence, "{accuracies}: {:?}", finding.reasons);
     }
+}
+
+/// A name that asks for a calibration far off besides is not the whole of it.
+#[test]
+fn a_calibration_that_is_far_off_makes_a_name_tentative() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    for (accuracies, confidence) in [(1.0, Confidence::Confident), (9.0, Confidence::Tentative)] {
+        let traces = traces(|e, i| added(1, 0.06, e, i) + 0.01 * accuracies * input(e, i), 4);
+        let discovery = Discovery { calibrations: 1, ..Discovery::new(&traces, &Toy, &candidates) };
+        let finding = discovery.find().unwrap();
+        assert_eq!(finding.causes[0].candidate, 1, "{:?}", finding.reasons);
+        assert_eq!(finding.confidence, confidence, "{accuracies}: {:?}", finding.reasons);
+        let is_said = finding.reasons.iter().any(|r| matches!(r, Reason::CalibrationOff { .. }));
+        assert_eq!(is_said, confidence == Confidence::Tentative);
+    }
+}
+
+/// The toy whose traces do not carry what its causes do.
+struct Coarse;
+
+impl Simulator for Coarse {
+    fn predict(&self, effects: &[Effect]) -> Result<Signal, GapError> {
+        Toy.predict(effects)
+    }
+
+    fn carries(&self, _effects: &[Effect], _trace: usize) -> bool {
+        false
+    }
+}
+
+#[test]
+fn a_trace_that_does_not_carry_a_cause_does_not_speak_against_it() {
+    let candidates = [candidate("cubic"), candidate("lag")];
+    let wave = |i: usize| (TAU * 6.0 * i as f64 / SAMPLES as f64).cos();
+    let traces = traces(|e, i| added(1, 0.06, e, i) + 0.9 * NOISE * wave(i), 1);
+    assert!(!find_by(&Toy, &traces, &candidates).bands_left.is_empty());
+    assert!(find_by(&Coarse, &traces, &candidates).bands_left.is_empty());
 }
 
 /// What would have been seen is said of every cause; a common one that these data cannot show makes a denial tentative.

@@ -76,6 +76,7 @@ pub(crate) fn traces(truth: impl Fn(usize, usize) -> f64, seed: u64) -> Vec<Trac
     (0..EXPERIMENTS)
         .map(|e| Trace {
             experiment: e,
+            step_s: 1e-2,
             measured: (0..SAMPLES)
                 .map(|i| input(e, i) + truth(e, i) + NOISE * noise(&mut state))
                 .collect(),

@@ -77,14 +77,22 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.line(format_args!(
         "  {} measured runs against a base model of {}; its error on runs left out of its fit is {:.2} % of the output, the noise {} {unit}",
         d.run_ids.len(),
-        if d.has_reference { format!("{} reference runs", d.fitted_runs()) } else { "the same runs (no reference runs)".to_owned() },
+        match (d.has_reference, d.given.filter(|own| !own.is_foreign())) {
+            (true, _) => format!("{} reference runs", d.fitted_runs()),
+            (false, Some(_)) => "the simulation given (no reference runs)".to_owned(),
+            (false, None) => "the same runs (no reference runs)".to_owned(),
+        },
         100.0 * d.floor,
         significant(d.noise, 3),
     ));
     if !d.has_reference {
-        sheet.line(
-            "  Without reference runs the floor cannot be calibrated: what these runs share is taken for ordinary, and nothing is said with confidence.",
-        );
+        let taken = match d.given.filter(|own| !own.is_foreign()) {
+            Some(_) => "the simulation is taken at its word",
+            None => "what these runs share is taken for ordinary",
+        };
+        sheet.line(format_args!(
+            "  Without reference runs the floor cannot be calibrated: {taken}, and nothing is said with confidence."
+        ));
     }
     if d.floor > POOR_BASE {
         let known = if d.fitted_runs() == 1 {
@@ -103,8 +111,16 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
             significant(d.scale, 2)
         ));
     }
-    if let Some(percent) = d.given_error_percent {
-        sheet.line(format_args!("  The model given leaves {percent:.1} % of the output of the measured runs (rms over spread)."));
+    if let Some(own) = d.given {
+        let runs = if d.has_reference {
+            format!("{:.1} % of the output of the reference runs and ", own.error_percent)
+        } else {
+            String::new()
+        };
+        sheet.line(format_args!(
+            "  The simulation given leaves {runs}{:.1} % of that of the measured runs (rms over spread).",
+            own.measured_error_percent
+        ));
     }
 }
 
@@ -277,6 +293,9 @@ fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
         }
         Verdict::Ambiguous => {
             format!("Missing: {}; these data do not distinguish them", places(d))
+        }
+        Verdict::Unknown if d.given.is_some_and(|own| own.is_foreign()) => {
+            "This simulation is not of this bench: nothing is said of what it lacks.".to_owned()
         }
         Verdict::Unknown => {
             "Something is missing, and no known cause explains it: no name is given.".to_owned()
