@@ -2,6 +2,7 @@
 
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, Doubt};
+use rotor_base::RecordUse;
 use serde::{Deserialize, Serialize};
 
 /// The kind of an actuator file.
@@ -88,7 +89,7 @@ pub struct StoredFit {
     pub id: String,
     /// Side of the split.
     #[serde(rename = "use")]
-    pub use_as: FitUse,
+    pub use_as: RecordUse,
     /// Frequency of the strongest harmonic of the command, Hz.
     pub frequency_hz: f64,
     /// Half peak to peak of the command, V.
@@ -121,17 +122,6 @@ pub struct StoredFit {
     /// repeated cycles.
     #[serde(default)]
     pub structured_percent: Option<f64>,
-}
-
-/// Side of the split of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FitUse {
-    /// The model was fitted to it.
-    #[serde(rename = "trained", alias = "Trained")]
-    Trained,
-    /// The model has not seen it.
-    #[serde(rename = "held_out", alias = "HeldOut")]
-    HeldOut,
 }
 
 impl StoredActuator {

@@ -91,6 +91,19 @@ pub trait StructureStore: Sync {
     fn keep(&self, parts: &[&[f64]], structures: &[Signal]);
 }
 
+/// What a diagnosis does, in its order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The base model is fitted.
+    BaseModel,
+    /// Surrogates say what is left with nothing missing.
+    Surrogates,
+    /// Causes are screened, fitted and tested.
+    Search,
+    /// Experiments are compared.
+    NextExperiment,
+}
+
 /// What a diagnosis is asked.
 #[derive(Clone, Default)]
 pub struct Question<'a> {
@@ -103,6 +116,8 @@ pub struct Question<'a> {
     /// The simulation that is asked about. Reference runs say how far it may be off; where there are none, it is what
     /// the measured runs are compared with.
     pub given: Option<&'a ActuatorModel>,
+    /// Told of each stage as it begins.
+    pub begun: Option<&'a dyn Fn(Stage)>,
 }
 
 /// Motion over that expected, beyond which a unit is more likely wrong than a gain.
@@ -188,6 +203,8 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     references.extend(&simulated);
     let fitted = if references.is_empty() { &runs } else { &references };
     let range = range_of(measured.range, fitted, &runs);
+    let begin = |stage| question.begun.iter().for_each(|begun| begun(stage));
+    begin(Stage::BaseModel);
     let base =
         BaseModel::fit(fitted, range, None).ok_or_else(|| too_few("runs of the base model"))?;
     let design = Design::of(&runs, &references, measured.is_bench);
@@ -201,6 +218,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         accuracy: measured.accuracy,
     };
     let simulator = BenchSimulator::new(setting.clone(), runs.clone())?;
+    begin(Stage::Surrogates);
     let structures: Vec<Signal> = kept_structures(&base, fitted, &runs, range, question.cache)
         .iter()
         .map(|s| simulator.structure(|run| &s[run]))
@@ -208,6 +226,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     let trends =
         simulator.directions(|_, plain, step_s| surrogate::trends(plain, base.spread, step_s));
     let floors = Floors { trends, structures, groups: inputs_of(&runs, range) };
+    begin(Stage::Search);
     let settings = Settings { has_reference, ..Settings::default() };
     let mut finding = search(&simulator, &candidates, &floors, settings, given.as_deref())?;
     if finding.verdict == Verdict::NothingMissing
@@ -230,6 +249,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         let reason = Reason::OtherBench { percent: own.error_percent, scale: own.scale };
         finding.reasons.insert(0, reason);
     }
+    begin(Stage::NextExperiment);
     let bench = next::Bench { setting, candidates: &candidates, runs: &runs, design: &design };
     let next = next::proposal(&bench, &finding)?;
     Ok(Diagnosis {

@@ -33,8 +33,8 @@ mod sessions;
 mod simulator;
 mod surrogate;
 
-pub use actuator_file::{FitUse, GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
-pub use diagnosis::{Diagnosis, Question, RunEnergy, StructureStore, diagnose};
+pub use actuator_file::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+pub use diagnosis::{Diagnosis, Question, RunEnergy, Stage, StructureStore, diagnose};
 pub use error::DiagnosisError;
 pub use findings::{
     BandValue, ComparedValue, Findings, GainValue, GivenModelValue, ParameterValue, ScreenValue,

@@ -1,7 +1,7 @@
 //! The records of a diagnosis, in the units of the bench.
 
-use measured_data::{Accuracy, BenchData, Fitting, LoopData, Run, RunRole, RunUse, Sensor};
-use rotor_base::{mean_square, variance};
+use measured_data::{Accuracy, BenchData, Fitting, LoopData, Run, RunRole, Sensor};
+use rotor_base::{RecordUse, mean_square, variance};
 use std::ops::Range;
 
 /// One record: input, output and what else was measured.
@@ -134,7 +134,7 @@ fn records(runs: &[Run]) -> Vec<Record> {
     let all_reference = runs.iter().all(|r| r.entry.role == RunRole::Reference);
     let is_explained = |run: &Run| match run.entry.role {
         RunRole::Measured => true,
-        RunRole::Reference => all_reference && run.entry.use_as == Some(RunUse::HeldOut),
+        RunRole::Reference => all_reference && run.entry.use_as == Some(RecordUse::HeldOut),
     };
     runs.iter()
         .map(|run| Record {

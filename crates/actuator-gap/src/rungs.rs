@@ -2,7 +2,7 @@
 
 use crate::base::BaseModel;
 use crate::causes::{self, Design};
-use crate::diagnosis::{Diagnosis, Floors, Question, StructureStore, diagnose, search};
+use crate::diagnosis::{Diagnosis, Floors, Question, Stage, StructureStore, diagnose, search};
 use crate::error::DiagnosisError;
 use crate::extended::{USUAL_DEG_PER_UM, law_of_file};
 use crate::findings::{Findings, names};
@@ -49,6 +49,7 @@ pub fn rung_models(
     measured: &Records,
     reference: &[Record],
     store: Option<&dyn StructureStore>,
+    begun: &dyn Fn(Stage),
 ) -> Result<([RungModel; 3], Diagnosis), DiagnosisError> {
     let too_few = |what: String| GapError::TooShort { what, samples: 0, needed: 1 };
     let all: Vec<&Record> =
@@ -62,7 +63,8 @@ pub fn rung_models(
     let line = BaseModel::straight(&slow, range);
     let loops = BaseModel::fit(&slow, range, None).ok_or_else(|| too_few("slow runs".into()))?;
     let first = asked_of_line(&line, &slow, measured, range)?;
-    let question = Question { reference: reference.to_vec(), cache: store, ..Question::default() };
+    let reference = reference.to_vec();
+    let question = Question { reference, cache: store, begun: Some(begun), ..Question::default() };
     let found = diagnose(measured, &question)?;
     let findings = Findings::from(&found);
     let second = Asked {

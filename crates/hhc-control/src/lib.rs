@@ -74,7 +74,7 @@ pub use limits::{ControlLimits, FlapCircle, PowerLimit, VoltageRange};
 pub use plant::{LinearPlant, Measurement, Plant};
 pub use record::{AllowedIncrease, ControlRun, ControlStep, LoopEnd, StopReason};
 pub use sensitivity::{AdaptiveSettings, Controller};
-pub use settings::FeedbackSettings;
+pub use settings::{Acceptance, FeedbackSettings};
 pub use stroke::{EffortTrial, StrokeLimitedRun};
 
 #[cfg(doctest)]

@@ -35,13 +35,13 @@ impl ControlStep {
 /// What allows a step to raise the cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AllowedIncrease {
-    /// Nothing but the small allowance of a contracting full step, [`crate::FeedbackSettings::allowed_increase`].
+    /// Nothing but the small allowance of a contracting full step, [`crate::Acceptance::NonMonotone`].
     #[default]
     None,
     /// Restoration: it leads back into limits that moved with the control.
     Restoration,
     /// The non-monotone line search: no step lowers the cost any more, but full steps contract, on the way to the
-    /// fixed point of a constant T. See [`crate::FeedbackSettings::non_monotone_cost`].
+    /// fixed point of a constant T. See [`crate::Acceptance::NonMonotone`].
     NonMonotone,
 }
 
@@ -89,7 +89,7 @@ impl LoopEnd {
     /// step is then the damped one.
     ///
     /// `tolerances` are those of the step and of the cost, [`crate::FeedbackSettings::step_tolerance`] and
-    /// [`crate::FeedbackSettings::cost_tolerance`].
+    /// [`crate::Acceptance::cost_tolerance`].
     pub fn is_converged(&self, tolerances: [f64; 2], start_cost: f64) -> bool {
         let [step, cost] = tolerances;
         let within = |volt: f64| volt <= (step * self.size_volt).max(SMALLEST_CHANGE_VOLT);

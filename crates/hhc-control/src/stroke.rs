@@ -93,7 +93,7 @@ impl FeedbackController {
         }
 
         // a loop that learns depends on the control alone: each weight goes on from the one before
-        let learns = self.settings.cost_tolerance > 0.0;
+        let learns = self.settings.acceptance.trusts_predictions();
         let predicted = (tracked.rho > 0.0).then_some(tracked.rho);
         let mut taken = Path::default();
         if learns {

@@ -18,7 +18,7 @@ mod tables;
 pub use dataset::{
     Accuracy, BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet,
     DatasetFile, DatasetKind, DisplacementAccuracy, Fitting, LoopData, ReversalCurve, Run, RunFile,
-    RunRole, RunUse, Sensor, VoltageAccuracy, read_bench, read_curves, read_dataset, read_loops,
+    RunRole, Sensor, VoltageAccuracy, read_bench, read_curves, read_dataset, read_loops,
 };
 pub use error::DataError;
 pub use files::{

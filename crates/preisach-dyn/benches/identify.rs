@@ -48,7 +48,7 @@ fn shipped_set() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     identify(&records, &settings)?;
     let first_s = start.elapsed().as_secs_f64();
-    let table = compare_models(&records, &settings, &Candidates::default())?;
+    let table = compare_models(&records, &settings, &Candidates::default(), &|| ())?;
     let spent_s = start.elapsed().as_secs_f64();
     println!(
         "shipped set: dynamic Preisach {first_s:.2} s, with the table of models {spent_s:.2} s, {:.2} of the bar of {BAR_S} s",

@@ -19,7 +19,7 @@ use rotor_fem::{
     modes, uncoupled_modes,
 };
 
-#[path = "../tests/linear/mod.rs"]
+#[path = "../tests/all/linear/mod.rs"]
 mod linear;
 
 use linear::{LinearCoefficients, LinearPeriodic};

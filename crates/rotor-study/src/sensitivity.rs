@@ -292,7 +292,8 @@ fn assumptions() -> Vec<Assumption> {
 /// The first failure of a trim or a control study of the case itself, or of the case in Drees's inflow.
 pub fn sensitivities(
     case: &Case,
-    (base, drives): (&TrimmedRotor, &Drives),
+    base: &TrimmedRotor,
+    drives: &Drives,
     which: Assumptions,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Sensitivity>, StudyError> {

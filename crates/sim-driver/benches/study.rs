@@ -16,8 +16,8 @@ fn whole_study(inflow: InflowChoice) -> Result<f64, SimError> {
     let mut loaded = shipped_case(CONTROLLERS_CASE)?;
     loaded.case.inflow.model = inflow;
     let outcome = run_case(&loaded, &Progress::hidden())?;
-    let rotor = (&outcome.trimmed, &outcome.drives);
-    let rows = sensitivities(&loaded.case, rotor, Assumptions::WithoutWake, &|| ())?;
+    let (rotor, drives) = (&outcome.trimmed, &outcome.drives);
+    let rows = sensitivities(&loaded.case, rotor, drives, Assumptions::WithoutWake, &|| ())?;
     let figures = outcome.figures();
     let controlled = figures.control.iter().map(|line| line.reduction_percent);
     let rows = sensitivity_lines(&rows, &outcome.setting);

@@ -45,6 +45,12 @@ impl Progress {
         self.bar.set_message(what.into());
     }
 
+    /// Says what begins, with so many steps done.
+    pub fn begin(&self, done: usize, what: &str) {
+        self.bar.set_position(done as u64);
+        self.doing(what.to_owned());
+    }
+
     /// One step is done.
     pub fn step(&self) {
         self.bar.inc(1);

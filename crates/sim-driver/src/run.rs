@@ -95,9 +95,8 @@ pub fn run_trimmed(
     let mut warnings = loaded.warnings.clone();
     warnings.extend(actuators.warnings.iter().cloned());
     let found = trimmed.trim();
-    let about = (found.controls.theta0_rad, &found.rotor);
-    let most = trimmed.largest_section_lift();
-    let warned = loaded.case.warnings_in_flight(trimmed.rotor(), about, most);
+    let (theta0_rad, most) = (found.controls.theta0_rad, trimmed.largest_section_lift());
+    let warned = loaded.case.warnings_in_flight(trimmed.rotor(), theta0_rad, &found.rotor, most);
     warnings.extend(loaded.in_words(warned.map_err(failed)?));
     warnings.extend(trimmed.wake().into_iter().flat_map(wake_warnings));
     warnings.extend(unstable());

@@ -3,7 +3,7 @@
 use crate::SimError;
 use crate::files::{RonFile, Source, read_ron, ron_text, write_atomic};
 use crate::problem::{Fault, Place, Problem, Problems};
-pub use actuator_gap::{FitUse, GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+pub use actuator_gap::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 use preisach_dyn::{ActuatorLaw, Doubt, PreisachError, Weight};
 use std::path::Path;
 

@@ -114,12 +114,12 @@ impl Program {
         let mut best: Option<(f64, DVector<f64>, Vec<f64>)> = None;
         let mut failure = None;
         let mut iterations = 0;
-        for (tried, regularisation) in REGULARISATIONS.into_iter().enumerate() {
+        for (tried, (regularisation, is_scaled)) in REGULARISATIONS.into_iter().enumerate() {
             let fair = best.as_ref().is_some_and(|(least, ..)| *least <= FAIR_KKT);
             if tried >= USUAL && fair {
                 break;
             }
-            match self.solve(regularisation) {
+            match self.solve(regularisation, is_scaled) {
                 Ok((x, z, used)) => {
                     iterations += used;
                     let (x, z) = self.polished(x, z);
@@ -142,7 +142,8 @@ impl Program {
     /// Minimum, multipliers by row, iterations.
     fn solve(
         &self,
-        (regularisation, is_scaled): (f64, bool),
+        regularisation: f64,
+        is_scaled: bool,
     ) -> Result<(DVector<f64>, Vec<f64>, u32), ControlError> {
         let n = self.linear.len();
         let refused = |status| ControlError::ConeProgram { status, iterations: 0, kkt: f64::NAN };

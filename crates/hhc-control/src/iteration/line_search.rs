@@ -11,13 +11,13 @@ const CONTRACTION: f64 = 0.8;
 /// Part of the cost at the start below which a difference is rounding.
 pub(super) const COST_ROUNDING: f64 = 1e-14;
 
-/// A bound on the cost, relative to the cost at the start.
+/// What a line search accepts beside a lower cost.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Bound {
-    /// On its increase.
-    Increase(f64),
-    /// On the cost itself.
-    Cost(f64),
+pub(super) struct Allowance {
+    /// Why; of a restoration any part is accepted.
+    pub(super) allowed_increase: AllowedIncrease,
+    /// Cost up to which a full step is accepted, if the loop contracts there.
+    pub(super) ceiling: f64,
 }
 
 /// What a line search found.
@@ -35,14 +35,12 @@ pub(super) struct Searched {
 impl<P: Plant> Iteration<'_, P> {
     /// The step or the longest part of it, halved and halved again, that is accepted.
     ///
-    /// `allowed_increase` is what it may raise the cost for (of a restoration any part is accepted), `bound` the bound on
-    /// the cost of a full step that does not lower it, if the loop contracts there; `start_cost` the cost without control
-    /// at the same weight.
+    /// `start_cost` is the cost without control at the same weight.
     pub(super) fn search(
         &mut self,
         problem: &Subproblem,
         step: &[f64],
-        (allowed_increase, bound): (AllowedIncrease, Bound),
+        allowance: Allowance,
         start_cost: f64,
     ) -> Result<Searched, RunError<P::Error>> {
         let Method { settings, law, .. } = self.method;
@@ -64,17 +62,14 @@ impl<P: Plant> Iteration<'_, P> {
             self.model.observe(there);
             let cost = law.cost(&measurement, &control_volt, rho);
             let increase = (cost.total() - self.here.cost.total()) / start_cost;
-            let is_bounded = match bound {
-                Bound::Increase(largest) => increase <= largest,
-                Bound::Cost(largest) => cost.total() <= largest * start_cost,
-            };
-            if allowed_increase == AllowedIncrease::Restoration
-                || increase <= COST_ROUNDING
-                || (is_bounded && backtracks == 0 && self.contracts(problem, there, asked_volt)?)
+            let is_lower = increase <= COST_ROUNDING;
+            let may_rise = backtracks == 0 && cost.total() <= allowance.ceiling;
+            if is_lower
+                || allowance.allowed_increase == AllowedIncrease::Restoration
+                || (may_rise && self.contracts(problem, there, asked_volt)?)
             {
-                let raised = increase > COST_ROUNDING;
                 let allowed_increase =
-                    if raised { allowed_increase } else { AllowedIncrease::None };
+                    if is_lower { AllowedIncrease::None } else { allowance.allowed_increase };
                 search.taken = Some(ControlStep {
                     control_volt,
                     measurement,

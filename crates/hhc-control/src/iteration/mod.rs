@@ -15,11 +15,11 @@ use crate::effort::{StrokeLimits, track_effort};
 use crate::layout::{difference, largest_amplitude};
 use crate::sensitivity::{Sensitivity, Verified};
 use crate::{
-    AllowedIncrease, ControlError, ControlRun, ControlStep, Cost, FeedbackLaw, FeedbackSettings,
-    KktResidual, LoopEnd, OperatingPoint, Plant, RunError, StopReason,
+    Acceptance, AllowedIncrease, ControlError, ControlRun, ControlStep, Cost, FeedbackLaw,
+    FeedbackSettings, KktResidual, LoopEnd, OperatingPoint, Plant, RunError, StopReason,
 };
 use cycling::CycleDamping;
-use line_search::{Bound, COST_ROUNDING, Searched};
+use line_search::{Allowance, COST_ROUNDING, Searched};
 use stagnation::Stagnation;
 use subproblem::{Subproblem, Target, limits_at};
 use trust_region::{Experience, TrustRegion};
@@ -172,11 +172,7 @@ impl<'a, P: Plant> Iteration<'a, P> {
             self.end = self.next_step(&problem, &undamped)?;
             self.end.next_volt = largest_amplitude(&step);
             self.kkt = undamped.kkt.or(self.kkt);
-            let predicted = if self.is_monotone() {
-                self.model.predicted_decrease(rho, &here, &target.control_volt)?
-            } else {
-                0.0
-            };
+            let predicted = self.model.predicted_decrease(rho, &here, &target.control_volt)?;
             // inside the limits their optimum is never worse than the present state
             let restores = match &problem.limits {
                 Some(limits) => {
@@ -185,7 +181,8 @@ impl<'a, P: Plant> Iteration<'a, P> {
                 }
                 None => false,
             };
-            let tolerances = [settings.step_tolerance, settings.cost_tolerance];
+            let cost_tolerance = settings.acceptance.cost_tolerance();
+            let tolerances = [settings.step_tolerance, cost_tolerance];
             if self.end.is_converged(tolerances, start_cost) {
                 match self.model.verify(self.plant, &here, &undamped.control_volt)? {
                     Verified::Yes => return Ok(StopReason::Converged),
@@ -196,7 +193,7 @@ impl<'a, P: Plant> Iteration<'a, P> {
             if self.path.steps.len() - self.before >= settings.max_steps {
                 return Ok(StopReason::StepLimit);
             }
-            let decrease = settings.cost_tolerance * start_cost;
+            let decrease = cost_tolerance * start_cost;
             if self.model.is_local()
                 && self.stagnation.detect(&self.path.steps, &self.end, decrease)
             {
@@ -205,8 +202,8 @@ impl<'a, P: Plant> Iteration<'a, P> {
             if problem.limits.is_some() {
                 self.cycles.shorten(&mut step, &self.path.steps);
             }
-            let acceptance = self.acceptance(&problem, restores);
-            let found = self.search(&problem, &step, acceptance, start_cost)?;
+            let allowance = self.allowance(&problem, restores, start_cost);
+            let found = self.search(&problem, &step, allowance, start_cost)?;
             self.measurements += found.measurements;
             if found.taken.is_some() {
                 self.accept(found, predicted);
@@ -232,26 +229,28 @@ impl<'a, P: Plant> Iteration<'a, P> {
         LoopEnd::new(&self.model.law, problem.rho, from, &target.control_volt)
     }
 
-    /// Whether only steps that lower the cost are accepted, contracting ones within limits aside.
-    fn is_monotone(&self) -> bool {
-        self.method.settings.cost_tolerance > 0.0
-    }
-
-    /// What the next line search accepts.
-    fn acceptance(&self, problem: &Subproblem, restores: bool) -> (AllowedIncrease, Bound) {
-        let settings = self.method.settings;
+    /// What the next line search accepts beside a lower cost.
+    fn allowance(&self, problem: &Subproblem, restores: bool, start_cost: f64) -> Allowance {
+        let here = self.here.cost.total();
+        let acceptance = self.method.settings.acceptance;
+        let ceiling = match acceptance {
+            Acceptance::NonMonotone { largest_cost, .. } if self.watchdog.is_some() => {
+                largest_cost * start_cost
+            }
+            Acceptance::NonMonotone { allowed_increase, .. } => {
+                here + allowed_increase * start_cost
+            }
+            Acceptance::Monotone { cost_tolerance } if problem.limits.is_some() => {
+                here + cost_tolerance * start_cost
+            }
+            Acceptance::Monotone { .. } => here,
+        };
         let allowed_increase = match (restores, &self.watchdog) {
             (true, _) => AllowedIncrease::Restoration,
             (false, Some(_)) => AllowedIncrease::NonMonotone,
             (false, None) => AllowedIncrease::None,
         };
-        let bound = match (allowed_increase, self.is_monotone(), &problem.limits) {
-            (AllowedIncrease::NonMonotone, _, _) => Bound::Cost(settings.non_monotone_cost),
-            (_, false, _) => Bound::Increase(settings.allowed_increase),
-            (_, true, Some(_)) => Bound::Increase(settings.cost_tolerance),
-            (_, true, None) => Bound::Increase(0.0),
-        };
-        (allowed_increase, bound)
+        Allowance { allowed_increase, ceiling }
     }
 
     /// Takes the part of a step that a line search accepted, `predicted` being the decrease of the whole.
@@ -261,10 +260,7 @@ impl<'a, P: Plant> Iteration<'a, P> {
         let decrease = self.here.cost.total() - step.cost.total();
         // a part that was taken because the whole leaves the plant's range says nothing of T
         let is_tested = step.backtracks == 0 || found.measurements > 1;
-        if self.is_monotone()
-            && is_tested
-            && !matches!(self.method.weighting, Weighting::Tracked(_))
-        {
+        if is_tested && self.method.settings.acceptance.trusts_predictions() {
             let moved = difference(&step.control_volt, &self.here.control_volt);
             self.trust.update(&Experience {
                 backtracks: step.backtracks,
@@ -290,8 +286,7 @@ impl<'a, P: Plant> Iteration<'a, P> {
         if self.model.learn(self.plant, &here, &target.control_volt)? {
             return Ok(None);
         }
-        let may_rise =
-            self.model.is_constant() && !self.is_monotone() && settings.non_monotone_cost > 0.0;
+        let may_rise = self.model.is_constant() && settings.acceptance.largest_cost() > 0.0;
         if let (Some(shortest), true, None) = (found.shortest, may_rise, &self.watchdog) {
             self.watchdog = Some(Watchdog { steps: self.path.steps.len(), foot: here, shortest });
             return Ok(None);

@@ -1,8 +1,8 @@
 //! A plant whose loads bend and do not vanish at the optimum: a parabola across the way.
 
 use hhc_control::{
-    ControlLayout, ControlLimits, Controller, FeedbackController, FeedbackSettings, LoadWeights,
-    Measurement, Plant, StopReason, TMatrix,
+    Acceptance, ControlLayout, ControlLimits, Controller, FeedbackController, FeedbackSettings,
+    LoadWeights, Measurement, Plant, StopReason, TMatrix,
 };
 use rotor_base::Harmonic;
 use std::convert::Infallible;
@@ -76,7 +76,10 @@ fn a_loop_that_halves_learns_how_far_to_trust_its_t() {
             let layout = ControlLayout::new(1, vec![2]).unwrap();
             let mut plant = Bent { layout, weak, bend };
             let t0 = plant.linearised_t(&[0.0, 0.0]).unwrap().unwrap();
-            let settings = FeedbackSettings { cost_tolerance: 1e-9, ..FeedbackSettings::default() };
+            let settings = FeedbackSettings {
+                acceptance: Acceptance::Monotone { cost_tolerance: 1e-9 },
+                ..FeedbackSettings::default()
+            };
             let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings)
                 .unwrap()
                 .with_controller(Controller::Local { step_volt: vec![0.01; 2] })
@@ -144,7 +147,10 @@ impl Plant for Level {
 
 #[test]
 fn a_loop_that_wanders_along_a_flat_says_so() {
-    let settings = FeedbackSettings { cost_tolerance: 1e-5, ..FeedbackSettings::default() };
+    let settings = FeedbackSettings {
+        acceptance: Acceptance::Monotone { cost_tolerance: 1e-5 },
+        ..FeedbackSettings::default()
+    };
     let run = |rest: f64| {
         let layout = ControlLayout::new(1, vec![2]).unwrap();
         let mut plant = Level { layout, rest, asked: 0 };

@@ -2,9 +2,9 @@
 
 use crate::plants::{Problem, as_t};
 use hhc_control::{
-    AllowedIncrease, ControlError, ControlLayout, ControlLimits, ControlRun, Controller,
-    FeedbackController, FeedbackLaw, FeedbackSettings, FlapCircle, LinearPlant, LoadWeights,
-    Measurement, Plant, PowerLimit, RunError, StopReason, TMatrix, VoltageRange,
+    Acceptance, AllowedIncrease, ControlError, ControlLayout, ControlLimits, ControlRun,
+    Controller, FeedbackController, FeedbackLaw, FeedbackSettings, FlapCircle, LinearPlant,
+    LoadWeights, Measurement, Plant, PowerLimit, RunError, StopReason, TMatrix, VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -401,8 +401,10 @@ fn a_local_t_that_is_wrong_everywhere_learns_from_rejected_steps() {
     for (gain, phase_deg) in [(1.05, 3.0), (1.1, 8.0), (0.85, -12.0), (1.0, 25.0)] {
         let t = problem.distorted_t(gain, phase_deg);
         let limited = limited(problem.plant.clone(), limits.clone());
-        let settings =
-            FeedbackSettings { cost_tolerance: tolerance, ..FeedbackSettings::default() };
+        let settings = FeedbackSettings {
+            acceptance: Acceptance::Monotone { cost_tolerance: tolerance },
+            ..FeedbackSettings::default()
+        };
         let run = |way: Controller| {
             FeedbackController::new(&t, &LoadWeights::Identity, settings.clone())
                 .and_then(|c| c.with_controller(way))

@@ -2,8 +2,8 @@
 
 use crate::plants::{Problem, as_t};
 use hhc_control::{
-    ControlError, ControlLayout, FeedbackController, FeedbackLaw, FeedbackSettings, LinearPlant,
-    LoadWeights, Measurement, Plant, RunError, TMatrix, identify_t,
+    Acceptance, ControlError, ControlLayout, FeedbackController, FeedbackLaw, FeedbackSettings,
+    LinearPlant, LoadWeights, Measurement, Plant, RunError, TMatrix, identify_t,
 };
 use nalgebra::DMatrix;
 
@@ -173,7 +173,14 @@ fn bad_arguments_are_refused() {
     for settings in [
         FeedbackSettings { step_tolerance: 0.0, ..good.clone() },
         FeedbackSettings { stroke_tolerance: f64::NAN, ..good.clone() },
-        FeedbackSettings { allowed_increase: -1.0, ..good.clone() },
+        FeedbackSettings {
+            acceptance: Acceptance::NonMonotone { allowed_increase: -1.0, largest_cost: 0.0 },
+            ..good.clone()
+        },
+        FeedbackSettings {
+            acceptance: Acceptance::Monotone { cost_tolerance: 0.0 },
+            ..good.clone()
+        },
         FeedbackSettings { max_backtracks: 61, ..good.clone() },
     ] {
         assert!(FeedbackController::new(&t, &LoadWeights::Identity, settings).is_err());

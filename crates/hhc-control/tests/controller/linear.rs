@@ -2,8 +2,8 @@
 
 use crate::plants::{Problem, as_t, relative_error};
 use hhc_control::{
-    AllowedIncrease, ControlError, FeedbackController, FeedbackSettings, LoadWeights, RunError,
-    StopReason, identify_t,
+    Acceptance, AllowedIncrease, ControlError, FeedbackController, FeedbackSettings, LoadWeights,
+    RunError, StopReason, identify_t,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -111,10 +111,8 @@ proptest! {
     ) {
         let mut plant = problem.plant.clone();
         let t0 = problem.distorted_t(gain, phase_deg);
-        let (allowed_increase, non_monotone_cost) = (0.0, 0.0);
-        let settings = FeedbackSettings {
-            allowed_increase, non_monotone_cost, ..FeedbackSettings::default()
-        };
+        let acceptance = Acceptance::NonMonotone { allowed_increase: 0.0, largest_cost: 0.0 };
+        let settings = FeedbackSettings { acceptance, ..FeedbackSettings::default() };
         let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
         let history: Vec<_> = match controller.run(&mut plant, effort) {
             Ok(run) => run.history().cloned().collect(),
@@ -175,9 +173,10 @@ fn the_bound_on_the_phase_error_is_sharp() {
         let optimum = worst(sign);
         let z0: Vec<f64> = (-(&t * &optimum)).iter().copied().collect();
         let problem = Problem::new(1, &[3], t.clone(), &z0);
-        let run_over = |phase_deg: f64, non_monotone_cost: f64| {
+        let run_over = |phase_deg: f64, largest_cost: f64| {
+            let acceptance = Acceptance::NonMonotone { allowed_increase: 1e-2, largest_cost };
             let t0 = problem.distorted_t(1.0, phase_deg);
-            let settings = FeedbackSettings { max_backtracks: 40, non_monotone_cost, ..tight() };
+            let settings = FeedbackSettings { max_backtracks: 40, acceptance, ..tight() };
             FeedbackController::new(&t0, &LoadWeights::Identity, settings)
                 .unwrap()
                 .run(&mut problem.plant.clone(), 0.0)
@@ -257,7 +256,8 @@ fn with_weighted_control_a_wrong_t_moves_the_fixed_point() {
     let effort = 0.03;
     let exact = problem.optimum(&[1.0; LOADS], effort);
     let t0 = problem.distorted_t(1.0, 20.0);
-    let settings = FeedbackSettings { allowed_increase: 1.0, ..tight() };
+    let acceptance = Acceptance::NonMonotone { allowed_increase: 1.0, largest_cost: 10.0 };
+    let settings = FeedbackSettings { acceptance, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), effort).unwrap();
     assert_eq!(run.stop, StopReason::Converged);
@@ -273,7 +273,8 @@ fn with_weighted_control_a_wrong_t_moves_the_fixed_point() {
 fn near_the_least_cost_a_wrong_t_stalls_the_strict_loop() {
     let problem = orthogonal();
     let t0 = problem.distorted_t(0.7, 50.0);
-    let settings = FeedbackSettings { allowed_increase: 0.0, ..tight() };
+    let acceptance = Acceptance::NonMonotone { allowed_increase: 0.0, largest_cost: 10.0 };
+    let settings = FeedbackSettings { acceptance, ..tight() };
     let controller = FeedbackController::new(&t0, &LoadWeights::Identity, settings).unwrap();
     let run = controller.run(&mut problem.plant.clone(), 0.05).unwrap();
     assert_eq!(run.stop, StopReason::Stalled);

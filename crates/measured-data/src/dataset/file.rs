@@ -2,6 +2,7 @@
 
 use super::accuracy::Accuracy;
 use crate::tables::ChannelFile;
+use rotor_base::RecordUse;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -24,15 +25,6 @@ pub enum RunRole {
     Reference,
     /// A record to be explained: simulations are compared with it.
     Measured,
-}
-
-/// Which side of the split a run is on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum RunUse {
-    /// Models may be fitted to it.
-    Train,
-    /// Models are only tested on it.
-    HeldOut,
 }
 
 /// Which sensor read the output.
@@ -106,7 +98,7 @@ pub struct RunFile {
     pub start_s: Option<f64>,
     /// Side of the split; without it, identification splits by the rule it prints.
     #[serde(default, rename = "use", skip_serializing_if = "Option::is_none")]
-    pub use_as: Option<RunUse>,
+    pub use_as: Option<RecordUse>,
     /// Times of the record, s, between which it trains or is judged; simulations still begin at its
     /// first sample. A file may be used by several runs with different windows.
     #[serde(default, skip_serializing_if = "Option::is_none")]

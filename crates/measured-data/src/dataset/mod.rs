@@ -15,7 +15,7 @@ pub use bench::{BenchData, read_bench};
 pub(crate) use bench::{check_bench_record, range_unused};
 pub use curves::{CurveData, CurveRun, ReversalCurve, read_curves};
 pub use file::{
-    DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, Fitting, RunFile, RunRole, RunUse, Sensor,
+    DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, Fitting, RunFile, RunRole, Sensor,
 };
 pub use loops::{LoopData, read_loops};
 pub use open::DATASET;

@@ -26,10 +26,11 @@ pub use fit::validate::Validation;
 pub use records::drive::{Drive, Waveform};
 pub use records::findings::{Channel, Finding, Identifiability, Severity};
 pub use records::noise::CycleNoise;
-pub use records::record::{BenchRecord, RecordUse, RecordWindows};
+pub use records::record::{BenchRecord, RecordWindows};
 pub use records::settings::{FlapZero, RateSmoothness, Settings};
 pub use records::split_rule::SplitRule;
 pub use records::subject::Subject;
+pub use rotor_base::RecordUse;
 
 use crate::{ActuatorLaw, ActuatorModel, PreisachError, PreisachGrid, StaticPreisach};
 use fit::output_error::Uncertainty;

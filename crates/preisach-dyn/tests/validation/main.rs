@@ -2,7 +2,7 @@
 
 mod actuator;
 mod actuator_stages;
-#[path = "../oracles/mod.rs"]
+#[path = "../all/oracles/mod.rs"]
 mod oracles;
 
 use validation::hold;

@@ -1,9 +1,9 @@
 //! Rows of the validation page: the blade and of time elements.
 
 mod blade;
-#[path = "../free_motion/mod.rs"]
+#[path = "../all/free_motion/mod.rs"]
 mod free_motion;
-#[path = "../linear/mod.rs"]
+#[path = "../all/linear/mod.rs"]
 mod linear;
 mod moderate;
 mod moderate_blades;

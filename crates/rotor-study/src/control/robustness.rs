@@ -204,14 +204,26 @@ fn disturbances() -> Vec<Disturbance> {
     noise.into_iter().chain(wrong).chain(drift).chain([all]).collect()
 }
 
-/// The controllers of a map in their order, and how each weights the control: as the case does. A weight that is
-/// tuned to the stroke goes with a constant T; where T is learnt the limits take its place.
-fn ways(effort: EffortChoice) -> [(ControllerChoice, EffortChoice); 3] {
+/// What is run for one cell.
+#[derive(Clone, Copy)]
+struct Trial {
+    disturbance: Disturbance,
+    /// Of the noise.
+    seed: u64,
+    controller: ControllerChoice,
+    /// How the control is weighted.
+    effort: EffortChoice,
+}
+
+/// Every controller of a map under one disturbance, in their order. Each weights the control as the case does, but a
+/// weight that is tuned to the stroke goes with a constant T; where T is learnt the limits take its place.
+fn trials(effort: EffortChoice, disturbance: Disturbance) -> [Trial; 3] {
     let learnt = if effort == EffortChoice::MeetStroke { EffortChoice::Limits } else { effort };
+    let of = |controller, effort| Trial { disturbance, seed: SEED, controller, effort };
     [
-        (ControllerChoice::Global, effort),
-        (ControllerChoice::Local, learnt),
-        (ControllerChoice::Adaptive, learnt),
+        of(ControllerChoice::Global, effort),
+        of(ControllerChoice::Local, learnt),
+        of(ControllerChoice::Adaptive, learnt),
     ]
 }
 
@@ -233,7 +245,8 @@ fn effort_name(effort: EffortChoice) -> &'static str {
 /// [`StudyError`] of the plant; a run that diverges or whose stroke is not met is a cell of the map.
 fn cells(
     case: &Case,
-    (rotor, drives): (&TrimmedRotor, &Drives),
+    rotor: &TrimmedRotor,
+    drives: &Drives,
     harmonic: usize,
     disturbances: Vec<Disturbance>,
 ) -> Result<Vec<RobustnessCell>, StudyError> {
@@ -256,16 +269,13 @@ fn cells(
         plant,
         baseline,
     };
-    let each: Vec<_> = disturbances
+    let each: Vec<Trial> = disturbances
         .into_iter()
-        .flat_map(|disturbance| ways(case.control.effort).map(|way| (disturbance, way)))
+        .flat_map(|disturbance| trials(case.control.effort, disturbance))
+        .zip(SEED..)
+        .map(|(trial, seed)| Trial { seed, ..trial })
         .collect();
-    each.into_par_iter()
-        .enumerate()
-        .map(|(index, (disturbance, way))| {
-            flight.cell((disturbance, SEED + index as u64), way).map_err(failed)
-        })
-        .collect()
+    each.into_par_iter().map(|trial| flight.cell(trial).map_err(failed)).collect()
 }
 
 /// What the cells of a map share.
@@ -282,11 +292,8 @@ struct Flight<'a> {
 }
 
 impl Flight<'_> {
-    fn cell(
-        &self,
-        (disturbance, seed): (Disturbance, u64),
-        (choice, effort): (ControllerChoice, EffortChoice),
-    ) -> Result<RobustnessCell, RunError<PlantError>> {
+    fn cell(&self, trial: Trial) -> Result<RobustnessCell, RunError<PlantError>> {
+        let Trial { disturbance, seed, controller: choice, effort } = trial;
         let answers = Disturbed::new(disturbance, self.rms, seed);
         let way = match self.set.t_policy(choice, self.step_volt.clone()) {
             Controller::Adaptive(settings) => {
@@ -384,7 +391,7 @@ pub fn robustness_maps(
     }
     let mut maps = Vec::new();
     for &harmonic in case.control.harmonics.iter().filter(|set| set.len() == 1).flatten() {
-        let map = cells(case, (rotor, drives), harmonic, disturbances())
+        let map = cells(case, rotor, drives, harmonic, disturbances())
             .map_err(|source| StudyError::Robustness { harmonic, source: Box::new(source) })?;
         maps.extend(map);
     }

@@ -2,8 +2,8 @@
 
 use super::*;
 use hhc_control::{
-    ControlLayout, FeedbackController, FeedbackSettings, LinearPlant, LoadWeights, Plant,
-    StopReason,
+    Acceptance, ControlLayout, FeedbackController, FeedbackSettings, LinearPlant, LoadWeights,
+    Plant, StopReason,
 };
 use nalgebra::{DMatrix, DVector};
 use std::convert::Infallible;
@@ -38,7 +38,7 @@ fn settings(max_steps: usize) -> FeedbackSettings {
         max_steps,
         step_tolerance: 1e-12,
         max_backtracks: 0,
-        allowed_increase: 1e3,
+        acceptance: Acceptance::NonMonotone { allowed_increase: 1e3, largest_cost: 10.0 },
         ..FeedbackSettings::default()
     }
 }
@@ -175,7 +175,7 @@ fn an_undisturbed_cell_is_the_loop_of_the_study() {
         let done = || ();
         let study = crate::control::control_set(&case, &rotor, &drives, &[3], &done).unwrap();
         let run = study[0].run.as_ref().unwrap();
-        let cells = cells(&case, (&rotor, &drives), 3, vec![none]).unwrap();
+        let cells = cells(&case, &rotor, &drives, 3, vec![none]).unwrap();
         let cell = cells.iter().find(|cell| cell.controller == choice).unwrap();
         let loads = study[0].state.rotor.hub.harmonic(case.rotor.blades);
         let bits = |loads: [f64; 12]| loads.map(f64::to_bits);

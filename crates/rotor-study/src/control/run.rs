@@ -2,7 +2,7 @@
 
 use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice};
 use crate::control::drives::Drives;
-use crate::control::set::{ControlSet, close_loop, cost_tolerance};
+use crate::control::set::{ControlSet, acceptance, close_loop};
 use crate::control::study::ControlStudy;
 use crate::error::StudyError;
 use crate::rotor::TrimmedRotor;
@@ -116,7 +116,7 @@ impl ControlSet<'_> {
             _ => identify_t(&mut plant, &step_volt).map_err(failed)?,
         };
         let holds_t = matches!(way, Controller::Renewed { .. });
-        let cost_tolerance = cost_tolerance(&way, control.effort);
+        let cost_tolerance = acceptance(&way, control.effort).cost_tolerance();
         let controller = self.controller(&t, way, control.effort).map_err(failed)?;
         let (run, rho) = close_loop(&controller, &mut plant, control.effort).map_err(failed)?;
         let volts = run.last().control_volt.clone();

@@ -9,8 +9,8 @@ use crate::loads::{HubLoads, Setting, loads_cost};
 use crate::plant::{PlantState, RotorPlant, output_weights};
 use crate::rotor::TrimmedRotor;
 use hhc_control::{
-    AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackLaw, FeedbackSettings,
-    Plant, RunError, StopReason, TMatrix,
+    Acceptance, AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackLaw,
+    FeedbackSettings, Plant, RunError, StopReason, TMatrix,
 };
 
 /// One set of harmonics under control: the rotor, its drives and how far they reach.
@@ -119,7 +119,7 @@ impl ControlSet<'_> {
         let settings = FeedbackSettings {
             max_steps: control.max_steps,
             step_tolerance: control.step_tolerance,
-            cost_tolerance: cost_tolerance(&way, effort),
+            acceptance: acceptance(&way, effort),
             ..FeedbackSettings::default()
         };
         let weights = output_weights(&self.load_weights(), t.loads());
@@ -204,13 +204,17 @@ const RENEWALS: u32 = 4;
 /// Fall of J that may be left to a loop that has converged, as a part of the uncontrolled J.
 const COST_TOLERANCE: f64 = 1e-5;
 
-/// Tolerance of the cost of a loop: a constant T promises what it cannot keep, its end is that of the paper's loop;
-/// that of the ideal actuator is right wherever the loop ends, limits or not.
-pub(super) fn cost_tolerance(way: &Controller, effort: EffortChoice) -> f64 {
+/// Which steps a loop accepts: a constant T promises what it cannot keep, its end is that of the paper's loop; that of
+/// the ideal actuator is right wherever the loop ends, limits or not.
+pub(super) fn acceptance(way: &Controller, effort: EffortChoice) -> Acceptance {
     match (way, effort) {
-        (Controller::Global, EffortChoice::Limits) => COST_TOLERANCE,
-        (Controller::Global | Controller::Renewed { .. }, _) => 0.0,
-        _ => COST_TOLERANCE,
+        (Controller::Global, EffortChoice::Limits)
+        | (Controller::Local { .. } | Controller::Adaptive(_), _) => {
+            Acceptance::Monotone { cost_tolerance: COST_TOLERANCE }
+        }
+        (Controller::Global | Controller::Renewed { .. }, _) => {
+            FeedbackSettings::default().acceptance
+        }
     }
 }
 

@@ -28,9 +28,11 @@ impl FlapAuthority {
     /// As [`RotorSolver::linearised`].
     pub fn about(
         solver: &mut RotorSolver,
-        at: (&Condition, &RotorSolution),
+        condition: &Condition,
+        about: &RotorSolution,
         inflow: &dyn InflowModel,
-        (state, highest): (InflowState, usize),
+        state: InflowState,
+        highest: usize,
     ) -> Result<Self, ResponseError> {
         let model = solver.rotor().model();
         let (flaps, blades) = (model.flaps.len(), model.blades);
@@ -42,7 +44,7 @@ impl FlapAuthority {
                 direction
             })
             .collect();
-        let found = solver.linearised(at, inflow, &directions, state)?;
+        let found = solver.linearised((condition, about), inflow, &directions, state)?;
         let all: Vec<[f64; 12]> =
             found.sensitivities.iter().map(|s| s.hub.harmonic(blades)).collect();
         let hinge: Vec<Vec<HarmonicSeries>> =
@@ -57,7 +59,8 @@ impl FlapAuthority {
     #[must_use]
     pub(crate) fn with_harmonic(
         mut self,
-        (flap, harmonic): (usize, usize),
+        flap: usize,
+        harmonic: usize,
         loads_per_deg: [[f64; 12]; 2],
     ) -> Self {
         if let Some(columns) = self.columns.get_mut(flap)

@@ -33,6 +33,14 @@ pub struct ReconvergedAuthority {
     pub change: f64,
 }
 
+/// A cosine or sine of one harmonic of one flap.
+#[derive(Clone, Copy)]
+struct Motion {
+    flap: usize,
+    harmonic: usize,
+    sine: bool,
+}
+
 impl Reconverging {
     pub(crate) fn of(case: &Case) -> Self {
         let harmonics: BTreeSet<usize> = case.control.harmonics.iter().flatten().copied().collect();
@@ -48,20 +56,22 @@ impl Reconverging {
     /// The errors of the response and of the wake.
     pub(crate) fn authority(
         &self,
-        (wake, solver, coupling): (&WakeTrim, &RotorSolver, &WakeTrimSettings),
+        wake: &WakeTrim,
+        solver: &RotorSolver,
+        coupling: &WakeTrimSettings,
         rest: &Condition,
         settled: FlapAuthority,
     ) -> Result<ReconvergedAuthority, ResponseError> {
         let flaps = rest.flap_angles_rad.len();
-        let pairs: Vec<(usize, usize)> = (0..flaps)
-            .flat_map(|flap| self.harmonics.iter().map(move |&harmonic| (flap, harmonic)))
-            .collect();
-        let controls: Vec<(usize, usize, bool)> =
-            pairs.iter().flat_map(|&(f, n)| [(f, n, false), (f, n, true)]).collect();
-        let found = controls
-            .into_par_iter()
-            .map(|control| {
-                let [plus, minus] = [1.0, -1.0].map(|side| self.moved(rest, control, side));
+        let of_flap = |flap| {
+            let both = move |&harmonic| [false, true].map(|sine| Motion { flap, harmonic, sine });
+            self.harmonics.iter().flat_map(both)
+        };
+        let motions: Vec<Motion> = (0..flaps).flat_map(of_flap).collect();
+        let found = motions
+            .par_iter()
+            .map(|motion| {
+                let [plus, minus] = [1.0, -1.0].map(|side| self.moved(rest, *motion, side));
                 wake_difference(wake, solver, coupling, [&plus, &minus])
             })
             .collect::<Result<Vec<WakeDifference>, ResponseError>>()?;
@@ -72,22 +82,19 @@ impl Reconverging {
             updates: found.iter().map(|d| d.hub.len() - 1).max().unwrap_or(0),
             change: found.iter().map(|d| d.change).fold(0.0, f64::max),
         };
-        for (&pair, both) in pairs.iter().zip(found.chunks_exact(2)) {
+        for (motions, both) in motions.chunks_exact(2).zip(found.chunks_exact(2)) {
+            let Motion { flap, harmonic, .. } = motions[0];
             let last = [per_deg(both[0].last()), per_deg(both[1].last())];
             let first = [per_deg(both[0].hub[0]), per_deg(both[1].hub[0])];
-            made.authority = made.authority.with_harmonic(pair, last);
-            made.held = made.held.with_harmonic(pair, first);
+            made.authority = made.authority.with_harmonic(flap, harmonic, last);
+            made.held = made.held.with_harmonic(flap, harmonic, first);
         }
         Ok(made)
     }
 
     /// A condition with one harmonic of one flap moved by a step.
-    fn moved(
-        &self,
-        rest: &Condition,
-        (flap, harmonic, sine): (usize, usize, bool),
-        side: f64,
-    ) -> Condition {
+    fn moved(&self, rest: &Condition, motion: Motion, side: f64) -> Condition {
+        let Motion { flap, harmonic, sine } = motion;
         let mut moved = rest.clone();
         let step_rad = side * self.step_deg.to_radians();
         moved.flap_angles_rad[flap] = only(place(harmonic, sine), step_rad);

@@ -123,8 +123,8 @@ impl TrimmedRotor {
         let Some(coupling) = &self.reconverging.coupling else { return Ok(None) };
         let found = found(&self.reconverged, || {
             let settled = self.linearised(InflowState::Settled)?;
-            let about = (wake.as_ref(), &self.solver, coupling);
-            self.reconverging.authority(about, &self.flaps_at_rest(), settled)
+            let rest = self.flaps_at_rest();
+            self.reconverging.authority(wake, &self.solver, coupling, &rest, settled)
         })?;
         Ok(Some(found))
     }
@@ -142,13 +142,13 @@ impl TrimmedRotor {
         state: InflowState,
         highest: usize,
     ) -> Result<FlapAuthority, ResponseError> {
-        let condition = self.flaps_at_rest();
-        let about = (&condition, &self.trim.rotor);
         FlapAuthority::about(
             &mut self.solver.clone(),
-            about,
+            &self.flaps_at_rest(),
+            &self.trim.rotor,
             self.inflow.as_ref(),
-            (state, highest),
+            state,
+            highest,
         )
     }
 

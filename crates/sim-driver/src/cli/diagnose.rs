@@ -4,7 +4,9 @@ use super::args::{DiagnoseArgs, LadderArgs, RecordsArgs};
 use super::{case_or_paper, overridden, warn, write_texts};
 use crate::SimError;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
-use crate::diagnose::{Findings, FolderStore, Question, Record, Records, Story, climb, extended};
+use crate::diagnose::{
+    Climb, Findings, FolderStore, Question, Record, Records, Stage, Story, climb, extended,
+};
 use crate::files::{DataSet, Folder, Source, read_dataset, refuse_input, ron_text, write_atomic};
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
@@ -23,14 +25,17 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     refuse_input(&args.model, &output.join(EXTENDED_FILE))?;
     let (model, case) = given_model(&args.model)?;
     let (measured, reference) = both_records(&args.records)?;
+    let progress = Progress::new(DIAGNOSIS);
     let question = Question {
         reference,
         only: args.only.clone(),
         cache: Some(&FolderStore(cache)),
         given: model.as_ref(),
+        begun: Some(&|stage| begin(&progress, stage)),
     };
-    let doing = format!("diagnosing {} runs", measured.runs.len());
-    let found = Progress::during(doing, || crate::diagnose::diagnose(&measured, &question))?;
+    let found = crate::diagnose::diagnose(&measured, &question);
+    progress.finish();
+    let found = found?;
     let findings = json(&Findings::from(&found))?;
     write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
     if let Some(case) = case {
@@ -41,13 +46,32 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     print(&Story::of(&found).render(format.form())?)
 }
 
+/// Steps of the progress of a diagnosis, about percent of its time.
+const DIAGNOSIS: usize = 100;
+/// Steps of the rungs of a ladder beside it.
+const RUNGS: usize = 3;
+
+/// Says what a diagnosis begins, and the share of its time that has gone by then.
+fn begin(progress: &Progress, stage: Stage) {
+    match stage {
+        Stage::BaseModel => progress.begin(0, "base model"),
+        Stage::Surrogates => progress.begin(10, "surrogates with nothing missing"),
+        Stage::Search => progress.begin(50, "search for what is missing"),
+        Stage::NextExperiment => progress.begin(90, "next experiment"),
+    }
+}
+
 pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
     let RecordsArgs { output, cache, format, .. } = &args.records;
     let (measured, reference) = both_records(&args.records)?;
     let loaded = overridden(case_or_paper(args.case.as_ref())?, args.inflow);
-    let doing = format!("climbing on {} runs", measured.runs.len());
-    let climbed = || climb(&measured, &reference, &loaded, Some(cache));
-    let (ladder, found) = Progress::during(doing, climbed)?;
+    let progress = Progress::new(DIAGNOSIS + RUNGS);
+    let climbed = climb(&measured, &reference, &loaded, Some(cache), &|climb| match climb {
+        Climb::Diagnosis(stage) => begin(&progress, stage),
+        Climb::Rung(rung) => progress.begin(DIAGNOSIS + rung, "vibration with each model"),
+    });
+    progress.finish();
+    let (ladder, found) = climbed?;
     let text = json(&ladder)?;
     write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
     write_atomic(&output.join("ladder.json"), text.as_bytes())?;

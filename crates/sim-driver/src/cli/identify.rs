@@ -6,11 +6,14 @@ use crate::SimError;
 use crate::curve_identification::identify_curves;
 use crate::figures::figure_files;
 use crate::files::{DataSet, Folder, Source, read_dataset, refuse_inside};
-use crate::identification::{BenchIdentification, identify_bench, identify_loops};
+use crate::identification::{BenchIdentification, MODELS_COMPARED, identify_bench, identify_loops};
 use crate::output::{Printable, print};
 use crate::progress::Progress;
 use crate::stored_actuator::{StoredActuator, read_actuator, write_actuator};
 use preisach_dyn::identify::Settings;
+
+/// Steps of the progress that the identification itself counts as.
+const IDENTIFICATION: usize = 5;
 
 pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let base = match &args.start {
@@ -21,8 +24,8 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     refuse_inputs(args.start.as_deref(), Some(&args.output))?;
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
-    let progress = Progress::new(1);
-    progress.doing(format!("identifying from {} runs", data.run_count()));
+    let progress = Progress::new(IDENTIFICATION + MODELS_COMPARED);
+    progress.begin(0, &format!("identifying from {} runs", data.run_count()));
     let written = Some(args.output.display().to_string());
     let (stored, text, figures) = match &data {
         DataSet::Curves(curves) => {
@@ -64,9 +67,9 @@ fn compared(
     args: &IdentifyArgs,
     progress: &Progress,
 ) -> Result<BenchIdentification, SimError> {
-    progress.doing("comparing all models".to_owned());
+    progress.begin(IDENTIFICATION, "comparing all models");
     let found = found.and_then(|mut found| {
-        found.compare()?;
+        found.compare(&|| progress.step())?;
         found.pick(args.model)?;
         Ok(found)
     });

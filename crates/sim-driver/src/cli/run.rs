@@ -71,8 +71,8 @@ impl Scope {
         if let Some(which) = self.sensitivity {
             progress.doing("sensitivity");
             let done = || progress.step();
-            let rotor = (&outcome.trimmed, &outcome.drives);
-            outcome.result.sensitivity = sensitivities(&loaded.case, rotor, which, &done)
+            let RunOutcome { trimmed, drives, .. } = &outcome;
+            outcome.result.sensitivity = sensitivities(&loaded.case, trimmed, drives, which, &done)
                 .map_err(|error| loaded.located(error))?;
         }
         if self.robustness {

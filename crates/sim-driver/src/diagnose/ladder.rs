@@ -7,7 +7,7 @@
 //! | 2 | the extended actuator | |
 
 use super::cache::FolderStore;
-use super::{Record, Records, at};
+use super::{Record, Records, Stage, at};
 use crate::SimError;
 use crate::actuator::CaseActuators;
 use crate::case::{ControlActuator, LoadedCase};
@@ -59,6 +59,15 @@ pub struct Ladder {
     pub rungs: Vec<Rung>,
 }
 
+/// What a climb begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Climb {
+    /// A stage of the diagnosis that the last rung is made of.
+    Diagnosis(Stage),
+    /// What a rung is worth to the rotor, counted from 0.
+    Rung(usize),
+}
+
 /// Climbs as far as the data ask for. `reference` shows the actuator as it is, `measured` what is to be
 /// explained; the case tells what a rung is worth to a rotor.
 ///
@@ -69,14 +78,17 @@ pub fn climb(
     reference: &[Record],
     loaded: &LoadedCase,
     cache: Option<&Path>,
+    begun: &dyn Fn(Climb),
 ) -> Result<(Ladder, Diagnosis), SimError> {
     let store = cache.map(FolderStore);
     let store = store.as_ref().map(|store| store as &dyn StructureStore);
     let (models, found) =
-        rung_models(measured, reference, store).map_err(|e| at(&measured.folder, e))?;
+        rung_models(measured, reference, store, &|stage| begun(Climb::Diagnosis(stage)))
+            .map_err(|e| at(&measured.folder, e))?;
     let trimmed = TrimmedRotor::new(&loaded.case, None).map_err(|error| loaded.located(error))?;
     let mut rungs = Vec::new();
     for RungModel { name, model, asked, error_percent } in models {
+        begun(Climb::Rung(rungs.len()));
         rungs.push(Rung {
             model: name.to_owned(),
             verdict: asked.as_ref().map(|a| a.verdict),

@@ -4,9 +4,9 @@ mod cache;
 mod ladder;
 mod story;
 
-pub use actuator_gap::{Diagnosis, Findings, Proposal, Question, Record, Records};
+pub use actuator_gap::{Diagnosis, Findings, Proposal, Question, Record, Records, Stage};
 pub use cache::FolderStore;
-pub use ladder::{Ladder, Rung, climb};
+pub use ladder::{Climb, Ladder, Rung, climb};
 pub use story::Story;
 
 use crate::SimError;

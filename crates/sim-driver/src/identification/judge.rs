@@ -4,11 +4,11 @@
 use super::{DataHeading, dataset_place};
 use crate::SimError;
 use crate::files::limits;
-use crate::stored_actuator::{FitUse, StoredFit};
+use crate::stored_actuator::StoredFit;
 use actuator_gap::DiagnosisError;
 use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, noise_variance};
 use preisach_dyn::ActuatorModel;
-use preisach_dyn::identify::{BenchRecord, Identification, RecordReport, RecordUse};
+use preisach_dyn::identify::{BenchRecord, Identification, RecordReport};
 use rayon::prelude::*;
 
 /// A model against every record, and the static model of the same identification beside it.
@@ -24,13 +24,14 @@ pub(super) fn judged(
     records
         .par_iter()
         .zip(&identification.records)
-        .map(|(record, report)| judge(heading, (record, report), identification, model))
+        .map(|(record, report)| judge(heading, record, report, identification, model))
         .collect()
 }
 
 fn judge(
     heading: &DataHeading,
-    (record, report): (&BenchRecord, &RecordReport),
+    record: &BenchRecord,
+    report: &RecordReport,
     identification: &Identification,
     model: &ActuatorModel,
 ) -> Result<StoredFit, SimError> {
@@ -73,10 +74,7 @@ fn judge(
     let error_without_mean = (misfit.rms.powi(2) - misfit.bias.powi(2)).max(0.0).sqrt();
     Ok(StoredFit {
         id: record.id.clone(),
-        use_as: match report.record_use {
-            RecordUse::Train => FitUse::Trained,
-            RecordUse::HeldOut => FitUse::HeldOut,
-        },
+        use_as: report.record_use,
         frequency_hz: drive.strongest_hz(),
         amplitude_volt: drive.amplitude_volt,
         nrmse_percent: 100.0 * misfit.nrmse,

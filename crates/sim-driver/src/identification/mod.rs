@@ -10,7 +10,7 @@ pub(crate) use summary::fit_table;
 pub use summary::{FindingLine, IdentifyResult, ModelLine};
 
 use crate::SimError;
-use crate::files::{BenchData, Channel, DATASET, LoopData, Run, RunRole, RunUse, limits};
+use crate::files::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use crate::problem::Place;
 use crate::stored_actuator::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 use preisach_dyn::identify::{
@@ -106,6 +106,9 @@ pub struct BenchIdentification {
     pub comparison: Option<ModelComparison>,
 }
 
+/// Models that a comparison fits at most: the families, and the orders of the one chosen.
+pub const MODELS_COMPARED: usize = 15;
+
 /// Identifies an actuator from a bench.
 ///
 /// `base` gives what the data set does not: levels, form, split rule. Range and gain are the data
@@ -167,11 +170,8 @@ fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
 /// Side of the split that the data set fixes: what it says of the run, and otherwise that measured
 /// runs, which are there to be explained, never train.
 fn record_use(run: &Run) -> Option<RecordUse> {
-    match (run.entry.use_as, run.entry.role) {
-        (Some(RunUse::Train), _) => Some(RecordUse::Train),
-        (Some(RunUse::HeldOut), _) | (None, RunRole::Measured) => Some(RecordUse::HeldOut),
-        (None, RunRole::Reference) => None,
-    }
+    let measured = run.entry.role == RunRole::Measured;
+    run.entry.use_as.or(measured.then_some(RecordUse::HeldOut))
 }
 
 /// Identifies from records and judges the models by them.
@@ -226,12 +226,13 @@ pub(crate) fn gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
 }
 
 impl BenchIdentification {
-    /// Fits all families of models to the same records and keeps the table.
+    /// Fits all families of models to the same records and keeps the table; `done` is called after each of
+    /// [`MODELS_COMPARED`].
     ///
     /// # Errors
     /// [`SimError::Actuator`] or [`SimError::Loop`] at the place of the data set.
-    pub fn compare(&mut self) -> Result<(), SimError> {
-        let table = compare_models(&self.records, &self.settings, &Candidates::default());
+    pub fn compare(&mut self, done: &(dyn Fn() + Sync)) -> Result<(), SimError> {
+        let table = compare_models(&self.records, &self.settings, &Candidates::default(), done);
         self.comparison = Some(table.map_err(|source| self.heading.failed(source))?);
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::{BenchIdentification, PickReason};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, table};
-use crate::stored_actuator::{FitUse, GainRule, StoredChannels, StoredFit};
+use crate::stored_actuator::{GainRule, StoredChannels, StoredFit};
 use preisach_dyn::identify::{
     Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings,
     Severity, Subject,
@@ -45,7 +45,7 @@ impl BenchIdentification {
     /// What the data cannot tell; whether the model describes them is said of the model picked.
     fn findings(&self) -> Vec<FindingLine> {
         let subject = self.heading.subject();
-        let nrmse_percent = rms_percent(&of_use(&self.fits, FitUse::Trained));
+        let nrmse_percent = rms_percent(&of_use(&self.fits, RecordUse::Train));
         let not_described = (nrmse_percent > 100.0 * MOST_UNEXPLAINED)
             .then_some(Finding::NotDescribed { nrmse_percent });
         let of_data = self.identification.summary.findings.iter().cloned();
@@ -82,7 +82,7 @@ impl BenchIdentification {
 }
 
 /// The runs of one side of the split.
-fn of_use(runs: &[StoredFit], use_as: FitUse) -> Vec<&StoredFit> {
+fn of_use(runs: &[StoredFit], use_as: RecordUse) -> Vec<&StoredFit> {
     runs.iter().filter(|run| run.use_as == use_as).collect()
 }
 
@@ -204,9 +204,9 @@ impl Printable for IdentifyResult {
             let gain = format!("{:.6} deg/um, {}", self.deg_per_um, self.gain_rule);
             screen.labelled("Gain", &gain);
         }
-        let mut held_out = of_use(&self.runs, FitUse::HeldOut);
+        let mut held_out = of_use(&self.runs, RecordUse::HeldOut);
         held_out.sort_by(|a, b| b.nrmse_percent.total_cmp(&a.nrmse_percent));
-        let trained = of_use(&self.runs, FitUse::Trained);
+        let trained = of_use(&self.runs, RecordUse::Train);
         for (label, runs) in [("Held out", &held_out), ("Trained", &trained)] {
             let worst = runs.iter().max_by(|a, b| a.nrmse_percent.total_cmp(&b.nrmse_percent));
             let text = match worst {
@@ -270,7 +270,7 @@ impl Printable for IdentifyResult {
             sheet.block(&parameter_table(&self.parameters));
         }
         for (title, use_as) in
-            [("Trained runs", FitUse::Trained), ("Held-out runs", FitUse::HeldOut)]
+            [("Trained runs", RecordUse::Train), ("Held-out runs", RecordUse::HeldOut)]
         {
             let runs = of_use(&self.runs, use_as);
             if runs.is_empty() {

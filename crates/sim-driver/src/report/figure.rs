@@ -75,11 +75,8 @@ impl Finding {
         let names = unique(bars.map(|(name, _)| name.as_str()));
         let height = TOP + PANEL * self.panels.len() as f64 + 16.0;
         let mut svg = Svg::default();
-        svg.text(
-            (LEFT, 22.0),
-            "title",
-            "What control leaves of the vibration, percent of that without control",
-        );
+        let heading = "What control leaves of the vibration, percent of that without control";
+        svg.text(LEFT, 22.0, "title", heading);
         svg.legend(&names, self.panels.iter().any(|panel| !panel.paper_percent.is_empty()));
         for (k, panel) in self.panels.iter().enumerate() {
             svg.panel(panel, &names, TOP + PANEL * k as f64);
@@ -117,14 +114,14 @@ impl Svg {
         let _ = writeln!(self.text, "{element}");
     }
 
-    fn text(&mut self, (x, y): (f64, f64), class: &str, words: &str) {
+    fn text(&mut self, x: f64, y: f64, class: &str, words: &str) {
         self.push(format_args!(
             "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"hf-{class}\">{}</text>",
             escaped(words)
         ));
     }
 
-    fn bar(&mut self, x: f64, y: f64, (width, height): (f64, f64), colour: usize) {
+    fn bar(&mut self, x: f64, y: f64, width: f64, height: f64, colour: usize) {
         self.push(format_args!(
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" class=\"hf-{}\"/>",
             colour.min(4)
@@ -142,22 +139,22 @@ impl Svg {
     fn legend(&mut self, names: &[&str], with_paper: bool) {
         let mut x = LEFT;
         for (k, name) in std::iter::once(&"without control").chain(names).enumerate() {
-            self.bar(x, 35.0, (12.0, 12.0), k);
-            self.text((x + 17.0, 46.0), "soft", name);
+            self.bar(x, 35.0, 12.0, 12.0, k);
+            self.text(x + 17.0, 46.0, "soft", name);
             x += 34.0 + 7.0 * name.len() as f64;
         }
         if with_paper {
             self.diamond(x + 6.0, 41.0);
-            self.text((x + 17.0, 46.0), "soft", "paper (fed back)");
+            self.text(x + 17.0, 46.0, "soft", "paper (fed back)");
         }
     }
 
     fn panel(&mut self, panel: &Panel, names: &[&str], top: f64) {
         let ground = top + PANEL - 40.0;
         let height = |percent: f64| FULL * percent.clamp(0.0, TALLEST) / 100.0;
-        self.text((8.0, ground - FULL / 2.0), "soft", "flaps at");
+        self.text(8.0, ground - FULL / 2.0, "soft", "flaps at");
         let class = if panel.title.len() > 8 { "soft" } else { "title" };
-        self.text((8.0, ground - FULL / 2.0 + 18.0), class, &panel.title);
+        self.text(8.0, ground - FULL / 2.0 + 18.0, class, &panel.title);
         let group = (WIDTH - LEFT - 16.0) / 7.0;
         let start = LEFT + 8.0;
         for (percent, class) in [(0.0, ""), (50.0, ""), (100.0, " class=\"hf-full\"")] {
@@ -171,21 +168,21 @@ impl Svg {
         let width = (group - 18.0) / (names.len() + 1) as f64;
         for (k, label) in labels.enumerate() {
             let x = start + group * k as f64 + 6.0;
-            self.bar(x, ground - height(100.0), (width - 2.0, height(100.0)), 0);
+            self.bar(x, ground - height(100.0), width - 2.0, height(100.0), 0);
             for (name, left) in &panel.left_percent {
                 let place = names.iter().position(|own| own == name).unwrap_or_default();
                 let (x, tall) = (x + width * (place + 1) as f64, height(left[k]));
-                self.bar(x, ground - tall, (width - 2.0, tall), place + 1);
-                let middle = (x + width / 2.0 - 1.0, ground - tall - 4.0);
-                self.text(middle, "soft hf-centred", &format!("{:.0}", left[k]));
+                self.bar(x, ground - tall, width - 2.0, tall, place + 1);
+                let (middle, above) = (x + width / 2.0 - 1.0, ground - tall - 4.0);
+                self.text(middle, above, "soft hf-centred", &format!("{:.0}", left[k]));
             }
             if let Some(&percent) = panel.paper_percent.get(k) {
                 // over the bar of the feedback, which is what the paper's number is of
                 let place = names.iter().position(|name| *name == "fed back").unwrap_or_default();
                 self.diamond(x + width * (place as f64 + 1.5) - 1.0, ground - height(percent));
             }
-            let middle = (x + (group - 18.0) / 2.0, ground + 17.0);
-            self.text(middle, "soft hf-centred", &label.to_uppercase());
+            let (middle, below) = (x + (group - 18.0) / 2.0, ground + 17.0);
+            self.text(middle, below, "soft hf-centred", &label.to_uppercase());
         }
     }
 }

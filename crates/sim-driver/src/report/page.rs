@@ -3,9 +3,10 @@
 use super::charts::{azimuth_chart, load_chart, loop_chart};
 use super::{Section, StudyReport, assumptions, state_lines};
 use crate::results::{BenchPart, by_set, set_name};
-use crate::stored_actuator::{FitUse, StoredFit};
+use crate::stored_actuator::StoredFit;
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use plotly::Plot;
+use preisach_dyn::identify::RecordUse;
 
 /// The report as one HTML text: charts, style and script inside, nothing loaded from anywhere.
 pub fn report_html(report: &StudyReport<'_>) -> String {
@@ -104,7 +105,7 @@ fn fits(fits: &[StoredFit]) -> Section {
     let optional = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:+.2}"));
     let header = ["run", "side", "Hz", "V", "NRMSE %", "static only %", "amplitude %", "phase deg"];
     let rows = fits.iter().map(|f| {
-        let side = if f.use_as == FitUse::Trained { "trained" } else { "held out" };
+        let side = if f.use_as == RecordUse::Train { "trained" } else { "held out" };
         vec![
             f.id.clone(),
             side.to_owned(),

@@ -372,7 +372,7 @@ fn identify_writes_an_actuator_that_checks_and_can_be_started_from() {
         |id: &str| runs.iter().find(|r| r["id"] == id).unwrap()["use"].as_str().unwrap().to_owned();
     assert_eq!(
         (side("slow"), side("one_large"), side("five")),
-        ("trained".into(), "trained".into(), "held_out".into())
+        ("Train".into(), "Train".into(), "HeldOut".into())
     );
     for run in runs {
         assert!(run["nrmse_percent"].as_f64().unwrap() < 10.0, "{run}");

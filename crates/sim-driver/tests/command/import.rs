@@ -464,7 +464,7 @@ fn the_measured_friction_damper_is_a_stop_and_no_play() {
         let hz: f64 = id.split('_').nth(1).unwrap().trim_end_matches("Hz").parse().unwrap();
         let found = run["frequency_hz"].as_f64().unwrap();
         assert!((found / hz - 1.0).abs() < 0.01, "{id}: {found} Hz");
-        assert_eq!(run["use"], if hz < 0.3 { "trained" } else { "held_out" });
+        assert_eq!(run["use"], if hz < 0.3 { "Train" } else { "HeldOut" });
     }
     // a force that rests at the friction until the motion turns is neither cut nor spoilt
     for line in json["findings"].as_array().unwrap() {

@@ -80,7 +80,7 @@ type Tabled = LazyLock<Result<ModelComparison, Failure>>;
 static SHIPPED: Tabled = LazyLock::new(|| {
     let data = read_bench(&shipped(SHIPPED_BENCH))?;
     let mut found = identify_bench(&data, &Settings::default())?;
-    found.compare()?;
+    found.compare(&|| ())?;
     Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
 });
 
@@ -119,7 +119,7 @@ static LOOPS: Tabled = LazyLock::new(|| {
         unreachable!("a data set of loops")
     };
     let mut found = identify_loops(&data, &Settings::default())?;
-    found.compare()?;
+    found.compare(&|| ())?;
     Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
 });
 

@@ -8,15 +8,16 @@ use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::InflowState;
 use rotor_study::{FlapAuthority, HubLoads, Setting, TrimmedRotor, control_status};
 use sim_driver::SimError;
-use sim_driver::actuator::case_actuators;
+use sim_driver::actuator::{CaseActuators, case_actuators};
 use sim_driver::case::{
-    CONTROLLERS_CASE, ControlActuator, ControllerChoice, EffortChoice, FreeWakeValues,
-    InflowChoice, LoadScaleChoice, LoadedCase, PAPER_CASE, StrokeChoice, TInflowChoice,
-    shipped_case,
+    CONTROLLERS_CASE, ControlActuator, ControlValues, ControllerChoice, EffortChoice,
+    FreeWakeValues, InflowChoice, LoadScaleChoice, LoadedCase, PAPER_CASE, StrokeChoice,
+    TInflowChoice, shipped_case,
 };
 use sim_driver::progress::Progress;
 use sim_driver::results::ControlLine;
-use sim_driver::run::{run_case, run_trimmed};
+use sim_driver::run::{RunOutcome, run_case, run_trimmed};
+use sim_driver::sweep::continued_trim;
 use validation::{Check, Failure, row, shared, too_few, worst};
 
 const SELF: &str = "the study itself, Drees inflow, advance ratio 0.30";
@@ -232,12 +233,14 @@ fn in_free_wake() -> Result<&'static InFreeWake, Failure> {
 fn inverse_over_feedback() -> Result<f64, Failure> {
     let mut excess = Vec::new();
     for mu in [0.30, 0.15] {
-        let mut loaded = controllers_case()?;
+        let (mut loaded, actuators, _) = ground()?;
         loaded.case.advance_ratio = mu;
         loaded.case.control.harmonics = vec![vec![2, 3, 4, 5]];
         loaded.case.control.actuators =
             vec![ControlActuator::Ideal, ControlActuator::Hysteretic, ControlActuator::Inverse];
-        let lines = run_case(&loaded, &Progress::hidden())?.figures().control;
+        let trimmed = continued_trim(&loaded, None)?;
+        let run = run_trimmed(&loaded, actuators, trimmed, &Progress::hidden())?;
+        let lines = run.figures().control;
         let [_, fed_back, inverse] = lines.as_slice() else {
             return Err(too_few("lines", lines.len(), 3));
         };
@@ -255,18 +258,17 @@ fn still_asked() -> Result<f64, Failure> {
     ];
     let mut asked = Vec::new();
     for (controller, effort, power_limit_watt) in ways {
-        let mut loaded = controllers_case()?;
-        let control = &mut loaded.case.control;
-        control.harmonics = vec![vec![2], vec![3], vec![4], vec![2, 3, 4, 5]];
-        control.actuators = vec![ControlActuator::Ideal, ControlActuator::Hysteretic];
-        (control.controller, control.effort) = (controller, effort);
-        control.power_limit_watt = power_limit_watt;
-        let tolerance = control.step_tolerance;
-        for study in run_case(&loaded, &Progress::hidden())?.studies {
+        let outcome = controlled(|control| {
+            control.harmonics = vec![vec![2], vec![3], vec![4], vec![2, 3, 4, 5]];
+            control.actuators = vec![ControlActuator::Ideal, ControlActuator::Hysteretic];
+            (control.controller, control.effort) = (controller, effort);
+            control.power_limit_watt = power_limit_watt;
+        })?;
+        for study in outcome.studies {
             if let Some(run) = &study.run
                 && control_status(&study) == "converged"
             {
-                asked.push(Ok(run.end.asked_volt / run.end.size_volt / tolerance));
+                asked.push(Ok(run.end.asked_volt / run.end.size_volt / study.step_tolerance));
             }
         }
     }
@@ -296,10 +298,11 @@ fn slower() -> Result<&'static [ControlLine], Failure> {
 /// Largest flap harmonic over a limit of 1 deg, and how far the largest of a set stays below it.
 fn given_stroke() -> Result<(f64, f64), Failure> {
     static FOUND: LazyLock<Result<(f64, f64), Failure>> = LazyLock::new(|| {
-        let mut loaded = controllers_case()?;
-        loaded.case.control.stroke_limit = StrokeChoice::Given { amplitude_deg: 1.0 };
-        loaded.case.control.actuators = vec![ControlActuator::Hysteretic];
-        let lines = run_case(&loaded, &Progress::hidden())?.figures().control;
+        let outcome = controlled(|control| {
+            control.stroke_limit = StrokeChoice::Given { amplitude_deg: 1.0 };
+            control.actuators = vec![ControlActuator::Hysteretic];
+        })?;
+        let lines = outcome.figures().control;
         let largest = lines.iter().map(|line| {
             let flaps = line.flaps.iter().map(|flap| flap.flap_amplitude_deg);
             flaps.fold(0.0, f64::max)
@@ -336,12 +339,12 @@ fn not_converged() -> Result<f64, Failure> {
 fn power_over_limit() -> Result<f64, Failure> {
     let mut shares = Vec::new();
     for limit_watt in [0.01, 0.1, 1.0] {
-        let mut loaded = controllers_case()?;
-        let control = &mut loaded.case.control;
-        control.harmonics = vec![vec![2], vec![3], vec![4], vec![2, 3, 4, 5]];
-        control.actuators = vec![ControlActuator::Ideal, ControlActuator::Hysteretic];
-        control.power_limit_watt = Some(limit_watt);
-        let lines = run_case(&loaded, &Progress::hidden())?.figures().control;
+        let outcome = controlled(|control| {
+            control.harmonics = vec![vec![2], vec![3], vec![4], vec![2, 3, 4, 5]];
+            control.actuators = vec![ControlActuator::Ideal, ControlActuator::Hysteretic];
+            control.power_limit_watt = Some(limit_watt);
+        })?;
+        let lines = outcome.figures().control;
         shares.extend(lines.iter().map(|line| match line.head.status.as_str() {
             "converged" => line.actuation_power_watt / limit_watt,
             _ => f64::INFINITY,
@@ -445,12 +448,31 @@ fn controllers_case() -> Result<LoadedCase, SimError> {
     Ok(shipped_case(CONTROLLERS_CASE)?)
 }
 
+/// The case with all controllers, its actuators and its trim.
+type Ground = (LoadedCase, CaseActuators, TrimmedRotor);
+
+/// Found once: what does not depend on the control.
+fn ground() -> Result<Ground, Failure> {
+    static GROUND: LazyLock<Result<Ground, Failure>> = LazyLock::new(|| {
+        let loaded = controllers_case()?;
+        let actuators = case_actuators(&loaded)?;
+        let trimmed = continued_trim(&loaded, None)?;
+        Ok((loaded, actuators, trimmed))
+    });
+    Ok(shared(&GROUND)?.clone())
+}
+
+/// That case with its control changed.
+fn controlled(change: impl FnOnce(&mut ControlValues)) -> Result<RunOutcome, Failure> {
+    let (mut loaded, actuators, trimmed) = ground()?;
+    change(&mut loaded.case.control);
+    Ok(run_trimmed(&loaded, actuators, trimmed, &Progress::hidden())?)
+}
+
 /// Every control of the case with all controllers, computed once.
 fn study() -> Result<&'static [ControlLine], Failure> {
-    static LINES: LazyLock<Result<Vec<ControlLine>, Failure>> = LazyLock::new(|| {
-        let outcome = run_case(&controllers_case()?, &Progress::hidden())?;
-        Ok(outcome.figures().control)
-    });
+    static LINES: LazyLock<Result<Vec<ControlLine>, Failure>> =
+        LazyLock::new(|| Ok(controlled(|_| {})?.figures().control));
     Ok(shared(&LINES)?)
 }
 

@@ -136,7 +136,7 @@ impl ModelComparison {
 /// record is fast, each slow one is left out in turn. The family with the smallest error is chosen, a
 /// simpler one if it is within 3 %; then the order of the memory with the smallest error: there
 /// smoothness keeps large grids in check. Held-out records are never looked at for choosing: they only
-/// stand in the table.
+/// stand in the table. `done` is called after each row.
 ///
 /// # Errors
 /// As [`crate::identify::identify`] for the records; a family that cannot be fitted has its error in its row.
@@ -144,13 +144,14 @@ pub fn compare_models(
     records: &[BenchRecord],
     settings: &Settings,
     candidates: &Candidates,
+    done: &(dyn Fn() + Sync),
 ) -> Result<ModelComparison, PreisachError> {
     let contest = Contest::new(records, settings)?;
     let own = Order::of(settings);
     let (mut rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = candidates
         .families
         .par_iter()
-        .map(|&family| contest.row(family, own, Folds::Conditions, None))
+        .map(|&family| contest.row(family, own, Folds::Conditions, None).inspect(|_| done()))
         .collect::<Result<Vec<_>, _>>()?
         .into_iter()
         .unzip();
@@ -172,7 +173,7 @@ pub fn compare_models(
             .par_iter()
             .map(|&order| {
                 let known = trials[chosen].as_ref().filter(|_| order == own);
-                Ok(contest.row(family, order, Folds::All, known)?.0)
+                Ok(contest.row(family, order, Folds::All, known).inspect(|_| done())?.0)
             })
             .collect::<Result<Vec<_>, PreisachError>>()?;
         // nothing to choose by: the order asked for stands

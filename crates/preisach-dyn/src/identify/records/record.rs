@@ -3,17 +3,9 @@
 use crate::actuator::model::SAMPLE_TOLERANCE;
 use crate::check::{check_count, check_positive, not_finite};
 use crate::{PreisachError, VoltageRange};
+use rotor_base::RecordUse;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
-
-/// Whether a record trains the model or tests it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum RecordUse {
-    /// The identification may look at it.
-    Train,
-    /// Kept aside; only the finished model is compared with it.
-    HeldOut,
-}
 
 /// The parts of a record that train and that judge, as samples.
 ///

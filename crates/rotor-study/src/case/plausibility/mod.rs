@@ -60,7 +60,7 @@ impl Case {
         let pitch_rad = self.trim.collective_rad();
         let blade = self.blade_properties()?;
         let rotor = self.rotor_of(&blade, "rotor")?;
-        warnings.extend(self.resonance_warning(&rotor, (pitch_rad, None))?);
+        warnings.extend(self.resonance_warning(&rotor, pitch_rad, None)?);
         Ok(warnings)
     }
 
@@ -71,14 +71,15 @@ impl Case {
     pub fn warnings_in_flight(
         &self,
         rotor: &Rotor,
-        (theta0_rad, found): (f64, &RotorSolution),
+        theta0_rad: f64,
+        found: &RotorSolution,
         most: Option<SectionLift>,
     ) -> Result<Vec<PlausibilityWarning>, StudyError> {
         let mut warnings = self.value_warnings();
         let ct_sigma = found.thrust_coefficient / rotor.model().solidity();
         let lift = self.lift_warning(ct_sigma).map_or_else(|| self.section_warning(most), Some);
         warnings.extend(lift);
-        warnings.extend(self.resonance_warning(rotor, (theta0_rad, Some(found)))?);
+        warnings.extend(self.resonance_warning(rotor, theta0_rad, Some(found))?);
         warnings.extend(self.torque_warning());
         Ok(warnings)
     }
@@ -234,7 +235,8 @@ impl Case {
     fn resonance_warning(
         &self,
         rotor: &Rotor,
-        (theta0_rad, flight): (f64, Option<&RotorSolution>),
+        theta0_rad: f64,
+        flight: Option<&RotorSolution>,
     ) -> Result<Option<PlausibilityWarning>, StudyError> {
         let field = "rotor.modal_damping";
         let found = rotor.lightly_damped_at_a_harmonic(theta0_rad, flight);

@@ -1,0 +1,17 @@
+//! The actuator: laws, stages, closed orbits, identification.
+
+mod chain;
+mod common;
+mod dynamics;
+mod forc;
+mod hysteresis;
+mod identifiability;
+mod inverse;
+mod laws;
+mod model_table;
+mod oracles;
+mod own_truth;
+mod periodic;
+mod shipped_bench;
+mod stages;
+mod stop;

@@ -1,0 +1,237 @@
+//! The table of models, its choice, the uncertainty of parameters, and long records piece by piece.
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
+
+use crate::common;
+
+use common::Wavy;
+use preisach_dyn::identify::{
+    BenchRecord, Candidates, Family, Finding, Order, RecordUse, Settings, StaticAccumulator,
+    compare_models, identify,
+};
+use preisach_dyn::{
+    ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, Lag, LinkageStage, LogCreep,
+    PreisachError, Relaxation, RelaxationElement, StaticPreisach, VoltageRange,
+};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use std::f64::consts::TAU;
+
+const BIAS_VOLT: f64 = 65.0;
+
+fn sine(hz: f64, amplitude_volt: f64, cycles: f64, time_step_s: f64) -> (String, f64, Vec<f64>) {
+    let count = cycles / hz / time_step_s;
+    let mut volts = Vec::new();
+    while (volts.len() as f64) <= count {
+        let t = volts.len() as f64 * time_step_s;
+        volts.push(BIAS_VOLT + amplitude_volt * (TAU * hz * t).sin());
+    }
+    (format!("{hz} Hz {amplitude_volt} V"), time_step_s, volts)
+}
+
+/// Sweeps from the top to ever higher turning points.
+fn reversals() -> (String, f64, Vec<f64>) {
+    let sweep = |i: usize| {
+        let t = i as f64 * 1e-2;
+        let depth = (170.0 - 12.0 * (t / 5.0).floor()).max(10.0);
+        150.0 - depth * (1.0 - (2.0 * (t / 5.0).fract() - 1.0).abs())
+    };
+    ("reversals".into(), 1e-2, (0..6000).map(sweep).collect())
+}
+
+fn record(
+    model: &ActuatorModel,
+    (id, time_step_s, voltage_volt): (String, f64, Vec<f64>),
+    mut noise: impl FnMut() -> f64,
+) -> BenchRecord {
+    let output = model.simulate(&voltage_volt, time_step_s).unwrap().output_deg;
+    let output_deg = output.iter().map(|y| y + noise()).collect();
+    BenchRecord { id, time_step_s, voltage_volt, output_deg, ..BenchRecord::default() }
+}
+
+fn runs() -> Vec<(String, f64, Vec<f64>)> {
+    vec![
+        sine(0.2, 85.0, 3.0, 1e-2),
+        reversals(),
+        sine(1.0, 85.0, 4.0, 2e-3),
+        sine(1.0, 25.0, 4.0, 2e-3),
+        sine(10.0, 85.0, 10.0, 1e-3),
+        sine(10.0, 25.0, 10.0, 1e-3),
+        sine(20.0, 55.0, 10.0, 1e-3),
+    ]
+}
+
+fn static_law(levels: usize) -> StaticPreisach {
+    Wavy { height: 0.4, ..Wavy::GENTLE }.law(levels)
+}
+
+fn bare(law: ActuatorLaw) -> ActuatorModel {
+    let calibration = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
+    ActuatorModel::new(law, VoltageRange::amplified_stack(), calibration)
+}
+
+fn settings() -> Settings {
+    Settings { levels: 12, ..Settings::default() }
+}
+
+#[test]
+fn the_family_of_the_truth_is_chosen_and_its_times_are_found() {
+    let mut truth = bare(ActuatorLaw::StaticPreisach(static_law(10)));
+    let element = |share: f64, time_constant_s: f64| RelaxationElement { share, time_constant_s };
+    let elements = vec![element(0.92, 0.025)];
+    truth.linkage.push(LinkageStage::Relaxation(Relaxation { elements }));
+    truth.linkage.push(LinkageStage::LogCreep(LogCreep::new(0.015)));
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let normal = Normal::new(0.0, 0.005).unwrap();
+    let records: Vec<BenchRecord> =
+        runs().into_iter().map(|run| record(&truth, run, || normal.sample(&mut rng))).collect();
+    let families = vec![
+        Family::Linear,
+        Family::LinearLag,
+        Family::StaticPreisach,
+        Family::StaticPreisachRelaxation,
+    ];
+    // the grid of the truth, and half of it
+    let settings = Settings { levels: 10, rate_levels: 5, ..settings() };
+    let order = |levels, static_smoothness| Order { levels, rate_levels: 5, static_smoothness };
+    let candidates = Candidates { families, orders: vec![order(5, 1e-4), order(10, 1e-7)] };
+    let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
+    assert_eq!(table.rows[table.chosen].family, Family::StaticPreisachRelaxation);
+    assert_eq!(table.orders.len(), 3);
+    let best = table.best().unwrap();
+    let (_, worst) = table.error_over(best, RecordUse::HeldOut).unwrap();
+    let fitted = best.fitted.as_ref().unwrap();
+    println!("chosen {:?}, worst held-out record {:.2} %", best.order, 100.0 * worst);
+    assert!(worst < 0.01, "{worst}");
+    // too smooth and too coarse grids are worse, and cross-validation says so
+    assert!(best.order == order(10, 1e-7), "{:?}", best.order);
+    let longer = &fitted.parameters[0];
+    assert!((longer.value - 0.025_f64.ln()).abs() < 0.1, "{longer:?}");
+    assert!(longer.std_deviation > 0.0 && longer.std_deviation < 0.1, "{longer:?}");
+    let Some(LinkageStage::LogCreep(creep)) = fitted.model.linkage.last() else { panic!("creep") };
+    assert!((creep.rate_per_decade - 0.015).abs() < 0.003, "{creep:?}");
+    // held-out records are not looked at: spoilt, they change the table but not the choice
+    let mut spoilt = records.clone();
+    spoilt[6].output_deg.iter_mut().for_each(|y| *y *= 1.5);
+    let again = compare_models(&spoilt, &settings, &candidates, &|| ()).unwrap();
+    assert_eq!(again.model(), table.model());
+    assert!(
+        again.error_over(best, RecordUse::HeldOut) == table.error_over(best, RecordUse::HeldOut)
+    );
+    assert_ne!(again.best().unwrap().fitted, best.fitted);
+}
+
+#[test]
+fn every_family_can_be_fitted_and_one_frequency_leaves_only_static_ones() {
+    let mut truth = bare(ActuatorLaw::StaticPreisach(static_law(10)));
+    truth.amplifier.push(AmplifierStage::Lag(Lag { tau_s: 0.03 }));
+    let records: Vec<BenchRecord> =
+        runs().into_iter().map(|run| record(&truth, run, || 0.0)).collect();
+    let settings = Settings { levels: 8, ..settings() };
+    let candidates = Candidates { orders: Vec::new(), ..Candidates::default() };
+    let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
+    for row in &table.rows {
+        if row.family == Family::PrandtlStop {
+            // an actuator lags, a stop leads
+            assert!(
+                matches!(row.fitted, Err(PreisachError::OutputLags { area_share }) if area_share < 0.0)
+            );
+            continue;
+        }
+        let fitted = row.fitted.as_ref().unwrap();
+        assert_eq!(fitted.fits.len(), records.len());
+        assert!(row.cross_validation.unwrap().is_finite(), "{:?}", row.family);
+    }
+    let error = |family: Family| {
+        let row = table.rows.iter().find(|row| row.family == family).unwrap();
+        table.error_over(row, RecordUse::Train).unwrap().0
+    };
+    // each knows something the one before does not
+    assert!(error(Family::LinearLag) < 0.5 * error(Family::Linear));
+    assert!(error(Family::BoucWen) < error(Family::Linear));
+    assert!(error(Family::PrandtlIshlinskii) < error(Family::BoucWen));
+    assert!(error(Family::DynamicPreisach) < 0.5 * error(Family::LinearLag));
+    assert!(error(Family::StaticPreisachRelaxation) < 0.5 * error(Family::LinearLag));
+    let alone = compare_models(&records[2..3], &settings, &candidates, &|| ()).unwrap();
+    for row in &alone.rows {
+        let refused = matches!(row.fitted, Err(PreisachError::NoTrainingRecord { .. }));
+        assert_eq!(refused, row.family.needs_rate(), "{:?}", row.family);
+    }
+    assert_eq!(alone.best().unwrap().family, Family::StaticPreisach);
+    assert!(alone.summary.findings.iter().any(|f| matches!(f, Finding::OneFrequency { .. })));
+}
+
+#[test]
+fn standard_deviations_are_those_of_repeated_benches_with_coloured_noise() {
+    const BENCHES: u32 = 24;
+    let mut truth = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 1.0);
+    truth.amplifier.push(AmplifierStage::Lag(Lag { tau_s: 0.02 }));
+    let candidates = Candidates { families: vec![Family::LinearLag], orders: Vec::new() };
+    let normal = Normal::new(0.0, 0.05).unwrap();
+    let (mut found, mut stated) = (Vec::new(), 0.0);
+    for seed in 0..BENCHES {
+        let mut rng = ChaCha8Rng::seed_from_u64(u64::from(seed));
+        let mut last = 0.0;
+        // neighbouring samples correlated by 0.95
+        let mut noise = || {
+            last = 0.95 * last + normal.sample(&mut rng);
+            last
+        };
+        let records: Vec<BenchRecord> =
+            [sine(0.2, 85.0, 2.0, 1e-2), sine(1.0, 85.0, 3.0, 5e-3), sine(10.0, 85.0, 10.0, 2e-3)]
+                .into_iter()
+                .map(|run| record(&truth, run, &mut noise))
+                .collect();
+        let settings = Settings { levels: 4, ..settings() };
+        let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
+        let fitted = table.rows[0].fitted.as_ref().unwrap();
+        found.push(fitted.parameters[2].value);
+        stated += fitted.parameters[2].std_deviation / f64::from(BENCHES);
+    }
+    let mean = found.iter().sum::<f64>() / f64::from(BENCHES);
+    let squares: f64 = found.iter().map(|v| (v - mean).powi(2)).sum();
+    let scatter = (squares / f64::from(BENCHES - 1)).sqrt();
+    println!("ln tau: scatter {scatter:.5}, stated {stated:.5}, bias {:.5}", mean - 0.02_f64.ln());
+    // 24 benches tell a standard deviation to 15 %; white noise assumed would state a sixth of it
+    assert!((0.6..1.7).contains(&(stated / scatter)), "{stated} {scatter}");
+    assert!((mean - 0.02_f64.ln()).abs() < 3.0 * scatter, "{mean}");
+}
+
+#[test]
+fn a_long_record_streams_in_bounded_memory_and_gives_the_batch_fit() {
+    let law = static_law(10);
+    let truth = bare(ActuatorLaw::StaticPreisach(law));
+    let settings = Settings { levels: 10, rate_levels: 5, static_smoothness: 1e-8, ..settings() };
+    let short = record(&truth, reversals(), || 0.0);
+    // one record, whole and in pieces
+    let batch = identify(std::slice::from_ref(&short), &settings).unwrap().static_only;
+    let mut stream = StaticAccumulator::new(&settings, 2).unwrap();
+    for (u, y) in short.voltage_volt.chunks(77).zip(short.output_deg.chunks(77)) {
+        stream.push(u, y).unwrap();
+    }
+    let pieces = bare(ActuatorLaw::StaticPreisach(stream.fit().unwrap()));
+    let volts = &short.voltage_volt;
+    let (a, b) = (batch.simulate(volts, 1e-2).unwrap(), pieces.simulate(volts, 1e-2).unwrap());
+    let shift = b.output_deg[0] - a.output_deg[0];
+    for (a, b) in a.output_deg.iter().zip(&b.output_deg) {
+        assert!((b - a - shift).abs() < 2e-3, "{a} {b}");
+    }
+    // a million samples more: what is kept does not grow, the memory of the simulation neither
+    let kept = stream.kept_numbers();
+    let stepper = truth.stepper(1e-2).unwrap();
+    stream.begin_record();
+    let mut memory = truth.start(volts[0], preisach_dyn::StartState::Rest).unwrap();
+    for _ in 0..170 {
+        let outputs: Vec<f64> =
+            volts.iter().map(|&u| stepper.step(&mut memory, u, 0.0).unwrap()).collect();
+        stream.push(volts, &outputs).unwrap();
+    }
+    assert_eq!(stream.kept_numbers(), kept);
+    assert_eq!(stream.samples()[0], 171 * 6000);
+    assert!(stream.fit().is_ok());
+    let error = stream.push(&[0.0, f64::NAN], &[0.0, 0.0]).unwrap_err();
+    assert!(matches!(error, PreisachError::BadRecord { index: 1_026_001, .. }), "{error}");
+    assert!(stream.push(&[0.0], &[]).is_err());
+    assert!(StaticAccumulator::new(&settings, 0).is_err());
+    assert!(StaticAccumulator::new(&settings, 1).unwrap().fit().is_err());
+}

@@ -1,0 +1,16 @@
+//! The rotor in flight, against exact theory, reference tables and itself.
+
+mod common;
+mod crosscheck;
+mod details;
+mod hinge;
+mod hover_torque;
+mod joints;
+mod lag_memory;
+mod linearised;
+mod nonlinear;
+mod physics;
+mod power;
+mod stability;
+mod station_loads;
+mod wake_lines;

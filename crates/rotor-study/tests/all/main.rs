@@ -1,0 +1,4 @@
+//! The rotor with driven flaps as a plant.
+
+mod coupled_plant;
+mod power_weight;

@@ -1,0 +1,4 @@
+//! The free wake: kernel and properties.
+
+mod kernel;
+mod properties;

@@ -1,0 +1,8 @@
+//! The command from outside: files in, text and exit codes out.
+
+mod crosscheck;
+mod hidden_effects;
+mod ladder;
+mod metamorphic;
+mod shipped_bench;
+mod threads;

@@ -1,0 +1,4 @@
+//! Exact theory of the section, and the calibration fitted to it.
+
+mod calibration;
+mod tables;
