@@ -6,9 +6,10 @@ use crate::{
 };
 use rotor_response::{Controls, ResponseError, RotorSolution, RotorSolver};
 use rotor_wake::{
-    BladeLines, CirculationMap, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel,
-    WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
+    BladeLines, CirculationMap, CirculationSlope, FreeWake, FreeWakeSettings, FrozenWake,
+    InducedInflow, InflowModel, WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
 };
+use std::sync::Arc;
 
 /// Halvings of the part of a sweep that is gone, at most.
 const MOST_HALVINGS: u32 = 3;
@@ -84,11 +85,11 @@ impl Coupling<'_> {
         &mut self,
         wake: FreeWake,
         moving: CirculationMap,
+        slope: Arc<CirculationSlope>,
         start: &TrimSolution,
     ) -> Result<State, TrimError> {
-        let chord = self.solver.rotor().model().chord;
         let mu = start.flight.advance_ratio;
-        let frozen = FrozenWake::new(wake.line_induction(&moving)?, &moving, chord, mu)?;
+        let frozen = FrozenWake::new(wake.line_induction(&moving)?, &moving, slope)?;
         let trim = self.trimmed(&frozen, mu, Some(start))?;
         let (inflow_change, displacement) = (f64::INFINITY, f64::INFINITY);
         Ok(State { trim, wake, frozen, moving, inflow_change, displacement })
@@ -111,7 +112,8 @@ impl Coupling<'_> {
             let mean = momentum_inflow(&start.flight, start.rotor.thrust_coefficient)?;
             FreeWake::undistorted(panels.clone(), settings, start.flight, mean, lines)?
         };
-        self.in_still_wake(wake, circulation, start)
+        let slope = Arc::new(self.solver.circulation_slope(panels, azimuths));
+        self.in_still_wake(wake, circulation, slope, start)
     }
 
     /// How far a state is from rest: what is left of inflow and geometry over what may be.
@@ -208,7 +210,8 @@ impl Coupling<'_> {
         let mut wake = now.wake.clone();
         wake.set_condition(now.trim.flight, mean, lines)?;
         let (displacement, gone) = self.carried_on(&mut wake, &circulation, part)?;
-        let mut next = self.in_still_wake(wake, circulation, &now.trim)?;
+        let mut next =
+            self.in_still_wake(wake, circulation, Arc::clone(now.frozen.slope()), &now.trim)?;
         next.displacement = displacement;
         next.inflow_change = largest_change(&next.trim.rotor.inflow, &now.trim.rotor.inflow) / gone;
         if next.inflow_change > RUNAWAY {

@@ -15,8 +15,12 @@ use rotor_wake::{
 const ROUGH_TRIM: f64 = 1e-5;
 /// Iterations of a trim between updates: what needs more is far from any trim.
 const ROUGH_ITERATIONS: usize = 12;
+/// Mismatch of inflow and thrust where the wake begins, tip speed: at no thrust momentum theory's inflow has no slope.
+const START_INFLOW: f64 = 1e-6;
 /// Mismatch of circulation and inflow between updates, tip speed.
-const ROUGH_INFLOW: f64 = 1e-6;
+const ROUGH_INFLOW: f64 = 1e-7;
+/// Weak residual of the orbit between updates, generalised force in rotor units.
+const ROUGH_PERIODICITY: f64 = 1e-8;
 /// Iterations allowed for the inflow of a wake, at least.
 const WAKE_ITERATIONS: usize = 200;
 
@@ -67,12 +71,13 @@ pub fn trim_in_free_wake(
     let exact = solver.tolerances();
     let iterations = exact.inflow_iterations.max(WAKE_ITERATIONS);
     // between updates the trim need not be better than the wake
+    let rough = |inflow: f64| ResponseTolerances {
+        periodicity: exact.periodicity.max(ROUGH_PERIODICITY),
+        inflow: exact.inflow.max(inflow),
+        inflow_iterations: iterations,
+    };
     let mut coupling = Coupling {
-        solver: solver.with_tolerances(ResponseTolerances {
-            inflow: exact.inflow.max(ROUGH_INFLOW),
-            inflow_iterations: iterations,
-            ..exact
-        }),
+        solver: solver.with_tolerances(rough(START_INFLOW)),
         settings,
         target,
         trim_settings: TrimSettings {
@@ -90,6 +95,7 @@ pub fn trim_in_free_wake(
             error => Err(error),
         },
     )?;
+    coupling.solver = coupling.solver.with_tolerances(rough(ROUGH_INFLOW));
     let mut stages = settings.stages.clone();
     // an axial wake costs little, and its vortices pass the blades too closely for coarse steps
     let periodic = settings.wake.symmetry == WakeSymmetry::Periodic;
@@ -115,6 +121,8 @@ pub fn trim_in_free_wake(
         let expected = "one grid at least";
         return Err(TrimError::Parameter { field: "stages", value: 0.0, expected });
     };
+    // with the Newton matrix that the updates have left, which serves the responses that follow too
+    *solver = coupling.solver.with_tolerances(exact);
     let mut fine =
         solver.with_tolerances(ResponseTolerances { inflow_iterations: iterations, ..exact });
     let last = Some(&state.trim);

@@ -4,7 +4,8 @@ use crate::coupling::{MIXED, on_the_grid};
 use crate::wake::WakeTrim;
 use crate::wake_settings::WakeTrimSettings;
 use rotor_response::{Condition, ResponseError, RotorSolution, RotorSolver};
-use rotor_wake::{CirculationMap, FreeWake, FrozenWake, momentum_inflow};
+use rotor_wake::{CirculationMap, CirculationSlope, FreeWake, FrozenWake, momentum_inflow};
+use std::sync::Arc;
 
 /// Updates of the geometry at most.
 const UPDATES: usize = 20;
@@ -34,6 +35,7 @@ struct WakeResponse<'a> {
     rotor: RotorSolution,
     wake: FreeWake,
     moving: CirculationMap,
+    slope: Arc<CirculationSlope>,
 }
 
 impl<'a> WakeResponse<'a> {
@@ -46,7 +48,7 @@ impl<'a> WakeResponse<'a> {
         let start = Some(&about.trim.rotor);
         let rotor = solver.clone().solve(condition, &about.frozen, start)?;
         let (wake, moving) = (about.wake.clone(), about.moving.clone());
-        Ok(Self { condition, rotor, wake, moving })
+        Ok(Self { condition, rotor, wake, moving, slope: Arc::clone(about.frozen.slope()) })
     }
 
     /// The wake moved on under the present loading, and the response in it.
@@ -69,8 +71,7 @@ impl<'a> WakeResponse<'a> {
         self.wake.set_condition(flight, mean, lines)?;
         self.wake.carry_on(settings.method, settings.sweeps, &circulation)?;
         let induction = self.wake.line_induction(&circulation)?;
-        let chord = solver.rotor().model().chord;
-        let frozen = FrozenWake::new(induction, &circulation, chord, flight.advance_ratio)?;
+        let frozen = FrozenWake::new(induction, &circulation, Arc::clone(&self.slope))?;
         self.rotor = solver.clone().solve(self.condition, &frozen, Some(&self.rotor))?;
         self.moving = circulation;
         Ok(())

@@ -82,7 +82,7 @@ impl PeriodicSolver {
         &self,
         system: &S,
         orbit: &Orbit,
-        base: &Iterate,
+        base: &Iterate<()>,
         directions: Vec<DMatrix<f64>>,
     ) -> Result<Vec<Known>, PeriodicError<S::Error>>
     where
@@ -134,7 +134,7 @@ impl PeriodicSolver {
     {
         self.check(system, orbit)?;
         let samples = orbit.sample(self.time());
-        let base = &self.weigh(system, (orbit.clone(), samples, force.clone()), 0, orbit)?;
+        let base = &self.weigh(system, (orbit.clone(), samples, force.clone()), (0, orbit), ())?;
         let (dof, points) = (system.dof(), self.time().points().len());
         for load in load_changes {
             if load.shape() != (dof, points) {

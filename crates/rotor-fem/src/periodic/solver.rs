@@ -33,15 +33,17 @@ impl Default for PeriodicSettings {
     }
 }
 
-/// A converged periodic orbit.
+/// A converged periodic orbit, with what its system has seen there.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PeriodicSolution {
+pub struct PeriodicSolution<T = ()> {
     /// The orbit.
     pub orbit: Orbit,
     /// The orbit at all Gauss points.
     pub samples: OrbitSamples,
     /// `f` of the system there, shape `dof x points`.
     pub force: DMatrix<f64>,
+    /// What the system has told of the orbit beside its residual.
+    pub seen: T,
     /// Largest weak residual over its test function's integral: the generalised force left over.
     pub residual_norm: f64,
     /// Residual norm at the start and after every step.
@@ -53,11 +55,12 @@ pub struct PeriodicSolution {
 }
 
 /// One orbit with its weak residual.
-pub(crate) struct Iterate {
+pub(crate) struct Iterate<T> {
     pub(crate) orbit: Orbit,
     samples: OrbitSamples,
     /// `f` at all points, shape `dof x points`.
     pub(crate) force: DMatrix<f64>,
+    seen: T,
     /// Weak residual over the nodes' integral weights, shape `dof x nodes`.
     pub(crate) residual: DMatrix<f64>,
     norm: f64,
@@ -144,7 +147,7 @@ impl PeriodicSolver {
         &mut self,
         system: &S,
         start: &Orbit,
-    ) -> Result<PeriodicSolution, PeriodicError<S::Error>> {
+    ) -> Result<PeriodicSolution<S::Seen>, PeriodicError<S::Error>> {
         self.solve_to(self.settings.tolerance, system, start)
     }
 
@@ -157,7 +160,7 @@ impl PeriodicSolver {
         tolerance: f64,
         system: &S,
         start: &Orbit,
-    ) -> Result<PeriodicSolution, PeriodicError<S::Error>> {
+    ) -> Result<PeriodicSolution<S::Seen>, PeriodicError<S::Error>> {
         self.check(system, start)?;
         let mut state = self.evaluate(system, start.clone(), 0, start)?;
         let mut history = vec![state.norm];
@@ -223,6 +226,7 @@ impl PeriodicSolver {
             orbit: state.orbit,
             samples: state.samples,
             force: state.force,
+            seen: state.seen,
             residual_norm: state.norm,
             iterations: history.len() - 1,
             residual_history: history,
@@ -291,24 +295,24 @@ impl PeriodicSolver {
         orbit: Orbit,
         iteration: usize,
         best: &Orbit,
-    ) -> Result<Iterate, PeriodicError<S::Error>> {
+    ) -> Result<Iterate<S::Seen>, PeriodicError<S::Error>> {
         let time = &self.time;
         let samples = orbit.sample(time);
         let mut force = DMatrix::zeros(system.dof(), time.points().len());
-        system
+        let seen = system
             .residual(&samples, &mut force)
             .map_err(|source| PeriodicError::System { iteration, source })?;
-        self.weigh(system, (orbit, samples, force), iteration, best)
+        self.weigh(system, (orbit, samples, force), (iteration, best), seen)
     }
 
     /// The weak residual of an orbit whose forces at all points are known.
-    pub(crate) fn weigh<S: PeriodicSystem>(
+    pub(crate) fn weigh<S: PeriodicSystem, T>(
         &self,
         system: &S,
         (orbit, samples, force): (Orbit, OrbitSamples, DMatrix<f64>),
-        iteration: usize,
-        best: &Orbit,
-    ) -> Result<Iterate, PeriodicError<S::Error>> {
+        (iteration, best): (usize, &Orbit),
+        seen: T,
+    ) -> Result<Iterate<T>, PeriodicError<S::Error>> {
         let time = &self.time;
         let expected = (system.dof(), time.points().len());
         if force.shape() != expected {
@@ -330,7 +334,7 @@ impl PeriodicSolver {
             return Err(not_finite(entry, time.node_azimuths_rad()[entry / system.dof()]));
         }
         let norm = residual.amax();
-        Ok(Iterate { orbit, samples, force, residual, norm })
+        Ok(Iterate { orbit, samples, force, seen, residual, norm })
     }
 
     /// `integral( -N_a' p + N_a f ) dpsi` over the integral of `N_a`, for momenta `p` and forces `f` at
@@ -356,10 +360,10 @@ impl PeriodicSolver {
     }
 
     /// A new Newton matrix at an orbit.
-    pub(crate) fn factorise<S: PeriodicSystem>(
+    pub(crate) fn factorise<S: PeriodicSystem, T>(
         &self,
         system: &S,
-        state: &Iterate,
+        state: &Iterate<T>,
         iteration: usize,
     ) -> Result<Factorisation, PeriodicError<S::Error>> {
         let refused = |source| PeriodicError::System { iteration, source };
@@ -402,10 +406,10 @@ impl PeriodicSolver {
     fn shorten<S: PeriodicSystem>(
         &self,
         system: &S,
-        state: &Iterate,
+        state: &Iterate<S::Seen>,
         step: &DMatrix<f64>,
         iteration: usize,
-    ) -> Result<Iterate, PeriodicError<S::Error>> {
+    ) -> Result<Iterate<S::Seen>, PeriodicError<S::Error>> {
         let trial = |halving: i32| {
             let nodal = &state.orbit.nodal + step * 0.5_f64.powi(halving);
             self.evaluate(system, Orbit { nodal }, iteration, &state.orbit)

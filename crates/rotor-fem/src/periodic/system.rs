@@ -32,6 +32,9 @@ pub trait PeriodicSystem: Sync {
     /// The error of the system's own physics.
     type Error: std::error::Error + 'static;
 
+    /// What it tells of an orbit beside the residual, such as the loads it has found on the way; `()` for nothing.
+    type Seen: Send;
+
     /// Number of degrees of freedom.
     fn dof(&self) -> usize;
 
@@ -46,7 +49,11 @@ pub trait PeriodicSystem: Sync {
     ///
     /// # Errors
     /// Whatever the system's physics refuses.
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Self::Error>;
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        out: &mut DMatrix<f64>,
+    ) -> Result<Self::Seen, Self::Error>;
 
     /// Approximate local linearisation of `f` at every point, used for the Newton matrix only.
     ///

@@ -28,6 +28,7 @@ struct WithMemory<S>(S);
 
 impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithMemory<S> {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         self.0.dof()
@@ -56,6 +57,7 @@ struct WithLoad<'a, S>(&'a S, &'a DMatrix<f64>, f64);
 
 impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithLoad<'_, S> {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         self.0.dof()
@@ -154,6 +156,7 @@ const MEMORY: f64 = 3.0;
 
 impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for Remembering<S> {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         self.local.dof()
@@ -209,6 +212,7 @@ fn a_memory_of_the_wrong_shape_is_refused() {
     struct Misshapen(LinearPeriodic<fn(f64) -> LinearCoefficients>);
     impl PeriodicSystem for Misshapen {
         type Error = Infallible;
+        type Seen = ();
 
         fn dof(&self) -> usize {
             DOF

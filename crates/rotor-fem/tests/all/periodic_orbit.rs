@@ -78,6 +78,7 @@ struct Lagging {
 
 impl PeriodicSystem for Lagging {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         1
@@ -180,6 +181,7 @@ impl Cubic {
 
 impl PeriodicSystem for Cubic {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         2
@@ -325,6 +327,7 @@ struct SplitInertia {
 
 impl PeriodicSystem for SplitInertia {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         1
@@ -372,6 +375,7 @@ struct Saturating {
 
 impl PeriodicSystem for Saturating {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         1
@@ -430,6 +434,7 @@ struct TableLeft(f64);
 
 impl PeriodicSystem for Faulty {
     type Error = TableLeft;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         1

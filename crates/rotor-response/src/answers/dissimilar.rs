@@ -3,7 +3,7 @@
 use crate::loads::wrenches::{SixLoads, hub_loads};
 use crate::response::revolution::{RevolutionLoads, SETTLED};
 use crate::{Condition, ResponseError, ResponseResiduals, RotorSolution, RotorSolver};
-use rotor_fem::PeriodicSolution;
+use rotor_fem::Orbit;
 
 /// A blade unlike the rest.
 #[derive(Debug, Clone)]
@@ -27,7 +27,7 @@ impl RotorSolver {
         condition: &Condition,
         about: &RotorSolution,
     ) -> Result<SixLoads, ResponseError> {
-        let loads = self.in_inflow_of(condition, about)?.1;
+        let loads = self.in_inflow_of(condition, about)?.2;
         Ok(loads.root(&self.time, self.rotor.discretisation.load_harmonics + 1))
     }
 
@@ -42,18 +42,11 @@ impl RotorSolver {
         condition: &Condition,
         about: &RotorSolution,
     ) -> Result<RotorSolution, ResponseError> {
-        let (solution, loads) = self.in_inflow_of(condition, about)?;
+        let (orbit, residuals, loads) = self.in_inflow_of(condition, about)?;
         let count = self.rotor.discretisation.load_harmonics;
-        let residuals = ResponseResiduals {
-            periodicity: solution.residual_norm,
-            response_iterations: solution.iterations,
-            factorisations: solution.factorisations,
-            inflow_iterations: 0,
-            ..about.residuals
-        };
         Ok(RotorSolution {
-            modal: self.modal_harmonics(&solution.samples),
-            orbit: solution.orbit,
+            modal: self.modal_harmonics(&orbit),
+            orbit,
             root: loads.root(&self.time, count),
             hinge: loads.hinge(&self.time, count),
             power: loads.power,
@@ -68,14 +61,22 @@ impl RotorSolver {
         &mut self,
         condition: &Condition,
         about: &RotorSolution,
-    ) -> Result<(PeriodicSolution, RevolutionLoads), ResponseError> {
+    ) -> Result<(Orbit, ResponseResiduals, RevolutionLoads), ResponseError> {
         self.check_flaps(&condition.flap_angles_rad)?;
         let (rotor, air) = (self.rotor.clone(), self.air.clone());
         let system = rotor.system(&air, self.point_inputs(condition, &about.inflow));
         let solved = self.solver.solve(&system, &about.orbit);
         let solution = solved.map_err(Self::orbit_error(&rotor))?;
-        let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution, SETTLED)?;
-        Ok((solution, loads))
+        let residuals = ResponseResiduals {
+            periodicity: solution.residual_norm,
+            response_iterations: solution.iterations,
+            factorisations: solution.factorisations,
+            inflow_iterations: 0,
+            ..about.residuals
+        };
+        let found = (solution.samples, solution.force, solution.seen);
+        let loads = RevolutionLoads::new(&rotor, &self.solver, &system, found, SETTLED)?;
+        Ok((solution.orbit, residuals, loads))
     }
 }
 

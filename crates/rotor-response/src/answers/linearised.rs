@@ -6,6 +6,7 @@ use crate::response::hinge::HingeMoment;
 use crate::response::revolution::RevolutionLoads;
 use crate::response::rotor::up;
 use crate::response::system::{PointInput, ResponseSystem};
+use crate::response::wake_loading::loading;
 use crate::sections::air::FlapAngle;
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;
@@ -213,7 +214,7 @@ impl<'a> Base<'a> {
             || {
                 let mut forces = DMatrix::zeros(system.dof(), orbit.q.ncols());
                 let evaluated = system.residual(&orbit, &mut forces);
-                (evaluated.map(|()| forces), system.unloaded(&orbit))
+                (evaluated.map(|_| forces), system.unloaded(&orbit))
             },
         );
         let (rest, forces) = (rest?, forces?);
@@ -359,7 +360,7 @@ fn answer(
         Some(model) => {
             let lift = hub.components[2].mean + rotor.blades_weight() * up(condition)[2];
             let ct = rotor.model().thrust_coefficient(lift);
-            let loading = loads.loading(rotor, time, ct, model.circulation_grid())?;
+            let loading = loading(rotor, time, &loads.lifting, Some(ct), model.circulation_grid())?;
             model.induced(&condition.flight, &loading)?.parameters()
         }
     };

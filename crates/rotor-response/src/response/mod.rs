@@ -8,3 +8,4 @@ pub(crate) mod rotor;
 pub(crate) mod solver;
 pub(crate) mod system;
 pub(crate) mod wake_coupling;
+pub(crate) mod wake_loading;

@@ -12,7 +12,7 @@ use crate::{ResponseError, Rotor};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{OrbitSamples, PeriodicSolution, PeriodicSolver, TimeElements};
+use rotor_fem::{OrbitSamples, PeriodicSolver, TimeElements};
 use std::f64::consts::TAU;
 
 /// Move of the accelerations at which they have settled.
@@ -50,6 +50,16 @@ impl Lifting {
         Self { lift: loads.fz, circulation: loads.circulation }
     }
 }
+
+impl Revolution {
+    /// Lift and circulation at every point and lifting station. They do not ask for accelerations.
+    pub(crate) fn lifting(&self) -> Vec<Vec<Lifting>> {
+        self.sections.iter().map(|row| row.iter().map(Lifting::of).collect()).collect()
+    }
+}
+
+/// An orbit at the points, `f` of the system there, and its loads.
+pub(crate) type Found = (OrbitSamples, DMatrix<f64>, Revolution);
 
 /// Root loads and hinge moments at every azimuth point.
 pub(crate) struct RevolutionLoads {
@@ -102,10 +112,10 @@ impl RevolutionLoads {
         rotor: &Rotor,
         orbits: &PeriodicSolver,
         system: &ResponseSystem<'_>,
-        orbit: &PeriodicSolution,
+        found: Found,
         absolute: f64,
     ) -> Result<Self, ResponseError> {
-        let (samples, revolution) = settled_motion(rotor, orbits, system, orbit, absolute)?;
+        let (samples, revolution) = settled_motion(rotor, orbits, system, found, absolute)?;
         Ok(Self::of(rotor, orbits.time(), system, &samples, &revolution))
     }
 
@@ -128,9 +138,7 @@ impl RevolutionLoads {
         for (weight, at) in unit_weights(time).into_iter().zip(&points) {
             power.add(weight, &at.power);
         }
-        let sections = revolution.sections.iter();
-        let lifting = sections.map(|row| row.iter().map(Lifting::of).collect()).collect();
-        Self { lifting, points, power, accelerations: samples.qdd.clone() }
+        Self { lifting: revolution.lifting(), points, power, accelerations: samples.qdd.clone() }
     }
 
     pub(crate) fn root(&self, time: &TimeElements, count: usize) -> SixLoads {
@@ -162,14 +170,12 @@ fn settled_motion(
     rotor: &Rotor,
     orbits: &PeriodicSolver,
     system: &ResponseSystem<'_>,
-    orbit: &PeriodicSolution,
+    (mut samples, mut forces, mut revolution): Found,
     absolute: f64,
 ) -> Result<(OrbitSamples, Revolution), ResponseError> {
     let mass = &rotor.mass;
     let inverse =
         mass.clone().cholesky().ok_or(ResponseError::MassMatrix { modes: mass.nrows() })?;
-    let (mut samples, mut forces) = (orbit.samples.clone(), orbit.force.clone());
-    let mut last = None;
     for _ in 0..ACCELERATION_ITERATIONS {
         let unbalanced = &forces + mass * &samples.qdd;
         let (moves, left) = match orbits.lacking_accelerations(&unbalanced) {
@@ -181,16 +187,11 @@ fn settled_motion(
             break;
         }
         samples.qdd += &moves;
-        let revolution = system.revolution(&samples)?;
+        revolution = system.revolution(&samples)?;
         if left * moves.amax() <= enough {
-            return Ok((samples, revolution));
+            break;
         }
         system.residual_of(&revolution, &samples, &mut forces);
-        last = Some(revolution);
     }
-    let revolution = match last {
-        Some(revolution) => revolution,
-        None => system.revolution(&samples)?,
-    };
     Ok((samples, revolution))
 }

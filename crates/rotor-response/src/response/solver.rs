@@ -3,17 +3,16 @@
 use crate::loads::power::PowerBalance;
 use crate::loads::wrenches::SixLoads;
 use crate::response::hinge::HingeMoment;
-use crate::response::revolution::{Lifting, RevolutionLoads, SETTLED, series};
+use crate::response::revolution::{Found, Lifting, RevolutionLoads, SETTLED, series};
 use crate::response::rotor::up;
 use crate::response::system::PointInput;
+use crate::response::wake_loading::loading;
 use crate::sections::air::{AirPoint, FlapAngle};
 use crate::sections::flight_air::FlightAir;
 use crate::{Condition, ResponseError, Rotor};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{
-    Anderson, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver, TimeElements,
-};
+use rotor_fem::{Anderson, Orbit, PeriodicError, PeriodicSettings, PeriodicSolver, TimeElements};
 use rotor_wake::{InducedInflow, InflowModel, RotorLoading};
 use std::sync::Arc;
 
@@ -157,33 +156,15 @@ impl RotorSolver {
         inflow_model: &dyn InflowModel,
         start: Option<&RotorSolution>,
     ) -> Result<RotorSolution, ResponseError> {
-        self.check_flaps(&condition.flap_angles_rad)?;
-        let mu = condition.flight.advance_ratio;
-        if (mu - self.advance_ratio).abs() > 1e-12 {
-            return Err(ResponseError::Parameter {
-                field: "advance_ratio",
-                value: mu,
-                expected: "the advance ratio the solver was prepared for",
-            });
-        }
-        let dof = self.rotor.mass.nrows();
-        let mut orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
-        let mut inflow =
-            inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
-        if let Some(s) = start {
-            // a start with another kind of inflow gives its motion only
-            inflow = inflow.with_parameters(&s.inflow.parameters()).unwrap_or(inflow);
-        }
+        let (mut orbit, mut inflow) = self.begin(condition, inflow_model, start)?;
         let (mut iterations, mut factorisations) = (0, 0);
         let mut previous: Option<(Vec<f64>, f64)> = None;
         let mut anderson = Anderson::new(INFLOW_STEPS_KEPT);
         let mut last = (f64::INFINITY, 0.0);
-        // sections that stall may have more than one orbit, and a wake that meets blades more than one course:
-        // their way is left alone
-        let may_be_rough = inflow_model.follows_loading()
-            && inflow_model.circulation_grid().is_none()
-            && self.rotor.model().nonlinear.is_linear();
-        let exact = self.solver.settings().tolerance;
+        // sections that stall may have more than one orbit: their way is left alone
+        let may_be_rough =
+            inflow_model.follows_loading() && self.rotor.model().nonlinear.is_linear();
+        let exact = self.tolerances.periodicity;
         let mut orbit_tolerance = if may_be_rough { FIRST_ORBIT.max(exact) } else { exact };
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
             let rotor = Arc::clone(&self.rotor);
@@ -195,33 +176,47 @@ impl RotorSolver {
             factorisations += solution.factorisations;
             let is_exact = solution.residual_norm <= exact;
             let absolute = if is_exact { SETTLED } else { orbit_tolerance };
-            let loads = RevolutionLoads::new(&rotor, &self.solver, &system, &solution, absolute)?;
-            let hub = loads.hub(&rotor, &self.time);
-            let ct = rotor.model().thrust_coefficient(
-                hub.components[2].mean + rotor.blades_weight() * up(condition)[2],
-            );
-            let loading = loads.loading(&rotor, &self.time, ct, inflow_model.circulation_grid())?;
+            let residual_norm = solution.residual_norm;
+            let (reached, lifting) = (solution.orbit, solution.seen.lifting());
+            let sum = |found: Found| {
+                let loads = RevolutionLoads::new(&rotor, &self.solver, &system, found, absolute)?;
+                let hub = loads.hub(&rotor, &self.time);
+                let up = hub.components[2].mean + rotor.blades_weight() * up(condition)[2];
+                Ok::<_, ResponseError>((loads, hub, rotor.model().thrust_coefficient(up)))
+            };
+            // the circulation asks for no sums over the blade
+            let grid = inflow_model.circulation_grid();
+            let mut found = Some((solution.samples, solution.force, solution.seen));
+            let mut sums = None;
+            if grid.is_none() {
+                sums = found.take().map(sum).transpose()?;
+            }
+            let known = sums.as_ref().map(|(.., ct)| *ct);
+            let loading = loading(&rotor, &self.time, &lifting, known, grid)?;
             let wanted = inflow_model.induced(&condition.flight, &loading)?;
             let used = inflow.parameters();
             let change: Vec<f64> =
                 wanted.parameters().iter().zip(&used).map(|(a, b)| a - b).collect();
             let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-
-            if size <= self.tolerances.inflow && is_exact {
-                let root = loads.root(&self.time, rotor.discretisation.load_harmonics);
+            let settled = size <= self.tolerances.inflow && is_exact;
+            if settled && sums.is_none() {
+                sums = found.take().map(sum).transpose()?;
+            }
+            if let Some((loads, hub, thrust_coefficient)) = sums.filter(|_| settled) {
+                let count = rotor.discretisation.load_harmonics;
                 return Ok(RotorSolution {
-                    lifting: loads.lifting.clone(),
-                    accelerations: loads.accelerations.clone(),
-                    modal: self.modal_harmonics(&solution.samples),
-                    orbit: solution.orbit,
-                    thrust_coefficient: ct,
-                    hinge: loads.hinge(&self.time, rotor.discretisation.load_harmonics),
-                    inflow,
+                    modal: self.modal_harmonics(&reached),
+                    orbit: reached,
+                    thrust_coefficient,
+                    root: loads.root(&self.time, count),
+                    hinge: loads.hinge(&self.time, count),
+                    lifting: loads.lifting,
+                    accelerations: loads.accelerations,
                     power: loads.power,
-                    root,
+                    inflow,
                     hub,
                     residuals: ResponseResiduals {
-                        periodicity: solution.residual_norm,
+                        periodicity: residual_norm,
                         inflow: size,
                         response_iterations: iterations,
                         factorisations,
@@ -229,8 +224,9 @@ impl RotorSolver {
                     },
                 });
             }
+            let ct = loading.thrust_coefficient;
             last = (size, ct);
-            orbit = solution.orbit;
+            orbit = reached;
             orbit_tolerance = if may_be_rough && size > NEARLY_SETTLED * self.tolerances.inflow {
                 (ORBIT_SHARE * size).clamp(exact, FIRST_ORBIT.max(exact))
             } else {
@@ -253,6 +249,31 @@ impl RotorSolver {
             tolerance: self.tolerances.inflow,
             thrust_coefficient: last.1,
         })
+    }
+
+    /// Orbit and inflow that a solution begins with, the condition being one of this solver.
+    fn begin(
+        &self,
+        condition: &Condition,
+        inflow_model: &dyn InflowModel,
+        start: Option<&RotorSolution>,
+    ) -> Result<(Orbit, InducedInflow), ResponseError> {
+        self.check_flaps(&condition.flap_angles_rad)?;
+        let mu = condition.flight.advance_ratio;
+        if (mu - self.advance_ratio).abs() > 1e-12 {
+            return Err(ResponseError::Parameter {
+                field: "advance_ratio",
+                value: mu,
+                expected: "the advance ratio the solver was prepared for",
+            });
+        }
+        let dof = self.rotor.mass.nrows();
+        let orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
+        let inflow =
+            inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
+        // a start with another kind of inflow gives its motion only
+        let known = start.and_then(|s| inflow.with_parameters(&s.inflow.parameters()).ok());
+        Ok((orbit, known.unwrap_or(inflow)))
     }
 
     /// Refuses another number of flap motions than the blade has flaps.
@@ -318,8 +339,9 @@ impl RotorSolver {
         [outward * along + up[2] * across, leading, up[2] * along - outward * across]
     }
 
-    pub(crate) fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
+    pub(crate) fn modal_harmonics(&self, orbit: &Orbit) -> Vec<HarmonicSeries> {
         let count = self.rotor.discretisation.load_harmonics;
+        let samples = orbit.sample(&self.time);
         let rows = samples.q.row_iter();
         rows.map(|row| series(&self.time, row.iter().copied(), count)).collect()
     }

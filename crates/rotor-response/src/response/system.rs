@@ -277,6 +277,7 @@ impl ResponseSystem<'_> {
 
 impl PeriodicSystem for ResponseSystem<'_> {
     type Error = ResponseError;
+    type Seen = Revolution;
 
     fn dof(&self) -> usize {
         self.mass.nrows()
@@ -286,9 +287,14 @@ impl PeriodicSystem for ResponseSystem<'_> {
         self.mass
     }
 
-    fn residual(&self, samples: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Self::Error> {
-        self.residual_of(&self.revolution(samples)?, samples, out);
-        Ok(())
+    fn residual(
+        &self,
+        samples: &OrbitSamples,
+        out: &mut DMatrix<f64>,
+    ) -> Result<Revolution, Self::Error> {
+        let revolution = self.revolution(samples)?;
+        self.residual_of(&revolution, samples, out);
+        Ok(revolution)
     }
 
     fn tangents(&self, samples: &OrbitSamples) -> Result<Vec<LocalTangent>, Self::Error> {

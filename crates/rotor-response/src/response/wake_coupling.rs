@@ -1,106 +1,18 @@
 //! What a wake wants to know of a response: circulation over the disk and where the blades are.
 
-use crate::response::revolution::{Lifting, RevolutionLoads, unit_weights};
-use crate::{Controls, ResponseError, Rotor, RotorSolution, RotorSolver};
-use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
-use rotor_fem::TimeElements;
-use rotor_wake::{BladeLines, CirculationMap, RotorLoading, WakeRotor};
+use crate::response::revolution::unit_weights;
+use crate::response::wake_loading::{
+    between, circulation, of_harmonics, resolved_harmonics, shares,
+};
+use crate::{Controls, ResponseError, RotorSolution, RotorSolver};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use rotor_base::uniform_azimuths_rad;
+use rotor_wake::{BladeLines, CirculationMap, CirculationSlope, WakeRotor};
+use std::collections::BTreeMap;
 
-/// Value at `r` of a table over ascending stations: linear between them, constant beyond.
-fn between(stations: &[f64], values: &[f64], r: f64) -> f64 {
-    let above = stations.partition_point(|x| *x <= r);
-    match (above, stations.len()) {
-        (_, 0) => 0.0,
-        (0, _) => values[0],
-        (above, count) if above == count => values[count - 1],
-        (above, _) => {
-            let (a, b) = (stations[above - 1], stations[above]);
-            values[above - 1] + (r - a) / (b - a) * (values[above] - values[above - 1])
-        }
-    }
-}
-
-/// Overlap of two different harmonics under a quadrature above which it tells them apart no more.
-const OVERLAP: f64 = 0.02;
-
-/// Harmonics up to `most` that the points of the time elements resolve: of any two of them, and of one with itself, the
-/// quadrature takes the mean of the product right.
-fn resolved_harmonics(time: &TimeElements, weights: &[f64], most: usize) -> usize {
-    let overlap = |m: usize| {
-        let (mut c, mut s) = (0.0, 0.0);
-        for (psi, w) in time.points().iter().zip(weights) {
-            let angle = m as f64 * psi;
-            c += w * angle.cos();
-            s += w * angle.sin();
-        }
-        c.hypot(s)
-    };
-    (1..=most).take_while(|n| overlap(2 * n - 1).max(overlap(2 * n)) < OVERLAP).count()
-}
-
-/// Circulation at the panels of a wake: linear between stations, and in azimuth by the harmonics that both the wake's
-/// azimuths and the time elements resolve.
-fn circulation(
-    rotor: &Rotor,
-    time: &TimeElements,
-    lifting: &[Vec<Lifting>],
-    wake_rotor: &WakeRotor,
-    azimuths: usize,
-) -> Result<CirculationMap, ResponseError> {
-    let x = rotor.blade().grid().x();
-    let stations = &x[x.len() - lifting.first().map_or(0, Vec::len)..];
-    let weights = unit_weights(time);
-    let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
-    let rows: Vec<Vec<f64>> =
-        lifting.iter().map(|row| row.iter().map(|l| l.circulation).collect()).collect();
-    let series: Vec<HarmonicSeries> = wake_rotor
-        .stations()
-        .iter()
-        .map(|&r| {
-            let history: Vec<f64> = rows.iter().map(|row| between(stations, row, r)).collect();
-            HarmonicSeries::project(time.points(), &weights, &history, harmonics)
-        })
-        .collect();
-    let at = uniform_azimuths_rad(azimuths);
-    Ok(CirculationMap::from_fn(azimuths, series.len(), |i, s| series[s].value(at[i]))?)
-}
-
-impl RevolutionLoads {
-    /// The loading that an inflow model asks for.
-    pub(crate) fn loading(
-        &self,
-        rotor: &Rotor,
-        time: &TimeElements,
-        thrust_coefficient: f64,
-        grid: Option<(&WakeRotor, usize)>,
-    ) -> Result<RotorLoading, ResponseError> {
-        let (x, weight) = (rotor.blade().grid().x(), rotor.blade().grid().weight());
-        let first = x.len() - self.lifting.first().map_or(0, Vec::len);
-        let mut harmonics = [0.0; 2];
-        for ((azimuth, share), row) in
-            time.points().iter().zip(unit_weights(time)).zip(&self.lifting)
-        {
-            let moment: f64 = row
-                .iter()
-                .enumerate()
-                .map(|(s, l)| weight[first + s] * x[first + s] * l.lift)
-                .sum();
-            harmonics[0] += share * azimuth.cos() * moment;
-            harmonics[1] += share * azimuth.sin() * moment;
-        }
-        let blades = rotor.model().blades as f64;
-        let moments = harmonics.map(|h| rotor.model().thrust_coefficient(blades * h));
-        let loading = RotorLoading::from_thrust_coefficient(thrust_coefficient)
-            .with_moment_coefficients(moments);
-        match grid {
-            None => Ok(loading),
-            Some((panels, azimuths)) => {
-                let found = circulation(rotor, time, &self.lifting, panels, azimuths)?;
-                Ok(loading.with_circulation(found))
-            }
-        }
-    }
-}
+/// Speed across the chord that turns the sense of the circulation, tip speed: about the inflow.
+const SMALL_SPEED: f64 = 0.04;
 
 impl RotorSolver {
     /// Bound circulation of a solution on the panels and azimuths of a wake.
@@ -114,6 +26,53 @@ impl RotorSolver {
         azimuths: usize,
     ) -> Result<CirculationMap, ResponseError> {
         circulation(self.rotor(), &self.time, &solution.lifting, wake_rotor, azimuths)
+    }
+
+    /// How the circulation at the panels and azimuths of a wake answers to the inflow there while the blades stay as
+    /// they are: prompt lift and lags of the sections in the speed of the rigid blade.
+    ///
+    /// ```text
+    /// dGamma = -(1/2) c s K dlambda,      K = direct + sum over channels of gain P input      s = U / hypot(U, .04)
+    /// ```
+    /// between the ways in which inflow is read at stations and points and circulation at panels and azimuths.
+    pub fn circulation_slope(&self, wake_rotor: &WakeRotor, azimuths: usize) -> CirculationSlope {
+        let (blade, time) = (self.rotor().blade(), &self.time);
+        let first = self.air.first_station;
+        let (x, air) = (&blade.grid().x()[first..], &blade.air[first..]);
+        let (weights, psi) = (unit_weights(time), uniform_azimuths_rad(azimuths));
+        let most = (azimuths - 1) / 2;
+        let resolved = resolved_harmonics(time, &weights, most);
+        let points = time.points();
+        let read = DMatrix::from_fn(points.len(), azimuths, |p, i| {
+            of_harmonics(most, points[p] - psi[i]) / azimuths as f64
+        });
+        let written = DMatrix::from_fn(azimuths, points.len(), |i, p| {
+            weights[p] * of_harmonics(resolved, psi[i] - points[p])
+        });
+        let kept = x.partition_point(|x| *x <= blade.tip_loss);
+        let at_station = |(s, mut lift): (usize, DMatrix<f64>)| {
+            for (mut row, point) in lift.row_iter_mut().zip(points) {
+                let speed = x[s] + self.advance_ratio * point.sin();
+                row *= -0.5 * air[s].chord * speed / speed.hypot(SMALL_SPEED);
+            }
+            &written * (lift * &read)
+        };
+        let slopes: Vec<DMatrix<f64>> =
+            self.air.lift_slopes().into_par_iter().take(kept).enumerate().map(at_station).collect();
+        let panels = wake_rotor.stations();
+        let mut blocks = BTreeMap::new();
+        for (from, &r) in panels.iter().enumerate() {
+            for (s, share) in shares(x, r).into_iter().filter(|(s, _)| *s < kept) {
+                for (to, other) in shares(&panels, x[s]) {
+                    let block = blocks
+                        .entry((from, to))
+                        .or_insert_with(|| DMatrix::zeros(azimuths, azimuths));
+                    *block += &slopes[s] * (share * other);
+                }
+            }
+        }
+        let blocks = blocks.into_iter().map(|((from, to), block)| (from, to, block));
+        CirculationSlope { blocks: blocks.collect() }
     }
 
     /// The lifting lines of the deflected blades under pitch controls: quarter chord of the coned blade, displaced by flap
@@ -160,6 +119,11 @@ impl RotorSolver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Condition, Discretisation, ResponseTolerances, Rotor, RotorModel};
+    use rotor_base::HarmonicSeries;
+    use rotor_fem::{BladeProperties, BladeSpec, TimeElements};
+    use rotor_wake::{FlightState, InducedInflow, InflowMap, LinearInflow};
+    use std::sync::Arc;
 
     /// Largest amplitude that a unit harmonic `n` leaves at other harmonics up to `limit`, at the points of eight time
     /// elements.
@@ -185,5 +149,55 @@ mod tests {
         assert!(kept < 0.01, "{kept}");
         let beyond = (1..=all).map(|n| aliased(n, all)).fold(0.0, f64::max);
         assert!(beyond > 0.5, "{beyond}");
+    }
+
+    /// The closed slope of the circulation against differences, the motion of the blade held; a slope without lags is
+    /// far off.
+    #[test]
+    fn the_slope_of_the_circulation_is_that_of_differences() {
+        let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
+        let rotor = Rotor::new(RotorModel::paper_case(), &blade, Discretisation::default());
+        let rotor = Arc::new(rotor.unwrap());
+        let mut solver = RotorSolver::new(rotor, 0.3, ResponseTolerances::default()).unwrap();
+        let condition = Condition {
+            flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.08 },
+            controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.02, theta1s_rad: -0.07 },
+            flap_angles_rad: vec![HarmonicSeries::zero(0); 2],
+            bank_rad: 0.0,
+        };
+        let (azimuths, cutout) = (24, solver.rotor().model().root_cutout);
+        let panels = WakeRotor::uniform(4, cutout, 12).unwrap();
+        let even = InflowMap::new(&panels, vec![0.01; azimuths * panels.panels()]).unwrap();
+        let even = InducedInflow::Map(even);
+        let model = LinearInflow::Prescribed { induced_inflow: 0.01 };
+        let samples = solver.solve(&condition, &model, None).unwrap().orbit.sample(&solver.time);
+        let of = |inflow: &InducedInflow| {
+            let points = solver.point_inputs(&condition, inflow);
+            let revolution = solver.rotor.system(&solver.air, points).revolution(&samples).unwrap();
+            let lifting = revolution.lifting();
+            circulation(&solver.rotor, &solver.time, &lifting, &panels, azimuths).unwrap()
+        };
+        let slope = solver.circulation_slope(&panels, azimuths);
+        let rest = of(&even);
+        // the last where the flow is reversed, whose sense is that of a small speed put in its place
+        let places = [(3, 2, 0.01), (10, 11, 0.01), (17, 6, 0.03), (6, 8, 0.01), (18, 1, 0.15)];
+        for (i, to, bound) in places {
+            let mut moved = even.parameters();
+            moved[i * panels.panels() + to] += 1e-6;
+            let moved = of(&even.with_parameters(&moved).unwrap());
+            let (mut off, mut whole) = (0.0_f64, 0.0_f64);
+            for from in 0..panels.panels() {
+                let block = slope.blocks.iter().find(|b| (b.0, b.1) == (from, to));
+                for k in 0..azimuths {
+                    let at = k * panels.panels() + from;
+                    let exact = (moved.values()[at] - rest.values()[at]) / 1e-6;
+                    let closed = block.map_or(0.0, |(.., block)| block[(k, i)]);
+                    whole = whole.max(exact.abs());
+                    off = off.max((exact - closed).abs());
+                }
+            }
+            println!("azimuth {i}, panel {to}: {:.1e} of {whole:.3}", off / whole);
+            assert!(off <= bound * whole, "{off} of {whole}");
+        }
     }
 }

@@ -14,6 +14,7 @@ use rotor_wake::{
     FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel, LinearInflow, PittPeters,
     RotorLoading, WakeError, WakeRotor, momentum_inflow,
 };
+use std::sync::Arc;
 
 const BLADES: usize = 4;
 
@@ -170,7 +171,7 @@ fn in_a_wake_the_inflow_settles_on_the_circulation() {
     let condition = common::condition();
     let start = solver.solve(&condition, &LinearInflow::Drees, None).unwrap();
     let model = solver.rotor().model();
-    let (chord, cutout, azimuths) = (model.chord, model.root_cutout, 16);
+    let (cutout, azimuths) = (model.root_cutout, 16);
     let panels = WakeRotor::cosine(BLADES, cutout, 8).unwrap();
     let settings = FreeWakeSettings { azimuths, turns: 2, ..FreeWakeSettings::default() };
     let flight = condition.flight;
@@ -179,7 +180,8 @@ fn in_a_wake_the_inflow_settles_on_the_circulation() {
     let wake = FreeWake::undistorted(panels.clone(), settings, flight, mean, lines).unwrap();
     let circulation = solver.circulation(&start, &panels, azimuths).unwrap();
     let induction = wake.line_induction(&circulation).unwrap();
-    let frozen = FrozenWake::new(induction, &circulation, chord, flight.advance_ratio).unwrap();
+    let slope = Arc::new(solver.circulation_slope(&panels, azimuths));
+    let frozen = FrozenWake::new(induction, &circulation, slope).unwrap();
     let [settled, hinge, held] = settled_gap(&frozen, 0.5);
     assert!(settled <= 1e-3 && hinge <= 1e-3, "{settled:e} {hinge:e}");
     assert!(held > 10.0 * 1e-3, "{held:e}");

@@ -109,11 +109,12 @@ pub fn forecasts(
     rotor: &TrimmedRotor,
     drives: &Drives,
 ) -> Result<Vec<ForecastLine>, StudyError> {
-    // the authority is made once before the sets run side by side; a rotor that has none has no forecast either
-    if drives.hysteretic.is_none()
-        || case.control.harmonics.is_empty()
-        || rotor.authority().is_err()
-    {
+    if drives.hysteretic.is_none() || case.control.harmonics.is_empty() {
+        return Ok(Vec::new());
+    }
+    // made once, before the sets that share it run side by side; a rotor without authority has no forecast either
+    let states = [InflowState::Settled, InflowState::Frozen];
+    if states.iter().any(|&state| rotor.linearised(state).is_err()) {
         return Ok(Vec::new());
     }
     let sets = case.control.harmonics.par_iter();
@@ -187,8 +188,8 @@ impl ControlSet<'_> {
         let per_deg = self.case.control.amplitude_volt / self.case.actuator.ideal_amplitude_deg;
         Ok(ForecastRecord {
             t_per_volt: columns,
-            settled_t_per_volt: ideal_t(&settled)?,
-            frozen_t_per_volt: ideal_t(&frozen)?,
+            settled_t_per_volt: ideal_t(settled)?,
+            frozen_t_per_volt: ideal_t(frozen)?,
             reconverged_t_per_volt: match reconverged {
                 Some(found) => ideal_t(&found.authority)?,
                 None => Vec::new(),

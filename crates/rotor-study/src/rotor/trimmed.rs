@@ -32,7 +32,8 @@ pub struct TrimmedRotor {
     reconverged: Once<ReconvergedAuthority>,
     /// Change of the hinge moments with the flap motions.
     pub(super) hinge_response: Once<DMatrix<f64>>,
-    authority: Once<FlapAuthority>,
+    /// Linearised with the inflow settled, and with the wake frozen.
+    linearised: [Once<FlapAuthority>; 2],
     wake: Option<Arc<WakeTrim>>,
 }
 
@@ -63,21 +64,14 @@ impl TrimmedRotor {
             reconverging: Reconverging::of(case),
             reconverged: Once::default(),
             hinge_response: Once::default(),
-            authority: Once::default(),
+            linearised: Default::default(),
             wake,
         })
     }
 
     /// The same rotor with the inflow settled in its T, as in its responses.
     pub(crate) fn with_settled_t(&self) -> Self {
-        match self.t_inflow {
-            TInflowChoice::Settled => self.clone(),
-            _ => Self {
-                t_inflow: TInflowChoice::Settled,
-                authority: Once::default(),
-                ..self.clone()
-            },
-        }
+        Self { t_inflow: TInflowChoice::Settled, ..self.clone() }
     }
 
     /// Units of the rotor.
@@ -110,7 +104,7 @@ impl TrimmedRotor {
     /// # Errors
     /// The errors of the linearised response.
     pub fn authority(&self) -> Result<&FlapAuthority, ResponseError> {
-        found(&self.authority, || self.linearised(self.state_in_t()))
+        self.linearised(self.state_in_t())
     }
 
     /// The same with the geometry of the free wake converged anew at the harmonics that the case controls; none
@@ -123,18 +117,20 @@ impl TrimmedRotor {
         let Some(coupling) = &self.reconverging.coupling else { return Ok(None) };
         let found = found(&self.reconverged, || {
             let settled = self.linearised(InflowState::Settled)?;
-            let rest = self.flaps_at_rest();
+            let (settled, rest) = (settled.clone(), self.flaps_at_rest());
             self.reconverging.authority(wake, &self.solver, coupling, &rest, settled)
         })?;
         Ok(Some(found))
     }
 
-    /// The same with the inflow as asked for, made anew.
+    /// The same with the inflow as asked for.
     ///
     /// # Errors
     /// The errors of the linearised response.
-    pub fn linearised(&self, state: InflowState) -> Result<FlapAuthority, ResponseError> {
-        self.linearised_to(state, HARMONICS)
+    pub fn linearised(&self, state: InflowState) -> Result<&FlapAuthority, ResponseError> {
+        let [settled, frozen] = &self.linearised;
+        let kept = if state == InflowState::Settled { settled } else { frozen };
+        found(kept, || self.linearised_to(state, HARMONICS))
     }
 
     pub(crate) fn linearised_to(

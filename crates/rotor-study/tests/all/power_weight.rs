@@ -2,6 +2,7 @@
 
 use hhc_control::Plant;
 use nalgebra::{DMatrix, DVector};
+use rotor_response::InflowState;
 use rotor_study::case::{Case, ControlActuator, EffortChoice};
 use rotor_study::{Drives, RotorPlant, TrimmedRotor, control_set};
 
@@ -20,6 +21,9 @@ fn ideal_case(weight_per_watt: f64) -> Case {
 #[test]
 fn the_weight_of_the_power_moves_the_optimum_as_the_closed_form_says() {
     let rotor = TrimmedRotor::new(&ideal_case(0.0), None).unwrap();
+    // every clone of a rotor knows what one of them has linearised
+    let linearised = rotor.linearised(InflowState::Settled).unwrap();
+    assert!(std::ptr::eq(linearised, rotor.clone().linearised(InflowState::Settled).unwrap()));
     let weight = 2e-7;
     let found = [0.0, weight].map(|weight| {
         let case = ideal_case(weight);

@@ -8,7 +8,7 @@ use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use rayon::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// Induced velocity at the control points of all panels and azimuths per unit of circulation at all panels
 /// and azimuths, for one geometry of the wake.
@@ -211,8 +211,18 @@ impl LineInduction {
     }
 }
 
-/// Speed across the chord that turns the sense of the circulation, tip speed: about the inflow.
-const SMALL_SPEED: f64 = 0.04;
+/// How the circulation answers to the inflow where the blades stay as they are: a change at all azimuths of one panel
+/// per change of the inflow at all azimuths of another one, for panels near each other.
+///
+/// ```text
+/// dGamma_t = sum_s C_ts dlambda_s
+/// ```
+/// Every block is of shape `azimuths x azimuths`, `Omega R^2` per tip speed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CirculationSlope {
+    /// Panel of the circulation, panel of the inflow, and their block; other pairs do not answer.
+    pub blocks: Vec<(usize, usize, DMatrix<f64>)>,
+}
 
 /// An inflow model: the wake as it is, carrying whatever circulation the blades have.
 ///
@@ -222,35 +232,44 @@ const SMALL_SPEED: f64 = 0.04;
 pub struct FrozenWake {
     induction: LineInduction,
     reference: InflowMap,
+    slope: Arc<CirculationSlope>,
     /// Of a Newton step, factorised.
     newton: LU<f64, Dyn, Dyn>,
 }
 
 impl FrozenWake {
-    /// The wake's map with the inflow to start from, for blades of a chord (unit `R`) at an advance ratio,
-    /// whose sections have about the lift-curve slope of thin-aerofoil theory; the slope sets the speed of
-    /// convergence, not the result.
+    /// The wake's map with the inflow to start from, for blades whose circulation answers to the inflow by `slope`,
+    /// which sets the speed of convergence, not the result:
+    ///
+    /// ```text
+    /// dlambda = (I - A C)^-1 (A Gamma - lambda)
+    /// ```
+    /// is Newton's step where the blades stay as they are.
     ///
     /// # Errors
-    /// [`WakeError::BadInput`] for a circulation of another grid.
+    /// [`WakeError::BadInput`] for a circulation or a slope of another grid.
     pub fn new(
         induction: LineInduction,
         circulation: &CirculationMap,
-        chord: f64,
-        advance_ratio: f64,
+        slope: Arc<CirculationSlope>,
     ) -> Result<Self, WakeError> {
         let reference = induction.inflow(circulation)?;
-        let (azimuths, stations) = (induction.azimuths, reference.stations());
-        // the circulation falls by a slope per unit of inflow: I + A diag(slope)
-        let mut newton = induction.down.clone();
-        for (k, mut column) in newton.column_iter_mut().enumerate() {
-            let (i, s) = (k / stations.len(), k % stations.len());
-            let along = stations[s] + advance_ratio * (TAU * i as f64 / azimuths as f64).sin();
-            // in reverse flow the circulation has the other sense
-            column *= PI * chord * along / along.hypot(SMALL_SPEED);
-            column[k] += 1.0;
+        let (azimuths, panels) = (induction.azimuths, induction.rotor.panels());
+        let size = azimuths * panels;
+        let mut newton = DMatrix::identity(size, size);
+        for (from, to, block) in &slope.blocks {
+            let fits = *from.max(to) < panels && block.shape() == (azimuths, azimuths);
+            let expected = "azimuths and panels of the wake";
+            ensure(fits, "order of a slope of the circulation", block.nrows() as f64, expected)?;
+            let down = induction.down.columns_with_step(*from, azimuths, panels - 1);
+            newton.columns_with_step_mut(*to, azimuths, panels - 1).gemm(-1.0, &down, block, 1.0);
         }
-        Ok(Self { newton: newton.lu(), induction, reference })
+        Ok(Self { newton: newton.lu(), induction, reference, slope })
+    }
+
+    /// How the circulation answers to the inflow.
+    pub fn slope(&self) -> &Arc<CirculationSlope> {
+        &self.slope
     }
 }
 

@@ -222,9 +222,9 @@ fn in_free_wake() -> Result<&'static InFreeWake, Failure> {
             (sums[0] / sums[1]).sqrt()
         };
         Ok(InFreeWake {
-            held: distance(&anew.held, &settled),
+            held: distance(&anew.held, settled),
             change: anew.change,
-            moved: distance(&anew.authority, &settled),
+            moved: distance(&anew.authority, settled),
         })
     });
     shared(&FOUND)

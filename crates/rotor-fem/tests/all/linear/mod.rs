@@ -39,6 +39,7 @@ impl<F: Fn(f64) -> LinearCoefficients + Sync> LinearPeriodic<F> {
 
 impl<F: Fn(f64) -> LinearCoefficients + Sync> PeriodicSystem for LinearPeriodic<F> {
     type Error = Infallible;
+    type Seen = ();
 
     fn dof(&self) -> usize {
         self.mass.nrows()

@@ -50,7 +50,34 @@ impl FlightAir {
     }
 }
 
+impl FlightAir {
+    /// Change of the lift per speed of every lifting station at all points with its first input `U alpha` at all
+    /// points; over tables, that of their linear sections.
+    pub(crate) fn lift_slopes(&self) -> Vec<DMatrix<f64>> {
+        self.stations.par_iter().map(|station| station.air.lift_slope()).collect()
+    }
+}
+
 impl StationAir {
+    fn lift_slope(&self) -> DMatrix<f64> {
+        let points = self.prompt.len();
+        let mut slope = DMatrix::zeros(points, points);
+        for p in 0..points {
+            slope[(p, p)] = self.prompt[p].direct[0][0];
+        }
+        for channel in self.lags.iter().filter(|lag| lag.input[0] != 0.0) {
+            for (_, gains) in channel.gains.iter().filter(|(output, _)| *output == 0) {
+                let operator = channel.lag.operator();
+                for (mut sums, column) in slope.column_iter_mut().zip(operator.column_iter()) {
+                    for ((sum, gain), value) in sums.iter_mut().zip(gains).zip(&column) {
+                        *sum += gain * value * channel.input[0];
+                    }
+                }
+            }
+        }
+        slope
+    }
+
     fn channels(&self) -> Vec<LagChannel> {
         let points = self.prompt.len();
         let of = |lag: &super::StationLag| {

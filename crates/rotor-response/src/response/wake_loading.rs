@@ -1,0 +1,117 @@
+//! The loading of a wake: circulation over the disk, from the lift of the sections.
+
+use crate::response::revolution::{Lifting, unit_weights};
+use crate::{ResponseError, Rotor};
+use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
+use rotor_fem::TimeElements;
+use rotor_wake::{CirculationMap, RotorLoading, WakeRotor};
+
+/// Value at `r` of a table over ascending stations: linear between them, constant beyond.
+pub(crate) fn between(stations: &[f64], values: &[f64], r: f64) -> f64 {
+    let above = stations.partition_point(|x| *x <= r);
+    match (above, stations.len()) {
+        (_, 0) => 0.0,
+        (0, _) => values[0],
+        (above, count) if above == count => values[count - 1],
+        (above, _) => {
+            let (a, b) = (stations[above - 1], stations[above]);
+            values[above - 1] + (r - a) / (b - a) * (values[above] - values[above - 1])
+        }
+    }
+}
+
+/// Overlap of two different harmonics under a quadrature above which it tells them apart no more.
+const OVERLAP: f64 = 0.02;
+
+/// Harmonics up to `most` that the points of the time elements resolve: of any two of them, and of one with itself, the
+/// quadrature takes the mean of the product right.
+pub(crate) fn resolved_harmonics(time: &TimeElements, weights: &[f64], most: usize) -> usize {
+    let overlap = |m: usize| {
+        let (mut c, mut s) = (0.0, 0.0);
+        for (psi, w) in time.points().iter().zip(weights) {
+            let angle = m as f64 * psi;
+            c += w * angle.cos();
+            s += w * angle.sin();
+        }
+        c.hypot(s)
+    };
+    (1..=most).take_while(|n| overlap(2 * n - 1).max(overlap(2 * n)) < OVERLAP).count()
+}
+
+/// Shares of the values of a table that [`between`] takes at `r`.
+pub(crate) fn shares(stations: &[f64], r: f64) -> [(usize, f64); 2] {
+    let last = stations.len() - 1;
+    match stations.partition_point(|x| *x <= r) {
+        0 => [(0, 1.0), (0, 0.0)],
+        above if above > last => [(last, 1.0), (last, 0.0)],
+        above => {
+            let (a, b) = (stations[above - 1], stations[above]);
+            let part = (r - a) / (b - a);
+            [(above - 1, 1.0 - part), (above, part)]
+        }
+    }
+}
+
+/// `1 + 2 (cos x + ... + cos n x)`: what harmonics up to `n` make of one sample, over its weight.
+pub(crate) fn of_harmonics(n: usize, x: f64) -> f64 {
+    1.0 + 2.0 * (1..=n).map(|k| (k as f64 * x).cos()).sum::<f64>()
+}
+
+/// Circulation at the panels of a wake: linear between stations, and in azimuth by the harmonics that both the wake's
+/// azimuths and the time elements resolve.
+pub(crate) fn circulation(
+    rotor: &Rotor,
+    time: &TimeElements,
+    lifting: &[Vec<Lifting>],
+    wake_rotor: &WakeRotor,
+    azimuths: usize,
+) -> Result<CirculationMap, ResponseError> {
+    let x = rotor.blade().grid().x();
+    let stations = &x[x.len() - lifting.first().map_or(0, Vec::len)..];
+    let weights = unit_weights(time);
+    let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
+    let rows: Vec<Vec<f64>> =
+        lifting.iter().map(|row| row.iter().map(|l| l.circulation).collect()).collect();
+    let series: Vec<HarmonicSeries> = wake_rotor
+        .stations()
+        .iter()
+        .map(|&r| {
+            let history: Vec<f64> = rows.iter().map(|row| between(stations, row, r)).collect();
+            HarmonicSeries::project(time.points(), &weights, &history, harmonics)
+        })
+        .collect();
+    let at = uniform_azimuths_rad(azimuths);
+    Ok(CirculationMap::from_fn(azimuths, series.len(), |i, s| series[s].value(at[i]))?)
+}
+
+/// The loading that an inflow model asks for, of the lift over the disk; its thrust is known, or that of the lift.
+pub(crate) fn loading(
+    rotor: &Rotor,
+    time: &TimeElements,
+    lifting: &[Vec<Lifting>],
+    thrust_coefficient: Option<f64>,
+    grid: Option<(&WakeRotor, usize)>,
+) -> Result<RotorLoading, ResponseError> {
+    let (x, weight) = (rotor.blade().grid().x(), rotor.blade().grid().weight());
+    let first = x.len() - lifting.first().map_or(0, Vec::len);
+    let (mut lift, mut harmonics) = (0.0, [0.0; 2]);
+    for ((azimuth, share), row) in time.points().iter().zip(unit_weights(time)).zip(lifting) {
+        let moment: f64 =
+            row.iter().enumerate().map(|(s, l)| weight[first + s] * x[first + s] * l.lift).sum();
+        lift += share * row.iter().zip(&weight[first..]).map(|(l, w)| w * l.lift).sum::<f64>();
+        harmonics[0] += share * azimuth.cos() * moment;
+        harmonics[1] += share * azimuth.sin() * moment;
+    }
+    let coefficient =
+        |blade: f64| rotor.model().thrust_coefficient(rotor.model().blades as f64 * blade);
+    let thrust = thrust_coefficient.unwrap_or_else(|| coefficient(lift));
+    let loading = RotorLoading::from_thrust_coefficient(thrust)
+        .with_moment_coefficients(harmonics.map(coefficient));
+    match grid {
+        None => Ok(loading),
+        Some((panels, azimuths)) => {
+            let found = circulation(rotor, time, lifting, panels, azimuths)?;
+            Ok(loading.with_circulation(found))
+        }
+    }
+}
