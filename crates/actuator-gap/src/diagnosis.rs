@@ -4,16 +4,16 @@ use crate::base::{BaseModel, white_noise};
 use crate::causes::{self, BenchCause, Design};
 use crate::error::DiagnosisError;
 use crate::next::{self, Proposal};
+use crate::question::{Question, Stage, StructureStore};
 use crate::record::{Record, Records};
 use crate::sessions::{
-    GivenModel, beginning, continued, noisier, range_of, scale_of, share_beyond, simulated_runs,
+    GivenModel, Sessions, beginning, continued, doubt, range_of, scale_of, simulated_runs,
 };
 use crate::simulator::{BenchSimulator, CALIBRATIONS, ChannelKind, Setting, averaged, inputs_of};
 use crate::surrogate;
 use measured_data::Accuracy;
-use model_gap::discovery::{Confidence, Discovery, Finding, Reason, Settings, Signal, Verdict};
+use model_gap::discovery::{Discovery, Finding, Found, Settings, Signal, Verdict};
 use model_gap::{Candidate, EnergySplit, GapError};
-use preisach_dyn::ActuatorModel;
 use rotor_base::variance;
 
 /// A diagnosis with everything it rests on.
@@ -82,48 +82,8 @@ pub struct RunEnergy {
     pub structured: f64,
 }
 
-/// Keeps what surrogates leave on measured runs: it depends on the data alone and takes long.
-pub trait StructureStore: Sync {
-    /// The structures kept under `parts`, all the numbers they depend on; `lengths` are the samples of every measured
-    /// run. None if there are no such.
-    fn get(&self, parts: &[&[f64]], lengths: &[usize]) -> Option<Vec<Signal>>;
-    /// Keeps structures; a store that cannot costs time, not results.
-    fn keep(&self, parts: &[&[f64]], structures: &[Signal]);
-}
-
-/// What a diagnosis does, in its order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// The base model is fitted.
-    BaseModel,
-    /// Surrogates say what is left with nothing missing.
-    Surrogates,
-    /// Causes are screened, fitted and tested.
-    Search,
-    /// Experiments are compared.
-    NextExperiment,
-}
-
-/// What a diagnosis is asked.
-#[derive(Clone, Default)]
-pub struct Question<'a> {
-    /// Reference runs from another folder.
-    pub reference: Vec<Record>,
-    /// Only these causes, all of them taken for true: what a refit with the known causes would gain.
-    pub only: Vec<String>,
-    /// Where surrogate structures are kept; none computes them anew.
-    pub cache: Option<&'a dyn StructureStore>,
-    /// The simulation that is asked about. Reference runs say how far it may be off; where there are none, it is what
-    /// the measured runs are compared with.
-    pub given: Option<&'a ActuatorModel>,
-    /// Told of each stage as it begins.
-    pub begun: Option<&'a dyn Fn(Stage)>,
-}
-
 /// Motion over that expected, beyond which a unit is more likely wrong than a gain.
 const LIKELY_SCALE: [f64; 2] = [0.4, 2.5];
-/// Share of the measured samples that may lie where no reference run has been.
-const MOST_BEYOND: f64 = 0.05;
 /// Share of its threshold from which on a cause may be there and hidden.
 const MAY_BE_HIDDEN: f64 = 0.5;
 
@@ -141,6 +101,19 @@ impl Diagnosis {
     /// Whether the measured outputs move so much more or less than expected that a unit is more likely wrong than a gain.
     pub fn unit_looks_wrong(&self) -> bool {
         !(LIKELY_SCALE[0]..=LIKELY_SCALE[1]).contains(&self.scale)
+    }
+
+    /// Each thing that was found missing, as the causes it may be, the best first; empty where nothing has a name.
+    pub fn open(&self) -> Vec<Vec<&'static str>> {
+        if self.finding.verdict == Verdict::Unknown {
+            return Vec::new();
+        }
+        let id = |candidate: usize| self.candidates[candidate].id;
+        let one = |found: &Found| {
+            let others = found.alternatives.iter().map(|other| id(other.candidate));
+            std::iter::once(id(found.candidate)).chain(others).collect()
+        };
+        self.finding.causes.iter().map(one).collect()
     }
 
     /// Causes that these data could not have shown at usual strength; and, where nothing is named, those
@@ -229,26 +202,10 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     begin(Stage::Search);
     let settings = Settings { has_reference, ..Settings::default() };
     let mut finding = search(&simulator, &candidates, &floors, settings, given.as_deref())?;
-    if finding.verdict == Verdict::NothingMissing
-        && let Some(reason) = noisier(&runs, &base)
-    {
-        finding.confidence = Confidence::Tentative;
-        finding.reasons.push(reason);
-    }
-    let share = share_beyond(&runs, &references);
-    if share > MOST_BEYOND {
-        finding.confidence = Confidence::Tentative;
-        if let Some(class) = &mut finding.class {
-            class.confidence = Confidence::Tentative;
-        }
-        finding.reasons.push(Reason::BeyondReference { share });
-    }
-    if let Some(own) = given_model.filter(GivenModel::is_foreign) {
-        finding.verdict = Verdict::Unknown;
-        (finding.confidence, finding.class, finding.gain) = (Confidence::Tentative, None, None);
-        let reason = Reason::OtherBench { percent: own.error_percent, scale: own.scale };
-        finding.reasons.insert(0, reason);
-    }
+    doubt(
+        &mut finding,
+        &Sessions { runs: &runs, references: &references, base: &base, given: given_model },
+    );
     begin(Stage::NextExperiment);
     let bench = next::Bench { setting, candidates: &candidates, runs: &runs, design: &design };
     let next = next::proposal(&bench, &finding)?;
@@ -329,20 +286,24 @@ fn outputs(simulator: &BenchSimulator<'_>) -> Vec<OutputTrace> {
         .collect()
 }
 
+/// Places of causes asked for by name.
+pub(crate) fn places(candidates: &[Candidate], only: &[String]) -> Result<Vec<usize>, GapError> {
+    let place = |id: &String| {
+        candidates.iter().position(|c| c.id == id.as_str()).ok_or_else(|| {
+            let known: Vec<&str> = candidates.iter().map(|c| c.id).collect();
+            let message = format!("not in the library: {}", known.join(", "));
+            GapError::Simulation { what: id.clone(), message }
+        })
+    };
+    only.iter().map(place).collect()
+}
+
 /// Blocks every candidate that is not asked for; the places of those that are.
 fn restrict(candidates: &mut [Candidate], only: &[String]) -> Result<Option<Vec<usize>>, GapError> {
     if only.is_empty() {
         return Ok(None);
     }
-    let mut places = Vec::new();
-    for id in only {
-        let place = candidates.iter().position(|c| c.id == id.as_str());
-        places.push(place.ok_or_else(|| {
-            let known: Vec<&str> = candidates.iter().map(|c| c.id).collect();
-            let message = format!("not in the library: {}", known.join(", "));
-            GapError::Simulation { what: id.clone(), message }
-        })?);
-    }
+    let places = places(candidates, only)?;
     for (c, candidate) in candidates.iter_mut().enumerate() {
         if !places.contains(&c) {
             candidate.blocked = Some("not asked for".into());
@@ -393,7 +354,8 @@ mod tests {
     use crate::findings::Findings;
     use measured_data::{DisplacementAccuracy, VoltageAccuracy};
     use model_gap::Class;
-    use preisach_dyn::{ActuatorLaw, Calibration, LinearGain, VoltageRange};
+    use model_gap::discovery::{Confidence, Reason};
+    use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
 
     /// A line of gain 2.5 on a slow triangle and a sine, times a factor.
     fn runs(is_reference: bool, factor: f64) -> Vec<Record> {

@@ -26,7 +26,9 @@ mod figures;
 mod findings;
 mod next;
 mod numbers;
+mod plan;
 mod plays;
+mod question;
 mod record;
 mod rungs;
 mod sessions;
@@ -34,12 +36,14 @@ mod simulator;
 mod surrogate;
 
 pub use actuator_file::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
-pub use diagnosis::{Diagnosis, Question, RunEnergy, Stage, StructureStore, diagnose};
+pub use diagnosis::{Diagnosis, RunEnergy, diagnose};
 pub use error::DiagnosisError;
 pub use findings::{
     BandValue, ComparedValue, Findings, GainValue, GivenModelValue, ParameterValue, ScreenValue,
 };
 pub use next::Proposal;
+pub use plan::{Plan, PlannedCause, Rehearsal, SIZES, plan, usual_runs};
+pub use question::{Question, Stage, StructureStore};
 pub use record::{Record, Records};
 pub use rungs::{Asked, RungModel, rung_models};
 pub use sessions::GivenModel;

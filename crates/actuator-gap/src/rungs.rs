@@ -2,10 +2,11 @@
 
 use crate::base::BaseModel;
 use crate::causes::{self, Design};
-use crate::diagnosis::{Diagnosis, Floors, Question, Stage, StructureStore, diagnose, search};
+use crate::diagnosis::{Diagnosis, Floors, diagnose, search};
 use crate::error::DiagnosisError;
 use crate::extended::{USUAL_DEG_PER_UM, law_of_file};
 use crate::findings::{Findings, names};
+use crate::question::{Question, Stage, StructureStore};
 use crate::record::{Record, Records};
 use crate::sessions::{error_percent, range_of};
 use crate::simulator::{BenchSimulator, Setting};

@@ -9,7 +9,8 @@
 //! - [`noise_variance`]: measurement noise from repeated cycles, never from the residual;
 //! - [`EnergySplit`]: which part of the measured energy is explained, which is noise, and which is
 //!   structure that the simulation misses;
-//! - [`discovery`]: which of given causes explain a misfit, if any does.
+//! - [`discovery`]: which of given causes explain a misfit, if any does;
+//! - [`in_common`]: what the misfits of several specimens have in common.
 //!
 //! Residuals are measured minus simulated throughout.
 //!
@@ -37,6 +38,7 @@ pub mod discovery;
 mod energy;
 mod error;
 mod harmonics;
+mod in_common;
 mod memo;
 mod misfit;
 mod noise;
@@ -49,6 +51,7 @@ pub use cause::{Candidate, Class, Effect, Parameter, Scale};
 pub use energy::EnergySplit;
 pub use error::GapError;
 pub use harmonics::{FirstHarmonicError, HarmonicFit};
+pub use in_common::{InCommon, in_common};
 pub use memo::Memo;
 pub use misfit::Misfit;
 pub use noise::noise_variance;

@@ -17,6 +17,7 @@ use everyday_bench::set::{Request, set};
 use everyday_bench::text::{Column, File};
 
 /// Writes a synthetic bench with an everyday error: DIR/reference and DIR/measured.
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -54,6 +55,9 @@ struct Arguments {
     /// Record the load, whatever the seed says.
     #[arg(long)]
     load_cell: bool,
+    /// Measure the reference runs again instead of others.
+    #[arg(long)]
+    repeat: bool,
     /// Drive the reference runs by 25 V alone.
     #[arg(long)]
     reference_small: bool,
@@ -77,6 +81,7 @@ fn write(arguments: Arguments) -> Result<String, EverydayError> {
     request.snr_db = arguments.snr;
     request.share = arguments.share;
     request.draw = arguments.draw;
+    request.repeats = arguments.repeat;
     if let Some(hidden) = arguments.hidden {
         request.hidden = hidden;
     }

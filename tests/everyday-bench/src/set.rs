@@ -33,6 +33,8 @@ pub struct Request {
     pub drive: Drive,
     /// Another draw of all noise for the same truth.
     pub draw: u64,
+    /// Whether the measured runs are the reference runs done again.
+    pub repeats: bool,
 }
 
 impl Request {
@@ -40,7 +42,7 @@ impl Request {
     pub fn new(family: Family, seed: u64, deal: Deal) -> Self {
         let hidden = Hidden::of_seed(seed, deal);
         let (share, columns, drive) = (None, Vec::new(), Drive::Full);
-        Self { family, seed, snr_db: 40.0, hidden, share, columns, drive, draw: 0 }
+        Self { family, seed, snr_db: 40.0, hidden, share, columns, drive, draw: 0, repeats: false }
     }
 
     /// The columns of both folders: a third of the seeds have the voltage, a quarter the load, a fifth the temperature;
@@ -132,7 +134,11 @@ pub fn truth(request: &Request, finer: u32) -> Truth {
     let seed = request.seed;
     let actuator = Actuator::new(request.family, seed);
     let bench = (&actuator, seed);
-    let plans = runs::measured(seed, request.drive());
+    let plans = if request.repeats {
+        runs::reference(seed, request.drive())
+    } else {
+        runs::measured(seed, request.drive())
+    };
     let prepare = |finer| -> Vec<(bool, Prepared<'_>)> {
         let one = |(i, run): (usize, &Run)| {
             (run.is_driven(), Prepared::new(bench, run, (i, plans.len()), finer))

@@ -4,9 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Middle and half of the range of the input.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Span {
-    pub(super) middle: f64,
-    pub(super) half: f64,
+pub(crate) struct Span {
+    pub(crate) middle: f64,
+    pub(crate) half: f64,
 }
 
 /// Rest at the beginning of a run, s.
@@ -24,7 +24,7 @@ fn sampled(seconds: f64, step_s: f64, value: impl Fn(f64) -> f64) -> Vec<f64> {
 
 impl Span {
     /// A place in the range: -1 its low end, 1 its high end.
-    pub(super) fn at(self, place: f64) -> f64 {
+    pub(crate) fn at(self, place: f64) -> f64 {
         self.middle + place * self.half
     }
 
@@ -33,7 +33,7 @@ impl Span {
     ///
     /// Phases that grow with the square of the number spread the lines over the period:
     /// M. R. Schroeder, IEEE Transactions on Information Theory 16 (1970).
-    pub(super) fn multisine(
+    pub(crate) fn multisine(
         self,
         band: (f64, f64),
         spacing_hz: f64,
@@ -63,7 +63,7 @@ impl Span {
 
     /// Sines of one frequency about a place, of amplitudes in half ranges with their cycles, one after
     /// the other.
-    pub(super) fn bursts(
+    pub(crate) fn bursts(
         self,
         hz: f64,
         about: f64,
@@ -87,7 +87,7 @@ impl Span {
     }
 
     /// Straight lines through places, each reached at its time, s; the first at time zero.
-    pub(super) fn path(self, points: &[(f64, f64)], step_s: f64) -> Vec<f64> {
+    pub(crate) fn path(self, points: &[(f64, f64)], step_s: f64) -> Vec<f64> {
         let seconds = points.last().map_or(0.0, |p| p.0);
         sampled(seconds, step_s, |t| {
             let after = points.iter().position(|p| p.0 > t).unwrap_or(points.len() - 1).max(1);
@@ -97,7 +97,7 @@ impl Span {
     }
 
     /// Places held one after the other, each reached within 5 ms.
-    pub(super) fn steps(self, places: &[f64], hold_s: f64, step_s: f64) -> Vec<f64> {
+    pub(crate) fn steps(self, places: &[f64], hold_s: f64, step_s: f64) -> Vec<f64> {
         let mut points = vec![(0.0, 0.0), (REST_S, 0.0)];
         let mut time = REST_S;
         for &place in places {
@@ -109,7 +109,7 @@ impl Span {
     }
 
     /// Triangles about the middle, one of each amplitude.
-    pub(super) fn triangles(self, hz: f64, amplitudes: &[f64], step_s: f64) -> Vec<f64> {
+    pub(crate) fn triangles(self, hz: f64, amplitudes: &[f64], step_s: f64) -> Vec<f64> {
         let mut points = vec![(0.0, 0.0), (REST_S, 0.0)];
         let mut time = REST_S;
         for amplitude in amplitudes {

@@ -65,7 +65,7 @@ pub(crate) fn simulated_runs(
 }
 
 /// What a simulation reads on a run, um.
-fn simulated_um(model: &ActuatorModel, run: &Record) -> Result<Vec<f64>, PreisachError> {
+pub(crate) fn simulated_um(model: &ActuatorModel, run: &Record) -> Result<Vec<f64>, PreisachError> {
     let simulated = model.simulate_bench(&Drive::new(&run.input, run.step_s))?;
     let um = |deg: &f64| model.calibration.displacement_um(*deg);
     Ok(simulated.measured_deg.iter().map(um).collect())

@@ -1,11 +1,13 @@
 //! What measured runs and reference runs, taken in two sessions, have in common: zero, range, scale and noise.
 
 mod continued;
+mod doubt;
 mod given;
 
 pub(crate) use continued::continued;
+pub(crate) use doubt::{Sessions, doubt};
 pub use given::GivenModel;
-pub(crate) use given::{error_percent, simulated_runs};
+pub(crate) use given::{error_percent, simulated_runs, simulated_um};
 
 use crate::base::{BaseModel, white_noise};
 use crate::numbers::{range, slope};

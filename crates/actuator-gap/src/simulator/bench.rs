@@ -193,6 +193,27 @@ impl<'a> BenchSimulator<'a> {
         self.channels.iter().map(one).collect()
     }
 
+    /// The runs under effects, each channel that they have at its own sampling, without noise.
+    pub(crate) fn rehearsed(&self, effects: &[Effect]) -> Result<Vec<Record>, GapError> {
+        let own = self.plant.respond(effects)?;
+        let one = |(number, run): (usize, &&Record)| {
+            let terminals = own.front.terminals[number].as_ref().unwrap_or(&run.input);
+            let monitor = |volt: &f64| own.monitor.map_or(*volt, |monitor| monitor.of(*volt));
+            let rise = own.front.rises_k[number].as_ref();
+            let load = |still: &Vec<f64>| {
+                if own.is_loaded { own.steady[number].clone() } else { still.clone() }
+            };
+            Record {
+                output: own.outputs[number].clone(),
+                amplifier: run.amplifier.as_ref().map(|_| terminals.iter().map(monitor).collect()),
+                temperature: run.temperature.as_ref().map(|still| rise.unwrap_or(still).clone()),
+                load: run.load.as_ref().map(load),
+                ..(*run).clone()
+            }
+        };
+        Ok(self.runs.iter().enumerate().map(one).collect())
+    }
+
     /// The temperature rise of an effect on the first run as it is, whatever a thermometer showed, K.
     pub(crate) fn rise_k(&self, effect: &Effect) -> Result<Vec<f64>, GapError> {
         let response = self.plant.respond(std::slice::from_ref(effect))?;

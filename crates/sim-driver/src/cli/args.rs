@@ -242,25 +242,31 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 #[derive(Debug, Clone, Args)]
 pub struct DiagnoseArgs {
     /// Actuator file, or a case with its actuator: the simulation that is asked about.
-    #[arg(value_name = "ACTUATOR_OR_CASE.ron")]
-    pub model: PathBuf,
-    /// Take these causes for true and fit them, nothing refused.
+    #[arg(value_name = "ACTUATOR_OR_CASE.ron", required_unless_present = "plan")]
+    pub model: Option<PathBuf>,
+    /// Folder with dataset.ron and the measured records; of several like specimens, one folder each.
+    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
+    pub data: Vec<PathBuf>,
+    /// Folder to write to: findings, extended actuator, residuals; of several specimens in a folder each.
+    #[arg(short, long, value_name = "DIR", required_unless_present = "plan")]
+    pub output: Option<PathBuf>,
+    /// Take these causes for true and fit them, nothing refused; with a plan, ask about these alone.
     #[arg(long, value_name = "CAUSES", value_delimiter = ',')]
     pub only: Vec<String>,
-    /// Records, and where the findings go.
+    /// Before anything is measured: which causes runs would tell apart, and at which size, on this actuator.
+    #[arg(long, value_name = "ACTUATOR_OR_CASE.ron", conflicts_with_all = ["model", "data"])]
+    pub plan: Option<PathBuf>,
+    /// Runs of the plan: commands and channels of a folder with dataset.ron; the usual ones if left out.
+    #[arg(long, value_name = "DIR", requires = "plan")]
+    pub runs: Option<PathBuf>,
+    /// What else the records need.
     #[command(flatten)]
     pub records: RecordsArgs,
 }
 
-/// Records to be explained, and where what is found goes.
+/// What records to be explained are compared with.
 #[derive(Debug, Clone, Args)]
 pub struct RecordsArgs {
-    /// Folder with dataset.ron and the measured records.
-    #[arg(long, value_name = "DIR")]
-    pub data: PathBuf,
-    /// Folder to write to: findings, extended actuator, residuals.
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
     /// Folder with reference records; beside those of the data, or `../reference`, if left out.
     #[arg(long, value_name = "DIR")]
     pub reference: Option<PathBuf>,
@@ -281,7 +287,13 @@ pub struct LadderArgs {
     /// Inflow model instead of the case's.
     #[arg(long, value_enum, visible_alias = "wake")]
     pub inflow: Option<InflowOverride>,
-    /// Records, and where the ladder goes.
+    /// Folder with dataset.ron and the measured records.
+    #[arg(long, value_name = "DIR")]
+    pub data: PathBuf,
+    /// Folder to write to: ladder and extended actuator.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// What else the records need.
     #[command(flatten)]
     pub records: RecordsArgs,
 }

@@ -3,9 +3,11 @@
 use super::args::{DiagnoseArgs, LadderArgs, RecordsArgs};
 use super::{case_or_paper, overridden, warn, write_texts};
 use crate::SimError;
+use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
-    Climb, Findings, FolderStore, Question, Record, Records, Stage, Story, climb, extended,
+    Climb, Diagnosis, Findings, FolderStore, PlanText, Question, Record, Records, Specimens, Stage,
+    Story, climb, extended, plan, usual_runs,
 };
 use crate::files::{DataSet, Folder, Source, read_dataset, refuse_input, ron_text, write_atomic};
 use crate::output::{Format, Printable, json, print};
@@ -13,7 +15,7 @@ use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{read_actuator, write_actuator};
 use preisach_dyn::ActuatorModel;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Name of the actuator a diagnosis extended.
 const EXTENDED_FILE: &str = "extended.ron";
@@ -21,15 +23,70 @@ const EXTENDED_FILE: &str = "extended.ron";
 const EXTENDED_CASE_FILE: &str = "extended_case.ron";
 
 pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
-    let RecordsArgs { output, cache, format, .. } = &args.records;
-    refuse_input(&args.model, &output.join(EXTENDED_FILE))?;
-    let (model, case) = given_model(&args.model)?;
-    let (measured, reference) = both_records(&args.records)?;
+    let form = args.records.format.form();
+    let (Some(model), Some(output)) = (&args.model, &args.output) else {
+        return planned(args);
+    };
+    if let [data] = &args.data[..] {
+        return print(&Story::of(&found_in(args, (model, data), output)?).render(form)?);
+    }
+    let names = specimen_names(&args.data)?;
+    let mut found = Vec::new();
+    for (name, data) in names.into_iter().zip(&args.data) {
+        let own = found_in(args, (model, data), &output.join(&name))?;
+        found.push((name, own));
+    }
+    let specimens = Specimens::of(&found);
+    write_atomic(&output.join("specimens.json"), json(&specimens)?.as_bytes())?;
+    print(&specimens.render(form)?)
+}
+
+/// Says what runs would show of an actuator, before they are measured.
+fn planned(args: &DiagnoseArgs) -> Result<(), SimError> {
+    let Some(path) = &args.plan else { return Ok(()) };
+    let model = match given_model(path)? {
+        (Some(model), _) => model,
+        (None, Some(case)) => {
+            let own = case_actuators(&case)?;
+            own.real.unwrap_or(own.ideal)
+        }
+        (None, None) => return Ok(()),
+    };
+    let runs = match &args.runs {
+        Some(own) => {
+            let folder = if own.is_file() { own.parent().unwrap_or(own) } else { own };
+            records_of(folder)?.runs
+        }
+        None => usual_runs((model.range_volt.lowest_volt(), model.range_volt.highest_volt())),
+    };
+    let progress = Progress::new(DIAGNOSIS);
+    let told = |done: usize, all: usize| {
+        progress.begin(DIAGNOSIS * done / all, "each cause is put in and diagnosed");
+    };
+    told(0, 1);
+    let found = plan(&model, &runs, &args.only, &FolderStore(&args.records.cache), &told);
+    progress.finish();
+    let text = PlanText(found?);
+    if let Some(output) = &args.output {
+        write_atomic(&output.join("plan.json"), json(&text)?.as_bytes())?;
+    }
+    print(&text.render(args.records.format.form())?)
+}
+
+/// Diagnoses the data of one specimen and writes what is found to a folder.
+fn found_in(
+    args: &DiagnoseArgs,
+    (model, data): (&Path, &Path),
+    output: &Path,
+) -> Result<Diagnosis, SimError> {
+    refuse_input(model, &output.join(EXTENDED_FILE))?;
+    let (model, case) = given_model(model)?;
+    let (measured, reference) = both_records(data, &args.records)?;
     let progress = Progress::new(DIAGNOSIS);
     let question = Question {
         reference,
         only: args.only.clone(),
-        cache: Some(&FolderStore(cache)),
+        cache: Some(&FolderStore(&args.records.cache)),
         given: model.as_ref(),
         begun: Some(&|stage| begin(&progress, stage)),
     };
@@ -43,7 +100,26 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     }
     write_texts(output, found.figures())?;
     write_atomic(&output.join("findings.json"), findings.as_bytes())?;
-    print(&Story::of(&found).render(format.form())?)
+    Ok(found)
+}
+
+/// Names of specimens: as much of the end of each path as tells them apart.
+fn specimen_names(data: &[PathBuf]) -> Result<Vec<String>, SimError> {
+    let ends = |depth: usize| -> Vec<String> {
+        let end = |path: &PathBuf| {
+            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+            parts[parts.len().saturating_sub(depth)..].join("_").replace(['/', '\\'], "")
+        };
+        data.iter().map(end).collect()
+    };
+    let deepest = data.iter().map(|path| path.iter().count()).max().unwrap_or(0);
+    let is_told_apart =
+        |names: &Vec<String>| (1..names.len()).all(|i| !names[..i].contains(&names[i]));
+    (1..=deepest).map(ends).find(is_told_apart).ok_or_else(|| {
+        let message =
+            "one folder was given twice: give the folder of each specimen once".to_owned();
+        Problem::new(Place::file("--data"), Fault::Refused { message }).into()
+    })
 }
 
 /// Steps of the progress of a diagnosis, about percent of its time.
@@ -55,15 +131,15 @@ const RUNGS: usize = 3;
 fn begin(progress: &Progress, stage: Stage) {
     match stage {
         Stage::BaseModel => progress.begin(0, "base model"),
-        Stage::Surrogates => progress.begin(10, "surrogates with nothing missing"),
-        Stage::Search => progress.begin(50, "search for what is missing"),
-        Stage::NextExperiment => progress.begin(90, "next experiment"),
+        Stage::Surrogates => progress.begin(2, "surrogates with nothing missing"),
+        Stage::Search => progress.begin(10, "search for what is missing"),
+        Stage::NextExperiment => progress.begin(95, "next experiment"),
     }
 }
 
 pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
-    let RecordsArgs { output, cache, format, .. } = &args.records;
-    let (measured, reference) = both_records(&args.records)?;
+    let (RecordsArgs { cache, format, .. }, output) = (&args.records, &args.output);
+    let (measured, reference) = both_records(&args.data, &args.records)?;
     let loaded = overridden(case_or_paper(args.case.as_ref())?, args.inflow);
     let progress = Progress::new(DIAGNOSIS + RUNGS);
     let climbed = climb(&measured, &reference, &loaded, Some(cache), &|climb| match climb {
@@ -79,9 +155,9 @@ pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
 }
 
 /// The runs to be explained and those that show the system as it is.
-fn both_records(args: &RecordsArgs) -> Result<(Records, Vec<Record>), SimError> {
-    let measured = records_of(&args.data)?;
-    let reference = reference_runs(args.reference.as_deref(), &args.data, &measured)?;
+fn both_records(data: &Path, args: &RecordsArgs) -> Result<(Records, Vec<Record>), SimError> {
+    let measured = records_of(data)?;
+    let reference = reference_runs(args.reference.as_deref(), data, &measured)?;
     Ok((measured, reference))
 }
 

@@ -2,17 +2,24 @@
 
 mod cache;
 mod ladder;
+mod plan_text;
+mod specimens;
 mod story;
 
-pub use actuator_gap::{Diagnosis, Findings, Proposal, Question, Record, Records, Stage};
+pub use actuator_gap::{
+    Diagnosis, Findings, Plan, Proposal, Question, Record, Records, Stage, usual_runs,
+};
 pub use cache::FolderStore;
 pub use ladder::{Climb, Ladder, Rung, climb};
+pub use plan_text::PlanText;
+pub use specimens::{MissingInSome, Specimen, Specimens};
 pub use story::Story;
 
 use crate::SimError;
 use crate::problem::Place;
 use crate::stored_actuator::StoredActuator;
 use actuator_gap::DiagnosisError;
+use preisach_dyn::ActuatorModel;
 
 /// Diagnoses measured runs against the base model of the reference runs.
 ///
@@ -20,6 +27,21 @@ use actuator_gap::DiagnosisError;
 /// [`SimError::Diagnosis`] at the place of the data set.
 pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, SimError> {
     actuator_gap::diagnose(measured, question).map_err(|error| at(&measured.folder, error))
+}
+
+/// What runs would show of causes on an actuator, of all if `only` is empty; `told` hears how many of how many are done.
+///
+/// # Errors
+/// [`SimError::Diagnosis`] of the planned runs.
+pub fn plan(
+    model: &ActuatorModel,
+    runs: &[Record],
+    only: &[String],
+    store: &FolderStore<'_>,
+    told: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Plan, SimError> {
+    actuator_gap::plan(model, runs, only, Some(store), told)
+        .map_err(|error| at("planned runs", error))
 }
 
 /// The error of a diagnosis at the place of its data.

@@ -5,7 +5,7 @@ use super::{Diagnosis, Findings};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, table, table_of};
 use model_gap::Candidate;
-use model_gap::discovery::{Confidence, Found, Verdict};
+use model_gap::discovery::{Confidence, Verdict};
 use serde::Serialize;
 
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
@@ -33,13 +33,13 @@ impl Printable for Story<'_> {
         let Self { findings, diagnosis: d } = self;
         let mut found = Sheet::default();
         causes(d, &mut found);
+        seen(findings, &mut found);
         gain(d, findings, &mut found);
         next(d, &mut found);
         let mut ground = Sheet::default();
         base(d, &mut ground);
         let mut screen = Sheet::default();
         screen.paragraphs(&verdict_line(d, findings));
-        class(findings, &mut screen);
         screen.paragraphs(&found.finish());
         screen.line("");
         screen.paragraphs(&ground.finish());
@@ -56,8 +56,8 @@ impl Printable for Story<'_> {
         energies(d, &mut sheet);
         screening(d, &mut sheet);
         sheet.line(format_args!("\n{}", verdict_line(d, findings)));
-        class(findings, &mut sheet);
         causes(d, &mut sheet);
+        seen(findings, &mut sheet);
         gain(d, findings, &mut sheet);
         if !findings.not_observable.is_empty() {
             sheet.line(format_args!(
@@ -174,24 +174,17 @@ fn screening(d: &Diagnosis, sheet: &mut Sheet) {
     sheet.block(&table(&["cause", "score", "floor", "absorbed %", "most alike"], rows));
 }
 
-/// The kind of effect that is missing, in physical words.
-fn class(findings: &Findings, sheet: &mut Sheet) {
-    if let (Some(class), Some(confidence)) = (findings.class, findings.class_confidence) {
-        sheet.line(format_args!("Kind ({}): {}", sure(confidence), class.words()));
-    }
-}
-
 /// The causes named, and the reasons of the verdict.
 fn causes(d: &Diagnosis, sheet: &mut Sheet) {
     for found in &d.finding.causes {
         let cause = &d.candidates[found.candidate];
         sheet.line(format_args!("  {}: {}", cause.id, cause.physics));
         for p in &found.parameters {
+            let unit = if p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
             sheet.line(format_args!(
-                "    {} = {} {} (95 %: {} to {})",
+                "    {} = {}{unit} (95 %: {} to {})",
                 p.name,
                 significant(p.value, 4),
-                p.unit,
                 significant(p.ci95[0], 3),
                 significant(p.ci95[1], 3)
             ));
@@ -202,8 +195,7 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
             }
         }
         sheet.line(format_args!(
-            "    signature: {}; lowers chi-square by {:.0}{}",
-            cause.fingerprint,
+            "    lowers chi-square by {:.0}{}",
             found.drop,
             found
                 .held_out_drop
@@ -228,6 +220,23 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
     for reason in &d.finding.reasons {
         sheet.line(format_args!("  {reason}"));
     }
+}
+
+/// Where nothing is missing: what would have been seen.
+fn seen(findings: &Findings, sheet: &mut Sheet) {
+    if findings.verdict != Verdict::NothingMissing {
+        return;
+    }
+    let sizes = findings.would_have_shown.iter();
+    let mut sizes: Vec<(&str, f64)> =
+        sizes.filter_map(|(id, size)| Some((id.as_str(), (*size)?))).collect();
+    sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let one = |(id, size): &(&str, f64)| format!("{id} {:.1}", 100.0 * size);
+    let sizes: Vec<String> = sizes.iter().map(one).collect();
+    sheet.line(format_args!(
+        "  Would have been seen with 90 % probability, from so many % of the output: {}",
+        sizes.join(", ")
+    ));
 }
 
 /// What the extended model gains.
@@ -264,20 +273,31 @@ fn next(d: &Diagnosis, sheet: &mut Sheet) {
 
 /// The causes found, each with those that could stand in its place.
 fn places(d: &Diagnosis) -> String {
-    let id = |candidate: usize| d.candidates[candidate].id;
-    let one = |found: &Found| {
-        let mut ids = vec![id(found.candidate)];
-        ids.extend(found.alternatives.iter().map(|other| id(other.candidate)));
-        if ids.len() == 1 { ids[0].to_owned() } else { format!("one of {}", ids.join(", ")) }
-    };
-    d.finding.causes.iter().map(one).collect::<Vec<_>>().join(" + ")
+    d.open().iter().map(|ids| one_of(ids)).collect::<Vec<_>>().join(" + ")
 }
 
-fn sure(confidence: Confidence) -> &'static str {
+/// The only name, or the names as a choice.
+pub(super) fn one_of(ids: &[&str]) -> String {
+    if let [only] = ids { (*only).to_owned() } else { format!("one of {}", ids.join(", ")) }
+}
+
+pub(super) fn sure(confidence: Confidence) -> &'static str {
     match confidence {
         Confidence::Confident => "confident",
         Confidence::Tentative => "tentative",
     }
+}
+
+/// What is missing in physical words, its cause as far as it is known, and the feature of the data that shows it.
+fn missing(d: &Diagnosis, findings: &Findings, cause: &str) -> String {
+    let found: Vec<&Candidate> =
+        d.finding.causes.iter().map(|found| &d.candidates[found.candidate]).collect();
+    let kinds: Vec<&str> = found.iter().map(|own| own.class.words()).collect();
+    let sure =
+        findings.class_confidence.map_or_else(String::new, |own| format!(" ({})", sure(own)));
+    let shown: Vec<&str> = found.iter().map(|own| own.fingerprint).collect();
+    let (kinds, shown) = (kinds.join(" + "), shown.join("; "));
+    format!("Missing: {kinds}{sure}. The cause {cause}. What shows it: {shown}.")
 }
 
 fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
@@ -287,12 +307,14 @@ fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
         Verdict::NothingMissing => {
             format!("Nothing is missing ({sure}): the misfit is at the floor of the base model.")
         }
-        Verdict::Named => format!("Missing ({sure}): {names}"),
+        Verdict::Named => missing(d, findings, &format!("({sure}): {names}")),
         Verdict::NamedStructureRemains => {
-            format!("Missing ({sure}): {names}; structure remains that it does not explain")
+            let cause = format!("({sure}): {names}; structure remains that it does not explain");
+            missing(d, findings, &cause)
         }
         Verdict::Ambiguous => {
-            format!("Missing: {}; these data do not distinguish them", places(d))
+            let cause = format!("is {}; these data do not distinguish them", places(d));
+            missing(d, findings, &cause)
         }
         Verdict::Unknown if d.given.is_some_and(|own| own.is_foreign()) => {
             "This simulation is not of this bench: nothing is said of what it lacks.".to_owned()

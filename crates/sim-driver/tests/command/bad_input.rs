@@ -423,3 +423,11 @@ fn aerofoil_tables_of_a_case() {
         ]);
     }
 }
+
+#[test]
+fn a_specimen_given_twice() {
+    let place = Place::new();
+    write_bench(&place, "bench");
+    let own = ["diagnose", "a.ron", "--data", "bench", "--data", "bench", "-o", "out"];
+    place.hhc(&own).rejected(&["--data: is refused: one folder was given twice"]);
+}

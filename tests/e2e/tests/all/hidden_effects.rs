@@ -4,8 +4,12 @@
 
 use std::path::Path;
 
-use sim_driver::diagnose::{Findings, FolderStore, Question, Records, diagnose};
+use model_gap::discovery::Confidence;
+use sim_driver::diagnose::{
+    Diagnosis, Findings, FolderStore, Question, Records, Specimens, Story, diagnose,
+};
 use sim_driver::files::{Folder, RunRole, read_bench};
+use sim_driver::output::{Format, Printable};
 use truth::hidden::{EXPERIMENTS, File, Hidden, Request, Size, measured_set, reference_files};
 
 fn write(folder: &Path, files: &[File]) {
@@ -94,6 +98,10 @@ fn request(hidden: &str, base: u64, seed: u64) -> Request {
 
 /// The findings about one set.
 fn asked(request: &Request, cache: &Path) -> serde_json::Value {
+    serde_json::to_value(Findings::from(&diagnosed(request, cache))).unwrap()
+}
+
+fn diagnosed(request: &Request, cache: &Path) -> Diagnosis {
     let base = request.assignment().base;
     let records = |files: &[File]| {
         let folder = tempfile::tempdir().unwrap();
@@ -104,8 +112,32 @@ fn asked(request: &Request, cache: &Path) -> serde_json::Value {
     let measured = records(&measured_set(request).unwrap().files);
     let store = FolderStore(cache);
     let question = Question { reference, cache: Some(&store), ..Question::default() };
-    let found = diagnose(&measured, &question).unwrap();
-    serde_json::to_value(Findings::from(&found)).unwrap()
+    diagnose(&measured, &question).unwrap()
+}
+
+#[test]
+fn a_cause_that_specimens_share_is_found_once_and_the_one_without_it_is_told() {
+    let cache = tempfile::tempdir().unwrap();
+    let found = [("a", "creep", 10, 3), ("b", "creep", 4, 3), ("c", "null", 10, 1)].map(
+        |(name, hidden, base, seed)| {
+            (name.to_owned(), diagnosed(&request(hidden, base, seed), cache.path()))
+        },
+    );
+    let told = Story::of(&found[0].1).render(Format::Text).unwrap();
+    let first =
+        "Missing: a slow drift (confident). The cause (confident): creep. What shows it: grows as";
+    assert!(told.starts_with(first), "{told}");
+    let Specimens { specimens, missing } = Specimens::of(&found);
+    assert_eq!(specimens.len(), 3);
+    let [creep] = &missing[..] else { panic!("{missing:?}") };
+    assert_eq!(
+        (&creep.causes[..], creep.confidence),
+        (&["creep".to_owned()][..], Confidence::Confident)
+    );
+    assert_eq!(creep.absent_in, ["c"]);
+    // each has its own strength
+    let [a, b] = ["a", "b"].map(|name| &creep.specimens[name]["rate_per_decade"]);
+    assert!(creep.specimens.len() == 2 && a.value > 0.0 && b.value > 0.0, "{creep:?}");
 }
 
 /// A few hidden effects end to end; the whole suite is `cargo xtask hidden-effects`. The names are asked

@@ -6,3 +6,4 @@ mod ladder;
 mod metamorphic;
 mod shipped_bench;
 mod threads;
+mod three_sets;

@@ -1,0 +1,298 @@
+//! What planned runs would show: each cause put into the simulation, the runs simulated and diagnosed.
+
+mod sized;
+mod usual;
+
+pub use usual::usual_runs;
+
+use crate::diagnosis::{Diagnosis, diagnose, places};
+use crate::error::DiagnosisError;
+use crate::findings::Findings;
+use crate::numbers::less;
+use crate::question::{Question, StructureStore};
+use crate::record::{Record, Records};
+use crate::sessions::simulated_um;
+use crate::simulator::{BenchSimulator, Setting};
+use measured_data::Accuracy;
+use model_gap::discovery::{Confidence, Verdict};
+use model_gap::{Class, Effect, SplitMix};
+use preisach_dyn::ActuatorModel;
+use rayon::prelude::*;
+use serde::Serialize;
+use sized::{rms, sized};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Noise of a planned reading, over the rms of the motion of all runs (40 dB).
+const NOISE: f64 = 0.01;
+
+/// Noise of every further planned channel, in its unit.
+const CHANNEL_NOISE: f64 = 0.02;
+
+/// Sizes of a planned effect, rms over that of the motion.
+pub const SIZES: [f64; 2] = [0.03, 0.06];
+
+/// What planned runs would show.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Plan {
+    /// The runs, measured once with nothing missing and once with the cause.
+    pub runs: Vec<String>,
+    /// Noise of the reading, um.
+    pub noise_um: f64,
+    /// Every cause that may be named.
+    pub causes: Vec<PlannedCause>,
+}
+
+/// What the runs would show of a cause.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlannedCause {
+    /// The cause.
+    pub cause: &'static str,
+    /// Size from which it would be seen with 90 % probability, rms over that of the motion; none where it cannot.
+    pub seen_from: Option<f64>,
+    /// Why the runs cannot show it.
+    pub blocked: Option<String>,
+    /// What would be said of it, size by size; empty where it cannot be made so large.
+    pub rehearsed: Vec<Rehearsal>,
+}
+
+/// What a diagnosis says of a simulated cause.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rehearsal {
+    /// Size, rms over that of the motion.
+    pub size: f64,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// How sure it is.
+    pub confidence: Confidence,
+    /// The causes it leaves open.
+    pub causes: Vec<String>,
+    /// The class of the leading one.
+    pub class: Option<Class>,
+    /// How sure the class is.
+    pub class_confidence: Option<Confidence>,
+    /// What it would ask for next.
+    pub next_experiment: String,
+}
+
+/// What runs would show of every cause. Each is put into the simulation, the runs are simulated with noise and diagnosed
+/// beside the same runs with nothing missing. The engine knows the form of the causes exactly here, so a bench will show
+/// rather less.
+///
+/// `runs` say what is commanded and which channels are read; what they hold as outputs is not read. `only` holds the causes
+/// asked about, all if empty. `store` saves nearly half the time. `told` hears how many causes of how many are done.
+///
+/// # Errors
+/// As [`diagnose`]; a cause of `only` that is not in the library.
+pub fn plan(
+    model: &ActuatorModel,
+    runs: &[Record],
+    only: &[String],
+    store: Option<&dyn StructureStore>,
+    told: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Plan, DiagnosisError> {
+    let bench = Rehearsed::new(model, runs, store)?;
+    let asked = places(&bench.null.candidates, only)?;
+    let candidates = bench.null.candidates.iter().enumerate();
+    let is_asked = |c: usize| only.is_empty() || asked.contains(&c);
+    let named: Vec<usize> =
+        candidates.filter(|(c, own)| own.decoy.is_none() && is_asked(*c)).map(|(c, _)| c).collect();
+    let done = AtomicUsize::new(0);
+    let causes = named.par_iter().with_max_len(1).map(|&c| {
+        let found = bench.cause(c);
+        told(done.fetch_add(1, Ordering::Relaxed) + 1, named.len());
+        found
+    });
+    Ok(Plan {
+        runs: runs.iter().map(|run| run.id.clone()).collect(),
+        noise_um: bench.noise_um,
+        causes: causes.collect::<Result<_, _>>()?,
+    })
+}
+
+/// A simulated bench.
+struct Rehearsed<'a> {
+    /// The runs with nothing missing and without noise.
+    plain: Vec<Record>,
+    reference: Vec<Record>,
+    range: (f64, f64),
+    deg_per_um: f64,
+    noise_um: f64,
+    /// The diagnosis of runs with nothing missing.
+    null: Diagnosis,
+    store: Option<&'a dyn StructureStore>,
+}
+
+impl<'a> Rehearsed<'a> {
+    fn new(
+        model: &ActuatorModel,
+        runs: &[Record],
+        store: Option<&'a dyn StructureStore>,
+    ) -> Result<Self, DiagnosisError> {
+        let one = |run: &Record| -> Result<Record, DiagnosisError> {
+            let output = simulated_um(model, run)?;
+            let of = |value: &dyn Fn(f64) -> f64| -> Vec<f64> {
+                run.input.iter().map(|u| value(*u)).collect()
+            };
+            Ok(Record {
+                window: 0..output.len(),
+                output,
+                amplifier: run.amplifier.as_ref().map(|_| run.input.clone()),
+                temperature: run.temperature.as_ref().map(|_| of(&|_| 0.0)),
+                load: run.load.as_ref().map(|_| of(&|_| 0.0)),
+                is_reference: false,
+                ..run.clone()
+            })
+        };
+        let plain: Vec<Record> = runs.iter().map(one).collect::<Result<_, _>>()?;
+        let noise_um = NOISE * rms(plain.iter().map(|run| run.output.as_slice()));
+        let range = (model.range_volt.lowest_volt(), model.range_volt.highest_volt());
+        let deg_per_um = model.calibration.deg_per_um;
+        let reference = noisy(&plain, noise_um, 1);
+        let measured = records(noisy(&plain, noise_um, 2), range, deg_per_um);
+        let question =
+            Question { reference: reference.clone(), cache: store, ..Question::default() };
+        let null = diagnose(&measured, &question)?;
+        Ok(Self { plain, reference, range, deg_per_um, noise_um, null, store })
+    }
+
+    /// What the runs show of a cause.
+    fn cause(&self, c: usize) -> Result<PlannedCause, DiagnosisError> {
+        let candidate = &self.null.candidates[c];
+        let runs: Vec<&Record> = self.plain.iter().collect();
+        let setting = Setting {
+            base: &self.null.base,
+            references: self.reference.iter().collect(),
+            causes: &self.null.library,
+            range: self.range,
+            accuracy: self.null.accuracy(),
+        };
+        let simulator = BenchSimulator::new(setting, runs)?;
+        let mut rehearsed = Vec::new();
+        if candidate.blocked.is_none() {
+            for size in SIZES {
+                if let Some(effect) = sized(&simulator, (c, candidate), size)? {
+                    rehearsed.push(self.rehearse(&simulator, &effect, size)?);
+                }
+            }
+        }
+        Ok(PlannedCause {
+            cause: candidate.id,
+            seen_from: self.null.finding.limits[c],
+            blocked: candidate.blocked.clone(),
+            rehearsed,
+        })
+    }
+
+    /// The diagnosis of the runs with an effect.
+    fn rehearse(
+        &self,
+        simulator: &BenchSimulator<'_>,
+        effect: &Effect,
+        size: f64,
+    ) -> Result<Rehearsal, DiagnosisError> {
+        let with = simulator.rehearsed(std::slice::from_ref(effect))?;
+        let without = simulator.rehearsed(&[])?;
+        let mut runs = self.plain.clone();
+        for ((run, with), without) in runs.iter_mut().zip(with).zip(without) {
+            // the simulation's own form, with what the cause changes of the base model's
+            let change = less(&with.output, &without.output);
+            run.output.iter_mut().zip(change).for_each(|(y, change)| *y += change);
+            (run.amplifier, run.temperature, run.load) =
+                (with.amplifier, with.temperature, with.load);
+        }
+        let measured = records(noisy(&runs, self.noise_um, 3), self.range, self.deg_per_um);
+        let reference = self.reference.clone();
+        let question = Question { reference, cache: self.store, ..Question::default() };
+        let found = Findings::from(&diagnose(&measured, &question)?);
+        Ok(Rehearsal {
+            size,
+            verdict: found.verdict,
+            confidence: found.confidence,
+            causes: found.causes,
+            class: found.class,
+            class_confidence: found.class_confidence,
+            next_experiment: found.next_experiment,
+        })
+    }
+}
+
+/// Runs read once, with another draw of the noise.
+fn noisy(runs: &[Record], noise_um: f64, draw: u64) -> Vec<Record> {
+    let mut noise = SplitMix(draw);
+    let mut read = |signal: &mut [f64], size: f64| {
+        for value in signal {
+            *value += size * noise.normal();
+        }
+    };
+    let mut runs = runs.to_vec();
+    for run in &mut runs {
+        read(&mut run.output, noise_um);
+        let channels = [&mut run.amplifier, &mut run.temperature, &mut run.load];
+        for signal in channels.into_iter().flatten() {
+            read(signal, CHANNEL_NOISE);
+        }
+    }
+    runs
+}
+
+fn records(runs: Vec<Record>, range: (f64, f64), deg_per_um: f64) -> Records {
+    Records {
+        title: "planned runs".into(),
+        folder: "planned runs".into(),
+        runs,
+        range,
+        input_unit: "V".into(),
+        output_unit: "um".into(),
+        input_label: "command_V".into(),
+        output_label: "displacement_um".into(),
+        deg_per_um: Some(deg_per_um),
+        accuracy: Accuracy::default(),
+        is_bench: true,
+        content_hash: String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use preisach_dyn::{ActuatorLaw, Calibration, LinearGain, VoltageRange};
+
+    fn straight() -> ActuatorModel {
+        let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 0.1, bias_volt: 0.0 });
+        let calibration = Calibration { deg_per_um: 0.04, zero_um: 0.0 };
+        ActuatorModel::new(law, VoltageRange::new(-20.0, 150.0).unwrap(), calibration)
+    }
+
+    /// Without the terminal voltage a lag may be on either side of it.
+    #[test]
+    fn a_plan_says_which_channel_parts_what() {
+        let runs = usual_runs((-20.0, 150.0));
+        let only = ["electrical-lag".to_owned()];
+        let lag = |runs: &[Record]| {
+            let planned = plan(&straight(), runs, &only, None, &|_, _| ()).unwrap();
+            planned.causes[0].rehearsed[0].clone()
+        };
+        let bare = lag(&runs);
+        assert!(bare.causes.len() > 1 && bare.confidence == Confidence::Tentative, "{bare:?}");
+        assert_eq!(bare.next_experiment, "amplifier-monitor");
+        let monitored: Vec<Record> = runs
+            .into_iter()
+            .map(|run| Record { amplifier: Some(run.input.clone()), ..run })
+            .collect();
+        let told = lag(&monitored);
+        let class = (told.class, told.class_confidence);
+        assert_eq!(told.causes, only);
+        assert_eq!(class, (Some(Class::LagBeforeTerminals), Some(Confidence::Confident)));
+    }
+
+    #[test]
+    fn a_plan_of_one_frequency_shows_no_lag() {
+        let only = ["electrical-lag".to_owned()];
+        let wave = |i: u32| 65.0 + 60.0 * (0.0628 * f64::from(i)).sin();
+        let runs = [Record::new("sine", 1e-3, (0..2000).map(wave).collect(), Vec::new())];
+        let planned = plan(&straight(), &runs, &only, None, &|_, _| ()).unwrap();
+        let lag = &planned.causes[0];
+        assert!(lag.seen_from.is_none() && lag.blocked.is_some() && lag.rehearsed.is_empty());
+        assert!(plan(&straight(), &runs, &["lag".to_owned()], None, &|_, _| ()).is_err());
+    }
+}

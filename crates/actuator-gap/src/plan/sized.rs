@@ -1,0 +1,69 @@
+//! A cause made so strong that it has a size.
+
+use crate::numbers::less;
+use crate::simulator::BenchSimulator;
+use model_gap::{Candidate, Effect, GapError, Scale};
+use rotor_base::mean_square;
+
+/// Places of a parameter at which the size of its effect is looked at, and halvings between two of them.
+const PLACES: usize = 25;
+const HALVINGS: usize = 16;
+
+/// Part by which the size of a planned effect may miss.
+const NEAR: f64 = 0.02;
+
+/// Rms of signals, those of all samples together.
+pub(super) fn rms<'s>(signals: impl Iterator<Item = &'s [f64]>) -> f64 {
+    let all: Vec<f64> = signals.flatten().copied().collect();
+    mean_square(&all).sqrt()
+}
+
+/// A cause of a size, rms over that of the motion; none where it has none so large. Its first parameter makes the size,
+/// the others stay where a search starts.
+pub(super) fn sized(
+    simulator: &BenchSimulator<'_>,
+    (candidate, own): (usize, &Candidate),
+    size: f64,
+) -> Result<Option<Effect>, GapError> {
+    let (Some(start), Some(first)) = (own.starts.first(), own.parameters.first()) else {
+        return Ok(None);
+    };
+    let effect = |value: f64| {
+        let mut values = start.clone();
+        values[0] = value;
+        Effect { candidate, values }
+    };
+    let without = simulator.rehearsed(&[])?;
+    let motion = rms(without.iter().map(|run| run.output.as_slice()));
+    let share = |value: f64| -> Result<f64, GapError> {
+        let with = simulator.rehearsed(&[effect(value)])?;
+        let pairs = with.iter().zip(&without);
+        let change: Vec<Vec<f64>> = pairs.map(|(a, b)| less(&a.output, &b.output)).collect();
+        Ok(rms(change.iter().map(Vec::as_slice)) / motion)
+    };
+    let is_log = first.scale == Scale::Log;
+    let low = if first.is_amount { 0.0 } else { first.low };
+    let place = |k: usize| {
+        let part = k as f64 / (PLACES - 1) as f64;
+        if is_log { low * (first.high / low).powf(part) } else { low + part * (first.high - low) }
+    };
+    let shares: Vec<f64> = (0..PLACES).map(|k| share(place(k))).collect::<Result<_, _>>()?;
+    let crosses = |k: &usize| (shares[*k] - size) * (shares[*k + 1] - size) <= 0.0;
+    let nearest = (0..PLACES - 1).filter(crosses).min_by(|&a, &b| {
+        let away = |k: usize| (place(k) - start[0]).abs();
+        away(a).total_cmp(&away(b))
+    });
+    let Some(k) = nearest else { return Ok(None) };
+    let rises = shares[k] < shares[k + 1];
+    let (mut below, mut above) =
+        if rises { (place(k), place(k + 1)) } else { (place(k + 1), place(k)) };
+    for _ in 0..HALVINGS {
+        let middle = if is_log { (below * above).sqrt() } else { f64::midpoint(below, above) };
+        let found = share(middle)?;
+        if (found / size - 1.0).abs() < NEAR {
+            return Ok(Some(effect(middle)));
+        }
+        if found < size { below = middle } else { above = middle }
+    }
+    Ok(None)
+}

@@ -1,0 +1,41 @@
+//! What noise, range and simulation of the two sessions do not bear out.
+
+use super::{GivenModel, noisier, share_beyond};
+use crate::base::BaseModel;
+use crate::record::Record;
+use model_gap::discovery::{Confidence, Finding, Reason, Verdict};
+
+/// Share of the measured samples that may lie where no reference run has been.
+const MOST_BEYOND: f64 = 0.05;
+
+/// The runs of both sessions beside what is known of them.
+pub(crate) struct Sessions<'a> {
+    pub(crate) runs: &'a [&'a Record],
+    pub(crate) references: &'a [&'a Record],
+    pub(crate) base: &'a BaseModel,
+    pub(crate) given: Option<GivenModel>,
+}
+
+/// Takes from a finding what noise, range and simulation of the two sessions do not bear out.
+pub(crate) fn doubt(finding: &mut Finding, sessions: &Sessions<'_>) {
+    if finding.verdict == Verdict::NothingMissing
+        && let Some(reason) = noisier(sessions.runs, sessions.base)
+    {
+        finding.confidence = Confidence::Tentative;
+        finding.reasons.push(reason);
+    }
+    let share = share_beyond(sessions.runs, sessions.references);
+    if share > MOST_BEYOND {
+        finding.confidence = Confidence::Tentative;
+        if let Some(class) = &mut finding.class {
+            class.confidence = Confidence::Tentative;
+        }
+        finding.reasons.push(Reason::BeyondReference { share });
+    }
+    if let Some(own) = sessions.given.filter(GivenModel::is_foreign) {
+        finding.verdict = Verdict::Unknown;
+        (finding.confidence, finding.class, finding.gain) = (Confidence::Tentative, None, None);
+        let reason = Reason::OtherBench { percent: own.error_percent, scale: own.scale };
+        finding.reasons.insert(0, reason);
+    }
+}
