@@ -12,7 +12,7 @@ use crate::sessions::{
 use crate::simulator::{BenchSimulator, CALIBRATIONS, ChannelKind, Setting, averaged, inputs_of};
 use crate::surrogate;
 use measured_data::Accuracy;
-use model_gap::discovery::{Discovery, Finding, Found, Settings, Signal, Verdict};
+use model_gap::discovery::{Discovery, Finding, Rival, Settings, Signal, Verdict};
 use model_gap::{Candidate, EnergySplit, GapError};
 use rotor_base::variance;
 
@@ -103,17 +103,14 @@ impl Diagnosis {
         !(LIKELY_SCALE[0]..=LIKELY_SCALE[1]).contains(&self.scale)
     }
 
-    /// Each thing that was found missing, as the causes it may be, the best first; empty where nothing has a name.
+    /// Each thing that was found missing, as every cause that the data do not exclude, the best first; empty where nothing
+    /// has a name.
     pub fn open(&self) -> Vec<Vec<&'static str>> {
         if self.finding.verdict == Verdict::Unknown {
             return Vec::new();
         }
-        let id = |candidate: usize| self.candidates[candidate].id;
-        let one = |found: &Found| {
-            let others = found.alternatives.iter().map(|other| id(other.candidate));
-            std::iter::once(id(found.candidate)).chain(others).collect()
-        };
-        self.finding.causes.iter().map(one).collect()
+        let id = |rival: &Rival| self.candidates[rival.candidate].id;
+        self.finding.causes.iter().map(|found| found.rivals.iter().map(id).collect()).collect()
     }
 
     /// Causes that these data could not have shown at usual strength; and, where nothing is named, those
@@ -202,10 +199,14 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     begin(Stage::Search);
     let settings = Settings { has_reference, ..Settings::default() };
     let mut finding = search(&simulator, &candidates, &floors, settings, given.as_deref())?;
-    doubt(
-        &mut finding,
-        &Sessions { runs: &runs, references: &references, base: &base, given: given_model },
-    );
+    let sessions = Sessions {
+        runs: &runs,
+        references: &references,
+        base: &base,
+        given: given_model,
+        takes_for_true: given.is_some(),
+    };
+    doubt(&mut finding, &sessions);
     begin(Stage::NextExperiment);
     let bench = next::Bench { setting, candidates: &candidates, runs: &runs, design: &design };
     let next = next::proposal(&bench, &finding)?;

@@ -42,7 +42,7 @@ pub use findings::{
     BandValue, ComparedValue, Findings, GainValue, GivenModelValue, ParameterValue, ScreenValue,
 };
 pub use next::Proposal;
-pub use plan::{Plan, PlannedCause, Rehearsal, SIZES, plan, usual_runs};
+pub use plan::{Plan, Planned, PlannedCause, Rehearsal, SIZES, plan, usual_runs};
 pub use question::{Question, Stage, StructureStore};
 pub use record::{Record, Records};
 pub use rungs::{Asked, RungModel, rung_models};

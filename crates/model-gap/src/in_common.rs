@@ -30,10 +30,11 @@ pub fn in_common<'a>(open: &[Vec<Vec<&'a str>>]) -> Vec<InCommon<'a>> {
 /// beside it in all of them.
 fn most_shared<'a>(open: &[Vec<Vec<&'a str>>], left: &[(usize, usize)]) -> Option<InCommon<'a>> {
     let rank = |id: &str, (s, f): (usize, usize)| open[s][f].iter().position(|own| *own == id);
-    // the first finding of each specimen that the explanation could be
+    // the finding of each specimen that the explanation could be best
     let places = |id: &str| {
         let mut places: Vec<(usize, usize)> =
             left.iter().copied().filter(|place| rank(id, *place).is_some()).collect();
+        places.sort_by_key(|&place| (place.0, rank(id, place)));
         places.dedup_by_key(|place| place.0);
         places
     };

@@ -10,7 +10,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         let fast_rate = design.fast_rate.max(1.0);
         Candidate {
             id: "amplifier-current-limit",
-            physics: "The amplifier's current is limited into the capacitance, |V'| <= I / C.",
+            physics: "The amplifier's current is limited into the capacitance, V' within +-I / C.",
             parameters: vec![logarithmic("slew_rate", "V/s", 0.02 * fast_rate, 50.0 * fast_rate)],
             class: Class::Slew,
             is_common: true,

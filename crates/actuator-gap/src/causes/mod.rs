@@ -159,6 +159,18 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_page_has_a_row_of_every_cause() {
+        let page = include_str!("../../../../docs/src/theory/discovery.md");
+        let row = |own: Candidate| {
+            let apart = own.separating.join(", ");
+            format!("| `{}` | {} | {} | {apart} |", own.id, own.physics, own.fingerprint)
+        };
+        let rows: Vec<String> = candidates(&LIBRARY, &design()).into_iter().map(row).collect();
+        let table = rows.join("\n");
+        assert!(page.contains(&table), "the table of the section `The causes`:\n{table}");
+    }
+
     /// A load cell refutes a load only where it reads none: noise alone, not a spring of either sign.
     #[test]
     fn a_load_cell_that_reads_nothing_refutes_a_load() {

@@ -5,6 +5,7 @@ mod usual;
 
 pub use usual::usual_runs;
 
+use crate::causes::LIBRARY;
 use crate::diagnosis::{Diagnosis, diagnose, places};
 use crate::error::DiagnosisError;
 use crate::findings::Findings;
@@ -19,16 +20,17 @@ use model_gap::{Class, Effect, SplitMix};
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use serde::Serialize;
-use sized::{rms, sized};
+use sized::{sized, spread};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Noise of a planned reading, over the rms of the motion of all runs (40 dB).
+/// Noise of a planned reading, over the spread of the motion in all runs (40 dB).
 const NOISE: f64 = 0.01;
 
-/// Noise of every further planned channel, in its unit.
-const CHANNEL_NOISE: f64 = 0.02;
+/// Noise of a planned terminal voltage, V, and of a planned temperature, K.
+const TERMINAL_NOISE_VOLT: f64 = 0.02;
+const TEMPERATURE_NOISE_K: f64 = 0.02;
 
-/// Sizes of a planned effect, rms over that of the motion.
+/// Sizes of a planned effect, its spread over that of the motion.
 pub const SIZES: [f64; 2] = [0.03, 0.06];
 
 /// What planned runs would show.
@@ -38,6 +40,10 @@ pub struct Plan {
     pub runs: Vec<String>,
     /// Noise of the reading, um.
     pub noise_um: f64,
+    /// Noise of the terminal voltage where it is read, V.
+    pub terminal_noise_volt: f64,
+    /// Noise of the temperature where it is read, K.
+    pub temperature_noise_k: f64,
     /// Every cause that may be named.
     pub causes: Vec<PlannedCause>,
 }
@@ -47,7 +53,9 @@ pub struct Plan {
 pub struct PlannedCause {
     /// The cause.
     pub cause: &'static str,
-    /// Size from which it would be seen with 90 % probability, rms over that of the motion; none where it cannot.
+    /// Its class.
+    pub class: Class,
+    /// Size from which it would be seen with 90 % probability, over the spread of the motion; none where it cannot.
     pub seen_from: Option<f64>,
     /// Why the runs cannot show it.
     pub blocked: Option<String>,
@@ -58,7 +66,7 @@ pub struct PlannedCause {
 /// What a diagnosis says of a simulated cause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rehearsal {
-    /// Size, rms over that of the motion.
+    /// Size, over the spread of the motion.
     pub size: f64,
     /// The verdict.
     pub verdict: Verdict,
@@ -78,24 +86,23 @@ pub struct Rehearsal {
 /// beside the same runs with nothing missing. The engine knows the form of the causes exactly here, so a bench will show
 /// rather less.
 ///
-/// `runs` say what is commanded and which channels are read; what they hold as outputs is not read. `only` holds the causes
-/// asked about, all if empty. `store` saves nearly half the time. `told` hears how many causes of how many are done.
+/// `runs` say what is commanded, what is judged and which channels are read; what they hold as outputs is not read, and load
+/// cells are left out: how stiff a load is the simulation does not know. `store` saves time. `told` hears how many causes of
+/// how many are done.
 ///
 /// # Errors
 /// As [`diagnose`]; a cause of `only` that is not in the library.
 pub fn plan(
     model: &ActuatorModel,
-    runs: &[Record],
-    only: &[String],
+    planned: &Planned<'_>,
     store: Option<&dyn StructureStore>,
     told: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Plan, DiagnosisError> {
-    let bench = Rehearsed::new(model, runs, store)?;
-    let asked = places(&bench.null.candidates, only)?;
-    let candidates = bench.null.candidates.iter().enumerate();
-    let is_asked = |c: usize| only.is_empty() || asked.contains(&c);
-    let named: Vec<usize> =
-        candidates.filter(|(c, own)| own.decoy.is_none() && is_asked(*c)).map(|(c, _)| c).collect();
+    let bench = Rehearsed::new(model, planned, store)?;
+    let mut named = places(&bench.null.candidates[..LIBRARY.len()], planned.only)?;
+    if named.is_empty() {
+        named = (0..LIBRARY.len()).collect();
+    }
     let done = AtomicUsize::new(0);
     let causes = named.par_iter().with_max_len(1).map(|&c| {
         let found = bench.cause(c);
@@ -103,10 +110,23 @@ pub fn plan(
         found
     });
     Ok(Plan {
-        runs: runs.iter().map(|run| run.id.clone()).collect(),
+        runs: planned.runs.iter().map(|run| run.id.clone()).collect(),
         noise_um: bench.noise_um,
+        terminal_noise_volt: TERMINAL_NOISE_VOLT,
+        temperature_noise_k: TEMPERATURE_NOISE_K,
         causes: causes.collect::<Result<_, _>>()?,
     })
+}
+
+/// What is planned.
+#[derive(Debug, Clone, Copy)]
+pub struct Planned<'a> {
+    /// The runs.
+    pub runs: &'a [Record],
+    /// How well the channels will keep their calibration.
+    pub accuracy: Accuracy,
+    /// The causes asked about; all if empty.
+    pub only: &'a [String],
 }
 
 /// A simulated bench.
@@ -114,8 +134,7 @@ struct Rehearsed<'a> {
     /// The runs with nothing missing and without noise.
     plain: Vec<Record>,
     reference: Vec<Record>,
-    range: (f64, f64),
-    deg_per_um: f64,
+    bench: Bench,
     noise_um: f64,
     /// The diagnosis of runs with nothing missing.
     null: Diagnosis,
@@ -125,34 +144,35 @@ struct Rehearsed<'a> {
 impl<'a> Rehearsed<'a> {
     fn new(
         model: &ActuatorModel,
-        runs: &[Record],
+        planned: &Planned<'_>,
         store: Option<&'a dyn StructureStore>,
     ) -> Result<Self, DiagnosisError> {
         let one = |run: &Record| -> Result<Record, DiagnosisError> {
             let output = simulated_um(model, run)?;
-            let of = |value: &dyn Fn(f64) -> f64| -> Vec<f64> {
-                run.input.iter().map(|u| value(*u)).collect()
-            };
             Ok(Record {
-                window: 0..output.len(),
-                output,
+                // what is planned without outputs is judged from beginning to end
+                window: if run.window.is_empty() { 0..output.len() } else { run.window.clone() },
                 amplifier: run.amplifier.as_ref().map(|_| run.input.clone()),
-                temperature: run.temperature.as_ref().map(|_| of(&|_| 0.0)),
-                load: run.load.as_ref().map(|_| of(&|_| 0.0)),
+                temperature: run.temperature.as_ref().map(|_| vec![0.0; output.len()]),
+                load: None,
                 is_reference: false,
+                output,
                 ..run.clone()
             })
         };
-        let plain: Vec<Record> = runs.iter().map(one).collect::<Result<_, _>>()?;
-        let noise_um = NOISE * rms(plain.iter().map(|run| run.output.as_slice()));
-        let range = (model.range_volt.lowest_volt(), model.range_volt.highest_volt());
-        let deg_per_um = model.calibration.deg_per_um;
+        let plain: Vec<Record> = planned.runs.iter().map(one).collect::<Result<_, _>>()?;
+        let noise_um = NOISE * spread(&plain, |run| run.output.clone());
+        let bench = Bench {
+            range_volt: (model.range_volt.lowest_volt(), model.range_volt.highest_volt()),
+            deg_per_um: model.calibration.deg_per_um,
+            accuracy: planned.accuracy,
+        };
         let reference = noisy(&plain, noise_um, 1);
-        let measured = records(noisy(&plain, noise_um, 2), range, deg_per_um);
+        let measured = bench.records(noisy(&plain, noise_um, 2));
         let question =
             Question { reference: reference.clone(), cache: store, ..Question::default() };
         let null = diagnose(&measured, &question)?;
-        Ok(Self { plain, reference, range, deg_per_um, noise_um, null, store })
+        Ok(Self { plain, reference, bench, noise_um, null, store })
     }
 
     /// What the runs show of a cause.
@@ -163,8 +183,8 @@ impl<'a> Rehearsed<'a> {
             base: &self.null.base,
             references: self.reference.iter().collect(),
             causes: &self.null.library,
-            range: self.range,
-            accuracy: self.null.accuracy(),
+            range: self.bench.range_volt,
+            accuracy: self.bench.accuracy,
         };
         let simulator = BenchSimulator::new(setting, runs)?;
         let mut rehearsed = Vec::new();
@@ -177,6 +197,7 @@ impl<'a> Rehearsed<'a> {
         }
         Ok(PlannedCause {
             cause: candidate.id,
+            class: candidate.class,
             seen_from: self.null.finding.limits[c],
             blocked: candidate.blocked.clone(),
             rehearsed,
@@ -197,10 +218,9 @@ impl<'a> Rehearsed<'a> {
             // the simulation's own form, with what the cause changes of the base model's
             let change = less(&with.output, &without.output);
             run.output.iter_mut().zip(change).for_each(|(y, change)| *y += change);
-            (run.amplifier, run.temperature, run.load) =
-                (with.amplifier, with.temperature, with.load);
+            (run.amplifier, run.temperature) = (with.amplifier, with.temperature);
         }
-        let measured = records(noisy(&runs, self.noise_um, 3), self.range, self.deg_per_um);
+        let measured = self.bench.records(noisy(&runs, self.noise_um, 3));
         let reference = self.reference.clone();
         let question = Question { reference, cache: self.store, ..Question::default() };
         let found = Findings::from(&diagnose(&measured, &question)?);
@@ -227,28 +247,37 @@ fn noisy(runs: &[Record], noise_um: f64, draw: u64) -> Vec<Record> {
     let mut runs = runs.to_vec();
     for run in &mut runs {
         read(&mut run.output, noise_um);
-        let channels = [&mut run.amplifier, &mut run.temperature, &mut run.load];
-        for signal in channels.into_iter().flatten() {
-            read(signal, CHANNEL_NOISE);
+        let noise = [TERMINAL_NOISE_VOLT, TEMPERATURE_NOISE_K];
+        for (signal, size) in [&mut run.amplifier, &mut run.temperature].into_iter().zip(noise) {
+            read(signal.as_deref_mut().unwrap_or_default(), size);
         }
     }
     runs
 }
 
-fn records(runs: Vec<Record>, range: (f64, f64), deg_per_um: f64) -> Records {
-    Records {
-        title: "planned runs".into(),
-        folder: "planned runs".into(),
-        runs,
-        range,
-        input_unit: "V".into(),
-        output_unit: "um".into(),
-        input_label: "command_V".into(),
-        output_label: "displacement_um".into(),
-        deg_per_um: Some(deg_per_um),
-        accuracy: Accuracy::default(),
-        is_bench: true,
-        content_hash: String::new(),
+/// What the simulated runs have in common.
+struct Bench {
+    range_volt: (f64, f64),
+    deg_per_um: f64,
+    accuracy: Accuracy,
+}
+
+impl Bench {
+    fn records(&self, runs: Vec<Record>) -> Records {
+        Records {
+            title: "planned runs".into(),
+            folder: "planned runs".into(),
+            runs,
+            range: self.range_volt,
+            input_unit: "V".into(),
+            output_unit: "um".into(),
+            input_label: "command_V".into(),
+            output_label: "displacement_um".into(),
+            deg_per_um: Some(self.deg_per_um),
+            accuracy: self.accuracy,
+            is_bench: true,
+            content_hash: String::new(),
+        }
     }
 }
 
@@ -263,15 +292,18 @@ mod tests {
         ActuatorModel::new(law, VoltageRange::new(-20.0, 150.0).unwrap(), calibration)
     }
 
+    fn asked(model: &ActuatorModel, runs: &[Record], only: &[String]) -> Plan {
+        let planned = Planned { runs, accuracy: Accuracy::default(), only };
+        plan(model, &planned, None, &|_, _| ()).unwrap()
+    }
+
     /// Without the terminal voltage a lag may be on either side of it.
     #[test]
     fn a_plan_says_which_channel_parts_what() {
-        let runs = usual_runs((-20.0, 150.0));
+        let mut runs = usual_runs((-20.0, 150.0));
+        runs.retain(|run| run.input.len() < 5000);
         let only = ["electrical-lag".to_owned()];
-        let lag = |runs: &[Record]| {
-            let planned = plan(&straight(), runs, &only, None, &|_, _| ()).unwrap();
-            planned.causes[0].rehearsed[0].clone()
-        };
+        let lag = |runs: &[Record]| asked(&straight(), runs, &only).causes[0].rehearsed[0].clone();
         let bare = lag(&runs);
         assert!(bare.causes.len() > 1 && bare.confidence == Confidence::Tentative, "{bare:?}");
         assert_eq!(bare.next_experiment, "amplifier-monitor");
@@ -290,9 +322,25 @@ mod tests {
         let only = ["electrical-lag".to_owned()];
         let wave = |i: u32| 65.0 + 60.0 * (0.0628 * f64::from(i)).sin();
         let runs = [Record::new("sine", 1e-3, (0..2000).map(wave).collect(), Vec::new())];
-        let planned = plan(&straight(), &runs, &only, None, &|_, _| ()).unwrap();
-        let lag = &planned.causes[0];
+        let lag = &asked(&straight(), &runs, &only).causes[0];
         assert!(lag.seen_from.is_none() && lag.blocked.is_some() && lag.rehearsed.is_empty());
-        assert!(plan(&straight(), &runs, &["lag".to_owned()], None, &|_, _| ()).is_err());
+        for id in ["lag", "reading-range"] {
+            let only = [id.to_owned()];
+            let planned = Planned { runs: &runs, accuracy: Accuracy::default(), only: &only };
+            assert!(plan(&straight(), &planned, None, &|_, _| ()).is_err(), "{id}");
+        }
+    }
+
+    /// Where the sensor has its zero says nothing about noise and size.
+    #[test]
+    fn a_plan_does_not_depend_on_the_zero() {
+        let wave = |i: u32| 65.0 + 60.0 * (0.0628 * f64::from(i)).sin();
+        let runs = [Record::new("sine", 1e-3, (0..2000).map(wave).collect(), Vec::new())];
+        let mut model = straight();
+        let noise_um = |model: &ActuatorModel| asked(model, &runs, &["creep".to_owned()]).noise_um;
+        let (here, by_hand) = (noise_um(&model), 0.01 * 2.5 * 60.0 / 2.0_f64.sqrt());
+        assert!((here / by_hand - 1.0).abs() < 0.01, "{here} um, {by_hand} by hand");
+        model.calibration.zero_um = 500.0;
+        assert!((noise_um(&model) / here - 1.0).abs() < 1e-9);
     }
 }

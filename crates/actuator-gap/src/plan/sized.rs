@@ -1,9 +1,10 @@
 //! A cause made so strong that it has a size.
 
 use crate::numbers::less;
+use crate::record::Record;
 use crate::simulator::BenchSimulator;
 use model_gap::{Candidate, Effect, GapError, Scale};
-use rotor_base::mean_square;
+use rotor_base::variance;
 
 /// Places of a parameter at which the size of its effect is looked at, and halvings between two of them.
 const PLACES: usize = 25;
@@ -12,34 +13,42 @@ const HALVINGS: usize = 16;
 /// Part by which the size of a planned effect may miss.
 const NEAR: f64 = 0.02;
 
-/// Rms of signals, those of all samples together.
-pub(super) fn rms<'s>(signals: impl Iterator<Item = &'s [f64]>) -> f64 {
-    let all: Vec<f64> = signals.flatten().copied().collect();
-    mean_square(&all).sqrt()
+/// Spread of a signal in all runs, about its mean in each.
+pub(super) fn spread(runs: &[Record], signal: impl Fn(&Record) -> Vec<f64>) -> f64 {
+    let (mut squares, mut samples) = (0.0, 0.0);
+    for run in runs {
+        let signal = signal(run);
+        let judged = run.judged(&signal);
+        squares += judged.len() as f64 * variance(judged);
+        samples += judged.len() as f64;
+    }
+    (squares / f64::max(samples, 1.0)).sqrt()
 }
 
-/// A cause of a size, rms over that of the motion; none where it has none so large. Its first parameter makes the size,
-/// the others stay where a search starts.
+/// A cause of a size, its spread over that of the motion; none where it has none so large. The first parameter that a weak
+/// effect grows with makes the size, the first of all where none is; the others stay where a search starts.
 pub(super) fn sized(
     simulator: &BenchSimulator<'_>,
     (candidate, own): (usize, &Candidate),
     size: f64,
 ) -> Result<Option<Effect>, GapError> {
-    let (Some(start), Some(first)) = (own.starts.first(), own.parameters.first()) else {
+    let at = own.parameters.iter().position(|p| p.is_amount || p.grows).unwrap_or(0);
+    let (Some(start), Some(first)) = (own.starts.first(), own.parameters.get(at)) else {
         return Ok(None);
     };
     let effect = |value: f64| {
         let mut values = start.clone();
-        values[0] = value;
+        values[at] = value;
         Effect { candidate, values }
     };
     let without = simulator.rehearsed(&[])?;
-    let motion = rms(without.iter().map(|run| run.output.as_slice()));
+    let motion = spread(&without, |run| run.output.clone());
     let share = |value: f64| -> Result<f64, GapError> {
-        let with = simulator.rehearsed(&[effect(value)])?;
-        let pairs = with.iter().zip(&without);
-        let change: Vec<Vec<f64>> = pairs.map(|(a, b)| less(&a.output, &b.output)).collect();
-        Ok(rms(change.iter().map(Vec::as_slice)) / motion)
+        let mut change = simulator.rehearsed(&[effect(value)])?;
+        for (with, without) in change.iter_mut().zip(&without) {
+            with.output = less(&with.output, &without.output);
+        }
+        Ok(spread(&change, |run| run.output.clone()) / motion)
     };
     let is_log = first.scale == Scale::Log;
     let low = if first.is_amount { 0.0 } else { first.low };
@@ -50,7 +59,7 @@ pub(super) fn sized(
     let shares: Vec<f64> = (0..PLACES).map(|k| share(place(k))).collect::<Result<_, _>>()?;
     let crosses = |k: &usize| (shares[*k] - size) * (shares[*k + 1] - size) <= 0.0;
     let nearest = (0..PLACES - 1).filter(crosses).min_by(|&a, &b| {
-        let away = |k: usize| (place(k) - start[0]).abs();
+        let away = |k: usize| (place(k) - start[at]).abs();
         away(a).total_cmp(&away(b))
     });
     let Some(k) = nearest else { return Ok(None) };

@@ -14,6 +14,8 @@ pub(crate) struct Sessions<'a> {
     pub(crate) references: &'a [&'a Record],
     pub(crate) base: &'a BaseModel,
     pub(crate) given: Option<GivenModel>,
+    /// Whether the causes were asked for and not searched.
+    pub(crate) takes_for_true: bool,
 }
 
 /// Takes from a finding what noise, range and simulation of the two sessions do not bear out.
@@ -24,13 +26,12 @@ pub(crate) fn doubt(finding: &mut Finding, sessions: &Sessions<'_>) {
         finding.confidence = Confidence::Tentative;
         finding.reasons.push(reason);
     }
+    if sessions.takes_for_true {
+        be_tentative(finding, Reason::TakenForTrue);
+    }
     let share = share_beyond(sessions.runs, sessions.references);
     if share > MOST_BEYOND {
-        finding.confidence = Confidence::Tentative;
-        if let Some(class) = &mut finding.class {
-            class.confidence = Confidence::Tentative;
-        }
-        finding.reasons.push(Reason::BeyondReference { share });
+        be_tentative(finding, Reason::BeyondReference { share });
     }
     if let Some(own) = sessions.given.filter(GivenModel::is_foreign) {
         finding.verdict = Verdict::Unknown;
@@ -38,4 +39,13 @@ pub(crate) fn doubt(finding: &mut Finding, sessions: &Sessions<'_>) {
         let reason = Reason::OtherBench { percent: own.error_percent, scale: own.scale };
         finding.reasons.insert(0, reason);
     }
+}
+
+/// Makes name and class tentative, and says why.
+fn be_tentative(finding: &mut Finding, why: Reason) {
+    finding.confidence = Confidence::Tentative;
+    if let Some(class) = &mut finding.class {
+        class.confidence = Confidence::Tentative;
+    }
+    finding.reasons.push(why);
 }

@@ -200,14 +200,10 @@ impl<'a> BenchSimulator<'a> {
             let terminals = own.front.terminals[number].as_ref().unwrap_or(&run.input);
             let monitor = |volt: &f64| own.monitor.map_or(*volt, |monitor| monitor.of(*volt));
             let rise = own.front.rises_k[number].as_ref();
-            let load = |still: &Vec<f64>| {
-                if own.is_loaded { own.steady[number].clone() } else { still.clone() }
-            };
             Record {
                 output: own.outputs[number].clone(),
                 amplifier: run.amplifier.as_ref().map(|_| terminals.iter().map(monitor).collect()),
                 temperature: run.temperature.as_ref().map(|still| rise.unwrap_or(still).clone()),
-                load: run.load.as_ref().map(load),
                 ..(*run).clone()
             }
         };

@@ -3,7 +3,7 @@
 use super::FittedParameter;
 use super::evidence::{Evidence, Seen, columns, difference, normal_equations, residual, ridged};
 use super::fit::Fitted;
-use super::thresholds::{GENERIC_MARGIN, NOISE_DEVIATIONS};
+use super::thresholds::{DRIFT_DEVIATIONS, GENERIC_MARGIN, NOISE_DEVIATIONS};
 use super::{Discovery, Signal, Simulator};
 use crate::GapError;
 use crate::quantile::{NORMAL_975, student_975};
@@ -77,7 +77,7 @@ fn pseudo_inverse(gram: &DMatrix<f64>) -> (DMatrix<f64>, f64) {
 pub(crate) struct Drift {
     /// Sum of squared deviations over their variances, per degree of freedom.
     pub(crate) chi2_per_degree: f64,
-    /// Weighted standard deviation of the coordinate over the experiments, noise taken out.
+    /// Standard deviation of the coordinate over the experiments, noise taken out.
     pub(crate) spread: f64,
     degrees: f64,
 }
@@ -90,11 +90,18 @@ impl Drift {
     }
 
     pub(crate) fn is_significant(&self) -> bool {
-        self.degrees >= 1.0 && self.chi2_per_degree > 1.0 + 4.0 * (2.0 / self.degrees).sqrt()
+        self.degrees >= 1.0
+            && self.chi2_per_degree > 1.0 + DRIFT_DEVIATIONS * (2.0 / self.degrees).sqrt()
     }
 }
 
 /// The variation of a free coordinate (number from 0) over the experiments that show it.
+///
+/// ```text
+/// Q = sum w (x - m)^2,   m = sum w x / W,   spread^2 = (Q - degrees) / (W - sum w^2 / W),   W = sum w
+/// ```
+/// The last denominator is that of `DerSimonian` and Laird, Controlled Clinical Trials 7 (1986) 177: one experiment
+/// that knows the coordinate far better than the others does not hide how these vary.
 pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize) -> Drift {
     let mut shifts = Vec::new();
     for (experiment, products) in fitted.products.iter().enumerate() {
@@ -109,9 +116,11 @@ pub(crate) fn drift(evidence: &Evidence<'_>, fitted: &Fitted, coordinate: usize)
     let chi2: f64 = shifts.iter().map(|s| (s.0 - mean).powi(2) * s.1).sum();
     let degrees = (shifts.len() as f64 - 1.0).max(0.0);
     let excess = (chi2 - degrees).max(0.0);
+    let squares: f64 = shifts.iter().map(|s| s.1.powi(2)).sum();
+    let apart = kept - squares / kept.max(1e-300);
     Drift {
         chi2_per_degree: if degrees > 0.0 { chi2 / degrees } else { 0.0 },
-        spread: (excess / kept.max(1e-300)).sqrt(),
+        spread: (excess / apart.max(1e-300)).sqrt(),
         degrees,
     }
 }

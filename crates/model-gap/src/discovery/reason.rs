@@ -247,6 +247,9 @@ pub enum Reason {
     /// No cause of usual strength would be visible.
     #[error("no cause of usual strength would be visible in these data")]
     NothingVisible,
+    /// The causes were asked for, and no other was looked at.
+    #[error("the causes were taken for true: no other was tried in their place")]
+    TakenForTrue,
     /// A calibration is off by more than its accuracy.
     #[error(
         "gain or zero of a channel is off by {times:.1} times its accuracy between the reference and the measured \

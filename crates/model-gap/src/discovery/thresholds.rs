@@ -114,6 +114,8 @@ pub(super) const STRAINED_BESIDE: f64 = 5.0;
 
 /// Relative spread from which on the name is wrong.
 pub(super) const WRONG_NAME: f64 = 0.5;
+/// Standard deviations of chi-square by which a parameter must vary from experiment to experiment.
+pub(super) const DRIFT_DEVIATIONS: f64 = 3.0;
 /// Relative spread of a parameter over the experiments from which on it drifts.
 pub(super) const DRIFTING: f64 = 0.25;
 /// Share of the drop that values of its own for every experiment must add before a drift speaks

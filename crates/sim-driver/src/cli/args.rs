@@ -254,7 +254,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "CAUSES", value_delimiter = ',')]
     pub only: Vec<String>,
     /// Before anything is measured: which causes runs would tell apart, and at which size, on this actuator.
-    #[arg(long, value_name = "ACTUATOR_OR_CASE.ron", conflicts_with_all = ["model", "data"])]
+    #[arg(long, value_name = "ACTUATOR_OR_CASE.ron", conflicts_with_all = ["model", "data", "reference"])]
     pub plan: Option<PathBuf>,
     /// Runs of the plan: commands and channels of a folder with dataset.ron; the usual ones if left out.
     #[arg(long, value_name = "DIR", requires = "plan")]

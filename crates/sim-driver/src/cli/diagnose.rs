@@ -6,14 +6,15 @@ use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
-    Climb, Diagnosis, Findings, FolderStore, PlanText, Question, Record, Records, Specimens, Stage,
-    Story, climb, extended, plan, usual_runs,
+    Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, Question, Record, Records,
+    Specimens, Stage, Story, climb, extended, plan, usual_runs,
 };
 use crate::files::{DataSet, Folder, Source, read_dataset, refuse_input, ron_text, write_atomic};
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{read_actuator, write_actuator};
+use measured_data::Accuracy;
 use preisach_dyn::ActuatorModel;
 use std::path::{Path, PathBuf};
 
@@ -31,6 +32,11 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
         return print(&Story::of(&found_in(args, (model, data), output)?).render(form)?);
     }
     let names = specimen_names(&args.data)?;
+    if args.records.reference.is_some() {
+        eprintln!(
+            "warning: one --reference for several specimens: how they differ from each other is found as a cause"
+        );
+    }
     let mut found = Vec::new();
     for (name, data) in names.into_iter().zip(&args.data) {
         let own = found_in(args, (model, data), &output.join(&name))?;
@@ -44,27 +50,46 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
 /// Says what runs would show of an actuator, before they are measured.
 fn planned(args: &DiagnoseArgs) -> Result<(), SimError> {
     let Some(path) = &args.plan else { return Ok(()) };
-    let model = match given_model(path)? {
-        (Some(model), _) => model,
-        (None, Some(case)) => {
-            let own = case_actuators(&case)?;
-            own.real.unwrap_or(own.ideal)
-        }
-        (None, None) => return Ok(()),
+    let refused = |file: &Path, message: &str| {
+        let fault = Fault::Refused { message: message.to_owned() };
+        Err(Problem::new(Place::file(file.display().to_string()), fault).into())
     };
-    let runs = match &args.runs {
-        Some(own) => {
-            let folder = if own.is_file() { own.parent().unwrap_or(own) } else { own };
-            records_of(folder)?.runs
+    let model = match given_model(path)? {
+        (Some(model), _) => Some(model),
+        (None, case) => {
+            case.map(|case| case_actuators(&case)).transpose()?.and_then(|own| own.real)
         }
-        None => usual_runs((model.range_volt.lowest_volt(), model.range_volt.highest_volt())),
+    };
+    let Some(model) = model else {
+        return refused(
+            path,
+            "its actuator is ideal: give an actuator file, or a case with a bench",
+        );
+    };
+    let usual = || usual_runs((model.range_volt.lowest_volt(), model.range_volt.highest_volt()));
+    let (runs, accuracy) = match &args.runs {
+        Some(folder) => {
+            let records = records_of(folder)?;
+            if !records.is_bench {
+                return refused(folder, "a plan is of the runs of an actuator bench");
+            }
+            (records.runs, records.accuracy)
+        }
+        None => (usual(), Accuracy::default()),
     };
     let progress = Progress::new(DIAGNOSIS);
     let told = |done: usize, all: usize| {
         progress.begin(DIAGNOSIS * done / all, "each cause is put in and diagnosed");
     };
     told(0, 1);
-    let found = plan(&model, &runs, &args.only, &FolderStore(&args.records.cache), &told);
+    let planned = Planned { runs: &runs, accuracy, only: &args.only };
+    let found = plan(
+        &model,
+        &planned,
+        &path.display().to_string(),
+        &FolderStore(&args.records.cache),
+        &told,
+    );
     progress.finish();
     let text = PlanText(found?);
     if let Some(output) = &args.output {
@@ -80,6 +105,7 @@ fn found_in(
     output: &Path,
 ) -> Result<Diagnosis, SimError> {
     refuse_input(model, &output.join(EXTENDED_FILE))?;
+    refuse_input(&data.join("dataset.ron"), &output.join("dataset.ron"))?;
     let (model, case) = given_model(model)?;
     let (measured, reference) = both_records(data, &args.records)?;
     let progress = Progress::new(DIAGNOSIS);
@@ -105,14 +131,17 @@ fn found_in(
 
 /// Names of specimens: as much of the end of each path as tells them apart.
 fn specimen_names(data: &[PathBuf]) -> Result<Vec<String>, SimError> {
+    // a folder that is not there is told of where it is read
+    let paths: Vec<PathBuf> =
+        data.iter().map(|path| path.canonicalize().unwrap_or_else(|_| path.clone())).collect();
     let ends = |depth: usize| -> Vec<String> {
         let end = |path: &PathBuf| {
             let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
             parts[parts.len().saturating_sub(depth)..].join("_").replace(['/', '\\'], "")
         };
-        data.iter().map(end).collect()
+        paths.iter().map(end).collect()
     };
-    let deepest = data.iter().map(|path| path.iter().count()).max().unwrap_or(0);
+    let deepest = paths.iter().map(|path| path.iter().count()).max().unwrap_or(0);
     let is_told_apart =
         |names: &Vec<String>| (1..names.len()).all(|i| !names[..i].contains(&names[i]));
     (1..=deepest).map(ends).find(is_told_apart).ok_or_else(|| {

@@ -7,7 +7,7 @@ mod specimens;
 mod story;
 
 pub use actuator_gap::{
-    Diagnosis, Findings, Plan, Proposal, Question, Record, Records, Stage, usual_runs,
+    Diagnosis, Findings, Plan, Planned, Proposal, Question, Record, Records, Stage, usual_runs,
 };
 pub use cache::FolderStore;
 pub use ladder::{Climb, Ladder, Rung, climb};
@@ -29,19 +29,19 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     actuator_gap::diagnose(measured, question).map_err(|error| at(&measured.folder, error))
 }
 
-/// What runs would show of causes on an actuator, of all if `only` is empty; `told` hears how many of how many are done.
+/// What planned runs would show on an actuator; `told` hears how many causes of how many are done.
 ///
 /// # Errors
-/// [`SimError::Diagnosis`] of the planned runs.
+/// [`SimError::Diagnosis`] at the file of the plan.
 pub fn plan(
     model: &ActuatorModel,
-    runs: &[Record],
-    only: &[String],
+    planned: &Planned<'_>,
+    file: &str,
     store: &FolderStore<'_>,
     told: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Plan, SimError> {
-    actuator_gap::plan(model, runs, only, Some(store), told)
-        .map_err(|error| at("planned runs", error))
+    let found = actuator_gap::plan(model, planned, Some(store), told);
+    found.map_err(|source| SimError::Diagnosis { place: Place::file(file), source })
 }
 
 /// The error of a diagnosis at the place of its data.

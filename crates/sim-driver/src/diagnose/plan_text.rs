@@ -17,60 +17,68 @@ enum Told {
     Name,
     Class,
     Set,
+    Other,
     Unnamed,
     Missed,
     Wrong,
 }
 
-fn told(cause: &str, own: &Rehearsal) -> Told {
+fn told(cause: &PlannedCause, own: &Rehearsal) -> Told {
     let is_sure = own.confidence == Confidence::Confident;
-    let has_cause = own.causes.iter().any(|id| id == cause);
     match own.verdict {
         Verdict::NothingMissing | Verdict::NotObservable => Told::Missed,
         Verdict::Unknown => Told::Unnamed,
-        _ if !has_cause => Told::Wrong,
-        _ if own.causes.len() == 1 && is_sure => Told::Name,
-        _ if own.class_confidence == Some(Confidence::Confident) => Told::Class,
-        _ => Told::Set,
+        _ if own.causes == [cause.cause] && is_sure => Told::Name,
+        _ if is_sure => Told::Wrong,
+        _ if own.class_confidence == Some(Confidence::Confident) => {
+            if own.class == Some(cause.class) { Told::Class } else { Told::Wrong }
+        }
+        _ if own.causes.iter().any(|id| id == cause.cause) => Told::Set,
+        _ => Told::Other,
     }
 }
 
 /// The same in words.
-fn words(cause: &str, own: &Rehearsal) -> String {
+fn words(cause: &PlannedCause, own: &Rehearsal) -> String {
+    let count = own.causes.len();
     match told(cause, own) {
         Told::Name => "its name".to_owned(),
-        Told::Class if own.causes.len() > 1 => format!("its kind, one of {}", own.causes.len()),
+        Told::Class if count > 1 => format!("its kind, one of {count}"),
         Told::Class => "its kind, name not sure".to_owned(),
-        Told::Set if own.causes.len() > 1 => format!("one of {}", own.causes.len()),
+        Told::Set if count > 1 => format!("one of {count}"),
         Told::Set => "its name, not sure".to_owned(),
+        Told::Other => format!("perhaps {}", own.causes.join(", ")),
         Told::Unnamed => "something, no name".to_owned(),
         Told::Missed => "nothing".to_owned(),
-        Told::Wrong => format!("{} instead", own.causes.join(", ")),
+        Told::Wrong => format!("wrong: {}", own.causes.join(", ")),
     }
+}
+
+/// What is said of a cause at a size.
+fn at(cause: &PlannedCause, size: f64) -> Option<&Rehearsal> {
+    cause.rehearsed.iter().find(|said| (said.size - size).abs() < 1e-9)
 }
 
 impl Printable for PlanText {
     fn text(&self) -> String {
         let Self(plan) = self;
         let mut sheet = Sheet::default();
-        for (k, size) in SIZES.iter().enumerate() {
-            let all: Vec<Told> = plan
-                .causes
-                .iter()
-                .filter_map(|own| own.rehearsed.get(k).map(|said| told(own.cause, said)))
-                .collect();
-            let count = |is: &[Told]| all.iter().filter(|own| is.contains(own)).count();
+        for size in SIZES {
+            let all: Vec<Told> =
+                plan.causes.iter().filter_map(|own| Some(told(own, at(own, size)?))).collect();
+            let count = |is: Told| all.iter().filter(|own| **own == is).count();
             sheet.line(format_args!(
-                "Of {} causes of {:.0} % of the motion these runs would name {}, and the kind of {} more.",
+                "Of {} causes of {:.0} % of the motion: {} named, the kind of {} more, {} wrong.",
                 all.len(),
                 100.0 * size,
-                count(&[Told::Name]),
-                count(&[Told::Class])
+                count(Told::Name),
+                count(Told::Class),
+                count(Told::Wrong)
             ));
         }
         sheet.paragraphs(&format!(
-            "Runs: {}; noise {:.2} um. Each is measured once with nothing missing and once with the cause, which is \
-             simulated as the engine knows it: a bench will show rather less.",
+            "Runs: {}; noise {:.2} um. Each is simulated once with nothing missing and once with the cause, as the \
+             engine knows it and with one draw of the noise: a bench will show rather less.",
             plan.runs.join(", "),
             plan.noise_um
         ));
@@ -78,9 +86,10 @@ impl Printable for PlanText {
         let rows = plan.causes.iter().map(|own| {
             let seen = own.seen_from.map_or("-".into(), |size| format!("{:.1}", 100.0 * size));
             let mut row = vec![own.cause.to_owned(), seen];
-            row.extend((0..SIZES.len()).map(|k| {
-                own.rehearsed.get(k).map_or("-".to_owned(), |said| words(own.cause, said))
-            }));
+            let none = if own.blocked.is_some() { "cannot show it" } else { "never so large" };
+            row.extend(
+                SIZES.map(|size| at(own, size).map_or(none.to_owned(), |said| words(own, said))),
+            );
             row.push(then(own));
             row
         });
@@ -91,8 +100,8 @@ impl Printable for PlanText {
 
 /// What would be asked for next, where the smallest size is not named for sure.
 fn then(own: &PlannedCause) -> String {
-    match own.rehearsed.first() {
-        Some(said) if told(own.cause, said) != Told::Name => said.next_experiment.clone(),
+    match at(own, SIZES[0]) {
+        Some(said) if told(own, said) != Told::Name => said.next_experiment.clone(),
         _ => String::new(),
     }
 }

@@ -6,7 +6,7 @@ use crate::files::significant;
 use crate::output::{Printable, Sheet, table};
 use actuator_gap::ParameterValue;
 use model_gap::discovery::{Confidence, Verdict};
-use model_gap::in_common;
+use model_gap::{Class, in_common};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -39,14 +39,15 @@ pub struct Specimen {
 pub struct MissingInSome {
     /// The causes that are open in all of these specimens, the best first.
     pub causes: Vec<String>,
-    /// Confident where one cause is left, a specimen names it confidently, and none leaves structure beside it.
+    /// Confident where every one of them names this cause alone, and confidently.
     pub confidence: Confidence,
+    /// The class of the first cause.
+    pub class: Class,
     /// Parameters of the first cause in each specimen that has it, by the specimen's name.
     pub specimens: BTreeMap<String, BTreeMap<String, ParameterValue>>,
-    /// Specimens in which nothing is missing, confidently.
-    pub absent_in: Vec<String>,
-    /// Specimens whose data cannot show the first cause.
-    pub not_observable_in: Vec<String>,
+    /// Specimens in which nothing is missing, confidently, with the size from which the first cause would have been seen
+    /// there with 90 % probability, over the output.
+    pub not_seen_in: BTreeMap<String, f64>,
 }
 
 impl Specimens {
@@ -54,38 +55,39 @@ impl Specimens {
     pub fn of(found: &[(String, Diagnosis)]) -> Self {
         let findings: Vec<Findings> = found.iter().map(|(_, own)| own.into()).collect();
         let open: Vec<Vec<Vec<&str>>> = found.iter().map(|(_, own)| own.open()).collect();
-        let named = |is: &dyn Fn(&Findings) -> bool| -> Vec<String> {
-            let all = found.iter().zip(&findings).filter(|(_, own)| is(own));
-            all.map(|((name, _), _)| name.clone()).collect()
-        };
         let missing = in_common(&open).into_iter().map(|shared| {
             let first = shared.explanations[0];
-            let own = || shared.findings.iter().map(|&(specimen, _)| specimen);
-            let is_sure = |s: usize| {
-                let own = &findings[s];
+            let is_sure = |own: &Findings| {
                 own.verdict == Verdict::Named
                     && own.confidence == Confidence::Confident
                     && own.causes == [first]
             };
-            let leaves = |s: usize| findings[s].structure_remains;
-            let is_confident =
-                shared.explanations.len() == 1 && own().any(is_sure) && !own().any(leaves);
-            let strengths = own().map(|s| {
-                (found[s].0.clone(), findings[s].parameters.get(first).cloned().unwrap_or_default())
-            });
+            let members: Vec<usize> = shared.findings.iter().map(|place| place.0).collect();
+            let strength = |&s: &usize| {
+                let own = findings[s].parameters.get(first).cloned().unwrap_or_default();
+                (found[s].0.clone(), own)
+            };
+            let would_have_shown = |((name, _), own): (&(String, Diagnosis), &Findings)| {
+                let is_sure = own.verdict == Verdict::NothingMissing
+                    && own.confidence == Confidence::Confident;
+                let size = own.would_have_shown.get(first).copied().flatten();
+                size.filter(|_| is_sure).map(|size| (name.clone(), size))
+            };
+            let candidates = &found[members[0]].1.candidates;
             MissingInSome {
                 causes: shared.explanations.iter().map(|id| (*id).to_owned()).collect(),
-                confidence: if is_confident {
+                confidence: if members.iter().all(|&s| is_sure(&findings[s])) {
                     Confidence::Confident
                 } else {
                     Confidence::Tentative
                 },
-                specimens: strengths.collect(),
-                absent_in: named(&|own| {
-                    own.verdict == Verdict::NothingMissing
-                        && own.confidence == Confidence::Confident
-                }),
-                not_observable_in: named(&|own| own.not_observable.iter().any(|id| id == first)),
+                class: candidates
+                    .iter()
+                    .find(|own| own.id == first)
+                    .map(|own| own.class)
+                    .unwrap_or_default(),
+                specimens: members.iter().map(strength).collect(),
+                not_seen_in: found.iter().zip(&findings).filter_map(would_have_shown).collect(),
             }
         });
         let missing = missing.collect();
@@ -106,13 +108,14 @@ impl Printable for Specimens {
         let count = self.specimens.len();
         for own in &self.missing {
             let ids: Vec<&str> = own.causes.iter().map(String::as_str).collect();
-            let place = match own.specimens.len() {
-                1 => format!("in {} only", own.specimens.keys().next().map_or("", String::as_str)),
+            let (with, without) = (own.specimens.len(), own.not_seen_in.len());
+            let place = match with {
+                1 if without + 1 == count => "in one specimen only".to_owned(),
                 all if all == count => format!("in all {count} specimens"),
                 some => format!("in {some} of {count} specimens"),
             };
-            let sure = sure(own.confidence);
-            sheet.paragraphs(&format!("Missing {place} ({sure}): {}", one_of(&ids)));
+            let (kind, sure, cause) = (own.class.words(), sure(own.confidence), one_of(&ids));
+            sheet.paragraphs(&format!("Missing {place}: {kind}. The cause ({sure}): {cause}"));
             for (name, parameters) in &own.specimens {
                 let one = |(id, p): (&String, &ParameterValue)| {
                     let [low, high] = p.ci95.map(|end| significant(end, 3));
@@ -122,16 +125,25 @@ impl Printable for Specimens {
                 let values: Vec<String> = parameters.iter().map(one).collect();
                 sheet.paragraphs(&format!("  {name}: {}", values.join(", ")));
             }
-            for (what, names) in
-                [("not in", &own.absent_in), ("its data cannot show it:", &own.not_observable_in)]
-            {
-                if !names.is_empty() {
-                    sheet.paragraphs(&format!("  {what} {}", names.join(", ")));
-                }
+            for (name, size) in &own.not_seen_in {
+                let percent = 100.0 * size;
+                sheet.line(format_args!("  not in {name}, which would have shown {percent:.1} %"));
             }
         }
-        if self.missing.is_empty() {
-            sheet.line(format_args!("Nothing that has a name is missing in {count} specimens."));
+        let unknown: Vec<&str> = self
+            .specimens
+            .iter()
+            .filter(|own| own.verdict == Verdict::Unknown)
+            .map(|own| own.name.as_str())
+            .collect();
+        if !unknown.is_empty() {
+            sheet.paragraphs(&format!(
+                "Something without a name is missing in {}",
+                unknown.join(", ")
+            ));
+        }
+        if self.missing.is_empty() && unknown.is_empty() {
+            sheet.line(format_args!("Nothing was found missing in {count} specimens."));
         }
         sheet.line("");
         let rows = self.specimens.iter().map(|own| {

@@ -5,7 +5,7 @@ use super::{Diagnosis, Findings};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, table, table_of};
 use model_gap::Candidate;
-use model_gap::discovery::{Confidence, Verdict};
+use model_gap::discovery::{Confidence, Found, Verdict};
 use serde::Serialize;
 
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
@@ -271,9 +271,15 @@ fn next(d: &Diagnosis, sheet: &mut Sheet) {
     }
 }
 
-/// The causes found, each with those that could stand in its place.
+/// The causes found, each with those that are about as likely.
 fn places(d: &Diagnosis) -> String {
-    d.open().iter().map(|ids| one_of(ids)).collect::<Vec<_>>().join(" + ")
+    let id = |candidate: usize| d.candidates[candidate].id;
+    let one = |found: &Found| {
+        let mut ids = vec![id(found.candidate)];
+        ids.extend(found.alternatives.iter().map(|other| id(other.candidate)));
+        one_of(&ids)
+    };
+    d.finding.causes.iter().map(one).collect::<Vec<_>>().join(" + ")
 }
 
 /// The only name, or the names as a choice.
@@ -288,16 +294,27 @@ pub(super) fn sure(confidence: Confidence) -> &'static str {
     }
 }
 
-/// What is missing in physical words, its cause as far as it is known, and the feature of the data that shows it.
+/// What is missing in physical words, its cause as far as it is known, and where the data show it.
 fn missing(d: &Diagnosis, findings: &Findings, cause: &str) -> String {
     let found: Vec<&Candidate> =
         d.finding.causes.iter().map(|found| &d.candidates[found.candidate]).collect();
-    let kinds: Vec<&str> = found.iter().map(|own| own.class.words()).collect();
-    let sure =
-        findings.class_confidence.map_or_else(String::new, |own| format!(" ({})", sure(own)));
-    let shown: Vec<&str> = found.iter().map(|own| own.fingerprint).collect();
-    let (kinds, shown) = (kinds.join(" + "), shown.join("; "));
-    format!("Missing: {kinds}{sure}. The cause {cause}. What shows it: {shown}.")
+    let kind = |(place, own): (usize, &&Candidate)| {
+        // the class of the leading cause alone was judged
+        let confidence = findings.class_confidence.filter(|_| place == 0);
+        let sure = sure(confidence.unwrap_or(Confidence::Tentative));
+        format!("{} ({sure})", own.class.words())
+    };
+    let kinds: Vec<String> = found.iter().enumerate().map(kind).collect();
+    let most = d.energy.iter().max_by(|a, b| a.structured.total_cmp(&b.structured));
+    let shown = most.map_or_else(String::new, |run| {
+        let percent = 100.0 * run.structured.max(0.0).sqrt();
+        format!(" Run {} shows it most: {percent:.1} % of its motion is unexplained.", run.id)
+    });
+    let typical = match (&found[..], findings.verdict) {
+        ([only], Verdict::Named) => format!(" Typical of it: {}.", only.fingerprint),
+        _ => String::new(),
+    };
+    format!("Missing: {}. The cause {cause}.{shown}{typical}", kinds.join(" + "))
 }
 
 fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {

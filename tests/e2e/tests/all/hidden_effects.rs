@@ -118,26 +118,36 @@ fn diagnosed(request: &Request, cache: &Path) -> Diagnosis {
 #[test]
 fn a_cause_that_specimens_share_is_found_once_and_the_one_without_it_is_told() {
     let cache = tempfile::tempdir().unwrap();
-    let found = [("a", "creep", 10, 3), ("b", "creep", 4, 3), ("c", "null", 10, 1)].map(
-        |(name, hidden, base, seed)| {
-            (name.to_owned(), diagnosed(&request(hidden, base, seed), cache.path()))
-        },
-    );
+    let sets = [
+        ("a", "creep", 10, 3),
+        ("b", "creep", 4, 3),
+        ("c", "null", 10, 1),
+        ("d", "transport-delay", 10, 3),
+    ];
+    let found = sets.map(|(name, hidden, base, seed)| {
+        (name.to_owned(), diagnosed(&request(hidden, base, seed), cache.path()))
+    });
     let told = Story::of(&found[0].1).render(Format::Text).unwrap();
-    let first =
-        "Missing: a slow drift (confident). The cause (confident): creep. What shows it: grows as";
+    let first = "Missing: a slow drift (confident). The cause (confident): creep. Run ";
     assert!(told.starts_with(first), "{told}");
     let Specimens { specimens, missing } = Specimens::of(&found);
-    assert_eq!(specimens.len(), 3);
-    let [creep] = &missing[..] else { panic!("{missing:?}") };
+    assert_eq!(specimens.len(), 4);
+    let [creep, lag] = &missing[..] else { panic!("{missing:?}") };
     assert_eq!(
         (&creep.causes[..], creep.confidence),
         (&["creep".to_owned()][..], Confidence::Confident)
     );
-    assert_eq!(creep.absent_in, ["c"]);
-    // each has its own strength
-    let [a, b] = ["a", "b"].map(|name| &creep.specimens[name]["rate_per_decade"]);
-    assert!(creep.specimens.len() == 2 && a.value > 0.0 && b.value > 0.0, "{creep:?}");
+    assert!(creep.not_seen_in.len() == 1 && creep.not_seen_in["c"] < 0.03, "{creep:?}");
+    // each has the strength of its own findings
+    assert_eq!(creep.specimens.len(), 2);
+    for (name, own) in &found[..2] {
+        assert_eq!(creep.specimens[name], Findings::from(own).parameters["creep"], "{name}");
+    }
+    let [a, b] = ["a", "b"].map(|name| creep.specimens[name]["rate_per_decade"].value);
+    assert!((a / b - 1.0).abs() > 0.05, "{a}, {b}");
+    assert_eq!(lag.confidence, Confidence::Tentative);
+    assert!(lag.causes.contains(&"transport-delay".to_owned()), "{lag:?}");
+    assert_eq!(lag.specimens.keys().collect::<Vec<_>>(), ["d"]);
 }
 
 /// A few hidden effects end to end; the whole suite is `cargo xtask hidden-effects`. The names are asked
