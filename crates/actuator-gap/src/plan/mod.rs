@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn a_plan_says_which_channel_parts_what() {
         let mut runs = usual_runs((-20.0, 150.0));
-        runs.retain(|run| run.input.len() < 5000);
+        runs.retain(|run| matches!(&*run.id, "triangles" | "multisine_small" | "wide_band"));
         let only = ["electrical-lag".to_owned()];
         let lag = |runs: &[Record]| asked(&straight(), runs, &only).causes[0].rehearsed[0].clone();
         let bare = lag(&runs);
