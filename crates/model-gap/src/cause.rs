@@ -45,7 +45,7 @@ pub struct Parameter {
 
 impl Parameter {
     /// The coordinate the search moves on.
-    pub(crate) fn coordinate(&self, value: f64) -> f64 {
+    pub fn coordinate(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value,
             Scale::Log => value.ln(),
@@ -53,7 +53,7 @@ impl Parameter {
     }
 
     /// The value at a coordinate, held inside the range.
-    pub(crate) fn value(&self, coordinate: f64) -> f64 {
+    pub fn value(&self, coordinate: f64) -> f64 {
         let value = match self.scale {
             Scale::Linear => coordinate,
             Scale::Log => coordinate.exp(),

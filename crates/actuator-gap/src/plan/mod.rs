@@ -161,7 +161,7 @@ impl<'a> Rehearsed<'a> {
             })
         };
         let plain: Vec<Record> = planned.runs.iter().map(one).collect::<Result<_, _>>()?;
-        let noise_um = NOISE * spread(&plain, |run| run.output.clone());
+        let noise_um = NOISE * spread(&plain);
         let bench = Bench {
             range_volt: (model.range_volt.lowest_volt(), model.range_volt.highest_volt()),
             deg_per_um: model.calibration.deg_per_um,

@@ -3,7 +3,7 @@
 use crate::numbers::less;
 use crate::record::Record;
 use crate::simulator::BenchSimulator;
-use model_gap::{Candidate, Effect, GapError, Scale};
+use model_gap::{Candidate, Effect, GapError};
 use rotor_base::variance;
 
 /// Places of a parameter at which the size of its effect is looked at, and halvings between two of them.
@@ -13,12 +13,11 @@ const HALVINGS: usize = 16;
 /// Part by which the size of a planned effect may miss.
 const NEAR: f64 = 0.02;
 
-/// Spread of a signal in all runs, about its mean in each.
-pub(super) fn spread(runs: &[Record], signal: impl Fn(&Record) -> Vec<f64>) -> f64 {
+/// Spread of the output in all runs, about its mean in each.
+pub(super) fn spread(runs: &[Record]) -> f64 {
     let (mut squares, mut samples) = (0.0, 0.0);
     for run in runs {
-        let signal = signal(run);
-        let judged = run.judged(&signal);
+        let judged = run.judged_output();
         squares += judged.len() as f64 * variance(judged);
         samples += judged.len() as f64;
     }
@@ -42,20 +41,17 @@ pub(super) fn sized(
         Effect { candidate, values }
     };
     let without = simulator.rehearsed(&[])?;
-    let motion = spread(&without, |run| run.output.clone());
+    let motion = spread(&without);
     let share = |value: f64| -> Result<f64, GapError> {
         let mut change = simulator.rehearsed(&[effect(value)])?;
         for (with, without) in change.iter_mut().zip(&without) {
             with.output = less(&with.output, &without.output);
         }
-        Ok(spread(&change, |run| run.output.clone()) / motion)
+        Ok(spread(&change) / motion)
     };
-    let is_log = first.scale == Scale::Log;
-    let low = if first.is_amount { 0.0 } else { first.low };
-    let place = |k: usize| {
-        let part = k as f64 / (PLACES - 1) as f64;
-        if is_log { low * (first.high / low).powf(part) } else { low + part * (first.high - low) }
-    };
+    let low = first.coordinate(if first.is_amount { 0.0 } else { first.low });
+    let span = first.coordinate(first.high) - low;
+    let place = |k: usize| first.value(low + span * k as f64 / (PLACES - 1) as f64);
     let shares: Vec<f64> = (0..PLACES).map(|k| share(place(k))).collect::<Result<_, _>>()?;
     let crosses = |k: &usize| (shares[*k] - size) * (shares[*k + 1] - size) <= 0.0;
     let nearest = (0..PLACES - 1).filter(crosses).min_by(|&a, &b| {
@@ -67,7 +63,7 @@ pub(super) fn sized(
     let (mut below, mut above) =
         if rises { (place(k), place(k + 1)) } else { (place(k + 1), place(k)) };
     for _ in 0..HALVINGS {
-        let middle = if is_log { (below * above).sqrt() } else { f64::midpoint(below, above) };
+        let middle = first.value(f64::midpoint(first.coordinate(below), first.coordinate(above)));
         let found = share(middle)?;
         if (found / size - 1.0).abs() < NEAR {
             return Ok(Some(effect(middle)));

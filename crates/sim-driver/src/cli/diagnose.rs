@@ -105,7 +105,6 @@ fn found_in(
     output: &Path,
 ) -> Result<Diagnosis, SimError> {
     refuse_input(model, &output.join(EXTENDED_FILE))?;
-    refuse_input(&data.join("dataset.ron"), &output.join("dataset.ron"))?;
     let (model, case) = given_model(model)?;
     let (measured, reference) = both_records(data, &args.records)?;
     let progress = Progress::new(DIAGNOSIS);

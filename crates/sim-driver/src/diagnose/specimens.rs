@@ -1,8 +1,7 @@
 //! Several specimens of one actuator: what they have in common, and what one has alone.
 
-use super::story::{one_of, sure};
+use super::story::{one_of, sure, valued};
 use super::{Diagnosis, Findings};
-use crate::files::significant;
 use crate::output::{Printable, Sheet, table};
 use actuator_gap::ParameterValue;
 use model_gap::discovery::{Confidence, Verdict};
@@ -117,11 +116,8 @@ impl Printable for Specimens {
             let (kind, sure, cause) = (own.class.words(), sure(own.confidence), one_of(&ids));
             sheet.paragraphs(&format!("Missing {place}: {kind}. The cause ({sure}): {cause}"));
             for (name, parameters) in &own.specimens {
-                let one = |(id, p): (&String, &ParameterValue)| {
-                    let [low, high] = p.ci95.map(|end| significant(end, 3));
-                    let unit = if p.unit == "1" { "" } else { &p.unit };
-                    format!("{id} = {} {unit} (95 %: {low} to {high})", significant(p.value, 4))
-                };
+                let one =
+                    |(id, p): (&String, &ParameterValue)| valued(id, p.value, &p.unit, p.ci95);
                 let values: Vec<String> = parameters.iter().map(one).collect();
                 sheet.paragraphs(&format!("  {name}: {}", values.join(", ")));
             }

@@ -180,14 +180,8 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
         let cause = &d.candidates[found.candidate];
         sheet.line(format_args!("  {}: {}", cause.id, cause.physics));
         for p in &found.parameters {
-            let unit = if p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
-            sheet.line(format_args!(
-                "    {} = {}{unit} (95 %: {} to {})",
-                p.name,
-                significant(p.value, 4),
-                significant(p.ci95[0], 3),
-                significant(p.ci95[1], 3)
-            ));
+            let own = valued(p.name, p.value, p.unit, p.ci95);
+            sheet.line(format_args!("    {own}"));
             if let Some(needs) = p.needs {
                 sheet.line(format_args!(
                     "      the value is a guess: without {needs} only its product with something unknown is found"
@@ -280,6 +274,13 @@ fn places(d: &Diagnosis) -> String {
         one_of(&ids)
     };
     d.finding.causes.iter().map(one).collect::<Vec<_>>().join(" + ")
+}
+
+/// A parameter with its unit, 1 left out, and its interval.
+pub(super) fn valued(name: &str, value: f64, unit: &str, ci95: [f64; 2]) -> String {
+    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    let [low, high] = ci95.map(|end| significant(end, 3));
+    format!("{name} = {}{unit} (95 %: {low} to {high})", significant(value, 4))
 }
 
 /// The only name, or the names as a choice.

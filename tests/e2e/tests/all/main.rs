@@ -1,6 +1,7 @@
 //! The command from outside: files in, text and exit codes out.
 
 mod crosscheck;
+mod everyday;
 mod hidden_effects;
 mod ladder;
 mod metamorphic;

@@ -1,26 +1,18 @@
 //! What does not change the physics does not change the verdict: order, names, cutting, repeating, zero, sampling and
 //! sign of the records.
-#![expect(clippy::disallowed_methods, reason = "tests write the folders they hand in")]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::path::Path;
-
+use crate::everyday::bench;
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
 use everyday_bench::set::{Request, set};
 use everyday_bench::text::File;
 use rayon::prelude::*;
 use sim_driver::diagnose::{Findings, Question, Record, Records, diagnose};
-use sim_driver::files::{Folder, read_bench};
 
+/// The records of a folder without the longest run by far, which neither set needs.
 fn records(files: &[File]) -> Records {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        std::fs::write(folder.path().join(name), text).unwrap();
-    }
-    let mut records: Records =
-        (&read_bench(&Folder::Disk(Path::new(folder.path()).into())).unwrap()).into();
-    // the longest run by far, which neither set needs
+    let mut records = Records::from(&bench(files));
     records.runs.retain(|run| run.id != "warm_up");
     records
 }

@@ -1,13 +1,12 @@
 //! The shipped bench through the driver: identification within its bounds, held-out runs apart.
-#![expect(clippy::disallowed_methods, reason = "a test writes the folder it hands in")]
 
+use crate::everyday::bench;
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
 use everyday_bench::set::{Request, set};
 use preisach_dyn::identify::{RecordUse, Settings};
 use sim_driver::actuator::case_actuators;
 use sim_driver::case::{PAPER_CASE, shipped_case};
-use sim_driver::files::{Folder, read_bench};
 use sim_driver::identification::identify_bench;
 use sim_driver::stored_actuator::StoredFit;
 
@@ -61,12 +60,7 @@ fn extrapolation_is_warned_of() {
 #[test]
 fn a_program_that_stops_near_its_minimum_is_no_error() {
     let made = set(&Request::new(Family::Duhem, 17_051, Deal::Nulls));
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in &made.reference {
-        std::fs::write(folder.path().join(name), text).unwrap();
-    }
-    let data = read_bench(&Folder::Disk(folder.path().to_path_buf())).unwrap();
-    let found = identify_bench(&data, &Settings::default()).unwrap();
+    let found = identify_bench(&bench(&made.reference), &Settings::default()).unwrap();
     let trained = found.stored().runs;
     let trained = trained.iter().filter(|fit| fit.use_as == RecordUse::Train);
     let worst = trained.map(|fit| fit.nrmse_percent).fold(0.0, f64::max);

@@ -8,6 +8,7 @@ use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
 use everyday_bench::set::{Request, set};
 use everyday_bench::text::File;
+use model_gap::discovery::Confidence;
 use sim_driver::diagnose::{Findings, Question, Records, diagnose};
 use sim_driver::files::{Folder, read_bench};
 
@@ -19,8 +20,9 @@ fn records(name: &str) -> Records {
     (&read_bench(&Folder::Disk(folder(name))).unwrap()).into()
 }
 
-fn found(name: &str) -> Findings {
-    let question = Question { reference: records("reference").runs, ..Question::default() };
+fn found(name: &str, only: &[&str]) -> Findings {
+    let only = only.iter().map(|id| (*id).to_owned()).collect();
+    let question = Question { reference: records("reference").runs, only, ..Question::default() };
     Findings::from(&diagnose(&records(name), &question).unwrap())
 }
 
@@ -47,7 +49,7 @@ fn they_are_as_the_generator_makes_them() {
 
 #[test]
 fn one_has_a_name_one_a_set_and_one_lacks_nothing() {
-    let [a, b, c] = HIDDEN.map(|(name, _)| serde_json::to_value(found(name)).unwrap());
+    let [a, b, c] = HIDDEN.map(|(name, _)| serde_json::to_value(found(name, &[])).unwrap());
     assert_eq!([&a["verdict"], &a["confidence"]], ["named", "confident"], "{a}");
     assert_eq!(a["causes"][0], "creep");
     let interval = &a["parameters"]["creep"]["rate_per_decade"]["ci95"];
@@ -67,5 +69,15 @@ fn one_has_a_name_one_a_set_and_one_lacks_nothing() {
     assert!(
         ["creep", "transport-delay", "backlash"].iter().all(|cause| would(cause) < 0.03),
         "{c}"
+    );
+}
+
+#[test]
+fn a_cause_that_is_asked_for_is_never_confident() {
+    let own = found("b", &["sensor-filter"]);
+    assert_eq!(own.causes, ["sensor-filter"]);
+    assert_eq!(
+        (own.confidence, own.class_confidence),
+        (Confidence::Tentative, Some(Confidence::Tentative))
     );
 }

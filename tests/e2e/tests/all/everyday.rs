@@ -1,0 +1,34 @@
+//! Folders of the generator of everyday errors, and an error that was once named wrongly.
+#![expect(clippy::disallowed_methods, reason = "tests write the folders they hand in")]
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use everyday_bench::family::Family;
+use everyday_bench::hidden::Deal;
+use everyday_bench::set::{Request, set};
+use everyday_bench::text::File;
+use model_gap::discovery::Confidence;
+use sim_driver::diagnose::{Findings, Question, Records, diagnose};
+use sim_driver::files::{BenchData, Folder, read_bench};
+
+/// The data of a folder of these files.
+pub(crate) fn bench(files: &[File]) -> BenchData {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    read_bench(&Folder::Disk(folder.path().to_path_buf())).unwrap()
+}
+
+/// The run that repeats a reference run knows the gain far better than the others, which lie between 0 and 4 %. With all
+/// weight on it the name is confident.
+#[test]
+fn a_gain_that_drifts_over_the_session_is_no_confident_constant() {
+    let made = set(&Request::new(Family::Duhem, 16_029, Deal::Everyday));
+    assert_eq!(made.answer.hidden, "sensor-gain-drift");
+    let reference = Records::from(&bench(&made.reference)).runs;
+    let question = Question { reference, ..Question::default() };
+    let found = diagnose(&Records::from(&bench(&made.measured)), &question).unwrap();
+    let found = Findings::from(&found);
+    assert_eq!(found.confidence, Confidence::Tentative, "{:?}", found.causes);
+    assert_ne!(found.class_confidence, Some(Confidence::Confident), "{:?}", found.class);
+}
