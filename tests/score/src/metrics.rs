@@ -326,9 +326,13 @@ fn gains(cases: &[Case]) -> Vec<Metric> {
 }
 
 fn experiments_and_pairs(cases: &[Case], floors: &Floors) -> Vec<Metric> {
-    let shrunk = cases.iter().filter_map(|case| {
-        let (after, cause) = (case.follow_up.as_ref()?, case.single()?);
-        Some(matches!(after.names(), [only] if case.right(cause, only)))
+    let followed = || cases.iter().filter_map(|c| Some((c, c.follow_up.as_ref()?, c.single()?)));
+    let alone = followed()
+        .map(|(case, after, cause)| matches!(after.names(), [only] if case.right(cause, only)));
+    // by the exact id: another member of its class in its place is no smaller set. One name alone always is one
+    let shrunk = followed().map(|(case, after, cause)| {
+        let is_smaller = after.names().len() < case.findings.names().len();
+        is_smaller && after.names().iter().any(|name| name == cause)
     });
     let proposals = cases
         .iter()
@@ -345,7 +349,12 @@ fn experiments_and_pairs(cases: &[Case], floors: &Floors) -> Vec<Metric> {
     };
     vec![
         share("ambiguous: the proposal is in the catalogue", Bar::Shown, proposals),
-        share("proposed experiment leaves one, the right one", Bar::AtLeast(0.80), shrunk),
+        share(
+            "proposed experiment leaves a smaller set with the truth",
+            Bar::AtLeast(0.80),
+            shrunk,
+        ),
+        share("  it leaves one, the right one", Bar::Shown, alone),
         share(
             "two causes >= 2.5 floors: both found",
             Bar::AtLeast(0.80),

@@ -212,7 +212,15 @@ fn a_follow_up_has_to_leave_the_truth_alone() {
     let mut elsewhere = with(&["creep"]);
     elsewhere.findings.next_experiment = "measure again".to_owned();
     let cases = [with(&["creep"]), with(&["mains-hum"]), with(&["creep", "mains-hum"]), elsewhere];
-    assert_eq!(share(&cases, "proposed experiment leaves one, the right one"), (2, 4));
+    assert_eq!(share(&cases, "it leaves one, the right one"), (2, 4));
+    let shrunk =
+        |cases: &[Case]| share(cases, "proposed experiment leaves a smaller set with the truth");
+    assert_eq!(shrunk(&cases), (2, 4));
+    let mut three = with(&["creep", "mains-hum"]);
+    three.findings.causes.push("dielectric-heating".to_owned());
+    let mut without = three.clone();
+    without.follow_up = Some(sure("mains-hum", &["mains-hum", "dielectric-heating"]).findings);
+    assert_eq!(shrunk(&[three, without]), (1, 2));
     assert_eq!(share(&cases, "ambiguous: the proposal is in the catalogue"), (3, 4));
 }
 
