@@ -5,7 +5,7 @@ use crate::causes::{self, BenchCause, Design};
 use crate::error::DiagnosisError;
 use crate::next::{self, Proposal};
 use crate::question::{Question, Stage, StructureStore};
-use crate::record::{Record, Records};
+use crate::record::{Record, Records, slower};
 use crate::sessions::{
     GivenModel, Sessions, beginning, continued, doubt, range_of, scale_of, simulated_runs,
 };
@@ -133,7 +133,8 @@ impl Diagnosis {
     }
 }
 
-/// Diagnoses measured runs against the base model of the reference runs.
+/// Diagnoses measured runs against the base model of the reference runs. A simulation that is given beside reference runs
+/// alone is asked about these.
 ///
 /// # Errors
 /// [`DiagnosisError::NothingMeasured`]; [`DiagnosisError::Misfit`] where the numerics fail, or where a cause of
@@ -142,6 +143,11 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
     let library = [causes::LIBRARY.as_slice(), &causes::DECOYS].concat();
     let (mut own, mut beside) = (continued(&measured.runs), continued(&question.reference));
+    if question.given.is_some() && beside.is_empty() && own.iter().all(|run| run.is_reference) {
+        for run in &mut own {
+            run.is_reference = false;
+        }
+    }
     // where the sensor has its zero says nothing
     let is_ordinary = |run: &&Record| run.is_reference;
     let zero = match (beside.is_empty(), own.iter().any(|run| run.is_reference)) {
@@ -249,8 +255,10 @@ pub(crate) fn search(
     given: Option<&[usize]>,
 ) -> Result<Finding, GapError> {
     let (traces, spread) = (simulator.traces(), simulator.base.spread);
-    let generic = simulator
-        .directions(|input, plain, step_s| surrogate::generic(input, plain, spread, step_s));
+    let slower = slower(&simulator.runs);
+    let generic = simulator.directions(|input, plain, step_s| {
+        surrogate::generic(input, plain, (spread, slower), step_s)
+    });
     let (traces, generic) = (traces.as_slice(), generic.as_slice());
     let discovery = Discovery {
         traces,
@@ -508,15 +516,18 @@ mod tests {
             runs
         };
         let given = simulation(2.5);
-        let names = |given| {
+        let names = |given, are_reference| {
             let question = Question { given, ..Question::default() };
-            let found = diagnose(&records(bent(runs(false, 1.0))), &question).unwrap();
+            let found = diagnose(&records(bent(runs(are_reference, 1.0))), &question).unwrap();
             assert_eq!(found.finding.confidence, Confidence::Tentative);
             Findings::from(&found).causes
         };
-        assert!(names(Some(&given)).iter().any(|id| id == "sensor-nonlinearity"));
+        for are_reference in [false, true] {
+            let names = names(Some(&given), are_reference);
+            assert!(names.iter().any(|id| id == "sensor-nonlinearity"), "{names:?}");
+        }
         assert!(
-            names(None).is_empty(),
+            names(None, false).is_empty(),
             "what all runs share is ordinary without anything beside them"
         );
     }

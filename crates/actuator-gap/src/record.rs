@@ -29,6 +29,8 @@ pub struct Record {
     pub sensor: Sensor,
     /// How the actuator was fitted to the bench.
     pub fitting: Fitting,
+    /// Seconds since switch-on at which the record begins, where the data say it.
+    pub start_s: Option<f64>,
 }
 
 impl Record {
@@ -46,6 +48,7 @@ impl Record {
             load: None,
             sensor: Sensor::Bench,
             fitting: Fitting::Plain,
+            start_s: None,
         }
     }
 
@@ -88,6 +91,16 @@ impl Record {
     pub fn frequency_hz(&self) -> f64 {
         frequency_hz(self.judged_input(), self.step_s)
     }
+}
+
+/// Time between samples up to which a bench is as fast as those of piezo actuators, s.
+const USUAL_STEP_S: f64 = 0.01;
+
+/// Times slower than a usual bench runs are, by the finest sampling among them; 1 of any faster. Relaxations and lags
+/// are looked for where the sampling can show them.
+pub(crate) fn slower(runs: &[&Record]) -> f64 {
+    let finest_s = runs.iter().map(|r| r.step_s).fold(f64::INFINITY, f64::min);
+    if finest_s.is_finite() { (finest_s / USUAL_STEP_S).max(1.0) } else { 1.0 }
 }
 
 /// Frequency of a sine that moves as fast as an input, for its size, Hz: RMS of the rate over the spread.
@@ -149,6 +162,7 @@ fn records(runs: &[Run]) -> Vec<Record> {
             window: run.window(),
             sensor: run.setup().0,
             fitting: run.setup().1,
+            start_s: run.entry.start_s,
         })
         .collect()
 }

@@ -261,8 +261,14 @@ pub(crate) fn trends(law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
 }
 
 /// Generic directions, along which structure may be left that no cause explains: powers of
-/// output, rate and their products, lags of them, trends.
-pub(crate) fn generic(inputs: &[f64], law: &[f64], spread: f64, step_s: f64) -> Vec<Vec<f64>> {
+/// output, rate and their products, lags of them, trends. Beside the spread of the output stands how many times slower
+/// than a usual bench the runs are.
+pub(crate) fn generic(
+    inputs: &[f64],
+    law: &[f64],
+    (spread, slower): (f64, f64),
+    step_s: f64,
+) -> Vec<Vec<f64>> {
     let middle = law.first().copied().unwrap_or_default();
     let x: Vec<f64> = law.iter().map(|h| (h - middle) / spread).collect();
     let duration = step_s * law.len() as f64;
@@ -276,7 +282,7 @@ pub(crate) fn generic(inputs: &[f64], law: &[f64], spread: f64, step_s: f64) -> 
     for power in [2, 3, 4, 5] {
         all.push(of(&x, &|v| v.powi(power)));
     }
-    for tau in [1e-3, 5e-3, 0.03, 0.2, 2.0] {
+    for tau in [1e-3, 5e-3, 0.03, 0.2, 2.0].map(|tau| tau * slower) {
         let late = less(&lagged(&x, tau, step_s), &x);
         all.extend([
             times(&late, &|d, v| d * v),

@@ -53,6 +53,10 @@ impl Lines {
 /// numbers of lines, a line being one cycle in the record.
 pub(crate) fn octaves(samples: usize) -> Vec<Range<usize>> {
     let lines = samples / 2;
+    // two values hold a mean and no line
+    if lines < 2 {
+        return Vec::new();
+    }
     let starts = std::iter::successors(Some(FIRST_LINES), |k| Some(2 * k));
     let starts: Vec<usize> =
         std::iter::once(1).chain(starts).take_while(|k| *k < lines.max(2)).collect();

@@ -45,6 +45,7 @@ mod noise;
 mod quantile;
 mod resampling;
 mod sine;
+mod spectrum;
 mod trace;
 
 pub use cause::{Candidate, Class, Effect, Parameter, Scale};
@@ -61,3 +62,5 @@ pub use sine::Sine;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+pub use quantile::student_exceeded;
+pub use spectrum::{Spectrum, cosine_lines};

@@ -1,51 +1,49 @@
-//! Quantiles of the normal and of Student's distribution.
+//! Quantiles of the distributions that tests and intervals ask for.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 /// Quantile 0.975 of the normal distribution.
 pub(crate) const NORMAL_975: f64 = 1.959_963_985;
 
-/// Quantile 0.975 of Student's distribution, by the first terms of its expansion about the normal one: right to
-/// 4e-3 from five degrees of freedom on. Source: M. Abramowitz and I. A. Stegun, *Handbook of Mathematical
-/// Functions*, 26.7.5.
+/// Quantile 0.975 of Student's distribution of `degrees > 0`.
 pub(crate) fn student_975(degrees: f64) -> f64 {
-    let z = NORMAL_975;
-    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
-    z + (z3 + z) / (4.0 * degrees)
-        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * degrees.powi(2))
-        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * degrees.powi(3))
+    StudentsT::new(0.0, 1.0, degrees).map_or(f64::NAN, |student| student.inverse_cdf(0.975))
 }
 
-/// Chi-square of so many degrees of freedom that is exceeded as often as a normal deviate exceeds `deviations`: right to 3 %
-/// from two degrees on. Source: E. B. Wilson and M. M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684.
-pub(crate) fn chi2_quantile(degrees: f64, deviations: f64) -> f64 {
-    let spread = 2.0 / (9.0 * degrees);
-    degrees * (1.0 - spread + deviations * spread.sqrt()).powi(3)
+/// Probability that a deviate of Student's distribution of `degrees > 0` exceeds a value.
+pub fn student_exceeded(degrees: f64, value: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees).map_or(f64::NAN, |student| student.sf(value))
+}
+
+/// Standard deviations that a normal deviate exceeds with a probability between 0 and 1.
+pub(crate) fn normal_exceeded(probability: f64) -> f64 {
+    -Normal::standard().inverse_cdf(probability)
+}
+
+/// Chi-square of `degrees > 0` that is exceeded with a probability between 0 and 1.
+pub(crate) fn chi2_exceeded(degrees: f64, probability: f64) -> f64 {
+    ChiSquared::new(degrees).map_or(f64::NAN, |chi2| chi2.inverse_cdf(1.0 - probability))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{chi2_quantile, student_975};
+    use super::{chi2_exceeded, normal_exceeded, student_975};
 
-    /// Against the printed table (Abramowitz and Stegun, table 26.10).
+    /// Against the printed tables (Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.8 and 26.10).
     #[test]
-    fn students_quantile_is_that_of_the_table() {
+    fn the_quantiles_are_those_of_the_tables() {
         for (degrees, quantile) in [(5.0, 2.571), (10.0, 2.228), (39.0, 2.023)] {
-            assert!((student_975(degrees) - quantile).abs() < 4e-3, "{degrees}");
+            assert!((student_975(degrees) - quantile).abs() < 5e-4, "{degrees}");
         }
-    }
-
-    /// Against the printed table (Abramowitz and Stegun, table 26.8), probabilities 0.05 and 0.001.
-    #[test]
-    fn the_quantile_of_chi_square_is_that_of_the_table() {
-        for (degrees, deviations, quantile) in [
-            (2.0, 1.6449, 5.991),
-            (10.0, 1.6449, 18.307),
-            (2.0, 3.0902, 13.816),
-            (30.0, 3.0902, 59.703),
+        for (degrees, probability, quantile) in [
+            (1.0, 0.001, 10.828),
+            (2.0, 0.05, 5.991),
+            (10.0, 0.05, 18.307),
+            (2.0, 0.001, 13.816),
+            (30.0, 0.001, 59.703),
         ] {
-            assert!(
-                (chi2_quantile(degrees, deviations) / quantile - 1.0).abs() < 0.03,
-                "{degrees}"
-            );
+            assert!((chi2_exceeded(degrees, probability) - quantile).abs() < 5e-4, "{degrees}");
         }
+        assert!((normal_exceeded(0.001) - 3.0902).abs() < 5e-5);
     }
 }

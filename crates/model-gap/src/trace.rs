@@ -25,6 +25,8 @@ pub struct Trace {
     /// Standard deviation that a sample weighs with, in the signal's unit: noise and what the
     /// structure of the base model leaves, as if white.
     pub sigma: f64,
+    /// Spectrum of the errors, over the square of `sigma`.
+    pub spectrum: crate::Spectrum,
     /// Standard deviation of the noise alone, in the signal's unit.
     pub noise: f64,
     /// What the base model may still move by, a row per sample; the same columns in every trace,

@@ -5,9 +5,12 @@ use crate::plays::{Plays, lagged};
 use crate::record::Record;
 use nalgebra::{DMatrix, DVector};
 
-/// Time constants of creep and relaxation, two per decade from 1 ms to 300 s, s.
-pub(super) fn time_constants_s() -> Vec<f64> {
-    (0..12).map(|i| 1e-3 * 10.0_f64.powf(0.5 * f64::from(i))).collect()
+/// Number of time constants of creep and relaxation.
+const TIME_CONSTANTS: i32 = 12;
+
+/// Time constants of creep and relaxation, two per decade from 1 ms to 300 s, and so many times longer, s.
+pub(super) fn time_constants_s(slower: f64) -> Vec<f64> {
+    (0..TIME_CONSTANTS).map(|i| slower * 1e-3 * 10.0_f64.powf(0.5 * f64::from(i))).collect()
 }
 
 /// Prior standard deviation of the share of one time constant.
@@ -155,7 +158,7 @@ pub(super) fn best_prior(
     spread: f64,
 ) -> Option<(f64, f64)> {
     let mut best: Option<(f64, (f64, f64))> = None;
-    let taus = time_constants_s().len();
+    let taus = TIME_CONSTANTS as usize;
     let folds = equations.len().min(6);
     for prior in PRIORS {
         let precision = precision(plays, prior, spread, taus)?;

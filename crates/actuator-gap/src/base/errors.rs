@@ -1,7 +1,9 @@
 //! Errors of the base model: noise of the reading, structure it leaves, and how long that keeps its sign.
 
 use crate::record::Record;
+use model_gap::cosine_lines;
 use rotor_base::{mean_square, variance};
+use std::collections::BTreeMap;
 
 /// What the base model leaves on one run, and how that error is made.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -19,6 +21,56 @@ impl ErrorModel {
     pub(crate) fn effective(&self) -> f64 {
         (self.noise.powi(2) + self.correlation * self.structure.powi(2)).sqrt()
     }
+}
+
+/// Power spectrum of the structural error of runs over the variance of their outputs, one-sided, by half octaves.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct ErrorSpectrum {
+    /// Level by band, s; band `b` begins at `2^(b / 2)` Hz.
+    levels_s: BTreeMap<i32, f64>,
+}
+
+impl ErrorSpectrum {
+    /// From what a model leaves of runs where they are judged: the mean over the lines of a band of all runs, less noise.
+    ///
+    /// ```text
+    /// S(f) = 2 h mean (c_k^2 - noise^2) / mean var y,   f = k / (2 n h),   c_k the orthonormal cosine transform
+    /// ```
+    /// Its integral over frequency is the structural error's variance over that of the output.
+    pub(super) fn of<'r>(left: impl Iterator<Item = (&'r Record, Vec<f64>)>) -> Self {
+        let mut bands: BTreeMap<i32, (f64, f64)> = BTreeMap::new();
+        for (run, residual) in left {
+            let noise = white_noise(&residual).powi(2);
+            let own = variance(run.judged_output());
+            for (k, line) in cosine_lines(&residual).iter().enumerate() {
+                let sums = bands.entry(band(k, residual.len(), run.step_s)).or_default();
+                sums.0 += 2.0 * run.step_s * (line * line - noise);
+                sums.1 += own;
+            }
+        }
+        let level = |(power, variance): (f64, f64)| {
+            if variance > 0.0 { (power / variance).max(0.0) } else { 0.0 }
+        };
+        Self { levels_s: bands.into_iter().map(|(band, sums)| (band, level(sums))).collect() }
+    }
+
+    /// Variance of each line of `samples` samples of a step, over that of the output; the nearest band where the runs
+    /// had none.
+    pub(super) fn lines(&self, samples: usize, step_s: f64) -> impl Iterator<Item = f64> {
+        (0..samples).map(move |k| {
+            let at = band(k, samples, step_s);
+            let slower = self.levels_s.range(..=at).next_back();
+            let level_s = slower.or_else(|| self.levels_s.iter().next()).map_or(0.0, |own| *own.1);
+            0.5 * level_s / step_s
+        })
+    }
+}
+
+/// Band of line `k` of `samples` samples of a step; the mean counts to the slowest.
+#[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
+fn band(k: usize, samples: usize, step_s: f64) -> i32 {
+    let hz = (k as f64).max(0.5) / (2.0 * samples as f64 * step_s);
+    (2.0 * hz.log2()).floor() as i32
 }
 
 pub(super) fn pooled_spread(runs: &[&Record]) -> f64 {
@@ -68,4 +120,43 @@ pub(super) fn correlation_samples(residual: &[f64], noise: f64) -> f64 {
         lag += step;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// A slow error and white noise: the spectrum holds the error's variance, where it is, whatever the step.
+    #[test]
+    fn the_spectrum_holds_the_error_where_it_is() {
+        let n = 4000;
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let time_s = |i: usize| i as f64 * 1e-3;
+        let output: Vec<f64> = (0..n).map(|i| 10.0 * (TAU * 0.5 * time_s(i)).sin()).collect();
+        let error: Vec<f64> =
+            (0..n).map(|i| 0.2 * (TAU * 3.0 * time_s(i)).cos() + 0.1 * uniform()).collect();
+        let run = Record::new("sine", 1e-3, output.clone(), output);
+        let spectrum = ErrorSpectrum::of(std::iter::once((&run, error)));
+        for (step_s, samples) in [(1e-3, 4000), (4e-3, 1000)] {
+            let lines: Vec<f64> = spectrum.lines(samples, step_s).collect();
+            let hz = |k: usize| k as f64 / (2.0 * samples as f64 * step_s);
+            let within = |low: f64, high: f64| -> f64 {
+                let inside = |(k, _): &(usize, &f64)| (low..high).contains(&hz(*k));
+                lines.iter().enumerate().filter(inside).map(|own| own.1).sum::<f64>()
+                    / samples as f64
+            };
+            // 0.02 of error over 50 of output, in the half octave from 2.83 to 4 Hz
+            assert!(
+                (within(2.8, 4.01) / 4e-4 - 1.0).abs() < 0.05,
+                "{step_s}: {}",
+                within(2.8, 4.01)
+            );
+            assert!(within(8.0, 1e3) < 4e-6, "{step_s}: {}", within(8.0, 1e3));
+        }
+    }
 }

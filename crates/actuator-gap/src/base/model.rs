@@ -5,10 +5,10 @@ use super::equations::{
     Equations, PRIORS, best_prior, covariance_root, equations, fit_of, fit_positive, precision,
     time_constants_s,
 };
-use super::errors::{ErrorModel, correlation_samples, pooled_spread, white_noise};
+use super::errors::{ErrorModel, ErrorSpectrum, correlation_samples, pooled_spread, white_noise};
 use crate::numbers::less;
 use crate::plays::{OutputMap, Plays, behind_lags, lagged};
-use crate::record::Record;
+use crate::record::{Record, slower};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{mean_square, variance};
@@ -34,6 +34,8 @@ pub(crate) struct BaseModel {
     /// Structural error relative to the spread of the output, and its correlation time, s.
     structure: f64,
     correlation_s: f64,
+    /// How its power is spread over frequency.
+    spectrum: ErrorSpectrum,
     /// Root of the covariance of offset, coefficients and shares.
     root: DMatrix<f64>,
     /// Spread of the output over all reference runs.
@@ -56,7 +58,7 @@ impl BaseModel {
     ) -> Option<Self> {
         let plays = Plays::new(range.0, range.1);
         let spread = pooled_spread(runs);
-        let taus = time_constants_s();
+        let taus = time_constants_s(slower(runs));
         let stride = stride_of(runs);
         let rises = plays.rises_to_coefficients();
         let mut history: Vec<Vec<f64>> = Vec::new();
@@ -143,6 +145,7 @@ impl BaseModel {
             noise: 0.0,
             structure: 0.0,
             correlation_s: 0.0,
+            spectrum: ErrorSpectrum::default(),
             root: DMatrix::zeros(weights.len(), weights.len()),
             spread,
             weights,
@@ -160,17 +163,18 @@ impl BaseModel {
         let (mut noise2, mut white_count) = (0.0, 0.0);
         let (mut numerator, mut denominator) = (0.0, 0.0);
         let mut correlation = 0.0;
-        for run in runs {
-            let residual = self.residual(run);
-            let white = white_noise(&residual);
+        let left: Vec<Vec<f64>> = runs.iter().map(|run| self.residual(run)).collect();
+        for (run, residual) in runs.iter().zip(&left) {
+            let white = white_noise(residual);
             let n = residual.len() as f64;
             noise2 += white * white * n;
             white_count += n;
-            let part = (mean_square(&residual) - white * white).max(0.0);
-            correlation += part * n * correlation_samples(&residual, white) * run.step_s;
+            let part = (mean_square(residual) - white * white).max(0.0);
+            correlation += part * n * correlation_samples(residual, white) * run.step_s;
             numerator += part * n;
             denominator += variance(run.judged_output()) * n;
         }
+        self.spectrum = ErrorSpectrum::of(runs.iter().copied().zip(left));
         self.noise = (noise2 / white_count).sqrt();
         self.correlation_s = if numerator > 0.0 { correlation / numerator } else { 0.0 };
         let trained = (numerator / denominator).sqrt();
@@ -221,9 +225,21 @@ impl BaseModel {
     /// How the error of a run is made, its noise estimated from the run itself.
     pub(crate) fn errors(&self, run: &Record) -> ErrorModel {
         let noise = white_noise(&self.residual(run)).max(1e-5 * self.spread);
-        let own = 0.5 * (variance(run.judged_output()).sqrt().min(self.spread) + self.spread);
+        let own = self.size_of(run);
         let correlation = (self.correlation_s / run.step_s).max(1.0);
         ErrorModel { noise, structure: self.structure * own, correlation }
+    }
+
+    /// Spread of the output that the structural error of a run goes with: it does not shrink to nothing in small runs.
+    fn size_of(&self, run: &Record) -> f64 {
+        0.5 * (variance(run.judged_output()).sqrt().min(self.spread) + self.spread)
+    }
+
+    /// Variance of the structural error of a run by the lines of `samples` samples of a step, in the square of the
+    /// output's unit.
+    pub(crate) fn structure_lines(&self, run: &Record, samples: usize, step_s: f64) -> Vec<f64> {
+        let square = (STRUCTURE_MARGIN * self.size_of(run)).powi(2);
+        self.spectrum.lines(samples, step_s).map(|line| square * line).collect()
     }
 
     /// What the base model may still move by on given runs: columns of standard deviation 1, the

@@ -1,6 +1,6 @@
 //! An amplifier that delays, which is no cause of the library.
 
-use super::cause::{BenchCause, LAGS_S, growing, logarithmic, singles, usual};
+use super::cause::{BenchCause, lag, lags_s, singles, usual};
 use model_gap::{Candidate, Class};
 
 /// A terminal voltage that follows the command late and undistorted.
@@ -11,12 +11,12 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| Candidate {
         id: "amplifier-delay",
         physics: "The terminal voltage is the command of a while ago, V(t) = u(t - delay).",
-        parameters: vec![growing(logarithmic("delay", "s", 1e-5, 0.05))],
+        parameters: vec![lag("delay", design)],
         class: Class::LagBeforeTerminals,
         fingerprint: "phase exactly straight in frequency, before the hysteresis",
         confused_with: &["electrical-lag", "transport-delay", "sensor-filter", "rate-dependence"],
         separating: &["amplifier-monitor", "multisine-5-181Hz"],
-        starts: singles(LAGS_S),
+        starts: singles(lags_s(design)),
         blocked: design.one_frequency().or_else(|| {
             (design.monitored_runs == 0)
                 .then(|| "without the terminal voltage nothing tells it from a lag".to_owned())

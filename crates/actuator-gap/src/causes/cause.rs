@@ -60,5 +60,12 @@ pub(super) fn singles<const N: usize>(values: [f64; N]) -> Vec<Vec<f64>> {
     values.map(|value| vec![value]).to_vec()
 }
 
+/// A lag or a delay, s: 10 us to 50 ms, and as many times longer as the bench is slower than usual.
+pub(super) fn lag(name: &'static str, design: &Design) -> Parameter {
+    growing(logarithmic(name, "s", 1e-5 * design.slower, 0.05 * design.slower))
+}
+
 /// Time constants that a search for a lag or a delay begins at, s.
-pub(super) const LAGS_S: [f64; 4] = [2e-4, 1e-3, 4e-3, 0.015];
+pub(super) fn lags_s(design: &Design) -> [f64; 4] {
+    [2e-4, 1e-3, 4e-3, 0.015].map(|tau| tau * design.slower)
+}

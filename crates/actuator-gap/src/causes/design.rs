@@ -1,7 +1,7 @@
 //! What measured runs contain: what a cause is judged observable by.
 
 use crate::numbers::{mean, range};
-use crate::record::Record;
+use crate::record::{Record, slower};
 use model_gap::Sine;
 
 /// What the measured runs of a diagnosis contain.
@@ -17,6 +17,8 @@ pub(crate) struct Design {
     pub(crate) longest_s: f64,
     /// Half the highest sampling frequency, Hz: what one run carries, the data carry.
     pub(crate) nyquist_hz: f64,
+    /// Times slower than a usual bench the runs are: see [`slower`].
+    pub(crate) slower: f64,
     /// Rate of the input that a twentieth of the samples exceed, per s.
     pub(crate) fast_rate: f64,
     /// The only frequency of all measured runs, if they are sines of one frequency.
@@ -60,6 +62,7 @@ impl Design {
             half_stroke: 0.5 * (output.1 - output.0),
             longest_s: runs.iter().map(|r| r.duration_s()).fold(0.0, f64::max),
             nyquist_hz: runs.iter().map(|r| 0.5 / r.step_s).fold(0.0, f64::max),
+            slower: slower(runs),
             fast_rate: rates.get(rates.len() * 19 / 20).copied().unwrap_or_default(),
             only_hz,
             monitored_runs: runs.iter().filter(|r| r.amplifier.is_some()).count(),

@@ -1,6 +1,6 @@
 //! Electrical lag of amplifier and ceramic.
 
-use super::cause::{BenchCause, LAGS_S, growing, logarithmic, singles, usual};
+use super::cause::{BenchCause, lag, lags_s, singles, usual};
 use model_gap::{Candidate, Class};
 use preisach_dyn::{AmplifierStage, Lag};
 
@@ -9,13 +9,13 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| Candidate {
         id: "electrical-lag",
         physics: "Output resistance of the amplifier into the capacitance of the ceramic, tau V' + V = u, tau = R C.",
-        parameters: vec![growing(logarithmic("tau", "s", 1e-5, 0.05))],
+        parameters: vec![lag("tau", design)],
         class: Class::LagBeforeTerminals,
         is_common: true,
         fingerprint: "phase -atan(w tau) before the hysteresis, so that reversal points shrink",
         confused_with: &["transport-delay", "sensor-filter", "rate-dependence"],
         separating: &["amplifier-monitor", "multisine-5-181Hz"],
-        starts: singles(LAGS_S),
+        starts: singles(lags_s(design)),
         blocked: design.one_frequency(),
         ..usual()
     },

@@ -1,6 +1,6 @@
 //! Rate dependence of the hysteresis.
 
-use super::cause::{BenchCause, LAGS_S, growing, linear, logarithmic, shape, usual};
+use super::cause::{BenchCause, lag, lags_s, linear, shape, usual};
 use super::chain::Rate;
 use model_gap::{Candidate, Class};
 
@@ -9,15 +9,12 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| Candidate {
         id: "rate-dependence",
         physics: "Domains take time: the law relaxes towards its static value, with a time that depends on its state.",
-        parameters: vec![
-            growing(logarithmic("tau", "s", 1e-5, 0.05)),
-            shape(linear("position", "1", -0.6, 0.6)),
-        ],
+        parameters: vec![lag("tau", design), shape(linear("position", "1", -0.6, 0.6))],
         class: Class::LagBehindTerminals,
         fingerprint: "phase and loop area grow with frequency and depend on amplitude and place; odd harmonics",
         confused_with: &["electrical-lag", "transport-delay", "sensor-filter"],
         separating: &["multisine-5-181Hz", "amplitude-sweep", "laser-cross-check"],
-        starts: LAGS_S.map(|tau| [vec![tau, 0.1], vec![tau, -0.1]]).concat(),
+        starts: lags_s(design).map(|tau| [vec![tau, 0.1], vec![tau, -0.1]]).concat(),
         blocked: design.one_frequency(),
         ..usual()
     },

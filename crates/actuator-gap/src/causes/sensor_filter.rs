@@ -1,6 +1,6 @@
 //! Filter of the sensor.
 
-use super::cause::{BenchCause, LAGS_S, growing, linear, logarithmic, shape, usual};
+use super::cause::{BenchCause, lag, lags_s, linear, shape, usual};
 use model_gap::{Candidate, Class};
 use preisach_dyn::{Lag, SensorStage};
 
@@ -12,16 +12,13 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| Candidate {
         id: "sensor-filter",
         physics: "Low-pass filter of the displacement sensor, (1 + (1 - c) tau s)(1 + c tau s) y = x.",
-        parameters: vec![
-            growing(logarithmic("tau", "s", 1e-5, 0.05)),
-            shape(linear("second_share", "1", 0.0, 0.5)),
-        ],
+        parameters: vec![lag("tau", design), shape(linear("second_share", "1", 0.0, 0.5))],
         class: Class::LagBehindTerminals,
         is_common: true,
         fingerprint: "a lag of the reading behind everything else, amplitude and phase",
         confused_with: &["transport-delay", "electrical-lag", "rate-dependence"],
         separating: &["laser-cross-check", "multisine-5-181Hz"],
-        starts: LAGS_S.map(|tau| [vec![tau, 0.02], vec![tau, 0.3]]).concat(),
+        starts: lags_s(design).map(|tau| [vec![tau, 0.02], vec![tau, 0.3]]).concat(),
         blocked: design.one_frequency(),
         ..usual()
     },

@@ -1,6 +1,6 @@
 //! Transport delay of the reading.
 
-use super::cause::{BenchCause, LAGS_S, growing, logarithmic, singles, usual};
+use super::cause::{BenchCause, lag, lags_s, singles, usual};
 use model_gap::{Candidate, Class};
 use preisach_dyn::{Delay, SensorStage};
 
@@ -9,13 +9,13 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     candidate: |design| Candidate {
         id: "transport-delay",
         physics: "The reading comes late, y(t - T).",
-        parameters: vec![growing(logarithmic("delay", "s", 1e-5, 0.05))],
+        parameters: vec![lag("delay", design)],
         class: Class::LagBehindTerminals,
         is_common: true,
         fingerprint: "phase exactly straight in frequency, gain 1",
         confused_with: &["electrical-lag", "sensor-filter", "rate-dependence"],
         separating: &["multisine-5-181Hz", "laser-cross-check"],
-        starts: singles(LAGS_S),
+        starts: singles(lags_s(design)),
         blocked: design.one_frequency(),
         ..usual()
     },

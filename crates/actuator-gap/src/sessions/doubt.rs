@@ -1,5 +1,6 @@
 //! What noise, range and simulation of the two sessions do not bear out.
 
+use super::over_time::change_over_session;
 use super::{GivenModel, noisier, share_beyond};
 use crate::base::BaseModel;
 use crate::record::Record;
@@ -25,6 +26,10 @@ pub(crate) fn doubt(finding: &mut Finding, sessions: &Sessions<'_>) {
     {
         finding.confidence = Confidence::Tentative;
         finding.reasons.push(reason);
+    }
+    // a cause that is sure explains what would look like a change with time
+    if finding.confidence == Confidence::Tentative {
+        finding.reasons.extend(change_over_session(sessions.runs, sessions.base));
     }
     if sessions.takes_for_true {
         be_tentative(finding, Reason::TakenForTrue);

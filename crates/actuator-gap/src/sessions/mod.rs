@@ -3,6 +3,7 @@
 mod continued;
 mod doubt;
 mod given;
+mod over_time;
 
 pub(crate) use continued::continued;
 pub(crate) use doubt::{Sessions, doubt};

@@ -7,8 +7,8 @@ use crate::causes::Command;
 use crate::numbers::less;
 use crate::record::Record;
 use measured_data::Accuracy;
-use model_gap::Sine;
 use model_gap::discovery::Trace;
+use model_gap::{Sine, Spectrum};
 use nalgebra::DMatrix;
 use rotor_base::variance;
 
@@ -44,12 +44,8 @@ impl BenchSimulator<'_> {
             let (noise, sigma) = match channel.kind {
                 ChannelKind::Output => {
                     let e = errors[channel.run];
-                    // the noise of the reference run of the same input is in the comparison too
-                    let readings = if channel.anchor.is_some() { 2.0 } else { 1.0 };
-                    let structure = match channel.anchor {
-                        Some(_) => (REPEATABILITY * self.base.spread).min(e.structure),
-                        None => e.structure,
-                    };
+                    let readings = readings_in(channel);
+                    let structure = e.structure * self.structure_part(channel, e.structure);
                     let white = readings * e.noise.powi(2) / block;
                     let left = (e.correlation / block).max(1.0) * structure.powi(2);
                     (white.sqrt(), (white + left).sqrt())
@@ -63,18 +59,47 @@ impl BenchSimulator<'_> {
                 ChannelKind::Load => (white, (3.0 * white).max(0.3 * variance(own).sqrt())),
             };
             let measured = averaged(own, self.block);
+            let sigma = sigma.max(1e-12);
             Trace {
                 experiment: channel.run,
                 step_s: block * run.step_s,
                 block: block_of(run, measured.len()),
                 nuisance: self.nuisance(channel, &moving, measured.len()),
+                spectrum: self.spectrum(channel, measured.len(), sigma, &errors[channel.run]),
                 measured,
-                sigma: sigma.max(1e-12),
+                sigma,
                 noise,
                 role: channel.kind.role(),
             }
         };
         self.channels.iter().map(one).collect()
+    }
+
+    /// Part of the structural error of the base model that is in a channel: where a run is compared with the reference run of
+    /// its input, no more than two such runs differ by.
+    fn structure_part(&self, channel: &Channel, structure: f64) -> f64 {
+        let repeated = REPEATABILITY * self.base.spread;
+        if channel.anchor.is_some() && structure > repeated { repeated / structure } else { 1.0 }
+    }
+
+    /// How the errors of a channel are spread over frequency, over the variance `sigma^2` that its samples weigh with; those
+    /// of a channel that the base model does not foretell are taken for white.
+    fn spectrum(
+        &self,
+        channel: &Channel,
+        samples: usize,
+        sigma: f64,
+        errors: &ErrorModel,
+    ) -> Spectrum {
+        if channel.kind != ChannelKind::Output {
+            return Spectrum::default();
+        }
+        let (run, block) = (self.runs[channel.run], self.block as f64);
+        let white = readings_in(channel) * errors.noise.powi(2) / block;
+        let part = self.structure_part(channel, errors.structure).powi(2);
+        let lines = self.base.structure_lines(run, samples, block * run.step_s);
+        let variance = |structure: f64| (white + part * structure) / (sigma * sigma);
+        Spectrum::new(lines.into_iter().map(variance).collect())
     }
 
     /// What a channel may move by, in this order: the directions of the base model, the zeros of the runs, and the
@@ -124,6 +149,11 @@ impl BenchSimulator<'_> {
             columns[k].as_ref().map_or(0.0, |own| own[i])
         })
     }
+}
+
+/// Readings whose noise is in a channel: that of the reference run of the same input is in a comparison too.
+fn readings_in(channel: &Channel) -> f64 {
+    if channel.anchor.is_some() { 2.0 } else { 1.0 }
 }
 
 /// Block of the bootstrap: a period where the input has one, else a tenth of the run.

@@ -3,6 +3,7 @@
 use super::thresholds::NOISE_DOUBT;
 use super::{Signal, Trace, TraceRole};
 use crate::GapError;
+use crate::quantile::{chi2_exceeded, normal_exceeded};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::sync::Arc;
 
@@ -21,6 +22,38 @@ impl Products {
             own: DMatrix::zeros(columns, columns),
             with_nuisance: DMatrix::zeros(nuisance, columns),
         }
+    }
+}
+
+/// Sum of squares of noise over what its samples weigh with: a sum of squares of normal deviates of unlike size.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NoiseEnergy {
+    /// Sum of their variances, and of the squares of these.
+    sum: f64,
+    squares: f64,
+}
+
+impl NoiseEnergy {
+    pub(crate) fn mean(&self) -> f64 {
+        self.sum
+    }
+
+    /// Its standard deviation, with the doubt of the noise itself.
+    pub(crate) fn deviation(&self) -> f64 {
+        (2.0 * self.squares).sqrt() + NOISE_DOUBT * self.sum
+    }
+
+    /// What it exceeds its mean by with a probability, with the doubt of the noise itself.
+    ///
+    /// By F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110: the chi-square of equal mean and variance, which has
+    /// `(sum s)^2 / sum s^2` degrees of freedom; exact for deviates of equal size.
+    pub(crate) fn exceeded(&self, probability: f64) -> f64 {
+        if self.sum <= 0.0 {
+            return 0.0;
+        }
+        let degrees = self.sum * self.sum / self.squares;
+        let most = self.sum / degrees * chi2_exceeded(degrees, probability);
+        most - self.sum + normal_exceeded(probability) * NOISE_DOUBT * self.sum
     }
 }
 
@@ -117,6 +150,19 @@ impl<'a> Evidence<'a> {
     /// One signal with its products with the nuisance.
     pub(crate) fn see<'s>(&self, signal: &'s Signal) -> Seen<'s> {
         self.seen(&[signal]).swap_remove(0)
+    }
+
+    /// Variance of the product of a signal, the nuisance taken out, with the errors, over that with errors as white as the
+    /// weights take them for: at most about 1, and far less of a signal where the structure of the base model is not.
+    pub(crate) fn error_share(&self, signal: &Seen<'_>) -> f64 {
+        let cleaned = self.cleaned(signal);
+        let (mut own, mut white) = (0.0, 0.0);
+        for ((trace, signal), weight) in self.traces.iter().zip(&cleaned).zip(&self.weights) {
+            let [coloured, plain] = trace.spectrum.energies(signal);
+            own += weight * coloured;
+            white += weight * plain;
+        }
+        if white > 0.0 { own / white } else { 1.0 }
     }
 
     /// Product of two signals with the nuisance projected out.
@@ -236,9 +282,7 @@ impl<'a> Evidence<'a> {
 
     /// Sum of squares of the outputs that noise alone would leave, over what they weigh with.
     pub(crate) fn noise_energy(&self) -> f64 {
-        self.of_role(TraceRole::Output)
-            .map(|(number, t)| t.measured.len() as f64 * t.noise.powi(2) * self.weights[number])
-            .sum()
+        self.noise_by_experiment().iter().map(NoiseEnergy::mean).sum()
     }
 
     /// Sum of squares of a signal on the outputs over what they weigh with, experiment by experiment.
@@ -262,14 +306,14 @@ impl<'a> Evidence<'a> {
         all
     }
 
-    /// Such sums of a residual less what noise alone would leave, with the standard error of that.
-    pub(crate) fn excess_by_experiment(&self, energies: &[f64]) -> Vec<(f64, f64)> {
-        let mut all: Vec<(f64, f64)> = energies.iter().map(|energy| (*energy, 0.0)).collect();
+    /// What noise alone leaves of the outputs of every experiment.
+    pub(crate) fn noise_by_experiment(&self) -> Vec<NoiseEnergy> {
+        let mut all = vec![NoiseEnergy::default(); self.experiments];
         for (number, t) in self.of_role(TraceRole::Output) {
-            let (share, n) = (t.noise.powi(2) * self.weights[number], t.measured.len() as f64);
+            let share = t.noise.powi(2) * self.weights[number];
             let own = &mut all[t.experiment];
-            own.0 -= n * share;
-            own.1 = own.1.hypot(share * (2.0 * n).sqrt() + NOISE_DOUBT * n * share);
+            own.sum += share * t.measured.len() as f64;
+            own.squares += share.powi(2) * t.measured.len() as f64;
         }
         all
     }

@@ -1,15 +1,14 @@
 //! What is left above the floors: of everything, and run by run.
 
 use super::decide::Search;
-use super::evidence::less;
+use super::evidence::{NoiseEnergy, less};
 use super::fit::Fitted;
 use super::thresholds::{
-    BAND_MARGIN, FORM_LEFT, FORM_LEFT_OF_BAND, NOISE_COLOUR, NOISE_DEVIATIONS, RUN_MARGIN,
-    STANDS_OUT,
+    BAND_MARGIN, FALSE_ALARM, FORM_LEFT, FORM_LEFT_OF_BAND, NOISE_COLOUR, RUN_MARGIN, STANDS_OUT,
 };
 use super::{BandLeft, Signal, Simulator, StandsOut, Trace, TraceRole};
 use crate::bands::{Lines, octaves};
-use crate::quantile::chi2_quantile;
+use crate::quantile::chi2_exceeded;
 use std::ops::Range;
 
 impl<S: Simulator> Search<'_, S> {
@@ -91,6 +90,9 @@ impl<S: Simulator> Search<'_, S> {
         let (before, after) = (self.base.cleaned(self.evidence), current.cleaned(self.evidence));
         let floors: Vec<Signal> =
             self.structures.iter().map(|s| self.evidence.cleaned(s)).collect();
+        let traces = self.evidence.traces;
+        let tests: usize = traces.iter().map(|trace| octaves(trace.measured.len()).len()).sum();
+        let alarm = FALSE_ALARM / tests.max(1) as f64;
         let of_channel = |(number, trace): (usize, &Trace)| {
             let bands = octaves(trace.measured.len());
             let motion = less(&trace.measured, &after[number]);
@@ -108,8 +110,7 @@ impl<S: Simulator> Search<'_, S> {
                 let floor = floors.iter().map(|own| own.energy(band)).fold(0.0, f64::max);
                 let [there, elsewhere] = FORM_LEFT_OF_BAND;
                 let form = there * before.energy(band) + elsewhere * whole;
-                let by_noise =
-                    2.0 * noise.powi(2) * chi2_quantile(band.len() as f64, NOISE_DEVIATIONS);
+                let by_noise = 2.0 * noise.powi(2) * chi2_exceeded(band.len() as f64, alarm);
                 let most = BAND_MARGIN * floor + form + by_noise;
                 let own = after.energy(band);
                 (own > most).then(|| BandLeft {
@@ -123,7 +124,7 @@ impl<S: Simulator> Search<'_, S> {
             };
             bands.iter().filter_map(left).collect::<Vec<_>>()
         };
-        let channels = self.evidence.traces.iter().enumerate();
+        let channels = traces.iter().enumerate();
         let counts = |(number, trace): &(usize, &Trace)| {
             trace.role != TraceRole::Covariate
                 && self.discovery.simulator.carries(&current.effects, *number)
@@ -145,15 +146,16 @@ impl<S: Simulator> Search<'_, S> {
 
     /// What is left of every experiment, beside its floor.
     fn runs(&self, left: &[f64]) -> Vec<Run> {
-        let excess = self.evidence.excess_by_experiment(left);
+        let noise = self.evidence.noise_by_experiment();
+        let alarm = FALSE_ALARM / noise.len().max(1) as f64;
         let floors: Vec<Vec<f64>> =
             self.discovery.structures.iter().map(|s| self.evidence.by_experiment(s)).collect();
-        let own = |(experiment, (excess, error)): (usize, (f64, f64))| {
+        let own = |(experiment, (noise, left)): (usize, (&NoiseEnergy, &f64))| {
             let floor = floors.iter().map(|f| f[experiment]).fold(0.0, f64::max);
-            let beyond = RUN_MARGIN * floor + NOISE_DEVIATIONS * error;
-            Run { excess, floor: floor.max(error), beyond }
+            let beyond = RUN_MARGIN * floor + noise.exceeded(alarm);
+            Run { excess: left - noise.mean(), floor: floor.max(noise.deviation()), beyond }
         };
-        excess.into_iter().enumerate().map(own).collect()
+        noise.iter().zip(left).enumerate().map(own).collect()
     }
 }
 

@@ -3,10 +3,10 @@
 use super::FittedParameter;
 use super::evidence::{Evidence, Seen, columns, difference, normal_equations, residual, ridged};
 use super::fit::Fitted;
-use super::thresholds::{DRIFT_DEVIATIONS, GENERIC_MARGIN, NOISE_DEVIATIONS};
+use super::thresholds::{DRIFT_DEVIATIONS, FALSE_ALARM, GENERIC_MARGIN};
 use super::{Discovery, Signal, Simulator};
 use crate::GapError;
-use crate::quantile::{NORMAL_975, student_975};
+use crate::quantile::{NORMAL_975, chi2_exceeded, student_975};
 use nalgebra::{DMatrix, DVector};
 
 /// The generic directions, ready to be tested against residuals.
@@ -29,7 +29,7 @@ impl<'a> Generic<'a> {
         let (inverse, rank) = pseudo_inverse(&evidence.inners(&directions));
         let mut own = Self { directions, inverse, threshold: 0.0 };
         let structural = structures.iter().map(|s| own.along(evidence, s)).fold(0.0, f64::max);
-        let noise = (rank.sqrt() + NOISE_DEVIATIONS).powi(2);
+        let noise = if rank > 0.0 { chi2_exceeded(rank, FALSE_ALARM) } else { 0.0 };
         own.threshold = GENERIC_MARGIN * structural + noise;
         own
     }
@@ -241,13 +241,14 @@ pub(crate) fn parameters<S: Simulator>(
 /// Standard error over the blocks of the drop of the misfit from one fit to another.
 pub(crate) fn drop_error(evidence: &Evidence<'_>, worse: &Fitted, better: &Fitted) -> f64 {
     let (a, b) = (worse.cleaned(evidence), better.cleaned(evidence));
-    let mut square = 0.0;
+    let mut drops: Vec<f64> = Vec::new();
     for ((a, b), trace) in a.iter().zip(&b).zip(evidence.traces) {
         let weight = 1.0 / (trace.sigma * trace.sigma);
         for (a, b) in a.chunks(trace.block).zip(b.chunks(trace.block)) {
             let sum = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>();
-            square += ((sum(a) - sum(b)) * weight).powi(2);
+            drops.push((sum(a) - sum(b)) * weight);
         }
     }
-    square.sqrt()
+    let n = drops.len() as f64;
+    if n < 2.0 { f64::INFINITY } else { (rotor_base::variance(&drops) * n * n / (n - 1.0)).sqrt() }
 }

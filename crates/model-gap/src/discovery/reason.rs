@@ -360,6 +360,24 @@ pub enum Reason {
         /// Largest part within the errors.
         most: f64,
     },
+    /// Gain or zero of the reading changes from run to run with the time of the session.
+    #[error(
+        "{} changes with {}, from {first_percent:+.1} to {last_percent:+.1} %{}: a sensor or an amplifier that drifts, or \
+         warmth; repeat the first run at the end",
+        if *.is_gain { "the gain of the reading" } else { "the zero of the reading" },
+        if *.is_stated { "the time of the session" } else { "the order of the runs" },
+        if *.is_gain { "" } else { " of the spread of the output" },
+    )]
+    ChangesOverSession {
+        /// Whether it is the gain, else the zero.
+        is_gain: bool,
+        /// At the first run, percent.
+        first_percent: f64,
+        /// At the last run, percent.
+        last_percent: f64,
+        /// Whether the data say when every run began; else the runs are taken in their order.
+        is_stated: bool,
+    },
     /// The reading of a run is noisier than that of the reference runs.
     #[error(
         "the reading of run {run} has {times:.1} times the noise of the reference runs: look \

@@ -1,8 +1,9 @@
 //! What each candidate could explain, before any fit.
 
 use super::evidence::{Evidence, columns, difference};
-use super::thresholds::{NOISE_DEVIATIONS, OTHER_SIGN, STRUCTURE_MARGIN, WEAK_EFFECT};
+use super::thresholds::{FALSE_ALARM, OTHER_SIGN, STRUCTURE_MARGIN, WEAK_EFFECT};
 use super::{Discovery, Signal, Simulator};
+use crate::quantile::normal_exceeded;
 use crate::{Effect, GapError};
 use rayon::prelude::*;
 
@@ -40,9 +41,10 @@ pub(crate) fn screen<S: Simulator>(
     base: &Signal,
     misfit: &Signal,
 ) -> Result<Vec<Screened>, GapError> {
+    let noise = noise_deviations(discovery);
     let results: Vec<(Screened, Option<Signal>)> = (0..discovery.candidates.len())
         .into_par_iter()
-        .map(|candidate| one(discovery, evidence, base, misfit, candidate))
+        .map(|candidate| one(discovery, evidence, base, misfit, (candidate, noise)))
         .collect::<Result<_, GapError>>()?;
     let (mut screened, effects): (Vec<Screened>, Vec<Option<Signal>>) = results.into_iter().unzip();
     let present: Vec<usize> = (0..effects.len()).filter(|&c| effects[c].is_some()).collect();
@@ -59,17 +61,26 @@ pub(crate) fn screen<S: Simulator>(
     Ok(screened)
 }
 
+/// Standard deviations that the best of all starts exceeds in noise alone with a probability of [`FALSE_ALARM`], were
+/// they independent; each has one sign.
+fn noise_deviations<S>(discovery: &Discovery<'_, S>) -> f64 {
+    let tried = discovery.candidates.iter().filter(|own| own.blocked.is_none());
+    let starts: usize = tried.map(|own| own.starts.len()).sum();
+    normal_exceeded(FALSE_ALARM / starts.max(1) as f64)
+}
+
+/// The screening of one candidate; beside its number the deviations that noise reaches.
 fn one<S: Simulator>(
     discovery: &Discovery<'_, S>,
     evidence: &Evidence<'_>,
     base: &Signal,
     misfit: &Signal,
-    candidate: usize,
+    (candidate, noise): (usize, f64),
 ) -> Result<(Screened, Option<Signal>), GapError> {
     let nothing = Screened {
         score: 0.0,
         absorbed: 1.0,
-        threshold: NOISE_DEVIATIONS.powi(2),
+        threshold: noise.powi(2),
         weak_signal: 0.0,
         weak_drop: 0.0,
         most_confused: None,
@@ -89,12 +100,13 @@ fn one<S: Simulator>(
     let mut best = nothing;
     let mut found = None;
     let mut structural = 0.0_f64;
+    let mut share = 1.0;
     // an effect that adapts to every experiment finds something to adapt to in noise too: the length of
     // a Rayleigh vector per experiment
     let adapts =
         !given.starts.is_empty() && discovery.simulator.adapted(&effect_at(0), misfit)?.is_some();
-    let noise = NOISE_DEVIATIONS
-        + if adapts { RAYLEIGH_MEAN * (evidence.experiments as f64).sqrt() } else { 0.0 };
+    let noise =
+        noise + if adapts { RAYLEIGH_MEAN * (evidence.experiments as f64).sqrt() } else { 0.0 };
     for (start, signal) in seen.iter().enumerate() {
         let size = evidence.inner(signal, signal);
         let whole = evidence.dot(&signals[start], &signals[start]);
@@ -128,9 +140,10 @@ fn one<S: Simulator>(
         if score > best.score || found.is_none() {
             best.score = score;
             best.absorbed = 1.0 - size / whole;
+            share = evidence.error_share(signal);
             found = Some(start);
         }
     }
-    best.threshold = (STRUCTURE_MARGIN * structural).powi(2) + noise.powi(2);
+    best.threshold = (STRUCTURE_MARGIN * structural).powi(2) + share * noise.powi(2);
     Ok((best, found.map(|start| signals.swap_remove(start))))
 }

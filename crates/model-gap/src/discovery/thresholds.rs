@@ -1,13 +1,13 @@
 //! Shares and margins of the decisions.
 //!
-//! No theory fixes them: they are choices, each with its meaning beside it, and `cargo xtask hidden-effects`
-//! scores what they do together. They are no probabilities: the weights of the samples count structure of the
-//! base model as if it were noise.
+//! The first is a probability. No theory fixes the others: they are choices, each with its meaning beside it, and
+//! `cargo xtask hidden-effects` and `everyday-errors` score what they do together. `docs/src/theory/discovery.md` lists them.
 
 // What noise and surrogates reach.
 
-/// Standard deviations of the noise that a score must exceed; noise and structure add as squares.
-pub(super) const NOISE_DEVIATIONS: f64 = 4.2;
+/// Probability that noise alone exceeds one of a family of tests: all starts of all candidates, all runs, all bands
+/// of all channels, the generic directions.
+pub(super) const FALSE_ALARM: f64 = 1e-3;
 /// Factor on what surrogates reach.
 pub(super) const STRUCTURE_MARGIN: f64 = 2.0;
 /// RMS of a weak effect over the standard deviation of the output.
@@ -149,3 +149,38 @@ pub(super) const FORM_LEFT: f64 = 0.05;
 pub(super) const FORM_LEFT_OF_BAND: [f64; 2] = [0.12, 0.03];
 /// Relative error of the noise of a channel, taken from its differences.
 pub(super) const NOISE_DOUBT: f64 = 0.05;
+
+#[cfg(test)]
+mod tests {
+    /// One row for each constant of this file: name, value, the first sentence of its description.
+    fn table() -> String {
+        let mut rows = vec!["| number | value | meaning |\n|---|---|---|\n".to_owned()];
+        let mut description = String::new();
+        for line in include_str!("thresholds.rs").lines() {
+            if let Some(text) = line.strip_prefix("///") {
+                description += text;
+                continue;
+            }
+            let constant = line.strip_prefix("pub(super) ").unwrap_or(line).strip_prefix("const ");
+            if let Some((name, rest)) = constant.and_then(|own| own.split_once(':')) {
+                let value =
+                    rest.split_once('=').map_or("", |own| own.1).trim().trim_end_matches(';');
+                let meaning = description.trim().split(". ").next().unwrap_or_default();
+                let meaning = meaning.trim_end_matches('.');
+                rows.push(format!("| `{name}` | {value} | {meaning} |\n"));
+            }
+            description.clear();
+        }
+        rows.concat()
+    }
+
+    #[test]
+    fn the_book_lists_the_numbers_as_they_are() {
+        let page = include_str!("../../../../docs/src/theory/discovery.md");
+        assert!(
+            page.contains(&table()),
+            "the table of docs/src/theory/discovery.md must be:\n{}",
+            table()
+        );
+    }
+}

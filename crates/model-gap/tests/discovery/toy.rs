@@ -1,7 +1,7 @@
 //! A system whose answers are known: four sines, and what may act on them.
 
 use model_gap::discovery::{Discovery, Finding, Settings, Signal, Simulator, Trace, TraceRole};
-use model_gap::{Candidate, Effect, GapError, Parameter};
+use model_gap::{Candidate, Effect, GapError, Parameter, Spectrum};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
@@ -81,6 +81,7 @@ pub(crate) fn traces(truth: impl Fn(usize, usize) -> f64, seed: u64) -> Vec<Trac
                 .map(|i| input(e, i) + truth(e, i) + NOISE * noise(&mut state))
                 .collect(),
             sigma: NOISE,
+            spectrum: Spectrum::default(),
             noise: NOISE,
             nuisance: DMatrix::from_fn(SAMPLES, 1, |i, _| 0.01 * input(e, i)),
             block: 40,

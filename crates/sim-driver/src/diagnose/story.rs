@@ -10,6 +10,8 @@ use serde::Serialize;
 
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
 const POOR_BASE: f64 = 0.1;
+/// Times that error from which on a simulation given lacks something of the reference runs already.
+const LACKS: f64 = 2.0;
 
 /// The story of a diagnosis, printable.
 #[derive(Clone, Serialize)]
@@ -121,6 +123,11 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
             "  The simulation given leaves {runs}{:.1} % of that of the measured runs (rms over spread).",
             own.measured_error_percent
         ));
+        if d.has_reference && own.error_percent > LACKS * 100.0 * d.floor {
+            sheet.line(format_args!(
+                "  What it lacks of the reference runs already: hhc diagnose ACTUATOR.ron --data FOLDER OF THE REFERENCE RUNS"
+            ));
+        }
     }
 }
 

@@ -2,12 +2,13 @@
 #![expect(clippy::disallowed_methods, reason = "tests write the folders they hand in")]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use everyday_bench::answer::Answer;
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
 use everyday_bench::set::{Request, set};
 use everyday_bench::text::File;
-use model_gap::discovery::Confidence;
-use sim_driver::diagnose::{Findings, Question, Records, diagnose};
+use model_gap::discovery::{Confidence, Reason};
+use sim_driver::diagnose::{Diagnosis, Findings, Question, Records, diagnose};
 use sim_driver::files::{BenchData, Folder, read_bench};
 
 /// The data of a folder of these files.
@@ -19,15 +20,41 @@ pub(crate) fn bench(files: &[File]) -> BenchData {
     read_bench(&Folder::Disk(folder.path().to_path_buf())).unwrap()
 }
 
+/// What is found of the set of a seed.
+fn found(family: Family, seed: u64, deal: Deal) -> (Answer, Diagnosis) {
+    let made = set(&Request::new(family, seed, deal));
+    let reference = Records::from(&bench(&made.reference)).runs;
+    let question = Question { reference, ..Question::default() };
+    let found = diagnose(&Records::from(&bench(&made.measured)), &question).unwrap();
+    (made.answer, found)
+}
+
+/// A gain that drifts from 0 to -4 % is told as a change with time; nothing that stays is.
+#[test]
+fn a_gain_that_changes_over_the_session_is_told_with_its_ends() {
+    let told = |found: &Diagnosis| {
+        found.finding.reasons.iter().find_map(|reason| match reason {
+            Reason::ChangesOverSession { is_gain, first_percent, last_percent, is_stated } => {
+                Some((*is_gain, *is_stated, [*first_percent, *last_percent]))
+            }
+            _ => None,
+        })
+    };
+    let (answer, drifting) = found(Family::Relays, 12_100, Deal::Everyday);
+    assert_eq!(answer.hidden, "sensor-gain-drift");
+    let (is_gain, is_stated, ends) = told(&drifting).unwrap();
+    println!("{answer:?} {ends:?}");
+    assert!(is_gain && !is_stated);
+    let (_, nothing) = found(Family::Relays, 12_206, Deal::Nulls);
+    assert_eq!(told(&nothing), None);
+}
+
 /// The run that repeats a reference run knows the gain far better than the others, which lie between 0 and 4 %. With all
 /// weight on it the name is confident.
 #[test]
 fn a_gain_that_drifts_over_the_session_is_no_confident_constant() {
-    let made = set(&Request::new(Family::Duhem, 16_029, Deal::Everyday));
-    assert_eq!(made.answer.hidden, "sensor-gain-drift");
-    let reference = Records::from(&bench(&made.reference)).runs;
-    let question = Question { reference, ..Question::default() };
-    let found = diagnose(&Records::from(&bench(&made.measured)), &question).unwrap();
+    let (answer, found) = found(Family::Duhem, 16_029, Deal::Everyday);
+    assert_eq!(answer.hidden, "sensor-gain-drift");
     let found = Findings::from(&found);
     assert_eq!(found.confidence, Confidence::Tentative, "{:?}", found.causes);
     assert_ne!(found.class_confidence, Some(Confidence::Confident), "{:?}", found.class);

@@ -6,7 +6,7 @@ use crate::everyday::bench;
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
 use everyday_bench::set::{Request, set};
-use everyday_bench::text::File;
+use everyday_bench::text::{Column, File};
 use rayon::prelude::*;
 use sim_driver::diagnose::{Findings, Question, Record, Records, diagnose};
 
@@ -132,4 +132,32 @@ fn measured_runs_that_were_cut_in_two_have_the_verdict_of_the_whole() {
         assert_eq!((halves.verdict, &halves.causes), (plain.verdict, &plain.causes));
         assert!(moved(&plain, &halves).is_empty(), "{:?}", moved(&plain, &halves));
     });
+}
+
+/// A bench a thousand times slower shows the same lag, a thousand times longer.
+#[test]
+fn a_slow_bench_shows_the_lag_of_a_fast_one() {
+    let request = Request::new(Family::Relays, 12_100, Deal::Singles);
+    let made = set(&Request {
+        hidden: "electrical-lag".parse().unwrap(),
+        columns: vec![Column::Amplifier],
+        ..request
+    });
+    let (measured, reference) = (records(&made.measured), records(&made.reference).runs);
+    let fast = found(&measured, reference.clone());
+    assert_eq!(fast.class_confidence.map(|sure| format!("{sure:?}")), Some("Confident".into()));
+    let slowed = |mut runs: Vec<Record>| {
+        for run in &mut runs {
+            run.step_s *= 1000.0;
+        }
+        runs
+    };
+    let runs = slowed(measured.runs.clone());
+    let slow = found(&Records { runs, ..measured }, slowed(reference));
+    let leading = |found: &Findings| (found.class, found.causes.first().cloned());
+    assert_eq!(leading(&slow), leading(&fast));
+    let tau = |found: &Findings| found.parameters["electrical-lag"]["tau"].clone();
+    let (slow, fast) = (tau(&slow), tau(&fast));
+    let width = fast.ci95[1] - fast.ci95[0];
+    assert!((slow.value / 1000.0 - fast.value).abs() < 0.1 * width, "{slow:?} {fast:?}");
 }
