@@ -10,7 +10,9 @@ mod structure;
 
 pub use answers::coupled_modes::{CoupledBladeMode, LOW_DAMPING_RATIO, RESONANCE_PER_REV};
 pub use answers::dissimilar::{OtherBlade, dissimilar_hub_loads};
-pub use answers::linearised::{FlapDirection, HubSensitivity, InflowState, LinearisedRotor};
+pub use answers::linearised::{
+    Disturbance, FlapDirection, HubSensitivity, InflowState, LinearisedRotor, WakeDrive,
+};
 pub use answers::section_lift::SectionLift;
 pub use answers::stability::{BladeMotion, SectionLags, Stability};
 pub use answers::station_loads::{LoadHistory, StationLoads};

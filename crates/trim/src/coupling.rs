@@ -37,8 +37,17 @@ pub(crate) fn on_the_grid(
     panels: &WakeRotor,
     settings: &FreeWakeSettings,
 ) -> Result<(BladeLines, CirculationMap), ResponseError> {
-    let lines = solver.blade_lines(response, controls, panels, settings.azimuths);
+    let lines = solver.blade_lines(&response.modal, controls, panels, settings.azimuths);
     let circulation = solver.circulation(response, panels, settings.azimuths)?;
+    axial_as_the_wake(lines, circulation, settings)
+}
+
+/// Lines and circulation as a wake takes them: those that turn with the blades, if it is axial.
+pub(crate) fn axial_as_the_wake(
+    lines: BladeLines,
+    circulation: CirculationMap,
+    settings: &FreeWakeSettings,
+) -> Result<(BladeLines, CirculationMap), ResponseError> {
     if settings.symmetry == WakeSymmetry::Periodic {
         return Ok((lines, circulation));
     }

@@ -6,6 +6,7 @@ mod error;
 mod solve;
 mod vehicle;
 mod wake;
+mod wake_linearised;
 mod wake_response;
 mod wake_settings;
 
@@ -14,6 +15,7 @@ pub use error::TrimError;
 pub use solve::{TrimSettings, TrimSolution, imbalance, mean_lift_coefficient, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
 pub use wake::{WakeTrim, trim_in_free_wake};
+pub use wake_linearised::{WakeLinearised, linearised_in_wake};
 pub use wake_response::{WakeDifference, wake_difference};
 pub use wake_settings::{WakeOutcome, WakeTrimSettings, WakeUpdate};
 

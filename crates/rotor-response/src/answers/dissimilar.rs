@@ -45,7 +45,7 @@ impl RotorSolver {
         let (orbit, residuals, loads) = self.in_inflow_of(condition, about)?;
         let count = self.rotor.discretisation.load_harmonics;
         Ok(RotorSolution {
-            modal: self.modal_harmonics(&orbit),
+            modal: self.modal_harmonics(&orbit.sample(&self.time)),
             orbit,
             root: loads.root(&self.time, count),
             hinge: loads.hinge(&self.time, count),

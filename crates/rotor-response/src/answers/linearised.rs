@@ -28,7 +28,25 @@ pub enum InflowState {
 /// One motion of all flaps, rad, trailing edge down positive: the direction of a derivative.
 pub type FlapDirection = Vec<HarmonicSeries>;
 
-/// Derivative of the hub loads along one direction of the flaps.
+/// What is moved: the direction of a derivative.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Disturbance {
+    /// All flaps.
+    Flaps(FlapDirection),
+    /// The inflow, by its parameters, tip speed: a part of it that does not come from the loading.
+    Inflow(Vec<f64>),
+}
+
+/// Change of what moves a free wake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WakeDrive {
+    /// Bound circulation at the azimuths and panels of the wake, azimuth by azimuth, `Omega R^2`.
+    pub circulation: Vec<f64>,
+    /// Harmonics of every modal coordinate, as [`RotorSolution::modal`].
+    pub modal: Vec<HarmonicSeries>,
+}
+
+/// Derivative of the hub loads along one direction of flaps or inflow.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HubSensitivity {
     /// Change of the hub loads per unit of the direction, fixed frame, all blades.
@@ -37,6 +55,8 @@ pub struct HubSensitivity {
     pub thrust_coefficient: f64,
     /// Change of the hinge moment of every flap, air and inertia together.
     pub hinge: Vec<HarmonicSeries>,
+    /// Change of what moves the wake; none unless the inflow settles on a circulation.
+    pub drive: Option<WakeDrive>,
 }
 
 /// Derivatives along several directions, and what they cost.
@@ -125,16 +145,42 @@ impl RotorSolver {
         directions: &[FlapDirection],
         inflow: InflowState,
     ) -> Result<LinearisedRotor, ResponseError> {
-        for motions in directions.iter().chain([&condition.flap_angles_rad]) {
-            self.check_flaps(motions)?;
+        let along: Vec<Disturbance> = directions.iter().cloned().map(Disturbance::Flaps).collect();
+        self.linearised_along((condition, about), inflow_model, &along, inflow)
+    }
+
+    /// The same along directions of flaps or inflow. The inflow of a direction is added to what the loading asks for,
+    /// which a settled inflow follows as it moves.
+    ///
+    /// # Errors
+    /// As [`Self::linearised`]; [`ResponseError::Wake`] for an inflow of another number of parameters.
+    pub fn linearised_along(
+        &mut self,
+        (condition, about): (&Condition, &RotorSolution),
+        inflow_model: &dyn InflowModel,
+        directions: &[Disturbance],
+        inflow: InflowState,
+    ) -> Result<LinearisedRotor, ResponseError> {
+        self.check_flaps(&condition.flap_angles_rad)?;
+        for direction in directions {
+            if let Disturbance::Flaps(motions) = direction {
+                self.check_flaps(motions)?;
+            }
         }
         // a first guess of how the inflow answers, exact where it follows the thrust
         let seed = match inflow {
             InflowState::Frozen => None,
             InflowState::Settled => Some(inflow_slope(condition, inflow_model, about)?),
         };
-        let mut changes: Vec<Direction> =
-            directions.par_iter().map(|d| self.moved_flaps(condition, &about.inflow, d)).collect();
+        let mut changes = directions
+            .par_iter()
+            .map(|direction| match direction {
+                Disturbance::Flaps(motions) => {
+                    Ok(self.moved_flaps(condition, &about.inflow, motions))
+                }
+                Disturbance::Inflow(change) => self.moved_inflow(condition, &about.inflow, change),
+            })
+            .collect::<Result<Vec<Direction>, ResponseError>>()?;
         let seed = seed.filter(|slope| slope.iter().any(|v| *v != 0.0));
         if let Some(slope) = &seed {
             changes.push(self.moved_inflow(condition, &about.inflow, slope)?);
@@ -152,10 +198,11 @@ impl RotorSolver {
         let thrust = |hub: &SixLoads| model.thrust_coefficient(hub.components[2].mean);
         let sensitivities = answers
             .into_iter()
-            .map(|Answer { hub, hinge, .. }| HubSensitivity {
+            .map(|Answer { hub, hinge, drive, .. }| HubSensitivity {
                 thrust_coefficient: thrust(&hub),
                 hub,
                 hinge,
+                drive,
             })
             .collect();
         Ok(LinearisedRotor { sensitivities, ..linear.work })
@@ -182,7 +229,7 @@ impl RotorSolver {
         Direction { points: self.point_inputs(&moved, inflow), size, flaps }
     }
 
-    /// The condition with the inflow moved a little along its slope with thrust.
+    /// The condition with the inflow moved a little along a change of its parameters.
     fn moved_inflow(
         &self,
         condition: &Condition,
@@ -355,16 +402,18 @@ fn answer(
     let hub = loads.hub(rotor, time);
     let count = rotor.discretisation.load_harmonics;
     let hinge = loads.hinge(time, count).iter().map(HingeMoment::total).collect();
-    let wanted = match followed {
-        None => Vec::new(),
-        Some(model) => {
-            let lift = hub.components[2].mean + rotor.blades_weight() * up(condition)[2];
-            let ct = rotor.model().thrust_coefficient(lift);
-            let loading = loading(rotor, time, &loads.lifting, Some(ct), model.circulation_grid())?;
-            model.induced(&condition.flight, &loading)?.parameters()
-        }
-    };
-    Ok(Answer { hub, hinge, wanted })
+    let (mut wanted, mut drive) = (Vec::new(), None);
+    if let Some(model) = followed {
+        let lift = hub.components[2].mean + rotor.blades_weight() * up(condition)[2];
+        let ct = rotor.model().thrust_coefficient(lift);
+        let loading = loading(rotor, time, &loads.lifting, Some(ct), model.circulation_grid())?;
+        wanted = model.induced(&condition.flight, &loading)?.parameters();
+        drive = loading.circulation.map(|circulation| WakeDrive {
+            circulation: circulation.values().to_vec(),
+            modal: solver.modal_harmonics(samples),
+        });
+    }
+    Ok(Answer { hub, hinge, drive, wanted })
 }
 
 /// Change of the inflow parameters with the thrust coefficient, by central differences.

@@ -7,6 +7,7 @@
 //! right-hand sides share the directions, by the method of generalised conjugate residuals, as in
 //! [`rotor_fem::PeriodicSolver::linear_response`].
 
+use crate::answers::linearised::WakeDrive;
 use crate::loads::wrenches::{SixLoads, added};
 use rotor_base::HarmonicSeries;
 
@@ -22,11 +23,13 @@ const DEPENDENT: f64 = 1e-3;
 /// takes up what is left.
 const INDEPENDENT: f64 = 0.03;
 
-/// Hub loads, hinge moments, and the parameters of the inflow that goes with them; or changes of these.
+/// Hub loads, hinge moments, what moves a wake, and the parameters of the inflow that goes with them; or changes of
+/// these.
 #[derive(Debug, Clone)]
 pub(crate) struct Answer {
     pub(crate) hub: SixLoads,
     pub(crate) hinge: Vec<HarmonicSeries>,
+    pub(crate) drive: Option<WakeDrive>,
     pub(crate) wanted: Vec<f64>,
 }
 
@@ -37,11 +40,14 @@ impl Answer {
         add(&mut self.wanted, factor, &other.wanted);
     }
 
-    /// The same of the loads alone.
+    /// The same of all but the inflow.
     fn add_loads(&mut self, other: &Self, factor: f64) {
         let mine = self.hub.components.iter_mut().chain(&mut self.hinge);
         for (value, part) in mine.zip(other.hub.components.iter().chain(&other.hinge)) {
             *value = added(value, part, factor);
+        }
+        if let (Some(drive), Some(other)) = (&mut self.drive, &other.drive) {
+            drive.add(other, factor);
         }
     }
 
@@ -50,9 +56,31 @@ impl Answer {
         for value in self.hub.components.iter_mut().chain(&mut self.hinge) {
             *value = added(&HarmonicSeries::zero(value.harmonics.len()), value, factor);
         }
+        if let Some(drive) = &mut self.drive {
+            drive.scale(factor);
+        }
         for value in &mut self.wanted {
             *value *= factor;
         }
+    }
+}
+
+impl WakeDrive {
+    /// `self += factor other`.
+    fn add(&mut self, other: &Self, factor: f64) {
+        add(&mut self.circulation, factor, &other.circulation);
+        self.modal = other.moved(&self.modal, factor);
+    }
+
+    /// A motion and a part of this change of it.
+    pub fn moved(&self, modal: &[HarmonicSeries], part: f64) -> Vec<HarmonicSeries> {
+        modal.iter().zip(&self.modal).map(|(value, change)| added(value, change, part)).collect()
+    }
+
+    /// `self *= factor`.
+    fn scale(&mut self, factor: f64) {
+        let own = self.clone();
+        self.add(&own, factor - 1.0);
     }
 }
 

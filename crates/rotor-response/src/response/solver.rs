@@ -12,7 +12,9 @@ use crate::sections::flight_air::FlightAir;
 use crate::{Condition, ResponseError, Rotor};
 use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
-use rotor_fem::{Anderson, Orbit, PeriodicError, PeriodicSettings, PeriodicSolver, TimeElements};
+use rotor_fem::{
+    Anderson, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver, TimeElements,
+};
 use rotor_wake::{InducedInflow, InflowModel, RotorLoading};
 use std::sync::Arc;
 
@@ -205,7 +207,7 @@ impl RotorSolver {
             if let Some((loads, hub, thrust_coefficient)) = sums.filter(|_| settled) {
                 let count = rotor.discretisation.load_harmonics;
                 return Ok(RotorSolution {
-                    modal: self.modal_harmonics(&reached),
+                    modal: self.modal_harmonics(&reached.sample(&self.time)),
                     orbit: reached,
                     thrust_coefficient,
                     root: loads.root(&self.time, count),
@@ -339,9 +341,8 @@ impl RotorSolver {
         [outward * along + up[2] * across, leading, up[2] * along - outward * across]
     }
 
-    pub(crate) fn modal_harmonics(&self, orbit: &Orbit) -> Vec<HarmonicSeries> {
+    pub(crate) fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {
         let count = self.rotor.discretisation.load_harmonics;
-        let samples = orbit.sample(&self.time);
         let rows = samples.q.row_iter();
         rows.map(|row| series(&self.time, row.iter().copied(), count)).collect()
     }

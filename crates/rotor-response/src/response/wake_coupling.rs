@@ -7,7 +7,7 @@ use crate::response::wake_loading::{
 use crate::{Controls, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rotor_base::uniform_azimuths_rad;
+use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use rotor_wake::{BladeLines, CirculationMap, CirculationSlope, WakeRotor};
 use std::collections::BTreeMap;
 
@@ -75,12 +75,12 @@ impl RotorSolver {
         CirculationSlope { blocks: blocks.collect() }
     }
 
-    /// The lifting lines of the deflected blades under pitch controls: quarter chord of the coned blade, displaced by flap
-    /// and lag bending; the wake leaves at the trailing edge of the pitched, twisted section, three
-    /// quarters of its own chord further back.
+    /// The lifting lines of blades deflected by modal motions ([`RotorSolution::modal`]) under pitch controls: quarter
+    /// chord of the coned blade, displaced by flap and lag bending; the wake leaves at the trailing edge of the pitched,
+    /// twisted section, three quarters of its own chord further back.
     pub fn blade_lines(
         &self,
-        solution: &RotorSolution,
+        modal: &[HarmonicSeries],
         controls: &Controls,
         wake_rotor: &WakeRotor,
         azimuths: usize,
@@ -95,7 +95,7 @@ impl RotorSolver {
         let (torsion, twist) = (of_modes(&blade.torsion.value), at_nodes(&blade.twist));
         let psi = uniform_azimuths_rad(azimuths);
         let motion: Vec<Vec<f64>> =
-            psi.iter().map(|&psi| solution.modal.iter().map(|m| m.value(psi)).collect()).collect();
+            psi.iter().map(|&psi| modal.iter().map(|m| m.value(psi)).collect()).collect();
         let sum = |shapes: &[Vec<f64>], q: &[f64], n: usize| -> f64 {
             shapes.iter().zip(q).map(|(shape, q)| q * shape[n]).sum()
         };
@@ -120,7 +120,6 @@ impl RotorSolver {
 mod tests {
     use super::*;
     use crate::{Condition, Discretisation, ResponseTolerances, Rotor, RotorModel};
-    use rotor_base::HarmonicSeries;
     use rotor_fem::{BladeProperties, BladeSpec, TimeElements};
     use rotor_wake::{FlightState, InducedInflow, InflowMap, LinearInflow};
     use std::sync::Arc;

@@ -176,7 +176,7 @@ fn in_a_wake_the_inflow_settles_on_the_circulation() {
     let settings = FreeWakeSettings { azimuths, turns: 2, ..FreeWakeSettings::default() };
     let flight = condition.flight;
     let mean = momentum_inflow(&flight, start.thrust_coefficient).unwrap();
-    let lines = solver.blade_lines(&start, &condition.controls, &panels, azimuths);
+    let lines = solver.blade_lines(&start.modal, &condition.controls, &panels, azimuths);
     let wake = FreeWake::undistorted(panels.clone(), settings, flight, mean, lines).unwrap();
     let circulation = solver.circulation(&start, &panels, azimuths).unwrap();
     let induction = wake.line_induction(&circulation).unwrap();

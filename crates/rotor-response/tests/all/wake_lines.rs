@@ -22,7 +22,7 @@ fn the_wake_leaves_at_the_edge_of_the_pitched_section() {
     let (chord, properties) = (solver.rotor().model().chord, common::paper_blade());
     let panels = WakeRotor::cosine(4, 0.2, 10).unwrap();
     let below = |controls: &Controls| -> Vec<Vec<f64>> {
-        let lines = solver.blade_lines(&solution, controls, &panels, AZIMUTHS);
+        let lines = solver.blade_lines(&solution.modal, controls, &panels, AZIMUTHS);
         let of = |i: usize| {
             let ends = lines.at(i).iter().zip(lines.edge_at(i));
             ends.map(|(line, edge)| {
@@ -71,7 +71,7 @@ fn the_edge_of_a_tapered_blade_follows_its_chord() {
     let (mut solver, condition) = (solver.unwrap(), common::condition());
     let solution = solver.solve(&condition, &LinearInflow::Drees, None).unwrap();
     let panels = WakeRotor::cosine(4, 0.2, 10).unwrap();
-    let lines = solver.blade_lines(&solution, &condition.controls, &panels, AZIMUTHS);
+    let lines = solver.blade_lines(&solution.modal, &condition.controls, &panels, AZIMUTHS);
     for i in 0..AZIMUTHS {
         let ends = lines.at(i).iter().zip(lines.edge_at(i));
         for ((line, edge), &r) in ends.zip(panels.nodes()) {

@@ -1,12 +1,13 @@
-//! T with the geometry of the free wake converged anew, by central differences.
+//! T with the geometry of the free wake converged anew: linearised, and by central differences as a check.
 
 use crate::case::Case;
 use crate::rotor::authority::FlapAuthority;
 use crate::series::{only, place};
 use rayon::prelude::*;
-use rotor_response::{Condition, ResponseError, RotorSolver};
+use rotor_base::HarmonicSeries;
+use rotor_response::{Condition, FlapDirection, ResponseError, RotorSolver};
 use std::collections::BTreeSet;
-use trim::{WakeDifference, WakeTrim, WakeTrimSettings, wake_difference};
+use trim::{WakeDifference, WakeTrim, WakeTrimSettings, linearised_in_wake, wake_difference};
 
 /// What the differences take.
 #[derive(Debug, Clone)]
@@ -25,11 +26,12 @@ pub struct ReconvergedAuthority {
     /// The derivatives; of harmonics that the case does not control, and of hinge moments, those with the
     /// geometry held.
     pub authority: FlapAuthority,
-    /// The same differences with the geometry held: a check on the linearised rotor.
+    /// The same with the geometry held.
     pub held: FlapAuthority,
-    /// Updates of the wake that the slowest difference took.
+    /// Updates of the wake that the slowest column took.
     pub updates: usize,
-    /// Largest change of a difference in its last update, over its size.
+    /// Largest size of the last term of the series over the first, or of the last change of a difference over the
+    /// difference.
     pub change: f64,
 }
 
@@ -50,24 +52,57 @@ impl Reconverging {
         Self { harmonics: harmonics.into_iter().collect(), step_deg, coupling }
     }
 
-    /// The derivatives about a trim with flaps at rest; `settled` has what is not found anew.
-    ///
-    /// # Errors
-    /// The errors of the response and of the wake.
-    pub(crate) fn authority(
-        &self,
-        wake: &WakeTrim,
-        solver: &RotorSolver,
-        coupling: &WakeTrimSettings,
-        rest: &Condition,
-        settled: FlapAuthority,
-    ) -> Result<ReconvergedAuthority, ResponseError> {
-        let flaps = rest.flap_angles_rad.len();
+    /// Cosine and sine of every controlled harmonic of every flap, pair by pair.
+    fn motions(&self, flaps: usize) -> Vec<Motion> {
         let of_flap = |flap| {
             let both = move |&harmonic| [false, true].map(|sine| Motion { flap, harmonic, sine });
             self.harmonics.iter().flat_map(both)
         };
-        let motions: Vec<Motion> = (0..flaps).flat_map(of_flap).collect();
+        (0..flaps).flat_map(of_flap).collect()
+    }
+
+    /// The derivatives about a trim with flaps at rest, linearised; `settled` has what is not found anew.
+    ///
+    /// # Errors
+    /// The errors of the linearised response and of the wake.
+    pub(crate) fn linearised(
+        &self,
+        (wake, coupling): (&WakeTrim, &WakeTrimSettings),
+        solver: &RotorSolver,
+        rest: &Condition,
+        settled: FlapAuthority,
+    ) -> Result<ReconvergedAuthority, ResponseError> {
+        let flaps = rest.flap_angles_rad.len();
+        let motions = self.motions(flaps);
+        let directions: Vec<FlapDirection> = motions
+            .iter()
+            .map(|Motion { flap, harmonic, sine }| {
+                let mut direction = vec![HarmonicSeries::zero(0); flaps];
+                direction[*flap] = only(place(*harmonic, *sine), 1.0_f64.to_radians());
+                direction
+            })
+            .collect();
+        let found = linearised_in_wake(wake, solver, coupling, rest, &directions, self.step_deg)?;
+        Ok(ReconvergedAuthority {
+            authority: with_columns(settled.clone(), &motions, &found.hub),
+            held: with_columns(settled, &motions, &found.held),
+            updates: found.updates,
+            change: found.change,
+        })
+    }
+
+    /// The same by central differences of converged responses, many times as dear.
+    ///
+    /// # Errors
+    /// The errors of the response and of the wake.
+    pub(crate) fn by_differences(
+        &self,
+        (wake, coupling): (&WakeTrim, &WakeTrimSettings),
+        solver: &RotorSolver,
+        rest: &Condition,
+        settled: FlapAuthority,
+    ) -> Result<ReconvergedAuthority, ResponseError> {
+        let motions = self.motions(rest.flap_angles_rad.len());
         let found = motions
             .par_iter()
             .map(|motion| {
@@ -76,20 +111,14 @@ impl Reconverging {
             })
             .collect::<Result<Vec<WakeDifference>, ResponseError>>()?;
         let per_deg = |difference: [f64; 12]| difference.map(|z| z / (2.0 * self.step_deg));
-        let mut made = ReconvergedAuthority {
-            authority: settled.clone(),
-            held: settled,
+        let last: Vec<[f64; 12]> = found.iter().map(|d| per_deg(d.last())).collect();
+        let first: Vec<[f64; 12]> = found.iter().map(|d| per_deg(d.hub[0])).collect();
+        Ok(ReconvergedAuthority {
+            authority: with_columns(settled.clone(), &motions, &last),
+            held: with_columns(settled, &motions, &first),
             updates: found.iter().map(|d| d.hub.len() - 1).max().unwrap_or(0),
             change: found.iter().map(|d| d.change).fold(0.0, f64::max),
-        };
-        for (motions, both) in motions.chunks_exact(2).zip(found.chunks_exact(2)) {
-            let Motion { flap, harmonic, .. } = motions[0];
-            let last = [per_deg(both[0].last()), per_deg(both[1].last())];
-            let first = [per_deg(both[0].hub[0]), per_deg(both[1].hub[0])];
-            made.authority = made.authority.with_harmonic(flap, harmonic, last);
-            made.held = made.held.with_harmonic(flap, harmonic, first);
-        }
-        Ok(made)
+        })
     }
 
     /// A condition with one harmonic of one flap moved by a step.
@@ -100,4 +129,16 @@ impl Reconverging {
         moved.flap_angles_rad[flap] = only(place(harmonic, sine), step_rad);
         moved
     }
+}
+
+/// An authority with other hub loads of some motions, per deg; cosine and sine of a harmonic follow each other.
+fn with_columns(
+    authority: FlapAuthority,
+    motions: &[Motion],
+    loads_per_deg: &[[f64; 12]],
+) -> FlapAuthority {
+    let pairs = motions.chunks_exact(2).zip(loads_per_deg.chunks_exact(2));
+    pairs.fold(authority, |made, (motions, loads)| {
+        made.with_harmonic(motions[0].flap, motions[0].harmonic, [loads[0], loads[1]])
+    })
 }

@@ -16,7 +16,7 @@ use rotor_response::{
 };
 use rotor_wake::InflowModel;
 use std::sync::Arc;
-use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, imbalance};
+use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, WakeTrimSettings, imbalance};
 
 /// A rotor in trim, flaps at rest: where every control run starts.
 #[derive(Debug, Clone)]
@@ -111,16 +111,33 @@ impl TrimmedRotor {
     /// without a free wake.
     ///
     /// # Errors
-    /// The errors of the response and of the wake.
+    /// The errors of the linearised response and of the wake.
     pub fn reconverged(&self) -> Result<Option<&ReconvergedAuthority>, ResponseError> {
-        let Some(wake) = &self.wake else { return Ok(None) };
-        let Some(coupling) = &self.reconverging.coupling else { return Ok(None) };
+        let Some((wake, coupling)) = self.coupled_wake() else { return Ok(None) };
         let found = found(&self.reconverged, || {
-            let settled = self.linearised(InflowState::Settled)?;
-            let (settled, rest) = (settled.clone(), self.flaps_at_rest());
-            self.reconverging.authority(wake, &self.solver, coupling, &rest, settled)
+            let settled = self.linearised(InflowState::Settled)?.clone();
+            let rest = self.flaps_at_rest();
+            self.reconverging.linearised((wake, coupling), &self.solver, &rest, settled)
         })?;
         Ok(Some(found))
+    }
+
+    /// The same by central differences of converged responses, about a minute per harmonic: a check on it.
+    ///
+    /// # Errors
+    /// The errors of the response and of the wake.
+    pub fn reconverged_by_differences(
+        &self,
+    ) -> Result<Option<ReconvergedAuthority>, ResponseError> {
+        let Some((wake, coupling)) = self.coupled_wake() else { return Ok(None) };
+        let settled = self.linearised(InflowState::Settled)?.clone();
+        let rest = self.flaps_at_rest();
+        self.reconverging.by_differences((wake, coupling), &self.solver, &rest, settled).map(Some)
+    }
+
+    /// The free wake and its coupling.
+    fn coupled_wake(&self) -> Option<(&WakeTrim, &WakeTrimSettings)> {
+        self.wake.as_deref().zip(self.reconverging.coupling.as_ref())
     }
 
     /// The same with the inflow as asked for.
