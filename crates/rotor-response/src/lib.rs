@@ -8,10 +8,11 @@ mod response;
 mod sections;
 mod structure;
 
+pub use answers::changes::{StateChange, WakeDrive};
 pub use answers::coupled_modes::{CoupledBladeMode, LOW_DAMPING_RATIO, RESONANCE_PER_REV};
 pub use answers::dissimilar::{OtherBlade, dissimilar_hub_loads};
 pub use answers::linearised::{
-    Disturbance, FlapDirection, HubSensitivity, InflowState, LinearisedRotor, WakeDrive,
+    Disturbance, FlapDirection, HubSensitivity, InflowState, LinearisedRotor,
 };
 pub use answers::section_lift::SectionLift;
 pub use answers::stability::{BladeMotion, SectionLags, Stability};

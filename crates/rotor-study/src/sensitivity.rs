@@ -2,7 +2,7 @@
 
 use crate::case::{
     AttachedFlowModel, Case, ControllerChoice, EffortChoice, FreeWakeValues, InflowChoice,
-    LoadScaleChoice, NearWakeMotion, RotorValues, TrimValues,
+    LoadScaleChoice, NearWakeMotion, RolledUpChoice, RotorValues, TrimValues,
 };
 use crate::control::{Drives, ideal_control};
 use crate::error::StudyError;
@@ -15,20 +15,18 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Tolerances of the table: a tenth of a percent is printed.
-const TABLE_TRIM_TOLERANCE: f64 = 1e-7;
-const TABLE_PERIODICITY_TOLERANCE: f64 = 1e-9;
-const TABLE_INFLOW_TOLERANCE: f64 = 1e-8;
+const TABLE_TRIM_TOLERANCE: f64 = 1e-6;
+const TABLE_PERIODICITY_TOLERANCE: f64 = 1e-8;
+const TABLE_INFLOW_TOLERANCE: f64 = 1e-7;
+/// Step of a loop at which it ends, relative: a step leaves a few percent of the way.
+const TABLE_STEP_TOLERANCE: f64 = 1e-3;
 
 /// The row of the case as it is.
 const AS_THE_CASE: &str = "case";
-/// The case in Drees's inflow.
-const DREES: &str = "inflow-drees";
 /// The change that weights each load by its own baseline.
 const BY_BASELINE: &str = "weights-baseline";
 /// The case in a free wake.
 const FREE_WAKE: &str = "wake-free";
-/// How the id of a row about the near part of that wake begins.
-const NEAR_WAKE: &str = "wake-near";
 
 /// One assumption changed, and what becomes of the reductions.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -150,29 +148,30 @@ fn shift_flaps(case: &mut Case, by_r: f64) {
     }
 }
 
-/// The free wake of a case, the default one for a case without.
-fn free_wake(case: &Case) -> FreeWakeValues {
-    case.inflow.model.free_wake().unwrap_or_default()
+/// The free wake of a case with other choices, in place of its inflow; the default wake for a case without.
+fn fly_in_wake(case: &mut Case, change: fn(&mut FreeWakeValues)) {
+    let mut wake = case.inflow.model.free_wake().unwrap_or_default();
+    change(&mut wake);
+    case.inflow.model = InflowChoice::FreeWake(wake);
 }
 
-/// The free wake of a case with other choices, in place of its inflow.
-fn fly_in_wake(case: &mut Case, change: fn(FreeWakeValues) -> FreeWakeValues) {
-    case.inflow.model = InflowChoice::FreeWake(change(free_wake(case)));
-}
-
-/// The free wake instead of the case's inflow, and its near part in other ways.
-fn of_the_wake() -> [Assumption; 3] {
-    [
-        assume(FREE_WAKE, "free wake", |c| fly_in_wake(c, |wake| wake)),
+/// The free wake in other ways.
+fn of_the_wake() -> Vec<Assumption> {
+    vec![
         assume("wake-near-convected", "near wake convected", |c| {
-            fly_in_wake(c, |w| FreeWakeValues { near_wake: Some(NearWakeMotion::Convected), ..w });
+            fly_in_wake(c, |wake| wake.near_wake = Some(NearWakeMotion::Convected));
+        }),
+        assume("wake-near-90", "near wake of 90 deg", |c| {
+            fly_in_wake(c, |wake| wake.near_wake_deg = Some(90.0));
         }),
         assume("wake-near-plane-30", "near wake of 30 deg in the blade plane", |c| {
-            fly_in_wake(c, |w| FreeWakeValues {
-                near_wake: Some(NearWakeMotion::BladePlane),
-                near_wake_deg: Some(30.0),
-                ..w
+            fly_in_wake(c, |wake| {
+                wake.near_wake = Some(NearWakeMotion::BladePlane);
+                wake.near_wake_deg = Some(30.0);
             });
+        }),
+        assume("wake-root-vortex", "root vortex beside the tip vortex", |c| {
+            fly_in_wake(c, |wake| wake.rolled_up = Some(RolledUpChoice::TipAndRoot));
         }),
     ]
 }
@@ -245,6 +244,7 @@ fn assumptions() -> Vec<Assumption> {
                 level.drag_area *= 0.7;
             }
         }),
+        assume("inflow-drees", "inflow of Drees", |c| c.inflow.model = InflowChoice::Drees),
         assume("inflow-uniform", "uniform inflow", |c| c.inflow.model = InflowChoice::Uniform),
         assume("inflow-pitt-peters", "inflow of Pitt and Peters", |c| {
             c.inflow.model = InflowChoice::PittPeters;
@@ -283,13 +283,13 @@ fn assumptions() -> Vec<Assumption> {
 /// first, then the changes, the one that moves a reduction most leading; those without an answer end the table, and
 /// those that change nothing of the case are not in it.
 ///
-/// With the ideal actuator, held to the stroke of the real one: feedback on the hysteretic actuator
-/// reaches nearly the same reductions, at several times the cost. Without the rows of the wake a case that flies
-/// in a free wake is changed about Drees's inflow, which takes seconds: that row comes second, and the rows
-/// after it are compared with it.
+/// With the ideal actuator, held to the stroke of the real one, and with T of the linearised rotor: feedback on the
+/// hysteretic actuator reaches nearly the same reductions, at several times the cost. Every rotor is trimmed from that of
+/// the case, its free wake from that of the case. Of a case that flies in none, the rows of the wake are compared with the
+/// default free wake.
 ///
 /// # Errors
-/// The first failure of a trim or a control study of the case itself, or of the case in Drees's inflow.
+/// The first failure of a control study of the case itself.
 pub fn sensitivities(
     case: &Case,
     base: &TrimmedRotor,
@@ -306,34 +306,30 @@ pub fn sensitivities(
     let bench = Bench { drives, model, sets: &sets, done };
     let as_it_is = assume(AS_THE_CASE, "as the case", |_| {});
     let mut table = vec![as_it_is.row(AS_THE_CASE, Ok(bench.record(case, base, &as_it_is)?))];
-    if which.about_drees(case) {
-        let mut drees = case.clone();
-        drees.inflow.model = InflowChoice::Drees;
-        let near = TrimmedRotor::new(&drees, Some(base.trim()))?;
-        let as_it_is = assume(DREES, "inflow of Drees, as in the rows below", |_| {});
-        table.push(as_it_is.row(AS_THE_CASE, Ok(bench.record(&drees, &near, &as_it_is)?)));
-        table.extend(bench.changed(&drees, &near, assumptions(), DREES));
-    } else {
-        let rows = bench.changed(case, base, assumptions(), AS_THE_CASE);
-        table.extend(rows);
-        if which == Assumptions::WithWake {
-            // another near wake with the free wake as it is, so that one thing is changed at a time
-            let mut in_wake = case.clone();
-            in_wake.inflow.model = InflowChoice::FreeWake(free_wake(case));
-            let of_wake = if &in_wake == case { AS_THE_CASE } else { FREE_WAKE };
-            let (near, whole): (Vec<_>, Vec<_>) =
-                of_the_wake().into_iter().partition(|change| change.id.starts_with(NEAR_WAKE));
-            table.extend(bench.changed(case, base, whole, AS_THE_CASE));
-            table.extend(bench.changed(&in_wake, base, near, of_wake));
+    let flies_in_wake = case.inflow.model.free_wake().is_some();
+    let mut changes = assumptions();
+    if flies_in_wake {
+        changes.extend(of_the_wake());
+    }
+    table.extend(bench.changed(case, base, changes, AS_THE_CASE));
+    if which == Assumptions::WithWake && !flies_in_wake {
+        let as_it_is = assume(FREE_WAKE, "free wake", |c| fly_in_wake(c, |_| {}));
+        let in_wake = as_it_is.of(case);
+        match TrimmedRotor::new(&in_wake, None) {
+            Ok(rotor) => {
+                let found = bench.record(&in_wake, &rotor, &as_it_is);
+                table.push(as_it_is.row(AS_THE_CASE, found));
+                table.extend(bench.changed(&in_wake, &rotor, of_the_wake(), FREE_WAKE));
+            }
+            Err(error) => table.push(as_it_is.row(AS_THE_CASE, Err(error))),
         }
     }
     let baseline = base.trim().rotor.hub.harmonic(case.rotor.blades);
     let setting = Setting::of_case(case, &HubLoads::from_parts(baseline));
     let changes = sensitivity_lines(&table, &setting);
     let size = |k: usize| changes[k].largest_change.unwrap_or(-1.0);
-    let first = if table.iter().any(|row| row.id == DREES) { 2 } else { 1 };
     let mut order: Vec<usize> = (0..table.len()).collect();
-    if let Some(rows) = order.get_mut(first..) {
+    if let Some(rows) = order.get_mut(1..) {
         rows.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
     }
     Ok(order.into_iter().map(|k| table[k].clone()).collect())
@@ -403,11 +399,9 @@ impl Bench<'_> {
         varied.tolerances.trim = TABLE_TRIM_TOLERANCE;
         varied.tolerances.periodicity = TABLE_PERIODICITY_TOLERANCE;
         varied.tolerances.inflow = TABLE_INFLOW_TOLERANCE;
-        let rotor = if rotor_case == *case {
-            base.clone()
-        } else {
-            TrimmedRotor::new(&varied, Some(base.trim()))?
-        };
+        varied.control.step_tolerance = TABLE_STEP_TOLERANCE.max(varied.control.step_tolerance);
+        let rotor =
+            if rotor_case == *case { base.clone() } else { TrimmedRotor::near(&varied, base)? };
         let blades = varied.rotor.blades;
         let loads = self.sets.iter().map(|set| {
             let study = ideal_control(&varied, &rotor, &limited, set)?;
@@ -423,23 +417,20 @@ impl Bench<'_> {
 /// Which assumptions are changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Assumptions {
-    /// All but those that take a free wake: seconds. Of a case in a free wake, about Drees's inflow.
+    /// All but those of a free wake of which a case that flies in none makes no use.
     WithoutWake,
-    /// Those of the free wake and its near part too: minutes.
+    /// Those too.
     WithWake,
 }
 
 impl Assumptions {
-    /// Whether the changes are made about Drees's inflow.
-    fn about_drees(self, case: &Case) -> bool {
-        self == Self::WithoutWake && matches!(case.inflow.model, InflowChoice::FreeWake(_))
-    }
-
     /// Number of rows [`sensitivities`] makes of a case or leaves out, for a progress bar.
     pub fn rows(self, case: &Case) -> usize {
-        match self {
-            Self::WithoutWake => 24 + usize::from(self.about_drees(case)),
-            Self::WithWake => 27,
+        let of_case = 1 + assumptions().len();
+        match (self, case.inflow.model.free_wake()) {
+            (_, Some(_)) => of_case + of_the_wake().len(),
+            (Self::WithWake, None) => of_case + 1 + of_the_wake().len(),
+            (Self::WithoutWake, None) => of_case,
         }
     }
 }
@@ -465,18 +456,18 @@ mod tests {
     #[test]
     fn what_the_case_has_already_or_does_not_use_is_no_row() {
         let mut case = controllers_case();
-        assert!(left_out(&case, true).is_empty());
-        assert_eq!(left_out(&case, false), ["bench-speed"]);
+        assert_eq!(left_out(&case, true), ["inflow-drees"]);
+        assert_eq!(left_out(&case, false), ["inflow-drees", "bench-speed"]);
         case.inflow.model = InflowChoice::Uniform;
         case.trim = TrimValues::WindTunnel(WindTunnelTrim::default());
         case.rotor.modal_damping = 0.01;
         let none = ["damping-010", "fuselage-70", "inflow-uniform"];
         assert_eq!(left_out(&case, true), none);
-        // in a free wake the row of the wake is the case
+        // nor what the wake of the case is
         let mut case = controllers_case();
         let near_wake = Some(NearWakeMotion::Convected);
         case.inflow.model =
             InflowChoice::FreeWake(FreeWakeValues { near_wake, ..FreeWakeValues::default() });
-        assert_eq!(left_out(&case, true), ["wake-free", "wake-near-convected"]);
+        assert_eq!(left_out(&case, true), ["wake-near-convected"]);
     }
 }

@@ -76,6 +76,8 @@ pub(crate) struct Coupling<'a> {
     pub(crate) target: &'a TrimTarget,
     pub(crate) trim_settings: TrimSettings,
     pub(crate) updates: Vec<WakeUpdate>,
+    /// Share of a change of circulation that moves the wake in a whole update.
+    pub(crate) share: f64,
 }
 
 impl Coupling<'_> {
@@ -123,6 +125,20 @@ impl Coupling<'_> {
         };
         let slope = Arc::new(self.solver.circulation_slope(panels, azimuths));
         self.in_still_wake(wake, circulation, slope, start)
+    }
+
+    /// The start of the last stage from a state nearby: the rotor trimmed in its wake, which is then taken over.
+    pub(crate) fn begin_near(
+        &mut self,
+        near: State,
+        panels: &WakeRotor,
+    ) -> Result<State, TrimError> {
+        let (mu, settings) = (near.trim.flight.advance_ratio, self.settings.wake.clone());
+        let trim = self.trimmed(&near.frozen, mu, Some(&near.trim))?;
+        let modal = &trim.rotor.modal;
+        let lines = self.solver.blade_lines(modal, &trim.controls, panels, settings.azimuths);
+        let wake = near.wake.remade(panels.clone(), settings, lines)?;
+        Ok(State { trim, wake, ..near })
     }
 
     /// How far a state is from rest: what is left of inflow and geometry over what may be.
@@ -213,7 +229,7 @@ impl Coupling<'_> {
             panels,
             now.wake.settings(),
         )?;
-        let share = MIXED * f64::max(part, 0.4);
+        let share = self.share * f64::max(part, 0.4);
         let circulation = circulation.mixed(&now.moving, share)?;
         let mean = momentum_inflow(&now.trim.flight, now.trim.rotor.thrust_coefficient)?;
         let mut wake = now.wake.clone();

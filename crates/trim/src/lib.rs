@@ -14,7 +14,7 @@ pub use balance::TrimTarget;
 pub use error::TrimError;
 pub use solve::{TrimSettings, TrimSolution, imbalance, mean_lift_coefficient, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
-pub use wake::{WakeTrim, trim_in_free_wake};
+pub use wake::{WakeTrim, trim_in_free_wake, trim_in_free_wake_near};
 pub use wake_linearised::{WakeLinearised, linearised_in_wake};
 pub use wake_response::{WakeDifference, wake_difference};
 pub use wake_settings::{WakeOutcome, WakeTrimSettings, WakeUpdate};

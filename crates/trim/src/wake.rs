@@ -1,14 +1,14 @@
 //! Trim and free wake together.
 
-use crate::coupling::{Coupling, State};
+use crate::coupling::{Coupling, MIXED, State};
 use crate::{
     TrimError, TrimSettings, TrimSolution, TrimTarget, WakeOutcome, WakeTrimSettings, WakeUpdate,
     trim,
 };
 use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
-    CirculationMap, ClosestPassage, FreeWake, FrozenWake, LinearInflow, WakeError, WakeRotor,
-    WakeSymmetry,
+    CirculationMap, ClosestPassage, FreeWake, FrozenWake, LinearInflow, WakeError, WakeMethod,
+    WakeRotor, WakeSymmetry,
 };
 
 /// Residual of the trim between updates of the wake, over the weight.
@@ -21,6 +21,8 @@ const START_INFLOW: f64 = 1e-6;
 const ROUGH_INFLOW: f64 = 1e-7;
 /// Weak residual of the orbit between updates, generalised force in rotor units.
 const ROUGH_PERIODICITY: f64 = 1e-8;
+/// Sweeps of an update from a trim nearby: two leave a hundredth of the way.
+const NEAR_SWEEPS: usize = 2;
 /// Iterations allowed for the inflow of a wake, at least.
 const WAKE_ITERATIONS: usize = 200;
 
@@ -41,6 +43,20 @@ pub struct WakeTrim {
     pub closest_passage: Option<ClosestPassage>,
     /// Circulation that moved the wake in the last update.
     pub moving: CirculationMap,
+}
+
+impl WakeTrim {
+    /// The state to set out from.
+    fn state(&self) -> State {
+        State {
+            trim: self.trim.clone(),
+            wake: self.wake.clone(),
+            frozen: self.frozen.clone(),
+            moving: self.moving.clone(),
+            inflow_change: f64::INFINITY,
+            displacement: f64::INFINITY,
+        }
+    }
 }
 
 /// Trims a rotor in its free wake, flaps at rest.
@@ -64,6 +80,33 @@ pub fn trim_in_free_wake(
     target: &TrimTarget,
     trim_settings: &TrimSettings,
 ) -> Result<WakeTrim, TrimError> {
+    coupled(solver, settings, advance_ratio, (target, trim_settings), None)
+}
+
+/// The same from a trim nearby, of another rotor or in another wake at its advance ratio: on the last grid alone, from its
+/// controls, motion and wake, which whole changes of the circulation move. Few updates then settle it.
+///
+/// # Errors
+/// As [`trim_in_free_wake`], of the trim in the wake of the other one.
+pub fn trim_in_free_wake_near(
+    solver: &mut RotorSolver,
+    settings: &WakeTrimSettings,
+    near: &WakeTrim,
+    target: &TrimTarget,
+    trim_settings: &TrimSettings,
+) -> Result<WakeTrim, TrimError> {
+    let mu = near.trim.flight.advance_ratio;
+    coupled(solver, settings, mu, (target, trim_settings), Some(near))
+}
+
+/// Trim and wake, from momentum theory or from a trim nearby.
+fn coupled(
+    solver: &mut RotorSolver,
+    settings: &WakeTrimSettings,
+    advance_ratio: f64,
+    (target, trim_settings): (&TrimTarget, &TrimSettings),
+    near: Option<&WakeTrim>,
+) -> Result<WakeTrim, TrimError> {
     let model = solver.rotor().model();
     let (cutout, blades) = (model.root_cutout, model.blades);
     let panels = WakeRotor::uniform(blades, cutout, settings.panels)?;
@@ -75,9 +118,15 @@ pub fn trim_in_free_wake(
         periodicity: exact.periodicity.max(ROUGH_PERIODICITY),
         inflow: exact.inflow.max(inflow),
         inflow_iterations: iterations,
+        ..exact
     };
+    let mut settings = settings.clone();
+    if near.is_some() && settings.method == WakeMethod::Relaxed {
+        settings.sweeps = NEAR_SWEEPS;
+    }
+    let settings = &settings;
     let mut coupling = Coupling {
-        solver: solver.with_tolerances(rough(START_INFLOW)),
+        solver: solver.with_tolerances(rough(ROUGH_INFLOW)),
         settings,
         target,
         trim_settings: TrimSettings {
@@ -85,38 +134,15 @@ pub fn trim_in_free_wake(
             max_iterations: trim_settings.max_iterations.min(ROUGH_ITERATIONS),
         },
         updates: Vec::new(),
+        share: if near.is_some() { 1.0 } else { MIXED },
     };
-    let mut start = coupling.trimmed(&LinearInflow::Drees, advance_ratio, None).or_else(
-        |error| match error {
-            // the wake leaves upward: momentum theory knows its mean alone
-            TrimError::Response(ResponseError::Wake(WakeError::WakeAboveDisk { .. })) => {
-                coupling.trimmed(&LinearInflow::Uniform, advance_ratio, None)
-            }
-            error => Err(error),
-        },
-    )?;
-    coupling.solver = coupling.solver.with_tolerances(rough(ROUGH_INFLOW));
-    let mut stages = settings.stages.clone();
-    // an axial wake costs little, and its vortices pass the blades too closely for coarse steps
-    let periodic = settings.wake.symmetry == WakeSymmetry::Periodic;
-    stages
-        .retain(|&n| periodic && n < settings.wake.azimuths && n.is_multiple_of(blades) && n >= 8);
-    stages.push(settings.wake.azimuths);
-    let mut state: Option<(State, WakeOutcome)> = None;
-    for azimuths in stages {
-        let begun = coupling.begin(azimuths, &panels, &start, state.as_ref().map(|s| &s.0.wake));
-        let begun = match (begun, &mut state) {
-            (Ok(begun), _) => begun,
-            (Err(error), None) => return Err(error),
-            (Err(error), Some((_, outcome))) => {
-                *outcome = WakeOutcome::Failed { updates: 0, inflow_change: f64::INFINITY, error };
-                break;
-            }
-        };
-        let (reached, outcome) = coupling.stage(begun);
-        start = reached.trim.clone();
-        state = Some((reached, outcome));
-    }
+    let state = match near {
+        Some(near) => {
+            let begun = coupling.begin_near(near.state(), &panels)?;
+            Some(coupling.stage(begun))
+        }
+        None => by_stages(&mut coupling, &panels, advance_ratio, rough(START_INFLOW))?,
+    };
     let Some((mut state, mut outcome)) = state else {
         let expected = "one grid at least";
         return Err(TrimError::Parameter { field: "stages", value: 0.0, expected });
@@ -144,4 +170,47 @@ pub fn trim_in_free_wake(
         outcome,
         updates: coupling.updates,
     })
+}
+
+/// From momentum theory's inflow, stage by stage on finer grids.
+fn by_stages(
+    coupling: &mut Coupling<'_>,
+    panels: &WakeRotor,
+    advance_ratio: f64,
+    at_first: ResponseTolerances,
+) -> Result<Option<(State, WakeOutcome)>, TrimError> {
+    let then = coupling.solver.tolerances();
+    coupling.solver = coupling.solver.with_tolerances(at_first);
+    let mut start = coupling.trimmed(&LinearInflow::Drees, advance_ratio, None).or_else(
+        |error| match error {
+            // the wake leaves upward: momentum theory knows its mean alone
+            TrimError::Response(ResponseError::Wake(WakeError::WakeAboveDisk { .. })) => {
+                coupling.trimmed(&LinearInflow::Uniform, advance_ratio, None)
+            }
+            error => Err(error),
+        },
+    )?;
+    coupling.solver = coupling.solver.with_tolerances(then);
+    let (wake, blades) = (&coupling.settings.wake, panels.blades());
+    let mut stages = coupling.settings.stages.clone();
+    // an axial wake costs little, and its vortices pass the blades too closely for coarse steps
+    let periodic = wake.symmetry == WakeSymmetry::Periodic;
+    stages.retain(|&n| periodic && n < wake.azimuths && n.is_multiple_of(blades) && n >= 8);
+    stages.push(wake.azimuths);
+    let mut state: Option<(State, WakeOutcome)> = None;
+    for azimuths in stages {
+        let begun = coupling.begin(azimuths, panels, &start, state.as_ref().map(|s| &s.0.wake));
+        let begun = match (begun, &mut state) {
+            (Ok(begun), _) => begun,
+            (Err(error), None) => return Err(error),
+            (Err(error), Some((_, outcome))) => {
+                *outcome = WakeOutcome::Failed { updates: 0, inflow_change: f64::INFINITY, error };
+                break;
+            }
+        };
+        let (reached, outcome) = coupling.stage(begun);
+        start = reached.trim.clone();
+        state = Some((reached, outcome));
+    }
+    Ok(state)
 }

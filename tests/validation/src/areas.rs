@@ -325,6 +325,8 @@ pub const AREAS: &[Area] = &[
             "V-STUDY-19",
             "V-STUDY-20",
             "V-STUDY-21",
+            "V-STUDY-22",
+            "V-STUDY-23",
         ],
     },
 ];

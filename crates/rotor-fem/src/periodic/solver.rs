@@ -128,6 +128,12 @@ impl PeriodicSolver {
         Ok(Self { time, settings, factorisation: None })
     }
 
+    /// The same solver with the Newton matrix that another one keeps, for a system near that of the other.
+    #[must_use]
+    pub fn with_matrix_of(&self, other: &Self) -> Self {
+        Self { factorisation: other.factorisation.clone(), ..self.clone() }
+    }
+
     /// The time mesh.
     pub fn time(&self) -> &TimeElements {
         &self.time

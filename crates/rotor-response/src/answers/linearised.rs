@@ -1,6 +1,7 @@
 //! How the hub loads answer to small flap motions about a converged orbit.
 
-use crate::answers::settling::{Answer, INFLOW_ROUNDS, INFLOW_TOLERANCE, Settling, independent};
+use crate::answers::changes::{StateChange, WakeDrive};
+use crate::answers::settling::{Answer, INFLOW_ROUNDS, Settling, independent};
 use crate::loads::wrenches::{SixLoads, added};
 use crate::response::hinge::HingeMoment;
 use crate::response::revolution::RevolutionLoads;
@@ -37,15 +38,6 @@ pub enum Disturbance {
     Inflow(Vec<f64>),
 }
 
-/// Change of what moves a free wake.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WakeDrive {
-    /// Bound circulation at the azimuths and panels of the wake, azimuth by azimuth, `Omega R^2`.
-    pub circulation: Vec<f64>,
-    /// Harmonics of every modal coordinate, as [`RotorSolution::modal`].
-    pub modal: Vec<HarmonicSeries>,
-}
-
 /// Derivative of the hub loads along one direction of flaps or inflow.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HubSensitivity {
@@ -57,6 +49,8 @@ pub struct HubSensitivity {
     pub hinge: Vec<HarmonicSeries>,
     /// Change of what moves the wake; none unless the inflow settles on a circulation.
     pub drive: Option<WakeDrive>,
+    /// Change of the orbit and of the inflow.
+    pub state: StateChange,
 }
 
 /// Derivatives along several directions, and what they cost.
@@ -64,6 +58,8 @@ pub struct HubSensitivity {
 pub struct LinearisedRotor {
     /// One derivative per direction.
     pub sensitivities: Vec<HubSensitivity>,
+    /// The same with the inflow held.
+    pub held: Vec<HubSensitivity>,
     /// Largest residual left by a linear equation, over its right-hand side.
     pub relative_residual: f64,
     /// Evaluations of the whole revolution.
@@ -72,8 +68,6 @@ pub struct LinearisedRotor {
     pub factorisations: usize,
 }
 
-/// Relative residual of the linear equations.
-const LINEAR_TOLERANCE: f64 = 1e-5;
 /// Size of the flap angle and of the inflow in one-sided differences; the motion of the blade is of the
 /// same size. The loads are close to linear in all of them.
 const FLAP_DIFFERENCE_RAD: f64 = 1e-5;
@@ -85,6 +79,8 @@ const THRUST_DIFFERENCE: f64 = 1e-5;
 struct Direction {
     points: Vec<PointInput>,
     size: f64,
+    /// Change of the inflow parameters.
+    inflow: Vec<f64>,
     /// The direction itself at every point, if it is one of the flaps.
     flaps: Option<Vec<Vec<FlapAngle>>>,
 }
@@ -190,22 +186,25 @@ impl RotorSolver {
         let work = LinearisedRotor { evaluations: 1, ..LinearisedRotor::default() };
         let mut linear = Linear { orbits: self.solver.clone(), work };
         let mut answers = base.answers(&mut linear, &changes)?;
+        let held = self.sensitivities(&answers[..directions.len()]);
         if let Some(model) = followed {
             let seed = seed.and_then(|slope| Some((slope, answers.pop()?)));
             base.settle(&mut linear, model, seed, &mut answers)?;
         }
+        Ok(LinearisedRotor { sensitivities: self.sensitivities(&answers), held, ..linear.work })
+    }
+
+    /// Derivatives as they are given out.
+    fn sensitivities(&self, answers: &[Answer]) -> Vec<HubSensitivity> {
         let model = self.rotor.model();
-        let thrust = |hub: &SixLoads| model.thrust_coefficient(hub.components[2].mean);
-        let sensitivities = answers
-            .into_iter()
-            .map(|Answer { hub, hinge, drive, .. }| HubSensitivity {
-                thrust_coefficient: thrust(&hub),
-                hub,
-                hinge,
-                drive,
-            })
-            .collect();
-        Ok(LinearisedRotor { sensitivities, ..linear.work })
+        let of = |answer: &Answer| HubSensitivity {
+            thrust_coefficient: model.thrust_coefficient(answer.hub.components[2].mean),
+            hub: answer.hub.clone(),
+            hinge: answer.hinge.clone(),
+            drive: answer.drive.clone(),
+            state: answer.state.clone(),
+        };
+        answers.iter().map(of).collect()
     }
 
     /// The condition with the flaps moved a little along a direction.
@@ -226,7 +225,8 @@ impl RotorSolver {
         let moved = Condition { flap_angles_rad, ..condition.clone() };
         let at = |azimuth: &f64| direction.iter().map(|f| f.value_and_rates(*azimuth)).collect();
         let flaps = Some(self.time.points().iter().map(at).collect());
-        Direction { points: self.point_inputs(&moved, inflow), size, flaps }
+        let points = self.point_inputs(&moved, inflow);
+        Direction { points, size, inflow: vec![0.0; inflow.parameters().len()], flaps }
     }
 
     /// The condition with the inflow moved a little along a change of its parameters.
@@ -241,7 +241,8 @@ impl RotorSolver {
         let parameters: Vec<f64> =
             inflow.parameters().iter().zip(slope).map(|(p, s)| p + size * s).collect();
         let moved = inflow.with_parameters(&parameters)?;
-        Ok(Direction { points: self.point_inputs(condition, &moved), size, flaps: None })
+        let points = self.point_inputs(condition, &moved);
+        Ok(Direction { points, size, inflow: slope.to_vec(), flaps: None })
     }
 }
 
@@ -286,7 +287,7 @@ impl<'a> Base<'a> {
                 &self.about.orbit,
                 &self.forces,
                 &loads,
-                LINEAR_TOLERANCE,
+                self.solver.tolerances().linear,
             )
             .map_err(RotorSolver::orbit_error(&self.solver.rotor))?;
         let motions = response.changes.iter().zip(&response.force_changes);
@@ -312,7 +313,7 @@ impl<'a> Base<'a> {
         seed: Option<(Vec<f64>, Answer)>,
         answers: &mut [Answer],
     ) -> Result<(), ResponseError> {
-        let mut settling = Settling::new(answers);
+        let mut settling = Settling::new(answers, self.solver.tolerances().linear);
         if let Some((slope, answer)) = seed {
             settling.follow(slope, answer, answers);
         }
@@ -336,7 +337,7 @@ impl<'a> Base<'a> {
         Err(ResponseError::InflowNotConverged {
             iterations: INFLOW_ROUNDS,
             change: settling.worst(),
-            tolerance: INFLOW_TOLERANCE,
+            tolerance: settling.tolerance,
             thrust_coefficient: self.about.thrust_coefficient,
         })
     }
@@ -372,6 +373,7 @@ impl<'a> Base<'a> {
         motion: &Orbit,
         force: &DMatrix<f64>,
     ) -> Result<Answer, ResponseError> {
+        let state = StateChange { orbit: motion.clone(), inflow: change.inflow.clone() };
         let mut motion = motion.sample(&self.solver.time);
         let mass = &self.solver.rotor.mass;
         if let Some(lacking) = orbits.lacking_accelerations(&(mass * &motion.qdd + force)) {
@@ -385,6 +387,7 @@ impl<'a> Base<'a> {
         let mut answer = answer(self.solver, self.condition, self.followed, &system, &motion)?;
         answer.add(&self.rest, -1.0);
         answer.scale(1.0 / change.size);
+        answer.state = state;
         Ok(answer)
     }
 }
@@ -413,7 +416,8 @@ fn answer(
             modal: solver.modal_harmonics(samples),
         });
     }
-    Ok(Answer { hub, hinge, drive, wanted })
+    let state = StateChange { orbit: Orbit::zero(time, 0), inflow: Vec::new() };
+    Ok(Answer { hub, hinge, drive, state, wanted })
 }
 
 /// Change of the inflow parameters with the thrust coefficient, by central differences.

@@ -7,12 +7,13 @@
 //! right-hand sides share the directions, by the method of generalised conjugate residuals, as in
 //! [`rotor_fem::PeriodicSolver::linear_response`].
 
-use crate::answers::linearised::WakeDrive;
+use crate::answers::changes::{StateChange, WakeDrive, add};
 use crate::loads::wrenches::{SixLoads, added};
 use rotor_base::HarmonicSeries;
 
-/// Change of the inflow that a linearised response leaves, over the largest that any direction asks for.
-pub(crate) const INFLOW_TOLERANCE: f64 = 1e-4;
+/// Change of the inflow that a linearised response leaves, over the largest that any direction asks for and over the
+/// relative residual of its linear equations.
+const INFLOW_SHARE: f64 = 10.0;
 /// Rounds of inflow directions allowed.
 pub(crate) const INFLOW_ROUNDS: usize = 40;
 /// A direction of which only this part is new holds nothing new: far above what the linear equations of the
@@ -30,6 +31,7 @@ pub(crate) struct Answer {
     pub(crate) hub: SixLoads,
     pub(crate) hinge: Vec<HarmonicSeries>,
     pub(crate) drive: Option<WakeDrive>,
+    pub(crate) state: StateChange,
     pub(crate) wanted: Vec<f64>,
 }
 
@@ -49,6 +51,7 @@ impl Answer {
         if let (Some(drive), Some(other)) = (&mut self.drive, &other.drive) {
             drive.add(other, factor);
         }
+        self.state.add(&other.state, factor);
     }
 
     /// `self *= factor`.
@@ -59,28 +62,11 @@ impl Answer {
         if let Some(drive) = &mut self.drive {
             drive.scale(factor);
         }
+        self.state.orbit.nodal *= factor;
+        self.state.inflow.iter_mut().for_each(|value| *value *= factor);
         for value in &mut self.wanted {
             *value *= factor;
         }
-    }
-}
-
-impl WakeDrive {
-    /// `self += factor other`.
-    fn add(&mut self, other: &Self, factor: f64) {
-        add(&mut self.circulation, factor, &other.circulation);
-        self.modal = other.moved(&self.modal, factor);
-    }
-
-    /// A motion and a part of this change of it.
-    pub fn moved(&self, modal: &[HarmonicSeries], part: f64) -> Vec<HarmonicSeries> {
-        modal.iter().zip(&self.modal).map(|(value, change)| added(value, change, part)).collect()
-    }
-
-    /// `self *= factor`.
-    fn scale(&mut self, factor: f64) {
-        let own = self.clone();
-        self.add(&own, factor - 1.0);
     }
 }
 
@@ -94,14 +80,9 @@ struct Followed {
 pub(crate) struct Settling {
     left: Vec<Vec<f64>>,
     size: f64,
+    /// Change left, over that size, with which it is content.
+    pub(crate) tolerance: f64,
     basis: Vec<Followed>,
-}
-
-/// `a += factor b`.
-fn add(a: &mut [f64], factor: f64, b: &[f64]) {
-    for (value, part) in a.iter_mut().zip(b) {
-        *value += factor * part;
-    }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -135,11 +116,11 @@ pub(crate) fn independent(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 }
 
 impl Settling {
-    /// For the answers with the inflow held.
-    pub(crate) fn new(answers: &[Answer]) -> Self {
+    /// For the answers with the inflow held, of linear equations that leave a relative residual.
+    pub(crate) fn new(answers: &[Answer], residual: f64) -> Self {
         let left: Vec<Vec<f64>> = answers.iter().map(|answer| answer.wanted.clone()).collect();
         let size = left.iter().map(|wanted| norm(wanted)).fold(0.0, f64::max);
-        Self { left, size, basis: Vec::new() }
+        Self { left, size, tolerance: INFLOW_SHARE * residual, basis: Vec::new() }
     }
 
     /// Largest change left, over the largest asked for.
@@ -152,7 +133,7 @@ impl Settling {
 
     /// The changes that are not settled yet.
     pub(crate) fn open(&self) -> Vec<Vec<f64>> {
-        let limit = INFLOW_TOLERANCE * self.size;
+        let limit = self.tolerance * self.size;
         self.left.iter().filter(|left| norm(left) > limit).cloned().collect()
     }
 

@@ -43,11 +43,14 @@ pub struct ResponseTolerances {
     pub inflow: f64,
     /// Iterations allowed for the inflow.
     pub inflow_iterations: usize,
+    /// Residual of the linear equations of a linearised response over their right-hand side; its inflow settles to ten
+    /// times as much of the largest change.
+    pub linear: f64,
 }
 
 impl Default for ResponseTolerances {
     fn default() -> Self {
-        Self { periodicity: 1e-11, inflow: 1e-10, inflow_iterations: 60 }
+        Self { periodicity: 1e-11, inflow: 1e-10, inflow_iterations: 60, linear: 1e-5 }
     }
 }
 
@@ -137,6 +140,12 @@ impl RotorSolver {
     #[must_use]
     pub fn with_tolerances(&self, tolerances: ResponseTolerances) -> Self {
         Self { tolerances, ..self.clone() }
+    }
+
+    /// The same solver with the Newton matrix that the solver of a rotor nearby keeps, on the same time elements.
+    #[must_use]
+    pub fn with_matrix_of(&self, other: &Self) -> Self {
+        Self { solver: self.solver.with_matrix_of(&other.solver), ..self.clone() }
     }
 
     /// The tolerances.

@@ -331,8 +331,8 @@ section! {
         pub controller: ControllerChoice = ControllerChoice::Global, Any, "", "";
         /// Inflow in the T of the linearised rotor, which `Local` and the forecasts use. `Settled`: follows
         /// the moved loading with the geometry of a free wake held. `Frozen`: stays as trimmed.
-        /// `Reconverged`: the geometry of the free wake converges anew in the forecasts (about a minute per
-        /// two harmonics); loops then use `Settled`.
+        /// `Reconverged`: the geometry of the free wake converges anew in the forecasts (seconds per
+        /// harmonic); loops then use `Settled`.
         #[serde(skip_serializing_if = "is_default")]
         pub t_inflow: TInflowChoice = TInflowChoice::Settled, Any, "", "";
         /// Largest mean power that the actuators of one blade give, none taken back; with `effort: Limits`.

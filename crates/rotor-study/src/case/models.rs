@@ -211,6 +211,7 @@ impl Case {
             periodicity: t.periodicity,
             inflow: t.inflow,
             inflow_iterations: t.inflow_iterations,
+            ..ResponseTolerances::default()
         }
     }
 

@@ -5,8 +5,9 @@ use crate::control::drives::Drives;
 use crate::control::set::{ControlSet, acceptance, close_loop};
 use crate::control::study::ControlStudy;
 use crate::error::StudyError;
+use crate::plant::RotorPlant;
 use crate::rotor::TrimmedRotor;
-use hhc_control::{Controller, Plant, identify_t};
+use hhc_control::{Controller, Plant, TMatrix, identify_t};
 use rayon::prelude::*;
 
 /// Accuracy of the part of a voltage that is taken over.
@@ -61,7 +62,8 @@ pub fn control_set(
     Ok(studies)
 }
 
-/// One set of harmonics with the ideal actuator alone.
+/// One set of harmonics with the ideal actuator alone, its T that of the linearised rotor, by differences where that one
+/// has no answer (a rotor that stalls).
 ///
 /// # Errors
 /// [`StudyError`].
@@ -71,7 +73,16 @@ pub(crate) fn ideal_control(
     drives: &Drives,
     harmonics: &[usize],
 ) -> Result<ControlStudy, StudyError> {
-    ControlSet::new(case, rotor, drives, harmonics)?.feedback(ControlActuator::Ideal)
+    let set = ControlSet::new(case, rotor, drives, harmonics)?;
+    let actuator = ControlActuator::Ideal;
+    let mut plant = set.plant(actuator)?;
+    let t = if let Ok(linear) = set.t_at_rest(&plant.settled()) {
+        linear
+    } else {
+        let step_volt = set.step_volts(&plant);
+        identify_t(&mut plant, &step_volt).map_err(|e| set.failed(actuator, e))?
+    };
+    set.controlled(actuator, plant, &t)
 }
 
 /// Controls every set of harmonics of the case; sets in parallel, results in the order of the case.
@@ -85,7 +96,10 @@ pub fn control_all(
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<ControlStudy>, StudyError> {
     let control = &case.control;
-    if control.controller == ControllerChoice::Local && !control.harmonics.is_empty() {
+    let starts_linear = rotor.rotor().model().nonlinear.is_linear();
+    if !control.harmonics.is_empty()
+        && (starts_linear || control.controller == ControllerChoice::Local)
+    {
         // made once before the sets run side by side; a failure is that of the set that needs it
         let _ = rotor.authority();
     }
@@ -101,23 +115,36 @@ impl ControlSet<'_> {
     /// Feedback to convergence on the plant itself, from zero control.
     fn feedback(&self, actuator: ControlActuator) -> Result<ControlStudy, StudyError> {
         let mut plant = self.plant(actuator)?;
+        let step_volt = self.step_volts(&plant);
+        let t = match self.case.control.controller {
+            ControllerChoice::Local => self.t_at_rest(&plant),
+            ControllerChoice::Global | ControllerChoice::Adaptive => {
+                identify_t(&mut plant, &step_volt)
+            }
+        };
+        let t = t.map_err(|e| self.failed(actuator, e))?;
+        self.controlled(actuator, plant, &t)
+    }
+
+    /// The same with a T about zero control.
+    fn controlled(
+        &self,
+        actuator: ControlActuator,
+        mut plant: RotorPlant,
+        t: &TMatrix,
+    ) -> Result<ControlStudy, StudyError> {
         let failed = |e| self.failed(actuator, e);
         let control = &self.case.control;
-        let step_volt = self.step_volts(&plant);
         let way = match (actuator, control.controller) {
             // the ideal actuator has nearly one T everywhere: at limits that bind even the rotor's own bend shows
             (ControlActuator::Ideal, ControllerChoice::Global | ControllerChoice::Adaptive) => {
                 Controller::Global
             }
-            (_, choice) => self.t_policy(choice, step_volt.clone()),
-        };
-        let t = match way {
-            Controller::Local { .. } => self.t_at_rest(&plant).map_err(failed)?,
-            _ => identify_t(&mut plant, &step_volt).map_err(failed)?,
+            (_, choice) => self.t_policy(choice, self.step_volts(&plant)),
         };
         let holds_t = matches!(way, Controller::Renewed { .. });
         let cost_tolerance = acceptance(&way, control.effort).cost_tolerance();
-        let controller = self.controller(&t, way, control.effort).map_err(failed)?;
+        let controller = self.controller(t, way, control.effort).map_err(failed)?;
         let (run, rho) = close_loop(&controller, &mut plant, control.effort).map_err(failed)?;
         let volts = run.last().control_volt.clone();
         let state = self.state(actuator, &plant, &volts)?;

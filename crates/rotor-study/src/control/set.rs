@@ -12,6 +12,7 @@ use hhc_control::{
     Acceptance, AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackLaw,
     FeedbackSettings, Plant, RunError, StopReason, TMatrix,
 };
+use std::sync::Arc;
 
 /// One set of harmonics under control: the rotor, its drives and how far they reach.
 pub(super) struct ControlSet<'a> {
@@ -174,8 +175,9 @@ impl ControlSet<'_> {
         plant: &RotorPlant,
         control_volt: &[f64],
     ) -> Result<PlantState, StudyError> {
-        let found = plant.state(control_volt).map_err(RunError::plant("measured", control_volt));
-        found.map_err(|error| self.failed(actuator, error))
+        let found = plant.state_measured(control_volt);
+        let found = found.map_err(RunError::plant("measured", control_volt));
+        found.map(Arc::unwrap_or_clone).map_err(|error| self.failed(actuator, error))
     }
 }
 

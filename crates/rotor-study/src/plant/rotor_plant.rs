@@ -183,6 +183,17 @@ impl RotorPlant {
         Ok(PlantState { rotor, flaps, coupling: Some(residual) })
     }
 
+    /// The same, not solved again where it was measured last.
+    pub(crate) fn state_measured(
+        &self,
+        control_volt: &[f64],
+    ) -> Result<Arc<PlantState>, PlantError> {
+        match &self.measured {
+            Some((control, state)) if control == control_volt => Ok(Arc::clone(state)),
+            _ => Ok(Arc::new(self.state(control_volt)?)),
+        }
+    }
+
     /// Rotor response for given flap motions, whatever the actuator makes of the hinge moment.
     ///
     /// # Errors

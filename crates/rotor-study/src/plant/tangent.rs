@@ -10,7 +10,6 @@ use crate::plant::rotor_plant::{RotorPlant, angles_rad, bits};
 use hhc_control::{TMatrix, VoltageRange};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use std::sync::Arc;
 
 /// Azimuths at which the range of the voltage is held: a peak of the fifth harmonic between two of them may lie beyond by
 /// 2e-4 of its amplitude.
@@ -27,11 +26,7 @@ impl RotorPlant {
     /// # Errors
     /// The errors of actuator and rotor.
     pub(crate) fn t_about(&self, control_volt: &[f64]) -> Result<TMatrix, PlantError> {
-        let known = self.measured.as_ref().filter(|(control, _)| control == control_volt);
-        let state = match known {
-            Some((_, state)) => Arc::clone(state),
-            None => Arc::new(self.state(control_volt)?),
-        };
+        let state = self.state_measured(control_volt)?;
         let tangents = self.tangents_at(control_volt)?;
         let angles = angles_rad(&state.flaps);
         self.t_of(&self.rotor.loads_along(angles, &state.rotor, each_motion(&tangents))?)

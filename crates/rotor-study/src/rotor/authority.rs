@@ -3,7 +3,8 @@
 use crate::series::{added, coefficients, only};
 use rotor_base::HarmonicSeries;
 use rotor_response::{
-    Condition, FlapDirection, InflowState, ResponseError, RotorSolution, RotorSolver,
+    Condition, FlapDirection, HubSensitivity, InflowState, ResponseError, RotorSolution,
+    RotorSolver, StateChange,
 };
 use rotor_wake::InflowModel;
 
@@ -19,40 +20,54 @@ pub struct FlapAuthority {
     columns: Vec<Vec<[f64; 12]>>,
     /// The same of the hinge moments of all flaps, `m0 Omega^2 R^3` per deg.
     hinge: Vec<Vec<Vec<HarmonicSeries>>>,
+    /// The same of orbit and inflow, per deg; none of motions that are not kept.
+    states: Vec<Vec<Option<StateChange>>>,
 }
 
 impl FlapAuthority {
-    /// The derivatives about a converged orbit, with the harmonics of a flap up to the `highest`.
+    /// The derivatives about a converged orbit with the inflow settled, and with the inflow held, for some harmonics of
+    /// every flap; 0 is the mean.
     ///
     /// # Errors
     /// As [`RotorSolver::linearised`].
-    pub fn about(
+    pub(crate) fn about(
         solver: &mut RotorSolver,
         condition: &Condition,
         about: &RotorSolution,
         inflow: &dyn InflowModel,
-        state: InflowState,
-        highest: usize,
-    ) -> Result<Self, ResponseError> {
+        harmonics: &[usize],
+    ) -> Result<[Self; 2], ResponseError> {
         let model = solver.rotor().model();
         let (flaps, blades) = (model.flaps.len(), model.blades);
-        let per_flap = 2 * highest + 1;
-        let directions: Vec<FlapDirection> = (0..flaps * per_flap)
-            .map(|k| {
+        let both = |&n: &usize| if n == 0 { vec![0] } else { vec![2 * n - 1, 2 * n] };
+        let places: Vec<usize> = harmonics.iter().flat_map(both).collect();
+        let size = places.iter().max().map_or(0, |place| place + 1);
+        let each: Vec<(usize, usize)> =
+            (0..flaps).flat_map(|flap| places.iter().map(move |&place| (flap, place))).collect();
+        let directions: Vec<FlapDirection> = each
+            .iter()
+            .map(|&(flap, place)| {
                 let mut direction = vec![HarmonicSeries::zero(0); flaps];
-                direction[k / per_flap] = only(k % per_flap, 1.0_f64.to_radians());
+                direction[flap] = only(place, 1.0_f64.to_radians());
                 direction
             })
             .collect();
-        let found = solver.linearised((condition, about), inflow, &directions, state)?;
-        let all: Vec<[f64; 12]> =
-            found.sensitivities.iter().map(|s| s.hub.harmonic(blades)).collect();
-        let hinge: Vec<Vec<HarmonicSeries>> =
-            found.sensitivities.into_iter().map(|s| s.hinge).collect();
-        Ok(Self {
-            columns: all.chunks(per_flap).map(<[[f64; 12]]>::to_vec).collect(),
-            hinge: hinge.chunks(per_flap).map(<[Vec<HarmonicSeries>]>::to_vec).collect(),
-        })
+        let at = (condition, about);
+        let found = solver.linearised(at, inflow, &directions, InflowState::Settled)?;
+        let of = |changes: Vec<HubSensitivity>| {
+            let mut made = Self {
+                columns: vec![vec![[0.0; 12]; size]; flaps],
+                hinge: vec![vec![vec![HarmonicSeries::zero(0); flaps]; size]; flaps],
+                states: vec![vec![None; size]; flaps],
+            };
+            for (&(flap, place), change) in each.iter().zip(changes) {
+                made.columns[flap][place] = change.hub.harmonic(blades);
+                made.hinge[flap][place] = change.hinge;
+                made.states[flap][place] = Some(change.state);
+            }
+            made
+        };
+        Ok([of(found.sensitivities), of(found.held)])
     }
 
     /// The same with the hub loads of one harmonic of one flap (load per deg, cosine and sine) found otherwise.
@@ -83,6 +98,30 @@ impl FlapAuthority {
             }
         }
         loads
+    }
+
+    /// A start for the response to flap motions, rad, from that about which is linearised.
+    ///
+    /// # Errors
+    /// As [`RotorSolution::moved_start`].
+    pub(crate) fn start(
+        &self,
+        about: &RotorSolution,
+        flap_angles_rad: &[HarmonicSeries],
+    ) -> Result<RotorSolution, ResponseError> {
+        let mut start = about.clone();
+        let mut whole: Option<StateChange> = None;
+        for (columns, angle) in self.states.iter().zip(flap_angles_rad) {
+            for (part, change) in coefficients(angle, columns.len() / 2).zip(columns) {
+                let Some(change) = change.as_ref().filter(|_| part != 0.0) else { continue };
+                let whole = whole.get_or_insert_with(|| change.zero());
+                whole.add(change, part.to_degrees());
+            }
+        }
+        if let Some(whole) = &whole {
+            start = start.moved_start(whole)?;
+        }
+        Ok(start)
     }
 
     /// Change of the hinge moment of every flap for a small motion of one flap, deg; `m0 Omega^2 R^3`.

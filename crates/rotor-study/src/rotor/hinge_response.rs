@@ -7,7 +7,7 @@ use crate::series::{coefficients, only, scaled, weighted};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_response::{HingeMoment, InflowState, ResponseError, RotorSolution};
+use rotor_response::{HingeMoment, ResponseError, RotorSolution};
 
 /// Step of the differences in a harmonic of a flap angle, rad: the response is nearly linear in it.
 const RESPONSE_STEP_RAD: f64 = 1e-3;
@@ -20,7 +20,8 @@ impl TrimmedRotor {
         let rest = &self.trim.rotor.hinge;
         let count = rest.iter().map(|h| h.total().harmonics.len()).max().unwrap_or(0);
         let (flaps, size, unit) = (rest.len(), 2 * count + 1, self.scales().moment_newton_metre());
-        let authority = self.linearised_to(InflowState::Settled, count).ok();
+        let harmonics: Vec<usize> = (1..=count).collect();
+        let authority = self.linearised_for(&harmonics).ok().map(|[settled, _]| settled);
         let columns = (0..flaps * size)
             .into_par_iter()
             .map(|j| {

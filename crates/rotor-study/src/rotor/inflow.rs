@@ -9,7 +9,9 @@ use rotor_wake::{
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use trim::{TrimError, TrimSolution, WakeOutcome, WakeTrim, trim, trim_in_free_wake};
+use trim::{
+    TrimError, TrimSolution, WakeOutcome, WakeTrim, trim, trim_in_free_wake, trim_in_free_wake_near,
+};
 
 /// Iterations of circulation and inflow allowed in a free wake, at least.
 const WAKE_ITERATIONS: usize = 200;
@@ -65,7 +67,8 @@ pub(crate) fn refuse_prescribed_circulation(case: &Case) -> Result<(), StudyErro
     Err(StudyError::Refused { field, message: message.to_owned() })
 }
 
-/// Trims the rotor of a case in the inflow the case asks for.
+/// Trims the rotor of a case in the inflow the case asks for, from a nearby trim and from its wake at the same advance
+/// ratio if there are such; where that one's wake does not lead to a settled one, the free wake is built up anew.
 ///
 /// # Errors
 /// The errors of the trim and of the wake.
@@ -73,6 +76,7 @@ pub fn settled_trim(
     case: &Case,
     solver: &mut RotorSolver,
     start: Option<&TrimSolution>,
+    near: Option<&WakeTrim>,
 ) -> Result<SettledTrim, TrimError> {
     let (mu, target, settings) = (case.advance_ratio, case.trim_target(), case.trim_settings());
     let choice = &case.inflow.model;
@@ -81,7 +85,14 @@ pub fn settled_trim(
         let tolerances = solver.tolerances();
         let inflow_iterations = tolerances.inflow_iterations.max(WAKE_ITERATIONS);
         *solver = solver.with_tolerances(ResponseTolerances { inflow_iterations, ..tolerances });
-        let wake = trim_in_free_wake(solver, &coupling, mu, &target, &settings)?;
+        let near = near.and_then(|near| {
+            let found = trim_in_free_wake_near(solver, &coupling, near, &target, &settings);
+            found.ok().filter(|wake| wake.outcome == WakeOutcome::Settled)
+        });
+        let wake = match near {
+            Some(wake) => wake,
+            None => trim_in_free_wake(solver, &coupling, mu, &target, &settings)?,
+        };
         let (trim, inflow) = (wake.trim.clone(), Arc::new(wake.frozen.clone()));
         return Ok(SettledTrim { trim, inflow, wake: Some(Arc::new(wake)) });
     };

@@ -11,12 +11,17 @@ use crate::series::scaled;
 use nalgebra::DMatrix;
 use rotor_base::{HarmonicSeries, RotorScales};
 use rotor_response::{
-    Condition, FlapDirection, InflowState, OtherBlade, ResponseError, Rotor, RotorSolution,
-    RotorSolver, SectionLift, SixLoads, Stability, StationLoads, dissimilar_hub_loads,
+    Condition, FlapDirection, InflowState, OtherBlade, ResponseError, ResponseTolerances, Rotor,
+    RotorSolution, RotorSolver, SectionLift, SixLoads, Stability, StationLoads,
+    dissimilar_hub_loads,
 };
 use rotor_wake::InflowModel;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use trim::{TrimError, TrimSolution, TrimTarget, WakeTrim, WakeTrimSettings, imbalance};
+
+/// Residual of the linear equations of a rotor that is linearised roughly.
+const ROUGHLY_LINEAR: f64 = 3e-4;
 
 /// A rotor in trim, flaps at rest: where every control run starts.
 #[derive(Debug, Clone)]
@@ -32,8 +37,10 @@ pub struct TrimmedRotor {
     reconverged: Once<ReconvergedAuthority>,
     /// Change of the hinge moments with the flap motions.
     pub(super) hinge_response: Once<DMatrix<f64>>,
+    /// Harmonics of the flaps in the linearised rotor, 0 for the mean.
+    harmonics: Vec<usize>,
     /// Linearised with the inflow settled, and with the wake frozen.
-    linearised: [Once<FlapAuthority>; 2],
+    linearised: Once<[FlapAuthority; 2]>,
     wake: Option<Arc<WakeTrim>>,
 }
 
@@ -45,14 +52,42 @@ impl TrimmedRotor {
     /// [`StudyError::Blade`], [`StudyError::Response`] and [`StudyError::Trim`], with the field of the case
     /// that asked for it.
     pub fn new(case: &Case, start: Option<&TrimSolution>) -> Result<Self, StudyError> {
+        let solver = Self::solver_of(case, case.response_tolerances())?;
+        Self::trimmed(case, solver, start, None, (0..=HARMONICS).collect())
+    }
+
+    /// The rotor of a case that differs a little from that of another one at its advance ratio, trimmed from there: the
+    /// free wake starts with that of the other one. It is linearised roughly, to a part in a hundred, and for the
+    /// harmonics that the case controls, which is all that ideal actuators move.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) fn near(case: &Case, other: &Self) -> Result<Self, StudyError> {
+        let tolerances =
+            ResponseTolerances { linear: ROUGHLY_LINEAR, ..case.response_tolerances() };
+        let harmonics: BTreeSet<usize> = case.control.harmonics.iter().flatten().copied().collect();
+        let solver = Self::solver_of(case, tolerances)?.with_matrix_of(&other.solver);
+        let harmonics = harmonics.into_iter().collect();
+        Self::trimmed(case, solver, Some(other.trim()), other.wake(), harmonics)
+    }
+
+    /// The solver of a case's rotor.
+    fn solver_of(case: &Case, tolerances: ResponseTolerances) -> Result<RotorSolver, StudyError> {
         refuse_prescribed_circulation(case)?;
         let at_rotor = |source| StudyError::Response { field: "rotor".to_owned(), source };
         let rotor = case.rotor_of(&case.blade_properties()?, "rotor")?;
         refuse_resonance_of(case, &rotor)?;
-        let mu = case.advance_ratio;
-        let tolerances = case.response_tolerances();
-        let mut solver = RotorSolver::new(Arc::new(rotor), mu, tolerances).map_err(at_rotor)?;
-        let settled = settled_trim(case, &mut solver, start);
+        RotorSolver::new(Arc::new(rotor), case.advance_ratio, tolerances).map_err(at_rotor)
+    }
+
+    fn trimmed(
+        case: &Case,
+        mut solver: RotorSolver,
+        start: Option<&TrimSolution>,
+        wake: Option<&WakeTrim>,
+        harmonics: Vec<usize>,
+    ) -> Result<Self, StudyError> {
+        let settled = settled_trim(case, &mut solver, start, wake);
         let SettledTrim { trim, inflow, wake } =
             settled.map_err(|source| trim_error(case, source))?;
         Ok(Self {
@@ -64,7 +99,8 @@ impl TrimmedRotor {
             reconverging: Reconverging::of(case),
             reconverged: Once::default(),
             hinge_response: Once::default(),
-            linearised: Default::default(),
+            harmonics,
+            linearised: Once::default(),
             wake,
         })
     }
@@ -122,7 +158,7 @@ impl TrimmedRotor {
         Ok(Some(found))
     }
 
-    /// The same by central differences of converged responses, about a minute per harmonic: a check on it.
+    /// The same by central differences of converged responses, many times as dear: a check on it.
     ///
     /// # Errors
     /// The errors of the response and of the wake.
@@ -145,24 +181,18 @@ impl TrimmedRotor {
     /// # Errors
     /// The errors of the linearised response.
     pub fn linearised(&self, state: InflowState) -> Result<&FlapAuthority, ResponseError> {
-        let [settled, frozen] = &self.linearised;
-        let kept = if state == InflowState::Settled { settled } else { frozen };
-        found(kept, || self.linearised_to(state, HARMONICS))
+        let [settled, frozen] = found(&self.linearised, || self.linearised_for(&self.harmonics))?;
+        Ok(if state == InflowState::Settled { settled } else { frozen })
     }
 
-    pub(crate) fn linearised_to(
+    /// Linearised for other harmonics, the inflow settled and held.
+    pub(crate) fn linearised_for(
         &self,
-        state: InflowState,
-        highest: usize,
-    ) -> Result<FlapAuthority, ResponseError> {
-        FlapAuthority::about(
-            &mut self.solver.clone(),
-            &self.flaps_at_rest(),
-            &self.trim.rotor,
-            self.inflow.as_ref(),
-            state,
-            highest,
-        )
+        harmonics: &[usize],
+    ) -> Result<[FlapAuthority; 2], ResponseError> {
+        let mut solver = self.solver.clone();
+        let (rest, about) = (self.flaps_at_rest(), &self.trim.rotor);
+        FlapAuthority::about(&mut solver, &rest, about, self.inflow.as_ref(), harmonics)
     }
 
     /// Change of the hub loads at the blade number per rev with small motions of one flap each (number and deg),
@@ -307,7 +337,8 @@ impl TrimmedRotor {
 
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
     ///
-    /// Starts from the trimmed orbit with the trim's factorisation, whatever was solved before.
+    /// Starts from what the linearised rotor makes of the trimmed orbit and its inflow, where sections may stall from these
+    /// themselves, with the trim's factorisation: whatever was solved before.
     ///
     /// # Errors
     /// The errors of the response.
@@ -315,7 +346,13 @@ impl TrimmedRotor {
         &self,
         flap_angles_rad: Vec<HarmonicSeries>,
     ) -> Result<RotorSolution, ResponseError> {
-        self.with_flaps_from(flap_angles_rad, &self.trim.rotor)
+        let trimmed = &self.trim.rotor;
+        if !self.rotor().model().nonlinear.is_linear() {
+            // sections that stall may have more than one orbit: their way is left alone
+            return self.with_flaps_from(flap_angles_rad, trimmed);
+        }
+        let start = self.linearised(InflowState::Settled)?.start(trimmed, &flap_angles_rad)?;
+        self.with_flaps_from(flap_angles_rad, &start)
     }
 
     /// The same, started from a response of one's own.

@@ -1,37 +1,51 @@
 //! Where the wake lies without free motion, and the same wake on another grid.
 
 use super::FreeWake;
-use super::settings::NearWakeMotion;
-use crate::BladeLines;
+use super::filament::Filament;
+use super::settings::{FreeWakeSettings, NearWakeMotion};
 use crate::WakeError;
 use crate::vector::{Vec3, add, scale, sub};
+use crate::{BladeLines, WakeRotor};
 
 impl FreeWake {
-    /// The same wake on another number of azimuth steps: its distortion against undistorted helices,
-    /// interpolated linearly along azimuth and age; the start of the next stage of a sequence of grids.
+    /// The same wake on another number of azimuth steps: the start of the next stage of a sequence of grids.
     ///
     /// # Errors
-    /// [`WakeError::BadInput`] if the number does not suit the rotor.
+    /// As [`Self::remade`].
     pub fn on_grid(&self, azimuths: usize, lines: BladeLines) -> Result<Self, WakeError> {
-        let settings = self.settings.with_azimuths(azimuths);
-        let mut out = Self::undistorted(
-            self.rotor.clone(),
-            settings,
-            self.flight,
-            self.carrying_inflow,
-            lines,
-        )?;
-        let before = self.settings.azimuths;
+        self.remade(self.rotor.clone(), self.settings.with_azimuths(azimuths), lines)
+    }
+
+    /// A wake of other panels, settings and lifting lines with the distortion of this one against undistorted helices,
+    /// interpolated linearly along azimuth and age; rolled-up vortices that this one has not are undistorted.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] if the settings do not suit the rotor.
+    pub fn remade(
+        &self,
+        rotor: WakeRotor,
+        settings: FreeWakeSettings,
+        lines: BladeLines,
+    ) -> Result<Self, WakeError> {
+        let mut out = Self::undistorted(rotor, settings, self.flight, self.carrying_inflow, lines)?;
+        let (before, azimuths) = (self.settings.azimuths, out.settings.azimuths);
         let helix = out.clone();
-        let pairs = out.far.iter_mut().zip(&self.far).chain(out.near.iter_mut().zip(&self.near));
-        for (new, old) in pairs {
+        let take_over = |new: &mut Filament, old: &Filament| {
             let distortion = |i: usize, k: usize| {
                 let (i, k) = (i % before, k.min(old.steps));
                 sub(old.at(i)[k], self.carried(old.node, i, k))
             };
+            let node = new.node;
             new.fill(azimuths, |i, k| {
-                add(helix.carried(old.node, i, k), sampled(distortion, [i, k], before, azimuths))
+                add(helix.carried(node, i, k), sampled(distortion, [i, k], before, azimuths))
             });
+        };
+        for (new, all) in [(&mut out.far, &self.far), (&mut out.near, &self.near)] {
+            for new in new {
+                if let Some(old) = all.iter().find(|old| old.node == new.node) {
+                    take_over(new, old);
+                }
+            }
         }
         out.place_near_wake();
         Ok(out)

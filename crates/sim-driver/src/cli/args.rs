@@ -143,7 +143,7 @@ pub struct RunArgs {
     /// folder of results for each.
     #[arg(long, value_name = "MU", value_delimiter = ',')]
     pub mu: Vec<f64>,
-    /// Also change one assumption at a time, those of a free wake included (minutes): sensitivity.csv.
+    /// Also change one assumption at a time, those of a free wake included: sensitivity.csv.
     #[arg(long)]
     pub sensitivity: bool,
     /// Also control under noise, a wrong T and drift: robustness.csv.

@@ -1,22 +1,29 @@
 //! Trim and free wake together: that it settles, and where it stops if it does not.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "the measured differences are worth seeing")]
 
+use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
-    Couplings, Discretisation, ResponseError, ResponseTolerances, Rotor, RotorModel, RotorSolver,
+    Condition, Couplings, Discretisation, ResponseError, ResponseTolerances, Rotor, RotorModel,
+    RotorSolver,
 };
 use rotor_wake::{
     CoreModel, FarTrailers, FreeWakeSettings, InducedInflow, WakeError, WakeMethod, WakeSymmetry,
 };
 use std::sync::Arc;
 use trim::{
-    TrimError, TrimSettings, TrimTarget, WakeOutcome, WakeTrim, WakeTrimSettings, trim_in_free_wake,
+    TrimError, TrimSettings, TrimTarget, WakeOutcome, WakeTrim, WakeTrimSettings,
+    linearised_in_wake, trim_in_free_wake, trim_in_free_wake_near, wake_difference,
 };
 
 /// A rotor of few modes and time elements.
 fn small(advance_ratio: f64) -> RotorSolver {
+    few_modes(RotorModel::table_1(Couplings::Full), advance_ratio)
+}
+
+fn few_modes(model: RotorModel, advance_ratio: f64) -> RotorSolver {
     let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
-    let model = RotorModel::table_1(Couplings::Full);
     let few = Discretisation { modes: [2, 1, 1], time_elements: 4, ..Discretisation::default() };
     let rotor = Rotor::new(model, &blade, few).unwrap();
     RotorSolver::new(Arc::new(rotor), advance_ratio, ResponseTolerances::default()).unwrap()
@@ -175,4 +182,74 @@ fn a_coupling_that_runs_away_keeps_its_last_good_state() {
         }
     }
     assert!(runaways > 0);
+}
+
+/// From a trim nearby the same trim is found as from nothing, in no more updates.
+#[test]
+fn a_trim_nearby_leads_to_the_same_trim() {
+    let settings = few_steps(3);
+    let near = coupled(0.25, &settings, 0.066).unwrap();
+    let whole = coupled(0.25, &settings, 0.07).unwrap();
+    let target = TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: 0.25 * 0.3 };
+    let solver = &mut small(0.25);
+    let led = trim_in_free_wake_near(solver, &settings, &near, &target, &TrimSettings::default())
+        .unwrap();
+    assert_eq!(led.outcome, WakeOutcome::Settled);
+    let apart = (led.trim.controls.theta0_rad - whole.trim.controls.theta0_rad).abs();
+    println!("{apart:.1e} rad, {} updates for {}", led.updates.len(), whole.updates.len());
+    assert!(apart < 0.01_f64.to_radians(), "{apart}");
+    assert!(led.updates.len() <= whole.updates.len());
+}
+
+fn distance<'a>(pairs: impl Iterator<Item = (&'a [f64; 12], &'a [f64; 12])>) -> f64 {
+    let mut sums = [0.0, 0.0];
+    for (x, y) in pairs.flat_map(|(a, b)| a.iter().zip(b)) {
+        sums[0] += (x - y).powi(2);
+        sums[1] += y * y;
+    }
+    f64::sqrt(sums[0] / sums[1])
+}
+
+/// The rotor linearised with the whole answer of its wake against differences of converged responses, each in a wake of
+/// its own; with the geometry of the wake held it is out of the same bound.
+#[test]
+fn the_linearised_rotor_holds_what_its_wake_answers() {
+    let (mu, step_deg, settings) = (0.25, 0.5, few_steps(3));
+    let mut solver = few_modes(RotorModel::paper_case(), mu);
+    let target = TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: mu * 0.3 };
+    let trimmed =
+        trim_in_free_wake(&mut solver, &settings, mu, &target, &TrimSettings::default()).unwrap();
+    let flaps = solver.rotor().model().flaps.len();
+    let moved = |n: usize, angle_rad: f64| {
+        let mut motion = vec![HarmonicSeries::zero(n); flaps];
+        motion[flaps - 1].set_harmonic(n, Harmonic { cosine: angle_rad, sine: 0.0 });
+        motion
+    };
+    let condition = |flap_angles_rad| Condition {
+        flight: trimmed.trim.flight,
+        bank_rad: trimmed.trim.attitude.roll_rad,
+        controls: trimmed.trim.controls,
+        flap_angles_rad,
+    };
+    let per_deg = 1.0_f64.to_radians();
+    let directions: Vec<_> = (2..=5).map(|n| moved(n, per_deg)).collect();
+    let rest = condition(moved(0, 0.0));
+    let found =
+        linearised_in_wake(&trimmed, &solver, &settings, &rest, &directions, step_deg).unwrap();
+    let differences: Vec<[f64; 12]> = (2..=5)
+        .map(|n| {
+            let [plus, minus] =
+                [1.0, -1.0].map(|side| condition(moved(n, side * step_deg * per_deg)));
+            let both = wake_difference(&trimmed, &solver, &settings, [&plus, &minus]).unwrap();
+            both.last().map(|z| z / (2.0 * step_deg))
+        })
+        .collect();
+    let of = |columns: &[[f64; 12]]| {
+        let each = columns.iter().zip(&differences);
+        each.map(|pair| distance(std::iter::once(pair))).fold(0.0, f64::max)
+    };
+    let (whole, held) = (of(&found.hub), of(&found.held));
+    println!("largest distance at 2 to 5/rev: {whole:.4}, geometry held {held:.4}");
+    assert!(whole <= 0.02, "{whole}");
+    assert!(held > 0.04, "{held}");
 }

@@ -172,14 +172,14 @@ pub(crate) const ROWS: &[Check] = &[
     .against("shown, not zero: the geometry has moved")
     .at_least(0.005, || Ok(in_free_wake()?.moved)),
     row(
-        "V-STUDY-21",
+        "V-STUDY-22",
         "T of the linearised rotor with the whole answer of its free wake, 2, 3, 4, \
          5/rev: distance from that by differences over its norm, largest",
         "-",
     )
     .against("two ways to the same matrix")
     .at_most(0.02, || Ok(in_free_wake()?.linearised)),
-    row("V-STUDY-22", "the same with the geometry held: what leaving its answer out costs", "-")
+    row("V-STUDY-23", "the same with the geometry held: what leaving its answer out costs", "-")
         .against("shown, not within the bound of the row before")
         .at_least(0.04, || Ok(in_free_wake()?.left_out)),
     row(

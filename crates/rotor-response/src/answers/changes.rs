@@ -1,0 +1,79 @@
+//! Changes of a response along a direction: what moves a wake, and the state.
+
+use crate::loads::wrenches::added;
+use crate::{ResponseError, RotorSolution};
+use rotor_base::HarmonicSeries;
+use rotor_fem::Orbit;
+
+/// Change of what moves a free wake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WakeDrive {
+    /// Bound circulation at the azimuths and panels of the wake, azimuth by azimuth, `Omega R^2`.
+    pub circulation: Vec<f64>,
+    /// Harmonics of every modal coordinate, as [`RotorSolution::modal`].
+    pub modal: Vec<HarmonicSeries>,
+}
+
+/// Change of the orbit and of the inflow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StateChange {
+    /// Modal motion.
+    pub(crate) orbit: Orbit,
+    /// Parameters of the inflow, tip speed.
+    pub(crate) inflow: Vec<f64>,
+}
+
+/// `a += factor b`.
+pub(crate) fn add(a: &mut [f64], factor: f64, b: &[f64]) {
+    for (value, part) in a.iter_mut().zip(b) {
+        *value += factor * part;
+    }
+}
+
+impl WakeDrive {
+    /// `self += factor other`.
+    pub(crate) fn add(&mut self, other: &Self, factor: f64) {
+        add(&mut self.circulation, factor, &other.circulation);
+        self.modal = other.moved(&self.modal, factor);
+    }
+
+    /// A motion and a part of this change of it.
+    pub fn moved(&self, modal: &[HarmonicSeries], part: f64) -> Vec<HarmonicSeries> {
+        modal.iter().zip(&self.modal).map(|(value, change)| added(value, change, part)).collect()
+    }
+
+    /// `self *= factor`.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        let own = self.clone();
+        self.add(&own, factor - 1.0);
+    }
+}
+
+impl StateChange {
+    /// No change of the same size.
+    #[must_use]
+    pub fn zero(&self) -> Self {
+        let nodal = self.orbit.nodal.map(|_| 0.0);
+        Self { orbit: Orbit { nodal }, inflow: vec![0.0; self.inflow.len()] }
+    }
+
+    /// `self += factor other`.
+    pub fn add(&mut self, other: &Self, factor: f64) {
+        self.orbit.nodal.zip_apply(&other.orbit.nodal, |value, part| *value += factor * part);
+        add(&mut self.inflow, factor, &other.inflow);
+    }
+}
+
+impl RotorSolution {
+    /// A start for the response that a change leads to: orbit and inflow are moved, nothing else.
+    ///
+    /// # Errors
+    /// [`ResponseError::Wake`] for another number of inflow parameters.
+    pub fn moved_start(mut self, change: &StateChange) -> Result<Self, ResponseError> {
+        self.orbit.nodal += &change.orbit.nodal;
+        let mut inflow = self.inflow.parameters();
+        add(&mut inflow, 1.0, &change.inflow);
+        self.inflow = self.inflow.with_parameters(&inflow)?;
+        Ok(self)
+    }
+}
