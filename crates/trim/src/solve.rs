@@ -6,7 +6,9 @@ use crate::vehicle::Attitude;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_response::{Condition, Controls, ResponseError, RotorSolution, RotorSolver};
+use rotor_response::{
+    Condition, Controls, ResponseError, ResponseTolerances, RotorSolution, RotorSolver,
+};
 use rotor_wake::{FlightState, InflowModel, momentum_inflow};
 use std::sync::Arc;
 
@@ -48,6 +50,12 @@ pub struct TrimSolution {
 
 /// Step of the finite-difference Jacobian, rad (and weights for the tail thrust).
 const JACOBIAN_STEP: f64 = 1e-4;
+/// Mismatch of the inflow at most, over the tolerance of the trim: the thrust answers about twenty times as much, and what the
+/// inflow leaves open must not keep the balance from closing.
+const INFLOW_SHARE: f64 = 0.01;
+/// Weak residual of the orbit and mismatch of the inflow of a column of the Jacobian: a ten-thousandth of its step.
+const COLUMN_PERIODICITY: f64 = 1e-9;
+const COLUMN_INFLOW: f64 = 1e-8;
 /// Pitch angles beyond which the linear section model means nothing, rad.
 const PITCH_LIMIT: f64 = 0.6;
 /// Shaft tilt at which a trim starts at most, rad: a larger one is approached by the steps.
@@ -211,12 +219,19 @@ impl Problem<'_> {
         x: &DVector<f64>,
         base: &Iterate,
     ) -> Result<DMatrix<f64>, TrimError> {
+        let exact = solver.tolerances();
+        let enough = ResponseTolerances {
+            periodicity: exact.periodicity.max(COLUMN_PERIODICITY),
+            inflow: exact.inflow.max(COLUMN_INFLOW),
+            ..exact
+        };
         let columns = (0..self.balance.unknowns)
             .into_par_iter()
             .map(|j| {
                 let mut moved = x.clone();
                 moved[j] += JACOBIAN_STEP;
-                let (_, residual) = self.evaluate(&mut solver.clone(), &moved, Some(&base.0))?;
+                let mut solver = solver.with_tolerances(enough);
+                let (_, residual) = self.evaluate(&mut solver, &moved, Some(&base.0))?;
                 Ok((residual - &base.1) / JACOBIAN_STEP)
             })
             .collect::<Result<Vec<DVector<f64>>, TrimError>>()?;
@@ -263,7 +278,14 @@ impl Problem<'_> {
         start: Option<&TrimSolution>,
     ) -> Result<TrimSolution, TrimError> {
         let mut progress = Progress::default();
+        let exact = solver.tolerances();
+        // given controls have no balance to close
+        if self.balance.unknowns > 0 && solver.rotor().model().nonlinear.is_linear() {
+            let inflow = exact.inflow.min(INFLOW_SHARE * settings.tolerance);
+            *solver = solver.with_tolerances(ResponseTolerances { inflow, ..exact });
+        }
         let found = self.search(solver, settings, start, &mut progress);
+        *solver = solver.with_tolerances(exact);
         let model = solver.rotor().model();
         let (solidity, given) = (model.solidity(), self.balance.unknowns == 0);
         let stalls = !model.nonlinear.is_linear();

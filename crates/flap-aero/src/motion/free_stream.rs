@@ -103,8 +103,8 @@ pub fn loads_of_outputs(
     apparent: [f64; 3],
 ) -> SectionLoads {
     let speed = stream.speed.abs();
-    let [lift, moment, hinge] =
-        std::array::from_fn(|o| speed * circulating[o] + stream.semichord * apparent[o]);
+    let output = |o: usize| speed * circulating[o] + stream.semichord * apparent[o];
+    let [lift, moment, hinge] = [output(0), output(1), output(2)];
     let chord = 2.0 * stream.semichord;
     let force = 0.5 * stream.density * chord;
     SectionLoads {

@@ -1,5 +1,7 @@
 //! How a converged orbit answers to small changes of its loads: the implicit function theorem.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -88,16 +90,16 @@ impl PeriodicSolver {
     where
         S::Error: Send,
     {
-        let image = |direction: DMatrix<f64>| {
+        let image = |work: &mut S::Work, direction: DMatrix<f64>| {
             let nodal = &orbit.nodal + &direction * DIFFERENCE;
-            let moved = self.evaluate(system, Orbit { nodal }, 0, orbit)?;
+            let moved = self.evaluate(system, work, Orbit { nodal }, (0, orbit))?;
             Ok(Known {
                 direction,
                 force: (moved.force - &base.force) / DIFFERENCE,
                 image: (moved.residual - &base.residual) / DIFFERENCE,
             })
         };
-        directions.into_par_iter().map(image).collect()
+        directions.into_par_iter().map_init(S::Work::default, image).collect()
     }
 
     /// Changes of a converged orbit for small changes of the load `f`.
@@ -147,7 +149,7 @@ impl PeriodicSolver {
         let factorisations = usize::from(kept.is_none());
         let matrix = match kept {
             Some(kept) => kept,
-            None => self.factorise(system, base, 0)?,
+            None => Arc::new(self.factorise(system, base, 0)?),
         };
         // residuals are measured as accelerations: a light mode counts as much as a heavy one
         let mass = system.mass().diagonal();

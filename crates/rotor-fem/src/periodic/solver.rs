@@ -1,5 +1,7 @@
 //! Periodic orbits of `M q'' + f(q, q', q'', psi) = 0` by Newton's method on the whole revolution.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
 use crate::error::check_parameters;
@@ -91,7 +93,8 @@ fn stands_still(history: &[f64], careful_from: Option<usize>) -> bool {
 pub struct PeriodicSolver {
     time: TimeElements,
     settings: PeriodicSettings,
-    pub(crate) factorisation: Option<Factorisation>,
+    /// Shared by clones until one makes its own.
+    pub(crate) factorisation: Option<Arc<Factorisation>>,
 }
 
 impl PeriodicSolver {
@@ -168,7 +171,8 @@ impl PeriodicSolver {
         start: &Orbit,
     ) -> Result<PeriodicSolution<S::Seen>, PeriodicError<S::Error>> {
         self.check(system, start)?;
-        let mut state = self.evaluate(system, start.clone(), 0, start)?;
+        let work = &mut S::Work::default();
+        let mut state = self.evaluate(system, work, start.clone(), (0, start))?;
         let mut history = vec![state.norm];
         let mut best = (state.norm, state.orbit.clone());
         let mut mixing = Anderson::new(self.settings.mixing_depth);
@@ -191,11 +195,11 @@ impl PeriodicSolver {
             } else {
                 renewal.renewed();
                 mixing.clear();
-                self.factorise(system, &state, iteration - 1)?
+                Arc::new(self.factorise(system, &state, iteration - 1)?)
             };
             let step = factorisation.solve(&state.residual);
             let proposal = mixing.propose(&state.orbit.nodal, &step);
-            let next = self.evaluate(system, Orbit { nodal: proposal }, iteration, &best.1);
+            let next = self.evaluate(system, work, Orbit { nodal: proposal }, (iteration, &best.1));
             let growth = match &next {
                 Ok(next) => next.norm / state.norm,
                 Err(PeriodicError::NotFinite { .. }) => f64::INFINITY,
@@ -208,7 +212,7 @@ impl PeriodicSolver {
                 }
                 Verdict::Shorten => {
                     self.factorisation = renewal.keeps().then_some(factorisation);
-                    self.shorten(system, &state, &step, iteration)?
+                    self.shorten(system, work, (&state, &step), iteration)?
                 }
                 // the matrix is dropped; the better of the two orbits gets a new one
                 Verdict::Renew => match next {
@@ -222,7 +226,7 @@ impl PeriodicSolver {
                 best = (state.norm, state.orbit.clone());
             }
             if renewal.stalls(improved) {
-                state = self.evaluate(system, best.1.clone(), iteration, &best.1)?;
+                state = self.evaluate(system, work, best.1.clone(), (iteration, &best.1))?;
                 self.factorisation = None;
                 mixing = Anderson::new(0);
                 careful_from = Some(history.len());
@@ -238,6 +242,20 @@ impl PeriodicSolver {
             residual_history: history,
             factorisations: renewal.factorisations,
         })
+    }
+
+    /// Largest weak residual that an orbit leaves, in generalised force (rotor units).
+    ///
+    /// # Errors
+    /// As [`Self::solve`], but for convergence.
+    pub fn residual_norm<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        orbit: &Orbit,
+    ) -> Result<f64, PeriodicError<S::Error>> {
+        self.check(system, orbit)?;
+        let mut work = S::Work::default();
+        Ok(self.evaluate(system, &mut work, orbit.clone(), (0, orbit))?.norm)
     }
 
     /// What the accelerations lack for the equations of motion to hold at each azimuth, seen from the
@@ -298,15 +316,15 @@ impl PeriodicSolver {
     pub(crate) fn evaluate<S: PeriodicSystem>(
         &self,
         system: &S,
+        work: &mut S::Work,
         orbit: Orbit,
-        iteration: usize,
-        best: &Orbit,
+        (iteration, best): (usize, &Orbit),
     ) -> Result<Iterate<S::Seen>, PeriodicError<S::Error>> {
         let time = &self.time;
         let samples = orbit.sample(time);
         let mut force = DMatrix::zeros(system.dof(), time.points().len());
         let seen = system
-            .residual(&samples, &mut force)
+            .residual(&samples, work, &mut force)
             .map_err(|source| PeriodicError::System { iteration, source })?;
         self.weigh(system, (orbit, samples, force), (iteration, best), seen)
     }
@@ -412,13 +430,13 @@ impl PeriodicSolver {
     fn shorten<S: PeriodicSystem>(
         &self,
         system: &S,
-        state: &Iterate<S::Seen>,
-        step: &DMatrix<f64>,
+        work: &mut S::Work,
+        (state, step): (&Iterate<S::Seen>, &DMatrix<f64>),
         iteration: usize,
     ) -> Result<Iterate<S::Seen>, PeriodicError<S::Error>> {
-        let trial = |halving: i32| {
+        let mut trial = |halving: i32| {
             let nodal = &state.orbit.nodal + step * 0.5_f64.powi(halving);
-            self.evaluate(system, Orbit { nodal }, iteration, &state.orbit)
+            self.evaluate(system, work, Orbit { nodal }, (iteration, &state.orbit))
         };
         let mut best = trial(0);
         for halving in 1..=MAX_HALVINGS {

@@ -35,6 +35,9 @@ pub trait PeriodicSystem: Sync {
     /// What it tells of an orbit beside the residual, such as the loads it has found on the way; `()` for nothing.
     type Seen: Send;
 
+    /// Arrays that its residual works in, kept from one evaluation to the next; `()` for none.
+    type Work: Default + Send;
+
     /// Number of degrees of freedom.
     fn dof(&self) -> usize;
 
@@ -52,6 +55,7 @@ pub trait PeriodicSystem: Sync {
     fn residual(
         &self,
         orbit: &OrbitSamples,
+        work: &mut Self::Work,
         out: &mut DMatrix<f64>,
     ) -> Result<Self::Seen, Self::Error>;
 

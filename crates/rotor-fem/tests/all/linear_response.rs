@@ -29,6 +29,7 @@ struct WithMemory<S>(S);
 impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithMemory<S> {
     type Error = Infallible;
     type Seen = ();
+    type Work = S::Work;
 
     fn dof(&self) -> usize {
         self.0.dof()
@@ -38,8 +39,13 @@ impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithMemory<S> {
         self.0.mass()
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
-        self.0.residual(orbit, out)?;
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        work: &mut S::Work,
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
+        self.0.residual(orbit, work, out)?;
         let mean = orbit.q.row(0).mean();
         for i in 0..out.ncols() {
             out[(1, i)] += 0.02 * (orbit.q[(0, i)] - mean).powi(3) + 0.2 * mean;
@@ -58,6 +64,7 @@ struct WithLoad<'a, S>(&'a S, &'a DMatrix<f64>, f64);
 impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithLoad<'_, S> {
     type Error = Infallible;
     type Seen = ();
+    type Work = S::Work;
 
     fn dof(&self) -> usize {
         self.0.dof()
@@ -67,8 +74,13 @@ impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for WithLoad<'_, S> {
         self.0.mass()
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
-        self.0.residual(orbit, out)?;
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        work: &mut S::Work,
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
+        self.0.residual(orbit, work, out)?;
         *out += self.1 * self.2;
         Ok(())
     }
@@ -157,6 +169,7 @@ const MEMORY: f64 = 3.0;
 impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for Remembering<S> {
     type Error = Infallible;
     type Seen = ();
+    type Work = S::Work;
 
     fn dof(&self) -> usize {
         self.local.dof()
@@ -166,8 +179,13 @@ impl<S: PeriodicSystem<Error = Infallible>> PeriodicSystem for Remembering<S> {
         self.local.mass()
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
-        self.local.residual(orbit, out)?;
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        work: &mut S::Work,
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
+        self.local.residual(orbit, work, out)?;
         let mean = orbit.q.row(0).mean();
         for i in 0..out.ncols() {
             out[(1, i)] += MEMORY * mean;
@@ -213,6 +231,7 @@ fn a_memory_of_the_wrong_shape_is_refused() {
     impl PeriodicSystem for Misshapen {
         type Error = Infallible;
         type Seen = ();
+        type Work = ();
 
         fn dof(&self) -> usize {
             DOF
@@ -222,8 +241,13 @@ fn a_memory_of_the_wrong_shape_is_refused() {
             self.0.mass()
         }
 
-        fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
-            self.0.residual(orbit, out)
+        fn residual(
+            &self,
+            orbit: &OrbitSamples,
+            (): &mut (),
+            out: &mut DMatrix<f64>,
+        ) -> Result<(), Infallible> {
+            self.0.residual(orbit, &mut (), out)
         }
 
         fn tangents(&self, orbit: &OrbitSamples) -> Result<Vec<LocalTangent>, Infallible> {

@@ -79,6 +79,7 @@ struct Lagging {
 impl PeriodicSystem for Lagging {
     type Error = Infallible;
     type Seen = ();
+    type Work = ();
 
     fn dof(&self) -> usize {
         1
@@ -88,7 +89,12 @@ impl PeriodicSystem for Lagging {
         &self.mass
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        (): &mut (),
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
         let weights: Vec<f64> =
             self.time.weights().iter().map(|w| w / std::f64::consts::TAU).collect();
         let rates: Vec<f64> = orbit.qd.iter().copied().collect();
@@ -182,6 +188,7 @@ impl Cubic {
 impl PeriodicSystem for Cubic {
     type Error = Infallible;
     type Seen = ();
+    type Work = ();
 
     fn dof(&self) -> usize {
         2
@@ -191,7 +198,12 @@ impl PeriodicSystem for Cubic {
         &self.mass
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        (): &mut (),
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
         for (i, psi) in orbit.azimuth_rad.iter().enumerate() {
             let [q, qd, qdd] = Self::exact(*psi);
             let load = &self.mass * &qdd + self.force(&q, &qd, &qdd);
@@ -328,6 +340,7 @@ struct SplitInertia {
 impl PeriodicSystem for SplitInertia {
     type Error = Infallible;
     type Seen = ();
+    type Work = ();
 
     fn dof(&self) -> usize {
         1
@@ -337,7 +350,12 @@ impl PeriodicSystem for SplitInertia {
         &self.mass
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        (): &mut (),
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
         *out = &orbit.qdd * self.hidden + &orbit.qd * 0.1 + &orbit.q * 2.3;
         for (i, psi) in orbit.azimuth_rad.iter().enumerate() {
             out[(0, i)] -= psi.cos();
@@ -376,6 +394,7 @@ struct Saturating {
 impl PeriodicSystem for Saturating {
     type Error = Infallible;
     type Seen = ();
+    type Work = ();
 
     fn dof(&self) -> usize {
         1
@@ -385,7 +404,12 @@ impl PeriodicSystem for Saturating {
         &self.mass
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        (): &mut (),
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
         for (i, psi) in orbit.azimuth_rad.iter().enumerate() {
             let q = orbit.q[(0, i)];
             out[(0, i)] =
@@ -435,6 +459,7 @@ struct TableLeft(f64);
 impl PeriodicSystem for Faulty {
     type Error = TableLeft;
     type Seen = ();
+    type Work = ();
 
     fn dof(&self) -> usize {
         1
@@ -444,7 +469,12 @@ impl PeriodicSystem for Faulty {
         &self.mass
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), TableLeft> {
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        (): &mut (),
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), TableLeft> {
         if self.value < 0.0 {
             return Err(TableLeft(self.value));
         }

@@ -1,7 +1,6 @@
 //! Coupled modes of the blade in the coordinates of the response, and the search for a resonance among them.
 
-use crate::structure::equations::{BladeState, Equations, SpanLoads, StructureScratch};
-use crate::structure::motion::Motion;
+use crate::structure::equations::Equations;
 use crate::{ResponseError, Rotor, RotorSolution};
 use nalgebra::{Complex, DMatrix, DVector};
 use rotor_fem::{EnergyShares, ModeKind, PitchMotion, oscillations};
@@ -41,37 +40,23 @@ pub struct CoupledBladeMode {
 struct Still<'a> {
     rotor: &'a Rotor,
     pitch: PitchMotion,
-    motion: Motion,
-    loads: SpanLoads,
-    scratch: StructureScratch,
 }
 
 impl<'a> Still<'a> {
     fn new(rotor: &'a Rotor, pitch_rad: f64) -> Self {
-        let mut loads = SpanLoads::default();
-        loads.clear(rotor.blade().grid().len());
-        Self {
-            rotor,
-            pitch: PitchMotion::steady(pitch_rad),
-            motion: Motion::default(),
-            loads,
-            scratch: StructureScratch::default(),
-        }
+        Self { rotor, pitch: PitchMotion::steady(pitch_rad) }
     }
 
-    fn residual(&mut self, coordinates: [&[f64]; 3]) -> DVector<f64> {
-        let blade = self.rotor.blade();
-        self.motion.fill(blade, coordinates);
-        let state = BladeState { motion: &self.motion, pitch: self.pitch, loads: &self.loads };
+    fn residual(&self, coordinates: [&[f64]; 3]) -> DVector<f64> {
         let mut out = DVector::zeros(coordinates[0].len());
         let (couplings, mass) = (self.rotor.model().couplings, &self.rotor.mass);
-        let equations = Equations { blade, couplings, mass };
-        equations.residual(state, coordinates, &mut self.scratch, out.as_mut_slice());
+        let equations = Equations { blade: self.rotor.blade(), couplings, mass };
+        equations.still_residual(coordinates, self.pitch, out.as_mut_slice());
         out
     }
 
     /// Derivative with respect to displacements (0), rates (1) or accelerations (2) at a steady state.
-    fn tangent(&mut self, q: &DVector<f64>, which: usize) -> DMatrix<f64> {
+    fn tangent(&self, q: &DVector<f64>, which: usize) -> DMatrix<f64> {
         let n = q.len();
         let columns: Vec<DVector<f64>> = (0..n)
             .map(|j| {
@@ -87,7 +72,7 @@ impl<'a> Still<'a> {
     }
 
     /// The state into which rotation bends the blade; the straight blade if there is none.
-    fn steady(&mut self) -> DVector<f64> {
+    fn steady(&self) -> DVector<f64> {
         let n = self.rotor.mass.nrows();
         let rest = vec![0.0; n];
         let mut q = DVector::zeros(n);
@@ -113,7 +98,7 @@ impl Rotor {
         pitch_rad: f64,
         flight: Option<&RotorSolution>,
     ) -> Result<Vec<CoupledBladeMode>, ResponseError> {
-        let mut still = Still::new(self, pitch_rad);
+        let still = Still::new(self, pitch_rad);
         let state = match flight {
             None => still.steady(),
             Some(found) => {

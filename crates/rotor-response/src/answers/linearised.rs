@@ -3,6 +3,7 @@
 use crate::answers::changes::{StateChange, WakeDrive};
 use crate::answers::settling::{Answer, INFLOW_ROUNDS, Settling, independent};
 use crate::loads::wrenches::{SixLoads, added};
+use crate::response::evaluated::Work;
 use crate::response::hinge::HingeMoment;
 use crate::response::revolution::RevolutionLoads;
 use crate::response::rotor::up;
@@ -261,11 +262,11 @@ impl<'a> Base<'a> {
             || answer(solver, condition, followed, &system, &settled),
             || {
                 let mut forces = DMatrix::zeros(system.dof(), orbit.q.ncols());
-                let evaluated = system.residual(&orbit, &mut forces);
+                let evaluated = system.residual(&orbit, &mut Work::default(), &mut forces);
                 (evaluated.map(|_| forces), system.unloaded(&orbit))
             },
         );
-        let (rest, forces) = (rest?, forces?);
+        let (rest, forces, bare) = (rest?, forces?, bare?);
         Ok(Self { solver, orbit, settled, forces, bare, rest, condition, about, followed })
     }
 
@@ -355,7 +356,7 @@ impl<'a> Base<'a> {
             return Ok(slope);
         }
         let mut forces = DMatrix::zeros(self.forces.nrows(), self.forces.ncols());
-        system.residual(&self.orbit, &mut forces)?;
+        system.residual(&self.orbit, &mut Work::default(), &mut forces)?;
         Ok((forces - &self.forces) / change.size)
     }
 
@@ -409,7 +410,7 @@ fn answer(
     if let Some(model) = followed {
         let lift = hub.components[2].mean + rotor.blades_weight() * up(condition)[2];
         let ct = rotor.model().thrust_coefficient(lift);
-        let loading = loading(rotor, time, &loads.lifting, Some(ct), model.circulation_grid())?;
+        let loading = loading(rotor, time, &loads.lifting, ct, model.circulation_grid())?;
         wanted = model.induced(&condition.flight, &loading)?.parameters();
         drive = loading.circulation.map(|circulation| WakeDrive {
             circulation: circulation.values().to_vec(),
@@ -546,7 +547,7 @@ mod tests {
                 let moved = Condition { flap_angles_rad, ..condition.clone() };
                 let system = base.system(solver.point_inputs(&moved, &about.inflow));
                 let mut out = base.forces.clone();
-                system.residual(&base.orbit, &mut out).unwrap();
+                system.residual(&base.orbit, &mut Work::default(), &mut out).unwrap();
                 out
             };
             let difference = (forces(0.1) - forces(-0.1)) / 0.2;

@@ -15,9 +15,11 @@
 
 use crate::loads::section_moments::{curvature_moments, moments_outboard};
 use crate::loads::wrenches::summed;
+use crate::response::evaluated::Revolution;
 use crate::response::revolution::series;
 use crate::response::root_reaction::Loading;
-use crate::response::system::{ResponseSystem, Revolution};
+use crate::response::system::ResponseSystem;
+use crate::sections::air::SectionLoads;
 use crate::sections::flight_air::POINTS_TOGETHER;
 use crate::structure::equations::SpanLoads;
 use crate::structure::load_station::LoadStation;
@@ -121,7 +123,7 @@ impl RotorSolver {
         let orbit = solution.orbit.sample(&self.time);
         let samples = OrbitSamples { qdd: solution.accelerations.clone(), ..orbit };
         let revolution = system.revolution(&samples)?;
-        let points: Vec<Vec<PointLoads>> = (0..revolution.motions.len())
+        let points: Vec<Vec<PointLoads>> = (0..revolution.points())
             .into_par_iter()
             .with_min_len(POINTS_TOGETHER)
             .map_init(SpanLoads::default, |loads, p| {
@@ -158,7 +160,9 @@ fn at_point(
     let (blade, couplings) = (system.blade, system.couplings);
     let coordinates = samples.at(p);
     let q = coordinates[0];
-    let loading = Loading::new(system, revolution, p, loads, coordinates);
+    let sections: Vec<SectionLoads> = revolution.at(p).copied().collect();
+    let motion = &system.motion(samples, p);
+    let loading = Loading::new(system, (motion, &sections), p, loads, coordinates);
     let pitch = system.points[p].air.pitch.angle_rad;
     let at = |station: &LoadStation| {
         let shape = station.shape(blade, q);
@@ -262,7 +266,9 @@ mod tests {
             for p in [0, 17, 40] {
                 let q = samples.at(p)[0];
                 let mut span = SpanLoads::default();
-                let loading = Loading::new(&system, &revolution, p, &mut span, samples.at(p));
+                let sections: Vec<SectionLoads> = revolution.at(p).copied().collect();
+                let at = (&system.motion(&samples, p), sections.as_slice());
+                let loading = Loading::new(&system, at, p, &mut span, samples.at(p));
                 let crate::ResponseBlade { properties, modes, grid, .. } = rotor.blade();
                 let places = ends.map(|x| {
                     let station = LoadStation::new(x, 10, properties, modes, grid).unwrap();

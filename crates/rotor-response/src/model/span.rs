@@ -104,17 +104,27 @@ impl SpanGrid {
 
     /// Integral of `f` from the root to every station.
     pub fn integral_from_root(&self, f: &[f64], out: &mut [f64]) {
-        let n = self.points_per_piece;
-        let mut before = 0.0;
-        for (piece, &half) in self.halves.iter().enumerate() {
-            let values = &f[piece * n..(piece + 1) * n];
-            let partial = |row: &[f64]| -> f64 {
-                half * row.iter().zip(values).map(|(a, b)| a * b).sum::<f64>()
+        self.integrals_from_root(f, 1, out);
+    }
+
+    /// The same for several functions side by side, lane by lane; both of shape stations x lanes.
+    pub fn integrals_from_root(&self, f: &[f64], lanes: usize, out: &mut [f64]) {
+        let piece = self.points_per_piece * lanes;
+        let mut before = vec![0.0; lanes];
+        let values = f.chunks_exact(piece).zip(out.chunks_exact_mut(piece));
+        for ((values, out), half) in values.zip(&self.halves) {
+            let add = |row: &[f64], out: &mut [f64]| {
+                for (weight, values) in row.iter().zip(values.chunks_exact(lanes)) {
+                    for (sum, value) in out.iter_mut().zip(values) {
+                        *sum += half * weight * value;
+                    }
+                }
             };
-            for (o, row) in out[piece * n..(piece + 1) * n].iter_mut().zip(&self.integration) {
-                *o = before + partial(row);
+            for (out, row) in out.chunks_exact_mut(lanes).zip(&self.integration) {
+                out.copy_from_slice(&before);
+                add(row, out);
             }
-            before += partial(&self.integration[n]);
+            add(&self.integration[self.points_per_piece], &mut before);
         }
     }
 

@@ -53,7 +53,7 @@ impl ResponseSystem<'_> {
         let (flaps, first) = (self.points[point].flap.len(), self.air.first_station);
         let aerodynamic = over_flaps(self.blade, flaps, |i, _| sections[i - first].hinge);
         let inertial = over_flaps(self.blade, flaps, |i, k| {
-            let section = self.flap_section(point, motion, i, k);
+            let section = self.flap_section(point, (motion, i), i, k);
             self.blade.flap_inertia[i].map_or(0.0, |flap| flap.body.hinge_moment(&section))
         });
         [aerodynamic, inertial]

@@ -11,16 +11,23 @@
 //! angles and left out, as is the axial part of the loads: only the speed of convergence depends on this
 //! matrix, never the solution.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::response::system::ResponseSystem;
 use crate::sections::air::SectionFlow;
 use crate::sections::flight_air::StationMemory;
 use crate::structure::motion::Motion;
 use nalgebra::DMatrix;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use rotor_fem::{LagChannel, LagPlace, OrbitMemory, OrbitSamples, PeriodicSystem};
+use std::ops::Range;
 
 /// Step of the central differences of the inputs, which are quadratic in the motion but for third-order terms.
 const INPUT_STEP: f64 = 1e-4;
+
+/// A field of the motion.
+type Field = fn(&mut Motion) -> &mut Vec<f64>;
 
 /// Share of the two section inputs in displacement and rate of every mode, at one point and station:
 /// the inputs by displacement, then by rate, one entry per mode.
@@ -35,13 +42,57 @@ struct LoadSlopes {
     moment: Vec<f64>,
 }
 
+/// Sums of one point of the past over the stations: a type of its own, for a closure would be called, not inlined, by
+/// the function that is compiled for the vector unit.
+struct Columns<'a> {
+    then: usize,
+    stations: &'a [Option<StationMemory>],
+    slopes: &'a [Vec<(InputSlopes, LoadSlopes)>],
+    /// Modes on which lift and moment work.
+    worked: [Range<usize>; 2],
+    /// Point by point, mode by mode: displacements, then rates.
+    blocks: &'a mut [f64],
+}
+
+impl WithSimd for Columns<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { then, stations, slopes, worked, blocks } = self;
+        let dof = worked[1].end;
+        let mut shares = vec![0.0; 2 * dof];
+        for (s, station) in stations.iter().enumerate() {
+            let Some(memory) = station else { continue };
+            let (inputs, _) = &slopes[then][s];
+            for (now, block) in blocks.chunks_exact_mut(dof * 2 * dof).enumerate() {
+                let (_, loads) = &slopes[now][s];
+                let works = [&loads.lift, &loads.moment].into_iter().zip(&worked);
+                for ([of_alpha, of_rate], (load, modes)) in memory.kernels.iter().zip(works) {
+                    let (alpha, rate) = (of_alpha[(now, then)], of_rate[(now, then)]);
+                    let both = inputs.alpha.iter().zip(&inputs.pitch_rate);
+                    for (share, (a, r)) in shares.iter_mut().zip(both) {
+                        *share = alpha * a + rate * r;
+                    }
+                    let rows = block.chunks_exact_mut(2 * dof).zip(load);
+                    for (row, work) in rows.skip(modes.start).take(modes.len()) {
+                        for (entry, share) in row.iter_mut().zip(&shares) {
+                            *entry += work * share;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 impl ResponseSystem<'_> {
     /// The part of the linearised residual that the settled lags leave out.
     ///
     /// `None` over tables, and where no section has lags.
     pub(crate) fn lag_memory(&self, samples: &OrbitSamples) -> Option<OrbitMemory> {
         let mut stations = self.air.memories()?;
-        let lost_from = self.load_law(false).lost_from;
+        let lost_from = self.load_law().lost_from;
         stations.truncate(lost_from);
         if stations.iter().all(Option::is_none) {
             return None;
@@ -73,7 +124,7 @@ impl ResponseSystem<'_> {
     /// together; none over tables, with dynamic stall, and where no section has lags.
     pub(crate) fn lag_places(&self, samples: &OrbitSamples) -> Vec<LagPlace> {
         let Some(channels) = self.air.channels() else { return Vec::new() };
-        let lost_from = self.load_law(false).lost_from;
+        let lost_from = self.load_law().lost_from;
         let dof = self.dof();
         let flows: Vec<Vec<SectionFlow>> = (0..self.points.len())
             .into_par_iter()
@@ -110,58 +161,80 @@ impl ResponseSystem<'_> {
         let lifted = if centred { 0..bending } else { 0..dof };
         let worked = [lifted, bending..dof];
         let mut blocks = vec![0.0; points * dof * 2 * dof];
-        let mut shares = vec![0.0; 2 * dof];
-        for (s, station) in stations.iter().enumerate() {
-            let Some(memory) = station else { continue };
-            let (inputs, _) = &slopes[then][s];
-            for (now, block) in blocks.chunks_exact_mut(dof * 2 * dof).enumerate() {
-                let (_, loads) = &slopes[now][s];
-                let works = [&loads.lift, &loads.moment].into_iter().zip(&worked);
-                for (kernels, (load, modes)) in memory.kernels.iter().zip(works) {
-                    let [alpha, rate] = kernels.each_ref().map(|k| k[(now, then)]);
-                    let both = inputs.alpha.iter().zip(&inputs.pitch_rate);
-                    for (share, (a, r)) in shares.iter_mut().zip(both) {
-                        *share = alpha * a + rate * r;
-                    }
-                    let rows = block.chunks_exact_mut(2 * dof).zip(load);
-                    for (row, work) in rows.skip(modes.start).take(modes.len()) {
-                        for (entry, share) in row.iter_mut().zip(&shares) {
-                            *entry += work * share;
-                        }
-                    }
-                }
-            }
-        }
+        Arch::new().dispatch(Columns { then, stations, slopes, worked, blocks: &mut blocks });
         let entry = |row: usize, column: usize| blocks[row * 2 * dof + column];
         [0, dof].map(|from| DMatrix::from_fn(dof * points, dof, |row, j| entry(row, from + j)))
     }
 
-    /// Slopes of the inputs of all lifting stations at a point, by differences: the flow is quadratic in the motion.
+    /// Slopes of the inputs of all lifting stations at a point: those in the fields of the motion, by differences, for the
+    /// flow is quadratic in them, and the shapes that the modes have there.
     fn input_slopes(&self, point: usize, samples: &OrbitSamples) -> Vec<InputSlopes> {
-        let dof = self.dof();
-        let [q, qd, accelerations] = samples.at(point);
-        let mut state = [q.to_vec(), qd.to_vec()];
-        let mut motion = Motion::default();
-        let mut flows = |[q, qd]: &[Vec<f64>; 2]| {
-            motion.fill(self.blade, [q, qd, accelerations]);
-            self.flows(point, &motion)
+        let (blade, dof, first) = (self.blade, self.dof(), self.air.first_station);
+        let mut motion = self.motion(samples, point);
+        let mut slopes: Vec<InputSlopes> = (0..self.air.stations())
+            .map(|_| InputSlopes { alpha: vec![0.0; 2 * dof], pitch_rate: vec![0.0; 2 * dof] })
+            .collect();
+        let mut add = |of_field: &[[f64; 2]], place: usize, shape: &[f64]| {
+            let stations = slopes.iter_mut().zip(of_field).zip(&shape[first..]);
+            for ((slope, [alpha, pitch_rate]), shape) in stations {
+                slope.alpha[place] += alpha * shape;
+                slope.pitch_rate[place] += pitch_rate * shape;
+            }
         };
-        let none = || InputSlopes { alpha: vec![0.0; 2 * dof], pitch_rate: vec![0.0; 2 * dof] };
-        let mut slopes: Vec<InputSlopes> = flows(&state).iter().map(|_| none()).collect();
-        for j in 0..2 * dof {
-            let at = state[j / dof][j % dof];
-            let mut moved = |by: f64| {
-                state[j / dof][j % dof] = at + by;
-                flows(&state)
-            };
-            let (above, below) = (moved(INPUT_STEP), moved(-INPUT_STEP));
-            state[j / dof][j % dof] = at;
-            for ((slope, above), below) in slopes.iter_mut().zip(&above).zip(&below) {
-                let of = |k: usize| (above.input[k] - below.input[k]) / (2.0 * INPUT_STEP);
-                (slope.alpha[j], slope.pitch_rate[j]) = (of(0), of(1));
+        let (lag, torsion) = (blade.flap.count(), blade.flap.count() + blade.lag.count());
+        let fields: [(Field, &[Vec<f64>], usize); 8] = [
+            (|m| &mut m.w.value, &blade.flap.value, 0),
+            (|m| &mut m.w.slope, &blade.flap.slope, 0),
+            (|m| &mut m.w.rate, &blade.flap.value, dof),
+            (|m| &mut m.v.value, &blade.lag.value, lag),
+            (|m| &mut m.v.slope, &blade.lag.slope, lag),
+            (|m| &mut m.v.rate, &blade.lag.value, dof + lag),
+            (|m| &mut m.phi.value, &blade.torsion.value, torsion),
+            (|m| &mut m.phi.rate, &blade.torsion.value, dof + torsion),
+        ];
+        for (field, shapes, place) in fields {
+            let of_field = self.field_slopes(point, &mut motion, field);
+            for (j, shape) in shapes.iter().enumerate() {
+                add(&of_field, place + j, shape);
+            }
+        }
+        if blade.modal.is_some() {
+            // u and u' of the foreshortening hold what the slopes inboard do
+            let [of_u, of_rate]: [Field; 2] = [|m| m.shortening_mut(0), |m| m.shortening_mut(1)];
+            let [of_u, of_rate] =
+                [of_u, of_rate].map(|field| self.field_slopes(point, &mut motion, field));
+            for (d, shapes, place) in [(&motion.w, &blade.flap, 0), (&motion.v, &blade.lag, lag)] {
+                for (j, shape) in shapes.slope.iter().enumerate() {
+                    let [u, rate] = [&d.slope, &d.slope_rate].map(|along| {
+                        let density: Vec<f64> =
+                            shape.iter().zip(along).map(|(a, b)| -a * b).collect();
+                        let mut integral = vec![0.0; density.len()];
+                        blade.grid.integral_from_root(&density, &mut integral);
+                        integral
+                    });
+                    add(&of_u, place + j, &u);
+                    add(&of_rate, place + j, &rate);
+                    add(&of_rate, dof + place + j, &u);
+                }
             }
         }
         slopes
+    }
+
+    /// Slopes of the two inputs of all lifting stations at a point in a field of the motion there.
+    fn field_slopes(&self, point: usize, motion: &mut Motion, field: Field) -> Vec<[f64; 2]> {
+        let rest = field(motion).clone();
+        let mut moved = |by: f64| {
+            field(motion).iter_mut().zip(&rest).for_each(|(value, rest)| *value = rest + by);
+            self.flows(point, motion)
+        };
+        let (above, below) = (moved(INPUT_STEP), moved(-INPUT_STEP));
+        field(motion).clone_from(&rest);
+        let slope = |(above, below): (&SectionFlow, &SectionFlow)| {
+            let of = |k: usize| (above.input[k] - below.input[k]) / (2.0 * INPUT_STEP);
+            [of(0), of(1)]
+        };
+        above.iter().zip(&below).map(slope).collect()
     }
 
     fn load_slopes(&self, lifting: usize, flow: &SectionFlow) -> LoadSlopes {
@@ -186,5 +259,56 @@ impl ResponseSystem<'_> {
             *slope = -weight * fz * scales.chord * mode[i];
         }
         slopes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Condition, Controls, Couplings, Discretisation, ResponseTolerances, Rotor, RotorModel,
+        RotorSolver,
+    };
+    use rotor_base::HarmonicSeries;
+    use rotor_fem::{BladeProperties, BladeSpec, TorsionTerms};
+    use rotor_wake::{FlightState, LinearInflow};
+    use std::sync::Arc;
+
+    /// Slopes of the inputs against differences of the whole motion, mode by mode.
+    #[test]
+    fn the_slopes_of_the_inputs_are_those_of_the_modes() {
+        for couplings in [Couplings::Full, Couplings::Moderate(TorsionTerms::default())] {
+            let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
+            let model = RotorModel { couplings, ..RotorModel::paper_case() };
+            let rotor = Arc::new(Rotor::new(model, &blade, Discretisation::default()).unwrap());
+            let tolerances = ResponseTolerances::default();
+            let mut solver = RotorSolver::new(rotor.clone(), 0.3, tolerances).unwrap();
+            let condition = Condition {
+                bank_rad: 0.0,
+                flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.1 },
+                controls: Controls { theta0_rad: 0.145, theta1c_rad: 0.02, theta1s_rad: -0.08 },
+                flap_angles_rad: vec![HarmonicSeries::zero(0); 2],
+            };
+            let found = solver.solve(&condition, &LinearInflow::Drees, None).unwrap();
+            let system = rotor.system(&solver.air, solver.point_inputs(&condition, &found.inflow));
+            let samples = found.orbit.sample(&solver.time);
+            let (dof, point) = (system.dof(), 19);
+            let slopes = system.input_slopes(point, &samples);
+            for place in 0..2 * dof {
+                let flows = |by: f64| {
+                    let mut moved = samples.clone();
+                    let part = if place < dof { &mut moved.q } else { &mut moved.qd };
+                    part[(place % dof, point)] += by;
+                    system.flows(point, &system.motion(&moved, point))
+                };
+                let (above, below) = (flows(INPUT_STEP), flows(-INPUT_STEP));
+                for (slope, (above, below)) in slopes.iter().zip(above.iter().zip(&below)) {
+                    let of = |k: usize| (above.input[k] - below.input[k]) / (2.0 * INPUT_STEP);
+                    let gap = (slope.alpha[place] - of(0)).abs();
+                    assert!(gap < 1e-6, "{couplings:?} {place}: {gap:e} of {}", of(0));
+                    assert!((slope.pitch_rate[place] - of(1)).abs() < 1e-9, "{place}");
+                }
+            }
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! The periodic response: the blade as a system, its solution, the loads of a revolution.
 
+pub(crate) mod evaluated;
+pub(crate) mod evaluation;
 pub(crate) mod hinge;
 pub(crate) mod lag_memory;
 pub(crate) mod revolution;

@@ -2,11 +2,12 @@
 
 use crate::loads::power::{PowerBalance, power};
 use crate::loads::wrenches::{SixLoads, hub_loads};
+use crate::response::evaluated::{Revolution, Work};
 use crate::response::hinge::HingeMoment;
 use crate::response::root_reaction::Loading;
-use crate::response::system::{ResponseSystem, Revolution};
+use crate::response::system::ResponseSystem;
 use crate::sections::air::SectionLoads;
-use crate::sections::flight_air::POINTS_TOGETHER;
+use crate::sections::flight_air::{Lags, POINTS_TOGETHER};
 use crate::structure::equations::{BladeState, SpanLoads};
 use crate::{ResponseError, Rotor};
 use nalgebra::DMatrix;
@@ -54,7 +55,7 @@ impl Lifting {
 impl Revolution {
     /// Lift and circulation at every point and lifting station. They do not ask for accelerations.
     pub(crate) fn lifting(&self) -> Vec<Vec<Lifting>> {
-        self.sections.iter().map(|row| row.iter().map(Lifting::of).collect()).collect()
+        (0..self.points()).map(|p| self.at(p).map(Lifting::of).collect()).collect()
     }
 }
 
@@ -89,9 +90,10 @@ impl PointLoads {
         loads: &mut SpanLoads,
     ) -> Self {
         let (blade, couplings) = (rotor.blade(), rotor.model().couplings);
-        let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
+        let sections: Vec<SectionLoads> = revolution.at(p).copied().collect();
         let coordinates = samples.at(p);
-        let loading = Loading::new(system, revolution, p, loads, coordinates);
+        let motion = &system.motion(samples, p);
+        let loading = Loading::new(system, (motion, &sections), p, loads, coordinates);
         let pitch = system.points[p].air.pitch;
         let state = BladeState { motion, pitch, loads };
         let root = loading.on_hub(blade, couplings, state, coordinates[0]);
@@ -99,7 +101,7 @@ impl PointLoads {
         let damped = rates.dot(&(&rotor.damping * rates));
         Self {
             root,
-            hinge: system.hinge_moments(p, motion, sections),
+            hinge: system.hinge_moments(p, motion, &sections),
             power: power(blade, state, &loading.axial, damped, root[5]),
         }
     }
@@ -127,7 +129,7 @@ impl RevolutionLoads {
         samples: &OrbitSamples,
         revolution: &Revolution,
     ) -> Self {
-        let points: Vec<PointLoads> = (0..revolution.motions.len())
+        let points: Vec<PointLoads> = (0..revolution.points())
             .into_par_iter()
             .with_min_len(POINTS_TOGETHER)
             .map_init(SpanLoads::default, |loads, p| {
@@ -176,6 +178,7 @@ fn settled_motion(
     let mass = &rotor.mass;
     let inverse =
         mass.clone().cholesky().ok_or(ResponseError::MassMatrix { modes: mass.nrows() })?;
+    let mut work = Work::default();
     for _ in 0..ACCELERATION_ITERATIONS {
         let unbalanced = &forces + mass * &samples.qdd;
         let (moves, left) = match orbits.lacking_accelerations(&unbalanced) {
@@ -187,11 +190,12 @@ fn settled_motion(
             break;
         }
         samples.qdd += &moves;
-        revolution = system.revolution(&samples)?;
-        if left * moves.amax() <= enough {
+        let last = left * moves.amax() <= enough;
+        let residual = (!last).then_some(&mut forces);
+        revolution = system.evaluate(&samples, Some(Lags::Followed), &mut work, residual)?;
+        if last {
             break;
         }
-        system.residual_of(&revolution, &samples, &mut forces);
     }
     Ok((samples, revolution))
 }

@@ -22,10 +22,11 @@ use crate::Couplings;
 use crate::loads::power::AxialMotion;
 use crate::loads::section_moments::{Turning, moderate_turning, moments_outboard, turning};
 use crate::loads::wrenches::{coned_to_shaft, moderate_wrenches, span_wrenches, summed};
-use crate::response::system::{ResponseSystem, Revolution};
+use crate::response::system::ResponseSystem;
 use crate::sections::air::SectionLoads;
 use crate::structure::blade::ResponseBlade;
 use crate::structure::equations::{BladeState, SpanLoads};
+use crate::structure::motion::Motion;
 use rotor_fem::ModalMotion;
 
 /// Loads on the whole span at one azimuth.
@@ -41,16 +42,15 @@ pub(crate) struct Loading {
 }
 
 impl Loading {
-    /// At point `p` of the revolution; `loads` is filled with what acts there.
+    /// At point `p` of the revolution, of its motion and the air loads at the lifting stations; `loads` is filled with what acts there.
     pub(crate) fn new(
         system: &ResponseSystem<'_>,
-        revolution: &Revolution,
+        (motion, sections): (&Motion, &[SectionLoads]),
         p: usize,
         loads: &mut SpanLoads,
         [q, qd, qdd]: [&[f64]; 3],
     ) -> Self {
         let (blade, couplings) = (system.blade, system.couplings);
-        let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
         system.span_loads(p, motion, sections, loads);
         let pitch = system.points[p].air.pitch;
         let state = BladeState { motion, pitch, loads };

@@ -3,10 +3,10 @@
 use crate::loads::power::PowerBalance;
 use crate::loads::wrenches::SixLoads;
 use crate::response::hinge::HingeMoment;
-use crate::response::revolution::{Found, Lifting, RevolutionLoads, SETTLED, series};
+use crate::response::revolution::{Lifting, RevolutionLoads, SETTLED, series};
 use crate::response::rotor::up;
 use crate::response::system::PointInput;
-use crate::response::wake_loading::loading;
+use crate::response::wake_loading::{loading, mean_lift};
 use crate::sections::air::{AirPoint, FlapAngle};
 use crate::sections::flight_air::FlightAir;
 use crate::{Condition, ResponseError, Rotor};
@@ -97,6 +97,42 @@ pub struct RotorSolution {
     pub residuals: ResponseResiduals,
 }
 
+/// How far the inflow that the loads ask for is from the inflow used, tip speed.
+struct Mismatch {
+    change: Vec<f64>,
+    size: f64,
+}
+
+/// The way to the inflow that agrees with its loads.
+struct InflowSearch {
+    anderson: Anderson,
+    previous: Option<(Vec<f64>, f64)>,
+    /// Whether what the loads ask for has moved at the last parameters: two changes then tell nothing of each other.
+    has_moved: bool,
+}
+
+impl InflowSearch {
+    fn new() -> Self {
+        Self { anderson: Anderson::new(INFLOW_STEPS_KEPT), previous: None, has_moved: false }
+    }
+
+    /// The next parameters from those used and the change that the loads ask for.
+    fn next(&mut self, model: &dyn InflowModel, used: &[f64], change: Vec<f64>) -> Vec<f64> {
+        if let Some(step) = model.improved_step(&change) {
+            let column = |v: &[f64]| DMatrix::from_column_slice(v.len(), 1, v);
+            return self.anderson.propose(&column(used), &column(&step)).as_slice().to_vec();
+        }
+        let relaxation = match &self.previous {
+            Some((_, before)) if self.has_moved => *before,
+            previous => irons_tuck(previous.as_ref(), &change),
+        };
+        self.has_moved = false;
+        let next = used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
+        self.previous = Some((change, relaxation));
+        next
+    }
+}
+
 /// Solves one rotor at one advance ratio, keeping the factorised Newton matrix between solutions.
 #[derive(Debug, Clone)]
 pub struct RotorSolver {
@@ -169,89 +205,75 @@ impl RotorSolver {
     ) -> Result<RotorSolution, ResponseError> {
         let (mut orbit, mut inflow) = self.begin(condition, inflow_model, start)?;
         let (mut iterations, mut factorisations) = (0, 0);
-        let mut previous: Option<(Vec<f64>, f64)> = None;
-        let mut anderson = Anderson::new(INFLOW_STEPS_KEPT);
+        let mut search = InflowSearch::new();
         let mut last = (f64::INFINITY, 0.0);
+        let (rotor, air) = (Arc::clone(&self.rotor), Arc::clone(&self.air));
         // sections that stall may have more than one orbit: their way is left alone
-        let may_be_rough =
-            inflow_model.follows_loading() && self.rotor.model().nonlinear.is_linear();
+        let is_linear = rotor.model().nonlinear.is_linear();
+        let may_be_rough = inflow_model.follows_loading() && is_linear;
         let exact = self.tolerances.periodicity;
         let mut orbit_tolerance = if may_be_rough { FIRST_ORBIT.max(exact) } else { exact };
+        // what the sums over the blade add to the thrust of the lift: known again where the inflow seems settled
+        let mut added =
+            start.map_or(0.0, |s| s.thrust_coefficient - self.lift_coefficient(&s.lifting));
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
-            let rotor = Arc::clone(&self.rotor);
-            let air = Arc::clone(&self.air);
             let system = rotor.system(&air, self.point_inputs(condition, &inflow));
             let solved = self.solver.solve_to(orbit_tolerance, &system, &orbit);
             let solution = solved.map_err(Self::orbit_error(&rotor))?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;
             let is_exact = solution.residual_norm <= exact;
-            let absolute = if is_exact { SETTLED } else { orbit_tolerance };
-            let residual_norm = solution.residual_norm;
+            let periodicity = solution.residual_norm;
             let (reached, lifting) = (solution.orbit, solution.seen.lifting());
-            let sum = |found: Found| {
-                let loads = RevolutionLoads::new(&rotor, &self.solver, &system, found, absolute)?;
+            let of_lift = self.lift_coefficient(&lifting);
+            let wanted = |thrust_coefficient: f64| {
+                self.wanted(condition, inflow_model, (&lifting, thrust_coefficient), &inflow)
+            };
+            let mut mismatch = wanted(of_lift + added)?;
+            if !is_linear || mismatch.size <= self.tolerances.inflow && is_exact {
+                let found = (solution.samples, solution.force, solution.seen);
+                let loads = RevolutionLoads::new(&rotor, &self.solver, &system, found, SETTLED)?;
                 let hub = loads.hub(&rotor, &self.time);
                 let up = hub.components[2].mean + rotor.blades_weight() * up(condition)[2];
-                Ok::<_, ResponseError>((loads, hub, rotor.model().thrust_coefficient(up)))
-            };
-            // the circulation asks for no sums over the blade
-            let grid = inflow_model.circulation_grid();
-            let mut found = Some((solution.samples, solution.force, solution.seen));
-            let mut sums = None;
-            if grid.is_none() {
-                sums = found.take().map(sum).transpose()?;
+                let thrust_coefficient = rotor.model().thrust_coefficient(up);
+                search.has_moved = is_linear;
+                added = thrust_coefficient - of_lift;
+                // a circulation does not ask for the thrust
+                if inflow_model.circulation_grid().is_none() {
+                    mismatch = wanted(thrust_coefficient)?;
+                }
+                if mismatch.size <= self.tolerances.inflow && is_exact {
+                    let count = rotor.discretisation.load_harmonics;
+                    return Ok(RotorSolution {
+                        modal: self.modal_harmonics(&reached.sample(&self.time)),
+                        orbit: reached,
+                        thrust_coefficient,
+                        root: loads.root(&self.time, count),
+                        hinge: loads.hinge(&self.time, count),
+                        lifting: loads.lifting,
+                        accelerations: loads.accelerations,
+                        power: loads.power,
+                        inflow,
+                        hub,
+                        residuals: ResponseResiduals {
+                            periodicity,
+                            inflow: mismatch.size,
+                            response_iterations: iterations,
+                            factorisations,
+                            inflow_iterations: inflow_iteration,
+                        },
+                    });
+                }
             }
-            let known = sums.as_ref().map(|(.., ct)| *ct);
-            let loading = loading(&rotor, &self.time, &lifting, known, grid)?;
-            let wanted = inflow_model.induced(&condition.flight, &loading)?;
-            let used = inflow.parameters();
-            let change: Vec<f64> =
-                wanted.parameters().iter().zip(&used).map(|(a, b)| a - b).collect();
-            let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-            let settled = size <= self.tolerances.inflow && is_exact;
-            if settled && sums.is_none() {
-                sums = found.take().map(sum).transpose()?;
-            }
-            if let Some((loads, hub, thrust_coefficient)) = sums.filter(|_| settled) {
-                let count = rotor.discretisation.load_harmonics;
-                return Ok(RotorSolution {
-                    modal: self.modal_harmonics(&reached.sample(&self.time)),
-                    orbit: reached,
-                    thrust_coefficient,
-                    root: loads.root(&self.time, count),
-                    hinge: loads.hinge(&self.time, count),
-                    lifting: loads.lifting,
-                    accelerations: loads.accelerations,
-                    power: loads.power,
-                    inflow,
-                    hub,
-                    residuals: ResponseResiduals {
-                        periodicity: residual_norm,
-                        inflow: size,
-                        response_iterations: iterations,
-                        factorisations,
-                        inflow_iterations: inflow_iteration,
-                    },
-                });
-            }
-            let ct = loading.thrust_coefficient;
-            last = (size, ct);
+            last = (mismatch.size, of_lift + added);
             orbit = reached;
-            orbit_tolerance = if may_be_rough && size > NEARLY_SETTLED * self.tolerances.inflow {
-                (ORBIT_SHARE * size).clamp(exact, FIRST_ORBIT.max(exact))
-            } else {
-                exact
-            };
-            let next = if let Some(step) = inflow_model.improved_step(&change) {
-                let column = |v: &[f64]| DMatrix::from_column_slice(v.len(), 1, v);
-                anderson.propose(&column(&used), &column(&step)).as_slice().to_vec()
-            } else {
-                let relaxation = irons_tuck(previous.as_ref(), &change);
-                let next = used.iter().zip(&change).map(|(u, c)| u + relaxation * c).collect();
-                previous = Some((change, relaxation));
-                next
-            };
+            orbit_tolerance =
+                if may_be_rough && mismatch.size > NEARLY_SETTLED * self.tolerances.inflow {
+                    (ORBIT_SHARE * mismatch.size).clamp(exact, FIRST_ORBIT.max(exact))
+                } else {
+                    exact
+                };
+            let next = search.next(inflow_model, &inflow.parameters(), mismatch.change);
             inflow = inflow.with_parameters(&next)?;
         }
         Err(ResponseError::InflowNotConverged {
@@ -262,6 +284,47 @@ impl RotorSolver {
         })
     }
 
+    /// How far the inflow that a loading asks for is from the inflow used.
+    fn wanted(
+        &self,
+        condition: &Condition,
+        model: &dyn InflowModel,
+        (lifting, thrust_coefficient): (&[Vec<Lifting>], f64),
+        used: &InducedInflow,
+    ) -> Result<Mismatch, ResponseError> {
+        let grid = model.circulation_grid();
+        let loading = loading(&self.rotor, &self.time, lifting, thrust_coefficient, grid)?;
+        let wanted = model.induced(&condition.flight, &loading)?;
+        let change: Vec<f64> =
+            wanted.parameters().iter().zip(used.parameters()).map(|(a, b)| a - b).collect();
+        let size = change.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+        Ok(Mismatch { change, size })
+    }
+
+    /// Thrust coefficient of the lift alone, as if it stood along the shaft.
+    fn lift_coefficient(&self, lifting: &[Vec<Lifting>]) -> f64 {
+        let model = self.rotor.model();
+        let lift = mean_lift(&self.rotor, &self.time, lifting);
+        model.thrust_coefficient(model.blades as f64 * lift)
+    }
+
+    /// Largest weak residual that the motion of a solution leaves in another condition, its inflow held:
+    /// generalised force in rotor units.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve), but for convergence.
+    pub fn periodicity(
+        &self,
+        condition: &Condition,
+        solution: &RotorSolution,
+    ) -> Result<f64, ResponseError> {
+        self.check_condition(condition)?;
+        let points = self.point_inputs(condition, &solution.inflow);
+        let system = self.rotor.system(&self.air, points);
+        let left = self.solver.residual_norm(&system, &solution.orbit);
+        left.map_err(Self::orbit_error(&self.rotor))
+    }
+
     /// Orbit and inflow that a solution begins with, the condition being one of this solver.
     fn begin(
         &self,
@@ -269,6 +332,18 @@ impl RotorSolver {
         inflow_model: &dyn InflowModel,
         start: Option<&RotorSolution>,
     ) -> Result<(Orbit, InducedInflow), ResponseError> {
+        self.check_condition(condition)?;
+        let dof = self.rotor.mass.nrows();
+        let orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
+        let inflow =
+            inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
+        // a start with another kind of inflow gives its motion only
+        let known = start.and_then(|s| inflow.with_parameters(&s.inflow.parameters()).ok());
+        Ok((orbit, known.unwrap_or(inflow)))
+    }
+
+    /// Refuses a condition that the solver was not prepared for.
+    fn check_condition(&self, condition: &Condition) -> Result<(), ResponseError> {
         self.check_flaps(&condition.flap_angles_rad)?;
         let mu = condition.flight.advance_ratio;
         if (mu - self.advance_ratio).abs() > 1e-12 {
@@ -278,13 +353,7 @@ impl RotorSolver {
                 expected: "the advance ratio the solver was prepared for",
             });
         }
-        let dof = self.rotor.mass.nrows();
-        let orbit = start.map_or_else(|| Orbit::zero(&self.time, dof), |s| s.orbit.clone());
-        let inflow =
-            inflow_model.induced(&condition.flight, &RotorLoading::from_thrust_coefficient(0.0))?;
-        // a start with another kind of inflow gives its motion only
-        let known = start.and_then(|s| inflow.with_parameters(&s.inflow.parameters()).ok());
-        Ok((orbit, known.unwrap_or(inflow)))
+        Ok(())
     }
 
     /// Refuses another number of flap motions than the blade has flaps.

@@ -2,12 +2,13 @@
 
 use crate::ResponseError;
 use crate::model::flap_inertia::FlapSection;
+use crate::response::evaluated::{Revolution, Work};
 use crate::sections::air::{
     AirPoint, FlapAngle, SectionAxes, SectionFlow, SectionLoads, section_flow,
 };
-use crate::sections::flight_air::{FlightAir, LoadLaw, POINTS_TOGETHER};
+use crate::sections::flight_air::{FlightAir, Lags, LoadLaw};
 use crate::structure::blade::ResponseBlade;
-use crate::structure::equations::{BladeState, Equations, SpanLoads, StructureScratch};
+use crate::structure::equations::{SpanLoads, StationLoad};
 use crate::structure::motion::Motion;
 use crate::{Couplings, FlapMass};
 use nalgebra::DMatrix;
@@ -42,81 +43,20 @@ pub(crate) struct ResponseSystem<'a> {
     pub(crate) mass: &'a DMatrix<f64>,
 }
 
-/// Motion and air loads at every point of the revolution.
-#[derive(Debug)]
-pub(crate) struct Revolution {
-    /// By point.
-    pub(crate) motions: Vec<Motion>,
-    /// Aerodynamic section loads, by point and lifting station.
-    pub(crate) sections: Vec<Vec<SectionLoads>>,
-}
-
-/// Reusable arrays of one evaluation.
-#[derive(Debug, Default)]
-struct Scratch {
-    structure: StructureScratch,
-    loads: SpanLoads,
-}
-
 impl ResponseSystem<'_> {
     /// Flow at every lifting station for the motion held in `motion`.
     pub(crate) fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
-        let input = &self.points[point];
         let first = self.air.first_station;
-        input
-            .inflow
-            .iter()
-            .enumerate()
-            .map(|(s, &lambda)| {
-                let station = first + s;
-                let delta =
-                    self.blade.flap_index[station].map_or([0.0; 3], |flap| input.flap[flap]);
-                let at = (station, lambda);
-                section_flow(self.blade, motion, &input.air, at, delta)
-            })
-            .collect()
+        (first..first + self.air.stations()).map(|i| self.flow(point, i, (motion, i))).collect()
     }
 
-    /// Motion and air loads over the whole revolution.
-    ///
-    /// # Errors
-    /// [`ResponseError::StallNotPeriodic`].
-    pub(crate) fn revolution(&self, samples: &OrbitSamples) -> Result<Revolution, ResponseError> {
-        let at = |p: usize| {
-            let motion = self.motion(samples, p);
-            let flows = self.flows(p, &motion);
-            (motion, flows)
-        };
-        let points = (0..self.points.len()).into_par_iter().with_min_len(POINTS_TOGETHER);
-        let (motions, flows): (Vec<Motion>, Vec<Vec<SectionFlow>>) = points.map(at).unzip();
-        let sections = self.air.loads(&flows, self.load_law(false))?;
-        Ok(Revolution { motions, sections })
-    }
-
-    /// The residual at every point of a revolution whose motion and air loads are known.
-    pub(crate) fn residual_of(
-        &self,
-        revolution: &Revolution,
-        samples: &OrbitSamples,
-        out: &mut DMatrix<f64>,
-    ) {
-        self.by_point(out, |scratch, p, column| {
-            let (motion, sections) = (&revolution.motions[p], &revolution.sections[p]);
-            self.span_loads(p, motion, sections, &mut scratch.loads);
-            self.project(p, motion, samples.at(p), scratch, column);
-        });
-    }
-
-    /// Lets `write` fill the column of every point.
-    fn by_point(
-        &self,
-        out: &mut DMatrix<f64>,
-        write: impl Fn(&mut Scratch, usize, &mut [f64]) + Sync,
-    ) {
-        let columns = out.as_mut_slice().par_chunks_mut(self.dof()).with_min_len(POINTS_TOGETHER);
-        columns
-            .enumerate()
-            .for_each_init(Scratch::default, |scratch, (p, column)| write(scratch, p, column));
+    /// Flow at a lifting station, whose motion stands in a lane.
+    #[inline]
+    pub(crate) fn flow(&self, point: usize, i: usize, motion: (&Motion, usize)) -> SectionFlow {
+        let input = &self.points[point];
+        let delta = self.blade.flap_index[i].map_or([0.0; 3], |flap| input.flap[flap]);
+        let lambda = input.inflow[i - self.air.first_station];
+        section_flow(self.blade, motion, &input.air, (i, lambda), delta)
     }
 
     /// Motion of the blade at one point.
@@ -126,18 +66,22 @@ impl ResponseSystem<'_> {
         motion
     }
 
-    /// How section loads follow from flows, or with `changes` from what a flap changes them by.
-    pub(crate) fn load_law(&self, changes: bool) -> LoadLaw<'_> {
+    /// How section loads follow from flows.
+    pub(crate) fn load_law(&self) -> LoadLaw<'_> {
         let lifting = &self.blade.grid.x()[self.air.first_station..];
         let lost_from = lifting.partition_point(|x| *x <= self.blade.tip_loss);
-        LoadLaw { scales: &self.blade.air[self.air.first_station..], lost_from, changes }
+        LoadLaw {
+            scales: &self.blade.air[self.air.first_station..],
+            lost_from,
+            lags: Lags::Followed,
+        }
     }
 
-    /// Motion of the section at a station that carries flap `k`, and of the flap.
+    /// Motion of the section at a station that carries flap `k`, and of the flap; the motion stands in a lane.
     pub(crate) fn flap_section(
         &self,
         point: usize,
-        motion: &Motion,
+        (motion, lane): (&Motion, usize),
         i: usize,
         k: usize,
     ) -> FlapSection {
@@ -146,26 +90,20 @@ impl ResponseSystem<'_> {
         FlapSection {
             x: self.blade.grid.x()[i],
             precone: self.blade.precone,
-            v: [v.value[i] + self.blade.offsets.torque, v.rate[i], v.acceleration[i]],
-            v_x: [v.slope[i], v.slope_rate[i], v.slope_acceleration[i]],
-            w: [w.value[i], w.rate[i], w.acceleration[i]],
-            w_x: [w.slope[i], w.slope_rate[i], w.slope_acceleration[i]],
+            v: [v.value[lane] + self.blade.offsets.torque, v.rate[lane], v.acceleration[lane]],
+            v_x: [v.slope[lane], v.slope_rate[lane], v.slope_acceleration[lane]],
+            w: [w.value[lane], w.rate[lane], w.acceleration[lane]],
+            w_x: [w.slope[lane], w.slope_rate[lane], w.slope_acceleration[lane]],
             twist: [
-                pitch.angle_rad + self.blade.twist[i] + phi.value[i],
-                pitch.rate + phi.rate[i],
-                pitch.acceleration + phi.acceleration[i],
+                pitch.angle_rad + self.blade.twist[i] + phi.value[lane],
+                pitch.rate + phi.rate[lane],
+                pitch.acceleration + phi.acceleration[lane],
             ],
             delta: self.points[point].flap[k],
         }
     }
 
     /// Aerodynamic loads plus the inertial loads of the flaps, at all stations.
-    ///
-    /// ```text
-    /// F_z += m_f X_f delta''     M += -(m_f (d + X_f) X_f + I_cg) delta'' - m_f (d + X_f) X_f delta
-    /// ```
-    /// Of a flap that is part of the blade only what its angle adds, in this first-order form; of one
-    /// that weighs beside it all loads of its distance from the elastic axis.
     pub(crate) fn span_loads(
         &self,
         point: usize,
@@ -175,109 +113,106 @@ impl ResponseSystem<'_> {
     ) {
         out.clear(self.blade.grid.len());
         out.gravity = self.points[point].gravity;
-        let first = self.air.first_station;
-        for (s, load) in sections.iter().enumerate() {
-            let axes = SectionAxes::of(self.blade, motion, first + s);
-            [out.fy[first + s], out.fz[first + s]] = axes.force(load);
-            out.moment[first + s] = load.moment;
-        }
-        let [_, y, z] = out.gravity;
-        for (i, centre) in self.blade.mass_centre.iter().enumerate() {
-            if *centre != 0.0 {
-                let twist = self.points[point].air.pitch.angle_rad + self.blade.twist[i];
-                let (sin, cos) = (twist + motion.phi.value[i]).sin_cos();
-                let arm = self.blade.section_mass[i] * centre;
-                out.moment[i] += arm * (cos * z - sin * y);
-            }
-        }
-        for (i, flap) in self.blade.flap_index.iter().enumerate() {
-            let (Some(k), Some(inertia)) = (*flap, self.blade.flap_inertia[i]) else { continue };
-            match inertia.mass {
-                FlapMass::PartOfBlade => {
-                    let [delta, _, acceleration] = self.points[point].flap[k];
-                    out.fz[i] += inertia.first_moment * acceleration;
-                    out.moment[i] -= (inertia.arm_moment + inertia.own) * acceleration
-                        + inertia.arm_moment * delta;
-                }
-                FlapMass::AddedToBlade => {
-                    let section = self.flap_section(point, motion, i, k);
-                    let loads = inertia.body.loads_off_axis(&section);
-                    out.axial[i] += loads.force[0];
-                    out.fy[i] += loads.force[1];
-                    out.fz[i] += loads.force[2];
-                    out.moment[i] += loads.twist;
-                    out.slope[0][i] += loads.slope[0];
-                    out.slope[1][i] += loads.slope[1];
-                }
-            }
+        let still = SectionLoads::default();
+        for i in 0..self.blade.grid.len() {
+            let section = i.checked_sub(self.air.first_station).and_then(|s| sections.get(s));
+            out.set(i, &self.station_load(point, i, (motion, i), section.unwrap_or(&still)));
         }
     }
 
-    /// Generalised residual of one point, without the constant mass part.
-    fn project(
+    /// The same at one station, whose motion stands in a lane.
+    ///
+    /// ```text
+    /// F_z += m_f X_f delta''     M += -(m_f (d + X_f) X_f + I_cg) delta'' - m_f (d + X_f) X_f delta
+    /// ```
+    /// Of a flap that is part of the blade only what its angle adds, in this first-order form; of one
+    /// that weighs beside it all loads of its distance from the elastic axis.
+    #[inline]
+    pub(crate) fn station_load(
         &self,
         point: usize,
-        motion: &Motion,
-        coordinates: [&[f64]; 3],
-        scratch: &mut Scratch,
-        out: &mut [f64],
-    ) {
-        let Scratch { structure, loads } = scratch;
-        let pitch = self.points[point].air.pitch;
-        let state = BladeState { motion, pitch, loads };
-        let equations = Equations { blade: self.blade, couplings: self.couplings, mass: self.mass };
-        equations.residual(state, coordinates, structure, out);
-        for (o, row) in out.iter_mut().zip(self.damping.row_iter()) {
-            *o += row.iter().zip(coordinates[1]).map(|(d, rate)| d * rate).sum::<f64>();
+        i: usize,
+        (motion, lane): (&Motion, usize),
+        section: &SectionLoads,
+    ) -> StationLoad {
+        let (blade, input) = (self.blade, &self.points[point]);
+        let [fy, fz] = SectionAxes::of(blade, motion, lane).force(section);
+        let (moment, gravity) = (section.moment, input.gravity);
+        let mut load = StationLoad { fy, fz, moment, gravity, ..StationLoad::default() };
+        let centre = blade.mass_centre[i];
+        if centre != 0.0 {
+            let twist = input.air.pitch.angle_rad + blade.twist[i];
+            let (sin, cos) = (twist + motion.phi.value[lane]).sin_cos();
+            let [_, y, z] = gravity;
+            load.moment += blade.section_mass[i] * centre * (cos * z - sin * y);
         }
-    }
-
-    /// Residual of one point with settled lag states, for the Newton matrix.
-    fn settled_residual(
-        &self,
-        point: usize,
-        coordinates: [&[f64]; 3],
-        motion: &mut Motion,
-        scratch: &mut Scratch,
-    ) -> Vec<f64> {
-        motion.fill(self.blade, coordinates);
-        let flows = self.flows(point, motion);
-        let sections = self.air.settled_loads(point, &flows, self.load_law(false));
-        self.span_loads(point, motion, &sections, &mut scratch.loads);
-        let mut out = vec![0.0; self.dof()];
-        self.project(point, motion, coordinates, scratch, &mut out);
-        out
-    }
-
-    fn tangent(&self, samples: &OrbitSamples, point: usize) -> LocalTangent {
-        let n = self.dof();
-        let state = samples.at(point);
-        let (mut motion, mut scratch) = (Motion::default(), Scratch::default());
-        let mut settled = |coordinates: [&[f64]; 3]| {
-            self.settled_residual(point, coordinates, &mut motion, &mut scratch)
+        let (Some(k), Some(inertia)) = (blade.flap_index[i], blade.flap_inertia[i]) else {
+            return load;
         };
-        let base = settled(state);
-        let mut derivatives = [0, 1, 2].map(|_| DMatrix::zeros(n, n));
-        for (which, matrix) in derivatives.iter_mut().enumerate() {
-            for j in 0..n {
-                let mut moved = state[which].to_vec();
-                moved[j] += TANGENT_STEP;
-                let mut coordinates = state;
-                coordinates[which] = &moved;
-                let value = settled(coordinates);
-                for i in 0..n {
-                    matrix[(i, j)] = (value[i] - base[i]) / TANGENT_STEP;
-                }
+        match inertia.mass {
+            FlapMass::PartOfBlade => {
+                let [delta, _, acceleration] = input.flap[k];
+                load.fz += inertia.first_moment * acceleration;
+                load.moment -=
+                    (inertia.arm_moment + inertia.own) * acceleration + inertia.arm_moment * delta;
+            }
+            FlapMass::AddedToBlade => {
+                let section = self.flap_section(point, (motion, lane), i, k);
+                let loads = inertia.body.loads_off_axis(&section);
+                load.axial += loads.force[0];
+                load.fy += loads.force[1];
+                load.fz += loads.force[2];
+                load.moment += loads.twist;
+                load.slope[0] += loads.slope[0];
+                load.slope[1] += loads.slope[1];
             }
         }
-        let [dq, dqd, dqdd] = derivatives;
-        LocalTangent { dq, dqd, dqdd }
+        load
+    }
+
+    /// Linearisation of the residual with settled lag states at every point, by differences: there it depends on
+    /// the motion of the point alone, so one revolution moves a coordinate at all points.
+    fn tangents_by_differences(
+        &self,
+        samples: &OrbitSamples,
+    ) -> Result<Vec<LocalTangent>, ResponseError> {
+        let n = self.dof();
+        let residual = |work: &mut Work, samples: &OrbitSamples| {
+            let mut out = DMatrix::zeros(n, self.points.len());
+            self.evaluate(samples, Some(Lags::Settled), work, Some(&mut out)).map(|_| out)
+        };
+        let base = residual(&mut Work::default(), samples)?;
+        // sections without apparent mass do not ask for the accelerations: all at once tell
+        let mut moved = samples.clone();
+        moved.qdd.add_scalar_mut(TANGENT_STEP);
+        let parts = if residual(&mut Work::default(), &moved)? == base { 2 } else { 3 };
+        let slope = |work: &mut Work, column: usize| {
+            let mut moved = samples.clone();
+            let part = match column / n {
+                0 => &mut moved.q,
+                1 => &mut moved.qd,
+                _ => &mut moved.qdd,
+            };
+            part.row_mut(column % n).add_scalar_mut(TANGENT_STEP);
+            Ok((residual(work, &moved)? - &base) / TANGENT_STEP)
+        };
+        let slopes = (0..parts * n)
+            .into_par_iter()
+            .map_init(Work::default, slope)
+            .collect::<Result<Vec<DMatrix<f64>>, ResponseError>>()?;
+        let of = |p: usize, part: usize| {
+            let slope = |i: usize, j: usize| slopes.get(part * n + j).map_or(0.0, |s| s[(i, p)]);
+            DMatrix::from_fn(n, n, slope)
+        };
+        let at = |p: usize| LocalTangent { dq: of(p, 0), dqd: of(p, 1), dqdd: of(p, 2) };
+        Ok((0..self.points.len()).map(at).collect())
     }
 }
 
 impl PeriodicSystem for ResponseSystem<'_> {
     type Error = ResponseError;
     type Seen = Revolution;
+    type Work = Work;
 
     fn dof(&self) -> usize {
         self.mass.nrows()
@@ -290,15 +225,14 @@ impl PeriodicSystem for ResponseSystem<'_> {
     fn residual(
         &self,
         samples: &OrbitSamples,
+        work: &mut Work,
         out: &mut DMatrix<f64>,
     ) -> Result<Revolution, Self::Error> {
-        let revolution = self.revolution(samples)?;
-        self.residual_of(&revolution, samples, out);
-        Ok(revolution)
+        self.evaluate(samples, Some(Lags::Followed), work, Some(out))
     }
 
     fn tangents(&self, samples: &OrbitSamples) -> Result<Vec<LocalTangent>, Self::Error> {
-        Ok((0..self.points.len()).into_par_iter().map(|p| self.tangent(samples, p)).collect())
+        self.tangents_by_differences(samples)
     }
 
     fn memory(&self, samples: &OrbitSamples) -> Result<Option<OrbitMemory>, Self::Error> {
@@ -308,13 +242,12 @@ impl PeriodicSystem for ResponseSystem<'_> {
 
 impl ResponseSystem<'_> {
     /// What the residual is without loads of the air and of the flaps.
-    pub(crate) fn unloaded(&self, samples: &OrbitSamples) -> DMatrix<f64> {
+    ///
+    /// # Errors
+    /// None but those of [`revolution`](Self::revolution).
+    pub(crate) fn unloaded(&self, samples: &OrbitSamples) -> Result<DMatrix<f64>, ResponseError> {
         let mut out = DMatrix::zeros(self.dof(), self.points.len());
-        self.by_point(&mut out, |scratch, p, bare| {
-            scratch.loads.clear(self.blade.grid.len());
-            self.project(p, &self.motion(samples, p), samples.at(p), scratch, bare);
-        });
-        out
+        self.evaluate(samples, None, &mut Work::default(), Some(&mut out)).map(|_| out)
     }
 
     /// Slope of the residual along a motion of the flaps given at every point, the motion of the blade
@@ -350,27 +283,9 @@ impl ResponseSystem<'_> {
         };
         let along =
             ResponseSystem { points: self.points.iter().zip(flaps).map(along).collect(), ..*self };
-        let changed = |p: usize| {
-            let motion = along.motion(samples, p);
-            // the inputs of the flap are linear in its motion: along the direction they are their changes
-            let mut changes = along.flows(p, &motion);
-            for flow in &mut changes {
-                flow.input[..2].fill(0.0);
-                flow.input_rate[..2].fill(0.0);
-            }
-            (motion, changes)
-        };
-        let points = (0..self.points.len()).into_par_iter().with_min_len(POINTS_TOGETHER);
-        let (motions, flows): (Vec<Motion>, Vec<Vec<SectionFlow>>) = points.map(changed).unzip();
-        let sections = self.air.loads(&flows, self.load_law(true))?;
-        let mut out = DMatrix::zeros(self.dof(), self.points.len());
-        self.by_point(&mut out, |scratch, p, slope| {
-            along.span_loads(p, &motions[p], &sections[p], &mut scratch.loads);
-            self.project(p, &motions[p], samples.at(p), scratch, slope);
-            for (slope, bare) in slope.iter_mut().zip(&bare.column(p)) {
-                *slope -= bare;
-            }
-        });
-        Ok(Some(out))
+        let mut slope = DMatrix::zeros(self.dof(), self.points.len());
+        let lags = Some(Lags::OfFlapChange);
+        along.evaluate(samples, lags, &mut Work::default(), Some(&mut slope))?;
+        Ok(Some(slope - bare))
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::response::revolution::{Lifting, unit_weights};
 use crate::{ResponseError, Rotor};
-use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
+use nalgebra::DMatrix;
+use rotor_base::uniform_azimuths_rad;
 use rotor_fem::TimeElements;
 use rotor_wake::{CirculationMap, RotorLoading, WakeRotor};
 
@@ -29,9 +30,9 @@ pub(crate) fn resolved_harmonics(time: &TimeElements, weights: &[f64], most: usi
     let overlap = |m: usize| {
         let (mut c, mut s) = (0.0, 0.0);
         for (psi, w) in time.points().iter().zip(weights) {
-            let angle = m as f64 * psi;
-            c += w * angle.cos();
-            s += w * angle.sin();
+            let (sin, cos) = (m as f64 * psi).sin_cos();
+            c += w * cos;
+            s += w * sin;
         }
         c.hypot(s)
     };
@@ -72,40 +73,59 @@ pub(crate) fn circulation(
     let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
     let rows: Vec<Vec<f64>> =
         lifting.iter().map(|row| row.iter().map(|l| l.circulation).collect()).collect();
-    let series: Vec<HarmonicSeries> = wake_rotor
-        .stations()
-        .iter()
-        .map(|&r| {
-            let history: Vec<f64> = rows.iter().map(|row| between(stations, row, r)).collect();
-            HarmonicSeries::project(time.points(), &weights, &history, harmonics)
-        })
-        .collect();
-    let at = uniform_azimuths_rad(azimuths);
-    Ok(CirculationMap::from_fn(azimuths, series.len(), |i, s| series[s].value(at[i]))?)
+    let panels = wake_rotor.stations();
+    let history = DMatrix::from_fn(rows.len(), panels.len(), |p, s| {
+        weights[p] * between(stations, &rows[p], panels[s])
+    });
+    // mean, then cosine and sine of every harmonic
+    let mut coefficients = waves(harmonics, time.points()).tr_mul(&history);
+    coefficients.rows_mut(1, 2 * harmonics).scale_mut(2.0);
+    let values = waves(harmonics, &uniform_azimuths_rad(azimuths)) * coefficients;
+    Ok(CirculationMap::from_fn(azimuths, panels.len(), |i, s| values[(i, s)])?)
 }
 
-/// The loading that an inflow model asks for, of the lift over the disk; its thrust is known, or that of the lift.
+/// One, and cosine and sine of every harmonic, at azimuths: a row for each.
+fn waves(harmonics: usize, azimuths_rad: &[f64]) -> DMatrix<f64> {
+    let mut waves = DMatrix::from_element(azimuths_rad.len(), 1 + 2 * harmonics, 1.0);
+    for k in 1..=harmonics {
+        for (row, psi) in azimuths_rad.iter().enumerate() {
+            let (sin, cos) = (k as f64 * psi).sin_cos();
+            (waves[(row, 2 * k - 1)], waves[(row, 2 * k)]) = (cos, sin);
+        }
+    }
+    waves
+}
+
+/// Mean over the revolution of the lift of one blade, `m0 Omega^2 R^2`.
+pub(crate) fn mean_lift(rotor: &Rotor, time: &TimeElements, lifting: &[Vec<Lifting>]) -> f64 {
+    let weight = rotor.blade().grid().weight();
+    let first = weight.len() - lifting.first().map_or(0, Vec::len);
+    let of = |row: &[Lifting]| -> f64 {
+        row.iter().zip(&weight[first..]).map(|(l, w)| w * l.lift).sum()
+    };
+    unit_weights(time).iter().zip(lifting).map(|(share, row)| share * of(row)).sum()
+}
+
+/// The loading that an inflow model asks for, of the lift over the disk.
 pub(crate) fn loading(
     rotor: &Rotor,
     time: &TimeElements,
     lifting: &[Vec<Lifting>],
-    thrust_coefficient: Option<f64>,
+    thrust_coefficient: f64,
     grid: Option<(&WakeRotor, usize)>,
 ) -> Result<RotorLoading, ResponseError> {
     let (x, weight) = (rotor.blade().grid().x(), rotor.blade().grid().weight());
     let first = x.len() - lifting.first().map_or(0, Vec::len);
-    let (mut lift, mut harmonics) = (0.0, [0.0; 2]);
+    let mut harmonics = [0.0; 2];
     for ((azimuth, share), row) in time.points().iter().zip(unit_weights(time)).zip(lifting) {
         let moment: f64 =
             row.iter().enumerate().map(|(s, l)| weight[first + s] * x[first + s] * l.lift).sum();
-        lift += share * row.iter().zip(&weight[first..]).map(|(l, w)| w * l.lift).sum::<f64>();
         harmonics[0] += share * azimuth.cos() * moment;
         harmonics[1] += share * azimuth.sin() * moment;
     }
     let coefficient =
         |blade: f64| rotor.model().thrust_coefficient(rotor.model().blades as f64 * blade);
-    let thrust = thrust_coefficient.unwrap_or_else(|| coefficient(lift));
-    let loading = RotorLoading::from_thrust_coefficient(thrust)
+    let loading = RotorLoading::from_thrust_coefficient(thrust_coefficient)
         .with_moment_coefficients(harmonics.map(coefficient));
     match grid {
         None => Ok(loading),

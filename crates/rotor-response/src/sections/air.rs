@@ -83,6 +83,7 @@ pub(crate) struct Turned {
 
 impl Turned {
     /// Component along another vector and its derivative.
+    #[inline]
     fn along(&self, other: &Self) -> [f64; 2] {
         let product = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let rate = product(&self.rate, &other.value) + product(&self.value, &other.rate);
@@ -104,10 +105,11 @@ pub(crate) struct SectionAxes {
 }
 
 impl SectionAxes {
-    /// At station `i`.
-    pub(crate) fn of(blade: &ResponseBlade, motion: &Motion, i: usize) -> Self {
-        let (v_x, v_rate) = (motion.v.slope[i], motion.v.slope_rate[i]);
-        let (w_x, w_rate) = (motion.w.slope[i], motion.w.slope_rate[i]);
+    /// In a lane of a motion.
+    #[inline]
+    pub(crate) fn of(blade: &ResponseBlade, motion: &Motion, lane: usize) -> Self {
+        let (v_x, v_rate) = (motion.v.slope[lane], motion.v.slope_rate[lane]);
+        let (w_x, w_rate) = (motion.w.slope[lane], motion.w.slope_rate[lane]);
         let second = if blade.modal.is_some() { 1.0 } else { 0.0 };
         Self {
             chord: Turned {
@@ -123,64 +125,68 @@ impl SectionAxes {
 
     /// Forces toward the leading edge and up, in coned blade axes, of a load along the section's axes. The one along
     /// the blade is [`SpanLoads::fx`](crate::structure::equations::SpanLoads::fx).
+    #[inline]
     pub(crate) fn force(&self, loads: &SectionLoads) -> [f64; 2] {
-        [1, 2].map(|k| loads.fy * self.chord.value[k] + loads.fz * self.normal.value[k])
+        let along = |k: usize| loads.fy * self.chord.value[k] + loads.fz * self.normal.value[k];
+        [along(1), along(2)]
     }
 }
 
 /// Velocity of a section through the air, coned blade axes; the inflow is held in the rate.
+#[inline]
 fn through_air(
     blade: &ResponseBlade,
-    motion: &Motion,
+    (motion, lane): (&Motion, usize),
     point: &AirPoint,
-    i: usize,
-    lambda: f64,
+    (i, lambda): (usize, f64),
 ) -> Turned {
     let (w, v) = (&motion.w, &motion.v);
     let (mu_sin, mu_cos) = (point.advance_ratio * point.sin, point.advance_ratio * point.cos);
-    let (s, c) = blade.precone.sin_cos();
+    let [s, c] = blade.cone;
     let y_t = blade.offsets.torque;
-    let [u, u_rate, u_acceleration] = motion.shortening(i);
+    let [u, u_rate, u_acceleration] = motion.shortening(lane);
+    let (value, rate) = (v.value[lane], v.rate[lane]);
     // what the section has of the speed along the blade by its lag
-    let [lag, lag_rate] = if blade.modal.is_some() { [v.value[i], v.rate[i]] } else { [0.0; 2] };
+    let [lag, lag_rate] = if blade.modal.is_some() { [value, rate] } else { [0.0; 2] };
     let x = blade.grid.x()[i];
     Turned {
         value: [
             u_rate - c * (y_t + lag) - c * mu_cos + s * lambda,
-            v.rate[i] + c * (x + u) - s * w.value[i] + mu_sin,
-            w.rate[i] + s * (y_t + v.value[i]) + c * lambda + s * mu_cos,
+            rate + c * (x + u) - s * w.value[lane] + mu_sin,
+            w.rate[lane] + s * (y_t + value) + c * lambda + s * mu_cos,
         ],
         rate: [
             u_acceleration - c * lag_rate + c * mu_sin,
-            v.acceleration[i] + c * u_rate - s * w.rate[i] + mu_cos,
-            w.acceleration[i] + s * v.rate[i] - s * mu_sin,
+            v.acceleration[lane] + c * u_rate - s * w.rate[lane] + mu_cos,
+            w.acceleration[lane] + s * rate - s * mu_sin,
         ],
     }
 }
 
-/// Flow at station `i` for a total inflow `lambda` (down positive, tip speed).
+/// Flow at station `i`, whose motion stands in a lane, for a total inflow `lambda` (down positive, tip speed).
+#[inline]
 pub(crate) fn section_flow(
     blade: &ResponseBlade,
-    motion: &Motion,
+    (motion, lane): (&Motion, usize),
     point: &AirPoint,
     (i, lambda): (usize, f64),
     delta: FlapAngle,
 ) -> SectionFlow {
     let (w, phi) = (&motion.w, &motion.phi);
-    let theta = point.pitch.angle_rad + blade.twist[i] + phi.value[i];
-    let theta_rate = point.pitch.rate + phi.rate[i];
+    let theta = point.pitch.angle_rad + blade.twist[i] + phi.value[lane];
+    let theta_rate = point.pitch.rate + phi.rate[lane];
     let AirScales { chord, centre, sweep, .. } = blade.air[i];
-    let om = theta_rate + w.slope[i] + blade.precone;
-    let om_rate = point.pitch.acceleration + phi.acceleration[i] + w.slope_rate[i];
-    let through = through_air(blade, motion, point, i, lambda);
-    let axes = SectionAxes::of(blade, motion, i);
+    let om = theta_rate + w.slope[lane] + blade.precone;
+    let om_rate = point.pitch.acceleration + phi.acceleration[lane] + w.slope_rate[lane];
+    let through = through_air(blade, (motion, lane), point, (i, lambda));
+    let axes = SectionAxes::of(blade, motion, lane);
     let [u_t, u_t_rate] = through.along(&axes.chord);
     let [normal, normal_rate] = through.along(&axes.normal);
     let u_p = normal + centre * om;
     let u_p_rate = normal_rate + centre * om_rate;
     let along_span = || {
         let [x, y, z] = through.value;
-        x + motion.v.slope[i] * y + motion.w.slope[i] * z
+        x + motion.v.slope[lane] * y + w.slope[lane] * z
     };
     let speed = if sweep == 0.0 { u_t } else { u_t + sweep * along_span() };
     let rigid = blade.grid.x()[i] + point.advance_ratio * (point.sin - sweep * point.cos);
@@ -200,9 +206,10 @@ pub(crate) fn section_flow(
 }
 
 /// Sense of the circulation in a flow `(U_T, U_P)`, the rigid blade having the tangential speed `rigid`.
+#[inline]
 pub(crate) fn sense(reverse_flow: ReverseFlow, u_t: f64, u_p: f64, rigid: f64) -> f64 {
     match reverse_flow {
-        ReverseFlow::Gradual => u_t / u_t.hypot(u_p).max(f64::MIN_POSITIVE),
+        ReverseFlow::Gradual => u_t / (u_t * u_t + u_p * u_p).sqrt().max(f64::MIN_POSITIVE),
         ReverseFlow::Abrupt => rigid.signum(),
     }
 }
@@ -247,25 +254,39 @@ pub(crate) struct SectionPast {
     pub(crate) stall: [f64; 3],
 }
 
+/// Outputs per input, `[output][input]`.
+pub(crate) type Gains = [[f64; 4]; 3];
+
 /// Section coefficients without their lags: outputs per input, and per rate of an input in
 /// semichords travelled, `[output][input]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PromptCoefficients {
-    pub(crate) direct: [[f64; 4]; 3],
-    pub(crate) rate: [[f64; 4]; 3],
+pub(crate) struct PromptCoefficients<'a> {
+    pub(crate) direct: &'a Gains,
+    /// None if there are none.
+    pub(crate) rate: Option<&'a Gains>,
+}
+
+impl PromptCoefficients<'_> {
+    /// Output `o` of apparent mass.
+    #[inline]
+    pub(crate) fn apparent(&self, o: usize, flow: &SectionFlow) -> f64 {
+        self.rate.map_or(0.0, |rate| dot(&rate[o], &flow.input_rate))
+    }
 }
 
 /// Scalar product over the four section inputs.
+#[inline]
 pub(crate) fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
 /// Section loads from the flow, the coefficients and the lag part of the three outputs
 /// (lift, moment, hinge moment, as velocities).
+#[inline]
 pub(crate) fn section_loads(
     scales: AirScales,
     flow: &SectionFlow,
-    coefficients: &PromptCoefficients,
+    coefficients: PromptCoefficients<'_>,
     lag: [f64; 3],
 ) -> SectionLoads {
     let stream = FreeStream {
@@ -273,8 +294,10 @@ pub(crate) fn section_loads(
         semichord: 0.5 * scales.chord,
         speed: flow.u_t,
     };
-    let circulating = [0, 1, 2].map(|k| dot(&coefficients.direct[k], &flow.input) + lag[k]);
-    let apparent = [0, 1, 2].map(|k| dot(&coefficients.rate[k], &flow.input_rate));
+    let circulating = |k: usize| dot(&coefficients.direct[k], &flow.input) + lag[k];
+    let circulating = [circulating(0), circulating(1), circulating(2)];
+    let apparent = |k: usize| coefficients.apparent(k, flow);
+    let apparent = [apparent(0), apparent(1), apparent(2)];
     let loads = loads_of_outputs(&stream, circulating, apparent);
     let half = 0.5 * scales.density_chord;
     SectionLoads {

@@ -116,9 +116,9 @@ impl FineAzimuth {
     }
 
     /// The flow at the finer points, without its sense.
-    pub(crate) fn flows(&self, at_elements: &[SectionFlow]) -> Vec<SectionFlow> {
+    pub(crate) fn flows(&self, at_elements: &[SectionFlow], out: &mut Vec<SectionFlow>) {
         let g = self.weights.len();
-        let mut out = Vec::with_capacity(self.points.len());
+        out.clear();
         for piece in &self.pieces {
             let of_element = &at_elements[piece.element * g..(piece.element + 1) * g];
             match &piece.shapes {
@@ -132,14 +132,12 @@ impl FineAzimuth {
                 })),
             }
         }
-        out
     }
 
     /// The loads of the finer points as their best polynomial over every element, at its points.
-    pub(crate) fn loads(&self, at_points: &[SectionLoads]) -> Vec<SectionLoads> {
+    pub(crate) fn loads(&self, at_points: &[SectionLoads], out: &mut [SectionLoads]) {
         let g = self.weights.len();
-        let elements = self.pieces.last().map_or(0, |piece| piece.element + 1);
-        let mut out = vec![SectionLoads::default(); elements * g];
+        out.fill(SectionLoads::default());
         for (piece, values) in self.pieces.iter().zip(at_points.chunks_exact(g)) {
             let of_element = &mut out[piece.element * g..(piece.element + 1) * g];
             match &piece.shapes {
@@ -157,7 +155,6 @@ impl FineAzimuth {
                 }
             }
         }
-        out
     }
 }
 
@@ -204,8 +201,7 @@ mod tests {
         let rates: Vec<f64> = points.iter().map(|p| k * SPEED.at(*p).abs()).collect();
         let drive: Vec<f64> = points.iter().map(|p| (w * travelled(*p)).cos()).collect();
         let lag = PeriodicLag::new(&collocation, &rates).unwrap();
-        let mut state = Vec::new();
-        lag.periodic_state(&drive, &mut state);
+        let state = lag.operator() * nalgebra::DVector::from_vec(drive);
         let exact = |psi: f64| {
             let (sin, cos) = (w * travelled(psi)).sin_cos();
             k * (k * cos + w * sin) / (k * k + w * w)
@@ -231,12 +227,13 @@ mod tests {
         let fine = FineAzimuth::new(&time, &SPEED).unwrap();
         let load = |fz: f64| SectionLoads { fz, ..SectionLoads::default() };
         let smooth = |psi: &f64| load(1.0 + psi.sin() - 0.3 * psi.powi(3));
-        let back = fine.loads(&fine.points.iter().map(smooth).collect::<Vec<_>>());
+        let mut back = vec![SectionLoads::default(); time.points().len()];
+        fine.loads(&fine.points.iter().map(smooth).collect::<Vec<_>>(), &mut back);
         for (got, psi) in back.iter().zip(time.points()) {
             assert_abs_diff_eq!(got.fz, smooth(psi).fz, epsilon = 1e-9);
         }
         let kinked: Vec<_> = fine.points.iter().map(|psi| load(SPEED.at(*psi).abs())).collect();
-        let back = fine.loads(&kinked);
+        fine.loads(&kinked, &mut back);
         let mean: f64 = back.iter().zip(time.weights()).map(|(f, w)| w * f.fz).sum();
         assert_abs_diff_eq!(mean, travelled(TAU), epsilon = 1e-12);
     }
@@ -246,7 +243,8 @@ mod tests {
         let time = TimeElements::new(8, 5, 8).unwrap();
         let fine = FineAzimuth::new(&time, &SPEED).unwrap();
         let at = |psi: &f64| SectionFlow { u_t: SPEED.at(*psi), ..SectionFlow::default() };
-        let flows = fine.flows(&time.points().iter().map(at).collect::<Vec<_>>());
+        let mut flows = Vec::new();
+        fine.flows(&time.points().iter().map(at).collect::<Vec<_>>(), &mut flows);
         assert_eq!(flows.len(), fine.points.len());
         for (flow, psi) in flows.iter().zip(&fine.points) {
             assert_abs_diff_eq!(flow.u_t, SPEED.at(*psi), epsilon = 1e-8);

@@ -14,43 +14,32 @@ use crate::model::air_scales::{AirScales, sweep_cosine};
 
 use crate::model::rotor_model::MACH_LIMIT;
 use crate::sections::air::{
-    PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads, sense,
+    Gains, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads, sense,
 };
 use crate::sections::fine_azimuth::{FineAzimuth, RigidSpeed};
-use crate::sections::lag::{Collocation, PeriodicLag};
+use crate::sections::lag::Collocation;
 use crate::sections::nonlinear::{TabledStation, add_stall};
 use crate::sections::stall_history::StallHistory;
+use crate::sections::station_lag::{RIGID_LIFT, StationLag};
+use crate::sections::station_lags::{LagScratch, StationLags};
 use crate::structure::blade::ResponseBlade;
 use crate::{ResponseError, ReverseFlow, RotorModel};
 use flap_aero::{FlapChord, Mach, SectionCoefficients, StallSection};
 use rayon::prelude::*;
 use rotor_fem::TimeElements;
 
-/// Slowest reduced-time rate, in semichords per rad, so that a lag state crossing the reverse-flow
-/// boundary still has an equation.
-const SLOWEST_RATE: f64 = 1e-3;
-
-/// One lag channel of a station. Its input does not depend on the Mach number, its outputs do.
-#[derive(Debug, Clone)]
-struct StationLag {
-    input: [f64; 4],
-    /// Output and its gain at every point, for the outputs the channel has.
-    gains: Vec<(usize, Vec<f64>)>,
-    /// Whether the flap has no part in it; only of sections beyond linear theory.
-    rigid: bool,
-    /// Rate at every point, per rad.
-    rates: Vec<f64>,
-    lag: PeriodicLag,
-}
-
 /// The sections of one station at the azimuth points of a revolution.
 #[derive(Debug, Clone)]
 struct StationAir {
-    /// Coefficients without delay and of apparent mass, by point.
-    prompt: Vec<PromptCoefficients>,
+    /// Coefficients without delay and of apparent mass, by point, `[output][input]`.
+    direct: Vec<Gains>,
+    /// None where there is no apparent mass.
+    rate: Vec<Gains>,
     /// Gain of the settled lags, output by input, by point.
-    settled: Vec<[[f64; 4]; 3]>,
+    settled: Vec<Gains>,
     lags: Vec<StationLag>,
+    /// The same as one operator.
+    whole: StationLags,
     tables: Option<TabledStation>,
     stall: Option<StallHistory>,
 }
@@ -111,44 +100,39 @@ impl FlightAir {
         self.stations.iter().any(|station| station.air.stall.is_some())
     }
 
-    /// Loads of all lifting stations over a revolution, for the flows, both `[point][station]`.
+    /// Number of lifting stations.
+    pub(crate) fn stations(&self) -> usize {
+        self.stations.len()
+    }
+
+    /// Loads of a lifting station at all points of the revolution for the flows there.
     ///
     /// # Errors
     /// [`ResponseError::StallNotPeriodic`].
     pub(crate) fn loads(
         &self,
-        flows: &[Vec<SectionFlow>],
-        law: LoadLaw<'_>,
-    ) -> Result<Vec<Vec<SectionLoads>>, ResponseError> {
-        let of_station = |(s, station): (usize, &Station)| {
-            let column: Vec<SectionFlow> = flows.iter().map(|row| row[s]).collect();
-            station.loads(&column, law.at(s))
-        };
-        let stations = self.stations.par_iter().with_min_len(POINTS_TOGETHER).enumerate();
-        let by_station = stations.map(of_station).collect::<Result<Vec<_>, _>>()?;
-        let mut out = vec![Vec::with_capacity(self.stations.len()); flows.len()];
-        for column in by_station {
-            for (row, loads) in out.iter_mut().zip(column) {
-                row.push(loads);
-            }
-        }
-        Ok(out)
-    }
-
-    /// Loads of the lifting stations at one point with every state settled on its input: what the Newton
-    /// matrix uses.
-    pub(crate) fn settled_loads(
-        &self,
-        point: usize,
+        station: usize,
         flows: &[SectionFlow],
         law: LoadLaw<'_>,
-    ) -> Vec<SectionLoads> {
-        let at = |(s, (station, flow)): (usize, (&Station, &SectionFlow))| {
-            let past = station.air.settled_past(point, flow);
-            station.air.loads_at(point, flow, &past, law.at(s))
-        };
-        self.stations.iter().zip(flows).enumerate().map(at).collect()
+        scratch: &mut AirScratch,
+        out: &mut [SectionLoads],
+    ) -> Result<(), ResponseError> {
+        let (of, law) = (&self.stations[station], law.at(station));
+        if law.settled {
+            of.air.settled_loads(flows, law, out);
+            return Ok(());
+        }
+        of.loads(flows, law, scratch, out)
     }
+}
+
+/// Reusable arrays of one station.
+#[derive(Debug, Default)]
+pub(crate) struct AirScratch {
+    pasts: Vec<SectionPast>,
+    lags: LagScratch,
+    fine_flows: Vec<SectionFlow>,
+    fine_loads: Vec<SectionLoads>,
 }
 
 /// How loads follow from the flow and its past.
@@ -158,24 +142,34 @@ pub(crate) struct LoadLaw<'a> {
     pub(crate) scales: &'a [AirScales],
     /// Lifting stations, counted from the first, from which on the tip takes the lift.
     pub(crate) lost_from: usize,
-    /// Whether flows are changes of flows: loads are then what the inputs of the flap change them by.
-    pub(crate) changes: bool,
+    pub(crate) lags: Lags,
+}
+
+/// How the states of the sections follow the flow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lags {
+    /// Over the revolution.
+    Followed,
+    /// Settled on their inputs at the point: what the Newton matrix uses.
+    Settled,
+    /// Followed, the flows being changes of flows: loads are what the inputs of the flap change them by.
+    OfFlapChange,
 }
 
 impl LoadLaw<'_> {
     fn at(self, station: usize) -> StationLaw {
         let lost = station >= self.lost_from;
-        let kind = match (lost, self.changes) {
+        let kind = match (lost, self.lags == Lags::OfFlapChange) {
             (false, false) => Kind::Whole,
             (false, true) => Kind::FlapSlope,
             (true, false) => Kind::DragAlone,
             (true, true) => Kind::Nothing,
         };
-        StationLaw { scales: self.scales[station], kind }
+        StationLaw { scales: self.scales[station], kind, settled: self.lags == Lags::Settled }
     }
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Whole,
     /// What the loads change by with the inputs of the flap; also of a section with tables, which know
@@ -190,6 +184,7 @@ enum Kind {
 struct StationLaw {
     scales: AirScales,
     kind: Kind,
+    settled: bool,
 }
 
 impl Station {
@@ -224,13 +219,21 @@ impl Station {
         &self,
         flows: &[SectionFlow],
         law: StationLaw,
-    ) -> Result<Vec<SectionLoads>, ResponseError> {
-        let Some(fine) = &self.fine else { return self.air.loads(flows, law) };
-        let mut flows = fine.azimuth.flows(flows);
-        for (flow, rigid) in flows.iter_mut().zip(&fine.rigid_speeds) {
+        scratch: &mut AirScratch,
+        out: &mut [SectionLoads],
+    ) -> Result<(), ResponseError> {
+        let Some(fine) = &self.fine else { return self.air.loads(flows, law, scratch, out) };
+        let mut finer = std::mem::take(&mut scratch.fine_flows);
+        let mut loads = std::mem::take(&mut scratch.fine_loads);
+        fine.azimuth.flows(flows, &mut finer);
+        for (flow, rigid) in finer.iter_mut().zip(&fine.rigid_speeds) {
             flow.sense = sense(fine.reverse_flow, flow.u_t, flow.u_p, *rigid);
         }
-        Ok(fine.azimuth.loads(&fine.air.loads(&flows, law)?))
+        loads.resize(finer.len(), SectionLoads::default());
+        let found = fine.air.loads(&finer, law, scratch, &mut loads);
+        fine.azimuth.loads(&loads, out);
+        (scratch.fine_flows, scratch.fine_loads) = (finer, loads);
+        found
     }
 }
 
@@ -274,7 +277,7 @@ impl StationAir {
                 Ok(lag)
             })
             .collect::<Result<Vec<_>, ResponseError>>()?;
-        let settled: Vec<[[f64; 4]; 3]> = coefficients
+        let settled: Vec<Gains> = coefficients
             .iter()
             .map(|k| {
                 let gain = |o: usize, i: usize| {
@@ -283,15 +286,16 @@ impl StationAir {
                 std::array::from_fn(|o| std::array::from_fn(|i| gain(o, i)))
             })
             .collect();
-        let prompt: Vec<PromptCoefficients> = coefficients
-            .iter()
-            .map(|k| PromptCoefficients { direct: k.direct, rate: k.rate })
-            .collect();
+        let direct: Vec<Gains> = coefficients.iter().map(|k| k.direct).collect();
+        let mut rate: Vec<Gains> = coefficients.iter().map(|k| k.rate).collect();
+        if rate.iter().flatten().flatten().all(|gain| *gain == 0.0) {
+            rate.clear();
+        }
         let tables = nonlinear.airfoils.as_ref().map(|airfoils| {
-            let at = |((speed, c), settled): ((&f64, &PromptCoefficients), &[[f64; 4]; 3])| {
-                (tip_mach * speed, c.direct[0][0] + settled[0][0])
+            let at = |((speed, c), settled): ((&f64, &Gains), &Gains)| {
+                (tip_mach * speed, c[0][0] + settled[0][0])
             };
-            let points = speeds.iter().zip(&prompt).zip(&settled).map(at).collect();
+            let points = speeds.iter().zip(&direct).zip(&settled).map(at).collect();
             TabledStation::new(airfoils, station, points)
         });
         let stall = nonlinear.dynamic_stall.map(|stall| {
@@ -315,7 +319,8 @@ impl StationAir {
             ))
         });
         let (tables, stall) = (tables.transpose()?, stall.transpose()?);
-        Ok(Self { prompt, settled, lags, tables, stall })
+        let whole = StationLags::new(&lags, collocation.points());
+        Ok(Self { direct, rate, settled, lags, whole, tables, stall })
     }
 }
 
@@ -325,36 +330,51 @@ impl StationAir {
         &self,
         flows: &[SectionFlow],
         law: StationLaw,
-    ) -> Result<Vec<SectionLoads>, ResponseError> {
+        scratch: &mut AirScratch,
+        out: &mut [SectionLoads],
+    ) -> Result<(), ResponseError> {
         let still =
             |flow: &SectionFlow| flow.input[2..] == [0.0; 2] && flow.input_rate[2..] == [0.0; 2];
-        if let Kind::FlapSlope = law.kind
-            && flows.iter().all(still)
-        {
-            return Ok(vec![SectionLoads::default(); flows.len()]);
+        if law.kind == Kind::FlapSlope && flows.iter().all(still) {
+            out.fill(SectionLoads::default());
+            return Ok(());
         }
-        if let Kind::DragAlone | Kind::Nothing = law.kind {
-            let past = SectionPast::default();
-            let at = |(p, flow)| self.loads_at(p, flow, &past, law);
-            return Ok(flows.iter().enumerate().map(at).collect());
+        scratch.pasts.clear();
+        scratch.pasts.resize(flows.len(), SectionPast::default());
+        if let Kind::Whole | Kind::FlapSlope = law.kind {
+            self.fill_pasts(flows, scratch)?;
         }
-        let pasts = self.pasts(flows)?;
-        let at = |(p, (flow, past))| self.loads_at(p, flow, past, law);
-        Ok(flows.iter().zip(&pasts).enumerate().map(at).collect())
+        for (p, ((load, flow), past)) in out.iter_mut().zip(flows).zip(&scratch.pasts).enumerate() {
+            *load = self.loads_at(p, flow, past, law);
+        }
+        Ok(())
     }
 
+    #[inline]
+    fn prompt(&self, point: usize) -> PromptCoefficients<'_> {
+        PromptCoefficients { direct: &self.direct[point], rate: self.rate.get(point) }
+    }
+
+    /// The same with every state settled on its input.
+    fn settled_loads(&self, flows: &[SectionFlow], law: StationLaw, out: &mut [SectionLoads]) {
+        for (p, (load, flow)) in out.iter_mut().zip(flows).enumerate() {
+            *load = self.loads_at(p, flow, &self.settled_past(p, flow), law);
+        }
+    }
+
+    #[inline]
     fn loads_at(
         &self,
         point: usize,
         flow: &SectionFlow,
         past: &SectionPast,
-        StationLaw { scales, kind }: StationLaw,
+        StationLaw { scales, kind, .. }: StationLaw,
     ) -> SectionLoads {
         let loads = match kind {
             Kind::Whole => self.whole_loads(point, scales, flow, past),
             Kind::FlapSlope => {
                 let frictionless = AirScales { drag: 0.0, ..scales };
-                section_loads(frictionless, flow, &self.prompt[point], past.lag)
+                section_loads(frictionless, flow, self.prompt(point), past.lag)
             }
             Kind::DragAlone => {
                 let SectionFlow { u_t, sense, .. } = *flow;
@@ -368,6 +388,7 @@ impl StationAir {
         if scales.centre == 0.0 { loads } else { loads.about(scales.centre, flow.pitch) }
     }
 
+    #[inline]
     fn whole_loads(
         &self,
         point: usize,
@@ -375,7 +396,7 @@ impl StationAir {
         flow: &SectionFlow,
         past: &SectionPast,
     ) -> SectionLoads {
-        let prompt = &self.prompt[point];
+        let prompt = self.prompt(point);
         let mut loads = match &self.tables {
             None => section_loads(scales, flow, prompt, past.lag),
             Some(tables) => tables.loads(point, scales, flow, prompt, past),
@@ -390,31 +411,20 @@ impl StationAir {
     ///
     /// # Errors
     /// [`ResponseError::StallNotPeriodic`].
-    fn pasts(&self, flows: &[SectionFlow]) -> Result<Vec<SectionPast>, ResponseError> {
-        let points = flows.len();
-        let mut drive = vec![0.0; points];
-        let mut state = Vec::with_capacity(points);
-        let mut pasts = vec![SectionPast::default(); points];
-        for channel in &self.lags {
-            for (d, flow) in drive.iter_mut().zip(flows) {
-                *d = dot(&channel.input, &flow.input);
-            }
-            channel.lag.periodic_state(&drive, &mut state);
-            for (output, gains) in &channel.gains {
-                for ((past, gain), x) in pasts.iter_mut().zip(gains).zip(&state) {
-                    past.lag[*output] += gain * x;
-                }
-                if channel.rigid && *output == 0 {
-                    for ((past, gain), x) in pasts.iter_mut().zip(gains).zip(&state) {
-                        past.rigid_lift += gain * x;
-                    }
-                }
-            }
-        }
+    fn fill_pasts(
+        &self,
+        flows: &[SectionFlow],
+        AirScratch { pasts, lags, .. }: &mut AirScratch,
+    ) -> Result<(), ResponseError> {
+        let write = |p: usize, output: usize, share: f64| match output {
+            RIGID_LIFT => pasts[p].rigid_lift = share,
+            output => pasts[p].lag[output] = share,
+        };
+        self.whole.outputs(|p| flows[p].input, lags, write);
         if let Some(stall) = &self.stall {
-            stall.fill(|p| (&flows[p], &self.prompt[p]), &mut pasts)?;
+            stall.fill(|p| (&flows[p], self.prompt(p)), pasts)?;
         }
-        Ok(pasts)
+        Ok(())
     }
 
     /// The same with every state settled on its input, for one point.
@@ -427,37 +437,8 @@ impl StationAir {
             ..SectionPast::default()
         };
         if let Some(stall) = &self.stall {
-            past.stall = stall.settled(point, flow, &self.prompt[point], &past);
+            past.stall = stall.settled(point, flow, self.prompt(point), &past);
         }
         past
-    }
-}
-
-impl StationLag {
-    fn new(
-        collocation: &Collocation,
-        speeds: &[f64],
-        coefficients: &[SectionCoefficients],
-        channel: usize,
-        chord: f64,
-    ) -> Result<Self, ResponseError> {
-        let semichord = 0.5 * chord;
-        let of = |k: &SectionCoefficients| k.lags[channel];
-        let rates: Vec<f64> = speeds
-            .iter()
-            .zip(coefficients)
-            .map(|(speed, k)| of(k).pole * (speed / semichord).max(SLOWEST_RATE))
-            .collect();
-        let gains = (0..3)
-            .map(|output| {
-                let along: Vec<f64> = coefficients.iter().map(|k| of(k).output[output]).collect();
-                (output, along)
-            })
-            .filter(|(_, along)| along.iter().any(|gain| *gain != 0.0))
-            .collect();
-        let input = coefficients.first().map_or([0.0; 4], |k| of(k).input);
-        let rigid = input[2] == 0.0 && input[3] == 0.0;
-        let lag = PeriodicLag::new(collocation, &rates)?;
-        Ok(Self { input, gains, rigid, rates, lag })
     }
 }

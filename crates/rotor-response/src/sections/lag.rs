@@ -44,7 +44,7 @@ impl Collocation {
         Self { half_widths: half_widths.to_vec(), ..self.clone() }
     }
 
-    fn points(&self) -> usize {
+    pub(crate) fn points(&self) -> usize {
         self.end_weights.len()
     }
 }
@@ -56,6 +56,16 @@ pub(crate) struct PeriodicLag {
     /// Element by element the columns `alpha` and `B`, then `e` and `f`.
     table: Vec<f64>,
     closing: f64,
+}
+
+/// One element of a lag: `X = x0 start + B r`, `x_end = x0 end_start + end_drive . r`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LagElement<'a> {
+    pub(crate) start: &'a [f64],
+    /// Column by column.
+    pub(crate) drive: &'a [f64],
+    pub(crate) end_start: f64,
+    pub(crate) end_drive: &'a [f64],
 }
 
 impl PeriodicLag {
@@ -90,35 +100,18 @@ impl PeriodicLag {
         Ok(Self { points_per_element: g, table, closing })
     }
 
-    /// The periodic state at all points for the drive `r`, written to `out`.
-    pub(crate) fn periodic_state(&self, drive: &[f64], out: &mut Vec<f64>) {
+    /// What one element makes of its start and of the drive at its points.
+    pub(crate) fn element(&self, element: usize) -> LagElement<'_> {
         let g = self.points_per_element;
-        out.clear();
-        out.resize(drive.len(), 0.0);
-        let elements = || self.table.chunks_exact((g + 1) * (g + 1)).zip(drive.chunks_exact(g));
-        // what the drive leaves at the end of every element waits in the element's first place
-        let mut around = 0.0;
-        for (state, (table, r)) in out.chunks_exact_mut(g).zip(elements()) {
-            let (Some(left), [e, f @ ..]) = (state.first_mut(), &table[g * (g + 1)..]) else {
-                return;
-            };
-            *left = f.iter().zip(r).map(|(f, r)| f * r).sum();
-            around = e * around + *left;
-        }
-        let mut x0 = around / self.closing;
-        for (state, (table, r)) in out.chunks_exact_mut(g).zip(elements()) {
-            let (alpha, columns) = table[..g * (g + 1)].split_at(g);
-            let end = table[g * (g + 1)] * x0 + state[0];
-            for (x, alpha) in state.iter_mut().zip(alpha) {
-                *x = alpha * x0;
-            }
-            for (column, r) in columns.chunks_exact(g).zip(r) {
-                for (x, b) in state.iter_mut().zip(column) {
-                    *x += b * r;
-                }
-            }
-            x0 = end;
-        }
+        let table = &self.table[element * (g + 1) * (g + 1)..(element + 1) * (g + 1) * (g + 1)];
+        let (inside, end) = table.split_at(g * (g + 1));
+        let (start, drive) = inside.split_at(g);
+        LagElement { start, drive, end_start: end[0], end_drive: &end[1..] }
+    }
+
+    /// One less the part of a state that is left after a revolution without drive.
+    pub(crate) fn closing(&self) -> f64 {
+        self.closing
     }
 
     /// The periodic state as a linear operator on the drive, `x_p = sum_p' P[p, p'] r_p'`.
@@ -129,26 +122,25 @@ impl PeriodicLag {
     /// the last term the way round from the end of element `e'` to the start of `e`.
     pub(crate) fn operator(&self) -> DMatrix<f64> {
         let g = self.points_per_element;
-        let tables: Vec<&[f64]> = self.table.chunks_exact((g + 1) * (g + 1)).collect();
-        let elements = tables.len();
+        let elements = self.table.len() / ((g + 1) * (g + 1));
         let mut operator = DMatrix::zeros(g * elements, g * elements);
-        for (element, table) in tables.iter().enumerate() {
-            let (alpha, columns) = table[..g * (g + 1)].split_at(g);
-            for (j, column) in columns.chunks_exact(g).enumerate() {
+        for at in 0..elements {
+            let LagElement { start, drive, .. } = self.element(at);
+            for (j, column) in drive.chunks_exact(g).enumerate() {
                 for (i, b) in column.iter().enumerate() {
-                    operator[(element * g + i, element * g + j)] = *b;
+                    operator[(at * g + i, at * g + j)] = *b;
                 }
             }
             let mut passed = 1.0 / self.closing;
             for back in 1..=elements {
-                let from = (element + elements - back) % elements;
-                let [e, f @ ..] = &tables[from][g * (g + 1)..] else { continue };
-                for (j, f) in f.iter().enumerate() {
-                    for (i, alpha) in alpha.iter().enumerate() {
-                        operator[(element * g + i, from * g + j)] += alpha * passed * f;
+                let from = (at + elements - back) % elements;
+                let LagElement { end_start, end_drive, .. } = self.element(from);
+                for (j, f) in end_drive.iter().enumerate() {
+                    for (i, alpha) in start.iter().enumerate() {
+                        operator[(at * g + i, from * g + j)] += alpha * passed * f;
                     }
                 }
-                passed *= e;
+                passed *= end_start;
             }
         }
         operator
@@ -174,8 +166,7 @@ mod tests {
                 let lag = PeriodicLag::new(&collocation, &vec![a; time.points().len()]).unwrap();
                 for n in [1.0, 4.0] {
                     let drive: Vec<f64> = time.points().iter().map(|p| (n * p).cos()).collect();
-                    let mut state = Vec::new();
-                    lag.periodic_state(&drive, &mut state);
+                    let state = lag.operator() * DVector::from_vec(drive);
                     for (&psi, got) in time.points().iter().zip(&state) {
                         let exact =
                             a * (a * (n * psi).cos() + n * (n * psi).sin()) / (a * a + n * n);
@@ -201,28 +192,12 @@ mod tests {
                 .map(|(p, x)| x * (1.0 - p.cos() / (2.0 + p.cos())))
                 .collect();
             let lag = PeriodicLag::new(&Collocation::new(&time), &rates).unwrap();
-            let mut state = Vec::new();
-            lag.periodic_state(&drive, &mut state);
+            let state = lag.operator() * DVector::from_vec(drive);
             state.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         };
         let (coarse, fine) = (error(4), error(8));
         assert!(fine < 5e-6, "{fine:e}");
         assert!(coarse / fine > 40.0, "order too low: {coarse:e} to {fine:e}");
-    }
-
-    #[test]
-    fn the_operator_gives_the_states_that_marching_round_gives() {
-        let time = TimeElements::new(5, 5, 6).unwrap();
-        let rates: Vec<f64> = time.points().iter().map(|p| 0.6 + 0.5 * p.cos()).collect();
-        let lag = PeriodicLag::new(&Collocation::new(&time), &rates).unwrap();
-        let drive: Vec<f64> =
-            time.points().iter().map(|p| (3.0 * p).cos() + 0.3 * p.sin() + 0.2).collect();
-        let mut state = Vec::new();
-        lag.periodic_state(&drive, &mut state);
-        let product = lag.operator() * DVector::from_vec(drive);
-        for (a, b) in state.iter().zip(&product) {
-            assert_abs_diff_eq!(*a, *b, epsilon = 1e-14);
-        }
     }
 
     #[test]

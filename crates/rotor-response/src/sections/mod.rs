@@ -6,3 +6,5 @@ pub(crate) mod flight_air;
 pub(crate) mod lag;
 pub(crate) mod nonlinear;
 pub(crate) mod stall_history;
+pub(crate) mod station_lag;
+pub(crate) mod station_lags;

@@ -66,7 +66,7 @@ impl TabledStation {
         point: usize,
         scales: AirScales,
         flow: &SectionFlow,
-        coefficients: &PromptCoefficients,
+        coefficients: PromptCoefficients<'_>,
         past: &SectionPast,
     ) -> SectionLoads {
         let (mach, slope) = self.points[point];

@@ -60,11 +60,11 @@ impl StallHistory {
         Self { station, semichord, sections, steps, over_tables }
     }
 
-    fn drive(&self, flow: &SectionFlow, c: &PromptCoefficients, past: &SectionPast) -> Drive {
+    fn drive(&self, flow: &SectionFlow, c: PromptCoefficients<'_>, past: &SectionPast) -> Drive {
         let inverse = flow.u_t.hypot(flow.u_p).max(SLOWEST_FLOW).recip();
         let attached = [0, 1, 2].map(|o| {
             let circulating = dot(&c.direct[o], &flow.input) + past.lag[o];
-            let apparent = dot(&c.rate[o], &flow.input_rate);
+            let apparent = c.apparent(o, flow);
             (flow.u_t.abs() * circulating + self.semichord * apparent) * inverse * inverse
         });
         Drive { attached, modes: flow.input.map(|w| w * inverse) }
@@ -86,7 +86,7 @@ impl StallHistory {
         &self,
         point: usize,
         flow: &SectionFlow,
-        coefficients: &PromptCoefficients,
+        coefficients: PromptCoefficients<'_>,
         past: &SectionPast,
     ) -> [f64; 3] {
         if self.over_tables {
@@ -104,7 +104,7 @@ impl StallHistory {
     /// [`ResponseError::StallNotPeriodic`]. A motion that is not finite gives a stall that is not.
     pub(crate) fn fill<'a>(
         &self,
-        flow: impl Fn(usize) -> (&'a SectionFlow, &'a PromptCoefficients),
+        flow: impl Fn(usize) -> (&'a SectionFlow, PromptCoefficients<'a>),
         pasts: &mut [SectionPast],
     ) -> Result<(), ResponseError> {
         let drives: Vec<Drive> = pasts

@@ -21,13 +21,15 @@ pub(crate) struct Shapes {
     pub(crate) value: Vec<Vec<f64>>,
     pub(crate) slope: Vec<Vec<f64>>,
     pub(crate) curvature: Vec<Vec<f64>>,
+    /// Whether curvature and rates of the slope mean anything: not in torsion.
+    pub(crate) bend: bool,
 }
 
 impl Shapes {
-    fn sample(samples: &[Vec<[f64; 3]>]) -> Self {
+    fn sample(samples: &[Vec<[f64; 3]>], bend: bool) -> Self {
         let pick =
             |k: usize| samples.iter().map(|mode| mode.iter().map(|s| s[k]).collect()).collect();
-        Self { value: pick(0), slope: pick(1), curvature: pick(2) }
+        Self { value: pick(0), slope: pick(1), curvature: pick(2), bend }
     }
 
     pub(crate) fn count(&self) -> usize {
@@ -63,6 +65,10 @@ pub struct ResponseBlade {
     pub(crate) twist: Vec<f64>,
     pub(crate) tension: Vec<f64>,
     pub(crate) precone: f64,
+    /// Its sine and cosine.
+    pub(crate) cone: [f64; 2],
+    /// Mass moment of every lag mode outboard of each station, `int_x^1 m L_j`.
+    pub(crate) lag_outboard: Vec<Vec<f64>>,
     /// Index of the flap at each station, if any.
     pub(crate) flap_index: Vec<Option<usize>>,
     /// Inertia of the flap at each station, if any.
@@ -131,13 +137,20 @@ impl ResponseBlade {
             .map(|x| model.flaps.iter().position(|f| (f.start..f.end).contains(x)))
             .collect();
         let air: Vec<AirScales> = grid.x().iter().map(|x| AirScales::at(model, *x)).collect();
+        let outboard = |mode: &Vec<[f64; 3]>| {
+            let moment = |(x, shape): (&f64, &[f64; 3])| properties.mass(*x) * shape[0];
+            let density: Vec<f64> = grid.x().iter().zip(mode).map(moment).collect();
+            let mut moment = vec![0.0; density.len()];
+            grid.integral_to_tip(&density, &mut moment);
+            moment
+        };
         let inertia = |(flap, air): (&Option<usize>, &AirScales)| {
             flap.map(|k| model.flaps[k].inertia(air.chord, air.centre))
         };
         Ok(Self {
-            flap: Shapes::sample(of_flap),
-            lag: Shapes::sample(of_lag),
-            torsion: Shapes::sample(of_torsion),
+            flap: Shapes::sample(of_flap, true),
+            lag: Shapes::sample(of_lag, true),
+            torsion: Shapes::sample(of_torsion, false),
             frequencies: modes.modes().iter().map(|mode| mode.frequency).collect(),
             modal_masses: modes.modes().iter().map(|mode| mode.modal_mass).collect(),
             root_spring: root_springs(properties, &modes, &root_rotation),
@@ -153,6 +166,8 @@ impl ResponseBlade {
             twist: along(&|x| properties.twist_rad(x)),
             tension: along(&|x| properties.tension(x)),
             precone: properties.spec().precone_rad,
+            cone: properties.spec().precone_rad.sin_cos().into(),
+            lag_outboard: of_lag.iter().map(outboard).collect(),
             flap_inertia: flap_index.iter().zip(&air).map(inertia).collect(),
             flap_index,
             air,

@@ -16,10 +16,13 @@
 //! Source: second-order terms of Hodges and Dowell, NASA TN D-7818 (1974), in the order of Bir and
 //! Chopra's UMARC; the same virtual work as the independent cross-check model of this project.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::Couplings;
 use crate::structure::blade::ResponseBlade;
-use crate::structure::motion::Motion;
+use crate::structure::motion::{Foreshortening, ModalRows, Motion};
 use nalgebra::DMatrix;
+use pulp::{Arch, Simd, WithSimd};
 use rotor_fem::{ModalBlade, ModalMotion, PitchMotion};
 
 /// Distributed loads at the stations at one azimuth, per length, mass `m0`, length R, time 1/Omega.
@@ -53,6 +56,13 @@ impl SpanLoads {
         [self.fx(motion, station) + x, self.fy[station] + y, self.fz[station] + z]
     }
 
+    /// Loads at one station; the weight stands in [`gravity`](Self::gravity).
+    pub(crate) fn set(&mut self, i: usize, load: &StationLoad) {
+        (self.axial[i], self.fy[i], self.fz[i]) = (load.axial, load.fy, load.fz);
+        (self.moment[i], self.slope[0][i], self.slope[1][i]) =
+            (load.moment, load.slope[0], load.slope[1]);
+    }
+
     /// No loads at `n` stations.
     pub(crate) fn clear(&mut self, n: usize) {
         self.gravity = [0.0; 3];
@@ -72,52 +82,76 @@ pub(crate) struct BladeState<'a> {
     pub(crate) loads: &'a SpanLoads,
 }
 
-/// Scratch arrays, one per use, so that nothing is allocated inside the azimuth loop.
+/// Loads of one station at one azimuth, per length: those of [`SpanLoads`].
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct StationLoad {
+    pub(crate) axial: f64,
+    pub(crate) fy: f64,
+    pub(crate) fz: f64,
+    pub(crate) moment: f64,
+    pub(crate) slope: [f64; 2],
+    pub(crate) gravity: [f64; 3],
+}
+
+/// What a station does on value, slope and curvature of flap, lag and torsion, per length.
+#[derive(Debug, Clone, Copy)]
+struct StationForce {
+    value: [f64; 3],
+    slope: [f64; 3],
+    curvature: [f64; 2],
+}
+
+/// Scratch arrays of one station: what it does, times its weight, in lanes.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct StructureScratch {
-    integrand: Vec<f64>,
-    foreshortening_rate: Vec<f64>,
-    coriolis_tension: Vec<f64>,
-    force: [Vec<f64>; 3],
-    slope_force: [Vec<f64>; 3],
-    bending: [Vec<f64>; 2],
+pub(crate) struct ForceRows {
+    value: [Vec<f64>; 3],
+    slope: [Vec<f64>; 3],
+    curvature: [Vec<f64>; 2],
+    coriolis: Vec<f64>,
 }
 
-impl StructureScratch {
-    fn resize(&mut self, n: usize) {
-        for v in [&mut self.integrand, &mut self.foreshortening_rate, &mut self.coriolis_tension]
-            .into_iter()
-            .chain(&mut self.force)
-            .chain(&mut self.slope_force)
-            .chain(&mut self.bending)
-        {
-            v.resize(n, 0.0);
+impl ForceRows {
+    fn resize(&mut self, lanes: usize) {
+        let rows = self.value.iter_mut().chain(&mut self.slope).chain(&mut self.curvature);
+        rows.for_each(|row| row.resize(lanes, 0.0));
+    }
+}
+
+/// `out += f value + g slope + b curvature` of a mode at a station, lane by lane.
+#[inline(always)]
+fn add_work(out: &mut [f64], shape: [f64; 3], [f, g, b]: [&[f64]; 3]) {
+    let [value, slope, curvature] = shape;
+    for (((out, f), g), b) in out.iter_mut().zip(f).zip(g).zip(b) {
+        *out += f * value + g * slope + b * curvature;
+    }
+}
+
+/// Work of a station on all modes: a type of its own, for a closure would be called, not inlined, by the function
+/// that is compiled for the vector unit.
+struct StationWork<'a> {
+    blade: &'a ResponseBlade,
+    i: usize,
+    lanes: usize,
+    forces: &'a ForceRows,
+    out: &'a mut [f64],
+}
+
+impl WithSimd for StationWork<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { blade, i, lanes, forces, out } = self;
+        let mut rows = out.chunks_exact_mut(lanes);
+        for (k, of) in [&blade.flap, &blade.lag, &blade.torsion].into_iter().enumerate() {
+            let [f, g] = [&forces.value[k], &forces.slope[k]];
+            let b = forces.curvature.get(k).unwrap_or(f);
+            let bent = if of.bend { 1.0 } else { 0.0 };
+            let shapes = of.value.iter().zip(&of.slope).zip(&of.curvature);
+            for (((value, slope), curvature), out) in shapes.zip(rows.by_ref()) {
+                add_work(out, [value[i], slope[i], bent * curvature[i]], [f, g, b]);
+            }
         }
-    }
-}
-
-/// `out_j += sum_i w_i (f_i shape_ji + g_i slope_ji [+ b_i curvature_ji])`.
-fn project(out: &mut [f64], weight: &[f64], parts: &[(&[Vec<f64>], &[f64])]) {
-    for (j, o) in out.iter_mut().enumerate() {
-        *o = parts
-            .iter()
-            .map(|(shapes, f)| {
-                weight.iter().zip(&shapes[j]).zip(*f).map(|((w, s), f)| w * s * f).sum::<f64>()
-            })
-            .sum();
-    }
-}
-
-/// Takes the work of moments on the slopes of lag and flap off a residual.
-fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]) {
-    let weight = blade.grid.weight();
-    let (nf, nl) = (blade.flap.count(), blade.lag.count());
-    let mut work = vec![0.0; nf + nl];
-    let (flap, lag) = work.split_at_mut(nf);
-    project(flap, weight, &[(&blade.flap.slope, &loads.slope[1])]);
-    project(lag, weight, &[(&blade.lag.slope, &loads.slope[0])]);
-    for (value, work) in out.iter_mut().zip(work) {
-        *value -= work;
     }
 }
 
@@ -132,36 +166,14 @@ pub(crate) struct Equations<'a> {
 }
 
 impl Equations<'_> {
-    /// Generalised residual of any couplings without the constant mass part and without damping, at modal
-    /// coordinates, rates and accelerations.
-    pub(crate) fn residual(
-        &self,
-        state: BladeState<'_>,
-        coordinates: [&[f64]; 3],
-        scratch: &mut StructureScratch,
-        out: &mut [f64],
-    ) {
-        let blade = self.blade;
-        if let Some(modal) = &blade.modal {
-            self.moderate_residual(modal, state, coordinates, out);
-        } else {
-            modal_residual(blade, self.couplings, state, scratch, out);
-            for (o, springs) in out.iter_mut().zip(blade.root_spring.row_iter()) {
-                *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
-            }
-        }
-        if blade.flaps_beside_blade() {
-            subtract_slope_work(blade, state.loads, out);
-        }
-    }
-
-    /// Generalised residual of the moderately deflected blade without the constant mass part.
+    /// Generalised residual of one azimuth of the moderately deflected blade without the constant mass part and without
+    /// damping.
     ///
     /// ```text
     /// Q(q, q', q'') - M q'' - virtual work of (F_x, F_y, F_z, M),   F_x = -w_x F_z - v_x F_y
     /// ```
     /// Loads stand normal to the deflected blade; their axial part works on the foreshortening.
-    fn moderate_residual(
+    pub(crate) fn moderate_residual(
         &self,
         modal: &ModalBlade,
         state: BladeState<'_>,
@@ -182,89 +194,137 @@ impl Equations<'_> {
             let constant: f64 = self.mass.row(i).iter().zip(qdd).map(|(m, a)| m * a).sum();
             *value = own[i] - constant - work[i];
         }
+        if self.blade.flaps_beside_blade() {
+            subtract_slope_work(self.blade, loads, out);
+        }
+    }
+
+    /// Adds what one station does in the equations of `Linear` and `Full` to the generalised residual, mode by mode
+    /// in lanes: without the constant mass part, damping and springs at the root. `at` gives pitch and loads of a lane.
+    pub(crate) fn add_station(
+        &self,
+        i: usize,
+        motion: &Motion,
+        (rows, foreshortening): (&ModalRows, &Foreshortening),
+        at: impl Fn(usize) -> (PitchMotion, StationLoad),
+        (forces, out): (&mut ForceRows, &mut [f64]),
+    ) {
+        let blade = self.blade;
+        let lanes = rows.lanes();
+        forces.resize(lanes);
+        let full = self.couplings != Couplings::Linear;
+        let [_, across] = blade.cone;
+        let outboard = blade.lag_outboard.iter().map(|moment| 2.0 * across * moment[i]);
+        rows.sum(&mut forces.coriolis, (1, blade.flap.count()), outboard);
+        let shortening_rate = |lane: usize| foreshortening.at(1, i).get(lane).copied();
+        let weight = blade.grid.weight()[i];
+        for lane in 0..lanes {
+            let (pitch, load) = at(lane);
+            let second = match shortening_rate(lane) {
+                Some(rate) if full => [rate, forces.coriolis[lane]],
+                _ => [0.0; 2],
+            };
+            let force = station_force(blade, full, (i, motion, lane), (pitch, &load), second);
+            for k in 0..3 {
+                forces.value[k][lane] = weight * force.value[k];
+                forces.slope[k][lane] = weight * force.slope[k];
+            }
+            for k in 0..2 {
+                forces.curvature[k][lane] = weight * force.curvature[k];
+            }
+        }
+        Arch::new().dispatch(StationWork { blade, i, lanes, forces, out });
+    }
+
+    /// Generalised residual of one azimuth without air, without the constant mass part and without damping.
+    pub(crate) fn still_residual(
+        &self,
+        coordinates: [&[f64]; 3],
+        pitch: PitchMotion,
+        out: &mut [f64],
+    ) {
+        let blade = self.blade;
+        let mut motion = Motion::default();
+        if let Some(modal) = &blade.modal {
+            motion.fill(blade, coordinates);
+            let mut loads = SpanLoads::default();
+            loads.clear(blade.grid.len());
+            let state = BladeState { motion: &motion, pitch, loads: &loads };
+            self.moderate_residual(modal, state, coordinates, out);
+            return;
+        }
+        let (mut rows, mut shortening) = (ModalRows::default(), Foreshortening::default());
+        rows.fill_state(coordinates);
+        shortening.fill(blade, self.couplings, &rows);
+        let mut forces = ForceRows::default();
+        out.fill(0.0);
+        for i in 0..blade.grid.len() {
+            motion.fill_station(blade, i, &rows, &shortening);
+            let unloaded = |_| (pitch, StationLoad::default());
+            self.add_station(i, &motion, (&rows, &shortening), unloaded, (&mut forces, out));
+        }
+        for (o, springs) in out.iter_mut().zip(blade.root_spring.row_iter()) {
+            *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
+        }
     }
 }
 
-/// Generalised residual without the constant mass part, modal order flap, lag, torsion.
-fn modal_residual(
+/// Takes the work of moments on the slopes of lag and flap off a residual.
+fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]) {
+    let modes = [(&blade.flap, &loads.slope[1]), (&blade.lag, &loads.slope[0])];
+    let shapes = modes.into_iter().flat_map(|(of, load)| of.slope.iter().map(move |s| (s, load)));
+    for (value, (shape, load)) in out.iter_mut().zip(shapes) {
+        let parts = blade.grid.weight().iter().zip(shape).zip(load);
+        *value -= parts.map(|((w, s), f)| w * s * f).sum::<f64>();
+    }
+}
+
+/// What one station does at one azimuth, `Full` or `Linear`; its motion stands in a lane, `second` is what the integrals
+/// along the blade give there: rate of the foreshortening and Coriolis tension.
+#[inline]
+fn station_force(
     blade: &ResponseBlade,
-    couplings: Couplings,
-    state: BladeState<'_>,
-    scratch: &mut StructureScratch,
-    out: &mut [f64],
-) {
-    let BladeState { motion, pitch, loads } = state;
-    let n = blade.grid.len();
-    scratch.resize(n);
-    let full = couplings != Couplings::Linear;
-    let s = scratch;
-    let (along, across) = blade.precone.sin_cos();
-    if full {
-        for i in 0..n {
-            s.integrand[i] = motion.v.slope[i] * motion.v.slope_rate[i]
-                + motion.w.slope[i] * motion.w.slope_rate[i];
-        }
-        blade.grid.integral_from_root(&s.integrand, &mut s.foreshortening_rate);
-        for i in 0..n {
-            s.integrand[i] = 2.0 * across * blade.mass[i] * motion.v.rate[i];
-        }
-        blade.grid.integral_to_tip(&s.integrand, &mut s.coriolis_tension);
+    full: bool,
+    (i, motion, lane): (usize, &Motion, usize),
+    (pitch, load): (PitchMotion, &StationLoad),
+    [foreshortening_rate, coriolis_tension]: [f64; 2],
+) -> StationForce {
+    let [along, across] = blade.cone;
+    let (m, x) = (blade.mass[i], blade.grid.x()[i]);
+    let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
+    let theta = pitch.angle_rad + blade.twist[i] + phi.value[lane];
+    let tension = blade.tension[i] + coriolis_tension;
+    let radii = blade.km2_squared[i] - blade.km1_squared[i];
+    let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);
+    let [_, gravity_y, gravity_z] = load.gravity;
+    let (weight_y, weight_z) = (m * gravity_y, m * gravity_z);
+    let (w_xx, v_xx) = (w.curvature[lane], v.curvature[lane]);
+    let (curvature, propeller) = if full {
+        let (sin, cos) = theta.sin_cos();
+        let kz = v_xx * cos + w_xx * sin;
+        let ky = w_xx * cos - v_xx * sin;
+        let bending = [eiz * kz * sin + eiy * ky * cos, eiz * kz * cos - eiy * ky * sin];
+        (bending, m * radii * sin * cos + (eiz - eiy) * kz * ky)
     } else {
-        s.foreshortening_rate.fill(0.0);
-        s.coriolis_tension.fill(0.0);
+        ([eiy * w_xx, eiz * v_xx], m * radii * theta)
+    };
+    let km_squared = blade.km1_squared[i] + blade.km2_squared[i];
+    StationForce {
+        value: [
+            m * along * (across * x + 2.0 * v.rate[lane] - along * w.value[lane])
+                - load.fz
+                - weight_z,
+            -m * (blade.offsets.torque + v.value[lane])
+                - 2.0 * m * (across * foreshortening_rate + along * w.rate[lane])
+                - load.fy
+                - weight_y,
+            m * km_squared * pitch.acceleration + propeller - load.moment,
+        ],
+        slope: [
+            tension * w.slope[lane] - load.slope[1],
+            tension * v.slope[lane] - load.slope[0],
+            (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]) * phi.slope[lane],
+        ],
+        curvature,
     }
-    for i in 0..n {
-        let (m, x) = (blade.mass[i], blade.grid.x()[i]);
-        let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
-        let theta = pitch.angle_rad + blade.twist[i] + phi.value[i];
-        let tension = blade.tension[i] + s.coriolis_tension[i];
-        let radii = blade.km2_squared[i] - blade.km1_squared[i];
-        let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);
-        let [_, weight_y, weight_z] = loads.gravity.map(|g| m * g);
-        s.force[0][i] = m * along * (across * x + 2.0 * v.rate[i] - along * w.value[i])
-            - loads.fz[i]
-            - weight_z;
-        s.force[1][i] = -m * (blade.offsets.torque + v.value[i])
-            - 2.0 * m * (across * s.foreshortening_rate[i] + along * w.rate[i])
-            - loads.fy[i]
-            - weight_y;
-        s.slope_force[0][i] = tension * w.slope[i];
-        s.slope_force[1][i] = tension * v.slope[i];
-        s.slope_force[2][i] = (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]) * phi.slope[i];
-        let propeller;
-        if full {
-            let (sin, cos) = theta.sin_cos();
-            let kz = v.curvature[i] * cos + w.curvature[i] * sin;
-            let ky = w.curvature[i] * cos - v.curvature[i] * sin;
-            s.bending[0][i] = eiz * kz * sin + eiy * ky * cos;
-            s.bending[1][i] = eiz * kz * cos - eiy * ky * sin;
-            propeller = m * radii * sin * cos + (eiz - eiy) * kz * ky;
-        } else {
-            s.bending[0][i] = eiy * w.curvature[i];
-            s.bending[1][i] = eiz * v.curvature[i];
-            propeller = m * radii * theta;
-        }
-        let km_squared = blade.km1_squared[i] + blade.km2_squared[i];
-        s.force[2][i] = m * km_squared * pitch.acceleration + propeller - loads.moment[i];
-    }
-    let weight = blade.grid.weight();
-    let (nf, nl) = (blade.flap.count(), blade.lag.count());
-    let (out_flap, rest) = out.split_at_mut(nf);
-    let (out_lag, out_torsion) = rest.split_at_mut(nl);
-    for (out, shapes, k) in [(out_flap, &blade.flap, 0), (out_lag, &blade.lag, 1)] {
-        project(
-            out,
-            weight,
-            &[
-                (&shapes.value, &s.force[k]),
-                (&shapes.slope, &s.slope_force[k]),
-                (&shapes.curvature, &s.bending[k]),
-            ],
-        );
-    }
-    project(
-        out_torsion,
-        weight,
-        &[(&blade.torsion.value, &s.force[2]), (&blade.torsion.slope, &s.slope_force[2])],
-    );
 }

@@ -98,6 +98,9 @@ fn weight_does_no_work_over_a_revolution() {
     assert!(power.imbalance().abs() <= 1e-5, "{power:?}");
 }
 
+/// Imbalance that a weak residual of 1e-11 at rates of 0.1 makes over a power of 1e-3, and as much again.
+const TOLERANCE_LEAVES: f64 = 2e-9;
+
 /// The couplings of lower order leave terms out of equations, root loads and power alike.
 #[test]
 fn power_balances_with_every_coupling() {
@@ -105,7 +108,12 @@ fn power_balances_with_every_coupling() {
         let imbalance = |elements| balance(paper_model(couplings), elements, &[]).imbalance().abs();
         let [four, six, eight] = [4, 6, 8].map(imbalance);
         assert!(eight <= 1e-6, "{couplings:?}: {eight:e}");
-        assert!(four > six && six > eight, "{couplings:?}: {four:e} {six:e} {eight:e}");
+        // what the tolerance of the orbit leaves is no less with finer elements
+        let six_or_tolerance = six.max(TOLERANCE_LEAVES);
+        assert!(
+            four > six && six_or_tolerance > eight,
+            "{couplings:?}: {four:e} {six:e} {eight:e}"
+        );
     }
 }
 

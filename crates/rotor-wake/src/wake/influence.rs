@@ -6,7 +6,9 @@ use crate::kernel::{BLOCK, for_each_velocity};
 use crate::vector::{Vec3, add, norm, scale, sub};
 use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
-use nalgebra::{DMatrix, DVector, Dyn, LU};
+use faer::Mat;
+use faer::linalg::solvers::{PartialPivLu, Solve};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -234,7 +236,7 @@ pub struct FrozenWake {
     reference: InflowMap,
     slope: Arc<CirculationSlope>,
     /// Of a Newton step, factorised.
-    newton: LU<f64, Dyn, Dyn>,
+    newton: PartialPivLu<f64>,
 }
 
 impl FrozenWake {
@@ -264,7 +266,8 @@ impl FrozenWake {
             let down = induction.down.columns_with_step(*from, azimuths, panels - 1);
             newton.columns_with_step_mut(*to, azimuths, panels - 1).gemm(-1.0, &down, block, 1.0);
         }
-        Ok(Self { newton: newton.lu(), induction, reference, slope })
+        let newton = Mat::from_fn(size, size, |row, column| newton[(row, column)]);
+        Ok(Self { newton: newton.partial_piv_lu(), induction, reference, slope })
     }
 
     /// How the circulation answers to the inflow.
@@ -295,7 +298,9 @@ impl InflowModel for FrozenWake {
     }
 
     fn improved_step(&self, change: &[f64]) -> Option<Vec<f64>> {
-        let step = self.newton.solve(&DVector::from_column_slice(change))?;
-        Some(step.as_slice().to_vec())
+        let mut step = Mat::from_fn(change.len(), 1, |row, _| change[row]);
+        self.newton.solve_in_place(step.as_mut());
+        let step: Vec<f64> = (0..change.len()).map(|row| step[(row, 0)]).collect();
+        step.iter().all(|value| value.is_finite()).then_some(step)
     }
 }

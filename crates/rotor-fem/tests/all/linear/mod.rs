@@ -40,6 +40,7 @@ impl<F: Fn(f64) -> LinearCoefficients + Sync> LinearPeriodic<F> {
 impl<F: Fn(f64) -> LinearCoefficients + Sync> PeriodicSystem for LinearPeriodic<F> {
     type Error = Infallible;
     type Seen = ();
+    type Work = ();
 
     fn dof(&self) -> usize {
         self.mass.nrows()
@@ -49,7 +50,12 @@ impl<F: Fn(f64) -> LinearCoefficients + Sync> PeriodicSystem for LinearPeriodic<
         &self.mass
     }
 
-    fn residual(&self, orbit: &OrbitSamples, out: &mut DMatrix<f64>) -> Result<(), Infallible> {
+    fn residual(
+        &self,
+        orbit: &OrbitSamples,
+        (): &mut (),
+        out: &mut DMatrix<f64>,
+    ) -> Result<(), Infallible> {
         for (i, &psi) in orbit.azimuth_rad.iter().enumerate() {
             let c = (self.coefficients)(psi);
             let force = &c.damping * orbit.qd.column(i) + &c.stiffness * orbit.q.column(i) - c.load;

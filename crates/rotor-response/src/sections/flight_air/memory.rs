@@ -60,10 +60,10 @@ impl FlightAir {
 
 impl StationAir {
     fn lift_slope(&self) -> DMatrix<f64> {
-        let points = self.prompt.len();
+        let points = self.direct.len();
         let mut slope = DMatrix::zeros(points, points);
         for p in 0..points {
-            slope[(p, p)] = self.prompt[p].direct[0][0];
+            slope[(p, p)] = self.direct[p][0][0];
         }
         for channel in self.lags.iter().filter(|lag| lag.input[0] != 0.0) {
             for (_, gains) in channel.gains.iter().filter(|(output, _)| *output == 0) {
@@ -79,7 +79,7 @@ impl StationAir {
     }
 
     fn channels(&self) -> Vec<LagChannel> {
-        let points = self.prompt.len();
+        let points = self.direct.len();
         let of = |lag: &super::StationLag| {
             let mut gains = vec![[0.0; 2]; points];
             for (output, along) in lag.gains.iter().filter(|(output, _)| *output < 2) {
@@ -96,7 +96,7 @@ impl StationAir {
     }
 
     fn memory(&self) -> Option<StationMemory> {
-        let points = self.prompt.len();
+        let points = self.direct.len();
         let zero = || DMatrix::zeros(points, points);
         let mut kernels = [[zero(), zero()], [zero(), zero()]];
         let mut any = false;

@@ -1,0 +1,45 @@
+//! What an evaluation of a revolution leaves, and the arrays it uses again.
+
+use crate::sections::air::{SectionFlow, SectionLoads};
+use crate::sections::flight_air::AirScratch;
+use crate::structure::equations::ForceRows;
+use crate::structure::motion::{Foreshortening, ModalRows, Motion};
+
+/// Air loads over a revolution.
+#[derive(Debug, Clone)]
+pub(crate) struct Revolution {
+    pub(super) first_station: usize,
+    pub(super) points: usize,
+    /// By station of the whole blade, then by point; nothing where the blade does not lift.
+    pub(super) sections: Vec<SectionLoads>,
+}
+
+impl Revolution {
+    /// Aerodynamic loads of all lifting stations at one point.
+    pub(crate) fn at(&self, point: usize) -> impl Iterator<Item = &SectionLoads> {
+        self.sections.chunks_exact(self.points).skip(self.first_station).map(move |of| &of[point])
+    }
+
+    pub(crate) fn points(&self) -> usize {
+        self.points
+    }
+}
+
+/// Reusable arrays of the evaluation of a revolution.
+#[derive(Debug, Default)]
+pub(crate) struct Work {
+    pub(super) rows: ModalRows,
+    pub(super) foreshortening: Foreshortening,
+    pub(super) together: Vec<StationWork>,
+}
+
+/// Those of some stations.
+#[derive(Debug, Default)]
+pub(super) struct StationWork {
+    pub(super) motion: Motion,
+    pub(super) flows: Vec<SectionFlow>,
+    pub(super) air: AirScratch,
+    pub(super) forces: ForceRows,
+    /// Their share of the residual, mode by mode.
+    pub(super) residual: Vec<f64>,
+}
