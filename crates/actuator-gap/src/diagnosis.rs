@@ -5,7 +5,7 @@ use crate::causes::{self, BenchCause, Design};
 use crate::error::DiagnosisError;
 use crate::next::{self, Proposal};
 use crate::question::{Question, Stage, StructureStore};
-use crate::record::{Record, Records, slower};
+use crate::record::{Record, Records, as_measured, slower};
 use crate::sessions::{
     GivenModel, Sessions, beginning, continued, doubt, range_of, scale_of, simulated_runs,
 };
@@ -28,6 +28,8 @@ pub struct Diagnosis {
     pub(crate) law_inputs: Vec<Vec<f64>>,
     /// Names of the measured runs.
     pub run_ids: Vec<String>,
+    /// Names of those with samples interpolated between the measured ones, which are left out.
+    pub interpolated: Vec<String>,
     /// The outputs among the traces.
     pub(crate) outputs: Vec<OutputTrace>,
     /// Energy of every measured run.
@@ -142,7 +144,11 @@ impl Diagnosis {
 pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, DiagnosisError> {
     let too_few = |what: &str| GapError::TooShort { what: what.to_owned(), samples: 0, needed: 1 };
     let library = [causes::LIBRARY.as_slice(), &causes::DECOYS].concat();
-    let (mut own, mut beside) = (continued(&measured.runs), continued(&question.reference));
+    let read = |runs: &[Record]| continued(&as_measured(runs));
+    let (mut own, mut beside) = (read(&measured.runs), read(&question.reference));
+    let is_finer = |(given, read): &(&Record, &Record)| given.step_s < read.step_s;
+    let pairs = measured.runs.iter().zip(&own).filter(is_finer);
+    let interpolated = pairs.map(|(run, _)| run.id.clone()).collect();
     if question.given.is_some() && beside.is_empty() && own.iter().all(|run| run.is_reference) {
         for run in &mut own {
             run.is_reference = false;
@@ -220,6 +226,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         finding,
         law_inputs: fitted.iter().map(|r| r.input.clone()).collect(),
         run_ids: runs.iter().map(|r| r.id.clone()).collect(),
+        interpolated,
         outputs: outputs(&simulator),
         energy: runs.iter().map(|run| RunEnergy::of(run, &base)).collect(),
         title: measured.title.clone(),

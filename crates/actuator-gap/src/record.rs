@@ -1,6 +1,8 @@
 //! The records of a diagnosis, in the units of the bench.
 
 use measured_data::{Accuracy, BenchData, Fitting, LoopData, Run, RunRole, Sensor};
+use model_gap::Thinning;
+use rayon::prelude::*;
 use rotor_base::{RecordUse, mean_square, variance};
 use std::ops::Range;
 
@@ -82,6 +84,23 @@ impl Record {
         self.output.iter_mut().for_each(|y| *y -= zero);
     }
 
+    /// The record without the samples in between.
+    fn thinned(&self, thin: Thinning) -> Self {
+        let of = |signal: &Vec<f64>| thin.of_signal(signal);
+        let place = |sample: usize| sample.saturating_sub(thin.first).div_ceil(thin.every);
+        Self {
+            step_s: self.step_s * thin.every as f64,
+            input: of(&self.input),
+            output: of(&self.output),
+            amplifier: self.amplifier.as_ref().map(of),
+            temperature: self.temperature.as_ref().map(of),
+            load: self.load.as_ref().map(of),
+            window: place(self.window.start)..place(self.window.end),
+            start_s: self.start_s.map(|start_s| start_s + self.step_s * thin.first as f64),
+            ..self.clone()
+        }
+    }
+
     /// Length of what is judged, s.
     pub fn duration_s(&self) -> f64 {
         self.step_s * self.judged_input().len() as f64
@@ -91,6 +110,28 @@ impl Record {
     pub fn frequency_hz(&self) -> f64 {
         frequency_hz(self.judged_input(), self.step_s)
     }
+}
+
+/// Records without samples that were interpolated between those of their outputs: they tell nothing, and make noise look
+/// small. A run that does not show it is taken to be sampled like most others of its step.
+pub(crate) fn as_measured(runs: &[Record]) -> Vec<Record> {
+    let of = |run: &Record| Thinning::of(&run.output);
+    let own: Vec<Option<Thinning>> = runs.par_iter().map(of).collect();
+    let usual = |step_s: f64| {
+        let alike = runs.iter().zip(&own).filter(|(run, _)| is_near(run.step_s, step_s));
+        let mut found: Vec<Option<Thinning>> = alike.map(|(_, thin)| *thin).collect();
+        found.sort_by_key(|thin| thin.map(|thin| thin.every));
+        found[found.len() / 2]
+    };
+    let thinned = |(run, own): (&Record, &Option<Thinning>)| {
+        own.or_else(|| usual(run.step_s)).map_or_else(|| run.clone(), |thin| run.thinned(thin))
+    };
+    runs.iter().zip(&own).map(thinned).collect()
+}
+
+/// Whether two times between samples are one, but for how they were written.
+pub(crate) fn is_near(step_s: f64, other_s: f64) -> bool {
+    (step_s / other_s - 1.0).abs() < 1e-6
 }
 
 /// Time between samples up to which a bench is as fast as those of piezo actuators, s.

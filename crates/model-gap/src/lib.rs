@@ -7,6 +7,7 @@
 //! - [`HarmonicFit`], [`FirstHarmonicError`]: mean and harmonics of a record, and how far amplitude and
 //!   phase of the first one are off;
 //! - [`noise_variance`]: measurement noise from repeated cycles, never from the residual;
+//! - [`Thinning`]: samples of a record that were interpolated between measured ones;
 //! - [`EnergySplit`]: which part of the measured energy is explained, which is noise, and which is
 //!   structure that the simulation misses;
 //! - [`discovery`]: which of given causes explain a misfit, if any does;
@@ -55,7 +56,7 @@ pub use harmonics::{FirstHarmonicError, HarmonicFit};
 pub use in_common::{InCommon, in_common};
 pub use memo::Memo;
 pub use misfit::Misfit;
-pub use noise::noise_variance;
+pub use noise::{Thinning, noise_variance};
 pub use resampling::{NoiseDraw, SplitMix};
 pub use sine::Sine;
 

@@ -1,6 +1,6 @@
 //! Records that were cut: one that begins in motion, where another ends.
 
-use crate::record::Record;
+use crate::record::{Record, is_near};
 
 /// Part of a step of the input that rounding may take it off.
 const ROUNDED: f64 = 0.05;
@@ -29,7 +29,7 @@ fn goes_on(first: &Record, second: &Record) -> bool {
     };
     let (step, next) = (a - b, d - c);
     let moves = step.abs().max(next.abs());
-    let alike = (first.step_s / second.step_s - 1.0).abs() < 1e-6
+    let alike = is_near(first.step_s, second.step_s)
         && first.is_reference == second.is_reference
         && first.sensor == second.sensor
         && first.fitting == second.fitting;

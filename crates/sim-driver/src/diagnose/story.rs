@@ -87,6 +87,16 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
         100.0 * d.floor,
         significant(d.noise, 3),
     ));
+    if let [first, others @ ..] = &d.interpolated[..] {
+        let runs = if others.is_empty() {
+            first.clone()
+        } else {
+            format!("{first} and {} more", others.len())
+        };
+        sheet.line(format_args!(
+            "  Samples of {runs} were interpolated between measured ones: they tell nothing, and are left out."
+        ));
+    }
     if !d.has_reference {
         let taken = match d.given.filter(|own| !own.is_foreign()) {
             Some(_) => "the simulation is taken at its word",

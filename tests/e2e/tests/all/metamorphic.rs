@@ -41,7 +41,21 @@ fn cut(run: &mut Record) -> Record {
     second
 }
 
-const CHANGES: [(&str, Change); 7] = [
+/// Twice the samples, those in between on straight lines.
+fn doubled(runs: &mut [Record]) {
+    let fine = |own: &mut Vec<f64>| {
+        let ends = own.windows(2).flat_map(|w| [w[0], w[0].midpoint(w[1])]);
+        *own = ends.chain(own.last().copied()).collect();
+    };
+    for run in runs {
+        fine(&mut run.input);
+        fine(&mut run.output);
+        run.amplifier.iter_mut().for_each(fine);
+        (run.step_s, run.window) = (run.step_s / 2.0, 0..run.output.len());
+    }
+}
+
+const CHANGES: [(&str, Change); 8] = [
     ("the order of the runs", |runs| runs.reverse()),
     ("their names", |runs| {
         for (number, run) in runs.iter_mut().enumerate() {
@@ -66,6 +80,7 @@ const CHANGES: [(&str, Change); 7] = [
             (run.step_s, run.window) = (2.0 * run.step_s, 0..run.output.len());
         }
     }),
+    ("twice the samples, on straight lines", |runs| doubled(runs)),
     ("the sign of output and gain", |runs| every_output(runs, |y| -y)),
 ];
 

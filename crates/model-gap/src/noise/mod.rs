@@ -1,4 +1,8 @@
-//! Measurement noise from repeated cycles.
+//! Measurement noise from repeated cycles; samples that have none of their own.
+
+mod oversampling;
+
+pub use oversampling::Thinning;
 
 use crate::{GapError, error};
 
