@@ -16,18 +16,22 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         };
         Candidate {
             id: "depolarisation",
-            physics: "Below a threshold polarisation is lost for as long as the voltage stays there, p' = rate (threshold - V), and the gain with it.",
+            physics: "Below a threshold polarisation is lost, and the gain with it: at once, by the volts below, and for as long as the voltage stays there, p' = rate (threshold - V).",
             parameters: vec![
                 linear("threshold", "V", low - 0.01, inside(0.25)),
                 shape(logarithmic("loss_per_volt_second", "1/(V s)", 1e-6, 1.0)),
                 shape(linear("about", "1", -0.5, 1.5)),
+                shape(logarithmic("loss_per_volt", "1/V", 1e-6, 0.1)),
             ],
             class: Class::LossOfPolarisation,
-            fingerprint: "a gain that falls with the time below the threshold and stays lost",
+            fingerprint: "a gain that falls with the volts and the time below the threshold and stays lost",
             confused_with: &["voltage-saturation", "sensor-nonlinearity", "load-stiffness"],
             separating: &["bias-sweep"],
             starts: [0.04, 0.1, 0.18]
-                .map(|part| [1e-3, 1e-2].map(|rate| vec![inside(part), rate, 0.0]))
+                .map(|part| {
+                    let loss = |with_time, at_once| vec![inside(part), with_time, 0.0, at_once];
+                    [loss(1e-3, 1e-6), loss(1e-2, 1e-6), loss(1e-6, 3e-3)]
+                })
                 .concat(),
             blocked,
             ..usual()
@@ -36,7 +40,7 @@ pub(super) const CAUSE: BenchCause = BenchCause {
     apply: |chain, values| {
         let stage = Depolarisation {
             threshold_volt: values[0],
-            loss_per_volt: 0.0,
+            loss_per_volt: values[3],
             loss_per_volt_second: values[1],
             repoling_volt: None,
         };
