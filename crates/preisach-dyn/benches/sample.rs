@@ -6,7 +6,7 @@
 #![expect(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 #![expect(clippy::print_stdout, reason = "a benchmark reports")]
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, BoucWen, BoucWenParameters, Calibration,
     CurrentLimit, Drive, DynamicParameters, DynamicPreisach, Envelope, HysteresisLaw, Lag,
@@ -38,8 +38,8 @@ fn map(grid: &PreisachGrid, size: f64) -> Result<PlayMap, PreisachError> {
     PlayMap::from_rises(grid, 0.0, &rises)
 }
 
-fn models() -> Result<(StaticPreisach, DynamicPreisach), PreisachError> {
-    let grid = PreisachGrid::new(VoltageRange::amplified_stack(), LEVELS)?;
+fn models(levels: usize) -> Result<(StaticPreisach, DynamicPreisach), PreisachError> {
+    let grid = PreisachGrid::new(VoltageRange::amplified_stack(), levels)?;
     let g0_deg = map(&grid, 0.02)?;
     let mut g1_s = map(&grid, 1e-6)?;
     g1_s.constant = -0.02;
@@ -80,7 +80,7 @@ fn report(name: &str, best_ns: f64, bar_ns: f64) {
 
 /// Times a law through the whole actuator, without stages and with some.
 fn actuators(c: &mut Criterion) {
-    let Ok((fixed, dynamic)) = models() else {
+    let Ok((fixed, dynamic)) = models(LEVELS) else {
         return;
     };
     let volts = voltages();
@@ -164,7 +164,7 @@ fn actuators(c: &mut Criterion) {
 
 /// A batch on all cores, against the same histories one after another.
 fn batches(c: &mut Criterion) {
-    let Ok((fixed, dynamic)) = models() else {
+    let Ok((fixed, dynamic)) = models(LEVELS) else {
         return;
     };
     let volts = voltages();
@@ -204,7 +204,7 @@ fn batches(c: &mut Criterion) {
 const BATCH: usize = 64;
 
 fn samples(c: &mut Criterion) {
-    let Ok((fixed, dynamic)) = models() else {
+    let Ok((fixed, dynamic)) = models(LEVELS) else {
         return;
     };
     let volts = voltages();
@@ -239,5 +239,24 @@ fn samples(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, samples, actuators, batches);
+/// How a sample of the dynamic model grows with the levels.
+fn growth(c: &mut Criterion) {
+    let volts = voltages();
+    let mut group = c.benchmark_group("sample over levels");
+    group.throughput(Throughput::Elements(volts.len() as u64));
+    for levels in [20, 40, 80, 160] {
+        let Ok((_, dynamic)) = models(levels) else { return };
+        let (mut memory, _) = dynamic.start(65.0, StartState::Rest);
+        group.bench_function(BenchmarkId::from_parameter(levels), |b| {
+            b.iter(|| {
+                for &u in &volts {
+                    black_box(dynamic.step(&mut memory, black_box(u), TIME_STEP_S));
+                }
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, samples, actuators, batches, growth);
 criterion_main!(benches);

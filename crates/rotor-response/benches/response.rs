@@ -5,13 +5,13 @@
 //! (quasi-steady ones have none), has the same budget: a trim from nothing makes a few. One residual of a revolution
 //! has 0.8 ms, at the default discretisation.
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use flap_aero::AttachedFlowModel;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec};
 use rotor_response::{
     Compressibility, Condition, Controls, Discretisation, ResponseError, ResponseTolerances, Rotor,
-    RotorModel, RotorSolver,
+    RotorModel, RotorSolution, RotorSolver,
 };
 use rotor_wake::{FlightState, LinearInflow};
 use std::hint::black_box;
@@ -118,14 +118,7 @@ fn newton_matrix(criterion: &mut Criterion) {
 )]
 fn residual(criterion: &mut Criterion) {
     let Ok(one_core) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
-    let built = || {
-        let blade = BladeProperties::new(BladeSpec::table_1())?;
-        let rotor = Rotor::new(RotorModel::paper_case(), &blade, Discretisation::default())?;
-        let mut solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default())?;
-        let rest = solver.solve(&condition(0.0), &LinearInflow::Drees, None)?;
-        Ok::<_, ResponseError>((solver, rest))
-    };
-    let Ok((solver, rest)) = built() else { return };
+    let Ok((solver, rest)) = at_rest(Discretisation::default()) else { return };
     let moved = condition(0.05);
     let run = || black_box(solver.periodicity(&moved, &rest));
     let mut best = f64::INFINITY;
@@ -135,7 +128,27 @@ fn residual(criterion: &mut Criterion) {
         best = best.min(started.elapsed().as_secs_f64() / f64::from(count));
     }
     println!("residual: {:.2} ms, {:.2} of the budget", 1e3 * best, best / RESIDUAL_BUDGET_S);
-    criterion.bench_function("residual", |b| b.iter(|| one_core.install(run)));
+    criterion.bench_function("residual", |b| one_core.install(|| b.iter(run)));
+    let mut group = criterion.benchmark_group("residual over stations");
+    for span_points_per_piece in [2, 4, 6, 8] {
+        let finer = Discretisation { span_points_per_piece, ..Discretisation::default() };
+        let Ok((solver, rest)) = at_rest(finer) else { return };
+        let stations = solver.rotor().blade().grid().len();
+        let run = || black_box(solver.periodicity(&moved, &rest));
+        group.bench_function(BenchmarkId::from_parameter(stations), |b| {
+            one_core.install(|| b.iter(run));
+        });
+    }
+    group.finish();
+}
+
+/// The paper's rotor with flaps at rest.
+fn at_rest(discretisation: Discretisation) -> Result<(RotorSolver, RotorSolution), ResponseError> {
+    let blade = BladeProperties::new(BladeSpec::table_1())?;
+    let rotor = Rotor::new(RotorModel::paper_case(), &blade, discretisation)?;
+    let mut solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default())?;
+    let rest = solver.solve(&condition(0.0), &LinearInflow::Drees, None)?;
+    Ok((solver, rest))
 }
 
 criterion_group! {

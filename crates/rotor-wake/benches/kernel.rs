@@ -7,7 +7,7 @@
 #![expect(clippy::unwrap_used, reason = "a bench whose thread pool is refused cannot go on")]
 #![expect(clippy::disallowed_methods, reason = "a bench reads the clock")]
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rotor_wake::{CoreModel, SegmentSet, Vec3, induced_velocities, induced_velocities_serial};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -128,12 +128,18 @@ fn kernel(criterion: &mut Criterion) {
         "kernel, 2 threads: {parallel:.3e} evaluations/s, {:.2} times one thread (asked: 1.8)",
         parallel / serial
     );
-    criterion.bench_function("plain loop", |b| {
+    let mut group = criterion.benchmark_group("kernel");
+    group.throughput(Throughput::Elements((TARGETS * SEGMENTS) as u64));
+    group.bench_function("plain loop", |b| {
         b.iter(|| reference(black_box(&targets), black_box(&nodes), &mut out));
     });
-    criterion.bench_function("kernel", |b| {
+    group.bench_function("1 thread", |b| {
         b.iter(|| induced_velocities_serial(black_box(&targets), black_box(&set), &mut out));
     });
+    group.bench_function("2 threads", |b| {
+        pool.install(|| b.iter(|| induced_velocities(black_box(&targets), black_box(&set))));
+    });
+    group.finish();
 }
 
 criterion_group! {

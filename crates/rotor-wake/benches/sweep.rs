@@ -6,7 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a bench whose inputs are refused cannot go on")]
 #![expect(clippy::disallowed_methods, reason = "a bench reads the clock")]
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use rotor_wake::{BladeLines, CirculationMap, FlightState, FreeWake, FreeWakeSettings, WakeRotor};
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -15,14 +15,36 @@ use std::time::{Duration, Instant};
 const BUDGET_S: f64 = 0.1;
 const PANELS: usize = 20;
 
-fn sweep(criterion: &mut Criterion) {
+/// An undistorted wake and a circulation on its grid.
+fn wake_of(settings: FreeWakeSettings) -> (FreeWake, CirculationMap) {
     let rotor = WakeRotor::cosine(4, 0.2, PANELS).unwrap();
-    let settings = FreeWakeSettings::default();
     let flight = FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.087 };
     let lines = BladeLines::flat(&rotor, settings.azimuths);
     let circulation =
         CirculationMap::constant(settings.azimuths, PANELS, TAU * 0.0049 / 4.0).unwrap();
-    let wake = FreeWake::undistorted(rotor, settings, flight, 0.008, lines).unwrap();
+    (FreeWake::undistorted(rotor, settings, flight, 0.008, lines).unwrap(), circulation)
+}
+
+/// How a sweep on one thread grows with the steps of azimuth and with the free turns.
+fn growth(criterion: &mut Criterion) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let usual = FreeWakeSettings::default;
+    let azimuths = [12, 24, 36, 48].map(|n| (n, usual().with_azimuths(n)));
+    let turns = [2, 4, 6, 8].map(|turns| (turns, FreeWakeSettings { turns, ..usual() }));
+    for (name, wakes) in [("sweep over azimuths", azimuths), ("sweep over turns", turns)] {
+        let mut group = criterion.benchmark_group(name);
+        for (size, settings) in wakes {
+            let (wake, circulation) = wake_of(settings);
+            group.bench_function(BenchmarkId::from_parameter(size), |b| {
+                pool.install(|| b.iter(|| black_box(wake.clone().sweep(&circulation).unwrap())));
+            });
+        }
+        group.finish();
+    }
+}
+
+fn sweep(criterion: &mut Criterion) {
+    let (wake, circulation) = wake_of(FreeWakeSettings::default());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let mut one = || {
         let mut moved = wake.clone();
@@ -38,15 +60,17 @@ fn sweep(criterion: &mut Criterion) {
             .fold(f64::INFINITY, f64::min)
     });
     println!("sweep: {:.1} ms on one thread, ratio to budget {:.2}", 1e3 * best, best / BUDGET_S);
-    criterion.bench_function("sweep", |b| b.iter(&mut one));
+    criterion.bench_function("sweep", |b| pool.install(|| b.iter(&mut one)));
+    // on the grid of a trim
+    let (wake, circulation) = wake_of(FreeWakeSettings::default().with_azimuths(36));
     criterion.bench_function("line induction", |b| {
-        b.iter(|| black_box(wake.line_induction(&circulation).unwrap()));
+        pool.install(|| b.iter(|| black_box(wake.line_induction(&circulation).unwrap())));
     });
 }
 
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(10).measurement_time(Duration::from_secs(2));
-    targets = sweep
+    targets = sweep, growth
 }
 criterion_main!(benches);
