@@ -98,6 +98,14 @@ pub enum XtaskError {
     /// A study could not be computed.
     #[error("{0}")]
     Study(String),
+    /// A figure of the speed page could not be found.
+    #[error("speed of {what}: {said}")]
+    Speed {
+        /// What was measured.
+        what: String,
+        /// Why there is no figure.
+        said: String,
+    },
     /// A row of the validation page could not be read.
     #[error("row {id} in {}: {said}", folder.display())]
     Row {

@@ -11,6 +11,7 @@
 //! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
 //! | `hidden-effects` | has the program diagnose synthetic sets with known answers, prints the scores | [`hidden_effects`] |
 //! | `everyday-errors` | the same on benches with the everyday errors of a laboratory | [`everyday_errors`] |
+//! | `bench` | measures hot paths, commands and growth, writes the speed page of the book | [`mod@bench`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
 //! Exit codes: 0 done, 1 physics or numerics failed, 2 bad input or broken rule, 3 a comparison
@@ -21,6 +22,7 @@
     reason = "xtask and sim-driver are where files and the environment are known"
 )]
 
+pub mod bench;
 pub mod calibrate;
 pub mod ci;
 pub mod dependencies;

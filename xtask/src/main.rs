@@ -7,9 +7,10 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
+use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
-    XtaskError, calibrate, ci, dependencies, everyday_errors, files, hidden_effects,
+    XtaskError, bench, calibrate, ci, dependencies, everyday_errors, files, hidden_effects,
     hover_refinement, layers, refinement, regress, rooms, tidy, validate, wake_inflow,
     wake_refinement, workspace,
 };
@@ -78,6 +79,16 @@ enum Chore {
     },
     /// Diagnose synthetic benches with the everyday errors of a laboratory, one actuator a set, and score the findings
     EverydayErrors(Everyday),
+    /// Measure hot paths against bars and limits of the processor, whole commands and growth, and write
+    /// docs/src/performance.md; ten minutes on idle cores
+    Bench {
+        /// Measure shorter, without the slowest command; the page is shown, not written
+        #[arg(long)]
+        quick: bool,
+        /// Only a part, which is shown, not written
+        #[arg(long, value_enum)]
+        only: Option<bench::Part>,
+    },
     /// Run .ci/run: everything a change must pass
     Ci,
 }
@@ -264,6 +275,7 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(ExitCode::from(report.exit_code()))
         }
         Chore::EverydayErrors(options) => everyday(root, options),
+        Chore::Bench { quick, only } => speed(root, quick, only),
         Chore::Ci => ci::run(root),
     }
 }
@@ -304,6 +316,20 @@ fn everyday(root: &Path, options: Everyday) -> Result<ExitCode, XtaskError> {
     let report = everyday_errors::run(root, &suite.options(selection), progress)?;
     say(&mut std::io::stdout(), &report.text());
     Ok(ExitCode::from(report.exit_code()))
+}
+
+fn speed(root: &Path, quick: bool, only: Option<bench::Part>) -> Result<ExitCode, XtaskError> {
+    let patience = if quick { Patience::Quick } else { Patience::Usual };
+    let options = bench::Options { patience, only };
+    let page = bench::run(root, options, |line| say(&mut std::io::stderr(), line))?;
+    let text = if options.is_whole() {
+        files::write_atomically(&root.join(bench::PAGE), &page)?;
+        format!("written: {}\n", bench::PAGE)
+    } else {
+        page
+    };
+    say(&mut std::io::stdout(), &text);
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Writes text; a reader that has gone away is no reason to fail.

@@ -16,6 +16,8 @@ use serde::de::DeserializeOwned;
 
 use crate::{XtaskError, files};
 
+pub(crate) use programs::{commit, said};
+
 /// A set that could not be diagnosed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
@@ -88,7 +90,7 @@ pub struct Hhc {
 }
 
 /// Builds the program as a user would.
-fn build(root: &Path) -> Result<PathBuf, XtaskError> {
+pub(crate) fn build(root: &Path) -> Result<PathBuf, XtaskError> {
     let status = Command::new("cargo")
         .args(["build", "--release", "-p", "sim-driver"])
         .current_dir(root)

@@ -25,20 +25,25 @@ impl Programs {
         };
         let (diagnosing, generating) = (hash(program)?, hash(&own)?);
         let version = said(Command::new(program).arg("--version"));
-        let git = |arguments: &[&str]| said(Command::new("git").args(arguments).current_dir(root));
-        let commit = git(&["rev-parse", "--short", "HEAD"]).unwrap_or("unknown".to_owned());
-        let changed = git(&["status", "--porcelain"]).is_some_and(|text| !text.is_empty());
         let text = format!(
-            "{} at commit {commit}{}, program {diagnosing}, generator {generating}",
+            "{} at commit {}, program {diagnosing}, generator {generating}",
             version.unwrap_or("hhc".to_owned()),
-            if changed { " with changes" } else { "" },
+            commit(root),
         );
         Ok(Self { key: format!("{diagnosing}{generating}"), text })
     }
 }
 
+/// The commit of the tree, and whether there are changes since.
+pub(crate) fn commit(root: &Path) -> String {
+    let git = |arguments: &[&str]| said(Command::new("git").args(arguments).current_dir(root));
+    let commit = git(&["rev-parse", "--short", "HEAD"]).unwrap_or("unknown".to_owned());
+    let changed = git(&["status", "--porcelain"]).is_some_and(|text| !text.is_empty());
+    format!("{commit}{}", if changed { " with changes" } else { "" })
+}
+
 /// What a program says, if it can be started and ends well.
-fn said(command: &mut Command) -> Option<String> {
+pub(crate) fn said(command: &mut Command) -> Option<String> {
     let output = command.output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

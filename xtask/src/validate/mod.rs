@@ -12,6 +12,7 @@ use validation::{AREAS, FILTER, ROWS_FOLDER, Row, heading_of, ids};
 
 use crate::{XtaskError, files};
 
+pub(crate) use page::figure;
 pub use page::{render, stale_lines};
 
 /// Where the rows of a run are put, from the root.

@@ -117,7 +117,7 @@ fn shown(criterion: &Criterion) -> [String; 2] {
 }
 
 /// A number with three significant digits, without zeros that say nothing.
-fn figure(value: f64) -> String {
+pub(crate) fn figure(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 {
         return "0".to_owned();
