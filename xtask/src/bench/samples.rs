@@ -85,7 +85,7 @@ pub(super) fn run(
 ) -> Result<(), XtaskError> {
     let wanted = format!("^({})(/[0-9]+)?$", ids.join("|"));
     let mut command = cargo_bench(root, &[target]);
-    command.arg("--").arg("--noplot").args(patience.arguments()).arg(wanted);
+    command.args(["--quiet", "--", "--quiet", "--noplot"]).args(patience.arguments()).arg(wanted);
     succeed(command.env("CRITERION_HOME", folder))
 }
 
