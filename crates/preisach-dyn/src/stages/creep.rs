@@ -165,6 +165,17 @@ impl Step for CreepStep {
         input + creep
     }
 
+    fn pass(&self, signal: &mut [f64]) {
+        let Some(&start) = signal.first() else {
+            return;
+        };
+        let mut creep: Vec<f64> = signal.iter().map(|input| self.total * (input - start)).collect();
+        let (fours, rest) = self.terms.as_chunks::<4>();
+        fours.iter().for_each(|terms| add_lags(terms, signal, &mut creep));
+        rest.iter().for_each(|term| add_lags(&[*term], signal, &mut creep));
+        signal.iter_mut().zip(creep).for_each(|(value, creep)| *value += creep);
+    }
+
     fn owns(&self, memory: &CreepMemory) -> bool {
         memory.deviations.len() == self.terms.len()
     }
@@ -173,6 +184,24 @@ impl Step for CreepStep {
         let deviations = before.deviations.iter().zip(&mut now.deviations);
         for ((_, lag), (before, now)) in self.terms.iter().zip(deviations) {
             *now = lag.settled(*before, *now, period_s);
+        }
+    }
+}
+
+/// Adds the weighted deviations of lags, side by side, from a signal they are settled at the first
+/// sample of.
+fn add_lags<const N: usize>(terms: &[(f64, LagStep); N], signal: &[f64], sums: &mut [f64]) {
+    let terms = *terms;
+    let mut deviations = [0.0; N];
+    let mut last = signal[0];
+    for (sum, &input) in sums.iter_mut().zip(signal) {
+        let change = input - last;
+        last = input;
+        for (deviation, (_, lag)) in deviations.iter_mut().zip(&terms) {
+            *deviation = lag.deviation(*deviation, change);
+        }
+        for (deviation, (weight, _)) in deviations.iter().zip(&terms) {
+            *sum += weight * deviation;
         }
     }
 }

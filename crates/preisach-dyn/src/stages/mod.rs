@@ -106,6 +106,19 @@ pub(crate) trait Step {
     /// One sample on.
     fn advance(&self, memory: &mut Self::Memory, input: f64) -> f64;
 
+    /// A whole signal through the stage, settled at its first sample and without load: the same
+    /// numbers as sample by sample.
+    fn pass(&self, signal: &mut [f64]) {
+        let Some((first, rest)) = signal.split_first_mut() else {
+            return;
+        };
+        let (mut memory, output) = self.start(*first);
+        *first = output;
+        for value in rest {
+            *value = self.advance(&mut memory, *value);
+        }
+    }
+
     /// Whether a memory of this kind of stage is one of this stage.
     fn owns(&self, _memory: &Self::Memory) -> bool {
         true
@@ -181,6 +194,12 @@ macro_rules! kinds {
                 }
             }
 
+            fn pass(&self, signal: &mut [f64]) {
+                match self {
+                    $(Self::$kind(step) => step.pass(signal),)*
+                }
+            }
+
             fn owns(&self, memory: &StageMemory) -> bool {
                 match (self, memory) {
                     $((Self::$kind(step), StageMemory::$kind(m)) => step.owns(m),)*
@@ -223,21 +242,6 @@ kinds! {
     Nonlinearity(NonlinearityStep),
     Quantisation(QuantisationStep),
     Hum(HumStep),
-}
-
-impl StageStep {
-    /// A whole signal through the stage, settled at its first sample and without load: the same
-    /// numbers as sample by sample.
-    pub(crate) fn pass(&self, signal: &mut [f64]) {
-        let Some((first, rest)) = signal.split_first_mut() else {
-            return;
-        };
-        let (mut memory, output) = self.start(*first);
-        *first = output;
-        for value in rest {
-            *value = self.advance(&mut memory, *value);
-        }
-    }
 }
 
 impl AmplifierStage {

@@ -2,7 +2,7 @@
 
 use crate::identify::BenchRecord;
 use crate::identify::families::family::{Family, Fitted, Given, Search, share};
-use crate::identify::fit::output_error::Pull;
+use crate::identify::fit::output_error::{Minimum, Pull};
 use crate::identify::fit::preisach::RateFit;
 use crate::identify::fit::refine::{Refined, SHAPE, reshaped};
 use crate::identify::fit::training::Training;
@@ -103,21 +103,18 @@ pub(crate) fn relaxation(
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
     let (settings, all) = (training.settings, training.all());
-    let mut map = static_fit::as_measured(training)?;
+    let mut map = match given.whole {
+        Some(whole) => remapped(training, &whole.model)?,
+        None => static_fit::as_measured(training)?,
+    };
     let everywhere =
         [(0.02, -6.0), (0.02, -1.5), (0.004, -3.0)].map(|(time_s, at_once): (f64, f64)| {
             let mut x = vec![time_s.ln(), at_once, -2.0, 0.25, -1.0];
             x.resize(STAGES + SHAPE, 0.0);
             DVector::from_vec(x)
         });
-    let mut starts = given.starts(&everywhere);
-    for start in &mut starts {
-        start.rows_mut(STAGES, SHAPE).fill(0.0);
-    }
     let rounds = if given.whole.is_some() { 2 } else { ROUNDS };
-    if let Some(whole) = given.whole {
-        map = remapped(training, &whole.model)?;
-    }
+    let mut starts = given.starts(&everywhere);
     let stroke_um = (map.largest().0 - map.constant) / settings.deg_per_um.abs();
     let built = |held: &PlayMap, x: &DVector<f64>| {
         let law =
@@ -126,24 +123,28 @@ pub(crate) fn relaxation(
         Some(with_stages(model, x, stroke_um))
     };
     let family = Family::StaticPreisachRelaxation;
-    let mut best: Option<(f64, Fitted)> = None;
+    let mut best: Option<(Minimum, PlayMap, [Pull; STAGES])> = None;
     let mut misfit = USUAL_NRMSE;
-    for _ in 0..rounds {
+    for round in 1..=rounds {
         let build = |x: &DVector<f64>| built(&map, x);
         let pulls = pulls(misfit);
         let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
         let minimum = search.minimum(&starts)?;
-        let mut next = minimum.x.clone();
-        next.rows_mut(STAGES, SHAPE).fill(0.0);
-        starts = vec![next];
         misfit = misfit.min(minimum.nrmse);
-        let next_map = remapped(training, &minimum.model)?;
-        if best.as_ref().is_none_or(|(least, _)| minimum.nrmse < *least) {
-            best = Some((minimum.nrmse, search.fitted(minimum, given.uncertainty())));
+        // the next map asks for nearly the same change
+        starts = vec![minimum.x.clone()];
+        let held = map.clone();
+        if round < rounds {
+            map = remapped(training, &minimum.model)?;
         }
-        map = next_map;
+        if best.as_ref().is_none_or(|(least, ..)| minimum.nrmse < least.nrmse) {
+            best = Some((minimum, held, pulls));
+        }
     }
-    best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family: family.name() })
+    let (minimum, held, pulls) = best.ok_or(PreisachError::NotFitted { family: family.name() })?;
+    let build = |x: &DVector<f64>| built(&held, x);
+    let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
+    Ok(search.fitted(minimum, given.uncertainty()))
 }
 
 /// Largest share that settles with the way.

@@ -1,6 +1,7 @@
 //! The way of a model over the records, kept part by part.
 
 use crate::identify::records::prepared::Prepared;
+use crate::stages::Step;
 use crate::{ActuatorLaw, ActuatorModel};
 use rayon::prelude::*;
 
@@ -26,7 +27,10 @@ impl Passage {
         let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
         let free = |r: &&Prepared| {
             let law = bare.simulate(voltages(r), r.record.time_step_s).ok()?.output_deg;
-            through(&model, 0, law, r)
+            let mut signals = Vec::with_capacity(model.linkage.len() + 1);
+            let last = through(&model, 0, law, r, |signal| signals.push(signal.to_vec()))?;
+            signals.push(last);
+            Some(signals)
         };
         let signals = records.iter().map(free).collect::<Option<Vec<_>>>()?;
         Some(Self { model, signals })
@@ -84,7 +88,7 @@ impl Passage {
             }
         };
         let pairs = signals.into_iter().zip(records);
-        pairs.map(|(signal, r)| through(model, first, signal, r)?.pop()).collect()
+        pairs.map(|(signal, r)| through(model, first, signal, r, |_| ())).collect()
     }
 
     /// The law of a model that differs from this one and acts on the command itself.
@@ -99,22 +103,21 @@ impl Passage {
     }
 }
 
-/// A signal through the linkage from stage `first` on: before it and behind every stage; none if it
-/// diverges.
+/// A signal through the linkage from stage `first` on, `keep` being shown what goes into every stage;
+/// none if it diverges.
 fn through(
     model: &ActuatorModel,
     first: usize,
-    signal: Vec<f64>,
+    mut signal: Vec<f64>,
     prepared: &Prepared,
-) -> Option<Vec<Vec<f64>>> {
+    mut keep: impl FnMut(&[f64]),
+) -> Option<Vec<f64>> {
     model.check_stages().ok()?;
-    let mut signals = vec![signal];
     for stage in &model.linkage[first..] {
-        let mut signal = signals.last()?.clone();
+        keep(&signal);
         stage.prepared(prepared.record.time_step_s, &model.calibration).pass(&mut signal);
-        signals.push(signal);
     }
-    signals.last()?.iter().all(|y| y.is_finite()).then_some(signals)
+    signal.iter().all(|y| y.is_finite()).then_some(signal)
 }
 
 #[cfg(test)]

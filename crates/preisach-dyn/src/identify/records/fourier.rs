@@ -41,23 +41,38 @@ pub(crate) fn fit(
     count: usize,
 ) -> Result<FourierFit, PreisachError> {
     let unknowns = 2 * count + 1;
-    let mut normal = DMatrix::zeros(unknowns, unknowns);
     let mut right = DVector::zeros(unknowns);
     let mut result =
         FourierFit { series: HarmonicSeries::zero(count), cycles_per_sample, noise: 0.0 };
-    let mut row = DVector::zeros(unknowns);
+    // sums of cos n phi and sin n phi over the samples: products of two harmonics are made of them
+    let mut sums = vec![(0.0, 0.0); unknowns];
     for index in range.clone() {
         let (sin1, cos1) = result.phase_rad(index).sin_cos();
-        let (mut s, mut c) = (sin1, cos1);
-        row[0] = 1.0;
-        for n in 0..count {
-            row[2 * n + 1] = c;
-            row[2 * n + 2] = s;
+        let (mut s, mut c) = (0.0, 1.0);
+        for (n, sum) in sums.iter_mut().enumerate() {
+            *sum = (sum.0 + c, sum.1 + s);
+            if n == 0 {
+                right[0] += values[index];
+            } else if n <= count {
+                right[2 * n - 1] += c * values[index];
+                right[2 * n] += s * values[index];
+            }
             (c, s) = (c * cos1 - s * sin1, s * cos1 + c * sin1);
         }
-        normal.ger(1.0, &row, &row, 1.0);
-        right.axpy(values[index], &row, 1.0);
     }
+    // unknown k is of harmonic (k + 1) / 2; a sine if k is even, and the mean is a cosine
+    let normal = DMatrix::from_fn(unknowns, unknowns, |i, j| {
+        let (low, high) = (i.min(j), i.max(j));
+        let (a, b) = (low.div_ceil(2), high.div_ceil(2));
+        let is_sine = |k: usize| k > 0 && k.is_multiple_of(2);
+        let (less, more) = (sums[b - a], sums[b + a]);
+        match (is_sine(low), is_sine(high)) {
+            (false, false) => 0.5 * (less.0 + more.0),
+            (true, true) => 0.5 * (less.0 - more.0),
+            (false, true) => 0.5 * (more.1 + less.1),
+            (true, false) => 0.5 * (more.1 - less.1),
+        }
+    });
     let Some(factor) = normal.cholesky().filter(|_| range.len() >= unknowns) else {
         let (quantity, value) = ("samples of steady cycles", range.len() as f64);
         let expected = format!("at least {unknowns} and not all alike").into();
