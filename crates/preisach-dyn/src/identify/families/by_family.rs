@@ -2,7 +2,7 @@
 
 use crate::identify::families::family::{Family, Fitted, Given, Search, share};
 use crate::identify::families::{layered, stop_fit};
-use crate::identify::fit::output_error::Build;
+use crate::identify::fit::output_error::{Build, Slopes};
 use crate::identify::fit::preisach::{RateFit, fit_linear};
 use crate::identify::fit::refine::Refined;
 use crate::identify::fit::static_fit;
@@ -117,7 +117,8 @@ fn by_output_error(
     };
     let common = ["ln gain", "offset, tenths of the stroke", "quadratic, artanh", "cubic, artanh"];
     let search = |build: Build<'_>, everywhere: &[DVector<f64>], names: &[&str]| {
-        let search = Search { family, build, records: &all, names, pulls: &[] };
+        let search =
+            Search { family, build, records: &all, names, pulls: &[], slopes: Slopes::Exact };
         let minimum = search.minimum(&given.starts(everywhere))?;
         Ok(search.fitted(minimum, given.uncertainty()))
     };
@@ -146,7 +147,7 @@ fn by_output_error(
             let builds = [1.0, 2.0].map(|exponent| move |x: &DVector<f64>| bouc_wen(x, exponent));
             let [one, two] = [&builds[0], &builds[1]].map(|build| {
                 let (records, names) = (&all[..], &names[..]);
-                Search { family, build, records, names, pulls: &[] }
+                Search { family, build, records, names, pulls: &[], slopes: Slopes::Exact }
             });
             let (first, second) = (one.minimum(&starts)?, two.minimum(&starts)?);
             let second_is_better = second.nrmse < first.nrmse;

@@ -1,7 +1,7 @@
 //! The families of models, the records they are fitted to, and the search for their parameters.
 
 use crate::identify::fit::output_error::{
-    Build, Estimate, Minimum, OutputError, Pull, Uncertainty,
+    Build, Estimate, Minimum, OutputError, Pull, Slopes, Uncertainty,
 };
 use crate::identify::records::prepared::Prepared;
 use crate::{ActuatorModel, PreisachError};
@@ -124,6 +124,7 @@ pub(crate) struct Search<'a> {
     pub(crate) names: &'a [&'a str],
     /// What is known of the first of them.
     pub(crate) pulls: &'a [Pull],
+    pub(crate) slopes: Slopes,
 }
 
 impl Search<'_> {
@@ -133,7 +134,7 @@ impl Search<'_> {
 
     /// The minimum with the smallest error found from some starts, the first of equals.
     pub(crate) fn minimum(&self, starts: &[DVector<f64>]) -> Result<Minimum, PreisachError> {
-        let from = |x: &DVector<f64>| self.problem(x.clone()).minimise(PATIENCE);
+        let from = |x: &DVector<f64>| self.problem(x.clone()).with(self.slopes).minimise(PATIENCE);
         let found: Vec<Option<Minimum>> = starts.par_iter().map(from).collect();
         let best = found.into_iter().flatten().reduce(|a, b| if b.nrmse < a.nrmse { b } else { a });
         best.ok_or(PreisachError::NotFitted { family: self.family.name() })

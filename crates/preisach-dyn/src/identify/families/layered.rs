@@ -2,7 +2,7 @@
 
 use crate::identify::BenchRecord;
 use crate::identify::families::family::{Family, Fitted, Given, Search, share};
-use crate::identify::fit::output_error::{Minimum, Pull};
+use crate::identify::fit::output_error::{Minimum, Pull, Slopes};
 use crate::identify::fit::preisach::RateFit;
 use crate::identify::fit::refine::{Refined, SHAPE, reshaped};
 use crate::identify::fit::training::Training;
@@ -127,8 +127,12 @@ pub(crate) fn relaxation(
     let mut misfit = USUAL_NRMSE;
     for round in 1..=rounds {
         let build = |x: &DVector<f64>| built(&map, x);
+        // the first round only finds where to go on from, a fold what it misses
+        let is_rough = given.whole.is_some() || round == 1;
+        let slopes = if is_rough { Slopes::Thinned } else { Slopes::Exact };
         let pulls = pulls(misfit);
-        let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
+        let search =
+            Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls, slopes };
         let minimum = search.minimum(&starts)?;
         misfit = misfit.min(minimum.nrmse);
         // the next map asks for nearly the same change
@@ -143,7 +147,9 @@ pub(crate) fn relaxation(
     }
     let (minimum, held, pulls) = best.ok_or(PreisachError::NotFitted { family: family.name() })?;
     let build = |x: &DVector<f64>| built(&held, x);
-    let search = Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls };
+    let slopes = Slopes::Exact;
+    let search =
+        Search { family, build: &build, records: &all, names: &NAMES, pulls: &pulls, slopes };
     Ok(search.fitted(minimum, given.uncertainty()))
 }
 

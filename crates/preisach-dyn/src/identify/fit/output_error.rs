@@ -1,12 +1,13 @@
 //! Output error: records are simulated from their first sample and compared.
 
 use crate::ActuatorModel;
-use crate::identify::fit::passage::Passage;
+use crate::identify::fit::passage::{Command, Passage};
 use crate::identify::records::prepared::Prepared;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Residuals kept of one record at most; all samples are simulated.
 const MOST_RESIDUALS: usize = 800;
@@ -40,6 +41,16 @@ pub struct Estimate {
     pub value: f64,
     /// Standard deviation; infinite if the records do not determine the parameter.
     pub std_deviation: f64,
+}
+
+/// The samples that the slopes of a search come from; residuals come from all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Slopes {
+    /// All.
+    Exact,
+    /// Those that give residuals, the signals straight between them: good enough to find the way, for
+    /// models whose steps may be that long.
+    Thinned,
 }
 
 /// Whether a fit finds the covariance of its parameters: the folds of a cross-validation need none.
@@ -91,6 +102,9 @@ pub(crate) struct Minimum {
 pub(crate) struct OutputError<'a> {
     build: Build<'a>,
     records: &'a [&'a Prepared<'a>],
+    commands: Vec<Command<'a>>,
+    /// The commands that slopes are found with, if these are others.
+    thinned: Option<Vec<Command<'a>>>,
     /// Of the first parameters.
     pulls: &'a [Pull],
     x: DVector<f64>,
@@ -111,10 +125,31 @@ impl<'a> OutputError<'a> {
         pulls: &'a [Pull],
         x: DVector<f64>,
     ) -> Self {
-        let mut problem = Self { build, records, pulls, x, here: None, best: None, passage: None };
+        let commands = records.iter().map(|r| Command::whole(r)).collect();
+        let mut problem = Self {
+            build,
+            records,
+            commands,
+            thinned: None,
+            pulls,
+            x,
+            here: None,
+            best: None,
+            passage: None,
+        };
         problem.here = problem.tried();
         problem.best = problem.here.clone().map(|here| (problem.x.clone(), here));
         problem
+    }
+
+    /// With slopes of a kind.
+    pub(crate) fn with(self, slopes: Slopes) -> Self {
+        let thinned = |r: &&'a Prepared<'a>| {
+            let (first, stride) = (r.record.trained_samples().start, Self::stride(r));
+            Command::thinned(r, if first.is_multiple_of(stride) { stride } else { 1 })
+        };
+        let is_thinned = slopes == Slopes::Thinned;
+        Self { thinned: is_thinned.then(|| self.records.iter().map(thinned).collect()), ..self }
     }
 
     /// Root mean square of the NRMSE of the records at the start, with the pulls.
@@ -122,60 +157,66 @@ impl<'a> OutputError<'a> {
         Some(self.here.as_ref()?.norm())
     }
 
+    /// Samples of a record from one residual to the next.
+    fn stride(record: &Prepared) -> usize {
+        record.record.trained_samples().len().div_ceil(MOST_RESIDUALS).max(1)
+    }
+
     /// Samples of a record that give residuals.
     fn kept(record: &Prepared) -> impl Iterator<Item = usize> {
-        let trained = record.record.trained_samples();
-        let stride = trained.len().div_ceil(MOST_RESIDUALS).max(1);
-        trained.step_by(stride)
+        record.record.trained_samples().step_by(Self::stride(record))
     }
 
     /// Residuals at some parameters, with the passage they come from; none if the model diverges.
-    fn evaluated(&self, x: &DVector<f64>) -> Option<(DVector<f64>, Passage)> {
-        let passage = Passage::of((self.build)(x)?, self.records)?;
-        Some((self.residuals(x, |r| passage.output_deg(r))?, passage))
+    fn evaluated(&self, x: &DVector<f64>, commands: &[Command]) -> Option<(DVector<f64>, Passage)> {
+        let passage = Passage::of((self.build)(x)?, commands)?;
+        Some((self.residuals(x, commands, |r| passage.output_deg(r))?, passage))
     }
 
     /// Residuals at the present parameters, their passage kept.
     fn tried(&mut self) -> Option<DVector<f64>> {
-        let (here, passage) = self.evaluated(&self.x)?;
+        let (here, passage) = self.evaluated(&self.x, &self.commands)?;
         self.passage = Some((self.x.clone(), passage));
         Some(here)
     }
 
-    /// Weighted residuals of all records, one after another, from the flap angles over each; none if
-    /// they are not finite.
+    /// Weighted residuals of all records, one after another, from the flap angles at each sample of
+    /// each command; none if they are not finite.
     fn residuals<'o>(
         &self,
         x: &DVector<f64>,
+        commands: &[Command],
         output_deg: impl Fn(usize) -> &'o [f64],
     ) -> Option<DVector<f64>> {
         let mut residuals = Vec::new();
-        for (r, prepared) in self.records.iter().enumerate() {
-            let record = prepared.record;
+        for (r, (prepared, command)) in self.records.iter().zip(commands).enumerate() {
+            let measured = &prepared.record.output_deg;
             let kept = Self::kept(prepared).count() as f64 * self.records.len() as f64;
             let weight = 1.0 / (prepared.spread_deg * kept.sqrt());
             let output = output_deg(r);
-            residuals
-                .extend(Self::kept(prepared).map(|i| weight * (output[i] - record.output_deg[i])));
+            let error = |i: usize| weight * (output[i / command.stride] - measured[i]);
+            residuals.extend(Self::kept(prepared).map(error));
         }
         residuals.extend(self.pulls.iter().zip(x.iter()).map(|(p, x)| p.weight * (x - p.at)));
         let residuals = DVector::from_vec(residuals);
         residuals.iter().all(|r| r.is_finite()).then_some(residuals)
     }
 
-    /// Residuals one difference up in every parameter; none where the model diverges.
-    fn residuals_beside(&self, moved: &[DVector<f64>]) -> Vec<Option<DVector<f64>>> {
-        let Some((_, passage)) = self.passage.as_ref().filter(|(x, _)| *x == self.x) else {
-            return moved.par_iter().map(|x| Some(self.evaluated(x)?.0)).collect();
-        };
+    /// Residuals at parameters beside those of a passage; none where the model diverges.
+    fn residuals_beside(
+        &self,
+        passage: &Passage,
+        moved: &[DVector<f64>],
+        commands: &[Command],
+    ) -> Vec<Option<DVector<f64>>> {
         let models: Vec<Option<ActuatorModel>> = moved.iter().map(|x| (self.build)(x)).collect();
-        let laws = passage.laws_beside(&models, self.records);
+        let laws = passage.laws_beside(&models, commands);
         let columns: Vec<_> = moved.iter().zip(models).zip(laws).collect();
         columns
             .into_par_iter()
             .map(|((x, model), law)| {
-                let outputs = passage.beside(&model?, law, self.records)?;
-                self.residuals(x, |r| &outputs[r])
+                let outputs = passage.beside(&model?, law, commands)?;
+                self.residuals(x, commands, |r| &outputs[r])
             })
             .collect()
     }
@@ -290,7 +331,16 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let here = self.here.as_ref()?;
+        let commands = self.thinned.as_ref().unwrap_or(&self.commands);
+        // the last passage, unless a step was taken back since
+        let last = self.passage.as_ref().filter(|(x, _)| self.thinned.is_none() && *x == self.x);
+        let (here, passage) = match last {
+            Some((_, passage)) => (self.here.clone()?, Cow::Borrowed(passage)),
+            None => {
+                let (here, passage) = self.evaluated(&self.x, commands)?;
+                (here, Cow::Owned(passage))
+            }
+        };
         let moved = |k: usize, difference: f64| {
             let mut x = self.x.clone();
             x[k] += difference;
@@ -298,13 +348,16 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
         };
         let ahead: Vec<_> = (0..self.x.len()).map(|k| moved(k, DIFFERENCE)).collect();
         let columns = self
-            .residuals_beside(&ahead)
+            .residuals_beside(&passage, &ahead, commands)
             .into_iter()
             .enumerate()
             .map(|(k, found)| match found {
-                Some(found) => Some((found - here) / DIFFERENCE),
+                Some(found) => Some((found - &here) / DIFFERENCE),
                 // the domain may end at the parameter
-                None => Some((self.evaluated(&moved(k, -DIFFERENCE))?.0 - here) / -DIFFERENCE),
+                None => {
+                    let (found, _) = self.evaluated(&moved(k, -DIFFERENCE), commands)?;
+                    Some((found - &here) / -DIFFERENCE)
+                }
             })
             .collect::<Option<Vec<_>>>()?;
         Some(DMatrix::from_columns(&columns))

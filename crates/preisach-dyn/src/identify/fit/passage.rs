@@ -4,8 +4,9 @@ use crate::identify::records::prepared::Prepared;
 use crate::stages::Step;
 use crate::{ActuatorLaw, ActuatorModel};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
-/// The signals of a model over all records, behind the law and behind every stage of the linkage.
+/// The signals of a model over the commands of all records, behind the law and behind every stage of the linkage.
 ///
 /// A model beside it is run from the part it differs in; its outputs are those of its own
 /// simulation, to the last bit.
@@ -16,23 +17,43 @@ pub(crate) struct Passage {
     signals: Vec<Vec<Vec<f64>>>,
 }
 
-/// Voltages of a record up to the end of what trains.
-fn voltages<'a>(prepared: &Prepared<'a>) -> &'a [f64] {
-    &prepared.record.voltage_volt[..prepared.record.trained_samples().end]
+/// The command of a record up to the end of what trains.
+#[derive(Debug, Clone)]
+pub(crate) struct Command<'a> {
+    voltage_volt: Cow<'a, [f64]>,
+    time_step_s: f64,
+    /// Samples of the record from one to the next.
+    pub(crate) stride: usize,
+}
+
+impl<'a> Command<'a> {
+    /// Every sample of it.
+    pub(crate) fn whole(prepared: &Prepared<'a>) -> Self {
+        let record = prepared.record;
+        let voltage_volt = Cow::Borrowed(&record.voltage_volt[..record.trained_samples().end]);
+        Self { voltage_volt, time_step_s: record.time_step_s, stride: 1 }
+    }
+
+    /// The first sample and every `stride`-th after it.
+    pub(crate) fn thinned(prepared: &Prepared<'a>, stride: usize) -> Self {
+        let whole = Self::whole(prepared);
+        let voltage_volt = whole.voltage_volt.iter().step_by(stride).copied().collect();
+        Self { voltage_volt, time_step_s: whole.time_step_s * stride as f64, stride }
+    }
 }
 
 impl Passage {
     /// The passage of a model; none if it diverges or a stage is refused.
-    pub(crate) fn of(model: ActuatorModel, records: &[&Prepared]) -> Option<Self> {
+    pub(crate) fn of(model: ActuatorModel, commands: &[Command]) -> Option<Self> {
         let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
-        let free = |r: &&Prepared| {
-            let law = bare.simulate(voltages(r), r.record.time_step_s).ok()?.output_deg;
+        let free = |c: &Command| {
+            let law = bare.simulate(&c.voltage_volt, c.time_step_s).ok()?.output_deg;
             let mut signals = Vec::with_capacity(model.linkage.len() + 1);
-            let last = through(&model, 0, law, r, |signal| signals.push(signal.to_vec()))?;
+            let last = through(&model, 0, law, c, |signal| signals.push(signal.to_vec()))?;
             signals.push(last);
             Some(signals)
         };
-        let signals = records.iter().map(free).collect::<Option<Vec<_>>>()?;
+        let signals = commands.iter().map(free).collect::<Option<Vec<_>>>()?;
         Some(Self { model, signals })
     }
 
@@ -46,14 +67,14 @@ impl Passage {
     pub(crate) fn laws_beside(
         &self,
         models: &[Option<ActuatorModel>],
-        records: &[&Prepared],
+        commands: &[Command],
     ) -> Vec<Option<Vec<Vec<f64>>>> {
         let own: Vec<Option<&ActuatorLaw>> =
             models.iter().map(|model| self.other_law(model.as_ref()?)).collect();
         let laws: Vec<&ActuatorLaw> = own.iter().copied().flatten().collect();
-        let by_record: Option<Vec<Vec<Vec<f64>>>> = records
+        let by_record: Option<Vec<Vec<Vec<f64>>>> = commands
             .par_iter()
-            .map(|r| ActuatorLaw::side_by_side(&laws, voltages(r), r.record.time_step_s))
+            .map(|c| ActuatorLaw::side_by_side(&laws, &c.voltage_volt, c.time_step_s))
             .collect();
         let Some(by_record) = by_record else {
             return vec![None; models.len()];
@@ -73,7 +94,7 @@ impl Passage {
         &self,
         model: &ActuatorModel,
         law: Option<Vec<Vec<f64>>>,
-        records: &[&Prepared],
+        commands: &[Command],
     ) -> Option<Vec<Vec<f64>>> {
         let (signals, first): (Vec<Vec<f64>>, usize) = match law {
             Some(law) => (law, 0),
@@ -83,12 +104,12 @@ impl Passage {
                 (self.signals.iter().map(|s| s[same].clone()).collect(), same)
             }
             None => {
-                let passage = Self::of(model.clone(), records)?;
+                let passage = Self::of(model.clone(), commands)?;
                 return passage.signals.into_iter().map(|mut s| s.pop()).collect();
             }
         };
-        let pairs = signals.into_iter().zip(records);
-        pairs.map(|(signal, r)| through(model, first, signal, r, |_| ())).collect()
+        let pairs = signals.into_iter().zip(commands);
+        pairs.map(|(signal, c)| through(model, first, signal, c, |_| ())).collect()
     }
 
     /// The law of a model that differs from this one and acts on the command itself.
@@ -109,13 +130,13 @@ fn through(
     model: &ActuatorModel,
     first: usize,
     mut signal: Vec<f64>,
-    prepared: &Prepared,
+    command: &Command,
     mut keep: impl FnMut(&[f64]),
 ) -> Option<Vec<f64>> {
     model.check_stages().ok()?;
     for stage in &model.linkage[first..] {
         keep(&signal);
-        stage.prepared(prepared.record.time_step_s, &model.calibration).pass(&mut signal);
+        stage.prepared(command.time_step_s, &model.calibration).pass(&mut signal);
     }
     signal.iter().all(|y| y.is_finite()).then_some(signal)
 }
@@ -207,11 +228,11 @@ mod tests {
                 .map(|r| Prepared::new(r, r.drive(), RecordUse::Train, false, &grid, &settings))
                 .collect::<Result<_, _>>()
                 .unwrap();
-            let all: Vec<&Prepared> = prepared.iter().collect();
+            let all: Vec<Command> = prepared.iter().map(Command::whole).collect();
             let model = |bend, creep| actuator(&settings, law(&grid, bend, dynamic), creep, lag);
             let simulated = |model: &ActuatorModel| -> Vec<Vec<f64>> {
-                let of = |r: &&Prepared| model.simulate(voltages(r), r.record.time_step_s);
-                all.iter().map(|r| of(r).unwrap().output_deg).collect()
+                let of = |c: &Command| model.simulate(&c.voltage_volt, c.time_step_s);
+                all.iter().map(|c| of(c).unwrap().output_deg).collect()
             };
             let passage = Passage::of(model(0.1, 0.02), &all).unwrap();
             for (r, expected) in simulated(&model(0.1, 0.02)).iter().enumerate() {
