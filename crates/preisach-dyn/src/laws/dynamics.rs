@@ -237,61 +237,80 @@ impl DynamicPreisach {
         [g0, g1, g2]
     }
 
-    /// The outputs of models on one grid over the same voltages, from rest at the first: the plays
-    /// move once for all of them. Each is that of its own simulation, to the last bit; one that
-    /// diverges is not stopped.
+    /// The outputs of models on one grid over the same voltages, from rest at the first: a map that
+    /// several models share is evaluated once. Each is that of its own simulation, to the last bit; one
+    /// that diverges is not stopped.
     pub(crate) fn side_by_side(
         models: &[&Self],
         voltages_volt: &[f64],
         time_step_s: f64,
     ) -> Vec<Vec<f64>> {
-        let groups = models.chunks(TOGETHER);
-        groups.flat_map(|group| Self::group(group, voltages_volt, time_step_s)).collect()
-    }
-
-    /// As [`Self::side_by_side`], of at most [`TOGETHER`] models.
-    fn group(models: &[&Self], voltages_volt: &[f64], time_step_s: f64) -> Vec<Vec<f64>> {
-        const SUMS: usize = 3 * TOGETHER;
-        let (Some(first), Some(&start)) = (models.first(), voltages_volt.first()) else {
-            return vec![Vec::new(); models.len()];
+        let Some(first) = models.first() else {
+            return Vec::new();
         };
-        let grid = first.grid();
-        let of = |lane: usize| models.get(lane).unwrap_or(first);
-        // G0 of all models, G1, G2, then the rises of each
-        let table = NodeTable::<{ 2 * SUMS }>::new(grid, |play, knot| {
-            std::array::from_fn(|i| of(i % TOGETHER).table.at(play, knot as f64).0[i / TOGETHER])
-        });
-        let constants: [f64; SUMS] = std::array::from_fn(|i| {
-            let p = &of(i % TOGETHER).parameters;
-            [p.g0_deg.constant, p.g1_s.constant, p.g2_s2_per_deg.constant][i / TOGETHER]
-        });
-        let mut memory = PlayMemory::new(grid, start, StartState::Rest);
-        let mut histories: Vec<OutputHistory> =
-            models.iter().map(|m| OutputHistory::at_rest(m.maps(&memory)[0])).collect();
-        let mut outputs: Vec<Vec<f64>> = histories.iter().map(|h| vec![h.output_deg]).collect();
-        for &volt in &voltages_volt[1..] {
-            memory.apply(grid, volt);
-            let mut sums = constants;
-            for (play, &x) in memory.cells().iter().enumerate() {
-                let (entry, t) = table.at(play, x);
-                let (values, rises) = entry.split_at(SUMS);
-                for i in 0..SUMS {
-                    sums[i] += values[i] + t * rises[i];
-                }
-            }
-            let own = models.iter().zip(&mut histories).zip(&mut outputs).enumerate();
-            for (lane, ((model, history), output)) in own {
-                let g = [sums[lane], sums[TOGETHER + lane], sums[2 * TOGETHER + lane]];
-                history.advance(g, model.parameters.time_order, time_step_s);
-                output.push(history.output_deg);
-            }
+        let mut maps: Vec<&PlayMap> = Vec::new();
+        let mut places = Vec::with_capacity(models.len());
+        for model in models {
+            let p = &model.parameters;
+            places.push([&p.g0_deg, &p.g1_s, &p.g2_s2_per_deg].map(|map| {
+                let known = maps.iter().position(|known| *known == map);
+                known.unwrap_or_else(|| {
+                    maps.push(map);
+                    maps.len() - 1
+                })
+            }));
         }
-        outputs
+        let groups = maps.chunks(TOGETHER);
+        let values: Vec<Vec<f64>> =
+            groups.flat_map(|group| map_values(group, first.grid(), voltages_volt)).collect();
+        let simulated = |(model, places): (&&Self, [usize; 3])| {
+            let [g0, g1, g2] = places.map(|place| &values[place]);
+            let Some(&start_deg) = g0.first() else {
+                return Vec::new();
+            };
+            let mut history = OutputHistory::at_rest(start_deg);
+            let mut output_deg = vec![start_deg];
+            for i in 1..g0.len() {
+                history.advance([g0[i], g1[i], g2[i]], model.parameters.time_order, time_step_s);
+                output_deg.push(history.output_deg);
+            }
+            output_deg
+        };
+        models.iter().zip(places).map(simulated).collect()
     }
 }
 
-/// Models that are evaluated at once.
-const TOGETHER: usize = 4;
+/// The values of at most [`TOGETHER`] maps over voltages, from rest at the first: the plays move once
+/// for all of them.
+fn map_values(maps: &[&PlayMap], grid: &PreisachGrid, voltages_volt: &[f64]) -> Vec<Vec<f64>> {
+    let (Some(first), Some(&start)) = (maps.first(), voltages_volt.first()) else {
+        return vec![Vec::new(); maps.len()];
+    };
+    let of = |lane: usize| maps.get(lane).unwrap_or(first);
+    // values of all maps, then their rises
+    let table = NodeTable::<{ 2 * TOGETHER }>::new(grid, |play, knot| {
+        std::array::from_fn(|i| of(i % TOGETHER).value_and_rise(play, knot)[i / TOGETHER])
+    });
+    let constants: [f64; TOGETHER] = std::array::from_fn(|lane| of(lane).constant);
+    let mut memory = PlayMemory::new(grid, start, StartState::Rest);
+    let mut values = vec![Vec::with_capacity(voltages_volt.len()); maps.len()];
+    for &volt in voltages_volt {
+        memory.apply(grid, volt);
+        let mut sums = constants;
+        for (play, &x) in memory.cells().iter().enumerate() {
+            let (entry, t) = table.at(play, x);
+            let (at, rises) = entry.split_at(TOGETHER);
+            for lane in 0..TOGETHER {
+                sums[lane] += at[lane] + t * rises[lane];
+            }
+        }
+        values.iter_mut().zip(sums).for_each(|(values, sum)| values.push(sum));
+    }
+    values
+}
+
+/// Maps that are evaluated at once.
+const TOGETHER: usize = 8;
 
 /// What a [`DynamicPreisach`] remembers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
