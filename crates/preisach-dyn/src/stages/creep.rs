@@ -171,9 +171,15 @@ impl Step for CreepStep {
         };
         let mut creep: Vec<f64> = signal.iter().map(|input| self.total * (input - start)).collect();
         let (fours, rest) = self.terms.as_chunks::<4>();
-        fours.iter().for_each(|terms| add_lags(terms, signal, &mut creep));
-        rest.iter().for_each(|term| add_lags(&[*term], signal, &mut creep));
-        signal.iter_mut().zip(creep).for_each(|(value, creep)| *value += creep);
+        for terms in fours {
+            add_lags(terms, signal, &mut creep);
+        }
+        for &term in rest {
+            add_lags(&[term], signal, &mut creep);
+        }
+        for (value, creep) in signal.iter_mut().zip(creep) {
+            *value += creep;
+        }
     }
 
     fn owns(&self, memory: &CreepMemory) -> bool {

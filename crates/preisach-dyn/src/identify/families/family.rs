@@ -1,7 +1,7 @@
 //! The families of models, the records they are fitted to, and the search for their parameters.
 
 use crate::identify::fit::output_error::{
-    Build, Estimate, Minimum, OutputError, Pull, Slopes, Uncertainty,
+    Build, Estimate, Minimum, OutputError, Pull, Slopes, Uncertainty, estimates,
 };
 use crate::identify::records::prepared::Prepared;
 use crate::{ActuatorModel, PreisachError};
@@ -143,6 +143,7 @@ impl Search<'_> {
     /// The model of a minimum with its parameters, and their standard deviations if they are wanted.
     pub(crate) fn fitted(&self, minimum: Minimum, uncertainty: Uncertainty) -> Fitted {
         let Minimum { x, model, .. } = minimum;
-        Fitted { model, parameters: self.problem(x).estimates(self.names, uncertainty).0 }
+        let covariance = uncertainty.of(|| self.problem(x.clone()));
+        Fitted { model, parameters: estimates(self.names, &x, covariance.as_ref()) }
     }
 }

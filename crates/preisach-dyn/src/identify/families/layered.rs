@@ -207,8 +207,11 @@ fn remapped(training: &Training<'_>, model: &ActuatorModel) -> Result<PlayMap, P
         .iter()
         .map(|r| {
             let record = r.record;
-            let whole = model.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
             let law = bare.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
+            let mut whole = law.clone();
+            for stage in &model.linkage {
+                stage.prepared(record.time_step_s, &model.calibration).pass(&mut whole);
+            }
             let triples = record.output_deg.iter().zip(whole.iter().zip(&law));
             Ok(triples.map(|(y, (a, b))| y - (a - b)).collect())
         })

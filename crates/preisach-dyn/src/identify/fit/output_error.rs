@@ -60,6 +60,30 @@ pub(crate) enum Uncertainty {
     LeftOut,
 }
 
+impl Uncertainty {
+    /// The covariance of the parameters where a problem stands, if it is wanted and there is one.
+    pub(crate) fn of<'a>(self, problem: impl FnOnce() -> OutputError<'a>) -> Option<Covariance> {
+        match self {
+            Self::Wanted => problem().covariance(),
+            Self::LeftOut => None,
+        }
+    }
+}
+
+/// Parameters with their standard deviations: infinite without a covariance.
+pub(crate) fn estimates(
+    names: &[&str],
+    x: &DVector<f64>,
+    covariance: Option<&Covariance>,
+) -> Vec<Estimate> {
+    let estimate = |(k, (name, &value)): (usize, (&&str, &f64))| Estimate {
+        name: (*name).to_owned(),
+        value,
+        std_deviation: covariance.map_or(f64::INFINITY, |c| c.std_deviation(k)),
+    };
+    names.iter().zip(x).enumerate().map(estimate).collect()
+}
+
 /// Covariance of refined parameters.
 ///
 /// ```text
@@ -235,25 +259,6 @@ impl<'a> OutputError<'a> {
         Some(Minimum { model, nrmse: residuals.norm(), steps, x })
     }
 
-    /// The parameters where the problem stands, with their standard deviations if these are wanted, and
-    /// the covariance they come from.
-    pub(crate) fn estimates(
-        &self,
-        names: &[&str],
-        uncertainty: Uncertainty,
-    ) -> (Vec<Estimate>, Option<Covariance>) {
-        let covariance = match uncertainty {
-            Uncertainty::Wanted => self.covariance(),
-            Uncertainty::LeftOut => None,
-        };
-        let estimate = |(k, (name, &value)): (usize, (&&str, &f64))| Estimate {
-            name: (*name).to_owned(),
-            value,
-            std_deviation: covariance.as_ref().map_or(f64::INFINITY, |c| c.std_deviation(k)),
-        };
-        (names.iter().zip(&self.x).enumerate().map(estimate).collect(), covariance)
-    }
-
     /// The covariance of the parameters where the problem stands; none outside the domain or if
     /// parameters act alike.
     fn covariance(&self) -> Option<Covariance> {
@@ -334,13 +339,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
         let commands = self.thinned.as_ref().unwrap_or(&self.commands);
         // the last passage, unless a step was taken back since
         let last = self.passage.as_ref().filter(|(x, _)| self.thinned.is_none() && *x == self.x);
-        let (here, passage) = match last {
-            Some((_, passage)) => (self.here.clone()?, Cow::Borrowed(passage)),
-            None => {
-                let (here, passage) = self.evaluated(&self.x, commands)?;
-                (here, Cow::Owned(passage))
-            }
-        };
+        let kept = last.and_then(|(_, passage)| Some((self.here.clone()?, Cow::Borrowed(passage))));
+        let anew = || self.evaluated(&self.x, commands).map(|(here, p)| (here, Cow::Owned(p)));
+        let (here, passage) = kept.or_else(anew)?;
         let moved = |k: usize, difference: f64| {
             let mut x = self.x.clone();
             x[k] += difference;
@@ -351,13 +352,11 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for OutputError<'_> {
             .residuals_beside(&passage, &ahead, commands)
             .into_iter()
             .enumerate()
-            .map(|(k, found)| match found {
-                Some(found) => Some((found - &here) / DIFFERENCE),
+            .map(|(k, found)| {
                 // the domain may end at the parameter
-                None => {
-                    let (found, _) = self.evaluated(&moved(k, -DIFFERENCE), commands)?;
-                    Some((found - &here) / -DIFFERENCE)
-                }
+                let back = || Some((self.evaluated(&moved(k, -DIFFERENCE), commands)?.0, -1.0));
+                let (found, sign) = found.map(|found| (found, 1.0)).or_else(back)?;
+                Some((found - &here) / (sign * DIFFERENCE))
             })
             .collect::<Option<Vec<_>>>()?;
         Some(DMatrix::from_columns(&columns))

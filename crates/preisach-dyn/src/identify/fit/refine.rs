@@ -1,6 +1,8 @@
 //! Output-error refinement: the training records are simulated and compared.
 
-use crate::identify::fit::output_error::{Covariance, Estimate, OutputError, Uncertainty};
+use crate::identify::fit::output_error::{
+    Covariance, Estimate, OutputError, Uncertainty, estimates,
+};
 use crate::identify::fit::rate_fit::room_for_g2;
 use crate::identify::fit::training::Training;
 use crate::laws::play_map::risen;
@@ -100,8 +102,8 @@ pub(crate) fn refine(
             }
         }
     }
-    let problem = OutputError::new(&build, &records, &[], x);
-    let (parameters, covariance) = problem.estimates(&NAMES, uncertainty);
+    let covariance = uncertainty.of(|| OutputError::new(&build, &records, &[], x.clone()));
+    let parameters = estimates(&NAMES, &x, covariance.as_ref());
     Ok(Refined { law, refinement, parameters, covariance })
 }
 
