@@ -7,6 +7,9 @@ use std::thread::available_parallelism;
 use crate::diagnosis::{commit, said};
 use crate::files;
 
+/// Programs running on average up to which a machine is idle: the compiler of the benches has just ended.
+const IDLE_LOAD: f64 = 2.0;
+
 /// The facts of a run, as the page tells them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
@@ -39,6 +42,11 @@ impl Machine {
             day: said(Command::new("date").args(["-u", "+%F"])).unwrap_or_else(unknown),
             commit: commit(root),
         }
+    }
+
+    /// Whether other programs were using it.
+    pub(super) fn is_busy(&self) -> bool {
+        self.load.parse().is_ok_and(|load: f64| load > IDLE_LOAD)
     }
 }
 

@@ -60,6 +60,11 @@ const GROWTH: &str = "
 exponent smaller than the last sizes have.
 ";
 
+/// Said where the machine was not idle.
+const BUSY: &str = "
+**Other programs shared the cores of this run: times are too long, by the clock most of all. Only ratios within it mean something.**
+";
+
 /// The page.
 ///
 /// # Errors
@@ -72,6 +77,9 @@ pub fn render(figures: &Figures) -> Result<String, XtaskError> {
         page,
         "\n{day}, commit {commit}. {processor}, {cores} cores, load at the start {load}. {compiler}."
     );
+    if machine.is_busy() {
+        page += BUSY;
+    }
     if !paths.is_empty() {
         page += LIMITS;
         page += &limit_table(samples)?;
@@ -294,6 +302,16 @@ mod tests {
         // bare `hhc` is the fourth, the case the second, the trim the first
         assert_eq!(row(&page, "table of assumptions"), ["table of assumptions", "6", "50 %"]);
         assert!(page.lines().all(|line| line.len() <= 300));
+    }
+
+    #[test]
+    fn a_busy_machine_is_told() {
+        let with = |load: &str| {
+            let own = figures();
+            let machine = Machine { load: load.to_owned(), ..own.machine };
+            render(&Figures { machine, ..own }).unwrap().contains(BUSY)
+        };
+        assert_eq!(["0.1", "10.1", "unknown"].map(with), [false, true, false]);
     }
 
     #[test]
