@@ -113,7 +113,7 @@ impl Record {
 }
 
 /// Records without samples that were interpolated between those of their outputs: they tell nothing, and make noise look
-/// small. A run that does not show it is taken to be sampled like most others of its step.
+/// small. A run that does not show it is taken to be sampled as most runs of its step are.
 pub(crate) fn as_measured(runs: &[Record]) -> Vec<Record> {
     let of = |run: &Record| Thinning::of(&run.output);
     let own: Vec<Option<Thinning>> = runs.par_iter().map(of).collect();
@@ -121,7 +121,7 @@ pub(crate) fn as_measured(runs: &[Record]) -> Vec<Record> {
         let alike = runs.iter().zip(&own).filter(|(run, _)| is_near(run.step_s, step_s));
         let mut found: Vec<Option<Thinning>> = alike.map(|(_, thin)| *thin).collect();
         found.sort_by_key(|thin| thin.map(|thin| thin.every));
-        found[found.len() / 2]
+        found[(found.len() - 1) / 2]
     };
     let thinned = |(run, own): (&Record, &Option<Thinning>)| {
         own.or_else(|| usual(run.step_s)).map_or_else(|| run.clone(), |thin| run.thinned(thin))
@@ -290,5 +290,27 @@ mod tests {
         assert!(!second.is_reference && second.has_ideal_sensor() && !second.is_preloaded());
         assert_eq!(second.window, 20..50);
         assert!((second.duration_s() - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn samples_in_between_go_with_their_channels_and_windows() {
+        let mut draw = model_gap::SplitMix(3);
+        let measured: Vec<f64> =
+            (0..400).map(|i| (0.05 * f64::from(i)).sin() + 0.01 * draw.normal()).collect();
+        let own = |id: &str| Record::new(id, 1e-3, measured.clone(), measured.clone());
+        let fine = |id: &str| {
+            let halves = measured.windows(2).flat_map(|w| [w[0], w[0].midpoint(w[1])]);
+            let fine: Vec<f64> = halves.chain(measured.last().copied()).collect();
+            let load = Some(fine.clone());
+            let record = Record::new(id, 5e-4, fine.clone(), fine);
+            Record { load, window: 100..701, ..record }
+        };
+        let back = |id: &str| Record { load: Some(measured.clone()), window: 50..351, ..own(id) };
+        // one that is at rest shows nothing: it goes with most runs of its step, and not with half of them
+        let rest = Record::new("rest", 5e-4, vec![1.0; 799], vec![1.0; 799]);
+        let thin = Record::new("rest", 1e-3, vec![1.0; 400], vec![1.0; 400]);
+        let read = as_measured(&[fine("a"), rest.clone(), own("c"), fine("b")]);
+        assert!(read == [back("a"), thin, own("c"), back("b")]);
+        assert!(as_measured(&[fine("a"), rest.clone()]) == [back("a"), rest]);
     }
 }

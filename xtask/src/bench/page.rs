@@ -41,8 +41,8 @@ What one core can do at most, measured with independent operations in its vector
 ";
 
 const PATHS: &str = "
-The limit of a path is the time that its divisions and roots keep the divider busy, or its sums and products the multiply-add
-units, whichever is longer, if all of it is in full vectors and nothing waits. Operations are counted in the formulas that the
+Divisions and roots keep the divider busy, sums and products the multiply-add units. The longer of the two times is the limit of
+a path. It holds for full vectors in which nothing waits. Operations are counted in the formulas that the
 program uses. What is made of many residuals of a revolution is given in these.
 ";
 
