@@ -263,21 +263,33 @@ impl DynamicPreisach {
         let groups = maps.chunks(TOGETHER);
         let values: Vec<Vec<f64>> =
             groups.flat_map(|group| map_values(group, first.grid(), voltages_volt)).collect();
-        let simulated = |(model, places): (&&Self, [usize; 3])| {
-            let [g0, g1, g2] = places.map(|place| &values[place]);
-            let Some(&start_deg) = g0.first() else {
-                return Vec::new();
-            };
-            let mut history = OutputHistory::at_rest(start_deg);
-            let mut output_deg = vec![start_deg];
-            for i in 1..g0.len() {
-                history.advance([g0[i], g1[i], g2[i]], model.parameters.time_order, time_step_s);
+        let begun = |(model, places): (&&Self, [usize; 3])| {
+            let maps = places.map(|place| values[place].as_slice());
+            let start_deg = maps[0].first().copied();
+            let mut output_deg = Vec::with_capacity(voltages_volt.len());
+            output_deg.extend(start_deg);
+            let history = OutputHistory::at_rest(start_deg.unwrap_or_default());
+            March { order: model.parameters.time_order, maps, history, output_deg }
+        };
+        let mut marches: Vec<March<'_>> = models.iter().zip(places).map(begun).collect();
+        // sample by sample: the steps of one model wait for each other, those of several do not
+        for i in 1..voltages_volt.len() {
+            for March { order, maps: [g0, g1, g2], history, output_deg } in &mut marches {
+                history.advance([g0[i], g1[i], g2[i]], *order, time_step_s);
                 output_deg.push(history.output_deg);
             }
-            output_deg
-        };
-        models.iter().zip(places).map(simulated).collect()
+        }
+        marches.into_iter().map(|march| march.output_deg).collect()
     }
+}
+
+/// One model on its way over the samples.
+struct March<'a> {
+    order: TimeOrder,
+    /// `G0`, `G1` and `G2` at every sample.
+    maps: [&'a [f64]; 3],
+    history: OutputHistory,
+    output_deg: Vec<f64>,
 }
 
 /// The values of at most [`TOGETHER`] maps over voltages, from rest at the first: the plays move once
