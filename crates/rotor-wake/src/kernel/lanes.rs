@@ -42,9 +42,15 @@ impl Lanes {
 /// Makes the quotient 0/0 of a target at the end of a segment zero; far below any `|r1| |r2| D`.
 const GUARD: f64 = 1e-60;
 
+/// `a b + c`, rounded once where the vector unit does so (`FUSED`).
 #[inline(always)]
-fn inner(a: Vec3, b: Vec3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+fn fused<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+#[inline(always)]
+fn inner<const FUSED: bool>(a: Vec3, b: Vec3) -> f64 {
+    fused::<FUSED>(a[0], b[0], fused::<FUSED>(a[1], b[1], a[2] * b[2]))
 }
 
 /// How the core enters, for a target at `r1` and `r2` from the ends of a segment and `cross = |l x r1|^2`:
@@ -62,7 +68,12 @@ fn inner(a: Vec3, b: Vec3) -> f64 {
 /// ```
 /// where `p - q = |l x r1|^2 / (p + q)` keeps the digits of a segment seen under a sharp angle.
 #[inline(always)]
-fn factor<const MOORE: bool>([r1, r2]: [Vec3; 2], cross: f64, segment: &Prepared) -> f64 {
+fn factor<const MOORE: bool, const FUSED: bool>(
+    [r1, r2]: [Vec3; 2],
+    cross: f64,
+    segment: &Prepared,
+) -> f64 {
+    let inner = inner::<FUSED>;
     if MOORE {
         let (lr1, lr2) = (inner(segment.along, r1), inner(segment.along, r2));
         let a = (inner(r1, r1) + segment.cut_off).sqrt();
@@ -75,22 +86,32 @@ fn factor<const MOORE: bool>([r1, r2]: [Vec3; 2], cross: f64, segment: &Prepared
     let sharp = q > 0.0;
     let above = if sharp { cross } else { p - q };
     let below = if sharp { p + q } else { 1.0 };
-    let d = cross * cross + segment.core;
-    above * ((s1 + s2 + 2.0 * p) / (product * d * (below * below) + GUARD * GUARD)).sqrt()
+    let fused = fused::<FUSED>;
+    let d = fused(cross, cross, segment.core);
+    let denominator = fused(product * d, below * below, GUARD * GUARD);
+    above * (fused(2.0, p, s1 + s2) / denominator).sqrt()
 }
 
 /// Adds the velocity by one segment to every target's sum.
+///
+/// The vector product is not fused: at the ends of a segment its terms have to cancel without a rest.
 #[inline(always)]
-pub(super) fn add_velocity<const MOORE: bool>(at: &Lanes, segment: &Prepared, sum: &mut Lanes) {
+pub(super) fn add_velocity<const MOORE: bool, const FUSED: bool>(
+    at: &Lanes,
+    segment: &Prepared,
+    sum: &mut Lanes,
+) {
+    let fused = fused::<FUSED>;
     let ([sx, sy, sz], [lx, ly, lz]) = (segment.start, segment.along);
     for k in 0..LANES {
         let (x, y, z) = (at.x[k] - sx, at.y[k] - sy, at.z[k] - sz);
         let (cx, cy, cz) = (ly * z - lz * y, lz * x - lx * z, lx * y - ly * x);
-        let cross = cx * cx + cy * cy + cz * cz;
+        let product = [cx, cy, cz];
+        let cross = inner::<FUSED>(product, product);
         let ends = [[x, y, z], [x - lx, y - ly, z - lz]];
-        let factor = segment.strength * factor::<MOORE>(ends, cross, segment);
-        sum.x[k] += factor * cx;
-        sum.y[k] += factor * cy;
-        sum.z[k] += factor * cz;
+        let factor = segment.strength * factor::<MOORE, FUSED>(ends, cross, segment);
+        sum.x[k] = fused(factor, cx, sum.x[k]);
+        sum.y[k] = fused(factor, cy, sum.y[k]);
+        sum.z[k] = fused(factor, cz, sum.z[k]);
     }
 }

@@ -6,7 +6,8 @@
 //! Rosenhead-Moore:   D = |l x r1|^2 + delta^2 |l|^2,   |r|^2 -> |r|^2 + delta^2,   delta = r_c e^(-3/4)
 //! ```
 //! The targets lie in the lanes of the vector unit and the segments are summed one after the other,
-//! so that a result has the same bits whatever the number of threads and the width of the vectors.
+//! so that a result has the same bits whatever the number of threads and the width of the vectors. Products are fused
+//! with sums on every vector unit, and only on a processor without one are they not.
 //!
 //! Segments pushed as single-precision ones are summed in that precision, sixteen at a time, and these sums in double.
 //!
@@ -74,12 +75,12 @@ struct Sums<'a> {
 
 impl Sums<'_> {
     #[inline(always)]
-    fn form<const MOORE: bool>(self) {
+    fn form<const MOORE: bool, const FUSED: bool>(self) {
         for (out, at) in self.out.chunks_mut(LANES).zip(self.targets.chunks(LANES)) {
             let block = Lanes::gather(at);
             let mut sum = Lanes::default();
             for segment in self.segments.prepared() {
-                lanes::add_velocity::<MOORE>(&block, segment, &mut sum);
+                lanes::add_velocity::<MOORE, FUSED>(&block, segment, &mut sum);
             }
             sum.scatter(out);
         }
@@ -98,9 +99,11 @@ impl WithSimd for Sums<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        match self.segments.core() {
-            CoreModel::Vatistas => self.form::<false>(),
-            CoreModel::RosenheadMoore => self.form::<true>(),
+        match (self.segments.core(), S::IS_SCALAR) {
+            (CoreModel::Vatistas, false) => self.form::<false, true>(),
+            (CoreModel::Vatistas, true) => self.form::<false, false>(),
+            (CoreModel::RosenheadMoore, false) => self.form::<true, true>(),
+            (CoreModel::RosenheadMoore, true) => self.form::<true, false>(),
         }
     }
 }
@@ -114,10 +117,10 @@ struct Each<'a, F> {
 
 impl<F: FnMut(usize, [&[f64; LANES]; 3])> Each<'_, F> {
     #[inline(always)]
-    fn velocities<const MOORE: bool>(mut self) {
+    fn velocities<const MOORE: bool, const FUSED: bool>(mut self) {
         for (index, segment) in self.segments.prepared().iter().enumerate() {
             let mut one = Lanes::default();
-            lanes::add_velocity::<MOORE>(&self.block, segment, &mut one);
+            lanes::add_velocity::<MOORE, FUSED>(&self.block, segment, &mut one);
             (self.take)(index, one.components());
         }
     }
@@ -128,9 +131,11 @@ impl<F: FnMut(usize, [&[f64; LANES]; 3])> WithSimd for Each<'_, F> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        match self.segments.core() {
-            CoreModel::Vatistas => self.velocities::<false>(),
-            CoreModel::RosenheadMoore => self.velocities::<true>(),
+        match (self.segments.core(), S::IS_SCALAR) {
+            (CoreModel::Vatistas, false) => self.velocities::<false, true>(),
+            (CoreModel::Vatistas, true) => self.velocities::<false, false>(),
+            (CoreModel::RosenheadMoore, false) => self.velocities::<true, true>(),
+            (CoreModel::RosenheadMoore, true) => self.velocities::<true, false>(),
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorViewMut};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -27,6 +27,9 @@ pub struct LineInduction {
     down: DMatrix<f64>,
     along: DMatrix<f64>,
 }
+
+/// Rows of a map that one thread applies together.
+const ROWS_TOGETHER: usize = 128;
 
 /// Where the control points of Weissinger's method lie between the quarter chord and the trailing edge.
 const HALF_A_CHORD: f64 = 2.0 / 3.0;
@@ -209,7 +212,12 @@ impl LineInduction {
         let expected = "azimuths times panels of the wake";
         ensure(count == matrix.nrows(), "values of the circulation", count as f64, expected)?;
         let gamma = DVector::from_column_slice(circulation.values());
-        InflowMap::new(&self.rotor, (matrix * gamma).as_slice().to_vec())
+        let mut inflow = vec![0.0; count];
+        inflow.par_chunks_mut(ROWS_TOGETHER).enumerate().for_each(|(part, rows)| {
+            let of = matrix.rows(part * ROWS_TOGETHER, rows.len());
+            DVectorViewMut::from_slice(rows, rows.len()).gemv(1.0, &of, &gamma, 0.0);
+        });
+        InflowMap::new(&self.rotor, inflow)
     }
 }
 

@@ -6,6 +6,7 @@ use super::sources::SourceContext;
 use crate::CirculationMap;
 use crate::WakeError;
 use crate::vector::{Vec3, add, dot, norm, scale, sub};
+use rayon::prelude::*;
 
 /// The nearest approach of a tip vortex or another rolled-up vortex to a blade that did not just release it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,13 +56,15 @@ impl FreeWake {
     ) -> Result<Option<ClosestPassage>, WakeError> {
         self.check(circulation)?;
         let context = self.context(circulation, self.turn());
-        let met = (0..self.phases_that_differ()).flat_map(|phase| {
+        let phases = 0..self.phases_that_differ();
+        let met = phases.flat_map(|phase| {
             let blades = self.blade_azimuths(phase).take(self.blades_that_differ());
             blades.flat_map(move |met| self.blade_azimuths(phase).map(move |from| (met, from)))
         });
-        Ok(met
-            .filter_map(|(met, from)| self.closest_of(met, from, &context))
-            .min_by(|a, b| a.distance.total_cmp(&b.distance)))
+        let met: Vec<(usize, usize)> = met.collect();
+        let closest = |(met, from)| self.closest_of(met, from, &context);
+        let all: Vec<Option<ClosestPassage>> = met.into_par_iter().map(closest).collect();
+        Ok(all.into_iter().flatten().min_by(|a, b| a.distance.total_cmp(&b.distance)))
     }
 
     /// The same for the blade at one azimuth and the vortices of that at another.

@@ -6,6 +6,7 @@ use super::settings::{FreeWakeSettings, NearWakeMotion};
 use crate::WakeError;
 use crate::vector::{Vec3, add, scale, sub};
 use crate::{BladeLines, WakeRotor};
+use rayon::prelude::*;
 
 impl FreeWake {
     /// The same wake on another number of azimuth steps: the start of the next stage of a sequence of grids.
@@ -69,7 +70,7 @@ impl FreeWake {
         let azimuths = self.settings.azimuths;
         let motion = self.settings.near_wake_motion;
         let mut near = std::mem::take(&mut self.near);
-        for filament in &mut near {
+        near.par_iter_mut().for_each(|filament| {
             let before = filament.clone();
             filament.fill(azimuths, |i, k| match motion {
                 // a free one keeps its shape but for the release
@@ -78,7 +79,7 @@ impl FreeWake {
                 NearWakeMotion::FollowsTip => self.following(before.node, i, k),
                 _ => self.carried(before.node, i, k),
             });
-        }
+        });
         self.near = near;
     }
 
