@@ -108,6 +108,8 @@ impl SpanGrid {
     }
 
     /// The same for several functions side by side, lane by lane; both of shape stations x lanes.
+    #[expect(clippy::inline_always, reason = "what is inlined is compiled for the vector unit")]
+    #[inline(always)]
     pub fn integrals_from_root(&self, f: &[f64], lanes: usize, out: &mut [f64]) {
         let piece = self.points_per_piece * lanes;
         let mut before = vec![0.0; lanes];

@@ -50,8 +50,8 @@ struct Columns<'a> {
     slopes: &'a [Vec<(InputSlopes, LoadSlopes)>],
     /// Modes on which lift and moment work.
     worked: [Range<usize>; 2],
-    /// Point by point, mode by mode: displacements, then rates.
-    blocks: &'a mut [f64],
+    /// By displacement and by rate: column by column, in it point by point and mode by mode.
+    out: &'a mut [&'a mut [f64]; 2],
 }
 
 impl WithSimd for Columns<'_> {
@@ -59,27 +59,32 @@ impl WithSimd for Columns<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { then, stations, slopes, worked, blocks } = self;
-        let dof = worked[1].end;
-        let mut shares = vec![0.0; 2 * dof];
+        let Self { then, stations, slopes, worked, out } = self;
+        let (dof, points) = (worked[1].end, slopes.len());
+        // what a change of either input does on all modes at all points
+        let (mut by_alpha, mut by_rate) = (vec![0.0; dof * points], vec![0.0; dof * points]);
         for (s, station) in stations.iter().enumerate() {
             let Some(memory) = station else { continue };
-            let (inputs, _) = &slopes[then][s];
-            for (now, block) in blocks.chunks_exact_mut(dof * 2 * dof).enumerate() {
+            by_alpha.fill(0.0);
+            by_rate.fill(0.0);
+            let at_points = by_alpha.chunks_exact_mut(dof).zip(by_rate.chunks_exact_mut(dof));
+            for (now, (by_alpha, by_rate)) in at_points.enumerate() {
                 let (_, loads) = &slopes[now][s];
                 let works = [&loads.lift, &loads.moment].into_iter().zip(&worked);
-                for ([of_alpha, of_rate], (load, modes)) in memory.kernels.iter().zip(works) {
+                for ([of_alpha, of_rate], (work, modes)) in memory.kernels.iter().zip(works) {
                     let (alpha, rate) = (of_alpha[(now, then)], of_rate[(now, then)]);
-                    let both = inputs.alpha.iter().zip(&inputs.pitch_rate);
-                    for (share, (a, r)) in shares.iter_mut().zip(both) {
-                        *share = alpha * a + rate * r;
+                    for mode in modes.clone() {
+                        by_alpha[mode] += alpha * work[mode];
+                        by_rate[mode] += rate * work[mode];
                     }
-                    let rows = block.chunks_exact_mut(2 * dof).zip(load);
-                    for (row, work) in rows.skip(modes.start).take(modes.len()) {
-                        for (entry, share) in row.iter_mut().zip(&shares) {
-                            *entry += work * share;
-                        }
-                    }
+                }
+            }
+            let (inputs, _) = &slopes[then][s];
+            let columns = out.iter_mut().flat_map(|part| part.chunks_exact_mut(dof * points));
+            let both = inputs.alpha.iter().zip(&inputs.pitch_rate);
+            for (column, (alpha, rate)) in columns.zip(both) {
+                for ((entry, a), r) in column.iter_mut().zip(&by_alpha).zip(&by_rate) {
+                    *entry += alpha * a + rate * r;
                 }
             }
         }
@@ -107,16 +112,21 @@ impl ResponseSystem<'_> {
                 inputs.into_iter().zip(loads.map(|(s, flow)| self.load_slopes(s, flow))).collect()
             })
             .collect();
-        // column by column of the past: point `then`, its displacements and its rates
-        let columns: Vec<[DMatrix<f64>; 2]> = (0..points)
-            .into_par_iter()
-            .map(|then| self.columns(then, &stations, &slopes))
-            .collect();
+        let bending = self.blade.flap.count() + self.blade.lag.count();
+        // the lift works on all modes if the axis is not where it attacks, the moment on torsion alone
+        let centred = self.blade.air.iter().all(|scales| scales.centre == 0.0);
+        let lifted = if centred { 0..bending } else { 0..dof };
+        let worked = [lifted, bending..dof];
         let mut memory = OrbitMemory::zero(dof, points);
-        for (then, [dq, dqd]) in columns.into_iter().enumerate() {
-            memory.dq.columns_mut(then * dof, dof).copy_from(&dq);
-            memory.dqd.columns_mut(then * dof, dof).copy_from(&dqd);
-        }
+        let OrbitMemory { dq, dqd } = &mut memory;
+        let size = dof * points * dof;
+        let parts =
+            dq.as_mut_slice().par_chunks_mut(size).zip(dqd.as_mut_slice().par_chunks_mut(size));
+        parts.enumerate().for_each(|(then, (dq, dqd))| {
+            let (worked, out) = (worked.clone(), &mut [dq, dqd]);
+            let (stations, slopes) = (&stations, &slopes);
+            Arch::new().dispatch(Columns { then, stations, slopes, worked, out });
+        });
         Some(memory)
     }
 
@@ -145,25 +155,6 @@ impl ResponseSystem<'_> {
         };
         let known = channels.into_par_iter().enumerate().take(lost_from);
         known.filter(|(_, channels)| !channels.is_empty()).map(place).collect()
-    }
-
-    /// The columns of one point of the past, by displacement and by rate; shape `dof points x dof`.
-    fn columns(
-        &self,
-        then: usize,
-        stations: &[Option<StationMemory>],
-        slopes: &[Vec<(InputSlopes, LoadSlopes)>],
-    ) -> [DMatrix<f64>; 2] {
-        let (dof, points) = (self.dof(), self.points.len());
-        let bending = self.blade.flap.count() + self.blade.lag.count();
-        // the lift works on all modes if the axis is not where it attacks, the moment on torsion alone
-        let centred = self.blade.air.iter().all(|scales| scales.centre == 0.0);
-        let lifted = if centred { 0..bending } else { 0..dof };
-        let worked = [lifted, bending..dof];
-        let mut blocks = vec![0.0; points * dof * 2 * dof];
-        Arch::new().dispatch(Columns { then, stations, slopes, worked, blocks: &mut blocks });
-        let entry = |row: usize, column: usize| blocks[row * 2 * dof + column];
-        [0, dof].map(|from| DMatrix::from_fn(dof * points, dof, |row, j| entry(row, from + j)))
     }
 
     /// Slopes of the inputs of all lifting stations at a point: those in the fields of the motion, by differences, for the

@@ -8,9 +8,10 @@ use crate::response::rotor::up;
 use crate::response::system::PointInput;
 use crate::response::wake_loading::{loading, mean_lift};
 use crate::sections::air::{AirPoint, FlapAngle};
-use crate::sections::flight_air::FlightAir;
+use crate::sections::flight_air::{FlightAir, POINTS_TOGETHER};
 use crate::{Condition, ResponseError, Rotor};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
     Anderson, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver, TimeElements,
@@ -391,7 +392,8 @@ impl RotorSolver {
         let reverse_flow = self.rotor.model().reverse_flow;
         self.time
             .points()
-            .iter()
+            .par_iter()
+            .with_min_len(POINTS_TOGETHER)
             .map(|&azimuth| {
                 let (sin, cos) = azimuth.sin_cos();
                 let pitch = condition.controls.root_pitch(azimuth);

@@ -7,6 +7,7 @@ use crate::Couplings;
 use crate::structure::blade::{ResponseBlade, Shapes};
 use pulp::{Arch, Simd, WithSimd};
 use rotor_fem::OrbitSamples;
+use std::ops::Range;
 
 /// Displacement family in lanes, stations or azimuth points: value, slope, curvature; rates of value and slope;
 /// accelerations of value and slope. Radius R and rad; time is azimuth. Of twist neither curvature nor rates of the
@@ -172,6 +173,7 @@ impl Motion {
     }
 
     /// `(v_x^2 + w_x^2) / 2` or one of its rates.
+    #[inline(always)]
     fn shortening_slope(&self, rate: usize, lane: usize) -> f64 {
         let of = |d: &Deflection| match rate {
             0 => 0.5 * d.slope[lane] * d.slope[lane],
@@ -236,12 +238,36 @@ impl Foreshortening {
             Couplings::Full => 1..2,
             Couplings::Moderate(_) => 0..3,
         };
-        let (stations, lanes) = (blade.grid.len(), self.lanes);
+        Arch::new().dispatch(Shortening { of: self, blade, rows, wanted });
+    }
+
+    /// Of a station in all lanes; empty where the couplings do not ask for it.
+    pub(crate) fn at(&self, rate: usize, station: usize) -> &[f64] {
+        let from = station * self.lanes;
+        self.parts[rate].get(from..from + self.lanes).unwrap_or_default()
+    }
+}
+
+/// Foreshortening at all stations: a type of its own as [`Filling`] is.
+struct Shortening<'a> {
+    of: &'a mut Foreshortening,
+    blade: &'a ResponseBlade,
+    rows: &'a ModalRows,
+    /// The displacement (0) and its rates (1, 2) that are asked for.
+    wanted: Range<usize>,
+}
+
+impl WithSimd for Shortening<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { of: Foreshortening { lanes, parts, motion, integrand }, blade, rows, wanted } =
+            self;
+        let (stations, lanes) = (blade.grid.len(), *lanes);
         for k in wanted {
-            self.integrand.resize(stations * lanes, 0.0);
-            let pieces = self.integrand.chunks_exact_mut(lanes);
-            for (i, integrand) in pieces.enumerate() {
-                let motion = &mut self.motion;
+            integrand.resize(stations * lanes, 0.0);
+            for (i, integrand) in integrand.chunks_exact_mut(lanes).enumerate() {
                 for (d, shapes, first) in motion.families(blade).into_iter().take(2) {
                     let slopes = || shapes.slope.iter().map(|shape| shape[i]);
                     let fields = [&mut d.slope, &mut d.slope_rate, &mut d.slope_acceleration];
@@ -253,14 +279,8 @@ impl Foreshortening {
                     *value = motion.shortening_slope(k, lane);
                 }
             }
-            self.parts[k].resize(stations * lanes, 0.0);
-            blade.grid.integrals_from_root(&self.integrand, lanes, &mut self.parts[k]);
+            parts[k].resize(stations * lanes, 0.0);
+            blade.grid.integrals_from_root(integrand, lanes, &mut parts[k]);
         }
-    }
-
-    /// Of a station in all lanes; empty where the couplings do not ask for it.
-    pub(crate) fn at(&self, rate: usize, station: usize) -> &[f64] {
-        let from = station * self.lanes;
-        self.parts[rate].get(from..from + self.lanes).unwrap_or_default()
     }
 }
