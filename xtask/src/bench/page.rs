@@ -31,7 +31,7 @@ const INTRODUCTION: &str = "\
 <!-- Written by `cargo xtask bench`; do not edit. -->
 
 Every figure but those of before is of one run of `cargo xtask bench`, in release builds. A time is the least of several: other
-work on the machine interrupts some of them, not all. A bar is what was asked for; what is over it is bold.
+work on the machine interrupts some of them, not all. A bar is what was asked for, of trims for two cores; what is over it is bold.
 ";
 
 const LIMITS: &str = "
@@ -49,8 +49,8 @@ program uses. What is made of many residuals of a revolution is given in these.
 const COMMANDS: &str = "
 ## Whole commands
 
-Bars are held against processor seconds, on one thread where that was timed. What a command took before the work on speed is as
-it was noted then.
+Bars are for two cores by the clock, but where processor seconds are said. What a command took before the work on speed is as it
+was noted then.
 ";
 
 const GROWTH: &str = "
@@ -160,10 +160,10 @@ fn command_table(commands: &[Timed]) -> String {
         let one = |part: fn(Spent) -> f64| cell(timed.one.map(part));
         [
             format!("{name}: `{}`", format!("hhc {arguments}").trim_end()),
-            cell(bar_s),
+            cell(bar_s) + if timed.timing.bar_is_cpu { " of processors" } else { "" },
             before_s.unwrap_or("–").to_owned(),
             figure(timed.cpu_s()),
-            bar_s.map_or("–".to_owned(), |bar_s| met(timed.cpu_s() / bar_s)),
+            bar_s.map_or("–".to_owned(), |bar_s| met(timed.held_s() / bar_s)),
             one(|spent| spent.wall_s),
             figure(timed.two.wall_s),
             figure(timed.two.cpu_s),
