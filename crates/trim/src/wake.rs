@@ -8,7 +8,7 @@ use crate::{
 use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
     CirculationMap, ClosestPassage, FreeWake, FrozenWake, LinearInflow, WakeError, WakeMethod,
-    WakeRotor, WakeSymmetry,
+    WakeRotor, WakeSymmetry, descent_transport, momentum_inflow,
 };
 
 /// How exact trims between updates of the wake are.
@@ -33,6 +33,10 @@ const ON_THE_LAST: Between = Between { trim: 3e-8, inflow: 3e-9, periodicity: 3e
 const ROUGH_ITERATIONS: usize = 12;
 /// Sweeps of an update from a trim nearby: two leave a hundredth of the way.
 const NEAR_SWEEPS: usize = 2;
+/// Mean inflow over momentum theory's below which a wake does not carry the thrust.
+const LEAST_OF_MOMENTUM: f64 = 0.2;
+/// Thrust over solidity from which on that is asked.
+const LEAST_LOADING: f64 = 0.01;
 /// Iterations allowed for the inflow of a wake, at least.
 const WAKE_ITERATIONS: usize = 200;
 
@@ -186,6 +190,11 @@ fn coupled(
             outcome = WakeOutcome::Failed { updates, inflow_change, error };
         }
     }
+    if let Some(of_momentum) = too_little_inflow(&state.trim, solver.rotor().model().solidity())
+        && !outcome.is_diverged()
+    {
+        outcome = WakeOutcome::TooLittleInflow { of_momentum };
+    }
     Ok(WakeTrim {
         closest_passage: state.wake.closest_passage(&state.moving)?,
         trim: state.trim,
@@ -195,6 +204,17 @@ fn coupled(
         outcome,
         updates: coupling.updates,
     })
+}
+
+/// The mean inflow over momentum theory's where it is too little for the thrust; momentum theory says nothing of descents,
+/// and a rotor with hardly any thrust may have any inflow.
+fn too_little_inflow(trim: &TrimSolution, solidity: f64) -> Option<f64> {
+    let (flight, thrust) = (&trim.flight, trim.rotor.thrust_coefficient);
+    if thrust.abs() < LEAST_LOADING * solidity || descent_transport(flight, thrust).is_some() {
+        return None;
+    }
+    let of_momentum = trim.rotor.inflow.mean() / momentum_inflow(flight, thrust).ok()?;
+    (of_momentum < LEAST_OF_MOMENTUM).then_some(of_momentum)
 }
 
 /// From momentum theory's inflow, stage by stage on finer grids.

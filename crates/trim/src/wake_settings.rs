@@ -78,6 +78,11 @@ pub enum WakeOutcome {
         /// Least and largest collective of the second half of these updates and of the state kept, rad.
         theta0_band_rad: [f64; 2],
     },
+    /// They agree, on a mean inflow below a fifth of momentum theory's: the wake does not carry the thrust.
+    TooLittleInflow {
+        /// Mean inflow over momentum theory's.
+        of_momentum: f64,
+    },
     /// The wake ran away, or the rotor found no trim in it; the state of the least change before is kept.
     Failed {
         /// Updates of the last grid.
@@ -90,8 +95,8 @@ pub enum WakeOutcome {
 }
 
 impl WakeOutcome {
-    /// Whether wake and trim diverged: what is given is a state on the way, no solution.
+    /// Whether wake and trim diverged or carry no thrust: what is given is no solution.
     pub fn is_diverged(&self) -> bool {
-        matches!(self, Self::Failed { .. })
+        matches!(self, Self::Failed { .. } | Self::TooLittleInflow { .. })
     }
 }

@@ -7,6 +7,7 @@
 //! w_E     = U_T sin th - U_P cos th + [ y_rigid / a - (U_T th - U_P) ]       effective normal velocity
 //! alpha_E = atan2( w_E, U_T cos th + U_P sin th ),   W^2 = U_T^2 + U_P^2
 //! F_z = (1/2) rho c W ( Cl U_T - Cd U_P ),  F_y = -(1/2) rho c W ( Cl U_P + Cd U_T ),  M = (1/2) rho c^2 W^2 Cm
+//! Gamma = (1/2) c W Cl       bound circulation, whose lift is that of the table: F_z = rho Gamma U_T, F_y = -rho Gamma U_P
 //! ```
 //! with `Cl`, `Cd`, `Cm` of the table at `alpha_E` and the Mach number of the rigid blade. `y_rigid` is
 //! the output of the attached model in lift due to incidence and pitch rate, lags included, and `a` its
@@ -21,6 +22,7 @@
 //!
 //! ```text
 //! F_z += (1/2) rho c W max(U_T, 0) ( dCn cos th + dCc sin th ),   F_y and M likewise
+//! Gamma += (1/2) c max(U_T, 0) ( what of d stands across the flow )
 //! d = loads of Leishman and Beddoes - what the section has without them:
 //!     attached flow (linear sections), or their own loads without delay and vortex (tables)
 //! ```
@@ -88,6 +90,7 @@ impl TabledStation {
         loads.fz += half * speed * (c.lift * u_t - c.drag * u_p);
         loads.fy -= half * speed * (c.lift * u_p + c.drag * u_t);
         loads.moment += half * scales.chord * speed * speed * c.moment;
+        loads.circulation += 0.5 * scales.chord * speed * c.lift;
         loads
     }
 }
@@ -102,9 +105,15 @@ pub(crate) fn add_stall(
     let (sin, cos) = flow.pitch.sin_cos();
     let speed = flow.u_t.hypot(flow.u_p);
     let scale = 0.5 * scales.density_chord * speed * flow.u_t.max(0.0);
-    loads.fz += scale * (normal * cos + chord * sin);
-    loads.fy += scale * (chord * cos - normal * sin);
+    let (up, forward) = (normal * cos + chord * sin, chord * cos - normal * sin);
+    loads.fz += scale * up;
+    loads.fy += scale * forward;
     loads.moment += scale * scales.chord * moment;
+    // what stands across the flow is lift
+    if speed > 0.0 {
+        let lift = (up * flow.u_t - forward * flow.u_p) / speed;
+        loads.circulation += 0.5 * scales.chord * flow.u_t.max(0.0) * lift;
+    }
 }
 
 #[cfg(test)]

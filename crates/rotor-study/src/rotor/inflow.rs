@@ -151,6 +151,9 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
                 "the free wake has not settled in {updates} updates: the inflow still changes by {inflow_change:.1e} of the tip speed ({tolerance:.1e} was asked) and the wake moves by {displacement:.1e} R ({displacement_tolerance:.1e}) in the update kept, the nearest to rest; theta0 between {low:.3} and {high:.3} deg in it and the second half of the updates, on {azimuths} steps per revolution. {WAKE_REMEDY}"
             ));
         }
+        WakeOutcome::TooLittleInflow { of_momentum } => warnings.push(format!(
+            "the free wake carries hardly any of the thrust: its mean inflow is {of_momentum:.2} of momentum theory's. What is given is no solution. Remedy: look at the circulation of the sections (`hhc wake --out DIR`), or compare with inflow.model: Uniform"
+        )),
         WakeOutcome::Failed { updates, inflow_change, error } => {
             warnings.push(kept(azimuths, *updates, *inflow_change, error));
         }

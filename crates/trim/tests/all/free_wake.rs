@@ -2,15 +2,17 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the measured differences are worth seeing")]
 
+use flap_aero::{AirfoilSpan, AttachedFlowModel, C81Airfoil, C81Table};
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_fem::{BladeProperties, BladeSpec};
+use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Condition, Couplings, Discretisation, ResponseError, ResponseTolerances, Rotor, RotorModel,
-    RotorSolver,
+    Compressibility, Condition, Controls, Couplings, Discretisation, NonlinearSections,
+    ResponseError, ResponseTolerances, Rotor, RotorModel, RotorSolver,
 };
 use rotor_wake::{
     CoreModel, FarTrailers, FreeWakeSettings, InducedInflow, WakeError, WakeMethod, WakeSymmetry,
 };
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use trim::{
     TrimError, TrimSettings, TrimTarget, WakeOutcome, WakeTrim, WakeTrimSettings,
@@ -96,6 +98,58 @@ fn a_wake_that_moves_has_not_settled() {
         unreachable!("{:?}", moving.outcome)
     };
     assert!(inflow_change <= tolerance && displacement > 1e-12, "{inflow_change} {displacement}");
+}
+
+/// `2 pi alpha` from ahead, `2 pi (alpha -+ pi)` from behind, in a table without drag and moment.
+fn linear_law() -> NonlinearSections {
+    let angles_deg: Vec<f64> = vec![-180.0, -90.5, -90.0, 90.0, 90.5, 180.0];
+    let lift = |a: f64| TAU * if a.abs() > 0.501 * PI { a - PI.copysign(a) } else { a };
+    let table = |f: &dyn Fn(f64) -> f64| {
+        let values = angles_deg.iter().map(|a| f(a.to_radians())).collect();
+        C81Table::new(vec![0.0], angles_deg.clone(), values).unwrap()
+    };
+    let name = "LINEAR".into();
+    let airfoil =
+        C81Airfoil { name, lift: table(&lift), drag: table(&|_| 0.0), moment: table(&|_| 0.0) };
+    let span = AirfoilSpan::new(vec![(0.0, airfoil)]).unwrap();
+    NonlinearSections { airfoils: Some(Arc::new(span)), dynamic_stall: None }
+}
+
+/// The circulation of sections from tables reaches the wake: with the linear law in a table, wake and loads are those of
+/// the linear model, angles being small.
+#[test]
+fn sections_from_a_table_carry_the_wake_of_the_linear_law() {
+    let (mu, scale) = (0.15, 5e-3);
+    let [theta0_rad, theta1c_rad, theta1s_rad] = [0.15, 0.02, -0.06].map(|angle| scale * angle);
+    let controls = Controls { theta0_rad, theta1c_rad, theta1s_rad };
+    let coupled = |nonlinear| {
+        let model = RotorModel {
+            nonlinear,
+            drag_coefficient: 0.0,
+            section_model: AttachedFlowModel::Incompressible,
+            compressibility: Compressibility::None,
+            ..RotorModel::table_1(Couplings::Full)
+        };
+        let twist = Twist::Linear { rate_rad: -0.14 * scale };
+        let blade = BladeProperties::new(BladeSpec { twist, ..BladeSpec::table_1() }).unwrap();
+        let few =
+            Discretisation { modes: [2, 1, 1], time_elements: 4, ..Discretisation::default() };
+        let rotor = Arc::new(Rotor::new(model, &blade, few).unwrap());
+        let mut solver = RotorSolver::new(rotor, mu, ResponseTolerances::default()).unwrap();
+        let target = TrimTarget::Prescribed { controls, shaft_tilt_rad: 0.08 * scale };
+        let settings = few_steps(2);
+        trim_in_free_wake(&mut solver, &settings, mu, &target, &TrimSettings::default()).unwrap()
+    };
+    let [linear, tabled] = [NonlinearSections::default(), linear_law()].map(coupled);
+    let apart = |of: &dyn Fn(&WakeTrim) -> Vec<f64>| {
+        let (a, b) = (of(&linear), of(&tabled));
+        let size = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+    };
+    let loads = |wake: &WakeTrim| wake.trim.rotor.hub.harmonic(4).to_vec();
+    let [inflow, loads] = [apart(&|w| w.trim.rotor.inflow.parameters()), apart(&loads)];
+    println!("inflow of the free wake apart by {inflow:.1e}, loads at 4/rev by {loads:.1e}");
+    assert!(inflow < 1e-6 && loads < 1e-6, "{inflow:e} {loads:e}");
 }
 
 /// In hover the wake that turns with its blades settles, carries more inflow than momentum theory asks, and is the same
