@@ -6,14 +6,14 @@ use super::{
     TrimValues,
 };
 use crate::error::StudyError;
-use flap_aero::FlapEffectiveness;
+use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_fem::{BladeProperties, BladeSpec, Distribution, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, DynamicStall, NonlinearSections,
     Planform, ResponseTolerances, Rotor, RotorModel, SectionOffsets, TrailingEdgeFlap,
     with_flap_masses,
 };
-use rotor_wake::{CoreSettings, FarTrailers, FreeWakeSettings};
+use rotor_wake::{CoreSettings, FarTrailers, FreeWakeSettings, ShedVorticity};
 use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle, WakeTrimSettings};
 
 /// Stations outboard of the root at which the loads are given unless a case says others, R.
@@ -235,6 +235,11 @@ impl Case {
             near_wake_rad: chosen.near_wake_deg.to_radians(),
             near_wake_motion: chosen.near_wake,
             far,
+            // what quasi-steady sections do not know of the past, the wake does
+            shed: match self.aerodynamics.model {
+                AttachedFlowModel::QuasiSteady => ShedVorticity::InWake,
+                _ => ShedVorticity::InSections,
+            },
             release: values.release,
             control_point: values.control_point,
             core: CoreSettings {

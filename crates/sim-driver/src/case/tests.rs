@@ -8,7 +8,8 @@ use super::{
 use crate::files::{Source, ron_text, shipped};
 use approx::assert_relative_eq;
 use rotor_wake::{
-    ControlPoint, CoreModel, FarField, FarTrailers, ReleasePoint, WakeMethod, WakeSymmetry,
+    ControlPoint, CoreModel, FarField, FarTrailers, ReleasePoint, ShedVorticity, WakeMethod,
+    WakeSymmetry,
 };
 
 fn read(text: &str) -> Result<LoadedCase, String> {
@@ -128,6 +129,12 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
     let strided = of("velocity_stride: 2").unwrap().case;
     let InflowChoice::FreeWake(file) = strided.inflow.model else { unreachable!() };
     assert_eq!(strided.wake_trim_settings(&file).wake.velocity_stride, 2);
+    // the vorticity that sections shed is in their lags, or in the wake
+    assert_eq!(wake.shed, ShedVorticity::InSections);
+    let steady = "(inflow: (model: FreeWake()), aerodynamics: (model: QuasiSteady))";
+    let steady = read(steady).unwrap().case;
+    let InflowChoice::FreeWake(file) = steady.inflow.model else { unreachable!() };
+    assert_eq!(steady.wake_trim_settings(&file).wake.shed, ShedVorticity::InWake);
     let hover = "(advance_ratio: 0.0, inflow: (model: FreeWake(symmetry: Axial)))";
     let hover = read(hover).unwrap().case;
     let InflowChoice::FreeWake(axial) = hover.inflow.model else { unreachable!() };
