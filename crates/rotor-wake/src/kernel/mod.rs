@@ -55,12 +55,18 @@ pub fn induced_velocities_serial(targets: &[Vec3], segments: &SegmentSet, out: &
     Arch::new().dispatch(Sums { targets, segments, out });
 }
 
-/// Velocity at up to [`LANES`] targets by each segment in turn, handed to `take` component by component with
-/// the number of the segment.
+/// What takes the velocities by single segments. Its function is to be `inline(always)`: only then is it compiled for
+/// the vector unit.
+pub(crate) trait TakeVelocity {
+    /// Velocity by the segment of a number at the targets of a block, component by component.
+    fn take(&mut self, segment: usize, velocity: [&[f64; BLOCK]; 3]);
+}
+
+/// Velocity at up to [`LANES`] targets by each segment in turn, handed to `take`.
 pub(crate) fn for_each_velocity(
     targets: &[Vec3],
     segments: &SegmentSet,
-    take: impl FnMut(usize, [&[f64; LANES]; 3]),
+    take: &mut impl TakeVelocity,
 ) {
     Arch::new().dispatch(Each { block: Lanes::gather(targets), segments, take });
 }
@@ -109,24 +115,24 @@ impl WithSimd for Sums<'_> {
 }
 
 /// The velocities by every segment, one after the other.
-struct Each<'a, F> {
+struct Each<'a, T> {
     block: Lanes,
     segments: &'a SegmentSet,
-    take: F,
+    take: &'a mut T,
 }
 
-impl<F: FnMut(usize, [&[f64; LANES]; 3])> Each<'_, F> {
+impl<T: TakeVelocity> Each<'_, T> {
     #[inline(always)]
-    fn velocities<const MOORE: bool, const FUSED: bool>(mut self) {
+    fn velocities<const MOORE: bool, const FUSED: bool>(self) {
         for (index, segment) in self.segments.prepared().iter().enumerate() {
             let mut one = Lanes::default();
             lanes::add_velocity::<MOORE, FUSED>(&self.block, segment, &mut one);
-            (self.take)(index, one.components());
+            self.take.take(index, one.components());
         }
     }
 }
 
-impl<F: FnMut(usize, [&[f64; LANES]; 3])> WithSimd for Each<'_, F> {
+impl<T: TakeVelocity> WithSimd for Each<'_, T> {
     type Output = ();
 
     #[inline(always)]

@@ -1,8 +1,11 @@
 //! The wake held still: inflow as a linear function of the circulation.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
+use super::sources::Sources;
 use super::{ControlPoint, CoreSettings, FreeWake};
 use crate::error::ensure;
-use crate::kernel::{BLOCK, for_each_velocity};
+use crate::kernel::{BLOCK, TakeVelocity, for_each_velocity};
 use crate::vector::{Vec3, add, norm, scale, sub};
 use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
@@ -46,6 +49,33 @@ struct TargetBlock {
     /// Sine and cosine of the azimuth of each.
     sines: [f64; BLOCK],
     cosines: [f64; BLOCK],
+}
+
+/// The rows of the map at the points of a block, column by column.
+struct Rows<'a> {
+    sources: &'a Sources,
+    block: &'a TargetBlock,
+    down: Vec<[f64; BLOCK]>,
+    along: Vec<[f64; BLOCK]>,
+}
+
+impl TakeVelocity for Rows<'_> {
+    #[inline(always)]
+    fn take(&mut self, segment: usize, [x, y, z]: [&[f64; BLOCK]; 3]) {
+        let TargetBlock { sines, cosines, .. } = self.block;
+        let mut along = [0.0; BLOCK];
+        for k in 0..BLOCK {
+            along[k] = x[k] * sines[k] - y[k] * cosines[k];
+        }
+        for (at, factor) in self.sources.terms(segment).iter() {
+            for (sum, z) in self.down[at].iter_mut().zip(z) {
+                *sum -= factor * z;
+            }
+            for (sum, along) in self.along[at].iter_mut().zip(along) {
+                *sum += factor * along;
+            }
+        }
+    }
 }
 
 impl FreeWake {
@@ -103,18 +133,10 @@ impl FreeWake {
             .par_iter()
             .map(|block| {
                 let (sources, segments) = &sources[block.phase];
-                let mut down = vec![[0.0; BLOCK]; size];
-                let mut along = down.clone();
-                for_each_velocity(&block.points, segments, |index, [x, y, z]| {
-                    for (at, factor) in sources.terms(index).iter() {
-                        let (down, along) = (&mut down[at], &mut along[at]);
-                        for k in 0..BLOCK {
-                            down[k] -= factor * z[k];
-                            along[k] += factor * (x[k] * block.sines[k] - y[k] * block.cosines[k]);
-                        }
-                    }
-                });
-                [down, along]
+                let down = vec![[0.0; BLOCK]; size];
+                let mut rows = Rows { sources, block, along: down.clone(), down };
+                for_each_velocity(&block.points, segments, &mut rows);
+                [rows.down, rows.along]
             })
             .collect();
         let mut out = LineInduction {
