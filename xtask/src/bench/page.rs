@@ -32,6 +32,7 @@ const INTRODUCTION: &str = "\
 
 Every figure but those of before is of one run of `cargo xtask bench`, in release builds. A time is the least of several: other
 work on the machine interrupts some of them, not all. A bar is what was asked for, of trims for two cores; what is over it is bold.
+Times of before were noted on an older processor.
 ";
 
 const LIMITS: &str = "
@@ -49,8 +50,8 @@ program uses. What is made of many residuals of a revolution is given in these.
 const COMMANDS: &str = "
 ## Whole commands
 
-Bars are for two cores by the clock, but where processor seconds are said. What a command took before the work on speed is as it
-was noted then.
+Bars are for two cores by the clock, but where processor seconds are said. What a command took before the work on speed was
+noted on an older processor; the last section has it for a newer one.
 ";
 
 const GROWTH: &str = "
