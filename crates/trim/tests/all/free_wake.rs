@@ -116,13 +116,11 @@ fn linear_law() -> NonlinearSections {
 }
 
 /// The circulation of sections from tables reaches the wake: with the linear law in a table, wake and loads are those of
-/// the linear model, angles being small.
+/// the linear model, angles being small. What is left falls with the square of the angles.
 #[test]
 fn sections_from_a_table_carry_the_wake_of_the_linear_law() {
-    let (mu, scale) = (0.15, 5e-3);
-    let [theta0_rad, theta1c_rad, theta1s_rad] = [0.15, 0.02, -0.06].map(|angle| scale * angle);
-    let controls = Controls { theta0_rad, theta1c_rad, theta1s_rad };
-    let coupled = |nonlinear| {
+    let mu = 0.15;
+    let coupled = |nonlinear, scale: f64| {
         let model = RotorModel {
             nonlinear,
             drag_coefficient: 0.0,
@@ -135,21 +133,37 @@ fn sections_from_a_table_carry_the_wake_of_the_linear_law() {
         let few =
             Discretisation { modes: [2, 1, 1], time_elements: 4, ..Discretisation::default() };
         let rotor = Arc::new(Rotor::new(model, &blade, few).unwrap());
-        let mut solver = RotorSolver::new(rotor, mu, ResponseTolerances::default()).unwrap();
+        // beside such small loads
+        let tolerances = ResponseTolerances {
+            periodicity: 1e-14,
+            inflow: 1e-13,
+            ..ResponseTolerances::default()
+        };
+        let mut solver = RotorSolver::new(rotor, mu, tolerances).unwrap();
+        let [theta0_rad, theta1c_rad, theta1s_rad] = [0.15, 0.02, -0.06].map(|angle| scale * angle);
+        let controls = Controls { theta0_rad, theta1c_rad, theta1s_rad };
         let target = TrimTarget::Prescribed { controls, shaft_tilt_rad: 0.08 * scale };
         let settings = few_steps(2);
         trim_in_free_wake(&mut solver, &settings, mu, &target, &TrimSettings::default()).unwrap()
     };
-    let [linear, tabled] = [NonlinearSections::default(), linear_law()].map(coupled);
-    let apart = |of: &dyn Fn(&WakeTrim) -> Vec<f64>| {
-        let (a, b) = (of(&linear), of(&tabled));
-        let size = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+    let apart = |scale: f64| {
+        let pair = [NonlinearSections::default(), linear_law()].map(|law| coupled(law, scale));
+        let of = |values: &dyn Fn(&WakeTrim) -> Vec<f64>| {
+            let [a, b] = pair.each_ref().map(values);
+            let size = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+        };
+        let inflow = of(&|wake| wake.trim.rotor.inflow.parameters());
+        [inflow, of(&|wake| wake.trim.rotor.hub.harmonic(4).to_vec())]
     };
-    let loads = |wake: &WakeTrim| wake.trim.rotor.hub.harmonic(4).to_vec();
-    let [inflow, loads] = [apart(&|w| w.trim.rotor.inflow.parameters()), apart(&loads)];
-    println!("inflow of the free wake apart by {inflow:.1e}, loads at 4/rev by {loads:.1e}");
-    assert!(inflow < 1e-6 && loads < 1e-6, "{inflow:e} {loads:e}");
+    let [small, large] = [3e-3, 1.2e-2].map(apart);
+    for (what, (a, b)) in ["inflow", "loads at 4/rev"].into_iter().zip(small.iter().zip(large)) {
+        println!("{what} apart by {a:.1e}, at four times the angles by {b:.1e}");
+    }
+    assert!(small.iter().all(|apart| *apart < 1e-6), "{small:?}");
+    for (small, large) in small.iter().zip(large) {
+        assert!((0.5..2.0).contains(&(large / small / 16.0)), "{small:e} {large:e}");
+    }
 }
 
 /// In hover the wake that turns with its blades settles, carries more inflow than momentum theory asks, and is the same
