@@ -266,3 +266,37 @@ fn by_stages(
     }
     Ok(state)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rotor_fem::{BladeProperties, BladeSpec};
+    use rotor_response::{Couplings, Discretisation, Rotor, RotorModel};
+    use std::sync::Arc;
+
+    /// An inflow of a tenth of momentum theory's does not carry the thrust of a trim; that of a rotor with hardly any
+    /// thrust, and of a descent, is not asked.
+    #[test]
+    fn an_inflow_that_does_not_carry_the_thrust_is_too_little() {
+        let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
+        let few =
+            Discretisation { modes: [2, 1, 1], time_elements: 4, ..Discretisation::default() };
+        let model = RotorModel::table_1(Couplings::Full);
+        let rotor = Arc::new(Rotor::new(model, &blade, few).unwrap());
+        let share = |induced_inflow: f64, (ct_sigma, shaft_tilt_rad): (f64, f64)| {
+            let tolerances = ResponseTolerances::default();
+            let mut solver = RotorSolver::new(Arc::clone(&rotor), 0.2, tolerances).unwrap();
+            let target = TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad };
+            let inflow = LinearInflow::Prescribed { induced_inflow };
+            let settings = TrimSettings::default();
+            let found = trim(&mut solver, &inflow, 0.2, &target, &settings, None).unwrap();
+            too_little_inflow(&found, rotor.model().solidity())
+        };
+        // momentum theory has 0.012 in level flight
+        let little = share(0.0012, (0.07, 0.05)).unwrap();
+        assert!((0.05..0.2).contains(&little), "{little}");
+        assert_eq!(share(0.012, (0.07, 0.05)), None);
+        assert_eq!(share(0.0, (0.005, 0.05)), None);
+        assert_eq!(share(0.0012, (0.07, -0.05)), None);
+    }
+}
