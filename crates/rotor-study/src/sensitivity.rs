@@ -249,7 +249,7 @@ fn assumptions() -> Vec<Assumption> {
         assume("inflow-pitt-peters", "inflow of Pitt and Peters", |c| {
             c.inflow.model = InflowChoice::PittPeters;
         }),
-        assume("sections-quasi-steady", "quasi-steady sections", |c| {
+        assume("sections-quasi-steady", "quasi-steady sections, what they shed in the wake", |c| {
             c.aerodynamics.model = AttachedFlowModel::QuasiSteady;
         }),
         assume("flap-lift-80", "flap lift 80 % of thin-aerofoil theory", |c| {

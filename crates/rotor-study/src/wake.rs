@@ -63,7 +63,7 @@ pub struct WakeResult {
     pub advance_ratio: f64,
     /// Whether inflow, geometry and trim agree to the tolerances.
     pub settled: bool,
-    /// Whether wake and trim diverged: what is given is the last good state, no solution.
+    /// Whether wake and trim diverged, or settled on too little inflow: what is given is no solution.
     pub diverged: bool,
     /// Collective, lateral and longitudinal cyclic, shaft tilt, deg; none for a prescribed circulation.
     pub controls_deg: Option<[f64; 4]>,

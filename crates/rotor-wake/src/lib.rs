@@ -53,8 +53,8 @@ pub use kernel::{
 };
 pub use linear::{LinearInflow, drees_factors};
 pub use momentum::{
-    VORTEX_RING_TRANSPORT, WAKE_BREAKDOWN_TRANSPORT, descent_transport, momentum_inflow,
-    wake_skew_rad,
+    VORTEX_RING_TRANSPORT, WAKE_BREAKDOWN_TRANSPORT, descent_transport, inflow_over_momentum,
+    momentum_inflow, wake_skew_rad,
 };
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;

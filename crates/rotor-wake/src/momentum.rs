@@ -93,6 +93,19 @@ pub fn descent_transport(flight: &FlightState, thrust_coefficient: f64) -> Optio
     Some(along.hypot(lambda) / (0.5 * thrust_coefficient.abs()).sqrt())
 }
 
+/// A mean inflow over that of momentum theory; none in descent, where momentum theory is no measure of a wake, and where
+/// it has no inflow.
+pub fn inflow_over_momentum(
+    flight: &FlightState,
+    thrust_coefficient: f64,
+    mean_inflow: f64,
+) -> Option<f64> {
+    if descent_transport(flight, thrust_coefficient).is_some() {
+        return None;
+    }
+    Some(mean_inflow / momentum_inflow(flight, thrust_coefficient).ok()?)
+}
+
 /// Angle of the wake behind the disk normal, rad: 0 in hover, near `pi/2` in fast forward flight,
 /// above `pi/2` where the flow passes the disk upward.
 ///

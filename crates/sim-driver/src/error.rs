@@ -61,9 +61,9 @@ pub enum SimError {
         /// What went wrong.
         source: StudyError,
     },
-    /// A free wake that diverged: what is given is a state on the way, no solution.
+    /// A free wake that diverged or carries no thrust: what is given is no solution.
     #[error(
-        "{place}: wake and trim diverged, there is no solution: what is given is the last good state, without control; the warning says where and what may help"
+        "{place}: wake and trim found no solution: what is given is a state without control; the warning says why and what may help"
     )]
     WakeDiverged {
         /// The wake of the case.

@@ -54,7 +54,7 @@ impl SweepRow {
                 Some(("*", "*  the wake is not converged: the state with the least change"))
             }
             WakeStatus::Diverged => {
-                Some(("**", "** wake and trim diverged: no solution, the last state before"))
+                Some(("**", "** wake and trim are no solution; see the warning"))
             }
         }
     }

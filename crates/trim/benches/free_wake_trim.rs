@@ -1,7 +1,7 @@
 //! One coupled trim of the paper's rotor in its free wake: level flight at an advance ratio of 0.30, default wake,
 //! default discretisation, from nothing, on one core and on two.
 //!
-//! Budget: 0.4 s of processor time.
+//! Budget: 0.4 s by the clock, on two cores.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use rotor_fem::{BladeProperties, BladeSpec};

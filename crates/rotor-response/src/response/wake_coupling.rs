@@ -29,7 +29,7 @@ impl RotorSolver {
     }
 
     /// How the circulation at the panels and azimuths of a wake answers to the inflow there while the blades stay as
-    /// they are: prompt lift and lags of the sections in the speed of the rigid blade.
+    /// they are: prompt lift and lags of the attached sections in the speed of the rigid blade, over tables too.
     ///
     /// ```text
     /// dGamma = -(1/2) c s K dlambda,      K = direct + sum over channels of gain P input      s = U / hypot(U, .04)

@@ -140,6 +140,11 @@ mod tests {
         assert_abs_diff_eq!(loads.fz * cos - loads.fy * sin, pressure * normal, epsilon = 1e-15);
         assert_abs_diff_eq!(loads.fz * sin + loads.fy * cos, pressure * chord, epsilon = 1e-15);
         assert_abs_diff_eq!(loads.moment, pressure * 0.055 * moment, epsilon = 1e-15);
+        // of the force, what stands across the flow is the lift of the circulation
+        let across = (loads.fz * 0.6 - loads.fy * 0.05) / 0.6_f64.hypot(0.05);
+        let of_circulation = 0.8 / 0.055 * loads.circulation * 0.6_f64.hypot(0.05);
+        assert_abs_diff_eq!(of_circulation, across, epsilon = 1e-15);
+        assert!(loads.circulation < 0.0);
         // suction that is lost pulls the blade back
         assert!(loads.fy < 0.0);
         assert_eq!(added(-0.6), SectionLoads::default());

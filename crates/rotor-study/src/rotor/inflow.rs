@@ -5,7 +5,7 @@ use crate::error::StudyError;
 use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
     ClosestPassage, FlightState, InflowModel, WAKE_BREAKDOWN_TRANSPORT, descent_transport,
-    momentum_inflow,
+    inflow_over_momentum,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub enum WakeStatus {
     /// Not within them after all updates: the state with the least change.
     #[serde(alias = "not-settled")]
     NotConverged,
-    /// The iteration diverged: no solution, the last state before.
+    /// The iteration diverged, or settled on too little inflow: no solution.
     #[serde(alias = "parted")]
     Diverged,
 }
@@ -162,7 +162,9 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
     let (flight, thrust) = (&wake.trim.flight, wake.trim.rotor.thrust_coefficient);
     let settled = wake.outcome == WakeOutcome::Settled;
     warnings.extend(descent_warning(flight, thrust, settled));
-    warnings.extend(momentum_warning(flight, thrust, wake.trim.rotor.inflow.mean()));
+    if !matches!(wake.outcome, WakeOutcome::TooLittleInflow { .. }) {
+        warnings.extend(momentum_warning(flight, thrust, wake.trim.rotor.inflow.mean()));
+    }
     warnings.extend(wake.closest_passage.and_then(passage_warning));
     warnings
 }
@@ -185,10 +187,7 @@ pub(crate) fn descent_warning(
 
 /// What a user should know about an inflow that does not go with the thrust.
 fn momentum_warning(flight: &FlightState, thrust_coefficient: f64, mean: f64) -> Option<String> {
-    if descent_transport(flight, thrust_coefficient).is_some() {
-        return None;
-    }
-    let ratio = mean / momentum_inflow(flight, thrust_coefficient).ok()?;
+    let ratio = inflow_over_momentum(flight, thrust_coefficient, mean)?;
     let [least, most] = MOMENTUM;
     (!(least..=most).contains(&ratio)).then(|| {
         format!(

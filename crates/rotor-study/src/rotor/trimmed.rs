@@ -125,7 +125,7 @@ impl TrimmedRotor {
         self.wake.as_deref()
     }
 
-    /// Whether the iteration of free wake and trim diverged: this is the last good state, no solution.
+    /// Whether the iteration of free wake and trim diverged, or settled on too little inflow: this is no solution.
     pub fn wake_diverged(&self) -> bool {
         self.wake().is_some_and(|wake| wake.outcome.is_diverged())
     }

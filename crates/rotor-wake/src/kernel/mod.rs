@@ -6,8 +6,8 @@
 //! Rosenhead-Moore:   D = |l x r1|^2 + delta^2 |l|^2,   |r|^2 -> |r|^2 + delta^2,   delta = r_c e^(-3/4)
 //! ```
 //! The targets lie in the lanes of the vector unit and the segments are summed one after the other,
-//! so that a result has the same bits whatever the number of threads and the width of the vectors. Products are fused
-//! with sums on every vector unit, and only on a processor without one are they not.
+//! so that a result has the same bits whatever the number of threads and the width of the vectors. In double precision products
+//! are fused with sums on every vector unit; on a processor without one they are not.
 //!
 //! Segments pushed as single-precision ones are summed in that precision, sixteen at a time, and these sums in double.
 //!

@@ -188,7 +188,7 @@ impl Printable for WakeResult {
             match (self.controls_deg, self.settled) {
                 (Some(_), true) => "settled with the trim",
                 (None, true) => "circulation prescribed, settled",
-                (Some(_), false) if self.diverged => "diverged, the last good state",
+                (Some(_), false) if self.diverged => "diverged, no solution: see the warning",
                 (Some(_), false) => "not settled",
                 (None, false) => "circulation prescribed, not settled",
             }

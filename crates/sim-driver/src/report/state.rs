@@ -40,8 +40,8 @@ pub(crate) fn wake_note(wake: WakeStatus) -> Option<&'static str> {
         WakeStatus::NotConverged => {
             Some("NOT CONVERGED: the state with the least change; see the warning")
         }
-        WakeStatus::Diverged => Some(
-            "DIVERGED: no solution, the last state before; nothing is controlled; see the warning",
-        ),
+        WakeStatus::Diverged => {
+            Some("DIVERGED: no solution, nothing is controlled; see the warning")
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! Results are the same bits on one thread and on two.
+//! Results are the same bits on one thread, on two and on four.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sim_driver::case::{LoadedCase, read_case};
 use sim_driver::files::{Source, shipped};
@@ -27,13 +28,30 @@ fn run_on(loaded: &LoadedCase, threads: usize) -> Figures {
     }
 }
 
-#[test]
-fn one_thread_and_two_give_the_same_bits() {
-    let source = Source { name: "threads.ron".into(), text: CASE.into() };
+/// All figures of a case on one thread, which are those on two and on four.
+fn same_on_all(case: &str) -> Figures {
+    let source = Source { name: "threads.ron".into(), text: case.into() };
     let loaded = read_case(&source, &shipped("fixtures/cases")).unwrap();
     let one = run_on(&loaded, 1);
-    assert!(one.control.iter().all(|line| line.reduction_percent > 1.0), "{one:?}");
-    let two = run_on(&loaded, 2);
-    // equal text of all digits is equal bits
-    assert_eq!(serde_json::to_string(&one).unwrap(), serde_json::to_string(&two).unwrap());
+    for threads in [2, 4] {
+        let more = run_on(&loaded, threads);
+        // equal text of all digits is equal bits
+        let texts = [&one, &more].map(|figures| serde_json::to_string(figures).unwrap());
+        assert_eq!(texts[0], texts[1], "{threads} threads");
+    }
+    one
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let figures = same_on_all(CASE);
+    assert!(figures.control.iter().all(|line| line.reduction_percent > 1.0), "{figures:?}");
+}
+
+/// The free wake, its trim, and control in it.
+#[test]
+fn so_it_does_in_the_free_wake() {
+    let wake = "FreeWake(azimuths: 24, turns: 2, panels: 10)";
+    let figures = same_on_all(&CASE.replace("Drees", wake));
+    assert_eq!(figures.control.len(), 2, "{figures:?}");
 }
