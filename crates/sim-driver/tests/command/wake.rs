@@ -120,7 +120,7 @@ fn a_wake_that_parts_from_its_rotor_is_no_solution() {
     let Some((thrust, ran)) = diverged else { panic!("none of the three wakes has diverged") };
     assert!(ran.out.contains("Wake       DIVERGED"), "{}", ran.out);
     assert!(!ran.out.contains("Reduction of hub vibration"), "{}", ran.out);
-    assert!(ran.err.contains("inflow.model: wake and trim diverged"), "{}", ran.err);
+    assert!(ran.err.contains("inflow.model: wake and trim found no solution"), "{}", ran.err);
     let stored = place.read(&format!("{thrust}/result.json"));
     let stored: serde_json::Value = serde_json::from_str(&stored).unwrap();
     assert_eq!(stored["result"]["wake"], "diverged");
@@ -132,7 +132,9 @@ fn a_wake_that_parts_from_its_rotor_is_no_solution() {
     // among other advance ratios it is marked, and the others are found
     let swept = place.hhc(&["run", "case.ron", "--mu", "0.03,0.25", "--out", "s"]);
     assert_eq!(swept.code, 1);
-    assert!(swept.out.contains("0.030**") && swept.out.contains("** wake and trim diverged"));
+    assert!(
+        swept.out.contains("0.030**") && swept.out.contains("** wake and trim are no solution")
+    );
     assert!(swept.err.contains("advance ratio 0.03: case.ron"), "{}", swept.err);
     let csv = place.read("s/sweep.csv");
     let ends: Vec<&str> = csv.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
@@ -161,22 +163,30 @@ fn an_advance_ratio_no_rotor_has_is_refused() {
     }
 }
 
-/// A rotor with hardly any thrust: lift of both senses along the span, which momentum theory does not have.
+/// A rotor with hardly any thrust: lift of both senses along the span, which momentum theory does not have. With a
+/// thrust that wants an inflow such a wake is no solution.
 #[test]
-fn an_inflow_that_does_not_go_with_the_thrust_is_warned_of() {
+fn an_inflow_that_does_not_go_with_the_thrust_is_told() {
     let place = Place::new();
-    let case = |theta0: f64| {
+    let case = |advance_ratio: f64, theta0: f64| {
         format!(
-            "(advance_ratio: 0, structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
+            "(advance_ratio: {advance_ratio}, structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
             aerodynamics: (model: QuasiSteady, compressibility: None),
             inflow: (model: FreeWake(azimuths: 24)), trim: Prescribed(theta0_deg: {theta0},
             theta1c_deg: 0, theta1s_deg: 0, shaft_tilt_deg: 0), actuator: (model: Ideal))"
         )
     };
-    for (theta0, warned) in [(0.0, true), (9.0, false)] {
-        place.write("case.ron", &case(theta0));
+    let warned = "of momentum theory's for this thrust";
+    let refused = "carries hardly any of the thrust";
+    for (advance_ratio, theta0, code, told) in
+        [(0.1, 0.3, 0, Some(warned)), (0.0, 0.0, 1, Some(refused)), (0.0, 9.0, 0, None)]
+    {
+        place.write("case.ron", &case(advance_ratio, theta0));
         let ran = place.hhc(&["wake", "case.ron"]);
-        assert_eq!(ran.err.contains("of momentum theory's for this thrust"), warned, "{}", ran.err);
+        assert_eq!(ran.code, code, "{}", ran.err);
+        for words in [warned, refused] {
+            assert_eq!(ran.err.contains(words), told == Some(words), "{}", ran.err);
+        }
     }
     // a given circulation in the same descent as a trimmed one
     place.write(
