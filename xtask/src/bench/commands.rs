@@ -37,6 +37,8 @@ pub struct Timing {
     pub bar_is_cpu: bool,
     /// Seconds that it took before the work on speed, as they were noted.
     pub before_s: Option<&'static str>,
+    /// Whether it flies a rotor, so that it is made of residuals of a revolution.
+    pub is_of_rotor: bool,
     /// Whether it is timed on two threads alone, and left out where there is no time.
     pub slow: bool,
 }
@@ -49,6 +51,7 @@ pub const WAKE: Timing = Timing {
     bar_s: None,
     bar_is_cpu: false,
     before_s: None,
+    is_of_rotor: true,
     slow: false,
 };
 
@@ -89,6 +92,7 @@ pub const TIMINGS: [Timing; 6] = [
         arguments: "identify fixtures/bench/apa500l_synthetic -o a.ron",
         bar_s: Some(6.0),
         before_s: Some("14 to 20"),
+        is_of_rotor: false,
         ..WAKE
     },
     Timing {
@@ -96,6 +100,7 @@ pub const TIMINGS: [Timing; 6] = [
         arguments: "diagnose actuator.ron --data fixtures/bench/everyday_synthetic/a -o out/found",
         after: Some("identify fixtures/bench/everyday_synthetic/reference -o actuator.ron"),
         bar_s: Some(15.0),
+        is_of_rotor: false,
         ..WAKE
     },
 ];

@@ -50,10 +50,18 @@ impl Machine {
     }
 }
 
-/// Name of the processor in a text of `/proc/cpuinfo`.
+/// Name of the processor in a text of `/proc/cpuinfo`, with family and model where they stand there: names of virtual
+/// machines leave out the generation.
 fn processor_in(cpuinfo: &str) -> Option<String> {
-    let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
-    Some(line.split_once(':')?.1.trim().to_owned())
+    let field = |name: &str| {
+        let mut fields = cpuinfo.lines().filter_map(|line| line.split_once(':'));
+        fields.find(|(key, _)| key.trim() == name).map(|(_, value)| value.trim())
+    };
+    let name = field("model name")?;
+    Some(match (field("cpu family"), field("model")) {
+        (Some(family), Some(model)) => format!("{name} (family {family}, model {model})"),
+        _ => name.to_owned(),
+    })
 }
 
 #[cfg(test)]
@@ -65,6 +73,8 @@ mod tests {
         let known =
             "processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nflags\t: fma\nmodel name\t: b\n";
         assert_eq!(processor_in(known).as_deref(), Some("Some CPU @ 2 GHz"));
+        let generation = "cpu family\t: 25\nmodel\t\t: 17\nmodel name\t: Some CPU\n";
+        assert_eq!(processor_in(generation).as_deref(), Some("Some CPU (family 25, model 17)"));
         assert_eq!(processor_in("processor\t: 0\n"), None);
     }
 }

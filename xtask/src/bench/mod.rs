@@ -138,13 +138,16 @@ fn growth(
     let of_group = |(_, id, name): &(&str, &str, &str)| Series::of_group(samples, id, name);
     let mut all: Vec<Series> = GROWING_BENCHES.iter().map(of_group).collect();
     let mut command = |name: &str, runs: &[(f64, String)]| -> Result<(), XtaskError> {
-        let mut points = Vec::new();
-        for (size, arguments) in runs {
-            let spent = program.least(arguments, 2)?;
-            progress(&format!("hhc {arguments}: {:.1} s\n", spent.wall_s));
-            points.push((*size, spent.cpu_s));
+        for threads in [1, 2] {
+            let mut points = Vec::new();
+            for (size, arguments) in runs {
+                let spent = program.least(arguments, threads)?;
+                progress(&format!("hhc {arguments}: {:.1} s\n", spent.wall_s));
+                points.push((*size, spent.wall_s));
+            }
+            let cores = if threads == 1 { "one core" } else { "two cores" };
+            all.push(Series { name: format!("{name}, {cores}"), points });
         }
-        all.push(Series { name: name.to_owned(), points });
         Ok(())
     };
     command("identification over runs of the bench set", &thinned_sets(program)?)?;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::commands::{BARE, CASE, Spent, Timed, Timing, WAKE};
 use super::growth::{Power, Series};
 use super::machine::Machine;
-use super::paths::{LINE_INDUCTION, MACHINE, MeasuredPath, RESIDUAL, element_s};
+use super::paths::{KERNEL, LINE_INDUCTION, MACHINE, MeasuredPath, RESIDUAL, element_s};
 use super::samples::Samples;
 use crate::XtaskError;
 use crate::validate::figure;
@@ -31,8 +31,8 @@ const INTRODUCTION: &str = "\
 <!-- Written by `cargo xtask bench`; do not edit. -->
 
 Every figure but those of before is of one run of `cargo xtask bench`, in release builds. A time is the least of several: other
-work on the machine interrupts some of them, not all. A bar is what was asked for, of trims for two cores; what is over it is bold.
-Times of before were noted on an older processor.
+work on the machine interrupts some of them, not all. A bar is what was asked for, of trims for two cores; what is over it is
+bold. Times of before were noted on an older processor.
 ";
 
 const LIMITS: &str = "
@@ -57,8 +57,13 @@ noted on an older processor; the last section has it for a newer one.
 const GROWTH: &str = "
 ## Growth
 
-`time = factor size^exponent`, by least squares on logarithms. Commands are given in processor seconds. A constant part makes an
-exponent smaller than the last sizes have.
+`time = factor size^exponent`, by least squares on logarithms. Benches run on one core, commands on one and on two,
+by the clock. A constant part makes an exponent smaller than the last sizes have.
+";
+
+const NOW: &str = "
+*Now*, a trim in the free wake on one core. Calls were counted by probes in a copy of commit `5c6c87b`: 37 responses, before
+the wake and in it, with 218 orbits and one Newton matrix.
 ";
 
 /// Said where the machine was not idle.
@@ -86,10 +91,11 @@ pub fn render(figures: &Figures) -> Result<String, XtaskError> {
         page += &limit_table(samples)?;
         page += PATHS;
         page += &path_table(paths);
+        page += &kernel_rates(paths)?;
     }
     if !commands.is_empty() {
         page += COMMANDS;
-        page += &command_table(commands);
+        page += &command_table(commands, element_s(samples, RESIDUAL).ok());
     }
     if !growth.is_empty() {
         page += GROWTH;
@@ -131,9 +137,9 @@ fn path_table(paths: &[MeasuredPath]) -> String {
         [
             path.name.to_owned(),
             path.before.unwrap_or("–").to_owned(),
-            duration(bar_s),
+            bar_s.map_or_else(nothing, duration),
             duration(time_s),
-            met(time_s / bar_s),
+            bar_s.map_or_else(nothing, |bar_s| met(time_s / bar_s)),
             limit(|l| l.divider_s),
             limit(|l| l.multiply_add_s),
             limits.map_or_else(nothing, |l| figure(time_s / l.longest_s())),
@@ -154,7 +160,26 @@ fn path_table(paths: &[MeasuredPath]) -> String {
     table(titles, rows)
 }
 
-fn command_table(commands: &[Timed]) -> String {
+/// Evaluations of the kernel in a second, and how many the processor allows.
+fn kernel_rates(paths: &[MeasuredPath]) -> Result<String, XtaskError> {
+    let of = |id: &str| {
+        paths.iter().find(|measured| measured.path.id == id).ok_or_else(|| XtaskError::Speed {
+            what: id.to_owned(),
+            said: "the kernel was not measured".to_owned(),
+        })
+    };
+    let [one, two] = KERNEL.map(of);
+    let (one, two) = (one?, two?);
+    let allowed = one.limits.map_or_else(String::new, |limits| {
+        let [divider, products] =
+            [limits.divider_s, limits.multiply_add_s].map(|s| figure(1.0 / s));
+        format!("; the divider of a core allows {divider}, its multiply-adds {products}")
+    });
+    let [one, two] = [one, two].map(|measured| figure(1.0 / measured.time_s));
+    Ok(format!("\nEvaluations of the kernel a second: {one} on one core, {two} on two{allowed}.\n"))
+}
+
+fn command_table(commands: &[Timed], residual_s: Option<f64>) -> String {
     let rows = commands.iter().map(|timed| {
         let Timing { name, arguments, bar_s, before_s, .. } = timed.timing;
         let cell = |value: Option<f64>| value.map_or("–".to_owned(), figure);
@@ -168,6 +193,7 @@ fn command_table(commands: &[Timed]) -> String {
             one(|spent| spent.wall_s),
             figure(timed.two.wall_s),
             figure(timed.two.cpu_s),
+            cell(residual_s.filter(|_| timed.timing.is_of_rotor).map(|s| timed.cpu_s() / s)),
         ]
     });
     let titles = [
@@ -179,6 +205,7 @@ fn command_table(commands: &[Timed]) -> String {
         "wall, one thread, s",
         "wall, two threads, s",
         "processor, two threads, s",
+        "in residuals of a revolution",
     ];
     table(titles, rows)
 }
@@ -207,15 +234,21 @@ fn growth_table(growth: &[Series]) -> Result<String, XtaskError> {
 /// What the parts of a trim and of the study take now.
 fn now(samples: &Samples, commands: &[Timed]) -> Result<String, XtaskError> {
     let parts = [
-        ("residual of a revolution", RESIDUAL),
-        ("sweep of the wake, 36 azimuths", "sweep over azimuths/36"),
-        ("what the lines of a wake held still induce, 36 azimuths", LINE_INDUCTION.1),
-        ("the whole trim", "trim in the free wake/1"),
+        ("residual of a revolution", RESIDUAL, "478"),
+        ("sweep of the wake, 36 azimuths", "sweep over azimuths/36", "20, at 12 and 36 azimuths"),
+        (
+            "what the lines of a wake held still induce, 36 azimuths",
+            LINE_INDUCTION.1,
+            "6, at 12 and 36 azimuths",
+        ),
+        ("the whole trim", "trim in the free wake/1", "1"),
     ];
-    let each = parts.map(|(name, id)| Ok([name.to_owned(), duration(element_s(samples, id)?)]));
+    let each = parts.map(|(name, id, calls)| {
+        Ok([name.to_owned(), duration(element_s(samples, id)?), calls.to_owned()])
+    });
     let each = each.into_iter().collect::<Result<Vec<_>, XtaskError>>()?;
-    let mut text = "\n*Now*, a trim in the free wake on one core:\n".to_owned();
-    text += &table(["part", "each"], each);
+    let mut text = NOW.to_owned();
+    text += &table(["part", "each", "calls"], each);
     let cpu_s = |timing: &Timing| {
         let found = commands.iter().find(|timed| timed.timing.name == timing.name);
         found.map(Timed::cpu_s).ok_or_else(|| XtaskError::Speed {
@@ -292,7 +325,7 @@ mod tests {
             assert_eq!(row(&page, path.name).len(), 9, "{}", path.name);
         }
         for timing in &TIMINGS {
-            assert_eq!(row(&page, timing.name).len(), 8, "{}", timing.name);
+            assert_eq!(row(&page, timing.name).len(), 9, "{}", timing.name);
         }
         assert_eq!(row(&page, "squares")[1..4], ["2: 4 ms, 6: 36 ms", "2.00", "1 ms"]);
         // 1 ms in place of 0.8 ms is too long, in place of 50 ms it is not
