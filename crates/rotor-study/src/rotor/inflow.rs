@@ -152,7 +152,7 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
             ));
         }
         WakeOutcome::TooLittleInflow { of_momentum } => warnings.push(format!(
-            "the free wake carries hardly any of the thrust: its mean inflow is {of_momentum:.2} of momentum theory's. What is given is no solution. Remedy: look at the circulation of the sections (`hhc wake --out DIR`), or compare with inflow.model: Uniform"
+            "the free wake carries hardly any of the thrust: its mean inflow is {of_momentum:.2} of momentum theory's. What is given is no solution. Remedy: more thrust where blades carry lift of both senses along the span; look at the circulation of the sections (`hhc wake --out DIR`), or compare with inflow.model: Uniform"
         )),
         WakeOutcome::Failed { updates, inflow_change, error } => {
             warnings.push(kept(azimuths, *updates, *inflow_change, error));
