@@ -6,10 +6,9 @@ use crate::{
 };
 use rotor_response::{Controls, ResponseError, RotorSolution, RotorSolver};
 use rotor_wake::{
-    BladeLines, CirculationMap, CirculationSlope, FreeWake, FreeWakeSettings, FrozenWake,
-    InducedInflow, InflowModel, WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
+    BladeLines, CirculationMap, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel,
+    WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
 };
-use std::sync::Arc;
 
 /// Halvings of the part of a sweep that is gone, at most.
 const MOST_HALVINGS: u32 = 3;
@@ -94,13 +93,11 @@ impl Coupling<'_> {
     /// The trim in a wake held still.
     fn in_still_wake(
         &mut self,
-        wake: FreeWake,
+        (wake, frozen): (FreeWake, FrozenWake),
         moving: CirculationMap,
-        slope: Arc<CirculationSlope>,
         start: &TrimSolution,
     ) -> Result<State, TrimError> {
         let mu = start.flight.advance_ratio;
-        let frozen = FrozenWake::new(wake.line_induction(&moving)?, &moving, slope)?;
         let trim = self.trimmed(&frozen, mu, Some(start))?;
         let (inflow_change, displacement) = (f64::INFINITY, f64::INFINITY);
         Ok(State { trim, wake, frozen, moving, inflow_change, displacement })
@@ -123,8 +120,9 @@ impl Coupling<'_> {
             let mean = momentum_inflow(&start.flight, start.rotor.thrust_coefficient)?;
             FreeWake::undistorted(panels.clone(), settings, start.flight, mean, lines)?
         };
-        let slope = Arc::new(self.solver.circulation_slope(panels, azimuths));
-        self.in_still_wake(wake, circulation, slope, start)
+        let slope = self.solver.circulation_slope(panels, azimuths);
+        let frozen = FrozenWake::new(wake.line_induction(&circulation)?, &circulation, &slope)?;
+        self.in_still_wake((wake, frozen), circulation, start)
     }
 
     /// The start of the last stage from a state nearby: the rotor trimmed in its wake, which is then taken over.
@@ -235,8 +233,8 @@ impl Coupling<'_> {
         let mut wake = now.wake.clone();
         wake.set_condition(now.trim.flight, mean, lines)?;
         let (displacement, gone) = self.carried_on(&mut wake, &circulation, part)?;
-        let mut next =
-            self.in_still_wake(wake, circulation, Arc::clone(now.frozen.slope()), &now.trim)?;
+        let frozen = now.frozen.moved_on(wake.line_induction(&circulation)?, &circulation)?;
+        let mut next = self.in_still_wake((wake, frozen), circulation, &now.trim)?;
         next.displacement = displacement;
         next.inflow_change = largest_change(&next.trim.rotor.inflow, &now.trim.rotor.inflow) / gone;
         if next.inflow_change > RUNAWAY {

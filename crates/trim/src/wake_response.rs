@@ -4,8 +4,7 @@ use crate::coupling::{MIXED, on_the_grid};
 use crate::wake::WakeTrim;
 use crate::wake_settings::WakeTrimSettings;
 use rotor_response::{Condition, ResponseError, RotorSolution, RotorSolver};
-use rotor_wake::{CirculationMap, CirculationSlope, FreeWake, FrozenWake, momentum_inflow};
-use std::sync::Arc;
+use rotor_wake::{CirculationMap, FreeWake, FrozenWake, momentum_inflow};
 
 /// Updates of the geometry at most.
 const UPDATES: usize = 20;
@@ -35,7 +34,7 @@ struct WakeResponse<'a> {
     rotor: RotorSolution,
     wake: FreeWake,
     moving: CirculationMap,
-    slope: Arc<CirculationSlope>,
+    frozen: FrozenWake,
 }
 
 impl<'a> WakeResponse<'a> {
@@ -47,8 +46,8 @@ impl<'a> WakeResponse<'a> {
     ) -> Result<Self, ResponseError> {
         let start = Some(&about.trim.rotor);
         let rotor = solver.clone().solve(condition, &about.frozen, start)?;
-        let (wake, moving) = (about.wake.clone(), about.moving.clone());
-        Ok(Self { condition, rotor, wake, moving, slope: Arc::clone(about.frozen.slope()) })
+        let (wake, frozen) = (about.wake.clone(), about.frozen.clone());
+        Ok(Self { condition, rotor, wake, moving: about.moving.clone(), frozen })
     }
 
     /// The wake moved on under the present loading, and the response in it.
@@ -71,8 +70,8 @@ impl<'a> WakeResponse<'a> {
         self.wake.set_condition(flight, mean, lines)?;
         self.wake.carry_on(settings.method, settings.sweeps, &circulation)?;
         let induction = self.wake.line_induction(&circulation)?;
-        let frozen = FrozenWake::new(induction, &circulation, Arc::clone(&self.slope))?;
-        self.rotor = solver.clone().solve(self.condition, &frozen, Some(&self.rotor))?;
+        self.frozen = self.frozen.moved_on(induction, &circulation)?;
+        self.rotor = solver.clone().solve(self.condition, &self.frozen, Some(&self.rotor))?;
         self.moving = circulation;
         Ok(())
     }

@@ -104,15 +104,17 @@ impl SpanGrid {
 
     /// Integral of `f` from the root to every station.
     pub fn integral_from_root(&self, f: &[f64], out: &mut [f64]) {
-        self.integrals_from_root(f, 1, out);
+        self.integrals_from_root(f, out, &mut [0.0]);
     }
 
-    /// The same for several functions side by side, lane by lane; both of shape stations x lanes.
+    /// The same for several functions side by side, lane by lane; both of shape stations x lanes. `total` has a place for
+    /// every lane and leaves with the integral over the blade.
     #[expect(clippy::inline_always, reason = "what is inlined is compiled for the vector unit")]
     #[inline(always)]
-    pub fn integrals_from_root(&self, f: &[f64], lanes: usize, out: &mut [f64]) {
+    pub fn integrals_from_root(&self, f: &[f64], out: &mut [f64], total: &mut [f64]) {
+        let lanes = total.len();
         let piece = self.points_per_piece * lanes;
-        let mut before = vec![0.0; lanes];
+        total.fill(0.0);
         let values = f.chunks_exact(piece).zip(out.chunks_exact_mut(piece));
         for ((values, out), half) in values.zip(&self.halves) {
             let add = |row: &[f64], out: &mut [f64]| {
@@ -123,10 +125,10 @@ impl SpanGrid {
                 }
             };
             for (out, row) in out.chunks_exact_mut(lanes).zip(&self.integration) {
-                out.copy_from_slice(&before);
+                out.copy_from_slice(total);
                 add(row, out);
             }
-            add(&self.integration[self.points_per_piece], &mut before);
+            add(&self.integration[self.points_per_piece], total);
         }
     }
 

@@ -227,6 +227,7 @@ pub(crate) struct Foreshortening {
     parts: [Vec<f64>; 3],
     motion: Motion,
     integrand: Vec<f64>,
+    total: Vec<f64>,
 }
 
 impl Foreshortening {
@@ -262,8 +263,8 @@ impl WithSimd for Shortening<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { of: Foreshortening { lanes, parts, motion, integrand }, blade, rows, wanted } =
-            self;
+        let Self { of, blade, rows, wanted } = self;
+        let Foreshortening { lanes, parts, motion, integrand, total } = of;
         let (stations, lanes) = (blade.grid.len(), *lanes);
         for k in wanted {
             integrand.resize(stations * lanes, 0.0);
@@ -280,7 +281,8 @@ impl WithSimd for Shortening<'_> {
                 }
             }
             parts[k].resize(stations * lanes, 0.0);
-            blade.grid.integrals_from_root(integrand, lanes, &mut parts[k]);
+            total.resize(lanes, 0.0);
+            blade.grid.integrals_from_root(integrand, &mut parts[k], total);
         }
     }
 }

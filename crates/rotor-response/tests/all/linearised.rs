@@ -11,10 +11,9 @@ use rotor_response::{
     Condition, FlapDirection, InflowState, ResponseError, RotorSolution, RotorSolver,
 };
 use rotor_wake::{
-    FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel, LinearInflow, PittPeters,
-    RotorLoading, WakeError, WakeRotor, momentum_inflow,
+    CirculationMap, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel,
+    LinearInflow, PittPeters, RotorLoading, WakeError, WakeMethod, WakeRotor, momentum_inflow,
 };
-use std::sync::Arc;
 
 const BLADES: usize = 4;
 
@@ -163,13 +162,12 @@ fn hinge_moments_are_derived_along_with_the_loads() {
     assert!(drees <= 1e-4 && hinge <= 1e-4, "{drees:e} {hinge:e}");
 }
 
-/// A wake held still, whose inflow follows the circulation: the derivative sees it, and without it the bound
-/// fails by far.
-#[test]
-fn in_a_wake_the_inflow_settles_on_the_circulation() {
-    let mut solver = common::solver();
-    let condition = common::condition();
-    let start = solver.solve(&condition, &LinearInflow::Drees, None).unwrap();
+/// The undistorted wake of a rotor in Drees's inflow, the circulation that it has there, and the wake held still.
+fn still_wake(
+    solver: &mut RotorSolver,
+    condition: &Condition,
+) -> (FreeWake, CirculationMap, FrozenWake) {
+    let start = solver.solve(condition, &LinearInflow::Drees, None).unwrap();
     let model = solver.rotor().model();
     let (cutout, azimuths) = (model.root_cutout, 16);
     let panels = WakeRotor::cosine(BLADES, cutout, 8).unwrap();
@@ -180,8 +178,54 @@ fn in_a_wake_the_inflow_settles_on_the_circulation() {
     let wake = FreeWake::undistorted(panels.clone(), settings, flight, mean, lines).unwrap();
     let circulation = solver.circulation(&start, &panels, azimuths).unwrap();
     let induction = wake.line_induction(&circulation).unwrap();
-    let slope = Arc::new(solver.circulation_slope(&panels, azimuths));
-    let frozen = FrozenWake::new(induction, &circulation, slope).unwrap();
+    let slope = solver.circulation_slope(&panels, azimuths);
+    let frozen = FrozenWake::new(induction, &circulation, &slope).unwrap();
+    (wake, circulation, frozen)
+}
+
+/// A wake held still that keeps the Newton matrix of another geometry gives the response of its own, and Newton's steps
+/// from it are no slower by half; another grid is refused.
+#[test]
+fn the_newton_matrix_of_a_wake_before_sets_the_way_alone() {
+    let mut solver = common::solver();
+    let condition = common::condition();
+    let (mut wake, circulation, before) = still_wake(&mut solver, &condition);
+    wake.carry_on(WakeMethod::Relaxed, 3, &circulation).unwrap();
+    let induction = wake.line_induction(&circulation).unwrap();
+    let slope = solver.circulation_slope(wake.rotor(), wake.settings().azimuths);
+    let own = FrozenWake::new(induction.clone(), &circulation, &slope).unwrap();
+    let kept = before.moved_on(induction, &circulation).unwrap();
+    let [own, kept, before] =
+        [own, kept, before.clone()].map(|wake| solver.solve(&condition, &wake, None).unwrap());
+    let apart = |a: &RotorSolution, b: &RotorSolution| {
+        let pairs = a.inflow.parameters().into_iter().zip(b.inflow.parameters());
+        pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
+    };
+    let steps = [&own, &kept].map(|found| found.residuals.inflow_iterations);
+    println!("{:.1e} of {:.1e}, {steps:?} steps", apart(&kept, &own), apart(&before, &own));
+    assert!(apart(&kept, &own) < 1e-9 && apart(&before, &own) > 1e-4);
+    assert!(2 * steps[1] <= 3 * steps[0], "{steps:?}");
+
+    let coarse = WakeRotor::cosine(BLADES, solver.rotor().model().root_cutout, 6).unwrap();
+    let lines = solver.blade_lines(&own.modal, &condition.controls, &coarse, 16);
+    let other = FreeWake::undistorted(
+        coarse.clone(),
+        wake.settings().clone(),
+        condition.flight,
+        0.02,
+        lines,
+    );
+    let few = solver.circulation(&own, &coarse, 16).unwrap();
+    let induction = other.unwrap().line_induction(&few).unwrap();
+    let refused = still_wake(&mut solver, &condition).2.moved_on(induction, &few).unwrap_err();
+    assert!(refused.to_string().contains("96"), "{refused}");
+}
+
+/// A wake held still, whose inflow follows the circulation: the derivative sees it, and without it the bound
+/// fails by far.
+#[test]
+fn in_a_wake_the_inflow_settles_on_the_circulation() {
+    let (_, _, frozen) = still_wake(&mut common::solver(), &common::condition());
     let [settled, hinge, held] = settled_gap(&frozen, 0.5);
     assert!(settled <= 1e-3 && hinge <= 1e-3, "{settled:e} {hinge:e}");
     assert!(held > 10.0 * 1e-3, "{held:e}");

@@ -1,6 +1,10 @@
 //! The wake held still: inflow as a linear function of the circulation.
 
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "single precision is what is asked for a step"
+)]
 
 use super::sources::Sources;
 use super::{ControlPoint, CoreSettings, FreeWake};
@@ -33,6 +37,9 @@ pub struct LineInduction {
 
 /// Rows of a map that one thread applies together.
 const ROWS_TOGETHER: usize = 128;
+
+/// Columns of a map that one thread fills together.
+const COLUMNS_TOGETHER: usize = 32;
 
 /// Where the control points of Weissinger's method lie between the quarter chord and the trailing edge.
 const HALF_A_CHORD: f64 = 2.0 / 3.0;
@@ -122,6 +129,7 @@ impl FreeWake {
         let size = azimuths * panels;
         let context = self.context(circulation, self.turn());
         let sources: Vec<_> = (0..self.phases_that_differ())
+            .into_par_iter()
             .map(|phase| {
                 let sources = self.load_sources(phase, &context);
                 let segments = sources.unit_segments(&context);
@@ -139,29 +147,29 @@ impl FreeWake {
                 [rows.down, rows.along]
             })
             .collect();
-        let mut out = LineInduction {
-            rotor: self.rotor.clone(),
-            azimuths,
-            down: DMatrix::zeros(size, size),
-            along: DMatrix::zeros(size, size),
-        };
-        for (block, [down, along]) in blocks.iter().zip(&columns) {
-            for (column, (down, along)) in down.iter().zip(along).enumerate() {
-                for (lane, &row) in block.rows.iter().enumerate() {
-                    out.down[(row, column)] = down[lane];
-                    out.along[(row, column)] = along[lane];
+        let [mut down, mut along] = [0, 1].map(|which| {
+            let mut matrix = DMatrix::zeros(size, size);
+            let of_columns = matrix.as_mut_slice().par_chunks_mut(size).enumerate();
+            of_columns.with_min_len(COLUMNS_TOGETHER).for_each(|(column, out)| {
+                for (block, found) in blocks.iter().zip(&columns) {
+                    for (&row, value) in block.rows.iter().zip(found[which][column]) {
+                        out[row] = value;
+                    }
                 }
-            }
+            });
+            matrix
+        });
+        for block in &blocks {
             for (&row, own) in block.rows.iter().zip(block.own) {
-                out.down[(row, row)] -= own;
+                down[(row, row)] -= own;
             }
         }
         if self.is_axial() {
-            for matrix in [&mut out.down, &mut out.along] {
+            for matrix in [&mut down, &mut along] {
                 turn_rows(matrix, panels);
             }
         }
-        Ok(out)
+        Ok(LineInduction { rotor: self.rotor.clone(), azimuths, down, along })
     }
 }
 
@@ -262,11 +270,10 @@ pub struct CirculationSlope {
 /// between two updates of the geometry.
 #[derive(Debug, Clone)]
 pub struct FrozenWake {
-    induction: LineInduction,
+    induction: Arc<LineInduction>,
     reference: InflowMap,
-    slope: Arc<CirculationSlope>,
-    /// Of a Newton step, factorised.
-    newton: PartialPivLu<f64>,
+    /// Of a Newton step, factorised; single precision is enough for a step, and half the memory to read.
+    newton: Arc<PartialPivLu<f32>>,
 }
 
 impl FrozenWake {
@@ -283,7 +290,7 @@ impl FrozenWake {
     pub fn new(
         induction: LineInduction,
         circulation: &CirculationMap,
-        slope: Arc<CirculationSlope>,
+        slope: &CirculationSlope,
     ) -> Result<Self, WakeError> {
         let reference = induction.inflow(circulation)?;
         let (azimuths, panels) = (induction.azimuths, induction.rotor.panels());
@@ -296,13 +303,26 @@ impl FrozenWake {
             let down = induction.down.columns_with_step(*from, azimuths, panels - 1);
             newton.columns_with_step_mut(*to, azimuths, panels - 1).gemm(-1.0, &down, block, 1.0);
         }
-        let newton = Mat::from_fn(size, size, |row, column| newton[(row, column)]);
-        Ok(Self { newton: newton.partial_piv_lu(), induction, reference, slope })
+        let newton = Mat::from_fn(size, size, |row, column| newton[(row, column)] as f32);
+        let newton = Arc::new(newton.partial_piv_lu());
+        Ok(Self { newton, induction: Arc::new(induction), reference })
     }
 
-    /// How the circulation answers to the inflow.
-    pub fn slope(&self) -> &Arc<CirculationSlope> {
-        &self.slope
+    /// The wake after its geometry has moved on, on the same grid: it keeps Newton's matrix.
+    ///
+    /// # Errors
+    /// [`WakeError::BadInput`] for a map or a circulation of another grid.
+    pub fn moved_on(
+        &self,
+        induction: LineInduction,
+        circulation: &CirculationMap,
+    ) -> Result<Self, WakeError> {
+        let (size, expected) = (self.induction.down.nrows(), "azimuths times panels of the wake");
+        let found = induction.down.nrows();
+        ensure(found == size, "order of a map of circulation", found as f64, expected)?;
+        let reference = induction.inflow(circulation)?;
+        let newton = Arc::clone(&self.newton);
+        Ok(Self { induction: Arc::new(induction), reference, newton })
     }
 }
 
@@ -328,9 +348,9 @@ impl InflowModel for FrozenWake {
     }
 
     fn improved_step(&self, change: &[f64]) -> Option<Vec<f64>> {
-        let mut step = Mat::from_fn(change.len(), 1, |row, _| change[row]);
+        let mut step = Mat::from_fn(change.len(), 1, |row, _| change[row] as f32);
         self.newton.solve_in_place(step.as_mut());
-        let step: Vec<f64> = (0..change.len()).map(|row| step[(row, 0)]).collect();
+        let step: Vec<f64> = (0..change.len()).map(|row| f64::from(step[(row, 0)])).collect();
         step.iter().all(|value| value.is_finite()).then_some(step)
     }
 }

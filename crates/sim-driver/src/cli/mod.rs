@@ -32,7 +32,8 @@ pub fn main() -> ExitCode {
         eprintln!("{}", bug_message(&info.to_string()));
     }));
     let cli = Cli::parse();
-    let outcome = std::panic::catch_unwind(|| execute(&cli));
+    // within the threads of the pool a parallel step needs no change of thread
+    let outcome = std::panic::catch_unwind(|| rayon::scope(|_| execute(&cli)));
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => {
