@@ -27,6 +27,7 @@ pub mod calibrate;
 pub mod ci;
 pub mod dependencies;
 pub mod diagnosis;
+pub mod dynamic_stall;
 mod error;
 pub mod everyday_errors;
 pub mod files;

@@ -10,9 +10,9 @@ use everyday_bench::hidden::Deal;
 use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
-    XtaskError, bench, calibrate, ci, dependencies, everyday_errors, files, hidden_effects,
-    hover_refinement, layers, refinement, regress, rooms, tidy, validate, wake_inflow,
-    wake_refinement, workspace,
+    XtaskError, bench, calibrate, ci, dependencies, dynamic_stall, everyday_errors, files,
+    hidden_effects, hover_refinement, layers, refinement, regress, rooms, tidy, validate,
+    wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -89,6 +89,8 @@ enum Chore {
         #[arg(long, value_enum)]
         only: Option<bench::Part>,
     },
+    /// Compare dynamic stall with the measured loops of a folder, and write docs/src/dynamic-stall.md
+    DynamicStall(Stall),
     /// Run .ci/run: everything a change must pass
     Ci,
 }
@@ -130,6 +132,19 @@ impl Suite {
         let Self { threads, hhc, out } = self;
         Options { selection, threads, hhc, out }
     }
+}
+
+#[derive(clap::Args)]
+struct Stall {
+    /// Folder of the loops
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// Fit the constants anew and show them; nothing is written
+    #[arg(long)]
+    fit: bool,
+    /// Show the page, write nothing
+    #[arg(long, conflicts_with = "fit")]
+    show: bool,
 }
 
 #[derive(clap::Args)]
@@ -276,6 +291,7 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
         }
         Chore::EverydayErrors(options) => everyday(root, options),
         Chore::Bench { quick, only } => speed(root, quick, only),
+        Chore::DynamicStall(options) => stall(root, &options),
         Chore::Ci => ci::run(root),
     }
 }
@@ -327,6 +343,20 @@ fn speed(root: &Path, quick: bool, only: Option<bench::Part>) -> Result<ExitCode
         format!("written: {}\n", bench::PAGE)
     } else {
         page
+    };
+    say(&mut std::io::stdout(), &text);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn stall(root: &Path, options: &Stall) -> Result<ExitCode, XtaskError> {
+    let text = if options.fit {
+        dynamic_stall::fitted(&options.data)?
+    } else if options.show {
+        dynamic_stall::page(&options.data)?
+    } else {
+        let page = dynamic_stall::page(&options.data)?;
+        files::write_atomically(&root.join(dynamic_stall::PAGE), &page)?;
+        format!("written: {}\n", dynamic_stall::PAGE)
     };
     say(&mut std::io::stdout(), &text);
     Ok(ExitCode::SUCCESS)

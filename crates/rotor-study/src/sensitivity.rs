@@ -173,9 +173,6 @@ fn of_the_wake() -> Vec<Assumption> {
         assume("wake-root-vortex", "root vortex beside the tip vortex", |c| {
             fly_in_wake(c, |wake| wake.rolled_up = Some(RolledUpChoice::TipAndRoot));
         }),
-        assume("wake-root-and-sheet", "root vortex and four for the inboard sheet", |c| {
-            fly_in_wake(c, |wake| wake.rolled_up = Some(RolledUpChoice::TipRootAndSheet));
-        }),
     ]
 }
 

@@ -4,7 +4,8 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use flap_aero::{
     AeroError, AttachedFlowModel, FlapChord, Mach, MarchingSection, SectionInputs, SectionState,
-    StallParameters, StallSection, StallState, StalledLoads, StepFactors, steady_response,
+    StallAirfoil, StallParameters, StallSection, StallState, StalledLoads, StepFactors,
+    steady_response,
 };
 use std::f64::consts::TAU;
 
@@ -380,4 +381,69 @@ fn symmetric_and_wary_of_bad_input() {
     assert_relative_eq!(at(0.35).cn1, 0.5 * (1.45 + 1.2), max_relative = 1e-12);
     assert_eq!(at(0.1), at(0.3));
     assert_eq!(at(0.9), at(0.8));
+}
+
+/// A flow that attaches slowly lifts less on the way down, and the same on the way up once it has attached.
+#[test]
+fn a_flow_that_attaches_slowly_lifts_less_on_the_way_down() {
+    let usual = StallParameters { vortex_strength: 0.0, ..naca_0012() };
+    let slow = StallParameters { tf_attaching: 4.0 * usual.tf, ..usual };
+    let [usual, slow] = [usual, slow].map(|p| pitching(p, [10.0, 8.0], 0.1, 720));
+    let change = |n: usize| slow[n].1.normal - usual[n].1.normal;
+    // steps 180 to 540 fall
+    let falling = (200..540).map(change).fold(0.0, f64::min);
+    let rising = (0..170).chain(640..720).map(|n| change(n).abs()).fold(0.0, f64::max);
+    println!("falling {falling:.3}, rising {rising:.1e}");
+    assert!(falling < -0.1 && rising < 0.02, "{falling} {rising}");
+}
+
+/// The vortex is as strong as it is said to be, and turns the section by its arm.
+#[test]
+fn strength_and_arm_of_the_vortex_scale_it() {
+    let usual = StallParameters { k1: 0.0, k2: 0.0, k0: 0.0, ..naca_0012() };
+    let scaled = StallParameters { vortex_strength: 1.5, vortex_arm: 0.1, ..usual };
+    let [usual, scaled] = [usual, scaled].map(|p| pitching(p, [12.0, 10.0], 0.1, 360));
+    let mut compared = 0;
+    for ((_, one, loads), (_, other, _)) in usual.iter().zip(&scaled) {
+        assert_relative_eq!(other.vortex, 1.5 * one.vortex, epsilon = 1e-12, max_relative = 1e-9);
+        let turned = [one, other].map(|l| l.moment - loads[1]);
+        assert_relative_eq!(turned[1], 0.75 * turned[0], epsilon = 1e-12, max_relative = 1e-9);
+        compared += usize::from(turned[0] < -0.02);
+    }
+    assert!(compared > 20, "{compared}");
+}
+
+/// Fitted constants go over into their trend beyond Mach 0.3 without a jump, and make a section at any Mach number; the
+/// published ones are those of the table.
+#[test]
+fn constants_of_an_airfoil_are_continuous_in_the_mach_number() {
+    let all = [
+        StallAirfoil::Naca0012,
+        StallAirfoil::Naca0012Measured,
+        StallAirfoil::Ames01,
+        StallAirfoil::Naca23012a,
+    ];
+    for airfoil in all {
+        let at = |m: f64| airfoil.parameters(Mach::new(m).unwrap());
+        for m in [0.036, 0.11, 0.117, 0.185, 0.3, 0.5] {
+            let (below, above) = (at(m - 1e-9), at(m + 1e-9));
+            for (a, b) in [
+                (below.alpha1_rad, above.alpha1_rad),
+                (below.cn1, above.cn1),
+                (below.k1, above.k1),
+                (below.tvl, above.tvl),
+                (below.tf_attaching, above.tf_attaching),
+            ] {
+                assert_abs_diff_eq!(a, b, epsilon = 1e-6);
+            }
+        }
+        for n in 0..=80 {
+            let mach = Mach::new(0.01 * f64::from(n)).unwrap();
+            StallSection::new(mach, FlapChord::NONE, airfoil.parameters(mach)).unwrap();
+        }
+    }
+    let mach = Mach::new(0.4).unwrap();
+    assert_eq!(StallAirfoil::Naca0012.parameters(mach), StallParameters::naca_0012(mach));
+    let [low, high] = [0.3, 0.6].map(|m| StallAirfoil::Ames01.parameters(Mach::new(m).unwrap()));
+    assert_relative_eq!(high.alpha1_rad / low.alpha1_rad, 8.5 / 15.25, max_relative = 1e-9);
 }

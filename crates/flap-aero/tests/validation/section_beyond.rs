@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use flap_aero::{
     AttachedFlowModel, CycleStep, FlapChord, FreeStream, Mach, MarchingSection, SectionInputs,
-    StallParameters, StallSection, StallState, StalledLoads, load_slopes, periodic_state,
-    section_loads,
+    StallAirfoil, StallParameters, StallSection, StallState, StalledLoads, load_slopes,
+    periodic_state, section_loads,
 };
 
 use validation::{Check, Failure, row, too_few, worst};
@@ -44,10 +44,10 @@ pub(crate) const ROWS: &[Check] = &[
         "-",
     )
     .against(MEASURED)
-    .near(1.0, 0.05, || Ok(deep_stall()?.peak_ratio(LIFT))),
+    .near(1.0, 0.05, || Ok(deep_stall(StallAirfoil::Naca0012)?.peak_ratio(LIFT))),
     row("V-AERO-38", "the same: incidence of the highest lift, model less measured", "deg")
         .against(MEASURED)
-        .near(0.0, 1.0, || Ok(deep_stall()?.peak_incidence(LIFT))),
+        .near(0.0, 1.0, || Ok(deep_stall(StallAirfoil::Naca0012)?.peak_incidence(LIFT))),
     row(
         "V-AERO-39",
         "the same: lift of the falling incidence, rms error (known: the model \
@@ -55,7 +55,7 @@ pub(crate) const ROWS: &[Check] = &[
         "-",
     )
     .against(MEASURED)
-    .between(0.3, 0.45, || deep_stall()?.rms(LIFT, false)),
+    .between(0.3, 0.45, || deep_stall(StallAirfoil::Naca0012)?.rms(LIFT, false)),
     row(
         "V-AERO-40",
         "the same: pressure drag of the whole cycle, rms error (measured to 0.62)",
@@ -63,10 +63,25 @@ pub(crate) const ROWS: &[Check] = &[
     )
     .against(MEASURED)
     .at_most(0.12, || {
-        let found = deep_stall()?;
-        let halves = [found.rms(DRAG, true)?, found.rms(DRAG, false)?];
-        Ok((0.5 * halves.iter().map(|rms| rms * rms).sum::<f64>()).sqrt())
+        let found = deep_stall(StallAirfoil::Naca0012)?;
+        found.whole_rms(DRAG)
     }),
+    row(
+        "V-AERO-47",
+        "the same loop, constants fitted to other loops of that report: highest lift, model over measured",
+        "-",
+    )
+    .against(MEASURED)
+    .near(1.0, 0.08, || Ok(deep_stall(StallAirfoil::Naca0012Measured)?.peak_ratio(LIFT))),
+    row("V-AERO-48", "the same, fitted constants: highest pressure drag, model over measured", "-")
+        .against(MEASURED)
+        .near(1.0, 0.2, || Ok(deep_stall(StallAirfoil::Naca0012Measured)?.peak_ratio(DRAG))),
+    row("V-AERO-49", "the same, fitted constants: lift of the whole cycle, rms error", "-")
+        .against(MEASURED)
+        .at_most(0.23, || deep_stall(StallAirfoil::Naca0012Measured)?.whole_rms(LIFT)),
+    row("V-AERO-50", "the same, published constants: what the bound must see", "-")
+        .against(MEASURED)
+        .at_least(0.25, || deep_stall(StallAirfoil::Naca0012)?.whole_rms(LIFT)),
     row(
         "V-AERO-41",
         "slopes of the section loads in velocities, rates and lags against \
@@ -136,8 +151,8 @@ struct DeepStall {
     measured: [Vec<(f64, f64)>; 2],
 }
 
-fn deep_stall() -> Result<DeepStall, Failure> {
-    let model = pitching(naca_0012()?, [12.0, 9.9], 0.098)?
+fn deep_stall(airfoil: StallAirfoil) -> Result<DeepStall, Failure> {
+    let model = pitching(airfoil.parameters(Mach::new(0.3)?), [12.0, 9.9], 0.098)?
         .iter()
         .map(|(alpha, loads, _)| {
             let (sin, cos) = alpha.sin_cos();
@@ -204,6 +219,12 @@ impl DeepStall {
         }
         let squares = half.iter().map(|(a, value)| (self.at(*a, rising, which) - value).powi(2));
         Ok((squares.sum::<f64>() / found as f64).sqrt())
+    }
+
+    /// The same of both halves.
+    fn whole_rms(&self, which: usize) -> Result<f64, Failure> {
+        let halves = [self.rms(which, true)?, self.rms(which, false)?];
+        Ok((0.5 * halves.iter().map(|rms| rms * rms).sum::<f64>()).sqrt())
     }
 }
 

@@ -1,13 +1,13 @@
 //! What of the sections goes beyond attached linear theory.
 
-use flap_aero::{AirfoilSpan, Mach, StallParameters};
+use flap_aero::{AirfoilSpan, Mach, StallAirfoil, StallParameters};
 use std::sync::Arc;
 
 /// How sections stall dynamically.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DynamicStall {
-    /// Leishman and Beddoes with their constants of the NACA 0012 at the local Mach number.
-    Naca0012,
+    /// Leishman and Beddoes with the constants of an aerofoil at the local Mach number.
+    Of(StallAirfoil),
     /// Leishman and Beddoes with the same constants at every Mach number.
     Constant(StallParameters),
 }
@@ -16,7 +16,7 @@ impl DynamicStall {
     /// The constants at a Mach number.
     pub(crate) fn parameters(&self, mach: Mach) -> StallParameters {
         match self {
-            Self::Naca0012 => StallParameters::naca_0012(mach),
+            Self::Of(airfoil) => airfoil.parameters(mach),
             Self::Constant(parameters) => *parameters,
         }
     }

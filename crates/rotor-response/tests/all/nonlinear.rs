@@ -218,7 +218,7 @@ fn dynamic_stall_is_periodic_in_the_rotor() {
         let air = (LinearInflow::Prescribed { induced_inflow: 0.01 }, 0.0);
         try_solve(model, d, flight, air).unwrap()
     };
-    let stall = Some(DynamicStall::Naca0012);
+    let stall = Some(DynamicStall::Of(flap_aero::StallAirfoil::Naca0012));
     let [coarse, fine, finest] = [8, 16, 32].map(|elements| solve(stall, elements));
     let without = distance(&solve(None, 16), &fine);
     let steps = [distance(&coarse, &finest), distance(&fine, &finest)];

@@ -60,7 +60,7 @@ impl MeanLoads {
                 three(self.hub_moment_newton_metre)
             ),
             format!(
-                "shaft torque {:.1} N m, power {:.2} kW, C_Q/sigma {:.6}",
+                "shaft torque {:.1} N m, power {:.1} kW without radial drag, C_Q/sigma {:.6}",
                 self.shaft_torque_newton_metre,
                 1e-3 * self.shaft_power_watt,
                 self.cq_sigma

@@ -1,9 +1,8 @@
 //! From the values of a case to those the models below take: radians, rotor units.
 
 use super::{
-    Case, CompressibilityChoice, CouplingsChoice, DissimilarBlade, DynamicStallChoice,
-    EffectivenessValues, FlapValues, FreeWakeValues, GravityChoice, PropulsiveTrim, RolledUpChoice,
-    TrimValues,
+    Case, CompressibilityChoice, CouplingsChoice, DissimilarBlade, EffectivenessValues, FlapValues,
+    FreeWakeValues, GravityChoice, PropulsiveTrim, RolledUpChoice, TrimValues,
 };
 use crate::error::StudyError;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
@@ -150,10 +149,7 @@ impl Case {
             flaps: self.flaps.iter().map(FlapValues::model).collect(),
             nonlinear: NonlinearSections {
                 airfoils: self.aerodynamics.tables.clone(),
-                dynamic_stall: match self.aerodynamics.dynamic_stall {
-                    DynamicStallChoice::Off => None,
-                    DynamicStallChoice::Naca0012 => Some(DynamicStall::Naca0012),
-                },
+                dynamic_stall: self.aerodynamics.dynamic_stall.airfoil().map(DynamicStall::Of),
             },
         }
     }

@@ -5,7 +5,7 @@
 
 use super::field::{is_default, section, values};
 use super::{ActuatorValues, ControlValues, FlapValues, FreeWakeValues, RotorValues, TrimValues};
-use flap_aero::{AirfoilSpan, AttachedFlowModel};
+use flap_aero::{AirfoilSpan, AttachedFlowModel, StallAirfoil};
 use rotor_base::RotorScales;
 use rotor_fem::{ModalBasis, TwistAngle, Untwist};
 use rotor_response::ReverseFlow;
@@ -159,8 +159,27 @@ pub enum DynamicStallChoice {
     /// None: without a table the flow stays attached, with one the stall is static.
     #[default]
     Off,
-    /// Leishman and Beddoes with their constants of the NACA 0012.
+    /// Leishman and Beddoes with their constants of the NACA 0012, Mach 0.3 to 0.8.
     Naca0012,
+    /// The same with constants fitted to measured loops of the NACA 0012, which they follow better.
+    Naca0012Measured,
+    /// With constants fitted to measured loops of the AMES-01.
+    Ames01,
+    /// With constants fitted to measured loops of the NACA 23012A, the section of the Bo 105.
+    Naca23012a,
+}
+
+impl DynamicStallChoice {
+    /// Whose constants; none without a stall.
+    pub fn airfoil(self) -> Option<StallAirfoil> {
+        match self {
+            Self::Off => None,
+            Self::Naca0012 => Some(StallAirfoil::Naca0012),
+            Self::Naca0012Measured => Some(StallAirfoil::Naca0012Measured),
+            Self::Ames01 => Some(StallAirfoil::Ames01),
+            Self::Naca23012a => Some(StallAirfoil::Naca23012a),
+        }
+    }
 }
 
 values!(CouplingsChoice, CompressibilityChoice, DynamicStallChoice);
@@ -186,7 +205,8 @@ section! {
         /// `drag_coefficient`; lags and flap stay those of `model`.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         pub airfoils: Vec<AirfoilStation> = vec![], Any, "", "";
-        /// Dynamic stall: Leishman and Beddoes with their constants of the NACA 0012.
+        /// Dynamic stall: Leishman and Beddoes. `Naca0012`: with their constants. The others: with constants fitted to
+        /// measured loops; incidences count from zero lift, camber is the matter of `airfoils`.
         #[serde(skip_serializing_if = "is_default")]
         pub dynamic_stall: DynamicStallChoice = DynamicStallChoice::Off, Any, "", "";
         /// Tip loss factor B: outboard of it a section has drag but no lift.

@@ -57,7 +57,10 @@ fn shipped_cases_are_valid_and_complete() {
     );
     let stalled = shipped_case("stalled_mu030.ron").unwrap().case.rotor_model();
     assert!(stalled.nonlinear.airfoils.is_some());
-    assert_eq!(stalled.nonlinear.dynamic_stall, Some(rotor_response::DynamicStall::Naca0012));
+    assert_eq!(
+        stalled.nonlinear.dynamic_stall,
+        Some(rotor_response::DynamicStall::Of(flap_aero::StallAirfoil::Naca0012))
+    );
     assert!(paper.case.rotor_model().nonlinear.is_linear());
     let s1 = shipped_case("crosscheck_s1.ron").unwrap().case;
     assert_eq!(s1.structure.couplings, CouplingsChoice::Linear);

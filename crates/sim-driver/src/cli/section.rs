@@ -11,7 +11,7 @@ use crate::section::{
     transient_history,
 };
 use clap::ValueEnum;
-use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Mach, Motion, StallParameters};
+use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Motion};
 
 pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
     check_section_options(args)?;
@@ -29,10 +29,7 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
     let reduced_frequency = args.reduced_frequency.unwrap_or(0.0);
     let mean = args.mean_deg.unwrap_or(0.0).to_radians();
     let half = args.amplitude_deg.unwrap_or(10.0).to_radians();
-    let stall = match args.stall.unwrap_or_default() {
-        DynamicStallChoice::Off => None,
-        DynamicStallChoice::Naca0012 => Some(StallParameters::naca_0012(Mach::new(args.mach)?)),
-    };
+    let stall = args.stall.and_then(DynamicStallChoice::airfoil);
     let (distance, points) = (args.distance.unwrap_or(20.0), args.points.unwrap_or(200));
     let transient = |rise: f64| transient_history(&section, motion, rise, distance, points);
     let table = match args.response {

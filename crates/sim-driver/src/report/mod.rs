@@ -14,7 +14,7 @@ pub use figure::Finding;
 pub(crate) use figure::actuator_title;
 pub use page::report_html;
 pub(crate) use paper::{is_paper, paper_numbers};
-pub(crate) use state::{residuals_text, state_lines, wake_note};
+pub(crate) use state::{residuals_text, state_lines, vibration_text, wake_note};
 pub use tables::{Section, histories_csv, robustness_csv, sensitivity_csv};
 
 use crate::identification::fit_table;

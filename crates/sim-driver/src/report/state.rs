@@ -23,6 +23,7 @@ pub(crate) fn state_lines(figures: &Figures) -> Vec<(&'static str, String)> {
     lines.extend(figures.wake.and_then(wake_note).map(|note| ("Wake", note.to_owned())));
     let loads = figures.mean_loads.as_ref().map(MeanLoads::text);
     lines.extend(loads.into_iter().flat_map(|[hub, shaft]| [("Mean", hub), ("", shaft)]));
+    lines.extend(vibration_text(figures).map(|text| ("Vibration", text)));
     lines.push(("Residuals", residuals_text(&figures.residuals)));
     let of = if figures.each_unlike_blade.is_empty() { "" } else { "each like blade " };
     lines.extend(figures.stability.text().map(|text| ("Stability", format!("{of}{text}"))));
@@ -31,6 +32,18 @@ pub(crate) fn state_lines(figures: &Figures) -> Vec<(&'static str, String)> {
     });
     lines.extend(unlike);
     lines
+}
+
+/// The vibration without control in g, and what it is worth.
+pub(crate) fn vibration_text(figures: &Figures) -> Option<String> {
+    let [fx, fy, fz] = figures.vibration_g?;
+    let worth = match figures.wake {
+        Some(_) => "",
+        None => "; without a free wake no vibration level, which --inflow free gives",
+    };
+    Some(format!(
+        "FX {fx:.4}, FY {fy:.4}, FZ {fz:.4} g at the blade number per rev: hub force over lift{worth}"
+    ))
 }
 
 /// What a free wake that is not converged means for the numbers shown.

@@ -35,6 +35,10 @@ pub struct Figures {
     pub mean_loads: Option<MeanLoads>,
     /// Loads without control.
     pub baseline: Baseline,
+    /// Amplitudes of `FX FY FZ` at the blade number per rev over the mean vertical force: the vibration in g of a rigid
+    /// fuselage that hangs on the hub. None without a lift.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vibration_g: Option<[f64; 3]>,
     /// Loads of one blade along its span without control.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub blade_loads: Vec<StationLine>,
@@ -172,6 +176,7 @@ pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
         wake: result.wake,
         mean_loads: result.mean_loads.map(|mean| MeanLoads::new(mean.hub, setting)),
         baseline: result.baseline,
+        vibration_g: result.mean_loads.and_then(|mean| vibration_g(&result.baseline, mean.hub[2])),
         blade_loads: result.blade_loads.clone(),
         stability: result.stability.clone(),
         control,
@@ -182,6 +187,12 @@ pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
         each_unlike_blade: result.each_unlike_blade.clone(),
         warnings,
     }
+}
+
+/// Hub forces over a mean vertical force; none of a rotor that lifts less than it shakes.
+fn vibration_g(baseline: &Baseline, lift: f64) -> Option<[f64; 3]> {
+    let [fx, fy, fz, ..] = baseline.hub_nb_per_rev.amplitudes();
+    (lift > fx.max(fy).max(fz)).then(|| [fx, fy, fz].map(|force| force / lift))
 }
 
 /// What a reader should know of controls that were not taken over as a whole, and of a rotor without vibration.
@@ -397,4 +408,22 @@ fn contraction(history: &[StepRecord]) -> Option<f64> {
         .collect();
     let (last, first) = (asked.first()?, asked.last()?);
     (asked.len() > 2 && *first > 0.0).then(|| (last / first).powf(1.0 / (asked.len() - 1) as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rotor_study::HubLoads;
+
+    /// A vertical force of a hundredth of the lift is a hundredth of a g; a rotor that lifts nothing has no g.
+    #[test]
+    fn vibration_is_hub_force_over_lift() {
+        let mut loads = [0.0; 12];
+        (loads[0], loads[4], loads[5]) = (0.0002, 0.0006, -0.0008);
+        let baseline = Baseline { hub_nb_per_rev: HubLoads::from_parts(loads) };
+        let [fx, fy, fz] = vibration_g(&baseline, 0.1).unwrap();
+        assert!((fx - 0.002).abs() < 1e-15 && fy == 0.0 && (fz - 0.01).abs() < 1e-15);
+        assert_eq!(vibration_g(&baseline, 0.0005), None);
+        assert_eq!(vibration_g(&baseline, -0.1), None);
+    }
 }

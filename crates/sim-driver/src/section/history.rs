@@ -5,7 +5,7 @@ use super::{
 };
 use crate::SimError;
 use flap_aero::{
-    CycleStep, MarchingSection, Motion, SectionInputs, SectionState, StallParameters, StallSection,
+    CycleStep, MarchingSection, Motion, SectionInputs, SectionState, StallAirfoil, StallSection,
     StallState, periodic_state,
 };
 use std::f64::consts::TAU;
@@ -44,7 +44,7 @@ pub struct LoopQuestion {
     /// Rows per cycle, 3 or more; the cycle is marched in a multiple of them, 720 steps or more.
     pub points: usize,
     /// How the section stalls; `None` is attached flow.
-    pub stall: Option<StallParameters>,
+    pub stall: Option<StallAirfoil>,
 }
 
 /// Columns every loop has.
@@ -59,6 +59,8 @@ struct Cycle {
     ds: f64,
     /// Steps to a row.
     every: usize,
+    /// Incidence from which the inputs count, rad.
+    zero_lift_rad: f64,
 }
 
 impl Cycle {
@@ -67,15 +69,16 @@ impl Cycle {
             *question;
         let every = FEWEST_STEPS.div_ceil(points);
         let steps = points * every;
+        let zero_lift_rad = question.stall.map_or(0.0, StallAirfoil::zero_lift_rad);
         let inputs = (1..=steps)
             .map(|n| {
                 let (sin, cos) = (TAU * n as f64 / steps as f64).sin_cos();
                 let mut inputs = inputs(motion, amplitude_rad * sin, amplitude_rad * k * cos);
-                inputs.modes[0] += mean_rad;
+                inputs.modes[0] += mean_rad - zero_lift_rad;
                 inputs
             })
             .collect();
-        Self { inputs, ds: TAU / k / steps as f64, every }
+        Self { inputs, ds: TAU / k / steps as f64, every, zero_lift_rad }
     }
 
     /// The rows of a march, one load or more per step.
@@ -84,7 +87,8 @@ impl Cycle {
         let ends = (self.every..=self.inputs.len()).step_by(self.every);
         ends.map(|n| {
             let modes = &self.inputs[n - 1].modes;
-            let place = [360.0 * n as f64 / steps, modes[0].to_degrees(), modes[2].to_degrees()];
+            let incidence_deg = (modes[0] + self.zero_lift_rad).to_degrees();
+            let place = [360.0 * n as f64 / steps, incidence_deg, modes[2].to_degrees()];
             place.into_iter().chain(loads[n - 1].iter().copied()).collect()
         })
         .collect()
@@ -207,7 +211,7 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
         .map(|inputs| CycleStep { section: &section, inputs: *inputs, semichords: cycle.ds })
         .collect();
     let mut state = periodic_state(&steps)?;
-    let Some(parameters) = question.stall else {
+    let Some(airfoil) = question.stall else {
         let march = |step: &SectionInputs| Ok(state.step(&section, step, cycle.ds)?.to_vec());
         let loads: Vec<Vec<f64>> =
             cycle.inputs.iter().map(march).collect::<Result<_, SimError>>()?;
@@ -218,8 +222,8 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
             rows: cycle.rows(&loads),
         });
     };
-    remarks.extend(stall_remark(mach.value()));
-    let stalling = StallSection::new(mach, flap, parameters)?
+    remarks.extend(stall_remark(airfoil, mach.value()));
+    let stalling = StallSection::new(mach, flap, airfoil.parameters(mach))?
         .with_flap_effectiveness(&question.section.effectiveness);
     let last = &cycle.inputs[cycle.inputs.len() - 1];
     let [cn, ..] = state.loads(&section, last)?;
@@ -231,8 +235,9 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
         for inputs in &cycle.inputs {
             let attached = state.step(&section, inputs, cycle.ds)?;
             let l = stall.step(&stalling, attached, &inputs.modes, cycle.ds)?;
-            let drag = l.pressure_drag(inputs.modes[0]);
-            next.push(vec![l.normal, l.moment, l.hinge, l.chord, drag, l.separation, l.vortex]);
+            let drag = l.pressure_drag(inputs.modes[0] + cycle.zero_lift_rad);
+            let moment = l.moment + airfoil.zero_lift_moment();
+            next.push(vec![l.normal, moment, l.hinge, l.chord, drag, l.separation, l.vortex]);
         }
         let change = loads.iter().zip(&next).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max);
         let settled = loads.len() == next.len() && change <= REPEATED;

@@ -17,7 +17,7 @@ use crate::SimError;
 use crate::output::{Printable, table};
 use flap_aero::{
     AttachedFlowModel, FlapChord, FlapEffectiveness, KNOWN_ERROR_BANDS, Mach, Mode, ModelRemarks,
-    Motion, SectionCoefficients, harmonic_response, known_error_percent,
+    Motion, SectionCoefficients, StallAirfoil, harmonic_response, known_error_percent,
 };
 use serde::Serialize;
 
@@ -146,15 +146,20 @@ fn unmatched_slopes(remarks: &ModelRemarks, motion: Motion) -> Option<String> {
     })
 }
 
-/// Mach numbers of the published constants of the stall.
-const STALL_MACHS: [f64; 2] = [0.3, 0.8];
-
-/// What is held where a stall is asked for beyond its constants.
-fn stall_remark(mach: f64) -> Option<String> {
-    let [from, to] = STALL_MACHS;
+/// What the constants of a stall are where it is asked for beyond their Mach numbers.
+fn stall_remark(airfoil: StallAirfoil, mach: f64) -> Option<String> {
+    let [from, to] = airfoil.known_machs();
     let end = mach.clamp(from, to);
-    (mach < from || mach > to).then(|| {
-        format!("the constants of the stall are those of Mach {end}: published for {from} to {to}")
+    (mach < from || mach > to).then(|| match airfoil {
+        StallAirfoil::Naca0012 => format!(
+            "the constants of the stall are those of Mach {end}: published for {from} to {to}"
+        ),
+        _ if mach < from || mach <= 0.3 => format!(
+            "the constants of the stall are those of Mach {end}: fitted for {from} to {to}"
+        ),
+        _ => format!(
+            "the constants of the stall follow the published trend of the NACA 0012: fitted for Mach {from} to {to}"
+        ),
     })
 }
 

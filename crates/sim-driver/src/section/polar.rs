@@ -3,7 +3,7 @@
 use super::{SectionChoice, SectionTable, stall_remark, within, within_points};
 use crate::SimError;
 use crate::files::{Folder, Source, airfoil_text, read_airfoil};
-use flap_aero::{C81Airfoil, StallParameters, StallSection, steady_response};
+use flap_aero::{C81Airfoil, StallAirfoil, StallSection, steady_response};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ pub struct PolarQuestion {
     /// Number of rows after the first.
     pub points: usize,
     /// How the section stalls; `None` is linear.
-    pub stall: Option<StallParameters>,
+    pub stall: Option<StallAirfoil>,
     /// A C81 file that takes the place of the model.
     pub table: Option<PathBuf>,
 }
@@ -58,15 +58,19 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     }
     let (section, mach, flap) = question.section.coefficients()?;
     let mut remarks = question.section.remarks(&section.remarks, None);
-    remarks.extend(question.stall.and_then(|_| stall_remark(mach.value())));
-    let stalling = question.stall.map(|p| StallSection::new(mach, flap, p)).transpose()?;
+    remarks.extend(question.stall.and_then(|airfoil| stall_remark(airfoil, mach.value())));
+    let stalling = match question.stall {
+        Some(airfoil) => Some((airfoil, StallSection::new(mach, flap, airfoil.parameters(mach))?)),
+        None => None,
+    };
     let rows = incidences.map(|a| {
-        let modes = [a, 0.0, 0.0, 0.0];
+        let zero_lift = stalling.map_or(0.0, |(airfoil, _)| airfoil.zero_lift_rad());
+        let modes = [a - zero_lift, 0.0, 0.0, 0.0];
         let [cn, cm, ch] = steady_response(&section, &modes);
-        let Some(stalling) = &stalling else { return vec![a.to_degrees(), cn, cm, ch] };
+        let Some((airfoil, stalling)) = &stalling else { return vec![a.to_degrees(), cn, cm, ch] };
         let l = stalling.settled([cn, cm, ch], &modes);
-        let drag = l.pressure_drag(a);
-        vec![a.to_degrees(), l.normal, l.moment, l.hinge, l.chord, drag, l.separation]
+        let (drag, moment) = (l.pressure_drag(a), l.moment + airfoil.zero_lift_moment());
+        vec![a.to_degrees(), l.normal, moment, l.hinge, l.chord, drag, l.separation]
     });
     let rows = rows.collect();
     let mut columns = vec!["incidence_deg", "cn", "cm", "ch"];

@@ -2,7 +2,7 @@
 
 use crate::output::{Sheet, table, table_of};
 use crate::report::{
-    StudyReport, actuator_title, is_paper, paper_numbers, residuals_text, wake_note,
+    StudyReport, actuator_title, is_paper, paper_numbers, residuals_text, vibration_text, wake_note,
 };
 use crate::results::{ControlLine, Figures, FlapLine, by_set, set_name};
 use rotor_study::{HubLoads, is_still, most_moved};
@@ -40,6 +40,9 @@ pub(crate) fn summary(report: &StudyReport<'_>, folder: &Path) -> String {
                 mean.hub_force_newton[2]
             ),
         );
+    }
+    if let Some(text) = vibration_text(figures) {
+        screen.labelled("Vibration", &text);
     }
     if let Some(note) = figures.wake.and_then(wake_note) {
         screen.labelled("Wake", note);

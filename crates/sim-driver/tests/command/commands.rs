@@ -429,6 +429,10 @@ fn run_prints_and_stores_the_same_result() {
     assert_ne!(other["key"], stored["key"], "the override is part of the case");
     let text = place.hhc(&["run", "cases/quick.ron"]).done();
     assert!(text.contains("Residuals  trim"), "{text}");
+    // in g, and what that is worth in a linear inflow
+    let vertical = json["vibration_g"][2].as_f64().unwrap();
+    let said = format!("FZ {vertical:.4} g at the blade number per rev");
+    assert!(text.contains(&said) && text.contains("--inflow free gives"), "{said}\n{text}");
 }
 
 /// What `hhc report` shows follows from result.json alone; a file changed after it was written is refused.

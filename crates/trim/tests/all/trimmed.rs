@@ -164,7 +164,10 @@ fn stalling(advance_ratio: f64) -> RotorSolver {
     let airfoil = C81Airfoil::read(&std::fs::read_to_string(path).unwrap()).unwrap();
     let airfoils = Some(Arc::new(AirfoilSpan::new(vec![(0.2, airfoil)]).unwrap()));
     let model = RotorModel {
-        nonlinear: NonlinearSections { airfoils, dynamic_stall: Some(DynamicStall::Naca0012) },
+        nonlinear: NonlinearSections {
+            airfoils,
+            dynamic_stall: Some(DynamicStall::Of(flap_aero::StallAirfoil::Naca0012)),
+        },
         compressibility: Compressibility::LocalMach { tip_mach: 0.582 },
         ..RotorModel::paper_case()
     };
