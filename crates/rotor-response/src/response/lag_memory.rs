@@ -11,14 +11,11 @@
 //! angles and left out, as is the axial part of the loads: only the speed of convergence depends on this
 //! matrix, never the solution.
 
-#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
-
 use crate::response::system::ResponseSystem;
 use crate::sections::air::SectionFlow;
 use crate::sections::flight_air::StationMemory;
 use crate::structure::motion::Motion;
-use nalgebra::DMatrix;
-use pulp::{Arch, Simd, WithSimd};
+use nalgebra::{DMatrix, DMatrixViewMut};
 use rayon::prelude::*;
 use rotor_fem::{LagChannel, LagPlace, OrbitMemory, OrbitSamples, PeriodicSystem};
 use std::ops::Range;
@@ -42,52 +39,49 @@ struct LoadSlopes {
     moment: Vec<f64>,
 }
 
-/// Sums of one point of the past over the stations: a type of its own, for a closure would be called, not inlined, by
-/// the function that is compiled for the vector unit.
-struct Columns<'a> {
-    then: usize,
-    stations: &'a [Option<StationMemory>],
-    slopes: &'a [Vec<(InputSlopes, LoadSlopes)>],
-    /// Modes on which lift and moment work.
-    worked: [Range<usize>; 2],
-    /// By displacement and by rate: column by column, in it point by point and mode by mode.
-    out: &'a mut [&'a mut [f64]; 2],
+/// What one point of the past does at all others through the lags of all stations, a product of two factors.
+///
+/// ```text
+/// d f[now, mode] / d (q, q')[then, place] = sum_s,i ( sum_o work_o[now, s, mode] k_oi[now, then] ) slope_i[then, s, place]
+/// ```
+struct Past {
+    /// Shape (points x modes) x (stations x inputs).
+    answers: DMatrix<f64>,
+    /// Shape (stations x inputs) x (displacements and rates of the modes).
+    inputs: DMatrix<f64>,
 }
 
-impl WithSimd for Columns<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { then, stations, slopes, worked, out } = self;
+impl Past {
+    fn new(
+        then: usize,
+        stations: &[Option<&StationMemory>],
+        slopes: &[Vec<(InputSlopes, LoadSlopes)>],
+        worked: &[Range<usize>; 2],
+    ) -> Self {
         let (dof, points) = (worked[1].end, slopes.len());
-        // what a change of either input does on all modes at all points
-        let (mut by_alpha, mut by_rate) = (vec![0.0; dof * points], vec![0.0; dof * points]);
-        for (s, station) in stations.iter().enumerate() {
-            let Some(memory) = station else { continue };
-            by_alpha.fill(0.0);
-            by_rate.fill(0.0);
-            let at_points = by_alpha.chunks_exact_mut(dof).zip(by_rate.chunks_exact_mut(dof));
-            for (now, (by_alpha, by_rate)) in at_points.enumerate() {
-                let (_, loads) = &slopes[now][s];
-                let works = [&loads.lift, &loads.moment].into_iter().zip(&worked);
-                for ([of_alpha, of_rate], (work, modes)) in memory.kernels.iter().zip(works) {
-                    let (alpha, rate) = (of_alpha[(now, then)], of_rate[(now, then)]);
-                    for mode in modes.clone() {
-                        by_alpha[mode] += alpha * work[mode];
-                        by_rate[mode] += rate * work[mode];
+        let with_lags: Vec<(usize, &StationMemory)> =
+            stations.iter().enumerate().filter_map(|(s, memory)| Some((s, (*memory)?))).collect();
+        let count = 2 * with_lags.len();
+        let mut answers = DMatrix::zeros(dof * points, count);
+        for (k, mut column) in answers.column_iter_mut().enumerate() {
+            let (s, memory) = with_lags[k / 2];
+            let at_points = column.as_mut_slice().chunks_exact_mut(dof);
+            for ((now, answers), of_point) in at_points.enumerate().zip(slopes) {
+                let (_, loads) = &of_point[s];
+                let works = [&loads.lift, &loads.moment].into_iter().zip(worked);
+                for (kernels, (work, modes)) in memory.kernels.iter().zip(works) {
+                    let kernel = kernels[k % 2][(now, then)];
+                    for (sum, work) in answers[modes.clone()].iter_mut().zip(&work[modes.clone()]) {
+                        *sum += kernel * work;
                     }
                 }
             }
-            let (inputs, _) = &slopes[then][s];
-            let columns = out.iter_mut().flat_map(|part| part.chunks_exact_mut(dof * points));
-            let both = inputs.alpha.iter().zip(&inputs.pitch_rate);
-            for (column, (alpha, rate)) in columns.zip(both) {
-                for ((entry, a), r) in column.iter_mut().zip(&by_alpha).zip(&by_rate) {
-                    *entry += alpha * a + rate * r;
-                }
-            }
         }
+        let inputs = DMatrix::from_fn(count, 2 * dof, |k, place| {
+            let (inputs, _) = &slopes[then][with_lags[k / 2].0];
+            if k % 2 == 0 { inputs.alpha[place] } else { inputs.pitch_rate[place] }
+        });
+        Self { answers, inputs }
     }
 }
 
@@ -96,9 +90,9 @@ impl ResponseSystem<'_> {
     ///
     /// `None` over tables, and where no section has lags.
     pub(crate) fn lag_memory(&self, samples: &OrbitSamples) -> Option<OrbitMemory> {
-        let mut stations = self.air.memories()?;
         let lost_from = self.load_law().lost_from;
-        stations.truncate(lost_from);
+        let memories = self.air.memories()?.iter().take(lost_from);
+        let stations: Vec<Option<&StationMemory>> = memories.map(Option::as_ref).collect();
         if stations.iter().all(Option::is_none) {
             return None;
         }
@@ -123,9 +117,11 @@ impl ResponseSystem<'_> {
         let parts =
             dq.as_mut_slice().par_chunks_mut(size).zip(dqd.as_mut_slice().par_chunks_mut(size));
         parts.enumerate().for_each(|(then, (dq, dqd))| {
-            let (worked, out) = (worked.clone(), &mut [dq, dqd]);
-            let (stations, slopes) = (&stations, &slopes);
-            Arch::new().dispatch(Columns { then, stations, slopes, worked, out });
+            let Past { answers, inputs } = Past::new(then, &stations, &slopes, &worked);
+            for (out, places) in [(dq, 0), (dqd, dof)] {
+                let mut out = DMatrixViewMut::from_slice(out, dof * points, dof);
+                out.gemm(1.0, &answers, &inputs.columns(places, dof), 0.0);
+            }
         });
         Some(memory)
     }

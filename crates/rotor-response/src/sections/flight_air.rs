@@ -27,6 +27,7 @@ use crate::{ResponseError, ReverseFlow, RotorModel};
 use flap_aero::{FlapChord, Mach, SectionCoefficients, StallSection};
 use rayon::prelude::*;
 use rotor_fem::TimeElements;
+use std::sync::OnceLock;
 
 /// The sections of one station at the azimuth points of a revolution.
 #[derive(Debug, Clone)]
@@ -68,6 +69,8 @@ pub(crate) struct FlightAir {
     /// First lifting station.
     pub(crate) first_station: usize,
     stations: Vec<Station>,
+    /// What their lags remember, once a Newton matrix has asked.
+    memories: OnceLock<Vec<Option<StationMemory>>>,
 }
 
 impl FlightAir {
@@ -92,7 +95,7 @@ impl FlightAir {
                 Station::new(model, place, &speed, time, &collocation)
             })
             .collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { first_station, stations })
+        Ok(Self { first_station, stations, memories: OnceLock::new() })
     }
 
     /// Whether any section stalls dynamically: its loads are then not linear in the flap.

@@ -23,7 +23,7 @@ impl FlightAir {
     ///
     /// `None` over tables: their settled lags are all the Newton matrix knows. What stall remembers beyond the
     /// attached flow is not in it either.
-    pub(crate) fn memories(&self) -> Option<Vec<Option<StationMemory>>> {
+    pub(crate) fn memories(&self) -> Option<&[Option<StationMemory>]> {
         if self.stations.iter().any(|station| station.air.tables.is_some()) {
             return None;
         }
@@ -31,7 +31,12 @@ impl FlightAir {
             None => station.air.memory(),
             Some(_) => None,
         };
-        Some(self.stations.par_iter().map(of).collect())
+        if let Some(known) = self.memories.get() {
+            return Some(known);
+        }
+        // made outside of the lock: a thread that waits for it must not hold up its own part
+        let made: Vec<_> = self.stations.par_iter().map(of).collect();
+        Some(self.memories.get_or_init(|| made))
     }
 
     /// The lags of every lifting station for its stability, of the first two inputs on lift and moment; none of those with finer azimuth points.
