@@ -17,13 +17,14 @@ pub enum TrimTarget {
         /// The helicopter.
         vehicle: Vehicle,
     },
-    /// Wind-tunnel (moment) trim: thrust and zero hub moments for the three controls at a given
-    /// shaft tilt.
+    /// Wind-tunnel (moment) trim: thrust and hub moments for the three controls at a given shaft tilt.
     WindTunnel {
         /// Thrust as `C_T / sigma`.
         ct_sigma: f64,
         /// Shaft tilt, rad, forward positive.
         shaft_tilt_rad: f64,
+        /// Mean moments `M_X`, `M_Y` of all blades on the hub, `m0 Omega^2 R^3`; usually zero.
+        hub_moments: [f64; 2],
     },
     /// Controls and shaft tilt are given; nothing is solved but the response.
     Prescribed {
@@ -66,11 +67,18 @@ impl Balance {
                 vehicle.validate()?;
                 (*weight_ct_sigma, 6, 0.0)
             }
-            TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad } => (*ct_sigma, 3, *shaft_tilt_rad),
+            TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad, .. } => {
+                (*ct_sigma, 3, *shaft_tilt_rad)
+            }
             TrimTarget::Prescribed { shaft_tilt_rad, .. } => (0.07, 0, *shaft_tilt_rad),
         };
         let attitude = -ATTITUDE_LIMIT..=ATTITUDE_LIMIT;
+        let moments = match target {
+            TrimTarget::WindTunnel { hub_moments: [mx, my], .. } => mx.abs().max(my.abs()),
+            _ => 0.0,
+        };
         for (field, value, is_good, expected) in [
+            ("hub_moments", moments, moments.is_finite(), "finite numbers"),
             ("ct_sigma", loading, loading > 0.0 && loading <= 0.5, "more than 0 and at most 0.5"),
             ("shaft_tilt_rad", tilt, attitude.contains(&tilt), "-0.8 to 0.8 rad"),
             ("advance_ratio", advance_ratio, (0.0..=0.5).contains(&advance_ratio), "0 to 0.5"),
@@ -137,7 +145,9 @@ impl Balance {
         }
         let residual = match &self.target {
             TrimTarget::Prescribed { .. } => vec![],
-            TrimTarget::WindTunnel { .. } => vec![mean[2] - self.weight, mean[3], mean[4]],
+            TrimTarget::WindTunnel { hub_moments: [mx, my], .. } => {
+                vec![mean[2] - self.weight, mean[3] - mx, mean[4] - my]
+            }
             TrimTarget::Propulsive { vehicle, .. } => {
                 let airframe = self.airframe(attitude.shaft_tilt_rad);
                 equilibrium(mean, attitude, vehicle, self.weight, airframe).to_vec()

@@ -325,7 +325,7 @@ mod tests {
         let share = |induced_inflow: f64, (ct_sigma, shaft_tilt_rad): (f64, f64)| {
             let tolerances = ResponseTolerances::default();
             let mut solver = RotorSolver::new(Arc::clone(&rotor), 0.2, tolerances).unwrap();
-            let target = TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad };
+            let target = TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad, hub_moments: [0.0; 2] };
             let inflow = LinearInflow::Prescribed { induced_inflow };
             let settings = TrimSettings::default();
             let found = trim(&mut solver, &inflow, 0.2, &target, &settings, None).unwrap();

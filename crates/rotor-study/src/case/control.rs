@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum TrimValues {
     /// Level flight of the helicopter: six equations.
     Propulsive(PropulsiveTrim),
-    /// Thrust and zero hub moments at a given shaft tilt: three equations.
+    /// Thrust and hub moments at a given shaft tilt: three equations.
     WindTunnel(WindTunnelTrim),
     /// Controls are given, nothing is solved.
     Prescribed(PrescribedTrim),
@@ -91,13 +91,19 @@ section! {
 }
 
 section! {
-    /// `trim: WindTunnel(...)`: thrust and zero hub moments at a given shaft tilt, three equations.
+    /// `trim: WindTunnel(...)`: thrust and hub moments at a given shaft tilt, three equations.
     #[serde(deny_unknown_fields, default)]
     pub struct WindTunnelTrim {
         /// Thrust as `C_T / sigma`.
         pub ct_sigma: f64 = 0.07, Within(1e-3, 0.5), "", "the paper's rotor has 0.07; beyond 0.5 no blade lifts";
         /// Shaft tilt, forward positive.
         pub shaft_tilt_deg: f64 = 5.0, Within(-45.0, 45.0), "deg", "forward tilt is positive; 5 deg is usual at mu 0.3";
+        /// Mean moment of all blades on the hub about the aft axis, starboard side up positive.
+        #[serde(skip_serializing_if = "is_default")]
+        pub hub_mx_n_m: f64 = 0.0, Within(-1e6, 1e6), "N m", "0 is usual";
+        /// The same about the starboard axis, nose up positive.
+        #[serde(skip_serializing_if = "is_default")]
+        pub hub_my_n_m: f64 = 0.0, Within(-1e6, 1e6), "N m", "0 is usual";
     }
 }
 

@@ -178,6 +178,8 @@ impl Case {
             TrimValues::WindTunnel(w) => TrimTarget::WindTunnel {
                 ct_sigma: w.ct_sigma,
                 shaft_tilt_rad: w.shaft_tilt_deg.to_radians(),
+                hub_moments: [w.hub_mx_n_m, w.hub_my_n_m]
+                    .map(|moment| moment / self.scales().moment_newton_metre()),
             },
             TrimValues::Prescribed(p) => TrimTarget::Prescribed {
                 controls: Controls {

@@ -480,3 +480,17 @@ fn places_of_results_are_looked_at_first() {
     assert_ne!(ran.code, 0);
     assert!(ran.err.contains("note: the results in o are of an earlier run"), "{}", ran.err);
 }
+
+/// A tunnel trim meets the hub moments that its case gives in N m, and says so in the mean loads.
+#[test]
+fn a_tunnel_trim_to_given_hub_moments() {
+    let place = Place::new();
+    let given = "shaft_tilt_deg: 3.0, hub_mx_n_m: 150, hub_my_n_m: -250";
+    let case = QUICK_CASE.replace("shaft_tilt_deg: 3.0", given);
+    assert_ne!(case, QUICK_CASE);
+    place.write("given.ron", &case);
+    let json = place.hhc(&["run", "given.ron", "--format", "json"]).json();
+    let moments = &json["mean_loads"]["hub_moment_N_m"];
+    let [mx, my] = [0, 1].map(|k| moments[k].as_f64().unwrap());
+    assert!((mx - 150.0).abs() < 1e-2 && (my + 250.0).abs() < 1e-2, "{moments}");
+}

@@ -36,7 +36,11 @@ fn coupled(
     settings: &WakeTrimSettings,
     ct_sigma: f64,
 ) -> Result<WakeTrim, TrimError> {
-    let target = TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad: advance_ratio * 0.3 };
+    let target = TrimTarget::WindTunnel {
+        ct_sigma,
+        shaft_tilt_rad: advance_ratio * 0.3,
+        hub_moments: [0.0; 2],
+    };
     let trim_settings = TrimSettings::default();
     let solver = &mut small(advance_ratio);
     trim_in_free_wake(solver, settings, advance_ratio, &target, &trim_settings)
@@ -258,7 +262,11 @@ fn a_trim_nearby_leads_to_the_same_trim() {
     let settings = few_steps(3);
     let near = coupled(0.25, &settings, 0.066).unwrap();
     let whole = coupled(0.25, &settings, 0.07).unwrap();
-    let target = TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: 0.25 * 0.3 };
+    let target = TrimTarget::WindTunnel {
+        ct_sigma: 0.07,
+        shaft_tilt_rad: 0.25 * 0.3,
+        hub_moments: [0.0; 2],
+    };
     let solver = &mut small(0.25);
     let led = trim_in_free_wake_near(solver, &settings, &near, &target, &TrimSettings::default())
         .unwrap();
@@ -283,7 +291,8 @@ fn distance<'a>(pairs: impl Iterator<Item = (&'a [f64; 12], &'a [f64; 12])>) -> 
 fn the_linearised_rotor_holds_what_its_wake_answers() {
     let (mu, step_deg, settings) = (0.25, 0.5, few_steps(3));
     let mut solver = few_modes(RotorModel::paper_case(), mu);
-    let target = TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: mu * 0.3 };
+    let target =
+        TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: mu * 0.3, hub_moments: [0.0; 2] };
     let trimmed =
         trim_in_free_wake(&mut solver, &settings, mu, &target, &TrimSettings::default()).unwrap();
     let flaps = solver.rotor().model().flaps.len();

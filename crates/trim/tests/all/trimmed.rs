@@ -52,7 +52,8 @@ fn a_thrust_out_of_reach_is_an_error_with_its_history() {
 /// Attached sections give any lift: what no aerofoil gives is no trim.
 #[test]
 fn a_thrust_beyond_the_lift_of_any_aerofoil_is_an_error_with_its_history() {
-    let target = TrimTarget::WindTunnel { ct_sigma: 0.27, shaft_tilt_rad: 0.0 };
+    let target =
+        TrimTarget::WindTunnel { ct_sigma: 0.27, shaft_tilt_rad: 0.0, hub_moments: [0.0; 2] };
     let error = solve(0.0, &target).unwrap_err();
     assert!(
         matches!(&error, TrimError::BeyondStall { lift_coefficient, history, .. }
@@ -177,7 +178,11 @@ fn stalling(advance_ratio: f64) -> RotorSolver {
 }
 
 fn stalled_trim(ct_sigma: f64) -> Result<TrimSolution, TrimError> {
-    let target = TrimTarget::WindTunnel { ct_sigma, shaft_tilt_rad: 5.0_f64.to_radians() };
+    let target = TrimTarget::WindTunnel {
+        ct_sigma,
+        shaft_tilt_rad: 5.0_f64.to_radians(),
+        hub_moments: [0.0; 2],
+    };
     trim(&mut stalling(0.25), &LinearInflow::Drees, 0.25, &target, &TrimSettings::default(), None)
 }
 
@@ -191,4 +196,30 @@ fn dynamic_stall_is_trimmed_up_to_its_edge() {
         panic!("twice the lift of the sections was trimmed");
     };
     assert!((0.1..0.19).contains(&reached) && !history.is_empty(), "{reached} {history:?}");
+}
+
+/// A rotor in a tunnel is trimmed to the hub moments asked for, at the same thrust; the cyclic pitch moves in proportion.
+#[test]
+fn a_tunnel_trim_meets_given_hub_moments() {
+    let found = |hub_moments: [f64; 2]| {
+        let target = TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: 0.05, hub_moments };
+        solve(0.2, &target).unwrap()
+    };
+    let asked = [1e-3, -1.5e-3];
+    let (none, given, turned) = (found([0.0; 2]), found(asked), found(asked.map(|m| -m)));
+    let weight = none.rotor.hub.mean()[2];
+    for (solution, wanted) in [(&none, [0.0; 2]), (&given, asked), (&turned, asked.map(|m| -m))] {
+        let mean = solution.rotor.hub.mean();
+        assert!((mean[2] - weight).abs() < 2e-9 * weight, "{mean:?}");
+        for (found, wanted) in mean[3..5].iter().zip(wanted) {
+            assert!((found - wanted).abs() < 2e-9 * weight, "{found} {wanted}");
+        }
+    }
+    let cyclic = |s: &TrimSolution| [s.controls.theta1c_rad, s.controls.theta1s_rad];
+    for k in 0..2 {
+        let [rest, plus, minus] = [&none, &given, &turned].map(|s| cyclic(s)[k]);
+        assert!((plus - rest).abs() > 1e-3, "{plus} {rest}");
+        // linear but for the coupled inflow
+        assert!((plus + minus - 2.0 * rest).abs() < 0.02 * (plus - rest).abs(), "{plus} {minus}");
+    }
 }

@@ -204,7 +204,10 @@ fn trimmed_power_falls() -> Result<f64, Failure> {
 }
 
 fn wind_tunnel() -> Result<TrimSolution, Failure> {
-    trimmed(0.25, &TrimTarget::WindTunnel { ct_sigma: CT_SIGMA, shaft_tilt_rad: 0.08 })
+    trimmed(
+        0.25,
+        &TrimTarget::WindTunnel { ct_sigma: CT_SIGMA, shaft_tilt_rad: 0.08, hub_moments: [0.0; 2] },
+    )
 }
 
 fn wind_tunnel_thrust() -> Result<f64, Failure> {

@@ -128,7 +128,8 @@ pub(crate) const ROWS: &[Check] = &[
         let wake =
             FreeWakeSettings { azimuths: 12, ..FreeWakeSettings::hover(CoreModel::Vatistas) };
         let settings = WakeTrimSettings { wake, ..Default::default() };
-        let target = TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: 0.0 };
+        let target =
+            TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: 0.0, hub_moments: [0.0; 2] };
         let hover = trimmed(0.0, &settings, &target)?;
         Ok(thrust_4(&hover) / hover.trim.rotor.hub.mean()[2])
     })
