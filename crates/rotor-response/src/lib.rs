@@ -8,6 +8,7 @@ mod response;
 mod sections;
 mod structure;
 
+pub use answers::airloads::{SectionAirload, StationAirloads, TipMotion};
 pub use answers::changes::{StateChange, WakeDrive};
 pub use answers::coupled_modes::{CoupledBladeMode, LOW_DAMPING_RATIO, RESONANCE_PER_REV};
 pub use answers::dissimilar::{OtherBlade, dissimilar_hub_loads};

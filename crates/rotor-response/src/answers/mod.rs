@@ -1,5 +1,6 @@
 //! What is computed about a converged rotor: sensitivities, stability, loads inside the blade.
 
+pub(crate) mod airloads;
 pub(crate) mod changes;
 pub(crate) mod coupled_modes;
 pub(crate) mod dissimilar;

@@ -162,6 +162,16 @@ impl SpanGrid {
         out
     }
 
+    /// The first point of the piece that holds a station, and the shares of the values at its points in the polynomial there;
+    /// on an edge the piece inboard of it, but at the root.
+    pub fn shares_at(&self, station: f64) -> (usize, Vec<f64>) {
+        let pieces = self.halves.len();
+        let piece = self.edges[1..pieces].partition_point(|edge| *edge < station);
+        let local = (station - self.edges[piece]) / self.halves[piece] - 1.0;
+        let shares = self.basis.evaluate(local).into_iter().map(|[share, ..]| share);
+        (piece * self.points_per_piece, shares.collect())
+    }
+
     /// Integral of `f` over the blade.
     pub fn integral(&self, f: &[f64]) -> f64 {
         self.weight.iter().zip(f).map(|(w, v)| w * v).sum()
@@ -192,6 +202,12 @@ mod tests {
             let sum: f64 = weights.iter().zip(&f).map(|(w, f)| w * f).sum();
             assert_abs_diff_eq!(sum, (1.0 - f64::powi(station, 4)) / 4.0, epsilon = 1e-15);
         }
+        for station in [0.0, 0.1, 0.35, 0.4321, 0.7, 0.999, 1.0] {
+            let (from, shares) = grid.shares_at(station);
+            let value: f64 = shares.iter().zip(&f[from..]).map(|(share, f)| share * f).sum();
+            assert_abs_diff_eq!(value, f64::powi(station, 3), epsilon = 1e-14);
+        }
+        assert_eq!((grid.shares_at(0.35).0, grid.shares_at(0.3501).0), (0, 4));
         assert_eq!(grid.weights_outboard(0.0), grid.weight());
         assert!(grid.weights_outboard(1.0).iter().all(|w| *w == 0.0));
         let step: Vec<f64> = grid.x().iter().map(|&x| f64::from(x > 0.35)).collect();

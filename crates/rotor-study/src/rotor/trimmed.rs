@@ -12,8 +12,8 @@ use nalgebra::DMatrix;
 use rotor_base::{HarmonicSeries, RotorScales};
 use rotor_response::{
     Condition, FlapDirection, InflowState, OtherBlade, ResponseError, ResponseTolerances, Rotor,
-    RotorSolution, RotorSolver, SectionLift, SixLoads, Stability, StationLoads,
-    dissimilar_hub_loads,
+    RotorSolution, RotorSolver, SectionLift, SixLoads, Stability, StationAirloads, StationLoads,
+    TipMotion, dissimilar_hub_loads,
 };
 use rotor_wake::InflowModel;
 use std::collections::BTreeSet;
@@ -277,6 +277,22 @@ impl TrimmedRotor {
     /// As [`RotorSolver::station_loads`].
     pub fn station_loads(&self, stations: &[f64]) -> Result<Vec<StationLoads>, ResponseError> {
         self.solver.station_loads(&self.flaps_at_rest(), &self.trim.rotor, stations)
+    }
+
+    /// Airloads at stations (R) of the lifting part of the blade, and the motion of its tip, flaps at rest, at so many equal
+    /// azimuths.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::airloads`].
+    pub fn airloads(
+        &self,
+        stations: &[f64],
+        tip_mach: f64,
+        azimuths: usize,
+    ) -> Result<(Vec<StationAirloads>, Vec<TipMotion>), ResponseError> {
+        let (condition, found) = (self.flaps_at_rest(), &self.trim.rotor);
+        let loads = self.solver.airloads(&condition, found, stations, (tip_mach, azimuths))?;
+        Ok((loads, self.solver.tip_motion(found, azimuths)))
     }
 
     fn flaps_at_rest(&self) -> Condition {

@@ -1,5 +1,6 @@
 //! Results of a study for people and files: tables and CSV.
 
+pub mod airloads;
 pub mod blade_loads;
 pub mod modes;
 pub mod wake;

@@ -494,3 +494,34 @@ fn a_tunnel_trim_to_given_hub_moments() {
     let [mx, my] = [0, 1].map(|k| moments[k].as_f64().unwrap());
     assert!((mx - 150.0).abs() < 1e-2 && (my + 250.0).abs() < 1e-2, "{moments}");
 }
+
+/// The tables of airloads and of the tip have their fixed columns, a row a degree and station, and the numbers of the run:
+/// the mean twist of the tip is nose down, and the section at 0.75 R carries the lift of the rotor.
+#[test]
+fn airloads_and_tip_motion_are_tables() {
+    let place = Place::new();
+    place.write("quick.ron", QUICK_CASE);
+    place.hhc(&["run", "quick.ron", "--out", "out"]).done();
+    let text = place.read("out/airloads.csv");
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("station_r,azimuth_deg,cn_m2,cm_m2,cc_m2,cn,mach"));
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    // 0.25, 0.5 and 0.75 R lift, the root does not
+    assert_eq!(rows.len(), 3 * 360);
+    let outer: Vec<&Vec<f64>> = rows.iter().filter(|row| (row[0] - 0.75).abs() < 1e-12).collect();
+    let advancing = outer.iter().find(|row| (row[1] - 90.0).abs() < 1e-9).unwrap();
+    let retreating = outer.iter().find(|row| (row[1] - 270.0).abs() < 1e-9).unwrap();
+    let tip_mach = (advancing[6] + retreating[6]) / 1.5;
+    assert!((advancing[6] - retreating[6] - 0.4 * tip_mach).abs() < 0.01 * tip_mach);
+    assert!((advancing[2] / (advancing[6] * advancing[6]) - advancing[5]).abs() < 1e-12);
+    let mean = outer.iter().map(|row| row[2]).sum::<f64>() / 360.0;
+    // C_T/sigma 0.07 is a mean C_l of 0.42: over the square of 0.75 of the tip Mach number about half of that
+    assert!((0.15..0.35).contains(&(mean / (tip_mach * tip_mach))), "{mean} {tip_mach}");
+
+    let text = place.read("out/tip.csv");
+    let mut lines = text.lines();
+    let header = "azimuth_deg,flap_percent_r,lag_percent_r,elastic_twist_deg";
+    assert_eq!(lines.next(), Some(header));
+    assert_eq!(lines.count(), 360);
+}
