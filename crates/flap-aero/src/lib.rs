@@ -65,7 +65,9 @@ pub use motion::linearise::{LagRateSlopes, LoadSlopes, lag_rate_slopes, load_slo
 pub use motion::march::SectionState;
 pub use motion::periodic::{CycleStep, periodic_state};
 pub use motion::response::{Motion, harmonic_response, indicial_response, steady_response};
-pub use stall::{StallAirfoil, StallParameters, StallSection, StallState, StalledLoads};
+pub use stall::{
+    FittedStall, StallAirfoil, StallParameters, StallSection, StallState, StalledLoads,
+};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -2,7 +2,7 @@
 
 use super::cycle::{Cycle, FEWEST_POINTS, Stalling, extreme};
 use super::loops::MeasuredLoop;
-use flap_aero::StallParameters;
+use flap_aero::FittedStall;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -64,39 +64,24 @@ impl Shape {
     /// The constants at a Mach number, of values in the order of the bounds.
     pub fn stalling(&self, values: &[f64], mach: f64) -> Stalling {
         let count = self.machs.len();
-        let (alpha1, rest) = values.split_at(count);
+        let (alpha1_deg, rest) = values.split_at(count);
         let (cn1, rest) = rest.split_at(count);
         let (same, camber) = rest.split_at(SAME.len());
-        let after = self.machs.partition_point(|m| *m <= mach);
-        let between = |of: &[f64]| match (after.checked_sub(1), of.get(after)) {
-            (None, _) => of[0],
-            (Some(before), None) => of[before],
-            (Some(before), Some(next)) => {
-                let [from, to] = [self.machs[before], self.machs[after]];
-                of[before] + (mach - from) / (to - from) * (next - of[before])
-            }
-        };
-        let parameters = StallParameters {
-            alpha1_rad: between(alpha1).to_radians(),
-            cn1: between(cn1),
-            s1_rad: same[0].to_radians(),
-            s2_rad: same[1].to_radians(),
-            k0: same[2],
-            k1: same[3],
-            k2: same[4],
-            eta: same[5],
-            df: same[6],
-            tp: same[7],
-            tf: same[8],
-            tf_attaching: same[9],
-            tv: same[10],
-            tvl: same[11],
-            vortex_strength: same[12],
-            vortex_arm: same[13],
-        };
         let [zero_lift_deg, zero_lift_moment] =
             if self.cambered { [camber[0], camber[1]] } else { [0.0; 2] };
-        Stalling { parameters, zero_lift_rad: zero_lift_deg.to_radians(), zero_lift_moment }
+        let fitted = FittedStall {
+            machs: self.machs,
+            alpha1_deg,
+            cn1,
+            same: std::array::from_fn(|k| same[k]),
+            zero_lift_deg,
+            zero_lift_moment,
+        };
+        Stalling {
+            parameters: fitted.at(mach),
+            zero_lift_rad: zero_lift_deg.to_radians(),
+            zero_lift_moment,
+        }
     }
 }
 

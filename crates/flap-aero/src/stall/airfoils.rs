@@ -16,17 +16,22 @@ pub enum StallAirfoil {
     Naca23012a,
 }
 
-/// Constants fitted to measured loops.
-struct Fitted {
-    /// Mach numbers between which `alpha1` and `Cn1` run straight.
-    machs: &'static [f64],
-    alpha1_deg: &'static [f64],
-    cn1: &'static [f64],
-    /// The others: angles in deg, lags in semichords.
-    same: [f64; 14],
-    /// Incidence of zero lift, deg, and the moment there.
-    zero_lift_deg: f64,
-    zero_lift_moment: f64,
+/// Constants as they are fitted to measured loops: `alpha1` and `Cn1` by Mach number, the others the same at all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedStall<'a> {
+    /// Mach numbers between which `alpha1` and `Cn1` run straight; ascending, one at least.
+    pub machs: &'a [f64],
+    /// `alpha1` at each, deg.
+    pub alpha1_deg: &'a [f64],
+    /// `Cn1` at each.
+    pub cn1: &'a [f64],
+    /// `S1` and `S2` in deg, `k0`, `k1`, `k2`, `eta`, `Df`, then in semichords `Tp`, `Tf`, `Tf` attaching, `Tv`, `Tvl`, then
+    /// strength and arm of the vortex.
+    pub same: [f64; 14],
+    /// Incidence of zero lift, deg.
+    pub zero_lift_deg: f64,
+    /// Moment about the quarter chord there, nose up, over `q c^2`.
+    pub zero_lift_moment: f64,
 }
 
 /// Mach number up to which there are measured loops, about.
@@ -45,8 +50,9 @@ fn between(places: &[f64], values: &[f64], x: f64) -> f64 {
     }
 }
 
-impl Fitted {
-    fn at(&self, mach: f64) -> StallParameters {
+impl FittedStall<'_> {
+    /// The constants at a Mach number, those of the ends beyond.
+    pub fn at(&self, mach: f64) -> StallParameters {
         let [s1, s2, k0, k1, k2, eta, df, tp, tf, back, tv, tvl, strength, arm] = self.same;
         StallParameters {
             alpha1_rad: between(self.machs, self.alpha1_deg, mach).to_radians(),
@@ -69,7 +75,7 @@ impl Fitted {
     }
 }
 
-const NACA_0012: Fitted = Fitted {
+const NACA_0012: FittedStall<'static> = FittedStall {
     machs: &[0.036, 0.11, 0.185, 0.3],
     alpha1_deg: &[11.73, 17.92, 15.59, 13.15],
     cn1: &[1.434, 2.159, 1.814, 1.472],
@@ -81,7 +87,7 @@ const NACA_0012: Fitted = Fitted {
     zero_lift_moment: 0.0,
 };
 
-const AMES_01: Fitted = Fitted {
+const AMES_01: FittedStall<'static> = FittedStall {
     machs: &[0.185, 0.3],
     alpha1_deg: &[16.24, 14.28],
     cn1: &[1.850, 1.700],
@@ -93,7 +99,7 @@ const AMES_01: Fitted = Fitted {
     zero_lift_moment: 0.0,
 };
 
-const NACA_23012A: Fitted = Fitted {
+const NACA_23012A: FittedStall<'static> = FittedStall {
     machs: &[0.117],
     alpha1_deg: &[12.69],
     cn1: &[1.366],
@@ -106,7 +112,7 @@ const NACA_23012A: Fitted = Fitted {
 };
 
 impl StallAirfoil {
-    fn fitted(self) -> Option<&'static Fitted> {
+    fn fitted(self) -> Option<&'static FittedStall<'static>> {
         match self {
             Self::Naca0012 => None,
             Self::Naca0012Measured => Some(&NACA_0012),

@@ -3,7 +3,7 @@
 mod airfoils;
 mod parameters;
 
-pub use airfoils::StallAirfoil;
+pub use airfoils::{FittedStall, StallAirfoil};
 pub use parameters::StallParameters;
 
 use crate::error::check;

@@ -154,11 +154,8 @@ fn stall_remark(airfoil: StallAirfoil, mach: f64) -> Option<String> {
         StallAirfoil::Naca0012 => format!(
             "the constants of the stall are those of Mach {end}: published for {from} to {to}"
         ),
-        _ if mach < from || mach <= 0.3 => format!(
-            "the constants of the stall are those of Mach {end}: fitted for {from} to {to}"
-        ),
         _ => format!(
-            "the constants of the stall follow the published trend of the NACA 0012: fitted for Mach {from} to {to}"
+            "the constants of the stall were fitted for Mach {from} to {to}: its ends are held, and beyond 0.3 they follow the published trend of the NACA 0012"
         ),
     })
 }
