@@ -235,7 +235,7 @@ impl BladeElementRotor<'_> {
             else {
                 break;
             };
-            let [down, along] = induction.matrices().map(|matrix| matrix * &agreed);
+            let [down, along] = induction.matrices().map(|matrix| &matrix * &agreed);
             let (down, along) = (down - &inflow, along - &in_plane);
             let part = (0.05 / down.amax().max(along.amax())).min(1.0);
             inflow += down * part;

@@ -6,6 +6,7 @@
     reason = "single precision is what is asked for a step"
 )]
 
+use super::row_blocks::{RowBlock, RowBlocks};
 use super::sources::Sources;
 use super::{ControlPoint, CoreSettings, FreeWake};
 use crate::error::ensure;
@@ -15,7 +16,7 @@ use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use nalgebra::{DMatrix, DVector, DVectorViewMut};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -31,15 +32,9 @@ use std::sync::Arc;
 pub struct LineInduction {
     rotor: WakeRotor,
     azimuths: usize,
-    down: DMatrix<f64>,
-    along: DMatrix<f64>,
+    down: RowBlocks,
+    along: RowBlocks,
 }
-
-/// Rows of a map that one thread applies together.
-const ROWS_TOGETHER: usize = 128;
-
-/// Columns of a map that one thread fills together.
-const COLUMNS_TOGETHER: usize = 32;
 
 /// Where the control points of Weissinger's method lie between the quarter chord and the trailing edge.
 const HALF_A_CHORD: f64 = 2.0 / 3.0;
@@ -137,50 +132,26 @@ impl FreeWake {
             })
             .collect();
         let blocks = self.line_targets();
-        let columns: Vec<[Vec<[f64; BLOCK]>; 2]> = blocks
-            .par_iter()
+        let maps: Vec<[RowBlock; 2]> = blocks
+            .into_par_iter()
             .map(|block| {
                 let (sources, segments) = &sources[block.phase];
                 let down = vec![[0.0; BLOCK]; size];
-                let mut rows = Rows { sources, block, along: down.clone(), down };
+                let mut rows = Rows { sources, block: &block, along: down.clone(), down };
                 for_each_velocity(&block.points, segments, &mut rows);
-                [rows.down, rows.along]
+                let Rows { mut down, along, .. } = rows;
+                for (lane, (row, own)) in block.rows.iter().zip(block.own).enumerate() {
+                    down[*row][lane] -= own;
+                }
+                [(block.rows.clone(), down), (block.rows, along)]
+                    .map(|(rows, columns)| RowBlock { rows, columns })
             })
             .collect();
-        let [mut down, mut along] = [0, 1].map(|which| {
-            let mut matrix = DMatrix::zeros(size, size);
-            let of_columns = matrix.as_mut_slice().par_chunks_mut(size).enumerate();
-            of_columns.with_min_len(COLUMNS_TOGETHER).for_each(|(column, out)| {
-                for (block, found) in blocks.iter().zip(&columns) {
-                    for (&row, value) in block.rows.iter().zip(found[which][column]) {
-                        out[row] = value;
-                    }
-                }
-            });
-            matrix
-        });
-        for block in &blocks {
-            for (&row, own) in block.rows.iter().zip(block.own) {
-                down[(row, row)] -= own;
-            }
-        }
-        if self.is_axial() {
-            for matrix in [&mut down, &mut along] {
-                turn_rows(matrix, panels);
-            }
-        }
+        let (down, along) = maps.into_iter().map(|[down, along]| (down, along)).unzip();
+        let turns = self.is_axial();
+        let [down, along] = [RowBlocks(down), RowBlocks(along)]
+            .map(|map| if turns { map.turned(panels) } else { map });
         Ok(LineInduction { rotor: self.rotor.clone(), azimuths, down, along })
-    }
-}
-
-/// Gives every azimuth the rows of the first one, with what is as far behind it.
-fn turn_rows(matrix: &mut DMatrix<f64>, panels: usize) {
-    let size = matrix.ncols();
-    for row in panels..size {
-        let shift = row - row % panels;
-        for column in 0..size {
-            matrix[(row, column)] = matrix[(row % panels, (column + size - shift) % size)];
-        }
     }
 }
 
@@ -199,10 +170,11 @@ impl LineInduction {
     #[must_use]
     pub fn of_one_azimuth(&self) -> Self {
         let panels = self.rotor.panels();
-        let summed = |matrix: &DMatrix<f64>| {
-            DMatrix::from_fn(panels, panels, |row, column| {
-                (0..self.azimuths).map(|i| matrix[(row, i * panels + column)]).sum()
-            })
+        let summed = |map: &RowBlocks| {
+            let map = map.matrix();
+            let sum =
+                |row, column| (0..self.azimuths).map(|i| map[(row, i * panels + column)]).sum();
+            RowBlocks::from_fn(panels, sum)
         };
         Self {
             rotor: self.rotor.clone(),
@@ -213,8 +185,8 @@ impl LineInduction {
     }
 
     /// The matrices `A` and `B`: down through the disk, and along it.
-    pub fn matrices(&self) -> [&DMatrix<f64>; 2] {
-        [&self.down, &self.along]
+    pub fn matrices(&self) -> [DMatrix<f64>; 2] {
+        [self.down.matrix(), self.along.matrix()]
     }
 
     /// Inflow of a circulation.
@@ -235,19 +207,13 @@ impl LineInduction {
 
     fn applied(
         &self,
-        matrix: &DMatrix<f64>,
+        map: &RowBlocks,
         circulation: &CirculationMap,
     ) -> Result<InflowMap, WakeError> {
         let count = circulation.values().len();
         let expected = "azimuths times panels of the wake";
-        ensure(count == matrix.nrows(), "values of the circulation", count as f64, expected)?;
-        let gamma = DVector::from_column_slice(circulation.values());
-        let mut inflow = vec![0.0; count];
-        inflow.par_chunks_mut(ROWS_TOGETHER).enumerate().for_each(|(part, rows)| {
-            let of = matrix.rows(part * ROWS_TOGETHER, rows.len());
-            DVectorViewMut::from_slice(rows, rows.len()).gemv(1.0, &of, &gamma, 0.0);
-        });
-        InflowMap::new(&self.rotor, inflow)
+        ensure(count == map.order(), "values of the circulation", count as f64, expected)?;
+        InflowMap::new(&self.rotor, map.times(circulation.values()))
     }
 }
 
@@ -295,12 +261,13 @@ impl FrozenWake {
         let reference = induction.inflow(circulation)?;
         let (azimuths, panels) = (induction.azimuths, induction.rotor.panels());
         let size = azimuths * panels;
+        let map = induction.down.matrix();
         let mut newton = DMatrix::identity(size, size);
         for (from, to, block) in &slope.blocks {
             let fits = *from.max(to) < panels && block.shape() == (azimuths, azimuths);
             let expected = "azimuths and panels of the wake";
             ensure(fits, "order of a slope of the circulation", block.nrows() as f64, expected)?;
-            let down = induction.down.columns_with_step(*from, azimuths, panels - 1);
+            let down = map.columns_with_step(*from, azimuths, panels - 1);
             newton.columns_with_step_mut(*to, azimuths, panels - 1).gemm(-1.0, &down, block, 1.0);
         }
         let newton = Mat::from_fn(size, size, |row, column| newton[(row, column)] as f32);
@@ -317,8 +284,8 @@ impl FrozenWake {
         induction: LineInduction,
         circulation: &CirculationMap,
     ) -> Result<Self, WakeError> {
-        let (size, expected) = (self.induction.down.nrows(), "azimuths times panels of the wake");
-        let found = induction.down.nrows();
+        let (size, expected) = (self.induction.down.order(), "azimuths times panels of the wake");
+        let found = induction.down.order();
         ensure(found == size, "order of a map of circulation", found as f64, expected)?;
         let reference = induction.inflow(circulation)?;
         let newton = Arc::clone(&self.newton);

@@ -6,6 +6,7 @@ mod influence;
 mod march;
 mod passage;
 mod placement;
+mod row_blocks;
 mod settings;
 mod sources;
 mod sweep;

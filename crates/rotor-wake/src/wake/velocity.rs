@@ -7,6 +7,7 @@ use crate::CirculationMap;
 use crate::kernel::{CoreModel, arc_velocity, induced_velocities};
 use crate::vector::{Vec3, about_the_shaft, add, scale, sub};
 use crate::{SegmentSet, WakeError};
+use rayon::prelude::*;
 
 /// Velocities at all nodes of the free filaments.
 pub(super) type Velocities = Vec<Vec<Vec3>>;
@@ -74,6 +75,7 @@ impl FreeWake {
     ) -> Vec<SegmentSet> {
         let context = self.context(circulation, self.turn());
         (0..self.phases_that_differ())
+            .into_par_iter()
             .map(|p| sources(&self.views(p), &context).segments(&context, circulation.values()))
             .collect()
     }
@@ -102,23 +104,27 @@ impl FreeWake {
     pub(super) fn velocities(&self, circulation: &CirculationMap) -> Velocities {
         let sets = self.all_segments(circulation, Sources::of_geometry);
         let free: Vec<&Filament> = self.free().collect();
-        let mut out: Velocities = free.iter().map(|f| vec![[0.0; 3]; f.points.len()]).collect();
         let stride = self.settings.velocity_stride;
         let computed = |f: &Filament, k: usize| k.is_multiple_of(stride) || k == f.steps;
-        for (phase, set) in sets.iter().enumerate() {
-            let mut places = Vec::new();
-            let mut targets = Vec::new();
-            for (j, f) in free.iter().enumerate() {
-                for i in self.blade_azimuths(phase).take(self.blades_that_differ()) {
-                    for k in (0..=f.steps).filter(|&k| computed(f, k)) {
-                        places.push((j, f.index(i, k)));
-                        targets.push(f.at(i)[k]);
+        let of_phases: Vec<Vec<((usize, usize), Vec3)>> = sets
+            .par_iter()
+            .enumerate()
+            .map(|(phase, set)| {
+                let (mut places, mut targets) = (Vec::new(), Vec::new());
+                for (j, f) in free.iter().enumerate() {
+                    for i in self.blade_azimuths(phase).take(self.blades_that_differ()) {
+                        for k in (0..=f.steps).filter(|&k| computed(f, k)) {
+                            places.push((j, f.index(i, k)));
+                            targets.push(f.at(i)[k]);
+                        }
                     }
                 }
-            }
-            for ((j, index), v) in places.into_iter().zip(induced_velocities(&targets, set)) {
-                out[j][index] = v;
-            }
+                places.into_iter().zip(induced_velocities(&targets, set)).collect()
+            })
+            .collect();
+        let mut out: Velocities = free.iter().map(|f| vec![[0.0; 3]; f.points.len()]).collect();
+        for ((j, index), v) in of_phases.into_iter().flatten() {
+            out[j][index] = v;
         }
         if self.is_axial() {
             for (f, v) in free.iter().zip(&mut out) {
